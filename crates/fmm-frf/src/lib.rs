@@ -1,0 +1,1 @@
+//! Frequency response of impact tests: impulse, receptance, mobility and accelerance.

@@ -1,0 +1,71 @@
+//! What can be wrong with the description of a machine.
+
+/// A machine description that cannot be.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// A quantity that must be positive is zero, negative or not finite.
+    #[error("{quantity} must be positive and finite, but is {value} {unit}")]
+    NotPositive {
+        /// Which quantity.
+        quantity: &'static str,
+        /// The value given.
+        value: f64,
+        /// Its SI unit.
+        unit: &'static str,
+    },
+    /// A quantity that must not be negative is negative or not finite.
+    #[error("{quantity} must be zero or positive and finite, but is {value} {unit}")]
+    Negative {
+        /// Which quantity.
+        quantity: &'static str,
+        /// The value given.
+        value: f64,
+        /// Its SI unit.
+        unit: &'static str,
+    },
+    /// A quantity that may have either sign is infinite or not a number.
+    #[error("{quantity} must be finite, but is {value} {unit}")]
+    NotFinite {
+        /// Which quantity.
+        quantity: &'static str,
+        /// The value given.
+        value: f64,
+        /// Its SI unit.
+        unit: &'static str,
+    },
+    /// Bounds that no value can satisfy.
+    #[error("the lower bound {lower} must not exceed the upper bound {upper}, and neither may be NaN")]
+    InvertedBounds {
+        /// The lower bound given.
+        lower: f64,
+        /// The upper bound given.
+        upper: f64,
+    },
+}
+
+impl ModelError {
+    /// Passes `value` through if it is positive and finite.
+    ///
+    /// # Errors
+    /// [`ModelError::NotPositive`] otherwise.
+    pub fn require_positive(quantity: &'static str, value: f64, unit: &'static str) -> Result<f64, Self> {
+        if value > 0.0 && value.is_finite() { Ok(value) } else { Err(Self::NotPositive { quantity, value, unit }) }
+    }
+
+    /// Passes `value` through if it is zero or positive and finite.
+    ///
+    /// # Errors
+    /// [`ModelError::Negative`] otherwise.
+    pub fn require_not_negative(quantity: &'static str, value: f64, unit: &'static str) -> Result<f64, Self> {
+        if value >= 0.0 && value.is_finite() { Ok(value) } else { Err(Self::Negative { quantity, value, unit }) }
+    }
+
+    /// Passes `value` through if it is finite.
+    ///
+    /// # Errors
+    /// [`ModelError::NotFinite`] otherwise.
+    pub fn require_finite(quantity: &'static str, value: f64, unit: &'static str) -> Result<f64, Self> {
+        if value.is_finite() { Ok(value) } else { Err(Self::NotFinite { quantity, value, unit }) }
+    }
+}

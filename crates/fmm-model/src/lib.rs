@@ -1,0 +1,30 @@
+//! What a friction measuring machine *is*: a single-degree-of-freedom oscillator with its damping, and the two
+//! words that all FMM crates share, [`Parameter`] (name, symbol, unit, bounds) and [`Scalar`] (the number type
+//! that a formula is generic in).
+//!
+//! Everything is in SI units. A machine whose mass is not known is described *per unit mass*: stiffness in
+//! 1/s², damping in 1/s, force in m/s²; all formulas hold unchanged.
+//!
+//! ```
+//! use fmm_model::{Damping, Oscillator};
+//!
+//! // The flexure machine of the thesis, Table 2.
+//! let machine = Oscillator::new(10.391, 1982.0)?.with_damping(Damping::linear(0.275)?);
+//! assert!((machine.natural_frequency() - 2.198_08).abs() < 5e-6);
+//! assert!((machine.damping_ratio() - 9.581_25e-4).abs() < 1e-9);
+//! # Ok::<(), fmm_model::ModelError>(())
+//! ```
+
+mod bounds;
+mod damping;
+mod error;
+mod oscillator;
+mod parameter;
+mod scalar;
+
+pub use bounds::Bounds;
+pub use damping::Damping;
+pub use error::ModelError;
+pub use oscillator::Oscillator;
+pub use parameter::Parameter;
+pub use scalar::{Dual, Scalar};

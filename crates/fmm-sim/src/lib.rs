@@ -1,0 +1,1 @@
+//! Stick-slip oscillators simulated exactly through every event, with exact gradients.

@@ -1,0 +1,1 @@
+//! Measurement uncertainty after the GUM: inputs, propagation with exact sensitivities, budgets.

@@ -1,0 +1,1 @@
+//! Home of the examples, tests and benches; the library code lives in `crates/`.
