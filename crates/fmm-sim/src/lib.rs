@@ -1,1 +1,51 @@
-//! Stick-slip oscillators simulated exactly through every event, with exact gradients.
+//! What would *happen*: the motion of an oscillator with a sliding contact, exact through every stop and
+//! reversal, with its exact gradient.
+//!
+//! Stick and slip form a hybrid automaton. While the contact slips in one direction the equation of motion is
+//! smooth; when the relative velocity reaches zero the load on the contact decides whether it sticks or slips
+//! back. There is no velocity dead zone and no smoothed signum; the set of loads that stick is closed,
+//! |load| ≤ static level.
+//!
+//! | engine | for | how |
+//! |---|---|---|
+//! | [`Exact`] | laws that are a level plus a slope, linear damping, free decay | closed form between events, event times in closed form, gradient in every input |
+//! | [`Thesis`] | reproduction of the thesis only | the appendix' semi-implicit Euler, branch for branch |
+//!
+//! ```
+//! use fmm_friction::Coulomb;
+//! use fmm_model::{Damping, Oscillator};
+//! use fmm_sim::{Engine, Exact, Sampling, Scenario};
+//!
+//! // The Monte Carlo case of the thesis: 10.391 kg, 1982 N/m, 0.275 N s/m, μ = 0.15 at 7.2 N.
+//! let machine = Oscillator::new(10.391, 1982.0)?.with_damping(Damping::linear(0.275)?);
+//! let scenario = Scenario::new(machine, Coulomb::new(0.15)?, 7.2)?.starting_at(0.0, 0.101)?;
+//! let motion = Exact.run(&scenario, &Sampling::uniform(1e-3, 1501)?)?;
+//!
+//! let rest = motion.rest().expect("friction stops it");
+//! assert!((rest.time - 1.473_110_373_941).abs() < 1e-12);
+//! assert!((rest.position - 0.000_176_949_878).abs() < 1e-12);
+//! assert_eq!(motion.half_swings(), 7);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod engine;
+mod error;
+mod event;
+mod exact;
+mod samples;
+mod sampling;
+mod scenario;
+mod simulated;
+mod thesis;
+mod trajectory;
+
+pub use engine::Engine;
+pub use error::SimulationError;
+pub use event::{Direction, Event, EventKind, Mode};
+pub use exact::Exact;
+pub use samples::Samples;
+pub use sampling::{Channels, Sampling};
+pub use scenario::{Scenario, State};
+pub use simulated::Simulated;
+pub use thesis::Thesis;
+pub use trajectory::Trajectory;

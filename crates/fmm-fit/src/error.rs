@@ -1,0 +1,78 @@
+//! What a caller can do wrong when asking for a fit.
+
+use std::error::Error;
+
+/// A fit that could not begin.
+///
+/// What happens once a fit runs is not an error but an [`Outcome`](crate::Outcome): the best point found is
+/// worth having, however the search ended.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// The start has not one value per parameter.
+    #[error("the start has {values} values, but the problem has {parameters} parameters")]
+    StartLength {
+        /// Number of values given.
+        values: usize,
+        /// Number of parameters.
+        parameters: usize,
+    },
+    /// A start value is NaN or infinite.
+    #[error("the start value of {parameter} must be finite, but is {value}")]
+    StartNotFinite {
+        /// Name of the parameter.
+        parameter: String,
+        /// The value given.
+        value: f64,
+    },
+    /// A start value lies outside the bounds of its parameter.
+    #[error("the start value of {parameter} is {value}, outside its bounds [{lower}, {upper}]")]
+    StartOutsideBounds {
+        /// Name of the parameter.
+        parameter: String,
+        /// The value given.
+        value: f64,
+        /// Lower bound.
+        lower: f64,
+        /// Upper bound.
+        upper: f64,
+    },
+    /// A residual at the start is NaN, infinite, or so large that the sum of squares overflows.
+    #[error("residual {index} is {value} at the start, so that the sum of squares is not finite")]
+    ResidualNotFinite {
+        /// Index of the residual, from 0.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// A derivative at the start is NaN, infinite, or so large that its square overflows.
+    #[error("the derivative of the residuals by {parameter} is not finite at the start")]
+    DerivativeNotFinite {
+        /// Name of the parameter.
+        parameter: String,
+    },
+    /// There are not enough residuals to determine anything.
+    #[error("{residuals} residuals cannot determine {free} free parameters; give at least as many residuals")]
+    TooFewResiduals {
+        /// Number of residuals.
+        residuals: usize,
+        /// Number of parameters that are not fixed.
+        free: usize,
+    },
+    /// The model failed at the start.
+    #[error("the model failed at the start: {0}")]
+    ModelFailed(#[source] Box<dyn Error + Send + Sync>),
+    /// An option has an impossible value.
+    #[error("the option {option} must be {expected}, but is {value}")]
+    InvalidOption {
+        /// Name of the option.
+        option: &'static str,
+        /// What it may be.
+        expected: &'static str,
+        /// The value given.
+        value: f64,
+    },
+    /// A fit was asked for before the solver had run.
+    #[error("the solver has not run yet, so there is no fit to report")]
+    NotStarted,
+}

@@ -1,0 +1,197 @@
+//! What a least-squares problem is: residuals as a function of parameters.
+
+use std::error::Error;
+use std::fmt;
+
+use fmm_model::Parameter;
+
+/// A least-squares problem: residuals as a function of parameters, and their derivatives if they are known.
+///
+/// ```text
+/// minimise  S(θ) = Σᵢ rᵢ(θ)²   subject to   lowerⱼ ≤ θⱼ ≤ upperⱼ,     i < n = len(),  j < p = parameters().len()
+/// ```
+///
+/// An implementor promises:
+///
+/// 1. **Shapes.** `parameters().len()` and `len()` do not change during a fit. Every `p` has one value per
+///    parameter, in that order and in the unit of the parameter; `residuals` gets `n` elements and fills them all;
+///    `jacobian` gets `n × p` elements, column after column: `∂rᵢ/∂θⱼ` belongs at `jacobian[j * n + i]`.
+/// 2. **A pure function.** Equal `p` give equal bits, whatever was asked before.
+/// 3. **Signed residuals**, model minus data or the reverse, divided by their standard uncertainty where this
+///    differs. Absolute values have a kink where the fit is best and spoil every derivative.
+/// 4. **Non-finite values mean "no value here".** At a trial point the solver then goes less far; only at the
+///    start are they an error. The same holds for an `Err`, whose message is kept.
+/// 5. **One answer about the Jacobian**: always `Ok(true)` with all columns filled, or always `Ok(false)`. The
+///    columns of fixed parameters are not read.
+///
+/// It may rely on:
+///
+/// 1. Every value lies inside the closed interval of its parameter, in finite differences too.
+/// 2. A parameter with equal bounds always has that value.
+/// 3. One call at a time, from the thread that runs the fit.
+///
+/// # Why it is like this
+/// Methods take `&self`, so that one problem serves many fits at once and needs no interior mutability; the
+/// solver owns the parameters and all large buffers. Slices instead of matrices keep every linear algebra crate
+/// out of the signature. The names, units and bounds are part of the problem because an error, a report and a
+/// null direction have to speak of them.
+///
+/// ```
+/// use fmm_fit::{EvaluationError, Options, Residuals, solve};
+/// use fmm_model::Parameter;
+///
+/// /// A cooling cup, T = a exp(−b t).
+/// struct Cooling<'a> {
+///     data: &'a [(f64, f64)],
+///     parameters: [Parameter; 2],
+/// }
+///
+/// impl Residuals for Cooling<'_> {
+///     fn parameters(&self) -> &[Parameter] {
+///         &self.parameters
+///     }
+///     fn len(&self) -> usize {
+///         self.data.len()
+///     }
+///     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+///         for (r, (t, temperature)) in residuals.iter_mut().zip(self.data) {
+///             *r = p[0] * (-p[1] * t).exp() - temperature;
+///         }
+///         Ok(())
+///     }
+/// }
+///
+/// let problem = Cooling {
+///     data: &[(0.0, 80.1), (10.0, 48.4), (20.0, 29.5), (30.0, 17.8)],
+///     parameters: [Parameter::new("amplitude", "a", "K"), Parameter::new("rate", "b", "1/s")],
+/// };
+/// let fit = solve(&problem, &[50.0, 0.01], &Options::default())?;
+/// assert!(fit.outcome().is_success());
+/// assert!((fit.values()[1] - 0.0501).abs() < 1e-4);
+/// # Ok::<(), fmm_fit::FitError>(())
+/// ```
+pub trait Residuals {
+    /// The parameters: names, units and bounds. Equal bounds hold a parameter fixed.
+    fn parameters(&self) -> &[Parameter];
+
+    /// n, the number of residuals.
+    fn len(&self) -> usize;
+
+    /// Whether there are no residuals at all.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The `n` residuals at `p`.
+    ///
+    /// # Errors
+    /// Whatever keeps the model from having a value at `p`.
+    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError>;
+
+    /// The derivatives `∂rᵢ/∂θⱼ` at `p`, column after column, `n × p` of them; `Ok(false)`, the default, asks the
+    /// solver to take differences.
+    ///
+    /// # Errors
+    /// Whatever keeps the model from having derivatives at `p`.
+    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
+        let _ = (p, jacobian);
+        Ok(false)
+    }
+
+    /// Residuals and derivatives in one pass; the default makes the two calls.
+    ///
+    /// # Errors
+    /// As for the two.
+    fn residuals_and_jacobian(
+        &self,
+        p: &[f64],
+        residuals: &mut [f64],
+        jacobian: &mut [f64],
+    ) -> Result<bool, EvaluationError> {
+        self.residuals(p, residuals)?;
+        self.jacobian(p, jacobian)
+    }
+
+    /// Whether [`residuals_and_jacobian`](Self::residuals_and_jacobian) costs less than about twice
+    /// [`residuals`](Self::residuals). If so the solver calls it at every trial point, of which about one in
+    /// eight is rejected, instead of coming back for the derivatives of the accepted ones.
+    fn is_cheaper_combined(&self) -> bool {
+        false
+    }
+}
+
+impl<T: Residuals + ?Sized> Residuals for &T {
+    fn parameters(&self) -> &[Parameter] {
+        (**self).parameters()
+    }
+    fn len(&self) -> usize {
+        (**self).len()
+    }
+    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        (**self).residuals(p, residuals)
+    }
+    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
+        (**self).jacobian(p, jacobian)
+    }
+    fn residuals_and_jacobian(
+        &self,
+        p: &[f64],
+        residuals: &mut [f64],
+        jacobian: &mut [f64],
+    ) -> Result<bool, EvaluationError> {
+        (**self).residuals_and_jacobian(p, residuals, jacobian)
+    }
+    fn is_cheaper_combined(&self) -> bool {
+        (**self).is_cheaper_combined()
+    }
+}
+
+/// Why a model has no value at some parameters: any error, or a sentence.
+///
+/// It deliberately does not implement [`Error`] itself, so that `?` turns every error into it.
+///
+/// ```
+/// use fmm_fit::EvaluationError;
+///
+/// fn rate(text: &str) -> Result<f64, EvaluationError> {
+///     Ok(text.parse::<f64>()?)
+/// }
+/// assert_eq!(rate("x").unwrap_err().to_string(), "invalid float literal");
+/// assert_eq!(EvaluationError::message("no stop found").to_string(), "no stop found");
+/// ```
+pub struct EvaluationError(Box<dyn Error + Send + Sync>);
+
+impl EvaluationError {
+    /// An error that is only a sentence.
+    pub fn message(sentence: impl Into<String>) -> Self {
+        Self(sentence.into().into())
+    }
+
+    /// An error that is already in a box.
+    pub fn from_boxed(error: Box<dyn Error + Send + Sync>) -> Self {
+        Self(error)
+    }
+
+    /// The error in its box.
+    pub fn into_boxed(self) -> Box<dyn Error + Send + Sync> {
+        self.0
+    }
+}
+
+impl<E: Error + Send + Sync + 'static> From<E> for EvaluationError {
+    fn from(error: E) -> Self {
+        Self(Box::new(error))
+    }
+}
+
+impl fmt::Debug for EvaluationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Debug::fmt(&self.0, f)
+    }
+}
+
+impl fmt::Display for EvaluationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(&self.0, f)
+    }
+}

@@ -1,0 +1,100 @@
+//! A law as a family over its number types, and the vocabulary of its parameters.
+
+use std::fmt::Debug;
+
+use fmm_model::{Bounds, Parameter, Scalar};
+
+use crate::LawError;
+
+/// How a parameter of a law enters the friction force. It says what is left of the parameter when the normal
+/// load and the mass are unknown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Role {
+    /// A coefficient: the force is proportional to it and to the normal load.
+    Level,
+    /// A coefficient per speed: proportional to the load, and inseparable from linear damping of the machine.
+    Slope,
+    /// Anything that does not scale with the force, such as a speed at which the law bends.
+    Shape,
+}
+
+/// A parameter of a law and its role.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LawParameter {
+    parameter: Parameter,
+    role: Role,
+}
+
+impl LawParameter {
+    /// A parameter with its role.
+    pub const fn new(parameter: Parameter, role: Role) -> Self {
+        Self { parameter, role }
+    }
+
+    /// A coefficient, not negative (1).
+    pub(crate) const fn level(name: &'static str, symbol: &'static str) -> Self {
+        Self::new(Parameter::new(name, symbol, "1").bounded(Bounds::NOT_NEGATIVE), Role::Level)
+    }
+
+    /// A coefficient per speed, not negative (s/m).
+    pub(crate) const fn slope(name: &'static str, symbol: &'static str) -> Self {
+        Self::new(Parameter::new(name, symbol, "s/m").bounded(Bounds::NOT_NEGATIVE), Role::Slope)
+    }
+
+    /// Name, symbol, unit and bounds.
+    pub const fn parameter(&self) -> &Parameter {
+        &self.parameter
+    }
+
+    /// How it enters the force.
+    pub const fn role(&self) -> Role {
+        self.role
+    }
+
+    /// Passes `value` through if it lies within the parameter's bounds.
+    ///
+    /// # Errors
+    /// [`LawError::OutOfBounds`] otherwise, and for NaN and infinity.
+    pub fn check<D: Scalar>(&self, value: D) -> Result<D, LawError> {
+        let bounds = self.parameter.bounds();
+        if value.value().is_finite() && bounds.contains(value.value()) {
+            Ok(value)
+        } else {
+            Err(LawError::OutOfBounds {
+                parameter: self.parameter.name().to_owned(),
+                value: value.value(),
+                unit: self.parameter.unit().to_owned(),
+                lower: bounds.lower(),
+                upper: bounds.upper(),
+            })
+        }
+    }
+}
+
+/// A law at every number type: maps `Law<f64>` to `Law<D>` and a slice of values to a law.
+///
+/// This is what lets a fit name a law once, `identify::<Coulomb>`, and build it at plain numbers for residuals
+/// and at dual numbers for the Jacobian.
+pub trait LawFamily: 'static {
+    /// Name of the law, `snake_case`.
+    const NAME: &'static str;
+
+    /// The law's parameters, in the order in which [`at`](Self::at) takes their values.
+    const PARAMETERS: &'static [LawParameter];
+
+    /// The law at number type `D`.
+    type At<D: Scalar>: Clone + Debug;
+
+    /// The law with the given parameter values.
+    ///
+    /// # Errors
+    /// [`LawError`] if the number of values is not that of [`PARAMETERS`](Self::PARAMETERS), or if a value is
+    /// not finite, out of bounds, or contradicts another.
+    fn at<D: Scalar>(values: &[D]) -> Result<Self::At<D>, LawError>;
+}
+
+/// Takes exactly as many values as the law has parameters.
+pub(crate) fn exactly<const N: usize, D: Scalar>(law: &'static str, values: &[D]) -> Result<[D; N], LawError> {
+    <[D; N]>::try_from(values).map_err(|_| LawError::WrongCount { law, expected: N, got: values.len() })
+}

@@ -1,0 +1,48 @@
+//! What an engine asks of a law.
+
+use fmm_model::Scalar;
+
+/// A law of the sliding speed alone, with a level to exceed before sliding begins.
+///
+/// An implementor promises:
+///
+/// 1. `coefficient` and `breakaway` are pure functions of the law's parameters and the speed;
+/// 2. for every speed ≥ 0 the coefficient is finite and not negative, so that friction never pushes;
+/// 3. the coefficient in the limit of zero speed does not exceed `breakaway`.
+///
+/// The *sign* is the engine's business. A law never sees a direction, only a speed, so it cannot return a force
+/// along the motion, and no law needs a dead zone or a smoothed signum. A single method taking a velocity was
+/// turned down for that reason, and a method taking the load as well because a law would then have to decide
+/// between stick and slip, which depends on the machine.
+pub trait SlidingLaw<D: Scalar> {
+    /// Friction coefficient (1) while sliding at `speed` ≥ 0 (m/s).
+    fn coefficient(&self, speed: D) -> D;
+
+    /// Static level: the coefficient (1) that the load must exceed to break away from rest.
+    fn breakaway(&self) -> D;
+}
+
+/// A law with an internal state, the deflection of bristles that stand for the asperities in contact.
+///
+/// An implementor promises:
+///
+/// 1. all methods are pure functions of the law's parameters and their arguments;
+/// 2. `rate` and `coefficient` are odd: both change sign with velocity and state together;
+/// 3. the box |zᵢ| ≤ `bound(i)` is invariant: a state that starts inside stays inside.
+///
+/// Such a law needs no stick phase: at rest the bristles carry the load.
+pub trait BristleLaw<D: Scalar> {
+    /// How many internal states there are.
+    fn states(&self) -> usize;
+
+    /// Writes dz/dt (unit of the state per second) at relative `velocity` (m/s) and `state` into `rate`; both
+    /// slices hold [`states`](Self::states) values.
+    fn rate(&self, velocity: D, state: &[D], rate: &mut [D]);
+
+    /// Friction coefficient (1), with the sign of the force that opposes a positive velocity. `rate` is what
+    /// [`rate`](Self::rate) gave at the same arguments.
+    fn coefficient(&self, velocity: D, state: &[D], rate: &[D]) -> D;
+
+    /// Half width of the invariant interval of state `index`.
+    fn bound(&self, index: usize) -> D;
+}

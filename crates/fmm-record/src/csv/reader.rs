@@ -1,0 +1,177 @@
+//! From a table of numbers to a record.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::table::Table;
+use super::CsvError;
+use crate::reading::{seconds_per_unit_of_time, to_seconds};
+use crate::{Column, Quantity, Reading, Record, Sampling, UniformTimes};
+
+/// Reads one channel of a text file.
+///
+/// | what | found by default |
+/// |---|---|
+/// | separator | semicolon or tab if the rows have one, else comma |
+/// | header | the first row, if any of its fields is not a number |
+/// | decimal comma | where it is used throughout and the separator is not a comma |
+/// | time | the column called `t`, `time` or `Zeit`, with or without its unit (s, ms, µs, ns); else the first column, if it increases uniformly |
+/// | channel | the first column that is not the time |
+/// | quantity, unit | [`Quantity::Other`], empty |
+///
+/// With a rate, time stamps are not looked at, and the record begins at 0 s.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CsvReader {
+    separator: Option<u8>,
+    time: Option<Column>,
+    channel: Option<Column>,
+    rate: Option<f64>,
+    quantity: Quantity,
+    unit: String,
+}
+
+impl CsvReader {
+    /// The byte between columns: comma, semicolon, tab, space, `|` or `:`.
+    #[must_use]
+    pub fn separator(mut self, separator: u8) -> Self {
+        self.separator = Some(separator);
+        self
+    }
+
+    /// The column of time stamps, in seconds unless its name tells another unit.
+    #[must_use]
+    pub fn time(mut self, column: impl Into<Column>) -> Self {
+        self.time = Some(column.into());
+        self
+    }
+
+    /// The column to read.
+    #[must_use]
+    pub fn channel(mut self, column: impl Into<Column>) -> Self {
+        self.channel = Some(column.into());
+        self
+    }
+
+    /// The sampling rate (Hz).
+    #[must_use]
+    pub fn rate(mut self, rate: f64) -> Self {
+        self.rate = Some(rate);
+        self
+    }
+
+    /// What the channel measured.
+    #[must_use]
+    pub fn quantity(mut self, quantity: Quantity) -> Self {
+        self.quantity = quantity;
+        self
+    }
+
+    /// Unit of the numbers in the channel.
+    #[must_use]
+    pub fn unit(mut self, unit: impl Into<String>) -> Self {
+        self.unit = unit.into();
+        self
+    }
+
+    /// Reads the file at `path`.
+    ///
+    /// # Errors
+    /// [`CsvError::Open`], otherwise as [`CsvReader::read_from`].
+    pub fn read(&self, path: impl AsRef<Path>) -> Result<Reading, CsvError> {
+        let path = path.as_ref();
+        let file = File::open(path).map_err(|source| CsvError::Open { path: path.into(), source })?;
+        self.read_from(file)
+    }
+
+    /// Reads text from `input`, which is buffered here.
+    ///
+    /// # Errors
+    /// Any [`CsvError`] but [`CsvError::Open`]; infinite or missing numbers (`NaN`, `inf`) are
+    /// [`RecordError::NonFinite`](crate::RecordError::NonFinite).
+    pub fn read_from(&self, input: impl Read) -> Result<Reading, CsvError> {
+        if self.time.is_some() && self.rate.is_some() {
+            return Err(CsvError::TimeAndRate);
+        }
+        let table = Table::open(input, self.separator)?;
+        let columns = table.names().to_vec();
+        let channel = self.channel.as_ref().map(|column| table.find(column)).transpose()?;
+        let time = match &self.time {
+            Some(column) => Some(table.find(column)?),
+            None => columns
+                .iter()
+                .enumerate()
+                .find(|(index, name)| Some(*index) != channel && seconds_per_unit_of_time(name).is_some())
+                .map(|(index, _)| index),
+        };
+        if let (Some(time), true) = (time, time == channel) {
+            return Err(CsvError::SameColumn { column: columns[time].clone() });
+        }
+        let other_than = |time| (0..columns.len()).find(|index| *index != time);
+        let found = match (time, channel) {
+            (Some(time), channel) => {
+                let Some(channel) = channel.or_else(|| other_than(time)) else {
+                    return Err(CsvError::NoChannel { time: columns[time].clone() });
+                };
+                if self.rate.is_some() {
+                    Found::only(channel, table.read_columns([channel])?).beside(time)
+                } else {
+                    Found::both(time, channel, table.read_columns([time, channel])?)
+                }
+            }
+            (None, Some(channel)) if self.rate.is_some() => Found::only(channel, table.read_columns([channel])?),
+            // No column says that it is time: the first one is, if it increases uniformly.
+            (None, channel) if columns.len() > 1 && channel != Some(0) => {
+                let second = channel.unwrap_or(1);
+                let [first, values] = table.read_columns([0, second])?;
+                if UniformTimes::of(&first).is_ok() {
+                    Found::both(0, second, [first, values])
+                } else if self.rate.is_some() {
+                    Found::only(0, [first])
+                } else {
+                    return Err(CsvError::NoRate { available: columns });
+                }
+            }
+            (None, None) if self.rate.is_some() => Found::only(0, table.read_columns([0])?),
+            (None, _) => return Err(CsvError::NoRate { available: columns }),
+        };
+        self.reading(found, columns)
+    }
+
+    fn reading(&self, found: Found, columns: Vec<String>) -> Result<Reading, CsvError> {
+        let time = found.time.map(|index| columns[index].clone());
+        let unit = self.unit.clone();
+        let (record, sampling) = match (self.rate, found.times, &time) {
+            (Some(rate), ..) => (Record::sampled(rate, found.values, self.quantity, unit)?, Sampling::Given { rate }),
+            (None, Some(mut times), Some(name)) => {
+                to_seconds(name, &mut times);
+                let record = Record::from_times(&times, found.values, self.quantity, unit)?;
+                (record, Sampling::Times { name: name.clone() })
+            }
+            _ => return Err(CsvError::NoRate { available: columns }),
+        };
+        Ok(Reading { record, channel: columns[found.channel].clone(), time, columns, sampling })
+    }
+}
+
+/// The columns in use and their numbers; the time stamps are not needed where the rate is given.
+struct Found {
+    time: Option<usize>,
+    times: Option<Vec<f64>>,
+    channel: usize,
+    values: Vec<f64>,
+}
+
+impl Found {
+    fn only(channel: usize, [values]: [Vec<f64>; 1]) -> Self {
+        Self { time: None, times: None, channel, values }
+    }
+
+    fn both(time: usize, channel: usize, [times, values]: [Vec<f64>; 2]) -> Self {
+        Self { time: Some(time), times: Some(times), channel, values }
+    }
+
+    fn beside(self, time: usize) -> Self {
+        Self { time: Some(time), ..self }
+    }
+}

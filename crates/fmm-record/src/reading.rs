@@ -1,0 +1,123 @@
+//! What a reader hands over: the record, and what it chose in the file to get it.
+
+use std::convert::Infallible;
+use std::str::FromStr;
+
+use crate::{Record, Sampling};
+
+/// A record as read from a file, with the choices that led to it, so that a report can name them.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Reading {
+    /// The record.
+    pub record: Record,
+    /// Name of the column or variable that became the record.
+    pub channel: String,
+    /// Name of the column or variable of time stamps, if the file has one.
+    pub time: Option<String>,
+    /// Every column or numeric variable that the file offers.
+    pub columns: Vec<String>,
+    /// How the sampling rate was found.
+    pub sampling: Sampling,
+}
+
+/// A column of a table, by name or by position.
+///
+/// A name matches exactly or, if no column does, without regard to case; a position counts from **0**. Text of
+/// digits only is a position, any other text is a name; a column whose *name* is a number is chosen with
+/// [`Column::Name`]. In a table without a header row the names are the positions.
+///
+/// ```
+/// use fmm_record::Column;
+///
+/// assert_eq!(Column::from("velocity"), Column::Name("velocity".into()));
+/// assert_eq!(Column::from("1"), Column::Index(1));
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Column {
+    /// By name.
+    Name(String),
+    /// By position, counted from 0.
+    Index(usize),
+}
+
+impl From<&str> for Column {
+    fn from(text: &str) -> Self {
+        text.parse().map_or_else(|_| Self::Name(text.into()), Self::Index)
+    }
+}
+
+impl From<usize> for Column {
+    fn from(index: usize) -> Self {
+        Self::Index(index)
+    }
+}
+
+impl FromStr for Column {
+    type Err = Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Infallible> {
+        Ok(Self::from(text))
+    }
+}
+
+impl std::fmt::Display for Column {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Name(name) => write!(f, "\"{name}\""),
+            Self::Index(index) => write!(f, "{index}"),
+        }
+    }
+}
+
+/// Whether `name` calls a column or variable of time stamps, and if so how many seconds its unit has: `t`,
+/// `time`, `Zeit`, alone or followed by a unit as in `t_s`, `time (ms)`, `Time [s]` or `t/s`.
+pub(crate) fn seconds_per_unit_of_time(name: &str) -> Option<f64> {
+    const WORDS: [&str; 3] = ["time", "zeit", "t"];
+    const UNITS: [(&str, f64); 10] = [
+        ("", 1.0),
+        ("s", 1.0),
+        ("sec", 1.0),
+        ("second", 1.0),
+        ("seconds", 1.0),
+        ("ms", 1e-3),
+        ("us", 1e-6),
+        ("µs", 1e-6),
+        ("μs", 1e-6),
+        ("ns", 1e-9),
+    ];
+    let lower = name.trim().to_lowercase();
+    let rest = WORDS.iter().find_map(|word| {
+        let rest = lower.strip_prefix(word)?;
+        rest.chars().next().is_none_or(|next| !next.is_alphanumeric()).then_some(rest)
+    })?;
+    let unit = rest.trim_matches(|c: char| !c.is_alphanumeric());
+    UNITS.iter().find(|(known, _)| *known == unit).map(|(_, seconds)| *seconds)
+}
+
+/// Brings time stamps to seconds from the unit that the `name` of their column tells, if it tells one.
+pub(crate) fn to_seconds(name: &str, times: &mut [f64]) {
+    let scale = seconds_per_unit_of_time(name).unwrap_or(1.0);
+    if scale != 1.0 {
+        for time in times {
+            *time *= scale;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_time_are_known_with_their_units() {
+        for name in ["t", "T", "time", "t_s", "time_s", "Time (s)", "t [s]", "t/s", "Zeit", " Zeit [s] ", "TIME"] {
+            assert_eq!(seconds_per_unit_of_time(name), Some(1.0), "{name}");
+        }
+        assert_eq!(seconds_per_unit_of_time("time_ms"), Some(1e-3));
+        assert_eq!(seconds_per_unit_of_time("t [µs]"), Some(1e-6));
+        for name in ["theta", "t_coil", "velocity", "timer", "", "trial", "time constant"] {
+            assert_eq!(seconds_per_unit_of_time(name), None, "{name}");
+        }
+    }
+}

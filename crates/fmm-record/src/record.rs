@@ -1,0 +1,318 @@
+//! A uniformly sampled series with its quantity and unit.
+
+use crate::{Quantity, RecordError, UniformTimes};
+
+/// A measured channel: samples at equal intervals, what they are, and their unit.
+///
+/// A record that exists is valid: it has at least one sample, every sample is finite, and the interval is positive.
+///
+/// ```
+/// use fmm_record::{Quantity, Record};
+///
+/// let record = Record::new(0.0, 0.001, vec![0.0, 0.1, 0.2], Quantity::Velocity, "m/s")?;
+/// assert_eq!((record.len(), record.rate()), (3, 1000.0));
+/// assert_eq!(record.crop(0.001, 0.002)?.values(), [0.1, 0.2]);
+/// assert_eq!(record.scaled(1000.0, "mm/s")?.values()[1], 100.0);
+/// # Ok::<(), fmm_record::RecordError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    start: f64,
+    interval: f64,
+    values: Vec<f64>,
+    quantity: Quantity,
+    unit: String,
+}
+
+impl Record {
+    /// A record whose first sample is at `start` (s) and whose samples follow each other every `interval` (s).
+    ///
+    /// # Errors
+    /// [`RecordError::Interval`], [`RecordError::Empty`], [`RecordError::NonFinite`], or
+    /// [`RecordError::TimeOutOfRange`] if `start` is not finite or so large that neighbouring samples would have
+    /// equal times.
+    pub fn new(
+        start: f64,
+        interval: f64,
+        values: Vec<f64>,
+        quantity: Quantity,
+        unit: impl Into<String>,
+    ) -> Result<Self, RecordError> {
+        if !(interval > 0.0 && interval.is_finite()) {
+            return Err(RecordError::Interval { interval });
+        }
+        if values.is_empty() {
+            return Err(RecordError::Empty);
+        }
+        let length = values.len();
+        let reach = start.abs() + interval * length as f64;
+        if !(reach.is_finite() && reach * f64::EPSILON < interval) {
+            return Err(RecordError::TimeOutOfRange { start, interval, length });
+        }
+        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+            let count = values.iter().filter(|value| !value.is_finite()).count();
+            let time = start + interval * index as f64;
+            return Err(RecordError::NonFinite { index, time, count, length });
+        }
+        Ok(Self { start, interval, values, quantity, unit: unit.into() })
+    }
+
+    /// A record sampled at `rate` (Hz) from time 0 on.
+    ///
+    /// # Errors
+    /// [`RecordError::Rate`], otherwise as [`Record::new`].
+    pub fn sampled(
+        rate: f64,
+        values: Vec<f64>,
+        quantity: Quantity,
+        unit: impl Into<String>,
+    ) -> Result<Self, RecordError> {
+        if !(rate > 0.0 && rate.is_finite() && rate.recip().is_finite()) {
+            return Err(RecordError::Rate { rate });
+        }
+        Self::new(0.0, rate.recip(), values, quantity, unit)
+    }
+
+    /// A record of `values` at `times` (s), which must be uniform as [`UniformTimes`] defines it.
+    ///
+    /// # Errors
+    /// [`RecordError::LengthMismatch`], and as [`UniformTimes::of`] and [`Record::new`].
+    pub fn from_times(
+        times: &[f64],
+        values: Vec<f64>,
+        quantity: Quantity,
+        unit: impl Into<String>,
+    ) -> Result<Self, RecordError> {
+        if times.len() != values.len() {
+            return Err(RecordError::LengthMismatch { times: times.len(), values: values.len() });
+        }
+        let grid = UniformTimes::of(times)?;
+        Self::new(grid.start(), grid.interval(), values, quantity, unit)
+    }
+
+    /// Time of the first sample (s).
+    pub fn start(&self) -> f64 {
+        self.start
+    }
+
+    /// Sampling interval (s).
+    pub fn interval(&self) -> f64 {
+        self.interval
+    }
+
+    /// Sampling rate (Hz).
+    pub fn rate(&self) -> f64 {
+        self.interval.recip()
+    }
+
+    /// The samples, in the unit of the record.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The samples without their record.
+    pub fn into_values(self) -> Vec<f64> {
+        self.values
+    }
+
+    /// How many samples there are; at least one.
+    pub fn len(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Always false: a record has at least one sample. It stands here because `len` does.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// Time of sample `index` (s); `index` may lie beyond the end.
+    pub fn time(&self, index: usize) -> f64 {
+        self.time_at(index as f64)
+    }
+
+    /// Time of a point between samples (s), at a fractional index.
+    pub(crate) fn time_at(&self, index: f64) -> f64 {
+        self.start + self.interval * index
+    }
+
+    /// Times of all samples (s).
+    pub fn times(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
+        (0..self.values.len()).map(|index| self.time(index))
+    }
+
+    /// Time of the last sample (s).
+    pub fn end(&self) -> f64 {
+        self.time(self.values.len() - 1)
+    }
+
+    /// Time from the first sample to the last (s); 0 for a single sample.
+    pub fn duration(&self) -> f64 {
+        self.interval * (self.values.len() - 1) as f64
+    }
+
+    /// What was measured.
+    pub fn quantity(&self) -> Quantity {
+        self.quantity
+    }
+
+    /// Unit of the samples.
+    pub fn unit(&self) -> &str {
+        &self.unit
+    }
+
+    /// The same samples as another quantity: a reader cannot know what a channel measured.
+    #[must_use]
+    pub fn with_quantity(mut self, quantity: Quantity) -> Self {
+        self.quantity = quantity;
+        self
+    }
+
+    /// The same samples in another unit, without a change of their numbers; [`Record::scaled`] changes both.
+    #[must_use]
+    pub fn with_unit(mut self, unit: impl Into<String>) -> Self {
+        self.unit = unit.into();
+        self
+    }
+
+    /// The same samples with the first one at `start` (s).
+    ///
+    /// # Errors
+    /// [`RecordError::TimeOutOfRange`] as in [`Record::new`].
+    pub fn starting_at(self, start: f64) -> Result<Self, RecordError> {
+        Self::new(start, self.interval, self.values, self.quantity, self.unit)
+    }
+
+    /// The samples from `from` to `to` (s), both ends included; times keep their origin. A sample counts as inside
+    /// if it misses an end by no more than 1e-6 of the interval, so that rounding does not drop it.
+    ///
+    /// # Errors
+    /// [`RecordError::NothingLeft`] if no sample lies there.
+    pub fn crop(&self, from: f64, to: f64) -> Result<Self, RecordError> {
+        const ROUNDING: f64 = 1e-6;
+        let nothing = RecordError::NothingLeft { from, to, start: self.start, end: self.end() };
+        if from.is_nan() || to.is_nan() {
+            return Err(nothing);
+        }
+        let first = ((from - self.start) / self.interval - ROUNDING).ceil().max(0.0);
+        let last = ((to - self.start) / self.interval + ROUNDING).floor().min((self.len() - 1) as f64);
+        if first > last {
+            return Err(nothing);
+        }
+        let (first, last) = (first as usize, last as usize);
+        Ok(self.derived(self.time(first), self.values[first..=last].to_vec()))
+    }
+
+    /// Every sample times `factor`, in the new `unit`.
+    ///
+    /// # Errors
+    /// [`RecordError::Factor`] if the factor is zero or not finite, [`RecordError::NonFinite`] if a product
+    /// overflows.
+    pub fn scaled(&self, factor: f64, unit: impl Into<String>) -> Result<Self, RecordError> {
+        if factor == 0.0 || !factor.is_finite() {
+            return Err(RecordError::Factor { factor });
+        }
+        let values = self.values.iter().map(|value| value * factor).collect();
+        Self::new(self.start, self.interval, values, self.quantity, unit)
+    }
+
+    /// Every sample less `offset` (in the unit of the record).
+    ///
+    /// # Errors
+    /// [`RecordError::Offset`] if the offset is not finite, [`RecordError::NonFinite`] if a difference overflows.
+    pub fn shifted(&self, offset: f64) -> Result<Self, RecordError> {
+        if !offset.is_finite() {
+            return Err(RecordError::Offset { value: offset });
+        }
+        let values = self.values.iter().map(|value| value - offset).collect();
+        Self::new(self.start, self.interval, values, self.quantity, self.unit.clone())
+    }
+
+    /// Arithmetic mean of all samples.
+    pub fn mean(&self) -> f64 {
+        mean(&self.values)
+    }
+
+    /// A record like this one, with `values` that are known to be finite and not empty.
+    pub(crate) fn derived(&self, start: f64, values: Vec<f64>) -> Self {
+        Self { start, interval: self.interval, values, quantity: self.quantity, unit: self.unit.clone() }
+    }
+}
+
+/// Arithmetic mean of `values`, 0 if there are none. Deviations from the first value are summed, so that a large
+/// offset costs no digits.
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    let first = values.first().copied().unwrap_or(0.0);
+    first + values.iter().map(|value| value - first).sum::<f64>() / values.len().max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(values: &[f64]) -> Result<Record, RecordError> {
+        Record::new(1.0, 0.5, values.to_vec(), Quantity::Velocity, "m/s")
+    }
+
+    #[test]
+    fn impossible_records_are_refused() {
+        assert_eq!(record(&[]), Err(RecordError::Empty));
+        let error = record(&[0.0, 1.0, f64::NAN, f64::INFINITY]).unwrap_err();
+        assert_eq!(error, RecordError::NonFinite { index: 2, time: 2.0, count: 2, length: 4 });
+        assert_eq!(error.to_string(), "2 of 4 samples are not finite; the first is sample 2 (at 2 s)");
+        for interval in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(matches!(
+                Record::new(0.0, interval, vec![0.0], Quantity::Other, ""),
+                Err(RecordError::Interval { .. })
+            ));
+        }
+        for start in [1e300, f64::NAN, f64::INFINITY] {
+            assert!(matches!(
+                Record::new(start, 1e-3, vec![0.0], Quantity::Other, ""),
+                Err(RecordError::TimeOutOfRange { .. })
+            ));
+        }
+        assert!(matches!(Record::sampled(0.0, vec![0.0], Quantity::Other, ""), Err(RecordError::Rate { .. })));
+    }
+
+    #[test]
+    fn times_and_span() {
+        let record = record(&[0.0, 1.0, 2.0]).unwrap();
+        assert_eq!((record.start(), record.end(), record.duration(), record.rate()), (1.0, 2.0, 1.0, 2.0));
+        assert_eq!(record.times().collect::<Vec<_>>(), [1.0, 1.5, 2.0]);
+    }
+
+    #[test]
+    fn crop_keeps_both_ends_and_the_origin_of_time() {
+        let record = Record::new(0.0, 0.1, (0..100).map(f64::from).collect(), Quantity::Other, "").unwrap();
+        // 0.3 is not a multiple of 0.1 in binary; the sample at its rounded place must not be lost.
+        let piece = record.crop(0.3, 0.7).unwrap();
+        assert_eq!(piece.values(), [3.0, 4.0, 5.0, 6.0, 7.0]);
+        assert!((piece.start() - 0.3).abs() < 1e-15);
+        assert_eq!(record.crop(f64::NEG_INFINITY, f64::INFINITY).unwrap(), record);
+        let error = record.crop(20.0, 30.0).unwrap_err().to_string();
+        assert!(error.starts_with("no sample lies between 20 s and 30 s; the record spans 0 s to 9.9"), "{error}");
+        for (from, to) in [(0.5, 0.4), (0.11, 0.19), (f64::NAN, 1.0), (-2.0, -1.0)] {
+            assert!(record.crop(from, to).is_err(), "{from} s to {to} s");
+        }
+    }
+
+    #[test]
+    fn scaling_and_shifting_refuse_what_loses_the_record() {
+        let record = record(&[1.0, -2.0]).unwrap();
+        assert_eq!(record.scaled(2.0, "V").unwrap().values(), [2.0, -4.0]);
+        assert_eq!(record.scaled(2.0, "V").unwrap().unit(), "V");
+        assert_eq!(record.shifted(1.0).unwrap().values(), [0.0, -3.0]);
+        for factor in [0.0, f64::NAN, f64::INFINITY] {
+            assert!(matches!(record.scaled(factor, "V"), Err(RecordError::Factor { .. })));
+        }
+        assert!(matches!(record.scaled(1e308, "V"), Err(RecordError::NonFinite { index: 1, .. })));
+        assert!(matches!(record.shifted(f64::NAN), Err(RecordError::Offset { .. })));
+    }
+
+    #[test]
+    fn mean_keeps_its_digits_beside_a_large_offset() {
+        let values: Vec<f64> = (0..1_000_001).map(|i| 1e6 + f64::from(i % 3 - 1)).collect();
+        // Deviations of whole numbers sum without rounding; the quotient rounds once.
+        assert!((mean(&values) - 1e6).abs() < 1e-5, "{}", mean(&values));
+    }
+}

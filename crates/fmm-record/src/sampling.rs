@@ -1,0 +1,220 @@
+//! Whether a column of time stamps is uniform, and how a reader found the rate.
+
+use crate::RecordError;
+
+/// How far a time stamp may lie from the uniform grid, as a fraction of the interval.
+pub const JITTER: f64 = 0.01;
+
+/// How near to a whole number of hertz a rate must be, relative, to be taken as that number.
+pub const RATE_ROUNDING: f64 = 1e-5;
+
+/// The uniform grid behind a column of time stamps.
+///
+/// ```text
+/// h = (t_last − t_first)/(n − 1),        |t_i − (t_first + i h)| ≤ 0.01 h + d
+/// ```
+///
+/// The first term is [`JITTER`]. The second is what rounding explains: *d* is one unit of the last decimal that
+/// the stamps carry (half a unit for the stamp itself, half for the ends that define the grid), 1 ms for stamps
+/// with three decimals. No step between neighbours may exceed 1.5 h + d, so that a gap of several samples is found
+/// even in coarse stamps; a gap of a single sample in stamps whose resolution *is* the interval cannot be told from
+/// a clock that is slightly slow.
+///
+/// The rate is taken as a whole number of hertz when it is one within [`RATE_ROUNDING`], because time columns
+/// often carry few digits.
+///
+/// ```
+/// use fmm_record::UniformTimes;
+///
+/// // 300 Hz, written with three decimals.
+/// let times: Vec<f64> = (0..3001).map(|i| (f64::from(i) / 300.0 * 1e3).round() / 1e3).collect();
+/// assert_eq!(UniformTimes::of(&times)?.interval(), 1.0 / 300.0);
+/// # Ok::<(), fmm_record::RecordError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UniformTimes {
+    start: f64,
+    interval: f64,
+}
+
+impl UniformTimes {
+    /// The grid on which `times` (s) lie.
+    ///
+    /// # Errors
+    /// [`RecordError::TooFewTimes`], [`RecordError::TimeNotFinite`], [`RecordError::TimeNotIncreasing`] for a
+    /// repeated or decreasing time, or [`RecordError::NonUniform`].
+    pub fn of(times: &[f64]) -> Result<Self, RecordError> {
+        let (Some(&start), Some(&end), count @ 2..) = (times.first(), times.last(), times.len()) else {
+            return Err(RecordError::TooFewTimes { count: times.len() });
+        };
+        if let Some((index, &time)) = times.iter().enumerate().find(|(_, time)| !time.is_finite()) {
+            return Err(RecordError::TimeNotFinite { index, time });
+        }
+        if let Some(i) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
+            return Err(RecordError::TimeNotIncreasing { index: i + 1, time: times[i + 1], previous: times[i] });
+        }
+        // Halves first: the span of two finite times may overflow.
+        let interval = (end / 2.0 - start / 2.0) / (count - 1) as f64 * 2.0;
+        if !(interval > 0.0 && interval.is_finite()) {
+            return Err(RecordError::Interval { interval });
+        }
+        let rounding = last_decimal(times);
+        let tolerance = JITTER * interval + rounding;
+        let mut previous = start;
+        for (index, &time) in times.iter().enumerate() {
+            let expected = start + interval * index as f64;
+            let deviation = time - expected;
+            if deviation.abs() > tolerance || time - previous > 1.5 * interval + rounding {
+                return Err(RecordError::NonUniform { index, time, expected, deviation, interval });
+            }
+            previous = time;
+        }
+        Ok(Self { start, interval: whole_hertz(interval) })
+    }
+
+    /// Time of the first stamp (s).
+    pub fn start(&self) -> f64 {
+        self.start
+    }
+
+    /// Interval of the grid (s).
+    pub fn interval(&self) -> f64 {
+        self.interval
+    }
+}
+
+/// `interval` (s), or that of the nearest whole number of hertz if it is the same within [`RATE_ROUNDING`].
+fn whole_hertz(interval: f64) -> f64 {
+    let whole = interval.recip().round();
+    if whole >= 1.0 && (whole * interval - 1.0).abs() <= RATE_ROUNDING { whole.recip() } else { interval }
+}
+
+/// One unit of the last decimal that any of `times` carries, found by scaling until all are whole numbers; nine
+/// decimals at most, beyond which rounding does not matter for any sampling rate in use.
+fn last_decimal(times: &[f64]) -> f64 {
+    const MOST: i32 = 9;
+    let mut decimals = 0;
+    for &time in times {
+        while decimals < MOST {
+            let scaled = time * 10f64.powi(decimals);
+            // A decimal number read from text is off by rounding only: relative to its own size, or to one unit.
+            if (scaled - scaled.round()).abs() <= 1e-9 * scaled.abs().max(1.0) {
+                break;
+            }
+            decimals += 1;
+        }
+    }
+    10f64.powi(-decimals)
+}
+
+/// How the sampling interval of a record was found.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Sampling {
+    /// The caller gave the rate (Hz).
+    Given {
+        /// The rate (Hz).
+        rate: f64,
+    },
+    /// From a column or variable of time stamps.
+    Times {
+        /// Its name.
+        name: String,
+    },
+    /// From a scalar variable in the file that holds the rate (Hz).
+    RateVariable {
+        /// Its name.
+        name: String,
+        /// The rate it holds (Hz).
+        rate: f64,
+    },
+    /// From a scalar variable in the file that holds the interval (s).
+    IntervalVariable {
+        /// Its name.
+        name: String,
+        /// The interval it holds (s).
+        interval: f64,
+    },
+}
+
+/// Reads as the end of the sentence "the sampling rate was …".
+impl std::fmt::Display for Sampling {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Given { rate } => write!(f, "given as {rate} Hz"),
+            Self::Times { name } => write!(f, "found from the time stamps in \"{name}\""),
+            Self::RateVariable { name, rate } => write!(f, "read as {rate} Hz from the variable \"{name}\""),
+            Self::IntervalVariable { name, interval } => {
+                write!(f, "found from the interval of {interval} s in the variable \"{name}\"")
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stamps(rate: f64, decimals: i32, count: u32) -> Vec<f64> {
+        let unit = 10f64.powi(decimals);
+        (0..count).map(|i| (f64::from(i) / rate * unit).round() / unit).collect()
+    }
+
+    #[test]
+    fn stamps_with_few_digits_are_uniform() {
+        for (rate, decimals) in [(1000.0, 3), (600.0, 3), (1024.0, 4), (25_600.0, 5), (500.0, 15), (1000.0, 15)] {
+            let grid = UniformTimes::of(&stamps(rate, decimals, 60_001)).unwrap();
+            assert_eq!(grid.interval(), 1.0 / rate, "{rate} Hz with {decimals} decimals");
+        }
+    }
+
+    #[test]
+    fn the_rate_is_rounded_to_whole_hertz_only_within_the_stated_limit() {
+        let near = [0.0, 1.0 / (1000.0 * (1.0 + 9e-6))];
+        let far = [0.0, 1.0 / (1000.0 * (1.0 + 1.1e-5))];
+        assert_eq!(UniformTimes::of(&near).unwrap().interval(), 1e-3);
+        assert_eq!(UniformTimes::of(&far).unwrap().interval(), far[1]);
+    }
+
+    #[test]
+    fn jitter_is_tolerated_up_to_its_limit() {
+        for (jitter, uniform) in [(0.0099e-3, true), (0.0101e-3, false)] {
+            let mut times = stamps(1000.0, 15, 1000);
+            times[500] += jitter;
+            assert_eq!(UniformTimes::of(&times).is_ok(), uniform, "jitter of {jitter} s");
+        }
+    }
+
+    #[test]
+    fn gaps_are_found() {
+        let mut times = stamps(1000.0, 6, 10_000);
+        for time in &mut times[7000..] {
+            *time += 1e-3;
+        }
+        let Err(RecordError::NonUniform { deviation, .. }) = UniformTimes::of(&times) else {
+            panic!("a gap of one sample in stamps of 1 µs must be found");
+        };
+        assert!(deviation.abs() > 1e-5, "{deviation} s");
+        let mut coarse = stamps(1000.0, 3, 10_000);
+        for time in &mut coarse[7000..] {
+            *time += 2e-3;
+        }
+        assert!(matches!(UniformTimes::of(&coarse), Err(RecordError::NonUniform { .. })));
+    }
+
+    #[test]
+    fn time_that_does_not_increase_is_its_own_error() {
+        let error = UniformTimes::of(&[0.0, 1.0, 1.0, 2.0]).unwrap_err();
+        assert_eq!(error, RecordError::TimeNotIncreasing { index: 2, time: 1.0, previous: 1.0 });
+        assert_eq!(UniformTimes::of(&[0.0]), Err(RecordError::TooFewTimes { count: 1 }));
+        assert!(matches!(UniformTimes::of(&[0.0, f64::NAN, 2.0]), Err(RecordError::TimeNotFinite { index: 1, .. })));
+        assert!(UniformTimes::of(&[-1.7e308, 1.7e308]).is_ok());
+        assert!(UniformTimes::of(&[0.0, 5e-324]).is_ok());
+    }
+
+    #[test]
+    fn sampling_reads_as_a_sentence() {
+        let sampling = Sampling::RateVariable { name: "ActualRate".into(), rate: 1000.0 };
+        assert_eq!(sampling.to_string(), "read as 1000 Hz from the variable \"ActualRate\"");
+    }
+}

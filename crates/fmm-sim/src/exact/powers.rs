@@ -1,0 +1,146 @@
+//! Samples of one swing from a table of powers, vectorised over time.
+
+use fmm_model::Scalar;
+
+use super::decay::Decay;
+use crate::{Samples, Sampling, State, Trajectory};
+
+/// zʲ = exp((−a + iω)Δt)ʲ for j from 0 on, real and imaginary parts apart.
+///
+/// All swings of a run have the same decay, so one table serves every sample: position and velocity are linear
+/// combinations of the two parts, and so are their derivatives once j Δt is allowed as a factor.
+pub(super) struct Powers {
+    real: Vec<f64>,
+    imaginary: Vec<f64>,
+}
+
+/// Longest run of samples written from one closed-form state.
+const LONGEST: usize = 256;
+/// Powers that are found by doubling; the rest follow in strides of this many. Either way rounding grows to at
+/// most 16 ulp.
+const STRIDE: usize = 16;
+
+impl Powers {
+    /// Powers for at least `longest` samples, or [`LONGEST`] if that is less.
+    pub(super) fn new(rate: f64, angular: f64, interval: f64, longest: usize) -> Self {
+        let count = longest.clamp(1, LONGEST).next_multiple_of(STRIDE);
+        let (mut real, mut imaginary) = (vec![0.0; count], vec![0.0; count]);
+        let power = |exponent: usize| {
+            let time = exponent as f64 * interval;
+            let (sin, cos) = (angular * time).sin_cos();
+            let envelope = (-rate * time).exp();
+            (envelope * cos, envelope * sin)
+        };
+        real[0] = 1.0;
+        let mut factor = power(1);
+        let mut known = 1;
+        while known < STRIDE {
+            for j in 0..known {
+                real[known + j] = real[j] * factor.0 - imaginary[j] * factor.1;
+                imaginary[known + j] = real[j] * factor.1 + imaginary[j] * factor.0;
+            }
+            factor = (factor.0 * factor.0 - factor.1 * factor.1, 2.0 * factor.0 * factor.1);
+            known *= 2;
+        }
+        let (by_real, by_imaginary) = power(STRIDE);
+        for start in (STRIDE..count).step_by(STRIDE) {
+            let (earlier_real, later_real) = real.split_at_mut(start);
+            let (earlier_imaginary, later_imaginary) = imaginary.split_at_mut(start);
+            let (re, im) = (&earlier_real[start - STRIDE..], &earlier_imaginary[start - STRIDE..]);
+            for j in 0..STRIDE {
+                later_real[j] = re[j] * by_real - im[j] * by_imaginary;
+                later_imaginary[j] = re[j] * by_imaginary + im[j] * by_real;
+            }
+        }
+        Self { real, imaginary }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.real.len()
+    }
+
+    /// Writes `count` samples from index `first` on, the motion about `centre` being in `state` at the first.
+    #[expect(clippy::too_many_arguments, reason = "one call site, and each argument is one thing")]
+    pub(super) fn write<D: Scalar>(
+        &self,
+        trajectory: &mut Trajectory<D>,
+        sampling: &Sampling,
+        first: usize,
+        count: usize,
+        decay: &Decay<D>,
+        centre: D,
+        state: State<D>,
+    ) {
+        let Some(half_swing) = decay.half_swing() else { return };
+        let wave = Wave { rate: decay.rate(), angular: half_swing.angular, interval: sampling.interval() };
+        let range = first..first + count;
+        if sampling.channels().position() {
+            let sine = (state.velocity + decay.rate() * state.position) / wave.angular;
+            self.write_wave(trajectory.position_mut(), range.clone(), &wave, centre, state.position, sine);
+        }
+        if sampling.channels().velocity() {
+            let sine = -decay.pull(state) / wave.angular;
+            self.write_wave(trajectory.velocity_mut(), range, &wave, D::from(0.0), state.velocity, sine);
+        }
+    }
+
+    /// Writes e^(−aτ) (`cosine` cos ωτ + `sine` sin ωτ) + `offset` at τ = 0, Δt, 2Δt, … into `range`.
+    fn write_wave<D: Scalar>(
+        &self,
+        samples: &mut Samples<D>,
+        range: std::ops::Range<usize>,
+        wave: &Wave<D>,
+        offset: D,
+        cosine: D,
+        sine: D,
+    ) {
+        let (c, s, o) = (cosine.value(), sine.value(), offset.value());
+        let powers = || self.real.iter().zip(&self.imaginary);
+        for (out, (re, im)) in samples.values_mut()[range.clone()].iter_mut().zip(powers()) {
+            *out = o + (c * re + s * im);
+        }
+        for direction in 0..D::DIRECTIONS {
+            let (rate, angular) = (wave.rate.partial(direction), wave.angular.partial(direction));
+            let (c0, s0, o0) = (cosine.partial(direction), sine.partial(direction), offset.partial(direction));
+            let out = &mut samples.partial_mut(direction)[range.clone()];
+            if rate == 0.0 && angular == 0.0 {
+                for (out, (re, im)) in out.iter_mut().zip(powers()) {
+                    *out = o0 + (c0 * re + s0 * im);
+                }
+            } else {
+                // ∂/∂a and ∂/∂ω of the wave, per interval: τ times the wave itself turned and scaled.
+                let (c1, s1) = ((angular * s - rate * c) * wave.interval, -(rate * s + angular * c) * wave.interval);
+                for (j, (out, (re, im))) in out.iter_mut().zip(powers()).enumerate() {
+                    let j = j as f64;
+                    *out = o0 + ((c0 + c1 * j) * re + (s0 + s1 * j) * im);
+                }
+            }
+        }
+    }
+}
+
+/// Rate and angular frequency of a wave, and the time between its samples (s).
+struct Wave<D> {
+    rate: D,
+    angular: D,
+    interval: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_are_exact_to_rounding() {
+        let powers = Powers::new(0.7, 13.8, 1e-3, 1000);
+        assert_eq!(powers.len(), LONGEST);
+        for j in 0..LONGEST {
+            let time = j as f64 * 1e-3;
+            let (sin, cos) = (13.8 * time).sin_cos();
+            let envelope = (-0.7 * time).exp();
+            assert!((powers.real[j] - envelope * cos).abs() < 5e-15, "power {j}");
+            assert!((powers.imaginary[j] - envelope * sin).abs() < 5e-15, "power {j}");
+        }
+        assert_eq!(Powers::new(0.7, 13.8, 1e-3, 3).len(), STRIDE);
+    }
+}

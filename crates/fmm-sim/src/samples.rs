@@ -1,0 +1,66 @@
+//! Sampled values of one kinematic quantity, with their derivatives in columns.
+
+use std::marker::PhantomData;
+
+use fmm_model::Scalar;
+
+/// The samples of one quantity: one value each, and one column of partial derivatives per direction of the
+/// number type `D`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Samples<D> {
+    values: Vec<f64>,
+    partials: Vec<f64>,
+    number: PhantomData<D>,
+}
+
+impl<D: Scalar> Samples<D> {
+    pub(crate) const fn new() -> Self {
+        Self { values: Vec::new(), partials: Vec::new(), number: PhantomData }
+    }
+
+    /// Makes room for `count` samples, all zero.
+    pub(crate) fn reset(&mut self, count: usize) {
+        self.values.clear();
+        self.values.resize(count, 0.0);
+        self.partials.clear();
+        self.partials.resize(count * D::DIRECTIONS, 0.0);
+    }
+
+    pub(crate) fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.values
+    }
+
+    /// The column of `direction`, which must be one that `D` carries.
+    pub(crate) fn partial_mut(&mut self, direction: usize) -> &mut [f64] {
+        let count = self.values.len();
+        &mut self.partials[direction * count..(direction + 1) * count]
+    }
+
+    /// Writes one number, value and partial derivatives, at `index`.
+    pub(crate) fn set(&mut self, index: usize, number: D) {
+        self.values[index] = number.value();
+        for direction in 0..D::DIRECTIONS {
+            self.partial_mut(direction)[index] = number.partial(direction);
+        }
+    }
+
+    /// Writes the same number at every index of `range`.
+    pub(crate) fn fill(&mut self, range: std::ops::Range<usize>, number: D) {
+        self.values[range.clone()].fill(number.value());
+        for direction in 0..D::DIRECTIONS {
+            self.partial_mut(direction)[range.clone()].fill(number.partial(direction));
+        }
+    }
+
+    /// The values, one per sample; empty if this quantity was not asked for.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The partial derivatives in `direction`, one per sample; none if the number type does not carry it or the
+    /// quantity was not asked for.
+    pub fn partial(&self, direction: usize) -> Option<&[f64]> {
+        let count = self.values.len();
+        if count == 0 { None } else { self.partials.get(direction * count..(direction + 1) * count) }
+    }
+}

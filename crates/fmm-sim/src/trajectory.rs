@@ -1,0 +1,85 @@
+//! The result of every engine: samples and events.
+
+use fmm_model::Scalar;
+
+use crate::sampling::{Channels, Sampling};
+use crate::{Event, EventKind, Samples};
+
+/// A simulated motion: sampled position and velocity, and the events that shaped it.
+///
+/// Samples at the time of an event hold the state right after it. At a dual number `D` all samples and events
+/// carry their exact partial derivatives, the change of event times included.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trajectory<D = f64> {
+    position: Samples<D>,
+    velocity: Samples<D>,
+    events: Vec<Event<D>>,
+}
+
+impl<D: Scalar> Default for Trajectory<D> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<D: Scalar> Trajectory<D> {
+    /// An empty trajectory, to be filled and refilled by [`Engine::run_into`](crate::Engine::run_into).
+    pub const fn new() -> Self {
+        Self { position: Samples::new(), velocity: Samples::new(), events: Vec::new() }
+    }
+
+    /// Forgets everything and makes room for the samples asked for.
+    pub(crate) fn reset(&mut self, sampling: &Sampling) {
+        let count = |wanted: bool| if wanted { sampling.count() } else { 0 };
+        self.position.reset(count(sampling.channels().position()));
+        self.velocity.reset(count(sampling.channels().velocity()));
+        self.events.clear();
+    }
+
+    pub(crate) fn push(&mut self, event: Event<D>) {
+        self.events.push(event);
+    }
+
+    pub(crate) fn position_mut(&mut self) -> &mut Samples<D> {
+        &mut self.position
+    }
+
+    pub(crate) fn velocity_mut(&mut self) -> &mut Samples<D> {
+        &mut self.velocity
+    }
+
+    /// Writes the state at sample `index` into the channels that are kept.
+    pub(crate) fn set(&mut self, index: usize, channels: Channels, position: D, velocity: D) {
+        if channels.position() {
+            self.position.set(index, position);
+        }
+        if channels.velocity() {
+            self.velocity.set(index, velocity);
+        }
+    }
+
+    /// Sampled position (m); empty if it was not asked for.
+    pub const fn position(&self) -> &Samples<D> {
+        &self.position
+    }
+
+    /// Sampled velocity (m/s); empty if it was not asked for.
+    pub const fn velocity(&self) -> &Samples<D> {
+        &self.velocity
+    }
+
+    /// The events up to the last sample, in order; the first is the start.
+    pub fn events(&self) -> &[Event<D>] {
+        &self.events
+    }
+
+    /// The event with which the motion ended for good, if it did before the last sample.
+    pub fn rest(&self) -> Option<&Event<D>> {
+        self.events.last().filter(|event| event.next == crate::Mode::Stick)
+    }
+
+    /// How many times the velocity reached zero.
+    pub fn half_swings(&self) -> usize {
+        self.events.iter().filter(|event| matches!(event.kind, EventKind::Reversal | EventKind::Stop)).count()
+    }
+}

@@ -1,0 +1,126 @@
+//! One input quantity of a measurement.
+
+use crate::UncertaintyError;
+
+/// An input quantity: its estimate, the standard uncertainty of that, and how well the uncertainty is known.
+///
+/// | symbol | field | unit | meaning |
+/// |---|---|---|---|
+/// | x | `value` | `unit` | estimate |
+/// | u | `standard_uncertainty` | `unit` | standard deviation attributed to the estimate |
+/// | ν | `degrees_of_freedom` | 1 | n − 1 for the mean of n observations; infinite if u is known exactly |
+///
+/// The unit is a label and is not converted: the model sees the bare values, so that all must belong to one
+/// coherent system. Uncertainty exactly zero is allowed and describes a constant.
+///
+/// ```
+/// use fmm_uq::Input;
+///
+/// let length = Input::new("l", 50_000_623.0, 25.0, "nm")?.with_degrees_of_freedom(18.0)?;
+/// assert_eq!(length.standard_uncertainty(), 25.0);
+/// assert!(Input::new("l", 50_000_623.0, -25.0, "nm").is_err());
+/// # Ok::<(), fmm_uq::UncertaintyError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Input {
+    name: String,
+    value: f64,
+    standard_uncertainty: f64,
+    unit: String,
+    degrees_of_freedom: f64,
+}
+
+impl Input {
+    /// An input of infinite degrees of freedom; `unit` is `"1"` for a pure number.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::Unnamed`], [`UncertaintyError::ValueNotFinite`] or, if the uncertainty is negative or
+    /// not finite, [`UncertaintyError::UncertaintyOutOfRange`].
+    pub fn new(
+        name: impl Into<String>,
+        value: f64,
+        standard_uncertainty: f64,
+        unit: impl Into<String>,
+    ) -> Result<Self, UncertaintyError> {
+        let (name, unit) = (name.into(), unit.into());
+        if name.trim().is_empty() {
+            return Err(UncertaintyError::Unnamed { value, unit });
+        }
+        if !value.is_finite() {
+            return Err(UncertaintyError::ValueNotFinite { input: name, value, unit });
+        }
+        if !(standard_uncertainty >= 0.0 && standard_uncertainty.is_finite()) {
+            return Err(UncertaintyError::UncertaintyOutOfRange { input: name, value: standard_uncertainty, unit });
+        }
+        Ok(Self { name, value, standard_uncertainty, unit, degrees_of_freedom: f64::INFINITY })
+    }
+
+    /// The same input with ν degrees of freedom, which need not be whole.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::DegreesOfFreedomOutOfRange`] if they are below 1 or NaN.
+    pub fn with_degrees_of_freedom(mut self, degrees_of_freedom: f64) -> Result<Self, UncertaintyError> {
+        self.degrees_of_freedom = valid_degrees_of_freedom(&self.name, degrees_of_freedom)?;
+        Ok(self)
+    }
+
+    /// Name, unique in its set.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// x, estimate (in [`Input::unit`]).
+    pub const fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// u, standard uncertainty of the estimate (in [`Input::unit`]).
+    pub const fn standard_uncertainty(&self) -> f64 {
+        self.standard_uncertainty
+    }
+
+    /// Unit of the value and of its uncertainty.
+    pub fn unit(&self) -> &str {
+        &self.unit
+    }
+
+    /// ν, degrees of freedom of the standard uncertainty (1), at least 1, possibly infinite.
+    pub const fn degrees_of_freedom(&self) -> f64 {
+        self.degrees_of_freedom
+    }
+}
+
+/// Passes degrees of freedom through if they are at least 1; `of` says whose they are.
+pub(crate) fn valid_degrees_of_freedom(of: &str, value: f64) -> Result<f64, UncertaintyError> {
+    if value >= 1.0 {
+        Ok(value)
+    } else {
+        Err(UncertaintyError::DegreesOfFreedomOutOfRange { of: of.to_owned(), value })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn impossible_inputs_are_refused_by_name() {
+        let message = |input: Result<Input, UncertaintyError>| input.unwrap_err().to_string();
+        assert_eq!(message(Input::new(" ", 1.0, 0.1, "m")), "an input needs a name, but the one of value 1 m has none");
+        assert_eq!(message(Input::new("a", f64::NAN, 0.1, "m")), "the value of a must be finite, but is NaN m");
+        for bad in [-0.1, f64::NAN, f64::INFINITY] {
+            let error = Input::new("a", 1.0, bad, "m").unwrap_err();
+            assert!(matches!(error, UncertaintyError::UncertaintyOutOfRange { .. }), "u = {bad} m: {error}");
+        }
+        for bad in [0.0, 0.999, -1.0, f64::NAN] {
+            assert!(Input::new("a", 1.0, 0.1, "m").unwrap().with_degrees_of_freedom(bad).is_err(), "ν = {bad}");
+        }
+    }
+
+    #[test]
+    fn degrees_of_freedom_are_infinite_unless_given() {
+        let input = Input::new("a", 1.0, 0.0, "m").unwrap();
+        assert_eq!(input.degrees_of_freedom(), f64::INFINITY);
+        assert_eq!(input.with_degrees_of_freedom(25.6).unwrap().degrees_of_freedom(), 25.6);
+    }
+}

@@ -1,0 +1,176 @@
+//! The set of input quantities of a measurement and how they are correlated.
+
+use nalgebra::DMatrix;
+
+use crate::{Input, UncertaintyError};
+
+/// A non-empty set of inputs of different names, with their correlation matrix.
+///
+/// Inputs are uncorrelated unless [`Inputs::with_correlations`] says otherwise. The matrix is symmetric with a
+/// unit diagonal by construction and always positive semidefinite.
+///
+/// ```
+/// use fmm_uq::{Input, Inputs};
+///
+/// let inputs = Inputs::new([
+///     Input::new("V", 4.999, 0.0032, "V")?,
+///     Input::new("I", 0.019_661, 9.5e-6, "A")?,
+/// ])?
+/// .with_correlations(&[("V", "I", -0.36)])?;
+/// assert_eq!(inputs.correlation("I", "V"), Some(-0.36));
+/// assert_eq!(inputs.correlation("I", "R"), None);
+/// # Ok::<(), fmm_uq::UncertaintyError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inputs {
+    inputs: Vec<Input>,
+    correlation: DMatrix<f64>,
+}
+
+impl Inputs {
+    /// Uncorrelated inputs, in the order in which a model receives them.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::NoInputs`] or [`UncertaintyError::DuplicateName`].
+    pub fn new(inputs: impl IntoIterator<Item = Input>) -> Result<Self, UncertaintyError> {
+        let inputs: Vec<Input> = inputs.into_iter().collect();
+        if inputs.is_empty() {
+            return Err(UncertaintyError::NoInputs);
+        }
+        for (i, input) in inputs.iter().enumerate() {
+            if inputs[..i].iter().any(|earlier| earlier.name() == input.name()) {
+                return Err(UncertaintyError::DuplicateName { name: input.name().to_owned() });
+            }
+        }
+        let correlation = DMatrix::identity(inputs.len(), inputs.len());
+        Ok(Self { inputs, correlation })
+    }
+
+    /// The same inputs with correlation coefficients r (1) for the named pairs; other pairs keep theirs.
+    ///
+    /// All coefficients come in one call because half a correlation matrix need not be a possible one: with
+    /// r = 0.9 for two pairs of three inputs, the third pair cannot stay at 0.
+    ///
+    /// Coefficients that were rounded for print may be impossible together. The error then names the eigenvalue
+    /// by which they miss; take them from the observations instead.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::UnknownName`], [`UncertaintyError::SelfCorrelation`],
+    /// [`UncertaintyError::RepeatedPair`], [`UncertaintyError::CorrelationOutOfRange`] or
+    /// [`UncertaintyError::NotPositiveSemidefinite`].
+    pub fn with_correlations(mut self, coefficients: &[(&str, &str, f64)]) -> Result<Self, UncertaintyError> {
+        let mut seen = Vec::with_capacity(coefficients.len());
+        for &(first, second, value) in coefficients {
+            let (i, j) = (self.position(first)?, self.position(second)?);
+            let pair = (i.min(j), i.max(j));
+            if i == j {
+                return Err(UncertaintyError::SelfCorrelation { name: first.to_owned() });
+            }
+            if seen.contains(&pair) {
+                return Err(UncertaintyError::RepeatedPair { first: first.to_owned(), second: second.to_owned() });
+            }
+            if !(-1.0..=1.0).contains(&value) {
+                let (first, second) = (first.to_owned(), second.to_owned());
+                return Err(UncertaintyError::CorrelationOutOfRange { first, second, value });
+            }
+            seen.push(pair);
+            self.correlation[(i, j)] = value;
+            self.correlation[(j, i)] = value;
+        }
+        let smallest_eigenvalue = self.correlation.symmetric_eigenvalues().min();
+        if smallest_eigenvalue < -self.rounding() {
+            return Err(UncertaintyError::NotPositiveSemidefinite { smallest_eigenvalue });
+        }
+        Ok(self)
+    }
+
+    /// The inputs in the order in which a model receives them.
+    pub fn as_slice(&self) -> &[Input] {
+        &self.inputs
+    }
+
+    /// Correlation coefficient of two inputs by name (1), 1 of an input with itself; none if a name is unknown.
+    pub fn correlation(&self, first: &str, second: &str) -> Option<f64> {
+        Some(self.correlation_at(self.position(first).ok()?, self.position(second).ok()?))
+    }
+
+    /// Correlation coefficient of two inputs by position.
+    pub(crate) fn correlation_at(&self, i: usize, j: usize) -> f64 {
+        self.correlation[(i, j)]
+    }
+
+    /// The pairs of positions whose correlation coefficient is not zero.
+    pub(crate) fn correlated_pairs(&self) -> impl Iterator<Item = (usize, usize)> {
+        let pairs = (0..self.inputs.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
+        pairs.filter(|&(i, j)| self.correlation_at(i, j) != 0.0)
+    }
+
+    /// The relative rounding error that a quadratic form with the correlation matrix may carry, which is also
+    /// that of the matrix' eigenvalues.
+    pub(crate) fn rounding(&self) -> f64 {
+        16.0 * f64::EPSILON * self.inputs.len() as f64
+    }
+
+    fn position(&self, name: &str) -> Result<usize, UncertaintyError> {
+        self.inputs.iter().position(|input| input.name() == name).ok_or_else(|| {
+            let known: Vec<&str> = self.inputs.iter().map(Input::name).collect();
+            UncertaintyError::UnknownName { name: name.to_owned(), known: known.join(", ") }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn three() -> Inputs {
+        Inputs::new(["a", "b", "c"].map(|name| Input::new(name, 1.0, 0.1, "m").unwrap())).unwrap()
+    }
+
+    #[test]
+    fn names_must_be_there_and_differ() {
+        assert!(matches!(Inputs::new([]), Err(UncertaintyError::NoInputs)));
+        let twice = ["a", "a"].map(|name| Input::new(name, 1.0, 0.1, "m").unwrap());
+        assert_eq!(
+            Inputs::new(twice).unwrap_err().to_string(),
+            "each input needs a name of its own, but `a` is given twice"
+        );
+        assert_eq!(
+            three().with_correlations(&[("a", "d", 0.1)]).unwrap_err().to_string(),
+            "there is no input `d`; the inputs are a, b, c"
+        );
+    }
+
+    #[test]
+    fn coefficients_are_checked_one_by_one() {
+        for bad in [1.000_001, -2.0, f64::NAN, f64::INFINITY] {
+            let error = three().with_correlations(&[("a", "b", bad)]).unwrap_err();
+            assert!(matches!(error, UncertaintyError::CorrelationOutOfRange { .. }), "r = {bad}: {error}");
+        }
+        let itself = three().with_correlations(&[("a", "a", 1.0)]);
+        assert!(matches!(itself, Err(UncertaintyError::SelfCorrelation { .. })));
+        let twice = three().with_correlations(&[("a", "b", 0.1), ("b", "a", 0.1)]);
+        assert!(matches!(twice, Err(UncertaintyError::RepeatedPair { .. })));
+    }
+
+    #[test]
+    fn coefficients_are_checked_together() {
+        // Eigenvalues 1, 1 ± 0.9 √2 without the third pair; 0.1, 0.1, 2.8 with it.
+        let half = [("a", "b", 0.9), ("a", "c", 0.9)];
+        match three().with_correlations(&half) {
+            Err(UncertaintyError::NotPositiveSemidefinite { smallest_eigenvalue }) => {
+                assert!((smallest_eigenvalue - (1.0 - 0.9 * 2f64.sqrt())).abs() < 1e-14, "{smallest_eigenvalue}");
+            }
+            other => panic!("accepted or refused for the wrong reason: {other:?}"),
+        }
+        assert!(three().with_correlations(&[half[0], half[1], ("b", "c", 0.9)]).is_ok());
+    }
+
+    #[test]
+    fn full_correlation_is_on_the_edge_and_allowed() {
+        let full = [("a", "b", 1.0), ("a", "c", -1.0), ("b", "c", -1.0)];
+        let inputs = three().with_correlations(&full).unwrap();
+        assert_eq!((inputs.correlation("c", "a"), inputs.correlation("c", "c")), (Some(-1.0), Some(1.0)));
+        assert!(three().with_correlations(&[full[0], full[1], ("b", "c", 1.0)]).is_err());
+    }
+}
