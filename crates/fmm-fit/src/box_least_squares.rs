@@ -144,3 +144,67 @@ impl BoxLeastSquares {
 fn misfit(triangle: &Triangle, p: &[f64]) -> f64 {
     (0..triangle.order()).map(|row| (triangle.row_times(row, p) + triangle.q(row)).powi(2)).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The best of all faces: each component free, at its lower or at its upper bound.
+    fn enumerate(triangle: &Triangle, lower: &[f64], upper: &[f64]) -> f64 {
+        let order = triangle.order();
+        let mut best = f64::INFINITY;
+        for code in 0..3usize.pow(order as u32) {
+            let place = |j: usize| code / 3usize.pow(j as u32) % 3;
+            let bound = |j: usize| [0.0, lower[j], upper[j]][place(j)];
+            let free: Vec<usize> = (0..order).filter(|&j| place(j) == 0).collect();
+            let mut step: Vec<f64> = (0..order).map(bound).collect();
+            let mut face = Triangle::default();
+            face.select(triangle, &free, |row| triangle.q(row) + triangle.row_times(row, &step), &mut Vec::new());
+            let mut inside = vec![0.0; free.len()];
+            face.solve(&mut inside);
+            for (&j, value) in free.iter().zip(inside) {
+                step[j] = value;
+            }
+            let is_feasible = (0..order).all(|j| step[j] >= lower[j] && step[j] <= upper[j]);
+            if is_feasible {
+                best = best.min(misfit(triangle, &step));
+            }
+        }
+        best
+    }
+
+    #[test]
+    fn minimiser_is_the_best_of_all_faces() {
+        // Multiples of an irrational number make well spread, reproducible entries.
+        let mut seed = 0.0f64;
+        let mut next = || {
+            seed += 0.618_033_988_749_895;
+            2.0 * seed.fract() - 1.0
+        };
+        let mut solver = BoxLeastSquares::default();
+        let mut on_bound = 0;
+        for _ in 0..300 {
+            let mut triangle = Triangle::default();
+            triangle.reset(4);
+            let mut block: Vec<f64> = (0..30).map(|_| next()).collect();
+            triangle.fold(&mut block);
+            // Some components begin on a bound.
+            let lower: Vec<f64> = (0..4).map(|_| (next() * 0.6).min(0.0)).collect();
+            let upper: Vec<f64> = (0..4).map(|_| (next() * 0.6).max(1e-3)).collect();
+            solver.solve(&triangle, &lower, &upper);
+            for j in 0..4 {
+                assert!(lower[j] <= solver.step[j] && solver.step[j] <= upper[j], "component {j} is outside");
+                match solver.sides[j] {
+                    Side::Inside => {}
+                    Side::Lower => assert_eq!(solver.step[j], lower[j]),
+                    Side::Upper => assert_eq!(solver.step[j], upper[j]),
+                }
+            }
+            on_bound += 4 - solver.inside.len();
+            let (found, best) = (misfit(&triangle, &solver.step), enumerate(&triangle, &lower, &upper));
+            // Both are sums of a few squares of order one.
+            assert!((found - best).abs() < 1e-12, "{found} instead of {best}");
+        }
+        assert!(on_bound > 300, "only {on_bound} components met a bound");
+    }
+}

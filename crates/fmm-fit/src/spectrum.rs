@@ -167,9 +167,8 @@ mod tests {
         let along: f64 = (0..3).map(|j| spectrum.right[2][j] * step[j] * spectrum.scales[j]).sum();
         assert!(along.abs() < 1e-13, "step {step:?} moves {along} along the null vector");
         for column in 0..3 {
-            let gradient: f64 = (0..=column)
-                .map(|row| factor.r(row, column) * (factor.row_times(row, &step) + factor.q(row)))
-                .sum();
+            let gradient: f64 =
+                (0..=column).map(|row| factor.r(row, column) * (factor.row_times(row, &step) + factor.q(row))).sum();
             assert!(gradient.abs() < 1e-13, "gradient {gradient} is left in column {column}");
         }
     }

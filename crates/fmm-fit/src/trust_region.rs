@@ -136,3 +136,56 @@ impl TrustRegion {
         -(0..triangle.order()).map(|row| along(row) * (triangle.q(row) + 0.5 * along(row))).sum::<f64>()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn region(radius: f64) -> (TrustRegion, Triangle) {
+        let mut triangle = Triangle::default();
+        triangle.reset(3);
+        // Columns of very different length, as parameters in different units have.
+        let mut block = vec![1.0, 2.0, -1.0, 0.5, 30.0, 10.0, 20.0, -40.0, 1e-3, 3e-3, 0.0, 2e-3, 5.0, -3.0, 2.0, 1.0];
+        triangle.fold(&mut block);
+        let mut region = TrustRegion::default();
+        region.begin(&triangle, [1.0, 1.0, 1.0].into_iter(), 1.0);
+        region.radius = radius;
+        assert_eq!(region.set_model(&triangle, 1e-12), 3);
+        (region, triangle)
+    }
+
+    #[test]
+    fn a_step_fills_the_radius_or_is_the_full_one() {
+        let (lower, upper) = ([f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
+        let (mut unlimited, _) = region(1e9);
+        let full = unlimited.propose(&lower, &upper).step.clone();
+        assert_eq!(full, unlimited.gauss_newton(&lower, &upper).step);
+        for radius in [1e-9, 1e-3, 0.1, 1.0] {
+            let (mut region, triangle) = region(radius);
+            let step = region.propose(&lower, &upper).step.clone();
+            let length = region.scaled_length(step.iter().copied());
+            assert!((length / radius - 1.0).abs() < 0.1 + 1e-12, "length {length} for a radius of {radius}");
+            // The prediction is that of the linear model.
+            let misfit = |p: &[f64]| -> f64 {
+                0.5 * (0..3).map(|row| (triangle.row_times(row, p) + triangle.q(row)).powi(2)).sum::<f64>()
+            };
+            let expected = misfit(&[0.0; 3]) - misfit(&step);
+            // The difference of two numbers of order ten.
+            assert!((region.predicted_reduction(&triangle) - expected).abs() < 1e-14 * 10.0);
+        }
+    }
+
+    #[test]
+    fn a_step_keeps_to_box_and_radius_together() {
+        let (lower, upper) = ([-1e-3, f64::NEG_INFINITY, 0.0], [1.0, f64::INFINITY, 10.0]);
+        for radius in [1e-3, 0.1, 1.0, 1e3] {
+            let (mut region, _) = region(radius);
+            let step = region.propose(&lower, &upper).step.clone();
+            let length = region.scaled_length(step.iter().copied());
+            assert!(length <= 1.1 * radius, "length {length} for a radius of {radius}");
+            for j in 0..3 {
+                assert!(lower[j] <= step[j] && step[j] <= upper[j], "component {j} is {}", step[j]);
+            }
+        }
+    }
+}

@@ -1,1 +1,66 @@
 //! Friction parameters out of measured ring-downs, with their uncertainty and what the record could not tell.
+//!
+//! A [`Record`](fmm_record::Record) of a freely vibrating machine is prepared ([`RingDown`]), what is known of the
+//! machine is stated ([`Machine`]), and one law ([`identify`]) or several ([`compare`]) are fitted to it by
+//! simulating the motion exactly, through every reversal and stop.
+//!
+//! | question | answer |
+//! |---|---|
+//! | Which start values do I give? | none; they come from the peaks and crossings of the record |
+//! | What can a free vibration show? | frequency, damping per mass and friction per mass; not the mass |
+//! | How do I get μ? | give a mass or a stiffness, and the normal load, with their uncertainties |
+//! | Which law? | [`compare`] tells, and says when the data do not decide |
+//! | Are the uncertainties to be trusted? | read the [`warnings`](Identification::warnings): they name what breaks them |
+//!
+//! ```
+//! use fmm_friction::CoulombViscous;
+//! use fmm_identify::{Known, Machine, Preparation, RingDown, identify};
+//! use fmm_model::Oscillator;
+//! use fmm_record::{Quantity, Record};
+//! use fmm_sim::{Engine, Exact, Sampling, Scenario};
+//!
+//! // A stand-in for a measurement: 10.391 kg, 1982 N/m, 0.25 · 14 N of friction, released at 15 mm, 1 kHz.
+//! let machine = Oscillator::new(10.391, 1982.0)?;
+//! let scenario = Scenario::new(machine, CoulombViscous::new(0.25, 0.02)?, 14.0)?.starting_at(0.015, 0.0)?;
+//! let velocity = Exact.run(&scenario, &Sampling::uniform(1e-3, 1500)?)?.velocity().values().to_vec();
+//!
+//! let record = Record::new(0.0, 1e-3, velocity, Quantity::Velocity, "m/s")?;
+//! let decay = RingDown::prepare(&record, &Preparation::default())?;
+//! let machine = Machine::of_mass(Known::new(10.391, 0.005)?)?.with_normal_load(Known::new(14.0, 0.014)?)?;
+//! let found = identify::<CoulombViscous>(&machine, &[decay])?;
+//!
+//! let mu = found.finding("mu").unwrap();
+//! assert!((mu.value() - 0.25).abs() < 1e-9);
+//! // Without noise only mass and load are uncertain: 0.25 · √((0.005/10.391)² + 0.001²).
+//! assert!((mu.uncertainty().unwrap() - 2.774e-4).abs() < 1e-6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod candidate;
+mod comparison;
+mod error;
+mod finding;
+mod first_guess;
+mod identification;
+mod known;
+mod layout;
+mod machine;
+mod preparation;
+mod problem;
+mod report;
+mod ring_down;
+#[cfg(feature = "serde")]
+mod serialised;
+mod warning;
+
+pub use candidate::Candidate;
+pub use comparison::{Comparison, NestedTest, compare, compare_observed};
+pub use error::IdentifyError;
+pub use finding::{Finding, Origin};
+pub use identification::{FittedMotion, Identification, identify, identify_observed};
+pub use known::Known;
+pub use machine::{Machine, Scale};
+pub use preparation::{Offset, Preparation, RecordSummary};
+pub use problem::RingDownProblem;
+pub use ring_down::RingDown;
+pub use warning::Warning;

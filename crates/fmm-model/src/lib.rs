@@ -20,6 +20,7 @@ mod damping;
 mod error;
 mod oscillator;
 mod parameter;
+mod rounded;
 mod scalar;
 
 pub use bounds::Bounds;
@@ -27,4 +28,5 @@ pub use damping::Damping;
 pub use error::ModelError;
 pub use oscillator::Oscillator;
 pub use parameter::Parameter;
+pub use rounded::Rounded;
 pub use scalar::{Dual, Scalar};

@@ -137,7 +137,10 @@ macro_rules! functions_of_dual_numbers {
             DualNum::powd(&self, exponent)
         }
         fn atan2(self, x: Self) -> Self {
-            DualNum::atan2(&self, x)
+            // num-dual goes through the quotient of the two, which has no derivative where x = 0. The difference below
+            // has value 0 and the derivative y′x − x′y.
+            let (y_value, x_value) = (self.re, x.re);
+            (self * x_value - x * y_value) / (x_value * x_value + y_value * y_value) + y_value.atan2(x_value)
         }
     };
 }
@@ -198,6 +201,13 @@ mod tests {
         check::<f64>(0);
         check::<Dual64>(1);
         check::<Dual<2>>(2);
+    }
+
+    #[test]
+    fn the_angle_has_its_derivative_on_the_axis() {
+        let angle = Scalar::atan2(Dual::<2>::variable(0.5, 0), Dual::variable(0.0, 1));
+        assert_eq!(angle.value(), std::f64::consts::FRAC_PI_2);
+        assert_eq!((angle.partial(0), angle.partial(1)), (0.0, -2.0));
     }
 
     #[test]

@@ -12,9 +12,12 @@ use crate::Column;
 /// How much of the file the separator is judged by (bytes).
 const HEAD: u64 = 1 << 16;
 
+/// The text of the table: what the separator was judged by, then the rest.
+type Source<R> = Chain<Cursor<Vec<u8>>, WithoutComments<BufReader<R>>>;
+
 /// An open table: the names of its columns are known, its rows are read one by one.
 pub(super) struct Table<R: Read> {
-    reader: Reader<Chain<Cursor<Vec<u8>>, WithoutComments<BufReader<R>>>>,
+    reader: Reader<Source<R>>,
     row: ByteRecord,
     pending: bool,
     separator: u8,

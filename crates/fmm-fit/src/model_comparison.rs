@@ -1,0 +1,99 @@
+//! Whether a further parameter is worth having.
+
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+
+use crate::Fit;
+
+impl Fit {
+    /// Akaike's information criterion with the correction for few residuals; the smaller the better.
+    ///
+    /// ```text
+    /// AICc = n ln(S/n) + 2 k + 2 k (k + 1)/(n − k − 1),     k = rank + 1
+    /// ```
+    ///
+    /// k counts the directions that the residuals determine, as a reparametrised model is the same model, and one
+    /// for the variance. Only differences between fits to the same data mean anything; a difference of 10 is
+    /// strong. None if n ≤ k + 1 or if the residuals are all zero.
+    ///
+    /// # References
+    /// C. M. Hurvich, C.-L. Tsai, "Regression and time series model selection in small samples", Biometrika 76
+    /// (1989) 297, <https://doi.org/10.1093/biomet/76.2.297>.
+    pub fn corrected_akaike(&self) -> Option<f64> {
+        let (n, k) = (self.residuals().len() as f64, self.rank() as f64 + 1.0);
+        let sum = self.sum_of_squares();
+        (n > k + 1.0 && sum > 0.0).then(|| n * (sum / n).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0))
+    }
+}
+
+/// A comparison of a fit with a restricted one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct FTest {
+    /// F, reduction of the sum of squares per parameter added, over the variance of the full fit (1).
+    pub f: f64,
+    /// Probability of an F at least as large if the restricted model is right (1).
+    pub p_value: f64,
+    /// Number of parameters added, and degrees of freedom of the full fit.
+    pub degrees_of_freedom: (usize, usize),
+}
+
+/// Why two fits cannot be compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ComparisonError {
+    /// The fits have different numbers of residuals, so they are not to the same data.
+    #[error("the restricted fit has {restricted} residuals and the full one {full}; they must be the same data")]
+    DifferentData {
+        /// Residuals of the restricted fit.
+        restricted: usize,
+        /// Residuals of the full fit.
+        full: usize,
+    },
+    /// The full fit does not determine more than the restricted one.
+    #[error("the full fit has rank {full} and the restricted one {restricted}; it must determine more")]
+    NothingAdded {
+        /// Rank of the restricted fit.
+        restricted: usize,
+        /// Rank of the full fit.
+        full: usize,
+    },
+    /// The full fit has no degree of freedom, or no residuals left.
+    #[error("the full fit reproduces its data exactly, so it has no variance to compare with")]
+    NoVariance,
+    /// The full fit is worse than the restricted one, so it is not at its minimum or the models are not nested.
+    #[error("the full fit has the larger sum of squares: it is not at its minimum, or the models are not nested")]
+    NotNested,
+}
+
+/// Tests a `restricted` fit against a `full` one that has it as a special case, on the same data.
+///
+/// ```text
+/// F = ((S_r − S_f)/(ν_r − ν_f)) / (S_f/ν_f)
+/// ```
+///
+/// Exact for linear models with independent normal residuals, good for smooth ones. A parameter of the full fit
+/// that ends at a bound adds nothing to its rank.
+///
+/// # Errors
+/// [`ComparisonError`] if the fits do not allow the comparison.
+pub fn f_test(restricted: &Fit, full: &Fit) -> Result<FTest, ComparisonError> {
+    let (n_r, n_f) = (restricted.residuals().len(), full.residuals().len());
+    if n_r != n_f {
+        return Err(ComparisonError::DifferentData { restricted: n_r, full: n_f });
+    }
+    if full.rank() <= restricted.rank() {
+        return Err(ComparisonError::NothingAdded { restricted: restricted.rank(), full: full.rank() });
+    }
+    let (added, freedom) = (full.rank() - restricted.rank(), full.degrees_of_freedom());
+    let (s_r, s_f) = (restricted.sum_of_squares(), full.sum_of_squares());
+    if freedom == 0 || s_f == 0.0 {
+        return Err(ComparisonError::NoVariance);
+    }
+    // Two fits at the same minimum differ by rounding and by the tolerance of the search.
+    if s_f > s_r * (1.0 + 1e-9) {
+        return Err(ComparisonError::NotNested);
+    }
+    let f = ((s_r - s_f).max(0.0) / added as f64) / (s_f / freedom as f64);
+    let distribution = FisherSnedecor::new(added as f64, freedom as f64).map_err(|_| ComparisonError::NoVariance)?;
+    Ok(FTest { f, p_value: distribution.sf(f), degrees_of_freedom: (added, freedom) })
+}

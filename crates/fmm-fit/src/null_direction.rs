@@ -1,0 +1,192 @@
+//! Directions in which the parameters can change without changing the residuals.
+
+use std::fmt;
+
+/// A direction, in relative changes of the parameters, that the residuals do not see.
+///
+/// ```text
+/// Σⱼ (∂r/∂θⱼ) sⱼ cⱼ = 0,     dθⱼ = sⱼ cⱼ,     max |cⱼ| = 1
+/// ```
+///
+/// The scale sⱼ is |θⱼ|, so that the components are relative changes d ln|θⱼ|. For a value of zero, which has no
+/// relative change, it is the change that would move the residuals as much as the most influential parameter
+/// does when it changes by its own value. Several directions are given in reduced form: each has a component of 1
+/// that is 0 in all others.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NullDirection {
+    names: Vec<String>,
+    components: Vec<f64>,
+    /// Components smaller than this are rounding or differencing noise.
+    noise: f64,
+}
+
+impl NullDirection {
+    /// One relative change per parameter of the problem, in its order.
+    pub fn components(&self) -> &[f64] {
+        &self.components
+    }
+
+    /// The parameters that take part, with their relative changes.
+    pub fn participants(&self) -> impl Iterator<Item = (&str, f64)> {
+        let all = self.names.iter().zip(&self.components);
+        all.filter(|(_, change)| change.abs() > self.noise).map(|(name, change)| (name.as_str(), *change))
+    }
+}
+
+/// Turns right singular vectors of zero singular values into directions.
+///
+/// `null` holds vectors over the columns `columns` with `scales` the norms of these columns; `values` has all
+/// parameters, `names` too.
+pub(crate) fn null_directions(
+    null: &[Vec<f64>],
+    columns: &[usize],
+    scales: &[f64],
+    values: &[f64],
+    names: &[&str],
+    noise: f64,
+) -> Vec<NullDirection> {
+    let influence = columns.iter().zip(scales).map(|(&j, scale)| values[j].abs() * scale).fold(0.0, f64::max);
+    let unit = |(&j, scale): (&usize, &f64)| match values[j].abs() {
+        value if value > 0.0 => value * scale,
+        _ if influence > 0.0 => influence,
+        _ => 1.0,
+    };
+    let units: Vec<f64> = columns.iter().zip(scales).map(unit).collect();
+    let relative = |vector: &Vec<f64>| vector.iter().zip(&units).map(|(v, unit)| v / unit).collect();
+    let mut rows: Vec<Vec<f64>> = null.iter().map(relative).collect();
+    reduce(&mut rows);
+    rows.into_iter()
+        .map(|row| {
+            let mut components = vec![0.0; values.len()];
+            for (&j, component) in columns.iter().zip(row) {
+                components[j] = component;
+            }
+            NullDirection { names: names.iter().map(|&name| name.to_owned()).collect(), components, noise }
+        })
+        .collect()
+}
+
+/// Gauss–Jordan elimination with complete pivoting; each row ends with 1 as its largest component.
+fn reduce(rows: &mut [Vec<f64>]) {
+    for row in rows.iter_mut() {
+        normalise(row);
+    }
+    for done in 0..rows.len() {
+        let largest = |row: &[f64]| {
+            row.iter().enumerate().fold((0, 0.0f64), |best, (j, x)| if x.abs() > best.1.abs() { (j, *x) } else { best })
+        };
+        let candidates = done..rows.len();
+        let Some(pivot_row) =
+            candidates.max_by(|&a, &b| largest(&rows[a]).1.abs().total_cmp(&largest(&rows[b]).1.abs()))
+        else {
+            return;
+        };
+        rows.swap(done, pivot_row);
+        let (column, pivot) = largest(&rows[done]);
+        if pivot == 0.0 {
+            return;
+        }
+        let lead: Vec<f64> = rows[done].iter().map(|x| x / pivot).collect();
+        for (i, row) in rows.iter_mut().enumerate() {
+            if i == done {
+                row.clone_from(&lead);
+            } else {
+                let factor = row[column];
+                for (x, l) in row.iter_mut().zip(&lead) {
+                    *x -= factor * l;
+                }
+            }
+        }
+    }
+    for row in rows {
+        normalise(row);
+    }
+}
+
+/// Scales a vector so that its first component of nearly largest magnitude becomes 1.
+fn normalise(row: &mut [f64]) {
+    let largest = row.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
+    // Nearly, as equal components differ by rounding and the sign should not hang on that.
+    if let Some(lead) = row.iter().copied().find(|x| x.abs() > 0.999 * largest) {
+        for x in row {
+            *x = *x / lead.abs() * lead.signum();
+        }
+    }
+}
+
+impl fmt::Display for NullDirection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts: Vec<(&str, f64)> = self.participants().collect();
+        let names: Vec<&str> = parts.iter().map(|(name, _)| *name).collect();
+        let is = |change: f64, wanted: f64| (change - wanted).abs() < 1e-3;
+        match parts.as_slice() {
+            [] => write!(f, "no parameter has any influence on the residuals"),
+            [(name, _)] => write!(f, "{name} has no influence on the residuals"),
+            _ if parts.iter().all(|(_, change)| is(*change, 1.0)) => write!(
+                f,
+                "{} can be scaled together without changing the residuals; only their ratios are determined",
+                enumerate(&names)
+            ),
+            [(first, _), (second, change)] if is(*change, -1.0) => write!(
+                f,
+                "{first} can grow as {second} shrinks without changing the residuals; only their product is determined"
+            ),
+            _ => {
+                let changes: Vec<String> =
+                    parts.iter().map(|(name, change)| format!("{name} by {change:+.3} %")).collect();
+                let changes: Vec<&str> = changes.iter().map(String::as_str).collect();
+                write!(f, "the residuals stay the same when {} change together", enumerate(&changes))
+            }
+        }
+    }
+}
+
+/// "a, b and c".
+pub(crate) fn enumerate(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [only] => (*only).to_owned(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sentences_name_what_is_determined() {
+        let direction = |components: &[f64]| NullDirection {
+            names: ["mass", "stiffness", "damping"].map(str::to_owned).to_vec(),
+            components: components.to_vec(),
+            noise: 1e-6,
+        };
+        assert_eq!(
+            direction(&[1.0, 1.0, 1.0]).to_string(),
+            "mass, stiffness and damping can be scaled together without changing the residuals; \
+             only their ratios are determined"
+        );
+        assert!(direction(&[1.0, -1.0, 0.0]).to_string().ends_with("only their product is determined"));
+        assert_eq!(direction(&[0.0, 1.0, 1e-9]).to_string(), "stiffness has no influence on the residuals");
+        assert_eq!(
+            direction(&[1.0, 0.5, -0.25]).to_string(),
+            "the residuals stay the same when mass by +1.000 %, stiffness by +0.500 % and damping by -0.250 % \
+             change together"
+        );
+    }
+
+    #[test]
+    fn two_directions_are_separated() {
+        // Mixtures of (1, 1, 0, 0) and (0, 0, 1, −2), as a decomposition returns them.
+        let null = [vec![0.3, 0.3, 0.4, -0.8], vec![-0.5, -0.5, 0.1, -0.2]];
+        let names = ["a", "b", "c", "d"];
+        let directions = null_directions(&null, &[0, 1, 2, 3], &[1.0; 4], &[1.0; 4], &names, 1e-9);
+        for direction in &directions {
+            let c = direction.components();
+            // A few operations on numbers of order one.
+            let first = (c[0] - c[1]).abs() + c[2].abs() + c[3].abs() < 1e-14;
+            let second = c[0].abs() + c[1].abs() + (c[2] + 0.5).abs() + (c[3] - 1.0).abs() < 1e-14;
+            assert!(first || second, "components {c:?}");
+        }
+    }
+}

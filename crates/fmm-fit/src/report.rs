@@ -1,0 +1,197 @@
+//! The report of a fit, on one screen.
+
+use std::fmt;
+
+use crate::null_direction::enumerate;
+use crate::{EstimateStatus, Fit};
+
+/// Correlations weaker than this are not worth a line.
+const NOTABLE_CORRELATION: f64 = 0.1;
+
+impl fmt::Display for Fit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let derivatives = if self.has_exact_jacobian() { "exact Jacobian" } else { "differences" };
+        writeln!(f, "[[fit]] bounded Levenberg–Marquardt, {derivatives}")?;
+        writeln!(f, "  {}", self.outcome())?;
+        writeln!(
+            f,
+            "  {} iterations, {} evaluations of the residuals, {} of the Jacobian",
+            self.iterations(),
+            self.residual_evaluations(),
+            self.jacobian_evaluations()
+        )?;
+        let (points, freedom) = (self.residuals().len(), self.degrees_of_freedom());
+        writeln!(
+            f,
+            "  {points} residuals, {} parameters of which {} free, rank {}, {freedom} degrees of freedom",
+            self.estimates().len(),
+            self.free_count(),
+            self.rank()
+        )?;
+        write!(f, "  sum of squares {:.6e}", self.sum_of_squares())?;
+        match self.residual_standard_deviation() {
+            Some(deviation) => writeln!(f, ", standard deviation of a residual {deviation:.6e}")?,
+            None => writeln!(f)?,
+        }
+        self.write_estimates(f)?;
+        self.write_correlations(f)?;
+        self.write_warnings(f)
+    }
+}
+
+impl Fit {
+    fn write_estimates(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "[[estimates]]")?;
+        let width = self.estimates().iter().map(|estimate| estimate.name().chars().count()).max().unwrap_or(0);
+        for estimate in self.estimates() {
+            let unit = match estimate.parameter().unit() {
+                "1" => String::new(),
+                unit => format!(" {unit}"),
+            };
+            write!(f, "  {:<width$} = ", estimate.name())?;
+            match estimate.standard_uncertainty() {
+                Some(uncertainty) => {
+                    write!(f, "{}{unit}", WithUncertainty { value: estimate.value(), uncertainty })?;
+                    if estimate.value() != 0.0 {
+                        write!(f, " ({:.2} %)", 100.0 * uncertainty / estimate.value().abs())?;
+                    }
+                }
+                None => write!(f, "{}{unit}", Plain(estimate.value()))?,
+            }
+            write!(f, " (start {}", Plain(estimate.start()))?;
+            writeln!(
+                f,
+                "{})",
+                match estimate.status() {
+                    EstimateStatus::Determined => "",
+                    EstimateStatus::Undetermined => ", not determined",
+                    EstimateStatus::AtLowerBound => ", at its lower bound",
+                    EstimateStatus::AtUpperBound => ", at its upper bound",
+                    EstimateStatus::Fixed => ", fixed",
+                }
+            )?;
+        }
+        Ok(())
+    }
+
+    fn write_correlations(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let count = self.estimates().len();
+        let mut pairs: Vec<(f64, usize, usize)> = (0..count)
+            .flat_map(|i| (i + 1..count).map(move |j| (i, j)))
+            .filter_map(|(i, j)| self.correlation(i, j).map(|correlation| (correlation, i, j)))
+            .filter(|(correlation, ..)| correlation.abs() >= NOTABLE_CORRELATION)
+            .collect();
+        if pairs.is_empty() {
+            return Ok(());
+        }
+        pairs.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+        writeln!(f, "[[correlations]] (below {NOTABLE_CORRELATION} in magnitude not shown)")?;
+        for (correlation, i, j) in pairs {
+            writeln!(f, "  {}, {}: {correlation:+.4}", self.estimates()[i].name(), self.estimates()[j].name())?;
+        }
+        Ok(())
+    }
+
+    fn write_warnings(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let at_bound: Vec<&str> = self
+            .estimates()
+            .iter()
+            .filter(|estimate| estimate.status().is_at_bound())
+            .map(crate::Estimate::name)
+            .collect();
+        let is_quiet = at_bound.is_empty() && self.null_directions().is_empty() && self.model_error().is_none();
+        if is_quiet && self.outcome().is_success() {
+            return Ok(());
+        }
+        writeln!(f, "[[warnings]]")?;
+        if !self.outcome().is_success() {
+            writeln!(f, "  the values are the best found, not those of a minimum: {}", self.outcome())?;
+        }
+        for direction in self.null_directions() {
+            writeln!(f, "  {direction}")?;
+        }
+        if !at_bound.is_empty() {
+            let (verb, theirs) = if at_bound.len() == 1 { ("lies", "it has") } else { ("lie", "they have") };
+            writeln!(
+                f,
+                "  {} {verb} at a bound: {theirs} no standard uncertainty, and those of the others hold at the bound",
+                enumerate(&at_bound)
+            )?;
+        }
+        if let Some(error) = self.model_error() {
+            writeln!(f, "  the model had no value at some trial points; the last time it said: {error}")?;
+        }
+        Ok(())
+    }
+}
+
+/// A value with six digits, short where it is round.
+struct Plain(f64);
+
+impl fmt::Display for Plain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let magnitude = self.0.abs();
+        if magnitude == 0.0 {
+            write!(f, "0")
+        } else if (1e-3..1e6).contains(&magnitude) {
+            let decimals = (5 - magnitude.log10().floor() as i32).max(0) as usize;
+            let text = format!("{:.decimals$}", self.0);
+            let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+            write!(f, "{short}")
+        } else {
+            write!(f, "{:.5e}", self.0)
+        }
+    }
+}
+
+/// A value rounded to two significant digits of its uncertainty.
+struct WithUncertainty {
+    value: f64,
+    uncertainty: f64,
+}
+
+impl fmt::Display for WithUncertainty {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { value, uncertainty } = *self;
+        if !(uncertainty > 0.0 && uncertainty.is_finite()) {
+            return write!(f, "{} ± {}", Plain(value), Plain(uncertainty));
+        }
+        // The decimal place of the second digit of the uncertainty; rounding up to 100 is harmless.
+        let place = uncertainty.log10().floor() as i32 - 1;
+        let leading = value.abs().max(uncertainty).log10().floor() as i32;
+        if (-4..6).contains(&leading) && place <= 0 && place > -12 {
+            let decimals = place.unsigned_abs() as usize;
+            write!(f, "{value:.decimals$} ± {uncertainty:.decimals$}")
+        } else {
+            // At most 17 digits mean anything.
+            let decimals = (leading - place).clamp(0, 16) as usize;
+            let scale = 10f64.powi(leading);
+            write!(f, "({:.decimals$} ± {:.decimals$})e{leading}", value / scale, uncertainty / scale)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_rounded_to_their_uncertainty() {
+        let text = |value, uncertainty| WithUncertainty { value, uncertainty }.to_string();
+        assert_eq!(text(190.740_316_97, 0.005_601), "190.7403 ± 0.0056");
+        assert_eq!(text(0.1, 3.4e-5), "0.100000 ± 0.000034");
+        assert_eq!(text(238.942, 2.707), "238.9 ± 2.7");
+        assert_eq!(text(238.942, 27.07), "239 ± 27");
+        assert_eq!(text(238_942.0, 270.7), "(2.3894 ± 0.0027)e5");
+        assert_eq!(text(5.5e-7, 2.0e-9), "(5.500 ± 0.020)e-7");
+        assert_eq!(text(1.0, 0.0), "1 ± 0");
+        assert_eq!(text(1e-9, 0.2), "0.00 ± 0.20");
+    }
+
+    #[test]
+    fn plain_values_are_short() {
+        assert_eq!(Plain(0.27).to_string(), "0.27");
+        assert_eq!(Plain(1980.0).to_string(), "1980");
+        assert_eq!(Plain(-1.234_567_89e-7).to_string(), "-1.23457e-7");
+    }
+}

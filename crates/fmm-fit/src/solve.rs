@@ -1,0 +1,102 @@
+//! From a problem and a start to a fit, in one call.
+
+use std::ops::ControlFlow;
+
+use crate::{Fit, FitError, Minimizer, Options, Outcome, Residuals};
+
+/// Fits `problem` from `start`, one value per parameter within its bounds.
+///
+/// ```
+/// # use fmm_fit::EvaluationError;
+/// use fmm_fit::{Options, Residuals, solve};
+/// use fmm_model::{Bounds, Parameter};
+///
+/// # struct Decay { t: Vec<f64>, y: Vec<f64>, parameters: [Parameter; 2] }
+/// # impl Residuals for Decay {
+/// #     fn parameters(&self) -> &[Parameter] { &self.parameters }
+/// #     fn len(&self) -> usize { self.t.len() }
+/// #     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+/// #         for ((r, t), y) in residuals.iter_mut().zip(&self.t).zip(&self.y) {
+/// #             *r = p[0] * (-p[1] * t).exp() - y;
+/// #         }
+/// #         Ok(())
+/// #     }
+/// # }
+/// let t: Vec<f64> = (0..50).map(|i| 0.1 * f64::from(i)).collect();
+/// let y = t.iter().map(|t| 2.0 * (-0.8 * t).exp()).collect();
+/// let amplitude = Parameter::new("amplitude", "a", "m").bounded(Bounds::NOT_NEGATIVE);
+/// let problem = Decay { t, y, parameters: [amplitude, Parameter::new("rate", "b", "1/s")] };
+///
+/// let fit = solve(&problem, &[1.0, 0.1], &Options::default())?;
+/// assert!(fit.outcome().is_success());
+/// assert!((fit.estimate("rate").unwrap().value() - 0.8).abs() < 1e-9);
+/// assert_eq!(fit.rank(), 2);
+/// # Ok::<(), fmm_fit::FitError>(())
+/// ```
+///
+/// # Errors
+/// [`FitError`] if the start, the problem or the options do not allow a fit to begin.
+pub fn solve<P: Residuals + ?Sized>(problem: &P, start: &[f64], options: &Options) -> Result<Fit, FitError> {
+    solve_observed(problem, start, options, |_| ControlFlow::Continue(()))
+}
+
+/// As [`solve`], telling `observer` after every trial step how far the fit is; `Break` ends it as
+/// [`Outcome::Cancelled`] with the best values so far.
+///
+/// # Errors
+/// As for [`solve`].
+pub fn solve_observed<P: Residuals + ?Sized>(
+    problem: &P,
+    start: &[f64],
+    options: &Options,
+    mut observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, FitError> {
+    let mut minimizer = Minimizer::new(options.clone());
+    minimizer.begin(problem, start)?;
+    let mut outcome = minimizer.outcome();
+    while outcome.is_none() {
+        outcome = minimizer.iterate(problem);
+        if observer(&Progress { minimizer: &minimizer }).is_break() && outcome.is_none() {
+            outcome = Some(minimizer.cancel(problem));
+        }
+    }
+    Ok(minimizer.into_fit())
+}
+
+/// How far a fit is.
+#[derive(Debug, Clone, Copy)]
+pub struct Progress<'a> {
+    minimizer: &'a Minimizer,
+}
+
+impl Progress<'_> {
+    /// Trial steps taken, accepted or not.
+    pub fn iterations(&self) -> usize {
+        self.minimizer.iterations()
+    }
+
+    /// Evaluations of the residuals, those for differences included.
+    pub fn residual_evaluations(&self) -> usize {
+        self.minimizer.residual_evaluations()
+    }
+
+    /// The present values, one per parameter; after a stall they return to the start.
+    pub fn values(&self) -> &[f64] {
+        self.minimizer.values()
+    }
+
+    /// Σᵢ rᵢ² at the present values.
+    pub fn sum_of_squares(&self) -> f64 {
+        self.minimizer.sum_of_squares()
+    }
+
+    /// The trusted length of a step, in the unit of the residuals.
+    pub fn radius(&self) -> f64 {
+        self.minimizer.radius()
+    }
+
+    /// How the fit ended, if this is its last step.
+    pub fn outcome(&self) -> Option<Outcome> {
+        self.minimizer.outcome()
+    }
+}

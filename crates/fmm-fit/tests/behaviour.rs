@@ -1,0 +1,310 @@
+//! What a fit does when something is wrong, missing or asked to stop.
+
+use std::cell::Cell;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Duration;
+
+use argmin::core::observers::{Observe, ObserverMode};
+use argmin::core::{Executor, KV, State};
+use fmm_fit::{
+    BoundedLevenbergMarquardt, ComparisonError, EstimateStatus, EvaluationError, FitError, Minimizer, Options, Outcome,
+    Residuals, f_test, solve, solve_observed,
+};
+use fmm_model::{Bounds, Parameter};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+type Value = Result<f64, EvaluationError>;
+
+/// Residuals from a closure of the parameters and the index.
+struct Problem<F> {
+    parameters: Vec<Parameter>,
+    count: usize,
+    residual: F,
+}
+
+impl<F: Fn(&[f64], usize) -> Value> Residuals for Problem<F> {
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+    fn len(&self) -> usize {
+        self.count
+    }
+    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        for (i, r) in residuals.iter_mut().enumerate() {
+            *r = (self.residual)(p, i)?;
+        }
+        Ok(())
+    }
+}
+
+fn problem(
+    bounds: &[(f64, f64)],
+    count: usize,
+    residual: impl Fn(&[f64], usize) -> f64,
+) -> Problem<impl Fn(&[f64], usize) -> Value> {
+    fallible(bounds, count, move |p: &[f64], i| Ok(residual(p, i)))
+}
+
+fn fallible<F: Fn(&[f64], usize) -> Value>(bounds: &[(f64, f64)], count: usize, residual: F) -> Problem<F> {
+    let name = |(j, (lower, upper)): (usize, &(f64, f64))| {
+        Parameter::named(format!("p{j}"), format!("p{j}"), "1").bounded(Bounds::new(*lower, *upper).unwrap())
+    };
+    let parameters = bounds.iter().enumerate().map(name).collect();
+    Problem { parameters, count, residual }
+}
+
+const FREE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
+/// A decay with a little deterministic scatter.
+fn decay(p: &[f64], i: usize) -> f64 {
+    let t = 0.1 * i as f64;
+    p[0] * (-p[1] * t).exp() - 2.0 * (-0.7 * t).exp() - 0.01 * ((i * 37 % 11) as f64 - 5.0)
+}
+
+fn rosenbrock(p: &[f64], i: usize) -> f64 {
+    if i == 0 { 10.0 * (p[1] - p[0] * p[0]) } else { 1.0 - p[0] }
+}
+
+#[test]
+fn a_bad_start_is_refused_by_name() {
+    let decay = problem(&[(0.0, 10.0), FREE], 50, decay);
+    let message = |start: &[f64]| solve(&decay, start, &Options::default()).unwrap_err().to_string();
+    assert_eq!(message(&[1.0]), "the start has 1 values, but the problem has 2 parameters");
+    assert_eq!(message(&[-1.0, 1.0]), "the start value of p0 is -1, outside its bounds [0, 10]");
+    assert_eq!(message(&[1.0, f64::NAN]), "the start value of p1 must be finite, but is NaN");
+    assert_eq!(message(&[1.0, -1e4]), "residual 1 is inf at the start, so that the sum of squares is not finite");
+    let few = problem(&[FREE; 3], 2, |p, _| p[0]);
+    assert!(matches!(
+        solve(&few, &[1.0; 3], &Options::default()),
+        Err(FitError::TooFewResiduals { residuals: 2, free: 3 })
+    ));
+    let broken = fallible(&[FREE], 2, |_, _| Err(EvaluationError::message("no record")));
+    let error = solve(&broken, &[1.0], &Options::default()).unwrap_err();
+    assert_eq!(error.to_string(), "the model failed at the start: no record");
+    let options = Options::default().with_cost_tolerance(f64::NAN);
+    assert!(matches!(solve(&decay, &[1.0, 1.0], &options), Err(FitError::InvalidOption { .. })));
+    assert!(matches!(Minimizer::default().fit(), Err(FitError::NotStarted)));
+}
+
+#[test]
+fn a_region_without_values_is_avoided() {
+    // The first full step from the start goes far into the region where the model has no value.
+    for has_error in [false, true] {
+        let guarded = fallible(&[FREE, FREE], 50, move |p: &[f64], i| {
+            if p[1] < 1.5 {
+                Ok(decay(p, i))
+            } else if has_error {
+                Err(EvaluationError::message("rate too large"))
+            } else {
+                Ok(f64::NAN)
+            }
+        });
+        let fit = solve(&guarded, &[0.2, 1.4], &Options::default()).unwrap();
+        assert!(fit.outcome().is_success(), "{}", fit.outcome());
+        assert!((fit.values()[1] - 0.7).abs() < 0.02, "rate {}", fit.values()[1]);
+    }
+    // Here the minimum itself is out of reach.
+    let cut = problem(&[FREE], 3, |p, _| if p[0] < 1.0 { f64::NAN } else { p[0] });
+    let fit = solve(&cut, &[2.0], &Options::default()).unwrap();
+    assert_eq!(fit.outcome(), Outcome::NonFinite);
+    assert!((fit.values()[0] - 1.0).abs() < 1e-6, "value {}", fit.values()[0]);
+}
+
+#[test]
+fn limits_and_flags_end_a_fit_with_its_best_point() {
+    let rosenbrock = problem(&[FREE, FREE], 2, rosenbrock);
+    let start = [-1.2, 1.0];
+    let run = |options: Options| solve(&rosenbrock, &start, &options).unwrap();
+    let fit = run(Options::default().with_max_iterations(5));
+    assert_eq!((fit.outcome(), fit.iterations()), (Outcome::MaxIterations, 5));
+    assert!(fit.sum_of_squares() < 24.2, "S = {}", fit.sum_of_squares());
+    assert_eq!(run(Options::default().with_max_evaluations(10)).outcome(), Outcome::MaxEvaluations);
+    assert_eq!(run(Options::default().with_time_limit(Duration::ZERO)).outcome(), Outcome::TimedOut);
+    let flag = Arc::new(AtomicBool::new(true));
+    assert_eq!(run(Options::default().with_cancel_flag(flag)).outcome(), Outcome::Cancelled);
+
+    let steps = Cell::new(0);
+    let fit = solve_observed(&rosenbrock, &start, &Options::default(), |progress| {
+        steps.set(steps.get() + 1);
+        assert_eq!(progress.iterations(), steps.get());
+        assert_eq!(progress.values().len(), 2);
+        if steps.get() == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })
+    .unwrap();
+    assert_eq!((fit.outcome(), fit.iterations()), (Outcome::Cancelled, 3));
+}
+
+#[test]
+fn fixed_parameters_stay_and_cost_nothing() {
+    let half = problem(&[FREE, (0.5, 0.5)], 50, decay);
+    let fit = solve(&half, &[1.0, 0.5], &Options::default()).unwrap();
+    assert_eq!(fit.values()[1], 0.5);
+    assert_eq!(fit.estimates()[1].status(), EstimateStatus::Fixed);
+    assert_eq!((fit.free_count(), fit.rank(), fit.degrees_of_freedom()), (1, 1, 49));
+    assert_eq!((fit.covariance(0, 1), fit.estimates()[1].standard_uncertainty()), (None, None));
+
+    let none = problem(&[(2.0, 2.0), (0.7, 0.7)], 50, decay);
+    let fit = solve(&none, &[2.0, 0.7], &Options::default()).unwrap();
+    assert_eq!((fit.outcome(), fit.residual_evaluations()), (Outcome::NoFreeParameters, 1));
+    assert!(fit.outcome().is_success() && fit.sum_of_squares() > 0.0);
+}
+
+#[test]
+fn a_discontinuous_model_does_not_pretend_to_converge() {
+    // A staircase with tread 0.01: its differences see no slope, or a false one near a step.
+    let sawtooth = problem(&[(-10.0, 10.0)], 3, |p, i| {
+        let x = p[0] + i as f64;
+        x + 0.2 * (x * 100.0).fract() + 5.0
+    });
+    let fit = solve(&sawtooth, &[3.123], &Options::default()).unwrap();
+    assert_eq!(fit.outcome(), Outcome::Stalled);
+    assert!(fit.sum_of_squares() < 3.0 * 10.0f64.powi(2), "the best point is kept");
+}
+
+#[test]
+fn a_parameter_without_influence_is_named() {
+    let idle = problem(&[FREE, FREE, FREE], 50, decay);
+    let fit = solve(&idle, &[1.0, 1.0, 0.0], &Options::default()).unwrap();
+    assert_eq!((fit.rank(), fit.null_directions().len()), (2, 1));
+    assert_eq!(fit.null_directions()[0].to_string(), "p2 has no influence on the residuals");
+    assert_eq!(fit.values()[2], 0.0, "a value that nothing determines stays");
+    let report = fit.to_string();
+    assert!(report.contains("not determined") && report.contains("[[warnings]]"), "{report}");
+
+    let product = problem(&[FREE, FREE, FREE], 50, |p, i| decay(&[p[0] * p[1], p[2]], i));
+    let fit = solve(&product, &[2.0, 0.5, 1.0], &Options::default()).unwrap();
+    let text = fit.null_directions()[0].to_string();
+    assert!(text.ends_with("only their product is determined"), "{text}");
+}
+
+#[test]
+fn equal_input_gives_equal_bits_also_in_used_buffers() {
+    let decay = problem(&[FREE, (0.0, 5.0)], 3000, |p, i| decay(p, i % 80));
+    let rosenbrock = problem(&[FREE, FREE], 2, rosenbrock);
+    let fit = solve(&decay, &[1.0, 2.0], &Options::default()).unwrap();
+    let mut minimizer = Minimizer::new(Options::default());
+    for _ in 0..2 {
+        minimizer.minimize(&rosenbrock, &[-1.2, 1.0]).unwrap();
+        minimizer.minimize(&decay, &[1.0, 2.0]).unwrap();
+        assert_eq!(minimizer.values(), fit.values());
+        assert_eq!(minimizer.residual_evaluations(), fit.residual_evaluations());
+        assert_eq!(minimizer.fit().unwrap().to_string(), fit.to_string());
+    }
+}
+
+#[test]
+fn a_combined_evaluation_changes_nothing_but_the_calls() {
+    struct Counted<'a>(&'a [Parameter], bool, Cell<usize>);
+    impl Residuals for Counted<'_> {
+        fn parameters(&self) -> &[Parameter] {
+            self.0
+        }
+        fn len(&self) -> usize {
+            2
+        }
+        fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+            self.2.set(self.2.get() + 1);
+            residuals.copy_from_slice(&[10.0 * (p[1] - p[0] * p[0]), 1.0 - p[0]]);
+            Ok(())
+        }
+        fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
+            jacobian.copy_from_slice(&[-20.0 * p[0], -1.0, 10.0, 0.0]);
+            Ok(true)
+        }
+        fn is_cheaper_combined(&self) -> bool {
+            self.1
+        }
+    }
+    let parameters = [Parameter::new("x", "x", "1"), Parameter::new("y", "y", "1")];
+    let fits = [false, true].map(|is_combined| {
+        let problem = Counted(&parameters, is_combined, Cell::new(0));
+        let fit = solve(&problem, &[-1.2, 1.0], &Options::default()).unwrap();
+        assert_eq!(problem.2.get(), fit.residual_evaluations());
+        assert!(fit.has_exact_jacobian());
+        fit
+    });
+    assert_eq!(fits[0].values(), fits[1].values());
+    assert_eq!(fits[0].residual_evaluations(), fits[1].residual_evaluations());
+}
+
+/// Counts the calls that argmin makes.
+struct Count(Arc<AtomicUsize>);
+
+impl<I: State> Observe<I> for Count {
+    fn observe_iter(&mut self, _state: &I, kv: &KV) -> Result<(), argmin::core::Error> {
+        assert!(kv.get("radius").is_some());
+        self.0.fetch_add(1, Ordering::Relaxed);
+        Ok(())
+    }
+}
+
+#[test]
+fn argmin_runs_the_same_iterations() {
+    let direct = solve(&problem(&[FREE, FREE], 2, rosenbrock), &[-1.2, 1.0], &Options::default()).unwrap();
+    let count = Arc::new(AtomicUsize::new(0));
+    let solver = BoundedLevenbergMarquardt::new(Options::default());
+    let result = Executor::new(problem(&[FREE, FREE], 2, rosenbrock), solver)
+        .configure(|state| state.param(vec![-1.2, 1.0]).max_iters(500))
+        .add_observer(Count(count.clone()), ObserverMode::Always)
+        .run()
+        .unwrap();
+    let fit = result.solver.fit().unwrap();
+    assert_eq!(fit.values(), direct.values());
+    assert_eq!(fit.outcome(), direct.outcome());
+    assert_eq!(count.load(Ordering::Relaxed), direct.iterations());
+    assert_eq!(result.state.get_best_param().unwrap().as_slice(), direct.values());
+
+    let solver = BoundedLevenbergMarquardt::new(Options::default());
+    let result = Executor::new(problem(&[FREE, FREE], 2, rosenbrock), solver)
+        .configure(|state| state.param(vec![-1.2, 1.0]).max_iters(4))
+        .run()
+        .unwrap();
+    assert_eq!(result.solver.outcome(), None);
+    let fit = result.solver.fit().unwrap();
+    assert_eq!((fit.outcome(), fit.iterations()), (Outcome::Cancelled, 4));
+
+    let solver = BoundedLevenbergMarquardt::new(Options::default());
+    let refused = Executor::new(problem(&[(0.0, 1.0), FREE], 2, rosenbrock), solver)
+        .configure(|state| state.param(vec![-1.2, 1.0]))
+        .run();
+    let message = refused.err().unwrap().to_string();
+    assert_eq!(message, "the start value of p0 is -1.2, outside its bounds [0, 1]");
+}
+
+#[test]
+fn a_further_parameter_is_tested() {
+    let offset = |p: &[f64], i: usize| decay(p, i) + p[2];
+    let full = solve(&problem(&[FREE; 3], 50, offset), &[1.0, 1.0, 0.1], &Options::default()).unwrap();
+    let restricted =
+        solve(&problem(&[FREE, FREE, (0.0, 0.0)], 50, offset), &[1.0, 1.0, 0.0], &Options::default()).unwrap();
+    let test = f_test(&restricted, &full).unwrap();
+    assert_eq!(test.degrees_of_freedom, (1, 47));
+    // For one parameter F is nearly the square of Student's t; the model is not quite linear.
+    let estimate = &full.estimates()[2];
+    let t = estimate.value() / estimate.standard_uncertainty().unwrap();
+    assert!((test.f / (t * t) - 1.0).abs() < 0.05, "F = {}, t² = {}", test.f, t * t);
+    // The probability of F(1, ν) is the two-sided one of Student's t at √F.
+    let student = StudentsT::new(0.0, 1.0, 47.0).unwrap();
+    let expected = 2.0 * student.sf(test.f.sqrt());
+    assert!((test.p_value / expected - 1.0).abs() < 1e-9, "p = {} instead of {expected}", test.p_value);
+    assert!(restricted.corrected_akaike().unwrap().is_finite());
+    assert!(matches!(f_test(&full, &restricted), Err(ComparisonError::NothingAdded { .. })));
+}
+
+#[test]
+fn many_residuals_need_one_jacobian_and_a_few_vectors() {
+    // Two hundred thousand rows go through the factor in blocks.
+    let tall = problem(&[FREE, FREE], 200_000, |p, i| decay(p, i % 50));
+    let fit = solve(&tall, &[1.0, 1.0], &Options::default()).unwrap();
+    let small = solve(&problem(&[FREE, FREE], 50, decay), &[1.0, 1.0], &Options::default()).unwrap();
+    for j in 0..2 {
+        // The same data 4000 times: the same values to the accuracy of differences, uncertainties 1/√4000.
+        let difference = fit.values()[j] / small.values()[j] - 1.0;
+        assert!(difference.abs() < 1e-9, "values differ by {difference}");
+        let uncertainty = |fit: &fmm_fit::Fit| fit.estimates()[j].standard_uncertainty().unwrap();
+        let ratio = uncertainty(&small) / uncertainty(&fit) / (199_998.0f64 / 48.0).sqrt();
+        assert!((ratio - 1.0).abs() < 1e-6, "ratio {ratio}");
+    }
+}

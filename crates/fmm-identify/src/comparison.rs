@@ -1,0 +1,152 @@
+//! Several laws side by side, and which of them the data prefer.
+
+use std::ops::ControlFlow;
+
+use fmm_fit::{FTest, Options, Progress, f_test};
+
+use crate::{Candidate, Identification, IdentifyError, Machine, RecordSummary, RingDown, Warning};
+
+/// A law and the more general one that it was tested against.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NestedTest {
+    /// Name of the restricted law.
+    pub restricted: &'static str,
+    /// Name of the law that has it as a special case.
+    pub full: &'static str,
+    /// The test, which counts every residual as independent.
+    pub test: FTest,
+}
+
+/// Identifications of the same records by several laws.
+///
+/// The preferred law has the smallest corrected Akaike criterion, with the number of residuals replaced by the
+/// number of *independent* ones, n/τ: residuals that a record samples a thousand times a second are no thousand
+/// witnesses. Laws within 2 of the best are too close to call; among them the one with the fewest parameters is
+/// preferred, and [`is_decided`](Self::is_decided) is false.
+///
+/// `Display` gives the report.
+#[derive(Debug, Clone)]
+pub struct Comparison {
+    records: Vec<RecordSummary>,
+    identifications: Vec<Identification>,
+    tests: Vec<NestedTest>,
+    preferred: usize,
+    is_decided: bool,
+    warnings: Vec<Warning>,
+}
+
+/// Differences of the criterion below this are too small to prefer a law (Burnham and Anderson 2002, section 2.6).
+const CLOSE: f64 = 2.0;
+
+/// Identifies `decays` by each of `candidates` and compares them.
+///
+/// # Errors
+/// [`IdentifyError`] as for [`identify`](crate::identify), and [`IdentifyError::UnknownLaw`] if there is no candidate.
+pub fn compare(machine: &Machine, decays: &[RingDown], candidates: &[Candidate]) -> Result<Comparison, IdentifyError> {
+    compare_observed(machine, decays, candidates, &Options::default(), |_, _| ControlFlow::Continue(()))
+}
+
+/// As [`compare`], with options for the solver and an observer that gets the law's name with every trial step.
+///
+/// # Errors
+/// As for [`compare`].
+pub fn compare_observed(
+    machine: &Machine,
+    decays: &[RingDown],
+    candidates: &[Candidate],
+    options: &Options,
+    mut observer: impl FnMut(&'static str, &Progress<'_>) -> ControlFlow<()>,
+) -> Result<Comparison, IdentifyError> {
+    let mut identifications = Vec::with_capacity(candidates.len());
+    for candidate in candidates {
+        let mut observe = |progress: &Progress<'_>| observer(candidate.name(), progress);
+        identifications.push(candidate.identify(machine, decays, options, &mut observe)?);
+    }
+    let Some((preferred, is_decided)) = preferred(candidates, &identifications) else {
+        return Err(IdentifyError::UnknownLaw {
+            name: String::new(),
+            known: Candidate::catalogue().map(|candidate| candidate.name()).join(", "),
+        });
+    };
+    let mut warnings = identifications[preferred].warnings().to_vec();
+    if !is_decided {
+        warnings.push(Warning::Undecided);
+    }
+    Ok(Comparison {
+        records: decays.iter().map(|decay| decay.summary().clone()).collect(),
+        tests: tests(candidates, &identifications),
+        identifications,
+        preferred,
+        is_decided,
+        warnings,
+    })
+}
+
+fn tests(candidates: &[Candidate], identifications: &[Identification]) -> Vec<NestedTest> {
+    let mut tests = Vec::new();
+    for (restricted, small) in candidates.iter().zip(identifications) {
+        for (full, large) in candidates.iter().zip(identifications) {
+            if restricted.is_nested_in(full) {
+                if let Ok(test) = f_test(small.fit(), large.fit()) {
+                    tests.push(NestedTest { restricted: restricted.name(), full: full.name(), test });
+                }
+            }
+        }
+    }
+    tests
+}
+
+/// Index of the preferred law, and whether no other comes close; none without candidates.
+fn preferred(candidates: &[Candidate], identifications: &[Identification]) -> Option<(usize, bool)> {
+    let fits = identifications.iter().map(Identification::fit);
+    let best = identifications.iter().min_by(|a, b| a.rms_residual().total_cmp(&b.rms_residual()))?;
+    let total = best.fit().residuals().len() as f64;
+    // A model that reproduces the record to rounding is not better than another that does so too.
+    let floor = (best.amplitude() * 1e-12).powi(2) * total;
+    let scores: Vec<f64> = fits
+        .map(|fit| {
+            let parameters = fit.rank() as f64 + 1.0;
+            let count = (total / best.autocorrelation_time()).max(parameters + 2.0);
+            let correction = 2.0 * parameters * count / (count - parameters - 1.0);
+            count * (fit.sum_of_squares().max(floor) / total).ln() + correction
+        })
+        .collect();
+    let least = scores.iter().copied().fold(f64::INFINITY, f64::min);
+    let close: Vec<usize> = (0..scores.len()).filter(|i| scores[*i] - least <= CLOSE).collect();
+    let simplest = close.iter().copied().min_by_key(|i| candidates[*i].parameter_count())?;
+    // A law whose extra parameter ended at its bound is the simpler law over again, not a rival.
+    let rivals = close.iter().filter(|i| identifications[**i].fit().rank() != identifications[simplest].fit().rank());
+    Some((simplest, rivals.count() == 0))
+}
+
+impl Comparison {
+    /// One identification per law, in the order given.
+    pub fn identifications(&self) -> &[Identification] {
+        &self.identifications
+    }
+
+    /// The identification by the preferred law.
+    pub fn preferred(&self) -> &Identification {
+        &self.identifications[self.preferred]
+    }
+
+    /// Whether the data decide for the preferred law.
+    pub fn is_decided(&self) -> bool {
+        self.is_decided
+    }
+
+    /// F-tests of every law against the more general ones.
+    pub fn tests(&self) -> &[NestedTest] {
+        &self.tests
+    }
+
+    /// What each record is, what was done to it before it was fitted, and what was seen in it.
+    pub fn records(&self) -> &[RecordSummary] {
+        &self.records
+    }
+
+    /// What limits the findings of the preferred law, and the preference itself.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+}

@@ -1,0 +1,162 @@
+//! One number of a report: a quantity with its uncertainty and where it comes from.
+
+use fmm_fit::{EstimateStatus, Fit};
+use fmm_friction::{LawFamily, Role};
+use fmm_model::{Dual, Parameter, Scalar};
+
+use crate::layout::{Layout, mass, mass_of_stiffness, named};
+use crate::machine::Scale;
+use crate::Machine;
+
+/// Where the value of a finding comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Origin {
+    /// Found by the fit.
+    Fitted(EstimateStatus),
+    /// Follows from fitted values and what is known of the machine.
+    Derived,
+}
+
+/// A quantity that the identification found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    pub(crate) parameter: Parameter,
+    pub(crate) value: f64,
+    pub(crate) uncertainty: Option<f64>,
+    pub(crate) origin: Origin,
+}
+
+impl Finding {
+    /// Name, symbol and unit.
+    pub fn parameter(&self) -> &Parameter {
+        &self.parameter
+    }
+
+    /// The estimate, in the unit of the parameter.
+    pub fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// u, its standard uncertainty, in the unit of the parameter; none if the record does not determine it.
+    pub fn uncertainty(&self) -> Option<f64> {
+        self.uncertainty
+    }
+
+    /// Where it comes from.
+    pub fn origin(&self) -> Origin {
+        self.origin
+    }
+}
+
+/// Shared values (of one fit) and the machine's known inputs, from which the derived quantities follow.
+struct Inputs<'a> {
+    machine: &'a Machine,
+    shared: &'a [f64],
+}
+
+/// Directions of derivative evaluated at a time.
+const DIRECTIONS: usize = 6;
+
+impl Inputs<'_> {
+    /// Standard uncertainties of the inputs that were not fitted: the scale, then the normal load.
+    fn uncertainties(&self) -> [f64; 2] {
+        let scale = match self.machine.scale() {
+            Scale::Mass(known) | Scale::Stiffness(known) => known.uncertainty(),
+            Scale::PerUnitMass | Scale::Unknown => 0.0,
+        };
+        [scale, self.machine.normal_load().map_or(0.0, |load| load.uncertainty())]
+    }
+
+    /// The derived quantities, as numbers whose directions from `first` on are the shared values, the scale and
+    /// the load.
+    fn derived<F: LawFamily, D: Scalar>(&self, first: usize) -> Vec<(Parameter, D)> {
+        let variable = |value: f64, direction: usize| D::variable(value, direction.wrapping_sub(first));
+        let natural_frequency = variable(self.shared[0], 0);
+        let mut derived = Vec::new();
+        let mass = match self.machine.scale() {
+            Scale::PerUnitMass | Scale::Unknown => None,
+            Scale::Mass(known) => {
+                let mass = variable(known.value(), self.shared.len());
+                let stiffness = mass / mass_of_stiffness(D::from(1.0), natural_frequency);
+                derived.push((Parameter::new("stiffness", "k", "N/m"), stiffness));
+                Some(mass)
+            }
+            Scale::Stiffness(known) => {
+                let mass = mass_of_stiffness(variable(known.value(), self.shared.len()), natural_frequency);
+                derived.push((Parameter::new("mass", "m", "kg"), mass));
+                Some(mass)
+            }
+        };
+        // With an unknown scale the fitted values are forces already, whatever they are worth.
+        let to_force = match self.machine.scale() {
+            Scale::Unknown => Some(D::from(1.0)),
+            _ => mass,
+        };
+        let Some(to_force) = to_force else { return derived };
+        let first_of_law = self.shared.len() - F::PARAMETERS.len();
+        let load = self.machine.normal_load().map(|load| variable(load.value(), self.shared.len() + 1));
+        for (i, law_parameter) in F::PARAMETERS.iter().enumerate() {
+            let force = variable(self.shared[first_of_law + i], first_of_law + i) * to_force;
+            let parameter = law_parameter.parameter();
+            match law_parameter.role() {
+                Role::Level => {
+                    if mass.is_some() {
+                        derived.push((named(parameter, "friction_force", "N"), force));
+                    }
+                    if let Some(load) = load {
+                        derived.push((named(parameter, "mu", "1"), force / load));
+                    }
+                }
+                Role::Slope if mass.is_some() => derived.push((Parameter::new("damping", "c", "N s/m"), force)),
+                _ => {}
+            }
+        }
+        derived
+    }
+}
+
+/// Everything that a fit found: its parameters, and what follows from them and the known inputs of the machine.
+///
+/// Uncertainties of derived quantities are first order, u² = gᵀ V g + Σ (∂y/∂xᵢ)² u²(xᵢ), with exact derivatives
+/// (JCGM 100:2008, 5.1.2 and 5.2.2).
+pub(crate) fn findings<F: LawFamily>(machine: &Machine, layout: &Layout, fit: &Fit) -> Vec<Finding> {
+    let fitted = fit.estimates().iter().map(|estimate| Finding {
+        parameter: estimate.parameter().clone(),
+        value: estimate.value(),
+        uncertainty: estimate.standard_uncertainty(),
+        origin: Origin::Fitted(estimate.status()),
+    });
+    let mut findings: Vec<Finding> = fitted.collect();
+    if machine.scale() != Scale::Unknown && mass(machine.scale(), fit.values()[0]).is_none() {
+        return findings;
+    }
+    let inputs = Inputs { machine, shared: &fit.values()[..layout.shared] };
+    let directions = layout.shared + 2;
+    let values = inputs.derived::<F, f64>(0);
+    let mut gradients = vec![vec![0.0; directions]; values.len()];
+    for first in (0..directions).step_by(DIRECTIONS) {
+        for (gradient, (_, number)) in gradients.iter_mut().zip(inputs.derived::<F, Dual<DIRECTIONS>>(first)) {
+            for (direction, slope) in gradient[first..].iter_mut().enumerate().take(DIRECTIONS) {
+                *slope = number.partial(direction);
+            }
+        }
+    }
+    for ((parameter, value), gradient) in values.into_iter().zip(gradients) {
+        let uncertainty = variance(fit, &gradient, inputs.uncertainties()).map(f64::sqrt);
+        findings.push(Finding { parameter, value, uncertainty, origin: Origin::Derived });
+    }
+    findings
+}
+
+/// gᵀ V g over the fitted values plus the variances of the two inputs; none if a value that matters has none.
+fn variance(fit: &Fit, gradient: &[f64], inputs: [f64; 2]) -> Option<f64> {
+    let (shared, known) = gradient.split_at(gradient.len() - inputs.len());
+    let mut variance: f64 = known.iter().zip(inputs).map(|(slope, u)| (slope * u).powi(2)).sum();
+    for (i, row) in shared.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
+        for (j, column) in shared.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
+            variance += row * column * fit.covariance(i, j)?;
+        }
+    }
+    Some(variance)
+}

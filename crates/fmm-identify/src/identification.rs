@@ -1,0 +1,237 @@
+//! The main job: friction parameters of one law out of ring-down records.
+
+use std::ops::ControlFlow;
+
+use fmm_fit::{Fit, Options, Progress, autocorrelation_time, solve_observed};
+use fmm_sim::{EventKind, Simulated, Trajectory};
+
+use crate::finding::{Finding, findings};
+use crate::problem::RingDownProblem;
+use crate::{IdentifyError, Machine, RingDown, Warning};
+
+/// How the fitted motion of one record ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FittedMotion {
+    stop_time: Option<f64>,
+    half_swings: usize,
+    narrowest: Option<(f64, f64)>,
+}
+
+impl FittedMotion {
+    fn of(decay: &RingDown, trajectory: &Trajectory) -> Self {
+        let start = decay.record().start();
+        let decided = trajectory.events().iter().filter(|event| event.kind != EventKind::Start);
+        let margins = decided.map(|event| (event.margin(), start + event.time));
+        Self {
+            stop_time: trajectory.rest().map(|event| start + event.time),
+            half_swings: trajectory.half_swings(),
+            narrowest: margins.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs())),
+        }
+    }
+
+    /// When the contact stops for good, on the time axis of the record (s); none if it does not before the end.
+    pub fn stop_time(&self) -> Option<f64> {
+        self.stop_time
+    }
+
+    /// How many times the velocity reaches zero.
+    pub fn half_swings(&self) -> usize {
+        self.half_swings
+    }
+}
+
+/// Friction parameters of one law, with their uncertainty and what limits them.
+///
+/// `Display` gives the report.
+#[derive(Debug, Clone)]
+pub struct Identification {
+    law: &'static str,
+    machine: Machine,
+    fit: Fit,
+    findings: Vec<Finding>,
+    motions: Vec<FittedMotion>,
+    warnings: Vec<Warning>,
+    autocorrelation_time: f64,
+    amplitude: f64,
+    model: fn(Machine, &[RingDown], usize, &[f64]) -> Option<Vec<f64>>,
+}
+
+/// Identifies the parameters of law family `F` from ring-downs of one machine.
+///
+/// The law explains all dissipation that `machine` does not claim as its own known damping. Start values come
+/// from the records; the fit starts from each hypothesis that the amplitudes allow and keeps the best end.
+///
+/// # Errors
+/// [`IdentifyError`] if there is no record, if records disagree in quantity or unit, or if the fit cannot begin.
+/// How the fit *ends* is in the result.
+///
+/// ```
+/// use fmm_friction::CoulombViscous;
+/// use fmm_identify::{Machine, Preparation, RingDown, identify};
+/// use fmm_record::{Quantity, Record};
+/// # use fmm_model::Oscillator;
+/// # use fmm_sim::{Engine, Exact, Sampling, Scenario};
+///
+/// // A velocity record; here a simulated one: 2 Hz, c/m = 0.05 1/s, F/m = 0.3 m/s², 1 kHz.
+/// # let scenario = Scenario::new(Oscillator::per_unit_mass(2.0)?, CoulombViscous::new(0.3, 0.05)?, 1.0)?;
+/// # let motion = Exact.run(&scenario.starting_at(0.02, 0.0)?, &Sampling::uniform(1e-3, 2000)?)?;
+/// # let velocity = motion.velocity().values().to_vec();
+/// let record = Record::new(0.0, 1e-3, velocity, Quantity::Velocity, "m/s")?;
+///
+/// let decay = RingDown::prepare(&record, &Preparation::default())?;
+/// let found = identify::<CoulombViscous>(&Machine::per_unit_mass(), &[decay])?;
+/// assert!((found.finding("friction_per_mass").unwrap().value() - 0.3).abs() < 1e-9);
+/// assert!((found.finding("damping_per_mass").unwrap().value() - 0.05).abs() < 1e-8);
+/// println!("{found}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn identify<F: Simulated>(machine: &Machine, decays: &[RingDown]) -> Result<Identification, IdentifyError> {
+    identify_observed::<F>(machine, decays, &Options::default(), &mut |_| ControlFlow::Continue(()))
+}
+
+/// As [`identify`], with options for the solver and an observer of every trial step, which may end the fit.
+///
+/// # Errors
+/// As for [`identify`].
+pub fn identify_observed<F: Simulated>(
+    machine: &Machine,
+    decays: &[RingDown],
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Identification, IdentifyError> {
+    check_records(decays)?;
+    let problem = RingDownProblem::<F>::new(*machine, decays);
+    let fit = best_fit(&problem, options, observer)?;
+    let mut found = findings::<F>(machine, problem.layout(), &fit);
+    if let Some(moved) = machine.with_damping_moved() {
+        let mut ends = Vec::new();
+        for machine in moved {
+            let problem = RingDownProblem::<F>::new(machine, decays);
+            let fit = solve_observed(&problem, fit.values(), options, |progress| observer(progress))
+                .map_err(|source| IdentifyError::Fit { law: F::NAME, source })?;
+            ends.push(findings::<F>(&machine, problem.layout(), &fit));
+        }
+        add_in_quadrature(&mut found, &ends[0], &ends[1]);
+    }
+
+    let mut motions = Vec::with_capacity(decays.len());
+    for (record, decay) in decays.iter().enumerate() {
+        let trajectory = problem
+            .events(record, fit.values())
+            .map_err(|error| IdentifyError::Simulation { law: F::NAME, message: error.to_string() })?;
+        motions.push(FittedMotion::of(decay, &trajectory));
+    }
+    let mut identification = Identification {
+        law: F::NAME,
+        machine: *machine,
+        autocorrelation_time: autocorrelation_time(fit.residuals()).unwrap_or(1.0),
+        amplitude: decays.iter().map(|decay| decay.summary().amplitudes.0).fold(0.0, f64::max),
+        fit,
+        findings: found,
+        motions,
+        warnings: Vec::new(),
+        model: |machine, decays, record, p| RingDownProblem::<F>::new(machine, decays).model(record, p).ok(),
+    };
+    identification.warnings = Warning::of(&identification, decays);
+    Ok(identification)
+}
+
+fn check_records(decays: &[RingDown]) -> Result<(), IdentifyError> {
+    let describe = |decay: &RingDown| format!("{} in {}", decay.record().quantity(), decay.record().unit());
+    let first = decays.first().ok_or(IdentifyError::NoRecord)?;
+    match decays.iter().find(|decay| describe(decay) != describe(first)) {
+        Some(other) => Err(IdentifyError::MixedRecords { first: describe(first), other: describe(other) }),
+        None => Ok(()),
+    }
+}
+
+/// The best end of the fits from all start values.
+fn best_fit<F: Simulated>(
+    problem: &RingDownProblem<'_, F>,
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, IdentifyError> {
+    let mut best: Option<Fit> = None;
+    let mut failure = None;
+    for start in problem.starts() {
+        match solve_observed(problem, &start, options, |progress| observer(progress)) {
+            Ok(fit) if best.as_ref().is_none_or(|best| fit.sum_of_squares() < best.sum_of_squares()) => best = Some(fit),
+            Ok(_) => {}
+            Err(source) => failure = Some(IdentifyError::Fit { law: F::NAME, source }),
+        }
+    }
+    best.ok_or_else(|| failure.unwrap_or(IdentifyError::TooFewHalfSwings { found: 0, needed: 2 }))
+}
+
+/// Adds half the difference that moving an input by ± its uncertainty makes (JCGM 100:2008, 5.1.3 note 2).
+fn add_in_quadrature(findings: &mut [Finding], below: &[Finding], above: &[Finding]) {
+    for ((finding, below), above) in findings.iter_mut().zip(below).zip(above) {
+        let change = 0.5 * (above.value - below.value);
+        finding.uncertainty = finding.uncertainty.map(|u| u.hypot(change));
+    }
+}
+
+impl Identification {
+    /// Name of the law.
+    pub fn law(&self) -> &'static str {
+        self.law
+    }
+
+    /// What was known of the machine.
+    pub fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// The fit behind the findings: covariance, rank, residuals, intervals.
+    pub fn fit(&self) -> &Fit {
+        &self.fit
+    }
+
+    /// Everything found: fitted parameters first, then what follows from them and from the machine.
+    pub fn findings(&self) -> &[Finding] {
+        &self.findings
+    }
+
+    /// The finding of this name, such as `"friction_per_mass"` or `"mu"`.
+    pub fn finding(&self, name: &str) -> Option<&Finding> {
+        self.findings.iter().find(|finding| finding.parameter().name() == name)
+    }
+
+    /// The fitted motion of each record.
+    pub fn motions(&self) -> &[FittedMotion] {
+        &self.motions
+    }
+
+    /// What limits the findings.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// Root mean square of the residuals, in the unit of the records.
+    pub fn rms_residual(&self) -> f64 {
+        (self.fit.sum_of_squares() / self.fit.residuals().len() as f64).sqrt()
+    }
+
+    /// τ, how many neighbouring residuals tell no more than one (1).
+    pub fn autocorrelation_time(&self) -> f64 {
+        self.autocorrelation_time
+    }
+
+    /// What the law says for every sample of record number `record` of `decays`, which must be those of the
+    /// identification; none for another number.
+    pub fn model(&self, decays: &[RingDown], record: usize) -> Option<Vec<f64>> {
+        (record < decays.len() && decays.len() == self.motions.len())
+            .then(|| (self.model)(self.machine, decays, record, self.fit.values()))
+            .flatten()
+    }
+
+    /// Largest first amplitude of the records, in their unit.
+    pub(crate) fn amplitude(&self) -> f64 {
+        self.amplitude
+    }
+
+    pub(crate) fn narrowest_decision(&self) -> Option<(f64, f64)> {
+        let decided = self.motions.iter().filter_map(|motion| motion.narrowest);
+        decided.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
+    }
+}

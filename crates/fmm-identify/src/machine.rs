@@ -1,0 +1,124 @@
+//! What is known about the machine besides its record.
+
+use fmm_model::ModelError;
+
+use crate::Known;
+
+/// What is known about the machine besides the record of its motion.
+///
+/// A free vibration shows the natural frequency, damping per mass and friction per mass; multiplying mass,
+/// stiffness, damping and friction by one factor changes nothing in it. The *scale* (a mass or a stiffness) and
+/// the normal load therefore have to come from elsewhere, with an uncertainty of their own.
+///
+/// | known | gives |
+/// |---|---|
+/// | nothing | natural frequency, damping and friction per mass |
+/// | mass or stiffness | the other one, damping and friction force |
+/// | normal load as well | friction coefficient |
+///
+/// ```
+/// use fmm_identify::{Known, Machine};
+///
+/// let machine = Machine::of_mass(Known::new(10.391, 0.005)?)?.with_normal_load(Known::new(14.0, 0.02)?)?;
+/// assert_eq!(machine.normal_load().map(|load| load.value()), Some(14.0));
+/// assert!(Machine::of_mass(Known::exact(-1.0)?).is_err());
+/// # Ok::<(), fmm_model::ModelError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Machine {
+    scale: Scale,
+    damping: Option<Known>,
+    normal_load: Option<Known>,
+}
+
+/// How the equation of motion is scaled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Scale {
+    /// No scale: everything per unit mass.
+    PerUnitMass,
+    /// The mass is known (kg).
+    Mass(Known),
+    /// The stiffness is known (N/m).
+    Stiffness(Known),
+    /// Mass and stiffness are both to be found, which no free vibration can do; a fit says so.
+    Unknown,
+}
+
+impl Machine {
+    /// Nothing is known: everything is found per unit mass.
+    pub const fn per_unit_mass() -> Self {
+        Self { scale: Scale::PerUnitMass, damping: None, normal_load: None }
+    }
+
+    /// A machine of known `mass` (kg).
+    ///
+    /// # Errors
+    /// [`ModelError::NotPositive`] if the mass is zero or negative.
+    pub fn of_mass(mass: Known) -> Result<Self, ModelError> {
+        ModelError::require_positive("mass", mass.value(), "kg")?;
+        Ok(Self { scale: Scale::Mass(mass), ..Self::per_unit_mass() })
+    }
+
+    /// A machine of known `stiffness` (N/m).
+    ///
+    /// # Errors
+    /// [`ModelError::NotPositive`] if the stiffness is zero or negative.
+    pub fn of_stiffness(stiffness: Known) -> Result<Self, ModelError> {
+        ModelError::require_positive("stiffness", stiffness.value(), "N/m")?;
+        Ok(Self { scale: Scale::Stiffness(stiffness), ..Self::per_unit_mass() })
+    }
+
+    /// A machine whose mass *and* stiffness are to be found from the record, as the thesis' appendix A1 tries.
+    ///
+    /// They cannot be: the fit reports the direction in which mass, stiffness, damping and friction may be scaled
+    /// together. It is here to show that.
+    pub const fn unknown() -> Self {
+        Self { scale: Scale::Unknown, damping: None, normal_load: None }
+    }
+
+    /// The same machine with a linear damping of its own that is known, for instance from a ring-down without the
+    /// contact, and held in the fit (N s/m; 1/s if no scale is known).
+    ///
+    /// # Errors
+    /// [`ModelError::Negative`] if the damping is negative.
+    pub fn with_damping(mut self, damping: Known) -> Result<Self, ModelError> {
+        ModelError::require_not_negative("linear damping", damping.value(), "N s/m")?;
+        self.damping = Some(damping);
+        Ok(self)
+    }
+
+    /// The same machine with a known normal load (N) on its contact.
+    ///
+    /// # Errors
+    /// [`ModelError::NotPositive`] if the load is zero or negative.
+    pub fn with_normal_load(mut self, load: Known) -> Result<Self, ModelError> {
+        ModelError::require_positive("normal load", load.value(), "N")?;
+        self.normal_load = Some(load);
+        Ok(self)
+    }
+
+    /// What is known of mass and stiffness.
+    pub const fn scale(&self) -> Scale {
+        self.scale
+    }
+
+    /// The machine's own damping, if it is known.
+    pub const fn damping(&self) -> Option<Known> {
+        self.damping
+    }
+
+    /// The normal load, if it is known.
+    pub const fn normal_load(&self) -> Option<Known> {
+        self.normal_load
+    }
+
+    /// The same machine with its known damping moved to the ends of its standard uncertainty, the lower one cut at
+    /// zero; none if there is no uncertainty to pass on.
+    pub(crate) fn with_damping_moved(&self) -> Option<[Self; 2]> {
+        let damping = self.damping.filter(|damping| damping.uncertainty() > 0.0)?;
+        let (value, u) = (damping.value(), damping.uncertainty());
+        let moved = |value: f64| Self { damping: Some(damping.moved_to(value)), ..*self };
+        Some([moved((value - u).max(0.0)), moved(value + u)])
+    }
+}

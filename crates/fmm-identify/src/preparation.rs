@@ -1,0 +1,117 @@
+//! How a record is made ready for identification, and what was seen on the way.
+
+use std::fmt;
+
+use fmm_record::{OffsetStep, Quantity, Saturation};
+
+/// Choices in preparing a record. The default uses the whole record after the release, and fits its offset.
+///
+/// ```
+/// use fmm_identify::{Offset, Preparation};
+///
+/// let preparation = Preparation::default().from(35.0).to(55.0).offset(Offset::Fixed(0.0));
+/// assert_eq!(preparation, Preparation::default().to(55.0).offset(Offset::Fixed(0.0)).from(35.0));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct Preparation {
+    pub(crate) from: Option<f64>,
+    pub(crate) to: Option<f64>,
+    pub(crate) offset: Offset,
+}
+
+/// What is done about the offset of a record.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub enum Offset {
+    /// It is found together with the other parameters. For a displacement it is the position in which the spring
+    /// is free of force; the mean of a part in which the contact sticks would be wrong for it.
+    #[default]
+    Fitted,
+    /// It is known, in the unit of the record.
+    Fixed(f64),
+}
+
+impl Preparation {
+    /// Begin at this time (s) instead of looking for the release.
+    #[must_use]
+    pub fn from(mut self, time: f64) -> Self {
+        self.from = Some(time);
+        self
+    }
+
+    /// End at this time (s).
+    #[must_use]
+    pub fn to(mut self, time: f64) -> Self {
+        self.to = Some(time);
+        self
+    }
+
+    /// What to do about the offset.
+    #[must_use]
+    pub fn offset(mut self, offset: Offset) -> Self {
+        self.offset = offset;
+        self
+    }
+}
+
+/// What a prepared record is and what was seen in it. `Display` gives one sentence.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct RecordSummary {
+    /// Time of the first sample used (s).
+    pub from: f64,
+    /// Time of the last sample used (s).
+    pub to: f64,
+    /// How many samples are fitted.
+    pub samples: usize,
+    /// Sampling rate (Hz).
+    pub rate: f64,
+    /// What was measured.
+    pub quantity: Quantity,
+    /// Its unit.
+    pub unit: String,
+    /// What is done about the offset.
+    pub offset: Offset,
+    /// When the motion was released (s), if the record begins at rest.
+    pub release: Option<f64>,
+    /// Half swings that stand out of the noise.
+    pub half_swings: usize,
+    /// First and last amplitude, in the unit of the record.
+    pub amplitudes: (f64, f64),
+    /// Mean frequency between zero crossings (Hz).
+    pub frequency: f64,
+    /// Standard deviation of the white noise, in the unit of the record.
+    pub noise: f64,
+    /// Step of the converter, in the unit of the record, if the values lie on a lattice.
+    pub resolution: Option<f64>,
+    /// Isolated samples that were left out.
+    pub spikes: usize,
+    /// Samples cut off at the range of the instrument.
+    pub saturation: Option<Saturation>,
+    /// A jump of the offset.
+    pub offset_step: Option<OffsetStep>,
+    /// Relative change of the period from the first third of the half swings to the last, if it is significant.
+    pub period_change: Option<f64>,
+}
+
+impl fmt::Display for RecordSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { from, to, samples, rate, quantity, unit, half_swings, frequency, noise, .. } = self;
+        write!(f, "{quantity} in {unit}, {samples} samples at {rate} Hz from {from:.3} s to {to:.3} s")?;
+        if let Some(time) = self.release {
+            write!(f, ", released at {time:.4} s")?;
+        }
+        match self.offset {
+            Offset::Fitted => write!(f, "; offset fitted")?,
+            Offset::Fixed(value) => write!(f, "; offset held at {value} {unit}")?,
+        }
+        let (first, last) = self.amplitudes;
+        write!(f, "; {half_swings} half swings at {frequency:.4} Hz, amplitude {first:.3e} to {last:.3e} {unit}")?;
+        write!(f, "; noise {noise:.1e} {unit}")?;
+        if let Some(step) = self.resolution {
+            write!(f, ", resolution {step:.2e} {unit}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,210 @@
+//! A record made ready for identification.
+
+use std::ops::Range;
+
+use fmm_model::Bounds;
+use fmm_record::{OffsetStep, Peak, Quantity, Record, Release, Swings, noise, quantisation_step, saturation, spikes};
+
+use crate::first_guess::{FirstGuess, Oscillation};
+use crate::{IdentifyError, Offset, Preparation, RecordSummary};
+
+/// A prepared ring-down: the part of a record in which a machine vibrates freely, and what was seen in it.
+///
+/// If the record begins at rest, it is used from the first peak after the release on (of a displacement, from the
+/// first crossing), as whatever held the machine may act on for a while; otherwise from its beginning. Spikes of
+/// one to three samples are left out. Nothing is smoothed and nothing is subtracted: smoothing would correlate the
+/// noise, and the offset is a parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RingDown {
+    record: Record,
+    kept: Vec<Range<usize>>,
+    guess: FirstGuess,
+    peaks: Vec<(f64, f64)>,
+    summary: RecordSummary,
+}
+
+/// Fewest samples that can show two half swings.
+const FEWEST_SAMPLES: usize = 16;
+/// Fewest half swings that show a period.
+const FEWEST_HALF_SWINGS: usize = 2;
+
+impl RingDown {
+    /// Prepares `record`.
+    ///
+    /// # Errors
+    /// [`IdentifyError`] if the record is neither displacement nor velocity, too short, constant, or shows fewer
+    /// than two half swings, or if the preparation leaves nothing of it.
+    pub fn prepare(record: &Record, preparation: &Preparation) -> Result<Self, IdentifyError> {
+        let quantity = record.quantity();
+        if !matches!(quantity, Quantity::Displacement | Quantity::Velocity) {
+            return Err(IdentifyError::Quantity { quantity });
+        }
+        let (from, to) = (preparation.from.unwrap_or(record.start()), preparation.to.unwrap_or(record.end()));
+        let record = record.crop(from, to)?;
+        if record.len() < FEWEST_SAMPLES {
+            return Err(IdentifyError::TooShort { samples: record.len(), needed: FEWEST_SAMPLES });
+        }
+        let first = record.values()[0];
+        if record.values().iter().all(|value| *value == first) {
+            return Err(IdentifyError::NoMotion { value: first, unit: record.unit().to_owned() });
+        }
+        let swings = Swings::of(&record);
+        let release = if preparation.from.is_none() { Release::of(&record) } else { None };
+        let begin = release.map_or(record.start(), |release| beginning(&swings, release.rest_end, quantity));
+        let record = record.crop(begin, record.end())?;
+
+        let start = record.start();
+        let after = |time: f64| time >= start - 0.5 * record.interval();
+        let peaks: Vec<Peak> = swings.peaks().iter().copied().filter(|peak| after(peak.time)).collect();
+        let crossings = swings.crossings().iter().map(|crossing| crossing.time);
+        let oscillation = Oscillation {
+            extrema: peaks.iter().map(|peak| ((peak.time - start).max(0.0), peak.value)).collect(),
+            crossings: crossings.filter(|time| after(*time)).map(|time| time - start).collect(),
+        };
+        let few = IdentifyError::TooFewHalfSwings { found: peaks.len(), needed: FEWEST_HALF_SWINGS };
+        let guess = FirstGuess::of(&oscillation, quantity).ok_or(few)?;
+
+        let spikes = spikes(&record);
+        let kept = without(record.len(), spikes.iter().map(|spike| spike.index..spike.index + spike.count));
+        let amplitudes = guess.amplitudes();
+        let summary = RecordSummary {
+            from: record.start(),
+            to: record.end(),
+            samples: kept.iter().map(Range::len).sum(),
+            rate: record.rate(),
+            quantity,
+            unit: record.unit().to_owned(),
+            offset: preparation.offset,
+            release: release.map(|release| release.rest_end),
+            half_swings: peaks.len(),
+            amplitudes: (amplitudes[0], amplitudes[amplitudes.len() - 1]),
+            frequency: guess.frequency(),
+            noise: noise(record.values()),
+            resolution: quantisation_step(record.values()),
+            spikes: spikes.iter().map(|spike| spike.count).sum(),
+            saturation: saturation(record.values()),
+            offset_step: OffsetStep::of(&record, &swings),
+            period_change: period_change(&oscillation.crossings),
+        };
+        let peaks = peaks.iter().map(|peak| (peak.time, peak.value)).collect();
+        Ok(Self { record, kept, guess, peaks, summary })
+    }
+
+    /// The part of the record that is used, as it was measured.
+    pub fn record(&self) -> &Record {
+        &self.record
+    }
+
+    /// What the record is and what was seen in it.
+    pub fn summary(&self) -> &RecordSummary {
+        &self.summary
+    }
+
+    /// Time (s) and value of the turning points, maxima and minima by turns.
+    pub fn peaks(&self) -> &[(f64, f64)] {
+        &self.peaks
+    }
+
+    /// Ranges of samples that are fitted; what lies between them is left out.
+    pub fn kept(&self) -> &[Range<usize>] {
+        &self.kept
+    }
+
+    pub(crate) fn guess(&self) -> &FirstGuess {
+        &self.guess
+    }
+
+    /// The offset, if it is held.
+    pub(crate) fn fixed_offset(&self) -> Option<f64> {
+        match self.summary.offset {
+            Offset::Fixed(value) => Some(value),
+            Offset::Fitted => None,
+        }
+    }
+
+    /// Two octaves either way of what the crossings show: wide enough for any law, and no fit that leaves it
+    /// describes this record.
+    pub(crate) fn frequency_bounds(&self) -> Bounds {
+        let frequency = self.guess.frequency();
+        Bounds::new(0.25 * frequency, 4.0 * frequency).unwrap_or(Bounds::POSITIVE)
+    }
+}
+
+/// Where to begin in a record that is released at `rest_end`.
+fn beginning(swings: &Swings, rest_end: f64, quantity: Quantity) -> f64 {
+    let mut candidates: Box<dyn Iterator<Item = f64>> = if quantity == Quantity::Displacement {
+        Box::new(swings.crossings().iter().map(|crossing| crossing.time))
+    } else {
+        Box::new(swings.peaks().iter().map(|peak| peak.time))
+    };
+    candidates.find(|time| *time > rest_end).unwrap_or(rest_end)
+}
+
+/// The ranges of `0..count` between `holes`, which are in order.
+fn without(count: usize, holes: impl Iterator<Item = Range<usize>>) -> Vec<Range<usize>> {
+    let mut kept = Vec::new();
+    let mut start = 0;
+    for hole in holes {
+        if hole.start > start {
+            kept.push(start..hole.start);
+        }
+        start = hole.end;
+    }
+    if start < count {
+        kept.push(start..count);
+    }
+    kept
+}
+
+/// Relative change of the period from the first third of `crossings` to the last, if it exceeds both its own scatter
+/// by a factor of five and half a percent, which is more than a good spring shows.
+fn period_change(crossings: &[f64]) -> Option<f64> {
+    const SIGNIFICANT: f64 = 5.0;
+    const LARGE: f64 = 5e-3;
+    // From crossing to the next but one, so that an offset does not make periods alternate.
+    let periods: Vec<f64> = crossings.windows(3).map(|three| three[2] - three[0]).collect();
+    let third = periods.len() / 3;
+    if third < 3 {
+        return None;
+    }
+    let statistics = |part: &[f64]| {
+        let count = part.len() as f64;
+        let mean = part.iter().sum::<f64>() / count;
+        let variance = part.iter().map(|period| (period - mean).powi(2)).sum::<f64>() / (count - 1.0);
+        (mean, variance / count)
+    };
+    let (early, early_variance) = statistics(&periods[..third]);
+    let (late, late_variance) = statistics(&periods[periods.len() - third..]);
+    let change = (late - early) / early;
+    let scatter = (early_variance + late_variance).sqrt() / early;
+    (change.abs() > LARGE && change.abs() > SIGNIFICANT * scatter).then_some(change)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn holes_are_left_out() {
+        assert_eq!(without(10, [2..4, 4..5, 9..10].into_iter()), [0..2, 5..9]);
+        assert_eq!(without(3, std::iter::empty()), vec![0..3]);
+        assert_eq!(without(3, std::iter::once(0..3)), Vec::<Range<usize>>::new());
+    }
+
+    #[test]
+    fn only_a_large_and_significant_change_of_period_counts() {
+        let crossings = |change: f64| -> Vec<f64> {
+            let mut time = 0.0;
+            (0..40)
+                .map(|i| {
+                    time += 0.25 * (1.0 + change * f64::from(i) / 40.0);
+                    time
+                })
+                .collect()
+        };
+        assert_eq!(period_change(&crossings(0.0)), None);
+        assert_eq!(period_change(&crossings(0.002)), None);
+        let change = period_change(&crossings(-0.15)).unwrap();
+        assert!((-0.12..-0.08).contains(&change), "change {change}");
+    }
+}

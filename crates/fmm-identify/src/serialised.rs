@@ -1,0 +1,84 @@
+//! Reports as documents for other programs.
+
+use std::collections::BTreeMap;
+
+use serde::ser::{Serialize, SerializeStruct, Serializer};
+
+use crate::{Comparison, Finding, Identification, Offset, RecordSummary};
+
+impl Serialize for Finding {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut document = serializer.serialize_struct("Finding", 3)?;
+        document.serialize_field("value", &self.value())?;
+        document.serialize_field("u", &self.uncertainty())?;
+        document.serialize_field("unit", self.parameter().unit())?;
+        document.end()
+    }
+}
+
+/// `law`, `parameters` (by name), `rms_residual`, `rank`, `stop_time_s` and `swings` (of the first record),
+/// `aicc`, `outcome`, `autocorrelation_time`.
+impl Serialize for Identification {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let parameters: BTreeMap<_, _> =
+            self.findings().iter().map(|finding| (finding.parameter().name(), finding)).collect();
+        let mut document = serializer.serialize_struct("Identification", 9)?;
+        document.serialize_field("law", self.law())?;
+        document.serialize_field("parameters", &parameters)?;
+        document.serialize_field("rms_residual", &self.rms_residual())?;
+        document.serialize_field("rank", &self.fit().rank())?;
+        document.serialize_field("stop_time_s", &self.motions().first().and_then(crate::FittedMotion::stop_time))?;
+        document.serialize_field("swings", &self.motions().first().map(crate::FittedMotion::half_swings))?;
+        document.serialize_field("aicc", &self.fit().corrected_akaike())?;
+        document.serialize_field("outcome", &self.fit().outcome().to_string())?;
+        document.serialize_field("autocorrelation_time", &self.autocorrelation_time())?;
+        document.end()
+    }
+}
+
+/// What a record is: times in s, rates in Hz, values in `unit`.
+impl Serialize for RecordSummary {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let fixed = match self.offset {
+            Offset::Fixed(value) => Some(value),
+            Offset::Fitted => None,
+        };
+        let mut document = serializer.serialize_struct("RecordSummary", 17)?;
+        document.serialize_field("from_s", &self.from)?;
+        document.serialize_field("to_s", &self.to)?;
+        document.serialize_field("samples", &self.samples)?;
+        document.serialize_field("rate_hz", &self.rate)?;
+        document.serialize_field("quantity", &self.quantity.to_string())?;
+        document.serialize_field("unit", &self.unit)?;
+        document.serialize_field("offset_held_at", &fixed)?;
+        document.serialize_field("release_s", &self.release)?;
+        document.serialize_field("half_swings", &self.half_swings)?;
+        document.serialize_field("first_amplitude", &self.amplitudes.0)?;
+        document.serialize_field("last_amplitude", &self.amplitudes.1)?;
+        document.serialize_field("frequency_hz", &self.frequency)?;
+        document.serialize_field("noise", &self.noise)?;
+        document.serialize_field("resolution", &self.resolution)?;
+        document.serialize_field("spikes", &self.spikes)?;
+        document.serialize_field("saturated", &self.saturation.map_or(0, |saturation| saturation.samples))?;
+        document.serialize_field("period_change", &self.period_change)?;
+        document.end()
+    }
+}
+
+/// `preferred` (name of the law), `decided`, `models`, `preparation` (one object, or a list if there are several
+/// records), `warnings`.
+impl Serialize for Comparison {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();
+        let mut document = serializer.serialize_struct("Comparison", 5)?;
+        document.serialize_field("preferred", self.preferred().law())?;
+        document.serialize_field("decided", &self.is_decided())?;
+        document.serialize_field("models", self.identifications())?;
+        match self.records() {
+            [record] => document.serialize_field("preparation", record)?,
+            records => document.serialize_field("preparation", records)?,
+        }
+        document.serialize_field("warnings", &warnings)?;
+        document.end()
+    }
+}

@@ -1,0 +1,233 @@
+//! What a reader of the results has to know before using them.
+
+use std::fmt;
+
+use crate::machine::Scale;
+use crate::{Identification, RecordSummary, RingDown};
+
+/// Something that limits what the record can tell, or that was done to it.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Warning {
+    /// Neither mass nor stiffness is known, so everything is per unit mass.
+    ScaleUnknown {
+        /// Whether a normal load was given all the same.
+        load_known: bool,
+    },
+    /// A scale is known but the normal load is not, so there is no friction coefficient.
+    NormalLoadUnknown,
+    /// The residuals are not noise: the model misses something.
+    StructuredResiduals {
+        /// Root mean square of the residuals, in the unit of the record.
+        residual: f64,
+        /// Standard deviation of the noise seen between neighbouring samples, in the same unit.
+        noise: f64,
+        /// Unit of both.
+        unit: String,
+        /// Factor by which the standard uncertainties are too small at least, √τ.
+        factor: f64,
+    },
+    /// The period changes with the amplitude: the restoring force is not a linear spring.
+    PeriodDependsOnAmplitude {
+        /// Relative change of the period from the first third of the oscillation to the last.
+        change: f64,
+    },
+    /// The amplitude does not fall.
+    NoDecay,
+    /// Few half swings: friction and damping rest on little.
+    FewHalfSwings {
+        /// How many extrema there are.
+        count: usize,
+    },
+    /// Samples lie on the end of the range of the instrument.
+    Saturated {
+        /// How many.
+        count: usize,
+    },
+    /// The baseline jumps.
+    OffsetStep {
+        /// When (s).
+        time: f64,
+        /// By how much, in the unit of the record.
+        height: f64,
+        /// That unit.
+        unit: String,
+    },
+    /// Isolated samples were left out.
+    Spikes {
+        /// How many.
+        count: usize,
+    },
+    /// A parameter ended on its bound.
+    AtBound {
+        /// Name of the parameter.
+        parameter: String,
+        /// Its value.
+        value: f64,
+    },
+    /// Some parameters cannot be told apart; in words.
+    Inseparable {
+        /// Which ones, as a sentence.
+        sentence: String,
+    },
+    /// A parameter has no influence on this record at all.
+    NoInfluence {
+        /// Name of the parameter.
+        parameter: String,
+    },
+    /// The search did not end at a minimum.
+    NotConverged {
+        /// What happened, as a sentence of advice.
+        sentence: String,
+    },
+    /// Whether the contact stops or turns back once more was decided narrowly.
+    NarrowStop {
+        /// (|load| − static level)/static level at that turning point.
+        margin: f64,
+        /// When (s).
+        time: f64,
+    },
+    /// The models are too close to prefer one.
+    Undecided,
+}
+
+/// Above this ratio of residual to noise, and with neighbours that tell each other's value, a law misses something.
+const EXCESS: f64 = 1.5;
+/// Autocorrelation time (samples) below which residuals pass for independent.
+const INDEPENDENT: f64 = 3.0;
+/// Fewer half swings than this are few.
+const ENOUGH_HALF_SWINGS: usize = 4;
+/// A decision between stop and reversal closer than this is narrow.
+const NARROW: f64 = 5e-3;
+
+impl Warning {
+    /// Everything that limits `identification` of `decays`.
+    pub(crate) fn of(identification: &Identification, decays: &[RingDown]) -> Vec<Self> {
+        let mut warnings = Vec::new();
+        let machine = identification.machine();
+        match (machine.scale(), machine.normal_load()) {
+            (Scale::PerUnitMass, load) => warnings.push(Self::ScaleUnknown { load_known: load.is_some() }),
+            (Scale::Mass(_) | Scale::Stiffness(_), None) => warnings.push(Self::NormalLoadUnknown),
+            _ => {}
+        }
+        for decay in decays {
+            Self::of_record(decay.summary(), &mut warnings);
+        }
+        Self::of_fit(identification, &mut warnings);
+        Self::of_residuals(identification, decays, &mut warnings);
+        if let Some((margin, time)) = identification.narrowest_decision().filter(|(margin, _)| margin.abs() < NARROW) {
+            warnings.push(Self::NarrowStop { margin, time });
+        }
+        warnings
+    }
+
+    fn of_record(summary: &RecordSummary, warnings: &mut Vec<Self>) {
+        let (first, last) = summary.amplitudes;
+        if last >= first {
+            warnings.push(Self::NoDecay);
+        }
+        if summary.half_swings < ENOUGH_HALF_SWINGS {
+            warnings.push(Self::FewHalfSwings { count: summary.half_swings });
+        }
+        warnings.extend(summary.period_change.map(|change| Self::PeriodDependsOnAmplitude { change }));
+        warnings.extend(summary.saturation.map(|saturation| Self::Saturated { count: saturation.samples }));
+        warnings.extend(summary.offset_step.map(|step| Self::OffsetStep {
+            time: step.time,
+            height: step.height,
+            unit: summary.unit.clone(),
+        }));
+        if summary.spikes > 0 {
+            warnings.push(Self::Spikes { count: summary.spikes });
+        }
+    }
+
+    fn of_fit(identification: &Identification, warnings: &mut Vec<Self>) {
+        let fit = identification.fit();
+        if !fit.outcome().is_success() {
+            warnings.push(Self::NotConverged { sentence: format!("the fit {}", fit.outcome()) });
+        }
+        for direction in fit.null_directions() {
+            let mut participants = direction.participants();
+            match (participants.next(), participants.next()) {
+                (Some((parameter, _)), None) => warnings.push(Self::NoInfluence { parameter: parameter.to_owned() }),
+                _ => warnings.push(Self::Inseparable { sentence: direction.to_string() }),
+            }
+        }
+        for estimate in fit.estimates().iter().filter(|estimate| estimate.status().is_at_bound()) {
+            warnings.push(Self::AtBound { parameter: estimate.name().to_owned(), value: estimate.value() });
+        }
+    }
+
+    fn of_residuals(identification: &Identification, decays: &[RingDown], warnings: &mut Vec<Self>) {
+        // A converter step counts as the noise of rounding; a simulated record without noise has that of doubles.
+        let noise = decays
+            .iter()
+            .map(|decay| decay.summary())
+            .map(|summary| summary.noise.hypot(summary.resolution.unwrap_or(0.0) / 12f64.sqrt()))
+            .fold(1e-9 * identification.amplitude(), f64::max);
+        let (residual, time) = (identification.rms_residual(), identification.autocorrelation_time());
+        if residual > EXCESS * noise && time > INDEPENDENT {
+            let unit = decays.first().map_or_else(String::new, |decay| decay.record().unit().to_owned());
+            warnings.push(Self::StructuredResiduals { residual, noise, unit, factor: time.sqrt() });
+        }
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ScaleUnknown { load_known } => {
+                let missing = if *load_known { "mass and stiffness are unknown" } else { "mass and normal load are unknown" };
+                write!(
+                    f,
+                    "{missing}: a free vibration shows friction and damping per unit mass only, hence no friction \
+                     force and no coefficient mu; give a mass or a stiffness, and the normal load"
+                )
+            }
+            Self::NormalLoadUnknown => {
+                write!(f, "the normal load is unknown: the friction force is found, but no coefficient mu")
+            }
+            Self::StructuredResiduals { residual, noise, unit, factor } => write!(
+                f,
+                "the residuals are structured, not noise: {residual:.3e} {unit} rms against {noise:.1e} {unit} of noise \
+                 between samples, and neighbours are alike; the law leaves something out, and the standard \
+                 uncertainties, which count every sample as independent, are too small by a factor of about {factor:.0}"
+            ),
+            Self::PeriodDependsOnAmplitude { change } => write!(
+                f,
+                "the period changes by {:+.2} % as the amplitude falls: the amplitude is too large for a linear spring \
+                 (a pendulum, or a spring that stiffens); use a part of smaller amplitude",
+                100.0 * change
+            ),
+            Self::NoDecay => write!(f, "the amplitude does not fall: there is no dissipation to identify"),
+            Self::FewHalfSwings { count } => write!(
+                f,
+                "there are only {count} half swings: damping and friction are told apart by the shape of few swings, \
+                 not by a decay"
+            ),
+            Self::Saturated { count } => write!(
+                f,
+                "{count} samples lie on the end of the range, as if clipped; they were fitted as they are, which biases the amplitude"
+            ),
+            Self::OffsetStep { time, height, unit } => {
+                write!(f, "the offset jumps by {height:.3e} {unit} near {time:.3} s; fit the parts before and after apart")
+            }
+            Self::Spikes { count } => write!(f, "{count} isolated samples far off their neighbours were left out"),
+            Self::AtBound { parameter, value } => {
+                write!(f, "{parameter} ended on its bound {value}; it has no standard uncertainty, and the others hold for that value")
+            }
+            Self::Inseparable { sentence } | Self::NotConverged { sentence } => f.write_str(sentence),
+            Self::NoInfluence { parameter } => write!(
+                f,
+                "{parameter} does not change the motion: in a free decay it only decides at which turning point the contact stops"
+            ),
+            Self::NarrowStop { margin, time } => write!(
+                f,
+                "at {time:.3} s the load is within {:.2} % of the static level: a small change would add or remove a half swing, \
+                 which the uncertainties do not see",
+                100.0 * margin.abs()
+            ),
+            Self::Undecided => write!(f, "the data do not decide between the models; the simplest of the close ones is shown as preferred"),
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! How numbers are written in reports: rounded to what is known of them.
+
+use std::fmt;
+
+/// A value, written with two significant digits of its standard uncertainty (JCGM 100:2008, 7.2.6), or with six
+/// digits if it has none.
+///
+/// ```
+/// use fmm_model::Rounded;
+///
+/// assert_eq!(Rounded::new(190.740_316_97, Some(0.005_601)).to_string(), "190.7403 ± 0.0056");
+/// assert_eq!(Rounded::new(0.25, None).to_string(), "0.25");
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rounded {
+    value: f64,
+    uncertainty: Option<f64>,
+}
+
+impl Rounded {
+    /// `value` with its standard `uncertainty`, in the same unit, if there is one.
+    pub const fn new(value: f64, uncertainty: Option<f64>) -> Self {
+        Self { value, uncertainty }
+    }
+}
+
+impl fmt::Display for Rounded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let value = self.value;
+        let Some(uncertainty) = self.uncertainty else {
+            return f.pad(&plain(value));
+        };
+        if !(uncertainty > 0.0 && uncertainty.is_finite() && value.is_finite()) {
+            return f.pad(&format!("{} ± {}", plain(value), plain(uncertainty)));
+        }
+        // The decimal place of the second digit of the uncertainty; rounding up to 100 is harmless.
+        let place = uncertainty.log10().floor() as i32 - 1;
+        let leading = value.abs().max(uncertainty).log10().floor() as i32;
+        if (-4..6).contains(&leading) && place <= 0 && place > -12 {
+            let decimals = place.unsigned_abs() as usize;
+            f.pad(&format!("{value:.decimals$} ± {uncertainty:.decimals$}"))
+        } else {
+            // At most 17 digits mean anything.
+            let decimals = (leading - place).clamp(0, 16) as usize;
+            let scale = 10f64.powi(leading);
+            f.pad(&format!("({:.decimals$} ± {:.decimals$})e{leading}", value / scale, uncertainty / scale))
+        }
+    }
+}
+
+/// Six digits, short where the value is round.
+fn plain(value: f64) -> String {
+    let magnitude = value.abs();
+    if magnitude == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e6).contains(&magnitude) {
+        let decimals = (5 - magnitude.log10().floor() as i32).max(0) as usize;
+        let text = format!("{value:.decimals$}");
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    } else {
+        format!("{value:.5e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_rounded_to_their_uncertainty() {
+        let text = |value, uncertainty| Rounded::new(value, Some(uncertainty)).to_string();
+        assert_eq!(text(0.1, 3.4e-5), "0.100000 ± 0.000034");
+        assert_eq!(text(238.942, 2.707), "238.9 ± 2.7");
+        assert_eq!(text(238.942, 27.07), "239 ± 27");
+        assert_eq!(text(238_942.0, 270.7), "(2.3894 ± 0.0027)e5");
+        assert_eq!(text(5.5e-7, 2.0e-9), "(5.500 ± 0.020)e-7");
+        assert_eq!(text(1.0, 0.0), "1 ± 0");
+        assert_eq!(text(1e-9, 0.2), "0.00 ± 0.20");
+    }
+
+    #[test]
+    fn plain_values_are_short() {
+        let text = |value| Rounded::new(value, None).to_string();
+        assert_eq!(text(0.27), "0.27");
+        assert_eq!(text(1980.0), "1980");
+        assert_eq!(text(-1.234_567_89e-7), "-1.23457e-7");
+        assert_eq!(format!("{:>6}|", Rounded::new(0.5, None)), "   0.5|");
+    }
+}

@@ -1,0 +1,69 @@
+//! A real numeric array.
+
+/// A real numeric array of a MATLAB file, its numbers converted to `f64` whatever their type was. (Integers beyond
+/// 2⁵³ are rounded.)
+#[derive(Debug, Clone, PartialEq)]
+pub struct Array {
+    pub(super) name: String,
+    pub(super) dimensions: Vec<usize>,
+    pub(super) values: Vec<f64>,
+}
+
+impl Array {
+    /// Name of the variable.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Rows, columns and further dimensions; at least two.
+    pub fn dimensions(&self) -> &[usize] {
+        &self.dimensions
+    }
+
+    /// All numbers, column after column.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Number of rows, for an array of two dimensions.
+    pub(super) fn rows(&self) -> usize {
+        self.dimensions[0]
+    }
+
+    /// Number of columns, for an array of two dimensions.
+    pub(super) fn columns(&self) -> usize {
+        self.dimensions[1]
+    }
+
+    /// The single number, if it is one.
+    pub(super) fn scalar(&self) -> Option<f64> {
+        if let [value] = self.values[..] { Some(value) } else { None }
+    }
+
+    /// Whether it is a row or a column of at least two numbers.
+    pub(super) fn is_vector(&self) -> bool {
+        self.dimensions.len() == 2 && self.values.len() >= 2 && (self.rows() == 1 || self.columns() == 1)
+    }
+
+    /// Whether it has at least two rows and two columns and no more dimensions.
+    pub(super) fn is_matrix(&self) -> bool {
+        self.dimensions.len() == 2 && self.rows() >= 2 && self.columns() >= 2
+    }
+
+    /// The numbers of a column, counted from 1, of an array of two dimensions. A row vector counts as one column.
+    pub(super) fn column(&self, column: usize) -> Option<&[f64]> {
+        let index = column.checked_sub(1)?;
+        if self.is_vector() {
+            return (index == 0).then_some(&self.values[..]);
+        }
+        (index < self.columns()).then(|| &self.values[index * self.rows()..(index + 1) * self.rows()])
+    }
+}
+
+/// Name and size, as `data (30000×1)`.
+impl std::fmt::Display for Array {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let size = self.dimensions.iter().map(ToString::to_string).collect::<Vec<_>>().join("×");
+        write!(f, "{} ({size})", self.name)
+    }
+}

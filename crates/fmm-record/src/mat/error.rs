@@ -1,0 +1,163 @@
+//! Why a MATLAB file did not become a record.
+
+use std::io;
+use std::path::PathBuf;
+
+use super::Kind;
+use crate::RecordError;
+
+/// A MATLAB file that cannot be read, or that does not hold the record asked for.
+///
+/// Byte positions count from the begin of the file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MatError {
+    /// The file cannot be opened or read.
+    #[error("cannot read {}: {source}", path.display())]
+    Open {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// Something else.
+    #[error("not a MATLAB file: {length} bytes without the header of one")]
+    NotMat {
+        /// Length of the file (bytes).
+        length: usize,
+    },
+    /// MATLAB version 4.
+    #[error("a MATLAB version 4 file; load it in MATLAB and save it with -v7")]
+    Version4,
+    /// MATLAB version 7.3, which is HDF5.
+    #[error("a MATLAB version 7.3 file (HDF5); load it in MATLAB and save it with -v7")]
+    Version73,
+    /// A MATLAB file of a version that does not exist yet.
+    #[error("a MATLAB file of unknown version {version:#06x}; save it with -v7")]
+    UnknownVersion {
+        /// The number in the header, 0x0100 for versions 5 to 7.
+        version: u16,
+    },
+    /// A file that ends too early.
+    #[error("the file is cut off: the variable at byte {offset} promises {promised} bytes, but {present} are there")]
+    Truncated {
+        /// Where the variable begins.
+        offset: usize,
+        /// Its length as its header says (bytes).
+        promised: u64,
+        /// What is left of the file there (bytes).
+        present: u64,
+    },
+    /// A variable that is neither an array nor a compressed array.
+    #[error("the variable at byte {offset} is of type {code}, which is neither an array (14) nor a compressed one (15)")]
+    UnknownElement {
+        /// Where the variable begins.
+        offset: usize,
+        /// The number of its type.
+        code: u32,
+    },
+    /// Compressed data that cannot be expanded.
+    #[error("the compressed variable at byte {offset} is damaged: {reason}")]
+    Compression {
+        /// Where the variable begins.
+        offset: usize,
+        /// What the decoder says.
+        reason: String,
+    },
+    /// More data than the reader agrees to expand.
+    #[error("the variables of the file expand to more than {limit} bytes")]
+    TooLarge {
+        /// The limit (bytes), [`MOST_INFLATED`](super::MOST_INFLATED).
+        limit: usize,
+    },
+    /// A variable that contradicts itself.
+    #[error("the variable at byte {offset} is damaged: {what}")]
+    Malformed {
+        /// Where the variable begins.
+        offset: usize,
+        /// What is wrong with it.
+        what: &'static str,
+    },
+    /// No variable of that name.
+    #[error("there is no variable \"{name}\"; the file has: {}", list(available))]
+    NoSuchVariable {
+        /// The name asked for.
+        name: String,
+        /// Names and sizes of the numeric arrays.
+        available: Vec<String>,
+    },
+    /// A variable that is no real numeric array.
+    #[error("the variable \"{name}\" is {kind}, not a real numeric array; the file has: {}", list(available))]
+    NotNumeric {
+        /// The name asked for.
+        name: String,
+        /// What it is.
+        kind: Kind,
+        /// Names and sizes of the numeric arrays.
+        available: Vec<String>,
+    },
+    /// An array of more than two dimensions.
+    #[error("\"{name}\" has {dimensions} dimensions; a record is a vector or a column of a matrix")]
+    Dimensions {
+        /// Its name.
+        name: String,
+        /// How many dimensions it has.
+        dimensions: usize,
+    },
+    /// A matrix of which a column must be chosen.
+    #[error("\"{name}\" is a matrix of {rows} rows and {columns} columns; choose a column, as in {name}(:,1)")]
+    ChooseColumn {
+        /// Its name.
+        name: String,
+        /// Number of rows.
+        rows: usize,
+        /// Number of columns.
+        columns: usize,
+    },
+    /// A column that the array does not have.
+    #[error("\"{name}\" has {columns} columns; there is no {name}(:,{column})")]
+    NoSuchColumn {
+        /// Its name.
+        name: String,
+        /// The column asked for, counted from 1.
+        column: usize,
+        /// How many it has.
+        columns: usize,
+    },
+    /// No channel was named, and the file does not have exactly one.
+    #[error("name the channel; the file has: {}", list(available))]
+    ChooseVariable {
+        /// Names and sizes of the numeric arrays.
+        available: Vec<String>,
+    },
+    /// Neither the caller nor the file tells the rate.
+    #[error(
+        "the sampling rate is not known: give a rate or a variable of time stamps; the file has: {}", list(available)
+    )]
+    NoRate {
+        /// Names and sizes of the numeric arrays.
+        available: Vec<String>,
+    },
+    /// Two variables tell different rates.
+    #[error("\"{first}\" says {first_rate} Hz, but \"{second}\" says {second_rate} Hz; give the rate")]
+    ConflictingRates {
+        /// One variable.
+        first: String,
+        /// The rate that it holds (Hz).
+        first_rate: f64,
+        /// The other variable.
+        second: String,
+        /// The rate that it holds (Hz).
+        second_rate: f64,
+    },
+    /// Both time stamps and a rate were given.
+    #[error("both a variable of time stamps and a rate were given; give one of them")]
+    TimeAndRate,
+    /// The numbers do not make a record.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+}
+
+fn list(available: &[String]) -> String {
+    if available.is_empty() { "no numeric arrays".into() } else { available.join(", ") }
+}

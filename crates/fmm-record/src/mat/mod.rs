@@ -1,0 +1,41 @@
+//! Records from MATLAB files, versions 5 to 7.
+//!
+//! [`MatFile`] holds every real numeric array of a file; [`MatReader`] makes a record of one of them. Arrays of
+//! other kinds (text, structures, cells, complex or sparse arrays) are not read, but they are listed, and asking for
+//! one says what it is. Version 7.3, which is HDF5, and version 4 are told apart and refused.
+//!
+//! ```no_run
+//! let reading = fmm_record::mat::read("fork.mat")?.channel("data")?;
+//! println!("{}: the rate was {}", reading.channel, reading.sampling);
+//! # Ok::<(), fmm_record::mat::MatError>(())
+//! ```
+//!
+//! Numbers are decoded by the crate matfile. It is handed one array at a time, whose structure has been checked
+//! here: by itself it stops at damage without a word, drops what it does not know, and refuses a whole file for one
+//! array of 32-bit integers.
+
+mod array;
+mod channel;
+mod element;
+mod error;
+mod file;
+mod numbers;
+mod reader;
+mod sampling;
+
+use std::path::Path;
+
+pub use array::Array;
+pub use channel::Channel;
+pub use element::MOST_INFLATED;
+pub use error::MatError;
+pub use file::{Kind, MatFile};
+pub use reader::MatReader;
+
+/// Reads all real numeric arrays of a file: [`MatFile::read`].
+///
+/// # Errors
+/// As [`MatFile::read`].
+pub fn read(path: impl AsRef<Path>) -> Result<MatFile, MatError> {
+    MatFile::read(path)
+}

@@ -1,0 +1,222 @@
+//! The one file that draws: palette, sizes and tick formats of every figure, on top of the crate `kuva`.
+//!
+//! Grey is what was measured, red is what was fitted, ink is what is left over.
+
+use std::path::Path;
+
+use kuva::backend::svg::SvgBackend;
+use kuva::plot::{Histogram, LinePlot, ScatterPlot};
+use kuva::render::figure::Figure as Grid;
+use kuva::render::layout::{Layout, TickFormat};
+use kuva::render::plots::Plot;
+use kuva::render::theme::Theme;
+
+const MEASURED: &str = "#9a9a9a";
+const FITTED: &str = "#c8102e";
+const RESIDUAL: &str = "#1d2a44";
+
+/// Width of every figure (px).
+const WIDTH: f64 = 900.0;
+/// Points drawn per horizontal pixel at most; more cannot be seen.
+const COLUMNS: usize = 1200;
+/// Share of an axis left free above the data, where the legend goes.
+const HEADROOM: f64 = 0.28;
+
+/// What a layer of a panel shows; it decides colour and stroke.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// A measured curve.
+    Measured,
+    /// A fitted curve.
+    Fitted,
+    /// A fitted curve, mirrored or repeated: drawn without a legend entry of its own.
+    FittedAgain,
+    /// What the fit leaves over.
+    Residual,
+    /// Single measured points.
+    Points,
+}
+
+/// One curve or set of points.
+#[derive(Debug, Clone)]
+pub struct Layer {
+    role: Role,
+    label: String,
+    points: Vec<(f64, f64)>,
+}
+
+impl Layer {
+    /// A layer with its legend text.
+    pub fn new(role: Role, label: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        Self { role, label: label.into(), points: if role == Role::Points { points } else { thinned(points) } }
+    }
+
+    fn plot(&self) -> Plot {
+        let (color, width) = match self.role {
+            Role::Measured => (MEASURED, 1.4),
+            Role::Fitted | Role::FittedAgain => (FITTED, 1.1),
+            Role::Residual => (RESIDUAL, 0.8),
+            Role::Points => {
+                let points = ScatterPlot::new().with_data(self.points.clone()).with_color(MEASURED).with_size(3.5);
+                return Plot::Scatter(points.with_legend(self.label.as_str()));
+            }
+        };
+        let line = LinePlot::new().with_data(self.points.clone()).with_color(color).with_stroke_width(width);
+        Plot::Line(if self.role == Role::FittedAgain { line } else { line.with_legend(self.label.as_str()) })
+    }
+}
+
+/// Axes with their layers.
+#[derive(Debug, Clone)]
+pub struct Panel {
+    x_label: String,
+    y_label: String,
+    height: f64,
+    layers: Vec<Layer>,
+}
+
+impl Panel {
+    /// Empty axes, `height` pixels high.
+    pub fn new(x_label: impl Into<String>, y_label: impl Into<String>, height: f64) -> Self {
+        Self { x_label: x_label.into(), y_label: y_label.into(), height, layers: Vec::new() }
+    }
+
+    /// The same axes with another layer on top.
+    #[must_use]
+    pub fn with(mut self, layer: Layer) -> Self {
+        self.layers.push(layer);
+        self
+    }
+
+    fn plots(&self) -> Vec<Plot> {
+        self.layers.iter().map(Layer::plot).collect()
+    }
+
+    fn layout(&self) -> Layout {
+        let all = || self.layers.iter().flat_map(|layer| layer.points.iter());
+        let (x_low, x_high) = range(all().map(|point| point.0));
+        let (y_low, y_high) = range(all().map(|point| point.1));
+        let span = y_high - y_low;
+        styled(Layout::auto_from_plots(&self.plots()))
+            .with_x_label(self.x_label.as_str())
+            .with_y_label(self.y_label.as_str())
+            .with_x_axis_min(x_low)
+            .with_x_axis_max(x_high)
+            .with_y_axis_min(y_low - 0.05 * span)
+            .with_y_axis_max(y_high + HEADROOM * span)
+            .with_x_tick_format(ticks(x_high - x_low))
+            .with_y_tick_format(ticks((1.05 + HEADROOM) * span))
+    }
+}
+
+/// Draws panels one below the other into an SVG file.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn stacked(path: &Path, panels: &[Panel]) -> std::io::Result<()> {
+    let heights: Vec<f64> = panels.iter().map(|panel| panel.height).collect();
+    let mut grid = Grid::new(panels.len(), 1)
+        .with_plots(panels.iter().map(Panel::plots).collect())
+        .with_layouts(panels.iter().map(Panel::layout).collect())
+        .with_keep_panel_legends()
+        .with_cell_size(WIDTH, heights[0]);
+    for (row, height) in heights.into_iter().enumerate() {
+        grid = grid.with_row_height(row, height);
+    }
+    std::fs::write(path, SvgBackend.render_scene(&grid.render()))
+}
+
+/// Draws the histogram of `values` with the normal density of the same mean and standard deviation.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn histogram(path: &Path, x_label: &str, values: &[f64]) -> std::io::Result<()> {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let deviation = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt();
+    // Four standard deviations either way, so that a few outliers do not squeeze the picture.
+    let (low, high) = (mean - 4.0 * deviation, mean + 4.0 * deviation);
+    let bins = 60usize;
+    let width = (high - low) / bins as f64;
+    let mut counts = vec![0.0; bins];
+    for value in values {
+        if let Some(bin) = counts.get_mut(((value - low) / width) as usize).filter(|_| *value >= low) {
+            *bin += 1.0;
+        }
+    }
+    let density: Vec<f64> = counts.iter().map(|n| n / (count * width)).collect();
+    let edges = (0..=bins).map(|i| low + i as f64 * width).collect();
+    let normal: Vec<(f64, f64)> = (0..=200)
+        .map(|i| {
+            let x = low + (high - low) * f64::from(i) / 200.0;
+            let z = (x - mean) / deviation;
+            (x, (-0.5 * z * z).exp() / (deviation * (2.0 * std::f64::consts::PI).sqrt()))
+        })
+        .collect();
+    let top = normal.iter().map(|point| point.1).chain(density.iter().copied()).fold(0.0, f64::max);
+    let plots = vec![
+        Plot::Histogram(Histogram::from_bins(edges, density).with_color(MEASURED).with_legend("residuals")),
+        Layer::new(Role::Fitted, "normal density", normal).plot(),
+    ];
+    let layout = styled(Layout::auto_from_plots(&plots))
+        .with_x_label(x_label)
+        .with_y_label("density")
+        .with_x_axis_min(low)
+        .with_x_axis_max(high)
+        .with_y_axis_min(0.0)
+        .with_y_axis_max(top * (1.0 + HEADROOM))
+        .with_x_tick_format(ticks(high - low))
+        .with_y_tick_format(ticks(top));
+    let grid = Grid::new(1, 1).with_plots(vec![plots]).with_layouts(vec![layout]).with_keep_panel_legends();
+    std::fs::write(path, SvgBackend.render_scene(&grid.with_cell_size(0.7 * WIDTH, 380.0).render()))
+}
+
+/// Fonts, frame and legend that all figures share.
+fn styled(layout: Layout) -> Layout {
+    let theme = Theme { font_family: Some("Helvetica, Arial, sans-serif".into()), ..Theme::minimal() };
+    layout
+        .with_theme(theme)
+        .with_label_size(14)
+        .with_tick_size(12)
+        .with_body_size(12)
+        .with_legend_position(kuva::plot::LegendPosition::InsideTopRight)
+        .with_legend_box(false)
+        .with_ticks(6)
+}
+
+/// Enough decimals for about six ticks over `span`.
+fn ticks(span: f64) -> TickFormat {
+    let step = span / 6.0;
+    if !(1e-4..1e5).contains(&step) {
+        return TickFormat::Sci;
+    }
+    // One more than the leading digit of the step, as steps of 2.5 are common; none that is always zero.
+    let decimals = (1.0 - step.log10().floor()).max(0.0) as usize;
+    TickFormat::Custom(std::sync::Arc::new(move |value: f64| {
+        let text = format!("{value:.decimals$}");
+        let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+        short.replace('-', "−")
+    }))
+}
+
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    if low < high { (low, high) } else { (low - 1.0, low + 1.0) }
+}
+
+/// At most two points per column, the lowest and the highest: what a pen would leave on paper.
+fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    if points.len() <= 2 * COLUMNS {
+        return points;
+    }
+    let mut kept = Vec::with_capacity(2 * COLUMNS);
+    for column in points.chunks(points.len().div_ceil(COLUMNS)) {
+        let by_height = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+        if let (Some(low), Some(high)) = (column.iter().min_by(by_height), column.iter().max_by(by_height)) {
+            let mut pair = [*low, *high];
+            pair.sort_by(|a, b| a.0.total_cmp(&b.0));
+            kept.extend(pair);
+        }
+    }
+    kept
+}

@@ -1,0 +1,265 @@
+//! Friction out of a ring-down record: `cargo run --release --example identify -- FILE`.
+//!
+//! Reads a velocity or displacement record (CSV, TSV or MATLAB v5 to v7), prepares it, fits it by one law or by
+//! several, and prints what was found, how sure it is, and what the record could not tell. Without FILE it runs
+//! on the bundled record of a bicycle fork swinging as a pendulum. `--help` lists the options.
+
+#[path = "common/figure.rs"]
+mod figure;
+
+use std::error::Error;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use clap::{Parser, ValueEnum};
+use figure::{Layer, Panel, Role};
+use fmm_fit::Options;
+use fmm_identify::{Candidate, Comparison, Known, Machine, Preparation, RingDown, compare_observed};
+use fmm_record::{Column, Quantity, Record};
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Identifies the friction of a machine from the record of its free vibration.
+#[derive(Debug, Parser)]
+#[command(name = "identify")]
+struct Arguments {
+    /// The record: .csv, .tsv, .txt or .mat; without it, the bundled record of a bicycle fork
+    file: Option<PathBuf>,
+    /// The channel with the motion, by name or by number counted from 0
+    #[arg(long, value_name = "NAME|INDEX")]
+    channel: Option<Column>,
+    /// The channel with the time (s)
+    #[arg(long, value_name = "NAME|INDEX", conflicts_with = "rate")]
+    time: Option<Column>,
+    /// The sampling rate, if there is no time channel
+    #[arg(long, value_name = "HZ")]
+    rate: Option<f64>,
+    /// What the channel measures
+    #[arg(long, value_enum, default_value = "velocity")]
+    quantity: Measured,
+    /// Factor that turns the channel into SI units (m/s, m, rad/s or rad)
+    #[arg(long, value_name = "FACTOR")]
+    scale: Option<f64>,
+    /// Unit of the channel, after scaling
+    #[arg(long)]
+    unit: Option<String>,
+    /// The law: viscous, coulomb, coulomb_static, coulomb_viscous, or all (viscous, coulomb and both)
+    #[arg(long, value_name = "NAME|all", default_value = "all")]
+    law: String,
+    /// The moving mass
+    #[arg(long, value_name = "KG", conflicts_with = "stiffness")]
+    mass: Option<f64>,
+    /// Standard uncertainty of the mass
+    #[arg(long, value_name = "KG", requires = "mass", default_value_t = 0.0)]
+    mass_u: f64,
+    /// The stiffness
+    #[arg(long, value_name = "N/M")]
+    stiffness: Option<f64>,
+    /// Standard uncertainty of the stiffness
+    #[arg(long, value_name = "N/M", requires = "stiffness", default_value_t = 0.0)]
+    stiffness_u: f64,
+    /// The machine's own linear damping (N s/m; 1/s if neither mass nor stiffness is given)
+    #[arg(long, value_name = "N S/M")]
+    damping: Option<f64>,
+    /// Standard uncertainty of the damping
+    #[arg(long, value_name = "N S/M", requires = "damping", default_value_t = 0.0)]
+    damping_u: f64,
+    /// The normal load on the contact
+    #[arg(long, value_name = "N")]
+    normal_load: Option<f64>,
+    /// Standard uncertainty of the normal load
+    #[arg(long, value_name = "N", requires = "normal_load", default_value_t = 0.0)]
+    normal_load_u: f64,
+    /// Use the record from this time on
+    #[arg(long, value_name = "S")]
+    from: Option<f64>,
+    /// Use the record up to this time
+    #[arg(long, value_name = "S")]
+    to: Option<f64>,
+    /// Print one JSON document instead of the report
+    #[arg(long)]
+    json: bool,
+    /// Write SVG figures into this folder
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Measured {
+    Velocity,
+    Displacement,
+}
+
+impl From<Measured> for Quantity {
+    fn from(measured: Measured) -> Self {
+        match measured {
+            Measured::Velocity => Self::Velocity,
+            Measured::Displacement => Self::Displacement,
+        }
+    }
+}
+
+/// The record to identify, and how it was read.
+struct Input {
+    record: Record,
+    origin: String,
+}
+
+fn bundled() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/BrowserForkCompoundFirst1.mat")
+}
+
+fn read(arguments: &Arguments) -> Result<Input, Box<dyn Error>> {
+    let quantity = Quantity::from(arguments.quantity);
+    let path = arguments.file.clone().unwrap_or_else(bundled);
+    let is_mat = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mat"));
+    let reading = if is_mat {
+        let file = fmm_record::mat::MatFile::read(&path)?;
+        let mut reader = fmm_record::mat::MatReader::default().quantity(quantity);
+        if let Some(channel) = &arguments.channel {
+            reader = reader.channel(variable(&file, channel)?);
+        }
+        if let Some(time) = &arguments.time {
+            reader = reader.time(variable(&file, time)?);
+        }
+        if let Some(rate) = arguments.rate {
+            reader = reader.rate(rate);
+        }
+        reader.read_from(&file)?
+    } else {
+        let mut reader = fmm_record::csv::CsvReader::default().quantity(quantity);
+        if let Some(channel) = &arguments.channel {
+            reader = reader.channel(channel.clone());
+        }
+        if let Some(time) = &arguments.time {
+            reader = reader.time(time.clone());
+        }
+        if let Some(rate) = arguments.rate {
+            reader = reader.rate(rate);
+        }
+        reader.read(&path)?
+    };
+    let name = path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
+    let origin = format!("{name}, channel {}; the sampling rate was {}", reading.channel, reading.sampling);
+    let unit = match (&arguments.unit, quantity, &arguments.file) {
+        (Some(unit), ..) => unit.clone(),
+        // The gain of the fork's gyro was not published.
+        (None, _, None) if arguments.scale.is_none() => "V".to_owned(),
+        (None, Quantity::Displacement, _) => "m".to_owned(),
+        _ => "m/s".to_owned(),
+    };
+    let record = match arguments.scale {
+        Some(factor) => reading.record.scaled(factor, unit)?,
+        None => reading.record.with_unit(unit),
+    };
+    Ok(Input { record, origin })
+}
+
+/// A MATLAB channel by the name of its variable, or by number: of the arrays in the file, or, if it has but one
+/// matrix, of the columns of that.
+fn variable(file: &fmm_record::mat::MatFile, column: &Column) -> Result<fmm_record::mat::Channel, Box<dyn Error>> {
+    use fmm_record::mat::Channel;
+    let index = match column {
+        Column::Name(name) => return Ok(Channel::from(name.as_str())),
+        Column::Index(index) => *index,
+    };
+    let arrays: Vec<_> = file.arrays().iter().filter(|array| array.values().len() > 1).collect();
+    if let [array] = arrays[..] {
+        if array.dimensions().iter().all(|length| *length > 1) {
+            return Ok(Channel::column(array.name(), index + 1));
+        }
+    }
+    match arrays.get(index) {
+        Some(array) => Ok(Channel::variable(array.name())),
+        None => Err(format!("there is no channel {index}; the file has {} arrays, counted from 0", arrays.len()).into()),
+    }
+}
+
+fn machine(arguments: &Arguments) -> Result<Machine, Box<dyn Error>> {
+    let mut machine = match (arguments.mass, arguments.stiffness) {
+        (Some(mass), _) => Machine::of_mass(Known::new(mass, arguments.mass_u)?)?,
+        (None, Some(stiffness)) => Machine::of_stiffness(Known::new(stiffness, arguments.stiffness_u)?)?,
+        (None, None) => Machine::per_unit_mass(),
+    };
+    if let Some(damping) = arguments.damping {
+        machine = machine.with_damping(Known::new(damping, arguments.damping_u)?)?;
+    }
+    if let Some(load) = arguments.normal_load {
+        machine = machine.with_normal_load(Known::new(load, arguments.normal_load_u)?)?;
+    }
+    Ok(machine)
+}
+
+fn candidates(law: &str) -> Result<Vec<Candidate>, Box<dyn Error>> {
+    if law == "all" { Ok(Candidate::standard().to_vec()) } else { Ok(vec![Candidate::named(law)?]) }
+}
+
+/// Fits all candidates while a line on standard error shows how far they are.
+fn identify(arguments: &Arguments, decay: &RingDown) -> Result<Comparison, Box<dyn Error>> {
+    let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {msg}")?);
+    bar.enable_steady_tick(Duration::from_millis(100));
+    let candidates = candidates(&arguments.law)?;
+    let decays = std::slice::from_ref(decay);
+    let samples = decay.summary().samples as f64;
+    let comparison = compare_observed(&machine(arguments)?, decays, &candidates, &Options::default(), |law, progress| {
+        let rms = (progress.sum_of_squares() / samples).sqrt();
+        bar.set_message(format!("{law}: step {}, rms residual {rms:.4e}", progress.iterations()));
+        ControlFlow::Continue(())
+    });
+    bar.finish_and_clear();
+    Ok(comparison?)
+}
+
+/// Draws the record with the preferred fit, the decay of its amplitude, and the residuals.
+fn draw(folder: &Path, decay: &RingDown, comparison: &Comparison) -> Result<(), Box<dyn Error>> {
+    std::fs::create_dir_all(folder)?;
+    let preferred = comparison.preferred();
+    let record = decay.record();
+    let model = preferred.model(std::slice::from_ref(decay), 0).ok_or("the fitted motion cannot be drawn")?;
+    let (unit, quantity) = (record.unit(), record.quantity());
+    let curve = |values: &[f64]| record.times().zip(values.iter().copied()).collect::<Vec<_>>();
+    let residuals: Vec<f64> = record.values().iter().zip(&model).map(|(measured, model)| measured - model).collect();
+
+    let motion = Panel::new("", format!("{quantity} / ({unit})"), 330.0)
+        .with(Layer::new(Role::Measured, "measured", curve(record.values())))
+        .with(Layer::new(Role::Fitted, format!("fit by {}", preferred.law()), curve(&model)));
+    let remainder = Panel::new("time / s", format!("residual / ({unit})"), 200.0)
+        .with(Layer::new(Role::Residual, "measured − fit", curve(&residuals)));
+    figure::stacked(&folder.join("fit.svg"), &[motion, remainder])?;
+
+    let offset = preferred.finding("offset").map_or(0.0, fmm_identify::Finding::value);
+    let measured = decay.peaks().iter().map(|(time, value)| (*time, (value - offset).abs())).collect();
+    let swings = fmm_record::Swings::of(&Record::new(record.start(), record.interval(), model, quantity, unit)?);
+    let fitted = swings.peaks().iter().map(|peak| (peak.time, (peak.value - offset).abs())).collect();
+    let amplitudes = Panel::new("time / s", format!("amplitude of each half swing / ({unit})"), 380.0)
+        .with(Layer::new(Role::Points, "measured", measured))
+        .with(Layer::new(Role::Fitted, format!("envelope of {}", preferred.law()), fitted));
+    figure::stacked(&folder.join("amplitude.svg"), &[amplitudes])?;
+
+    figure::histogram(&folder.join("residuals.svg"), &format!("residual / ({unit})"), &residuals)?;
+    Ok(())
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments = Arguments::parse();
+    let input = read(&arguments)?;
+    let mut preparation = Preparation::default();
+    if let Some(from) = arguments.from {
+        preparation = preparation.from(from);
+    }
+    if let Some(to) = arguments.to {
+        preparation = preparation.to(to);
+    }
+    let decay = RingDown::prepare(&input.record, &preparation)?;
+    let comparison = identify(&arguments, &decay)?;
+    if arguments.json {
+        println!("{}", serde_json::to_string_pretty(&comparison)?);
+    } else {
+        println!("{}\n{comparison}", input.origin);
+    }
+    if let Some(folder) = &arguments.figures {
+        draw(folder, &decay, &comparison)?;
+        eprintln!("figures: {}", folder.join("{fit,amplitude,residuals}.svg").display());
+    }
+    Ok(())
+}
