@@ -10,6 +10,7 @@ mod figure;
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{Parser, ValueEnum};
@@ -21,7 +22,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 /// Identifies the friction of a machine from the record of its free vibration.
 #[derive(Debug, Parser)]
-#[command(name = "identify")]
+#[command(name = "identify", allow_negative_numbers = true)]
 struct Arguments {
     /// The record: .csv, .tsv, .txt or .mat; without it, the bundled record of a bicycle fork
     file: Option<PathBuf>,
@@ -40,6 +41,9 @@ struct Arguments {
     /// Factor that turns the channel into SI units (m/s, m, rad/s or rad)
     #[arg(long, value_name = "FACTOR")]
     scale: Option<f64>,
+    /// Relative standard uncertainty of that factor, or of the gain of the instrument
+    #[arg(long, value_name = "RELATIVE", default_value_t = 0.0)]
+    scale_u: f64,
     /// Unit of the channel, after scaling
     #[arg(long)]
     unit: Option<String>,
@@ -171,7 +175,9 @@ fn variable(file: &fmm_record::mat::MatFile, column: &Column) -> Result<fmm_reco
     }
     match arrays.get(index) {
         Some(array) => Ok(Channel::variable(array.name())),
-        None => Err(format!("there is no channel {index}; the file has {} arrays, counted from 0", arrays.len()).into()),
+        None => {
+            Err(format!("there is no channel {index}; the file has {} arrays, counted from 0", arrays.len()).into())
+        }
     }
 }
 
@@ -201,11 +207,12 @@ fn identify(arguments: &Arguments, decay: &RingDown) -> Result<Comparison, Box<d
     let candidates = candidates(&arguments.law)?;
     let decays = std::slice::from_ref(decay);
     let samples = decay.summary().samples as f64;
-    let comparison = compare_observed(&machine(arguments)?, decays, &candidates, &Options::default(), |law, progress| {
-        let rms = (progress.sum_of_squares() / samples).sqrt();
-        bar.set_message(format!("{law}: step {}, rms residual {rms:.4e}", progress.iterations()));
-        ControlFlow::Continue(())
-    });
+    let comparison =
+        compare_observed(&machine(arguments)?, decays, &candidates, &Options::default(), |law, progress| {
+            let rms = (progress.sum_of_squares() / samples).sqrt();
+            bar.set_message(format!("{law}: step {}, rms residual {rms:.4e}", progress.iterations()));
+            ControlFlow::Continue(())
+        });
     bar.finish_and_clear();
     Ok(comparison?)
 }
@@ -220,30 +227,42 @@ fn draw(folder: &Path, decay: &RingDown, comparison: &Comparison) -> Result<(), 
     let curve = |values: &[f64]| record.times().zip(values.iter().copied()).collect::<Vec<_>>();
     let residuals: Vec<f64> = record.values().iter().zip(&model).map(|(measured, model)| measured - model).collect();
 
-    let motion = Panel::new("", format!("{quantity} / ({unit})"), 330.0)
+    let motion = Panel::new("", figure::label(quantity, unit), 330.0)
         .with(Layer::new(Role::Measured, "measured", curve(record.values())))
         .with(Layer::new(Role::Fitted, format!("fit by {}", preferred.law()), curve(&model)));
-    let remainder = Panel::new("time / s", format!("residual / ({unit})"), 200.0)
-        .with(Layer::new(Role::Residual, "measured − fit", curve(&residuals)));
+    let remainder = Panel::new("time / s", figure::label("residual", unit), 210.0).with(Layer::new(
+        Role::Residual,
+        "measured − fit",
+        curve(&residuals),
+    ));
     figure::stacked(&folder.join("fit.svg"), &[motion, remainder])?;
 
     let offset = preferred.finding("offset").map_or(0.0, fmm_identify::Finding::value);
     let measured = decay.peaks().iter().map(|(time, value)| (*time, (value - offset).abs())).collect();
     let swings = fmm_record::Swings::of(&Record::new(record.start(), record.interval(), model, quantity, unit)?);
     let fitted = swings.peaks().iter().map(|peak| (peak.time, (peak.value - offset).abs())).collect();
-    let amplitudes = Panel::new("time / s", format!("amplitude of each half swing / ({unit})"), 380.0)
+    let amplitudes = Panel::new("time / s", figure::label("amplitude of each half swing", unit), 380.0)
         .with(Layer::new(Role::Points, "measured", measured))
         .with(Layer::new(Role::Fitted, format!("envelope of {}", preferred.law()), fitted));
     figure::stacked(&folder.join("amplitude.svg"), &[amplitudes])?;
 
-    figure::histogram(&folder.join("residuals.svg"), &format!("residual / ({unit})"), &residuals)?;
+    figure::histogram(&folder.join("residuals.svg"), &figure::label("residual", unit), &residuals)?;
     Ok(())
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let arguments = Arguments::parse();
-    let input = read(&arguments)?;
-    let mut preparation = Preparation::default();
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let input = read(arguments)?;
+    let mut preparation = Preparation::default().gain_uncertainty(arguments.scale_u);
     if let Some(from) = arguments.from {
         preparation = preparation.from(from);
     }
@@ -251,7 +270,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         preparation = preparation.to(to);
     }
     let decay = RingDown::prepare(&input.record, &preparation)?;
-    let comparison = identify(&arguments, &decay)?;
+    let comparison = identify(arguments, &decay)?;
     if arguments.json {
         println!("{}", serde_json::to_string_pretty(&comparison)?);
     } else {

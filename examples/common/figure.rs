@@ -22,9 +22,17 @@ const COLUMNS: usize = 1200;
 /// Share of an axis left free above the data, where the legend goes.
 const HEADROOM: f64 = 0.28;
 
+/// Left and right of the axes (px): equal for all panels, so that their time axes agree.
+const MARGINS: (f64, f64) = (90.0, 24.0);
+
+/// The label of an axis, quantity over unit; a unit that is a product or quotient is put in brackets.
+pub(crate) fn label(quantity: impl std::fmt::Display, unit: &str) -> String {
+    if unit.contains(['/', ' ']) { format!("{quantity} / ({unit})") } else { format!("{quantity} / {unit}") }
+}
+
 /// What a layer of a panel shows; it decides colour and stroke.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
+pub(crate) enum Role {
     /// A measured curve.
     Measured,
     /// A fitted curve.
@@ -39,7 +47,7 @@ pub enum Role {
 
 /// One curve or set of points.
 #[derive(Debug, Clone)]
-pub struct Layer {
+pub(crate) struct Layer {
     role: Role,
     label: String,
     points: Vec<(f64, f64)>,
@@ -47,7 +55,7 @@ pub struct Layer {
 
 impl Layer {
     /// A layer with its legend text.
-    pub fn new(role: Role, label: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+    pub(crate) fn new(role: Role, label: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         Self { role, label: label.into(), points: if role == Role::Points { points } else { thinned(points) } }
     }
 
@@ -68,7 +76,7 @@ impl Layer {
 
 /// Axes with their layers.
 #[derive(Debug, Clone)]
-pub struct Panel {
+pub(crate) struct Panel {
     x_label: String,
     y_label: String,
     height: f64,
@@ -77,13 +85,13 @@ pub struct Panel {
 
 impl Panel {
     /// Empty axes, `height` pixels high.
-    pub fn new(x_label: impl Into<String>, y_label: impl Into<String>, height: f64) -> Self {
+    pub(crate) fn new(x_label: impl Into<String>, y_label: impl Into<String>, height: f64) -> Self {
         Self { x_label: x_label.into(), y_label: y_label.into(), height, layers: Vec::new() }
     }
 
     /// The same axes with another layer on top.
     #[must_use]
-    pub fn with(mut self, layer: Layer) -> Self {
+    pub(crate) fn with(mut self, layer: Layer) -> Self {
         self.layers.push(layer);
         self
     }
@@ -100,8 +108,10 @@ impl Panel {
         styled(Layout::auto_from_plots(&self.plots()))
             .with_x_label(self.x_label.as_str())
             .with_y_label(self.y_label.as_str())
-            .with_x_axis_min(x_low)
-            .with_x_axis_max(x_high)
+            .with_x_axis_min(x_low - 0.015 * (x_high - x_low))
+            .with_x_axis_max(x_high + 0.015 * (x_high - x_low))
+            .with_x_tick_step(step(x_high - x_low))
+            .with_force_margins(MARGINS.0, MARGINS.1)
             .with_y_axis_min(y_low - 0.05 * span)
             .with_y_axis_max(y_high + HEADROOM * span)
             .with_x_tick_format(ticks(x_high - x_low))
@@ -113,7 +123,7 @@ impl Panel {
 ///
 /// # Errors
 /// If the file cannot be written.
-pub fn stacked(path: &Path, panels: &[Panel]) -> std::io::Result<()> {
+pub(crate) fn stacked(path: &Path, panels: &[Panel]) -> std::io::Result<()> {
     let heights: Vec<f64> = panels.iter().map(|panel| panel.height).collect();
     let mut grid = Grid::new(panels.len(), 1)
         .with_plots(panels.iter().map(Panel::plots).collect())
@@ -130,7 +140,7 @@ pub fn stacked(path: &Path, panels: &[Panel]) -> std::io::Result<()> {
 ///
 /// # Errors
 /// If the file cannot be written.
-pub fn histogram(path: &Path, x_label: &str, values: &[f64]) -> std::io::Result<()> {
+pub(crate) fn histogram(path: &Path, x_label: &str, values: &[f64]) -> std::io::Result<()> {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     let deviation = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt();
@@ -166,6 +176,8 @@ pub fn histogram(path: &Path, x_label: &str, values: &[f64]) -> std::io::Result<
         .with_y_axis_min(0.0)
         .with_y_axis_max(top * (1.0 + HEADROOM))
         .with_x_tick_format(ticks(high - low))
+        .with_x_tick_step(step(high - low))
+        .with_force_margins(MARGINS.0, MARGINS.1)
         .with_y_tick_format(ticks(top));
     let grid = Grid::new(1, 1).with_plots(vec![plots]).with_layouts(vec![layout]).with_keep_panel_legends();
     std::fs::write(path, SvgBackend.render_scene(&grid.with_cell_size(0.7 * WIDTH, 380.0).render()))
@@ -182,6 +194,13 @@ fn styled(layout: Layout) -> Layout {
         .with_legend_position(kuva::plot::LegendPosition::InsideTopRight)
         .with_legend_box(false)
         .with_ticks(6)
+}
+
+/// A tick step of 1, 2 or 5 times a power of ten, for about six ticks over `span`.
+fn step(span: f64) -> f64 {
+    let power = 10f64.powf((span / 6.0).log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
+    steps.into_iter().find(|step| span / step <= 8.0).unwrap_or(10.0 * power)
 }
 
 /// Enough decimals for about six ticks over `span`.

@@ -8,7 +8,7 @@ use std::fmt;
 /// Σⱼ (∂r/∂θⱼ) sⱼ cⱼ = 0,     dθⱼ = sⱼ cⱼ,     max |cⱼ| = 1
 /// ```
 ///
-/// The scale sⱼ is |θⱼ|, so that the components are relative changes d ln|θⱼ|. For a value of zero, which has no
+/// The scale sⱼ is |θⱼ|, so that the components are relative changes d ln|θⱼ|. For a value of zero, or zero to rounding, which has no
 /// relative change, it is the change that would move the residuals as much as the most influential parameter
 /// does when it changes by its own value. Several directions are given in reduced form: each has a component of 1
 /// that is 0 in all others.
@@ -33,6 +33,10 @@ impl NullDirection {
     }
 }
 
+/// A value whose whole influence is less than this share of the largest is zero to rounding, as the position is that a
+/// fit finds to be 1e-17 m.
+const ZERO: f64 = 1e-8;
+
 /// Turns right singular vectors of zero singular values into directions.
 ///
 /// `null` holds vectors over the columns `columns` with `scales` the norms of these columns; `values` has all
@@ -46,8 +50,8 @@ pub(crate) fn null_directions(
     noise: f64,
 ) -> Vec<NullDirection> {
     let influence = columns.iter().zip(scales).map(|(&j, scale)| values[j].abs() * scale).fold(0.0, f64::max);
-    let unit = |(&j, scale): (&usize, &f64)| match values[j].abs() {
-        value if value > 0.0 => value * scale,
+    let unit = |(&j, scale): (&usize, &f64)| match values[j].abs() * scale {
+        own if own > ZERO * influence => own,
         _ if influence > 0.0 => influence,
         _ => 1.0,
     };

@@ -55,7 +55,8 @@ impl Candidate {
 
     /// Whether this law is a special case of `other`: every parameter of it is one of the other's, in the same role.
     pub(crate) fn is_nested_in(&self, other: &Self) -> bool {
-        let same = |a: &LawParameter, b: &LawParameter| a.parameter().name() == b.parameter().name() && a.role() == b.role();
+        let same =
+            |a: &LawParameter, b: &LawParameter| a.parameter().name() == b.parameter().name() && a.role() == b.role();
         self.parameters.len() < other.parameters.len()
             && self.parameters.iter().all(|own| other.parameters.iter().any(|theirs| same(own, theirs)))
     }

@@ -41,7 +41,9 @@ pub enum IdentifyError {
         needed: usize,
     },
     /// Too few half swings.
-    #[error("the record shows {found} half swings above its noise; at least {needed} are needed to see a period and a decay")]
+    #[error(
+        "the record shows {found} half swings above its noise; at least {needed} are needed to see a period and a decay"
+    )]
     TooFewHalfSwings {
         /// How many were found.
         found: usize,
@@ -56,6 +58,9 @@ pub enum IdentifyError {
         /// The names there are.
         known: String,
     },
+    /// A number given for the preparation cannot be.
+    #[error(transparent)]
+    InvalidInput(#[from] fmm_model::ModelError),
     /// The record itself does not allow what was asked for.
     #[error(transparent)]
     Record(#[from] RecordError),

@@ -4,9 +4,9 @@ use fmm_fit::{EstimateStatus, Fit};
 use fmm_friction::{LawFamily, Role};
 use fmm_model::{Dual, Parameter, Scalar};
 
+use crate::Machine;
 use crate::layout::{Layout, mass, mass_of_stiffness, named};
 use crate::machine::Scale;
-use crate::Machine;
 
 /// Where the value of a finding comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,27 +49,30 @@ impl Finding {
     }
 }
 
-/// Shared values (of one fit) and the machine's known inputs, from which the derived quantities follow.
+/// Shared values of one fit and what is known from elsewhere, from which the derived quantities follow.
 struct Inputs<'a> {
     machine: &'a Machine,
     shared: &'a [f64],
+    gain_uncertainty: f64,
 }
+
+/// Inputs that were not fitted: scale of the machine, normal load, gain of the instrument.
+const KNOWN: usize = 3;
 
 /// Directions of derivative evaluated at a time.
 const DIRECTIONS: usize = 6;
 
 impl Inputs<'_> {
-    /// Standard uncertainties of the inputs that were not fitted: the scale, then the normal load.
-    fn uncertainties(&self) -> [f64; 2] {
+    /// Standard uncertainties of the inputs that were not fitted.
+    fn uncertainties(&self) -> [f64; KNOWN] {
         let scale = match self.machine.scale() {
             Scale::Mass(known) | Scale::Stiffness(known) => known.uncertainty(),
             Scale::PerUnitMass | Scale::Unknown => 0.0,
         };
-        [scale, self.machine.normal_load().map_or(0.0, |load| load.uncertainty())]
+        [scale, self.machine.normal_load().map_or(0.0, |load| load.uncertainty()), self.gain_uncertainty]
     }
 
-    /// The derived quantities, as numbers whose directions from `first` on are the shared values, the scale and
-    /// the load.
+    /// The derived quantities, as numbers whose directions from `first` on are the shared values, then the inputs.
     fn derived<F: LawFamily, D: Scalar>(&self, first: usize) -> Vec<(Parameter, D)> {
         let variable = |value: f64, direction: usize| D::variable(value, direction.wrapping_sub(first));
         let natural_frequency = variable(self.shared[0], 0);
@@ -96,11 +99,13 @@ impl Inputs<'_> {
         let Some(to_force) = to_force else { return derived };
         let first_of_law = self.shared.len() - F::PARAMETERS.len();
         let load = self.machine.normal_load().map(|load| variable(load.value(), self.shared.len() + 1));
+        let gain = variable(1.0, self.shared.len() + 2);
         for (i, law_parameter) in F::PARAMETERS.iter().enumerate() {
             let force = variable(self.shared[first_of_law + i], first_of_law + i) * to_force;
             let parameter = law_parameter.parameter();
             match law_parameter.role() {
                 Role::Level => {
+                    let force = force / gain;
                     if mass.is_some() {
                         derived.push((named(parameter, "friction_force", "N"), force));
                     }
@@ -120,19 +125,28 @@ impl Inputs<'_> {
 ///
 /// Uncertainties of derived quantities are first order, u² = gᵀ V g + Σ (∂y/∂xᵢ)² u²(xᵢ), with exact derivatives
 /// (JCGM 100:2008, 5.1.2 and 5.2.2).
-pub(crate) fn findings<F: LawFamily>(machine: &Machine, layout: &Layout, fit: &Fit) -> Vec<Finding> {
-    let fitted = fit.estimates().iter().map(|estimate| Finding {
-        parameter: estimate.parameter().clone(),
-        value: estimate.value(),
-        uncertainty: estimate.standard_uncertainty(),
-        origin: Origin::Fitted(estimate.status()),
+pub(crate) fn findings<F: LawFamily>(
+    machine: &Machine,
+    layout: &Layout,
+    fit: &Fit,
+    gain_uncertainty: f64,
+) -> Vec<Finding> {
+    let fitted = fit.estimates().iter().enumerate().map(|(index, estimate)| {
+        // What is proportional to the record is uncertain with its gain.
+        let gain = if layout.scales_with_record::<F>(index) { gain_uncertainty * estimate.value() } else { 0.0 };
+        Finding {
+            parameter: estimate.parameter().clone(),
+            value: estimate.value(),
+            uncertainty: estimate.standard_uncertainty().map(|u| u.hypot(gain)),
+            origin: Origin::Fitted(estimate.status()),
+        }
     });
     let mut findings: Vec<Finding> = fitted.collect();
     if machine.scale() != Scale::Unknown && mass(machine.scale(), fit.values()[0]).is_none() {
         return findings;
     }
-    let inputs = Inputs { machine, shared: &fit.values()[..layout.shared] };
-    let directions = layout.shared + 2;
+    let inputs = Inputs { machine, shared: &fit.values()[..layout.shared], gain_uncertainty };
+    let directions = layout.shared + KNOWN;
     let values = inputs.derived::<F, f64>(0);
     let mut gradients = vec![vec![0.0; directions]; values.len()];
     for first in (0..directions).step_by(DIRECTIONS) {
@@ -149,8 +163,8 @@ pub(crate) fn findings<F: LawFamily>(machine: &Machine, layout: &Layout, fit: &F
     findings
 }
 
-/// gᵀ V g over the fitted values plus the variances of the two inputs; none if a value that matters has none.
-fn variance(fit: &Fit, gradient: &[f64], inputs: [f64; 2]) -> Option<f64> {
+/// gᵀ V g over the fitted values plus the variances of the inputs; none if a value that matters has none.
+fn variance(fit: &Fit, gradient: &[f64], inputs: [f64; KNOWN]) -> Option<f64> {
     let (shared, known) = gradient.split_at(gradient.len() - inputs.len());
     let mut variance: f64 = known.iter().zip(inputs).map(|(slope, u)| (slope * u).powi(2)).sum();
     for (i, row) in shared.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {

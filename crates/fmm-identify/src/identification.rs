@@ -99,17 +99,18 @@ pub fn identify_observed<F: Simulated>(
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Identification, IdentifyError> {
-    check_records(decays)?;
-    let problem = RingDownProblem::<F>::new(*machine, decays);
+    let problem = RingDownProblem::<F>::new(*machine, decays)?;
     let fit = best_fit(&problem, options, observer)?;
-    let mut found = findings::<F>(machine, problem.layout(), &fit);
+    // One instrument for all records; the worst statement counts.
+    let gain = decays.iter().map(|decay| decay.summary().gain_uncertainty).fold(0.0, f64::max);
+    let mut found = findings::<F>(machine, problem.layout(), &fit, gain);
     if let Some(moved) = machine.with_damping_moved() {
         let mut ends = Vec::new();
         for machine in moved {
-            let problem = RingDownProblem::<F>::new(machine, decays);
+            let problem = RingDownProblem::<F>::new(machine, decays)?;
             let fit = solve_observed(&problem, fit.values(), options, |progress| observer(progress))
                 .map_err(|source| IdentifyError::Fit { law: F::NAME, source })?;
-            ends.push(findings::<F>(&machine, problem.layout(), &fit));
+            ends.push(findings::<F>(&machine, problem.layout(), &fit, gain));
         }
         add_in_quadrature(&mut found, &ends[0], &ends[1]);
     }
@@ -130,19 +131,10 @@ pub fn identify_observed<F: Simulated>(
         findings: found,
         motions,
         warnings: Vec::new(),
-        model: |machine, decays, record, p| RingDownProblem::<F>::new(machine, decays).model(record, p).ok(),
+        model: |machine, decays, record, p| RingDownProblem::<F>::new(machine, decays).ok()?.model(record, p).ok(),
     };
     identification.warnings = Warning::of(&identification, decays);
     Ok(identification)
-}
-
-fn check_records(decays: &[RingDown]) -> Result<(), IdentifyError> {
-    let describe = |decay: &RingDown| format!("{} in {}", decay.record().quantity(), decay.record().unit());
-    let first = decays.first().ok_or(IdentifyError::NoRecord)?;
-    match decays.iter().find(|decay| describe(decay) != describe(first)) {
-        Some(other) => Err(IdentifyError::MixedRecords { first: describe(first), other: describe(other) }),
-        None => Ok(()),
-    }
 }
 
 /// The best end of the fits from all start values.
@@ -155,7 +147,9 @@ fn best_fit<F: Simulated>(
     let mut failure = None;
     for start in problem.starts() {
         match solve_observed(problem, &start, options, |progress| observer(progress)) {
-            Ok(fit) if best.as_ref().is_none_or(|best| fit.sum_of_squares() < best.sum_of_squares()) => best = Some(fit),
+            Ok(fit) if best.as_ref().is_none_or(|best| fit.sum_of_squares() < best.sum_of_squares()) => {
+                best = Some(fit)
+            }
             Ok(_) => {}
             Err(source) => failure = Some(IdentifyError::Fit { law: F::NAME, source }),
         }

@@ -26,7 +26,8 @@ impl Known {
     /// [`ModelError`] if the value is not finite or the uncertainty is negative or not finite.
     pub fn new(value: f64, uncertainty: f64) -> Result<Self, ModelError> {
         let value = ModelError::require_finite("known value", value, "(in its own unit)")?;
-        let uncertainty = ModelError::require_not_negative("standard uncertainty", uncertainty, "(in the unit of the value)")?;
+        let uncertainty =
+            ModelError::require_not_negative("standard uncertainty", uncertainty, "(in the unit of the value)")?;
         Ok(Self { value, uncertainty })
     }
 

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use fmm_fit::EvaluationError;
-use fmm_friction::{LawFamily, Role};
+use fmm_friction::{LawFamily, LawParameter, Role};
 use fmm_model::{Bounds, Damping, Oscillator, Parameter, Scalar};
 use fmm_record::Quantity;
 use fmm_sim::Scenario;
@@ -77,6 +77,12 @@ impl Layout {
         if direction < self.shared { direction } else { self.own[record] + direction - self.shared }
     }
 
+    /// Whether the parameter at `index` is proportional to the record: friction levels, initial states, offsets.
+    pub(crate) fn scales_with_record<F: LawFamily>(&self, index: usize) -> bool {
+        let role = index.checked_sub(self.oscillator).and_then(|i| F::PARAMETERS.get(i)).map(LawParameter::role);
+        index >= self.shared || role == Some(Role::Level)
+    }
+
     /// The scenario of one record; `motion` holds the shared values and then its initial position and velocity.
     pub(crate) fn scenario<F: LawFamily, D: Scalar>(
         &self,
@@ -117,7 +123,8 @@ pub(crate) fn mass_of_stiffness<D: Scalar>(stiffness: D, natural_frequency: D) -
 /// A law's coefficient under the name and unit it has as a force: `coefficient` becomes `friction_force`,
 /// `static_coefficient` becomes `static_friction_force`.
 pub(crate) fn named(parameter: &Parameter, quantity: &'static str, unit: &str) -> Parameter {
-    let stem = parameter.name().strip_suffix("coefficient").map_or_else(|| format!("{}_", parameter.name()), str::to_owned);
+    let stem =
+        parameter.name().strip_suffix("coefficient").map_or_else(|| format!("{}_", parameter.name()), str::to_owned);
     let symbol = match quantity {
         "friction_per_mass" => "F/m",
         "friction_force" => "F",

@@ -18,6 +18,7 @@ pub struct Preparation {
     pub(crate) from: Option<f64>,
     pub(crate) to: Option<f64>,
     pub(crate) offset: Offset,
+    pub(crate) gain_uncertainty: f64,
 }
 
 /// What is done about the offset of a record.
@@ -53,6 +54,17 @@ impl Preparation {
         self.offset = offset;
         self
     }
+
+    /// Relative standard uncertainty of the instrument's gain (1), 0 unless it is stated.
+    ///
+    /// A gain that is wrong by a factor turns up in friction, initial position and initial velocity as that factor,
+    /// since position, velocity and friction may be scaled together without changing the equation of motion;
+    /// frequency and damping do not see it.
+    #[must_use]
+    pub fn gain_uncertainty(mut self, relative: f64) -> Self {
+        self.gain_uncertainty = relative;
+        self
+    }
 }
 
 /// What a prepared record is and what was seen in it. `Display` gives one sentence.
@@ -73,6 +85,8 @@ pub struct RecordSummary {
     pub unit: String,
     /// What is done about the offset.
     pub offset: Offset,
+    /// Relative standard uncertainty of the instrument's gain (1).
+    pub gain_uncertainty: f64,
     /// When the motion was released (s), if the record begins at rest.
     pub release: Option<f64>,
     /// Half swings that stand out of the noise.

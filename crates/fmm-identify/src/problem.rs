@@ -11,7 +11,7 @@ use fmm_sim::{Channels, Samples, Sampling, Simulated, Trajectory};
 
 use crate::first_guess::Dissipation;
 use crate::layout::{Layout, mass_of_stiffness};
-use crate::{Machine, RingDown};
+use crate::{IdentifyError, Machine, RingDown};
 
 /// The residuals "model less record" of one or several ring-downs by a law of family `F`, with exact derivatives.
 ///
@@ -36,10 +36,18 @@ const DIRECTIONS: usize = 6;
 const WINDOW: usize = 1 << 15;
 
 impl<'a, F: Simulated> RingDownProblem<'a, F> {
-    /// The problem of `decays` on `machine`; `decays` must not be empty.
-    pub(crate) fn new(machine: Machine, decays: &'a [RingDown]) -> Self {
+    /// The problem of `decays` on `machine`.
+    ///
+    /// # Errors
+    /// [`IdentifyError::NoRecord`] and [`IdentifyError::MixedRecords`].
+    pub fn new(machine: Machine, decays: &'a [RingDown]) -> Result<Self, IdentifyError> {
+        let describe = |decay: &RingDown| format!("{} in {}", decay.record().quantity(), decay.record().unit());
+        let first = decays.first().ok_or(IdentifyError::NoRecord)?;
+        if let Some(other) = decays.iter().find(|decay| describe(decay) != describe(first)) {
+            return Err(IdentifyError::MixedRecords { first: describe(first), other: describe(other) });
+        }
         let (layout, parameters) = Layout::of::<F>(&machine, decays);
-        Self { machine, decays, parameters, layout, family: PhantomData }
+        Ok(Self { machine, decays, parameters, layout, family: PhantomData })
     }
 
     pub(crate) fn layout(&self) -> &Layout {
@@ -120,7 +128,8 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
         let expressible = |dissipation: &&Dissipation| {
             (has_level || dissipation.friction == 0.0) && (has_slope || dissipation.damping == 0.0)
         };
-        let mut starts: Vec<_> = hypotheses.iter().filter(expressible).map(|hypothesis| self.start(*hypothesis)).collect();
+        let mut starts: Vec<_> =
+            hypotheses.iter().filter(expressible).map(|hypothesis| self.start(*hypothesis)).collect();
         if starts.is_empty() {
             starts.extend(hypotheses.first().map(|hypothesis| self.start(*hypothesis)));
         }

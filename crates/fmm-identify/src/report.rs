@@ -87,7 +87,8 @@ impl fmt::Display for Comparison {
         for law in self.identifications() {
             let stop = law.motions().iter().find_map(crate::FittedMotion::stop_time);
             let stop = stop.map_or_else(|| "-".to_owned(), |time| format!("{time:.4} s"));
-            let akaike = law.fit().corrected_akaike().map_or_else(|| "-".to_owned(), |aicc| format!("{:.1}", aicc - best));
+            let akaike =
+                law.fit().corrected_akaike().map_or_else(|| "-".to_owned(), |aicc| format!("{:.1}", aicc - best));
             let half_swings: usize = law.motions().iter().map(crate::FittedMotion::half_swings).sum();
             writeln!(
                 f,

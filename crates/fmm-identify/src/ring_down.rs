@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use fmm_model::Bounds;
+use fmm_model::{Bounds, ModelError};
 use fmm_record::{OffsetStep, Peak, Quantity, Record, Release, Swings, noise, quantisation_step, saturation, spikes};
 
 use crate::first_guess::{FirstGuess, Oscillation};
@@ -39,6 +39,10 @@ impl RingDown {
         if !matches!(quantity, Quantity::Displacement | Quantity::Velocity) {
             return Err(IdentifyError::Quantity { quantity });
         }
+        let gain_uncertainty = ModelError::require_not_negative("gain uncertainty", preparation.gain_uncertainty, "")?;
+        if let Offset::Fixed(value) = preparation.offset {
+            ModelError::require_finite("offset", value, "in the unit of the record")?;
+        }
         let (from, to) = (preparation.from.unwrap_or(record.start()), preparation.to.unwrap_or(record.end()));
         let record = record.crop(from, to)?;
         if record.len() < FEWEST_SAMPLES {
@@ -54,7 +58,7 @@ impl RingDown {
         let record = record.crop(begin, record.end())?;
 
         let start = record.start();
-        let after = |time: f64| time >= start - 0.5 * record.interval();
+        let after = |time: f64| time > start - record.interval();
         let peaks: Vec<Peak> = swings.peaks().iter().copied().filter(|peak| after(peak.time)).collect();
         let crossings = swings.crossings().iter().map(|crossing| crossing.time);
         let oscillation = Oscillation {
@@ -75,6 +79,7 @@ impl RingDown {
             quantity,
             unit: record.unit().to_owned(),
             offset: preparation.offset,
+            gain_uncertainty,
             release: release.map(|release| release.rest_end),
             half_swings: peaks.len(),
             amplitudes: (amplitudes[0], amplitudes[amplitudes.len() - 1]),
@@ -83,7 +88,7 @@ impl RingDown {
             resolution: quantisation_step(record.values()),
             spikes: spikes.iter().map(|spike| spike.count).sum(),
             saturation: saturation(record.values()),
-            offset_step: OffsetStep::of(&record, &swings),
+            offset_step: OffsetStep::of(&record),
             period_change: period_change(&oscillation.crossings),
         };
         let peaks = peaks.iter().map(|peak| (peak.time, peak.value)).collect();

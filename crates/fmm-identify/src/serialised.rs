@@ -43,7 +43,7 @@ impl Serialize for RecordSummary {
             Offset::Fixed(value) => Some(value),
             Offset::Fitted => None,
         };
-        let mut document = serializer.serialize_struct("RecordSummary", 17)?;
+        let mut document = serializer.serialize_struct("RecordSummary", 18)?;
         document.serialize_field("from_s", &self.from)?;
         document.serialize_field("to_s", &self.to)?;
         document.serialize_field("samples", &self.samples)?;
@@ -51,6 +51,7 @@ impl Serialize for RecordSummary {
         document.serialize_field("quantity", &self.quantity.to_string())?;
         document.serialize_field("unit", &self.unit)?;
         document.serialize_field("offset_held_at", &fixed)?;
+        document.serialize_field("gain_uncertainty", &self.gain_uncertainty)?;
         document.serialize_field("release_s", &self.release)?;
         document.serialize_field("half_swings", &self.half_swings)?;
         document.serialize_field("first_amplitude", &self.amplitudes.0)?;

@@ -24,7 +24,7 @@ pub enum Warning {
         noise: f64,
         /// Unit of both.
         unit: String,
-        /// Factor by which the standard uncertainties are too small at least, √τ.
+        /// √τ, the factor by which the standard uncertainties of slowly varying influences are too small.
         factor: f64,
     },
     /// The period changes with the amplitude: the restoring force is not a linear spring.
@@ -177,7 +177,8 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ScaleUnknown { load_known } => {
-                let missing = if *load_known { "mass and stiffness are unknown" } else { "mass and normal load are unknown" };
+                let missing =
+                    if *load_known { "mass and stiffness are unknown" } else { "mass and normal load are unknown" };
                 write!(
                     f,
                     "{missing}: a free vibration shows friction and damping per unit mass only, hence no friction \
@@ -191,7 +192,7 @@ impl fmt::Display for Warning {
                 f,
                 "the residuals are structured, not noise: {residual:.3e} {unit} rms against {noise:.1e} {unit} of noise \
                  between samples, and neighbours are alike; the law leaves something out, and the standard \
-                 uncertainties, which count every sample as independent, are too small by a factor of about {factor:.0}"
+                 uncertainties, which count every sample as independent, are too small by a factor of up to about {factor:.0}"
             ),
             Self::PeriodDependsOnAmplitude { change } => write!(
                 f,
@@ -210,11 +211,17 @@ impl fmt::Display for Warning {
                 "{count} samples lie on the end of the range, as if clipped; they were fitted as they are, which biases the amplitude"
             ),
             Self::OffsetStep { time, height, unit } => {
-                write!(f, "the offset jumps by {height:.3e} {unit} near {time:.3} s; fit the parts before and after apart")
+                write!(
+                    f,
+                    "the offset jumps by {height:.3e} {unit} near {time:.3} s; fit the parts before and after apart"
+                )
             }
             Self::Spikes { count } => write!(f, "{count} isolated samples far off their neighbours were left out"),
             Self::AtBound { parameter, value } => {
-                write!(f, "{parameter} ended on its bound {value}; it has no standard uncertainty, and the others hold for that value")
+                write!(
+                    f,
+                    "{parameter} ended on its bound {value}; it has no standard uncertainty, and the others hold for that value"
+                )
             }
             Self::Inseparable { sentence } | Self::NotConverged { sentence } => f.write_str(sentence),
             Self::NoInfluence { parameter } => write!(
@@ -227,7 +234,10 @@ impl fmt::Display for Warning {
                  which the uncertainties do not see",
                 100.0 * margin.abs()
             ),
-            Self::Undecided => write!(f, "the data do not decide between the models; the simplest of the close ones is shown as preferred"),
+            Self::Undecided => write!(
+                f,
+                "the data do not decide between the models; the simplest of the close ones is shown as preferred"
+            ),
         }
     }
 }

@@ -16,6 +16,8 @@ pub(crate) struct Harmonic {
     centre: f64,
     cosine: f64,
     sine: f64,
+    /// Coefficient of |sin φ|: half of the change of slope at the origin, for a fit with a kink.
+    kink: f64,
 }
 
 impl Harmonic {
@@ -50,33 +52,47 @@ impl Harmonic {
         }
         let (sine, bend) = solve(ss, sq, qq, sy, qy)?;
         let level = first + mean.2 - sine * mean.0 - bend * mean.1;
-        Some(Self { origin, omega, centre: level + bend, cosine: -bend, sine })
+        Some(Self { origin, omega, centre: level + bend, cosine: -bend, sine, kink: 0.0 })
     }
 
-    /// Fit with the centre known as well.
+    /// Fit with the centre known as well. With a `kink`, the slopes before and after the origin may differ, as those
+    /// of a velocity do where it changes sign against dry friction; without it that would shift the crossing by
+    /// w Δ/4 for a relative change Δ of slope. It doubles the scatter of the crossing.
     pub(crate) fn fit_about(
         values: &[f64],
         range: Range<usize>,
         origin: f64,
         half: f64,
         centre: f64,
+        kink: bool,
     ) -> Option<Self> {
         if range.len() < 2 {
             return None;
         }
         let omega = PI / half;
         let (mut ss, mut sc, mut cc, mut sy, mut cy) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        let (mut kk, mut sk, mut ck, mut ky) = (0.0, 0.0, 0.0, 0.0);
         for i in range {
             let (s, c) = (omega * (i as f64 - origin)).sin_cos();
-            let y = values[i] - centre;
+            let (k, y) = (s.abs(), values[i] - centre);
             ss += s * s;
             sc += s * c;
             cc += c * c;
             sy += s * y;
             cy += c * y;
+            kk += k * k;
+            sk += s * k;
+            ck += c * k;
+            ky += k * y;
         }
-        let (sine, cosine) = solve(ss, sc, cc, sy, cy)?;
-        Some(Self { origin, omega, centre, cosine, sine })
+        if !kink {
+            let (sine, cosine) = solve(ss, sc, cc, sy, cy)?;
+            return Some(Self { origin, omega, centre, cosine, sine, kink: 0.0 });
+        }
+        // What the other two leave of |sin φ| has the kink to itself.
+        let (s, c) = (sk / kk, ck / kk);
+        let (sine, cosine) = solve(ss - s * sk, sc - s * ck, cc - c * ck, sy - s * ky, cy - c * ky)?;
+        Some(Self { origin, omega, centre, cosine, sine, kink: (ky - sine * sk - cosine * ck) / kk })
     }
 
     /// Where the extremum nearest to the origin is (samples).
@@ -97,16 +113,17 @@ impl Harmonic {
 
     /// Where the centre is crossed nearest to the origin (samples).
     pub(crate) fn crossing(&self) -> f64 {
-        let side = self.sine.signum();
-        self.origin - (side * self.cosine).atan2(side * self.sine) / self.omega
+        let is_later = self.cosine * self.sine < 0.0;
+        let slope = if is_later { self.sine + self.kink } else { self.sine - self.kink };
+        let side = slope.signum();
+        self.origin - (side * self.cosine).atan2(side * slope) / self.omega
     }
 }
 
 /// Solves a symmetric system of two equations; none if it is singular to rounding.
 fn solve(aa: f64, ab: f64, bb: f64, ay: f64, by: f64) -> Option<(f64, f64)> {
     let determinant = aa * bb - ab * ab;
-    (determinant > 1e-12 * aa * bb)
-        .then(|| ((bb * ay - ab * by) / determinant, (aa * by - ab * ay) / determinant))
+    (determinant > 1e-12 * aa * bb).then(|| ((bb * ay - ab * by) / determinant, (aa * by - ab * ay) / determinant))
 }
 
 #[cfg(test)]
@@ -125,14 +142,30 @@ mod tests {
             assert!((fit.peak() - 5.0).abs() < 1e-11 && fit.height() < 0.0, "{}", fit.peak());
             let at = (peak_at + half / 2.0).round();
             let i = at as usize;
-            let fit = Harmonic::fit_about(&values, i - reach..i + reach + 1, at, half, 7.0).unwrap();
+            let fit = Harmonic::fit_about(&values, i - reach..i + reach + 1, at, half, 7.0, false).unwrap();
             assert!((fit.crossing() - (peak_at + half / 2.0)).abs() < 1e-11 * half, "{} samples", fit.crossing());
         }
     }
 
     #[test]
+    fn a_kink_does_not_shift_the_crossing() {
+        let (half, zero) = (200.0, 500.3);
+        let values: Vec<f64> = (0..1001)
+            .map(|i| (PI * (f64::from(i) - zero) / half).sin())
+            .map(|sine| if sine < 0.0 { sine } else { 0.5 * sine })
+            .collect();
+        let mut at = 495.0;
+        for _ in 0..4 {
+            let centre = (at as f64).round() as usize;
+            at = Harmonic::fit_about(&values, centre - 33..centre + 34, at, half, 0.0, true).unwrap().crossing();
+        }
+        // A fit without a kink is off by w Δ/4 = 0.09 rad, 5.5 samples; each step here leaves a seventh or so.
+        assert!((at - zero).abs() < 0.1, "{at} samples");
+    }
+
+    #[test]
     fn too_few_samples_determine_nothing() {
         assert!(Harmonic::fit(&[1.0, 2.0], 0..2, 0.0, 4.0).is_none());
-        assert!(Harmonic::fit_about(&[1.0], 0..1, 0.0, 4.0, 0.0).is_none());
+        assert!(Harmonic::fit_about(&[1.0], 0..1, 0.0, 4.0, 0.0, false).is_none());
     }
 }

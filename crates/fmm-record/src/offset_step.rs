@@ -30,39 +30,47 @@ impl OffsetStep {
         const MIXED: usize = 3;
         let swings = Swings::bridging(record, IRREGULAR);
         let peaks = swings.peaks();
-        let centres: Vec<f64> = peaks
-            .windows(4)
-            .map(|p| (p[0].value + 3.0 * (p[1].value + p[2].value) + p[3].value) / 8.0)
-            .collect();
+        let centres: Vec<f64> =
+            peaks.windows(4).map(|p| (p[0].value + 3.0 * (p[1].value + p[2].value) + p[3].value) / 8.0).collect();
         let jumps: Vec<f64> = centres
             .windows(2 * SIDE + MIXED)
-            .map(|window| {
-                let (mut before, mut after) = ([0.0; SIDE], [0.0; SIDE]);
-                before.copy_from_slice(&window[..SIDE]);
-                after.copy_from_slice(&window[SIDE + MIXED..]);
-                median(&mut after) - median(&mut before)
-            })
+            .map(|window| centre(&window[SIDE + MIXED..]) - centre(&window[..SIDE]))
             .collect();
         let (at, height) = jumps.iter().copied().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
         // The last clean centre before ends with this peak, but medians still see the same jump some peaks away.
         let before = at + SIDE + MIXED - 1;
         let (from, to) = (before - 3, before + 4);
         let around = peaks.get(from..=to)?;
-        let amplitude = (around[0].value - around[1].value).abs() / 2.0;
-        let changes = centres.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-        let usual_change = median(&mut changes.collect::<Vec<_>>());
-        let usual_jump = median(&mut jumps.iter().map(|jump| jump.abs()).collect::<Vec<_>>());
         let values = record.values();
+        let width = (around[7].index - around[0].index) / (7 * 16);
+        let index = sharpest(values, around[0].index, around[7].index, width.max(1), height.signum());
+
+        let amplitude = (around[0].value - around[1].value).abs() / 2.0;
+        let usual_change = median(&mut centres.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect::<Vec<_>>());
+        let usual_jump = median(&mut jumps.iter().map(|jump| jump.abs()).collect::<Vec<_>>());
         let resolution = noise(values).max(quantisation_step(values).unwrap_or(0.0));
         let limit = (0.05 * amplitude).max(8.0 * usual_change).max(4.0 * usual_jump).max(2.0 * resolution);
         if height.abs() <= limit {
             return None;
         }
-        let (first, last) = (around[0].index, peaks[to].index);
-        let half = (last - first) / (to - from);
-        let index = sharpest(values, first, last, (half / 16).max(1), height.signum());
+
+        // Once its place is known, the height follows from centres that have no part in it; one is left out
+        // for a turning point that the jump made.
+        let end = peaks.windows(4).rposition(|p| (p[3].index as f64) < index)?;
+        let begin = peaks.windows(4).position(|p| p[0].index as f64 > index)? + 1;
+        let before = centres.get(end.saturating_sub(SIDE)..end).filter(|clean| clean.len() == SIDE);
+        let after = centres.get(begin..begin + SIDE);
+        let height = before.zip(after).map_or(height, |(before, after)| centre(after) - centre(before));
         Some(Self { time: record.time_at(index), height })
     }
+}
+
+/// Median of neighbouring centres, the mean of two for an even number of them.
+fn centre(centres: &[f64]) -> f64 {
+    let mut sorted = centres.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let n = sorted.len();
+    if n == 0 { 0.0 } else { 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]) }
 }
 
 /// Where between samples `first` and `last` the means of `width` samples before and after differ most, towards
@@ -115,8 +123,7 @@ mod tests {
         for noise in [0.0, 0.02] {
             for (height, time) in [(1.0, 3.3215), (-0.6, 5.1005), (3.0, 4.0005)] {
                 let jump = |t: f64| if t > time { height } else { 0.0 };
-                let record =
-                    sampled(1000.0, 12.0, Quantity::Velocity, noise, |t| decay.state(t).1 / 13.8 + jump(t));
+                let record = sampled(1000.0, 12.0, Quantity::Velocity, noise, |t| decay.state(t).1 / 13.8 + jump(t));
                 let found = OffsetStep::of(&record).unwrap_or_else(|| panic!("{height} at {time} s, noise {noise}"));
                 assert!((found.height - height).abs() < 0.1 * height.abs(), "{} against {height}", found.height);
                 assert!((found.time - time).abs() < 0.01, "{} s against {time} s", found.time);

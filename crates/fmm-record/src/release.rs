@@ -109,7 +109,8 @@ impl Rest {
     }
 
     fn departure(&self, values: &[f64]) -> Option<Departure> {
-        let side = |value: f64| if (value - self.level).abs() > self.band { (value - self.level).signum() } else { 0.0 };
+        let side =
+            |value: f64| if (value - self.level).abs() > self.band { (value - self.level).signum() } else { 0.0 };
         values
             .windows(PERSISTENT)
             .position(|window| {
@@ -244,8 +245,13 @@ mod tests {
                 let decay = decay(rest + 0.000_37);
                 let scale = 13.8 * 9.5;
                 let velocity = sampled(1000.0, 12.0, Quantity::Velocity, noise * scale, |t| 20.0 + decay.state(t).1);
-                let found = Release::of(&velocity).unwrap();
-                // Curvature of the sine gives 0.1 ms; noise the scatter of a line through some 15 samples.
+                // A tenth of a second near a turning point looks the same within so much noise.
+                let hopeless = rest < 0.5 && noise >= 0.01;
+                let Some(found) = Release::of(&velocity) else {
+                    assert!(hopeless, "noise {noise}, rest {rest} s");
+                    continue;
+                };
+                // The sample grid gives 0.1 ms or so; noise the scatter of a line through some 15 samples.
                 let error = (found.rest_end - decay.release).abs();
                 assert!(error < 2e-4 + noise * 0.1, "noise {noise}, rest {rest} s: {error} s");
                 let allowed = 4.0 * noise * scale / (found.samples as f64).sqrt() + 1e-12;
@@ -255,8 +261,7 @@ mod tests {
                 }
                 let position = sampled(1000.0, 12.0, Quantity::Displacement, noise * 10.0, |t| decay.state(t).0);
                 let Some(found) = Release::of(&position) else {
-                    // A tenth of a second near a turning point looks the same within so much noise.
-                    assert!(rest < 0.5 && noise >= 0.01, "noise {noise}, rest {rest} s");
+                    assert!(hopeless, "noise {noise}, rest {rest} s");
                     continue;
                 };
                 let error = (found.rest_end - decay.release).abs();
@@ -271,7 +276,8 @@ mod tests {
         let velocity = sampled(1000.0, 12.0, Quantity::Velocity, 0.0, |t| decay.state(t).1);
         let found = Release::of(&velocity).unwrap();
         assert!((found.rest_end - 0.025).abs() < 2e-4, "{} s", found.rest_end);
-        let coarse = quantised(&sampled(1000.0, 12.0, Quantity::Velocity, 0.02, |t| 3.0 + decay.state(t - 1.0).1), 0.61);
+        let coarse =
+            quantised(&sampled(1000.0, 12.0, Quantity::Velocity, 0.02, |t| 3.0 + decay.state(t - 1.0).1), 0.61);
         let found = Release::of(&coarse).unwrap();
         assert!((found.rest_end - 1.025).abs() < 1e-3 && found.noise == 0.0, "{found:?}");
         assert!((found.offset - 3.0).abs() < 0.305);

@@ -193,7 +193,8 @@ mod tests {
 
     #[test]
     fn gaps_are_found() {
-        for (rate, decimals, count, gap) in [(1000.0, 3, 10_000, 1e-3), (1000.0, 3, 40, 1e-3), (600.0, 3, 10_000, 0.01)] {
+        for (rate, decimals, count, gap) in [(1000.0, 3, 10_000, 1e-3), (1000.0, 3, 40, 1e-3), (600.0, 3, 10_000, 0.01)]
+        {
             let mut times = stamps(rate, decimals, count);
             for time in &mut times[count as usize / 3..] {
                 *time += gap;
@@ -210,7 +211,7 @@ mod tests {
         assert_eq!(UniformTimes::of(&[0.0]), Err(RecordError::TooFewTimes { count: 1 }));
         assert!(matches!(UniformTimes::of(&[0.0, f64::NAN, 2.0]), Err(RecordError::TimeNotFinite { index: 1, .. })));
         assert!(matches!(UniformTimes::of(&[-1.7e308, 1.7e308]), Err(RecordError::Interval { .. })));
-            }
+    }
 
     #[test]
     fn sampling_reads_as_a_sentence() {

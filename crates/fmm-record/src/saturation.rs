@@ -32,8 +32,8 @@ pub struct Saturation {
 /// let cut: Vec<f64> = (0..3000).map(|i| sine(i).clamp(-2.0, 0.9)).collect();
 /// let found = saturation(&cut).unwrap();
 /// assert_eq!((found.upper, found.lower), (Some(0.9), None));
-/// // Five tops of 2 acos 0.9/0.01 = 90 samples each.
-/// assert_eq!(found.samples, 451);
+/// // Five tops of 2 acos 0.9/0.01 = 90.2 samples each.
+/// assert_eq!(found.samples, 452);
 /// ```
 pub fn saturation(values: &[f64]) -> Option<Saturation> {
     let (low, high) = range(values);

@@ -49,9 +49,10 @@ pub fn spikes(record: &Record) -> Vec<Spike> {
     runs(values)
         .into_iter()
         .map(|run| {
-            let height = run.clone().map(|i| values[i] - between(values, &run, i)).fold(0.0f64, |most, height| {
-                if height.abs() > most.abs() { height } else { most }
-            });
+            let height = run
+                .clone()
+                .map(|i| values[i] - between(values, &run, i))
+                .fold(0.0f64, |most, height| if height.abs() > most.abs() { height } else { most });
             Spike { time: record.time(run.start), index: run.start, count: run.len(), height }
         })
         .collect()

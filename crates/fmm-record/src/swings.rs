@@ -3,7 +3,7 @@
 use crate::harmonic::Harmonic;
 use crate::spikes::without_spikes;
 use crate::turning::turning_points;
-use crate::{Record, noise, quantisation_step};
+use crate::{Quantity, Record, noise, quantisation_step};
 
 /// A turning point of an oscillation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,8 +40,10 @@ pub struct Crossing {
 ///
 /// Peaks and crossings are fitted: a piece of a sine with the length of the local half swing, to the samples
 /// within ±1/12 period (±1 sample at least). That averages noise, and has no bias for a sine however few samples
-/// there are. The centre at a crossing comes from the four peaks around it (weights 1, 3, 3, 1), which no
-/// linear change of amplitude disturbs.
+/// there are. Dry friction makes a kink where a velocity changes sign; crossings are fitted with one, except those
+/// of a displacement. (The peaks of a displacement have a jump of curvature there, which makes them late by
+/// 0.2 d/A rad for an amplitude A that loses 2d per half swing.) The centre at a crossing comes from the four peaks
+/// around it (weights 1, 3, 3, 1), which no linear change of amplitude disturbs.
 ///
 /// ```
 /// use fmm_record::{Quantity, Record, Swings};
@@ -73,12 +75,16 @@ impl Swings {
         let values = without_spikes(record);
         let step = quantisation_step(&values).unwrap_or(0.0);
         let turning = turning_points(&values, noise(&values), step, bridged);
-        let mut fitted = fitted(&values, &turning);
+        let mut turning = &turning[..];
+        let mut fitted = fit_peaks(&values, turning);
+        // The length of a half swing beside a rest is no length of a half swing: without it, all is fitted again.
         if fitted.len() > 1 && !begins_moving(&fitted) {
-            fitted.remove(0);
+            turning = &turning[1..];
+            fitted = fit_peaks(&values, turning);
         }
-        if !fitted.last().is_some_and(Fitted::turns) {
-            fitted.pop();
+        if fitted.len() > 1 && !fitted.last().is_some_and(Fitted::turns) {
+            turning = &turning[..turning.len() - 1];
+            fitted = fit_peaks(&values, turning);
         }
         if fitted.len() < 2 {
             return Self::default();
@@ -98,11 +104,27 @@ impl Swings {
         &self.crossings
     }
 
-    /// Mean frequency from the first crossing to the last (Hz); none with fewer than two crossings.
+    /// Mean frequency (Hz): half of the inverse slope of the times of the crossings against their number, by least
+    /// squares. None with fewer than two crossings.
+    ///
+    /// Crossings are weighted by the square of the swing they belong to, as noise shifts those of small swings
+    /// more. Where the frequency depends on the amplitude, as that of a pendulum, this is the frequency of the large
+    /// swings.
     pub fn frequency(&self) -> Option<f64> {
-        let (first, last) = (self.crossings.first()?, self.crossings.last()?);
-        let half_swings = (self.crossings.len() - 1) as f64;
-        (half_swings > 0.0).then(|| half_swings / (2.0 * (last.time - first.time)))
+        let first = self.crossings.first()?.time;
+        let weighted = || {
+            self.crossings.iter().zip(self.peaks.windows(2)).enumerate().map(|(k, (crossing, pair))| {
+                let swing = pair[1].value - pair[0].value;
+                (swing * swing, k as f64, crossing.time - first)
+            })
+        };
+        let (w, wk, wt) = weighted().fold((0.0, 0.0, 0.0), |sum, (w, k, t)| (sum.0 + w, sum.1 + w * k, sum.2 + w * t));
+        let (mean_k, mean_t) = (wk / w, wt / w);
+        let (kk, kt) = weighted().fold((0.0, 0.0), |sum, (w, k, t)| {
+            let (k, t) = (k - mean_k, t - mean_t);
+            (sum.0 + w * k * k, sum.1 + w * k * t)
+        });
+        (kt > 0.0).then(|| kk / (2.0 * kt))
     }
 }
 
@@ -139,25 +161,28 @@ fn around(at: f64, half: f64, length: usize) -> std::ops::Range<usize> {
     centre.saturating_sub(reach(half))..(centre + reach(half) + 1).min(length)
 }
 
-/// Fits every turning point.
-fn fitted(values: &[f64], turning: &[usize]) -> Vec<Fitted> {
-    let swing = |i: usize, j: usize| (values[turning[j]] - values[turning[i]]).abs();
+/// Fits every turning point, given to the sample. The lengths of the half swings come from the turning points as
+/// given at first, then from the fitted ones.
+fn fit_peaks(values: &[f64], turning: &[usize]) -> Vec<Fitted> {
     let last = turning.len().saturating_sub(1);
-    (0..turning.len())
-        .filter(|_| last > 0)
-        .map(|k| {
-            let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
-            let half = (turning[after] - turning[before]) as f64 / (after - before) as f64;
-            let other = if k == last { before } else { after };
-            let is_maximum = values[turning[k]] > values[turning[other]];
-            let smaller = match k {
-                0 => swing(0, 1),
-                _ if k == last => swing(before, k),
-                _ => swing(before, k).min(swing(k, after)),
-            };
-            fit_peak(values, turning[k], is_maximum, half, smaller / 2.0)
-        })
-        .collect()
+    if last == 0 {
+        return Vec::new();
+    }
+    let swing = |i: usize| (values[turning[i + 1]] - values[turning[i]]).abs();
+    let fit = |at: &[f64]| -> Vec<Fitted> {
+        (0..=last)
+            .map(|k| {
+                let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
+                let half = (at[after] - at[before]) / (after - before) as f64;
+                let other = if k == last { before } else { after };
+                let is_maximum = values[turning[k]] > values[turning[other]];
+                let amplitude = swing(before).min(swing(after - 1)) / 2.0;
+                fit_peak(values, turning[k], is_maximum, half, amplitude)
+            })
+            .collect()
+    };
+    let first = fit(&turning.iter().map(|index| *index as f64).collect::<Vec<_>>());
+    fit(&first.iter().map(|fitted| fitted.at).collect::<Vec<_>>())
 }
 
 /// Fits one turning point near sample `index`; what cannot be fitted stays at its sample.
@@ -209,6 +234,9 @@ fn centre(fitted: &[Fitted], k: usize) -> f64 {
 
 /// The crossings between neighbouring peaks.
 fn crossings(record: &Record, values: &[f64], fitted: &[Fitted]) -> Vec<Crossing> {
+    const ENOUGH_FOR_A_KINK: usize = 8;
+    // Friction changes its sign with the velocity; a displacement passes its centre smoothly.
+    let has_kinks = record.quantity() != Quantity::Displacement;
     fitted
         .windows(2)
         .enumerate()
@@ -217,9 +245,10 @@ fn crossings(record: &Record, values: &[f64], fitted: &[Fitted]) -> Vec<Crossing
             let centre = centre(fitted, k);
             let half = to.at - from.at;
             let mut at = passage(values, &from, &to, centre);
-            for _ in 0..2 {
+            for _ in 0..4 {
                 let range = around(at, half, values.len());
-                let Some(fit) = Harmonic::fit_about(values, range, at, half, centre) else { break };
+                let kink = has_kinks && range.len() >= ENOUGH_FOR_A_KINK;
+                let Some(fit) = Harmonic::fit_about(values, range, at, half, centre, kink) else { break };
                 let moved = fit.crossing();
                 if (moved - at).abs() > half / 4.0 {
                     break;
@@ -243,4 +272,128 @@ fn passage(values: &[f64], from: &Fitted, to: &Fitted, centre: f64) -> f64 {
         .map(|i| i as f64 + above(i) / (above(i) - above(i + 1)))
         .min_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()))
         .unwrap_or(middle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::{CoulombDecay, pendulum, pendulum_velocity, quantised, sampled, wheel};
+
+    const DECAY: CoulombDecay = CoulombDecay { frequency: 2.2, amplitude: 10.0, deadband: 0.13, release: 0.3 };
+
+    /// Turning points of the displacement: ±(A − 2kd) at k half swings after the release.
+    #[test]
+    fn displacement_with_friction_has_its_peaks() {
+        for noise in [0.0, 1e-3, 0.05] {
+            let record = sampled(1000.0, 20.0, Quantity::Displacement, noise, |t| 15.0 + DECAY.state(t).0);
+            let swings = Swings::of(&record);
+            // 38 half swings; the one at the release has no extremum, the one at the stop does not turn.
+            assert!((36..=37).contains(&swings.peaks().len()), "{} peaks", swings.peaks().len());
+            for (k, peak) in swings.peaks().iter().enumerate().map(|(i, peak)| (i as f64 + 1.0, peak)) {
+                let side = if peak.is_maximum { 1.0 } else { -1.0 };
+                let (time, height) = (0.3 + k / 4.4, 10.0 - 2.0 * k * 0.13);
+                // The curvature jumps at the turn by 2d: 3 w d/(8 A) of phase with w = π/6, to the second order in
+                // value. A fit over 77 samples averages noise to 1.5/√77 in value and some 2.5/(w √77 A) in phase.
+                let phase = 0.22 * 0.13 / height + 5.0 * noise * 0.55 / height;
+                let error = (peak.time - time).abs() * 13.8;
+                assert!(error < phase + 1e-3, "peak {k}, noise {noise}: {error} rad of {phase} rad");
+                let error = (side * (peak.value - 15.0) - height).abs();
+                assert!(error < 3e-3 + 5.0 * 0.17 * noise, "peak {k}, noise {noise}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn velocity_with_friction_crosses_its_offset_at_the_turns_and_rests_without_peaks() {
+        let scale = 13.823 * 10.0;
+        for (noise, step) in [(0.0, None), (1e-3, None), (0.02, None), (1e-3, Some(5e-3)), (1e-5, Some(5e-3))] {
+            let clean = sampled(1000.0, 45.0, Quantity::Velocity, noise, |t| 1.5 + DECAY.state(t).1 / scale);
+            let record = step.map_or(clean.clone(), |step| quantised(&clean, step));
+            let swings = Swings::of(&record);
+            let (noise, count) = (noise + step.unwrap_or(0.0) / 3.0, swings.peaks().len());
+            assert!((35..=38).contains(&count), "noise {noise}: {count} peaks");
+            assert!(swings.peaks().iter().all(|peak| peak.time < DECAY.stop()), "a peak after the stop");
+            for (k, crossing) in swings.crossings().iter().enumerate() {
+                let height = 1.0 - 0.026 * (k as f64 + 1.0);
+                let error = (crossing.time - (0.3 + (k as f64 + 1.0) / 4.4)).abs() * 13.8;
+                // 2/√77 for the fit, and as much for the centre, from peaks with 1.5/√77 each.
+                let allowed = 5.0 * noise * 0.3 / height + 2e-4 / height;
+                assert!(error < allowed, "noise {noise}, crossing {k}: {error} rad of {allowed} rad");
+                assert_eq!(crossing.is_rising, k % 2 == 0, "the first swing is negative");
+            }
+            let frequency = swings.frequency().unwrap();
+            assert!((frequency - 2.2).abs() < 1e-3, "{frequency} Hz");
+        }
+    }
+
+    #[test]
+    fn four_samples_per_half_swing_are_enough() {
+        let record =
+            sampled(8.0 * 2.2 + 0.1, 60.0, Quantity::Velocity, 0.0, |t| 1.5 + (-0.02 * t).exp() * (13.823 * t).cos());
+        let swings = Swings::of(&record);
+        assert!((262..=264).contains(&swings.peaks().len()), "{} peaks", swings.peaks().len());
+        assert!((swings.frequency().unwrap() - 2.2).abs() < 1e-4, "{:?} Hz", swings.frequency());
+        for peak in swings.peaks() {
+            let height = (peak.value - 1.5).abs() / (-0.02 * peak.time).exp();
+            // The local half swing is known to the sample only, which shows in second order.
+            assert!((height - 1.0).abs() < 0.02, "{height} at {} s", peak.time);
+        }
+    }
+
+    #[test]
+    fn spikes_ripple_and_drift_do_not_upset_the_swings() {
+        let ripple = |t: f64| 0.05 * t + 0.3 * (std::f64::consts::TAU * 50.0 * t).sin();
+        let record = sampled(1000.0, 12.0, Quantity::Velocity, 0.05, |t| DECAY.state(t).1 / 13.823 + ripple(t));
+        let mut values = record.into_values();
+        for i in [900, 901, 4500, 7002] {
+            values[i] += 100.0;
+        }
+        let record = Record::sampled(1000.0, values, Quantity::Velocity, "mm/s").unwrap();
+        let swings = Swings::of(&record);
+        assert!((33..=38).contains(&swings.peaks().len()), "{} peaks", swings.peaks().len());
+        assert!((swings.frequency().unwrap() - 2.2).abs() < 0.01, "{:?} Hz", swings.frequency());
+    }
+
+    #[cfg(feature = "mat")]
+    #[test]
+    fn fork_swings_as_others_found() {
+        let swings = Swings::of(&crate::synthetic::fork());
+        assert_eq!(swings.peaks().len(), 37);
+        // 0.62885 Hz from fits of the whole record by others.
+        assert!((swings.frequency().unwrap() - 0.6288).abs() < 1e-3, "{:?} Hz", swings.frequency());
+        for crossing in swings.crossings() {
+            assert!((crossing.centre - 1.356).abs() < 0.01, "{} V at {} s", crossing.centre, crossing.time);
+        }
+    }
+
+    #[test]
+    fn wheel_and_pendulum_swing_as_others_found() {
+        let wheel = Swings::of(&wheel());
+        assert_eq!(wheel.peaks().len(), 9);
+        // ω² = 222.4 1/s² (2.3735 Hz) from fits of the whole record by others.
+        assert!((wheel.frequency().unwrap() - 2.3735).abs() < 0.01, "{:?} Hz", wheel.frequency());
+        for record in [pendulum(), pendulum_velocity()] {
+            let swings = Swings::of(&record);
+            assert_eq!(swings.peaks().len(), 133);
+            // Small swings have √64.08/2π = 1.2740 Hz; the first ones, of 1.6 rad, are 18 % longer.
+            let periods: Vec<f64> = swings.crossings().windows(3).map(|c| c[2].time - c[0].time).collect();
+            let last = periods.iter().rev().take(20).sum::<f64>() / 20.0;
+            assert!((1.0 / last - 1.270).abs() < 0.005, "{} Hz", 1.0 / last);
+            assert!((periods[0] * 1.274 - 1.18).abs() < 0.02, "{} s", periods[0]);
+        }
+    }
+
+    #[test]
+    fn what_does_not_oscillate_has_no_swings() {
+        for noise in [0.0, 1.0] {
+            for f in [|_| 1.0, |t: f64| t, |t: f64| (-t).exp(), |t: f64| if t < 5.0 { 0.0 } else { 50.0 }] {
+                let record = sampled(1000.0, 10.0, Quantity::Velocity, noise, f);
+                assert!(Swings::of(&record).peaks().is_empty(), "{:?}", Swings::of(&record).peaks());
+            }
+        }
+        for length in 1..8 {
+            let record = Record::sampled(1.0, vec![1.0; length], Quantity::Velocity, "m/s").unwrap();
+            assert_eq!(Swings::of(&record), Swings::default());
+        }
+    }
 }

@@ -12,14 +12,15 @@ const ABOVE_STEP: f64 = 2.0;
 const ABOVE_ROUNDING: f64 = 1e-9;
 /// Neighbouring half swings of one oscillation differ in length by no more than this factor.
 const REGULARITY: f64 = 2.0;
-/// A swing smaller than this part of both its neighbours is a ripple on a larger one.
-const RIPPLE: f64 = 0.25;
+/// What is smaller than this part of the swings around it is a ripple on them.
+const RIPPLE: f64 = 0.2;
 
 /// The alternating turning points of the longest regular oscillation in `values`, by index.
 ///
 /// First the length of a half swing is found, from the largest swings: with a threshold that sinks from a quarter
 /// of the range until six regular turning points appear, and with more smoothing if none do. Then all swings
-/// are found, after smoothing over an eighth of that length, with the threshold that noise and resolution allow.
+/// are found, after smoothing over an eighth of that length, with the threshold that noise, resolution and the
+/// range of the values near by allow.
 /// Up to `bridged` irregular half swings in a row are taken along if regular ones go on behind them.
 pub(crate) fn turning_points(values: &[f64], noise: f64, step: f64, bridged: usize) -> Vec<usize> {
     let (low, high) = range(values);
@@ -30,7 +31,9 @@ pub(crate) fn turning_points(values: &[f64], noise: f64, step: f64, bridged: usi
     let Some(length) = half_swing(values, high - low, floor) else { return Vec::new() };
     let half = length / 16;
     let smooth = averaged(values, half, EndRule::Shrinking);
-    let found = without_ripples(&smooth, reversals(&smooth, floor(half)));
+    let local = local_ranges(&smooth, length);
+    let floor = floor(half);
+    let found = reversals(&smooth, |i| floor.max(RIPPLE * local[i / length]));
     longest_regular(&smooth, &found, bridged)
 }
 
@@ -44,8 +47,8 @@ fn half_swing(values: &[f64], range: f64, floor: impl Fn(usize) -> f64) -> Optio
         let smooth = averaged(values, half, EndRule::Shrinking);
         let mut best: Vec<usize> = Vec::new();
         let mut threshold = 0.25 * range;
-        while threshold >= floor(half) && best.len() < ENOUGH {
-            let regular = longest_regular(&smooth, &without_ripples(&smooth, reversals(&smooth, threshold)), 0);
+        while threshold > floor(half) && best.len() < ENOUGH {
+            let regular = longest_regular(&smooth, &reversals(&smooth, |_| threshold), 0);
             if regular.len() > best.len() {
                 best = regular;
             }
@@ -53,7 +56,7 @@ fn half_swing(values: &[f64], range: f64, floor: impl Fn(usize) -> f64) -> Optio
         }
         if best.len() >= FEWEST {
             let mut lengths: Vec<f64> = best.windows(2).map(|pair| (pair[1] - pair[0]) as f64).collect();
-            return Some(median(&mut lengths) as usize);
+            return Some((median(&mut lengths) as usize).max(1));
         }
         // Without noise there is nothing to be gained from smoothing.
         half = 5 * half + 2;
@@ -63,9 +66,21 @@ fn half_swing(values: &[f64], range: f64, floor: impl Fn(usize) -> f64) -> Optio
     }
 }
 
-/// Indices at which `values` turn and then move back by more than `threshold`: maxima and minima by turns. The
-/// first may be the begin of the record.
-fn reversals(values: &[f64], threshold: f64) -> Vec<usize> {
+/// The range of `values` in each block of `length` samples together with the blocks before and after.
+fn local_ranges(values: &[f64], length: usize) -> Vec<f64> {
+    let blocks: Vec<(f64, f64)> = values.chunks(length).map(range).collect();
+    (0..blocks.len())
+        .map(|i| {
+            let near = &blocks[i.saturating_sub(1)..blocks.len().min(i + 2)];
+            let (low, high) = near.iter().fold(blocks[i], |(low, high), block| (low.min(block.0), high.max(block.1)));
+            high - low
+        })
+        .collect()
+}
+
+/// Indices at which `values` turn and then move back by more than the `threshold` at that place: maxima and minima
+/// by turns. The first may be the begin of the record.
+fn reversals(values: &[f64], threshold: impl Fn(usize) -> f64) -> Vec<usize> {
     let mut found = Vec::new();
     let (mut low, mut high) = (0, 0);
     // Until the first reversal both directions are open.
@@ -77,32 +92,15 @@ fn reversals(values: &[f64], threshold: f64) -> Vec<usize> {
         if value > values[high] {
             high = i;
         }
-        if rising != Some(true) && value - values[low] > threshold {
+        if rising != Some(true) && value - values[low] > threshold(i) {
             found.push(low);
             (rising, high) = (Some(true), i);
-        } else if rising != Some(false) && values[high] - value > threshold {
+        } else if rising != Some(false) && values[high] - value > threshold(i) {
             found.push(high);
             (rising, low) = (Some(false), i);
         }
     }
     found
-}
-
-/// Removes pairs of turning points whose swing is small against the swings before and after.
-fn without_ripples(values: &[f64], found: Vec<usize>) -> Vec<usize> {
-    let mut kept: Vec<usize> = Vec::with_capacity(found.len());
-    for index in found {
-        kept.push(index);
-        while let [.., a, b, c, d] = kept[..] {
-            let swing = |from: usize, to: usize| (values[to] - values[from]).abs();
-            if swing(b, c) >= RIPPLE * swing(a, b).min(swing(c, d)) {
-                break;
-            }
-            kept.truncate(kept.len() - 3);
-            kept.push(d);
-        }
-    }
-    kept
 }
 
 /// The run of turning points with regular distances that covers the greatest sum of swings. Up to `bridged`
@@ -135,15 +133,14 @@ mod tests {
     #[test]
     fn reversals_alternate_and_need_their_threshold() {
         let values = [0.0, 5.0, 4.5, 6.0, 1.0, 1.4, 0.5, 7.0];
-        assert_eq!(reversals(&values, 1.0), [0, 3, 6]);
-        assert_eq!(reversals(&values, 10.0), []);
-        assert_eq!(reversals(&[], 1.0), []);
+        assert_eq!(reversals(&values, |_| 1.0), [0, 3, 6]);
+        assert_eq!(reversals(&values, |_| 10.0), []);
+        assert_eq!(reversals(&[], |_| 1.0), []);
     }
 
     #[test]
-    fn ripples_on_a_large_swing_go() {
-        let values = [0.0, 10.0, 4.0, 5.0, -9.0, 8.0];
-        assert_eq!(without_ripples(&values, vec![0, 1, 2, 3, 4, 5]), [0, 1, 4, 5]);
+    fn local_ranges_look_one_block_ahead_and_back() {
+        assert_eq!(local_ranges(&[0.0, 1.0, 5.0, 6.0, 6.0, 6.0, 9.0], 2), [6.0, 6.0, 4.0, 3.0]);
     }
 
     #[test]

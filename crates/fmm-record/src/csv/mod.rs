@@ -23,6 +23,8 @@ mod lines;
 mod number;
 mod reader;
 mod table;
+#[cfg(test)]
+mod tests;
 
 use std::path::Path;
 

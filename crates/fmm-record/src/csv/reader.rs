@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use super::table::Table;
 use super::CsvError;
+use super::table::Table;
 use crate::reading::{seconds_per_unit_of_time, to_seconds};
 use crate::{Column, Quantity, Reading, Record, Sampling, UniformTimes};
 

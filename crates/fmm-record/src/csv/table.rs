@@ -4,9 +4,9 @@ use std::io::{BufReader, Chain, Cursor, Read};
 
 use ::csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder, Trim};
 
+use super::CsvError;
 use super::lines::WithoutComments;
 use super::number::{self, Mark};
-use super::CsvError;
 use crate::Column;
 
 /// How much of the file the separator is judged by (bytes).

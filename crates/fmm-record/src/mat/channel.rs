@@ -35,9 +35,9 @@ impl From<&str> for Channel {
     fn from(text: &str) -> Self {
         let text = text.trim();
         let indexed = text.strip_suffix(')').and_then(|rest| rest.split_once('('));
-        let column = indexed.and_then(|(_, index)| index.split_once(',')).and_then(|(rows, column)| {
-            if rows.trim() == ":" { column.trim().parse().ok() } else { None }
-        });
+        let column = indexed
+            .and_then(|(_, index)| index.split_once(','))
+            .and_then(|(rows, column)| if rows.trim() == ":" { column.trim().parse().ok() } else { None });
         match (indexed, column) {
             (Some((name, _)), Some(column)) => Self::column(name.trim_end(), column),
             _ => Self::variable(text),

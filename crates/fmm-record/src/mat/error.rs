@@ -49,7 +49,9 @@ pub enum MatError {
         present: u64,
     },
     /// A variable that is neither an array nor a compressed array.
-    #[error("the variable at byte {offset} is of type {code}, which is neither an array (14) nor a compressed one (15)")]
+    #[error(
+        "the variable at byte {offset} is of type {code}, which is neither an array (14) nor a compressed one (15)"
+    )]
     UnknownElement {
         /// Where the variable begins.
         offset: usize,
@@ -132,7 +134,8 @@ pub enum MatError {
     },
     /// Neither the caller nor the file tells the rate.
     #[error(
-        "the sampling rate is not known: give a rate or a variable of time stamps; the file has: {}", list(available)
+        "the sampling rate is not known: give a rate or a variable of time stamps; the file has: {}",
+        list(available)
     )]
     NoRate {
         /// Names and sizes of the numeric arrays.

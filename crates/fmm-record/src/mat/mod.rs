@@ -22,6 +22,8 @@ mod file;
 mod numbers;
 mod reader;
 mod sampling;
+#[cfg(test)]
+mod tests;
 
 use std::path::Path;
 

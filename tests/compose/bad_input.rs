@@ -1,0 +1,223 @@
+//! Records that should be refused, each with its reason, and records that are fitted with a warning.
+
+use std::f64::consts::TAU;
+
+use fmm_fit::{FitError, Options, Residuals, solve};
+use fmm_friction::{Coulomb, CoulombViscous, Viscous};
+use fmm_identify::{
+    Identification, IdentifyError, Known, Machine, Preparation, RingDown, RingDownProblem, Warning, identify,
+};
+use fmm_model::ModelError;
+use fmm_record::csv::{CsvError, CsvReader};
+use fmm_record::mat::{MatError, MatFile};
+use fmm_record::{Quantity, Record, RecordError};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, Normal};
+
+use crate::measurement::release;
+use crate::real_records::{data, fork};
+
+const INTERVAL: f64 = 1e-3;
+
+fn record(values: Vec<f64>) -> Record {
+    Record::new(0.0, INTERVAL, values, Quantity::Velocity, "m/s").unwrap()
+}
+
+/// White noise of standard deviation 0.1 mm/s (m/s).
+fn noise(count: usize) -> Vec<f64> {
+    let white = Normal::new(0.0, 1e-4).unwrap();
+    white.sample_iter(ChaCha8Rng::seed_from_u64(1)).take(count).collect()
+}
+
+/// `count` samples of a 2 Hz vibration that loses 0.01 m/s in a second, from 0.1 m/s on, with a little noise.
+fn vibration(count: usize) -> Vec<f64> {
+    let at = |(i, noise): (usize, f64)| {
+        let time = i as f64 * INTERVAL;
+        (0.1 - 0.01 * time) * (TAU * 2.0 * time).cos() + noise
+    };
+    noise(count).into_iter().enumerate().map(at).collect()
+}
+
+fn prepare(values: Vec<f64>) -> Result<RingDown, IdentifyError> {
+    RingDown::prepare(&record(values), &Preparation::default())
+}
+
+fn identified(values: Vec<f64>) -> Identification {
+    identify::<CoulombViscous>(&Machine::per_unit_mass(), &[prepare(values).unwrap()]).unwrap()
+}
+
+fn csv(text: &str) -> Result<Record, CsvError> {
+    CsvReader::default()
+        .quantity(Quantity::Velocity)
+        .unit("m/s")
+        .read_from(text.as_bytes())
+        .map(|reading| reading.record)
+}
+
+#[test]
+fn files_that_are_missing_or_empty() {
+    assert!(matches!(fmm_record::csv::read("no/such/file.csv"), Err(CsvError::Open { .. })));
+    assert!(matches!(MatFile::read("no/such/file.mat"), Err(MatError::Open { .. })));
+    assert!(matches!(csv(""), Err(CsvError::Empty)));
+    assert!(matches!(csv("time,velocity\n"), Err(CsvError::NoRows)));
+    assert!(matches!(MatFile::parse(b""), Err(MatError::NotMat { length: 0 })));
+}
+
+#[test]
+fn channels_that_are_not_there() {
+    let error = CsvReader::default().channel("force").read_from("time,velocity\n0,1\n1,2\n".as_bytes()).unwrap_err();
+    assert_eq!(error.to_string(), "there is no column \"force\"; the file has: \"time\", \"velocity\"");
+    let file = MatFile::read(data("BrowserForkCompoundFirst1.mat")).unwrap();
+    let error = file.channel("force").unwrap_err().to_string();
+    assert!(error.contains("\"force\"") && error.contains("data (30000×1)"), "{error}");
+}
+
+#[test]
+fn times_that_are_not_uniform() {
+    let text =
+        |times: &[f64]| times.iter().fold("time,velocity\n".to_owned(), |text, time| format!("{text}{time},0.5\n"));
+    let error = csv(&text(&[0.0, 0.1, 0.2, 0.35, 0.4, 0.5])).unwrap_err();
+    assert!(matches!(error, CsvError::Record(RecordError::NonUniform { index: 3, .. })), "{error}");
+    let error = csv(&text(&[0.0, 0.1, 0.1, 0.2])).unwrap_err();
+    assert!(matches!(error, CsvError::Record(RecordError::TimeNotIncreasing { index: 2, .. })), "{error}");
+}
+
+#[test]
+fn numbers_that_are_not_finite() {
+    for bad in ["NaN", "inf", "-inf"] {
+        let error = csv(&format!("time,velocity\n0,1\n0.1,{bad}\n0.2,3\n")).unwrap_err();
+        assert!(matches!(error, CsvError::Record(RecordError::NonFinite { index: 1, count: 1, .. })), "{bad}: {error}");
+    }
+    let error = Record::new(0.0, 1.0, vec![0.0, f64::NAN], Quantity::Velocity, "m/s").unwrap_err();
+    assert_eq!(error.to_string(), "1 of 2 samples are not finite; the first is sample 1 (at 1 s)");
+}
+
+#[test]
+fn records_in_which_nothing_moves() {
+    assert!(matches!(prepare(vec![0.0; 5000]), Err(IdentifyError::NoMotion { value: 0.0, .. })));
+    assert!(matches!(prepare(vec![0.0; 3]), Err(IdentifyError::TooShort { samples: 3, .. })));
+    assert!(matches!(prepare(noise(5000)), Err(IdentifyError::TooFewHalfSwings { .. })));
+    let force = Record::new(0.0, 1.0, vec![0.0; 99], Quantity::Force, "N").unwrap();
+    let error = RingDown::prepare(&force, &Preparation::default()).unwrap_err();
+    assert!(matches!(error, IdentifyError::Quantity { quantity: Quantity::Force }), "{error}");
+}
+
+/// Two half swings are the least; two or three are fitted with a warning.
+#[test]
+fn records_with_few_swings() {
+    let error = prepare(vibration(200)).unwrap_err();
+    assert!(matches!(error, IdentifyError::TooFewHalfSwings { needed: 2, .. }), "{error}");
+    let found = identified(vibration(800));
+    assert!(found.warnings().contains(&Warning::FewHalfSwings { count: 3 }), "{found}");
+}
+
+/// Without decay both dissipations go to zero and stay there, and the report says that there is nothing to find.
+#[test]
+fn a_record_without_decay() {
+    let steady = |growth: f64| -> Vec<f64> {
+        (0..5000).map(|i| f64::from(i) * INTERVAL).map(|t| (0.1 + growth * t) * (TAU * 2.0 * t).cos()).collect()
+    };
+    for growth in [0.0, 2e-3] {
+        let found = identified(steady(growth));
+        let friction = found.finding("friction_per_mass").unwrap().value();
+        let damping = found.finding("damping_per_mass").unwrap().value();
+        assert!(friction < 1e-6 && damping < 1e-6, "growth {growth}: {friction} m/s², {damping} 1/s");
+        assert!(growth == 0.0 || found.warnings().contains(&Warning::NoDecay), "{found}");
+    }
+}
+
+#[test]
+fn clipped_samples_are_warned_of() {
+    let clipped = vibration(4000).iter().map(|value| value.clamp(-0.08, 0.08)).collect();
+    let found = identified(clipped);
+    let count = found.warnings().iter().find_map(|warning| match warning {
+        Warning::Saturated { count } => Some(*count),
+        _ => None,
+    });
+    assert!(count.is_some_and(|count| count > 50), "{found}");
+    let saturated = |warning: &Warning| matches!(warning, Warning::Saturated { .. });
+    assert!(!identified(vibration(4000)).warnings().iter().any(saturated));
+}
+
+#[test]
+fn a_step_in_the_offset_is_warned_of() {
+    let stepped =
+        vibration(8000).iter().enumerate().map(|(i, value)| value + if i < 4100 { 0.0 } else { 0.02 }).collect();
+    let found = identified(stepped);
+    let step = found.warnings().iter().find_map(|warning| match warning {
+        Warning::OffsetStep { time, height, .. } => Some((*time, *height)),
+        _ => None,
+    });
+    let (time, height) = step.unwrap_or_else(|| panic!("no step found\n{found}"));
+    assert!((time - 4.1).abs() < 0.5 && (height - 0.02).abs() < 0.003, "step of {height} m/s at {time} s");
+}
+
+#[test]
+fn machines_that_cannot_be() {
+    for bad in [0.0, -1.0] {
+        let error = Machine::of_mass(Known::exact(bad).unwrap()).unwrap_err();
+        assert!(matches!(error, ModelError::NotPositive { quantity: "mass", .. }), "{error}");
+        assert!(Machine::of_stiffness(Known::exact(bad).unwrap()).is_err());
+        assert!(Machine::per_unit_mass().with_normal_load(Known::exact(bad).unwrap()).is_err());
+    }
+    assert!(Known::exact(f64::NAN).is_err() && Known::new(1.0, f64::INFINITY).is_err());
+    assert!(Machine::per_unit_mass().with_damping(Known::exact(-0.1).unwrap()).is_err());
+}
+
+#[test]
+fn a_start_outside_the_bounds() {
+    let decay = prepare(vibration(4000)).unwrap();
+    let problem = RingDownProblem::<Viscous>::new(Machine::per_unit_mass(), std::slice::from_ref(&decay)).unwrap();
+    let start = [2.0, -0.5, 0.0, 0.1, 0.0];
+    assert_eq!(problem.parameters().len(), start.len());
+    let error = solve(&problem, &start, &Options::default()).unwrap_err();
+    let FitError::StartOutsideBounds { parameter, value, .. } = &error else { panic!("{error}") };
+    assert_eq!((parameter.as_str(), *value), ("damping_per_mass", -0.5));
+}
+
+#[test]
+fn records_that_do_not_belong_together() {
+    let velocity = prepare(vibration(4000)).unwrap();
+    let volts = RingDown::prepare(&fork(), &Preparation::default()).unwrap();
+    let error = identify::<Coulomb>(&Machine::per_unit_mass(), &[velocity, volts]).unwrap_err();
+    assert!(matches!(error, IdentifyError::MixedRecords { .. }), "{error}");
+    assert!(matches!(identify::<Coulomb>(&Machine::per_unit_mass(), &[]), Err(IdentifyError::NoRecord)));
+}
+
+#[test]
+fn matlab_files_that_are_cut_off_or_of_another_version() {
+    let bytes = std::fs::read(data("BrowserForkCompoundFirst1.mat")).unwrap();
+    let error = MatFile::parse(&bytes[..bytes.len() / 2]).unwrap_err();
+    assert!(matches!(error, MatError::Truncated { .. }), "{error}");
+
+    let mut hdf5 = vec![b' '; 512];
+    hdf5[..19].copy_from_slice(b"MATLAB 7.3 MAT-file");
+    hdf5.extend_from_slice(b"\x89HDF\r\n\x1a\n");
+    let error = MatFile::parse(&hdf5).unwrap_err();
+    assert!(matches!(error, MatError::Version73), "{error}");
+    assert!(error.to_string().contains("7.3"), "{error}");
+}
+
+/// Spikes are left out, and said to be.
+#[test]
+fn spikes_are_left_out() {
+    let mut values = vibration(4000);
+    values[1500] += 0.5;
+    values[2222] -= 0.5;
+    let found = identified(values);
+    let clean = identified(vibration(4000));
+    assert!(found.warnings().contains(&Warning::Spikes { count: 2 }), "{found}");
+    let friction = |found: &Identification| found.finding("friction_per_mass").unwrap().value();
+    assert!((friction(&found) / friction(&clean) - 1.0).abs() < 1e-3);
+}
+
+/// A record that begins at rest is used from its first peak on.
+#[test]
+fn rest_before_the_release_is_not_fitted() {
+    let decay = RingDown::prepare(&release(22e-3, 2e-4, 5), &Preparation::default()).unwrap();
+    let release = decay.summary().release.expect("a release");
+    assert!((release - 1.0).abs() < 0.06, "released at {release} s");
+    // A quarter period after the release, 0.114 s.
+    assert!((decay.summary().from - release - 0.114).abs() < 0.01, "begins at {} s", decay.summary().from);
+}

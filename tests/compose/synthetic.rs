@@ -1,0 +1,78 @@
+//! Friction of known truth back from synthetic measurements, and the coverage of its uncertainty.
+
+use fmm_friction::{Coulomb, CoulombViscous};
+use fmm_identify::{Candidate, Identification, Known, Machine, Preparation, RingDown, compare, identify};
+
+use crate::measurement::{DAMPING, LOAD, MASS, MU, release};
+
+const RELEASES: [f64; 3] = [8e-3, 15e-3, 22e-3];
+/// White noise (m/s).
+const NOISE: f64 = 2e-4;
+
+fn machine() -> Machine {
+    let known = |value| Known::exact(value).unwrap();
+    Machine::of_mass(known(MASS)).unwrap().with_normal_load(known(LOAD)).unwrap()
+}
+
+fn prepared(position: f64, seed: u64) -> RingDown {
+    RingDown::prepare(&release(position, NOISE, seed), &Preparation::default()).unwrap()
+}
+
+fn mu(found: &Identification) -> (f64, f64) {
+    let mu = found.finding("mu").unwrap();
+    (mu.value(), mu.uncertainty().unwrap())
+}
+
+/// Seed 1. With the damping known, u(μ)/μ is 0.08 % at 8 mm, 0.02 % at 15 mm and 0.01 % at 22 mm.
+#[test]
+fn friction_of_each_release_comes_back() {
+    let machine = machine().with_damping(Known::exact(DAMPING).unwrap()).unwrap();
+    for position in RELEASES {
+        let found = identify::<Coulomb>(&machine, &[prepared(position, 1)]).unwrap();
+        let (value, u) = mu(&found);
+        assert!((value / MU - 1.0).abs() < 1e-3, "released at {position} m: μ = {value} ± {u}\n{found}");
+        assert!(u / MU < 1e-3, "released at {position} m: u(μ) = {u}");
+        assert!(found.motions()[0].stop_time().is_some());
+    }
+}
+
+/// Seed 1. One μ and one damping for three releases, u(μ)/μ about 0.04 %.
+#[test]
+fn friction_and_damping_of_all_releases_come_back_together() {
+    let decays = RELEASES.map(|position| prepared(position, 1));
+    let found = identify::<CoulombViscous>(&machine(), &decays).unwrap();
+    let (value, u) = mu(&found);
+    assert!((value / MU - 1.0).abs() < 1e-3, "μ = {value} ± {u}\n{found}");
+    let damping = found.finding("damping").unwrap();
+    let error = (damping.value() - DAMPING) / damping.uncertainty().unwrap();
+    assert!(error.abs() < 3.0, "damping is {error} standard uncertainties off\n{found}");
+    assert_eq!(found.fit().rank(), 3 + 3 * 3);
+}
+
+/// Share of seeds whose 95 % interval contains the truth. With 100 seeds the standard deviation of that share is
+/// 2.2 %; 500 seeds once gave between 92 and 98 %, and three standard deviations are allowed here.
+#[test]
+fn intervals_cover_the_truth() {
+    const SEEDS: u64 = 100;
+    let machine = machine().with_damping(Known::exact(DAMPING).unwrap()).unwrap();
+    for position in RELEASES {
+        let covering = (0..SEEDS).filter(|seed| {
+            let found = identify::<Coulomb>(&machine, &[prepared(position, 1000 + seed)]).unwrap();
+            let (value, u) = mu(&found);
+            (value - MU).abs() <= 1.96 * u
+        });
+        let share = covering.count() as f64 / SEEDS as f64;
+        assert!((0.885..=1.0).contains(&share), "released at {position} m: {share} of the intervals cover μ");
+    }
+}
+
+#[test]
+fn dry_friction_is_preferred_and_white_residuals_raise_no_alarm() {
+    let comparison = compare(&machine(), &[prepared(22e-3, 7)], &Candidate::standard()).unwrap();
+    assert_ne!(comparison.preferred().law(), "viscous", "{comparison}");
+    let structured =
+        |warning: &fmm_identify::Warning| matches!(warning, fmm_identify::Warning::StructuredResiduals { .. });
+    assert!(!comparison.warnings().iter().any(structured), "{comparison}");
+    let viscous = &comparison.identifications()[0];
+    assert!(viscous.warnings().iter().any(structured), "{viscous}");
+}
