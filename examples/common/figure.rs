@@ -61,7 +61,7 @@ impl Layer {
 
     fn plot(&self) -> Plot {
         let (color, width) = match self.role {
-            Role::Measured => (MEASURED, 1.4),
+            Role::Measured => (MEASURED, 2.4),
             Role::Fitted | Role::FittedAgain => (FITTED, 1.1),
             Role::Residual => (RESIDUAL, 0.8),
             Role::Points => {

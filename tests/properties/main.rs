@@ -1,1 +1,13 @@
-mod scratch;
+//! What must hold for every machine: laws of mechanics and of arithmetic on random parameters, with fixed seeds.
+
+mod case;
+mod energy;
+mod extremes;
+mod gradient;
+mod laws;
+mod motion;
+mod restart;
+mod sampling;
+mod series;
+mod symmetry;
+mod thesis;

@@ -11,9 +11,11 @@
 //! | How well? | [`Fit::covariance`], [`Fit::interval`] |
 //! | Is a further parameter worth having? | [`f_test`], [`Fit::corrected_akaike`] |
 //! | Are the residuals noise? | [`durbin_watson`], [`effective_count`] |
+//! | And if they are not? | [`CorrelatedCovariance`] |
 
 mod argmin_solver;
 mod box_least_squares;
+mod correlated;
 mod error;
 mod estimate;
 mod evaluation;
@@ -34,6 +36,7 @@ mod triangle;
 mod trust_region;
 
 pub use argmin_solver::BoundedLevenbergMarquardt;
+pub use correlated::CorrelatedCovariance;
 pub use error::FitError;
 pub use estimate::{Estimate, EstimateStatus};
 pub use fit::Fit;

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use fmm_model::Rounded;
+
 use crate::null_direction::enumerate;
 use crate::{EstimateStatus, Fit};
 
@@ -51,14 +53,14 @@ impl Fit {
             write!(f, "  {:<width$} = ", estimate.name())?;
             match estimate.standard_uncertainty() {
                 Some(uncertainty) => {
-                    write!(f, "{}{unit}", WithUncertainty { value: estimate.value(), uncertainty })?;
+                    write!(f, "{}{unit}", Rounded::new(estimate.value(), Some(uncertainty)))?;
                     if estimate.value() != 0.0 {
                         write!(f, " ({:.2} %)", 100.0 * uncertainty / estimate.value().abs())?;
                     }
                 }
-                None => write!(f, "{}{unit}", Plain(estimate.value()))?,
+                None => write!(f, "{}{unit}", Rounded::new(estimate.value(), None))?,
             }
-            write!(f, " (start {}", Plain(estimate.start()))?;
+            write!(f, " (start {}", Rounded::new(estimate.start(), None))?;
             writeln!(
                 f,
                 "{})",
@@ -122,76 +124,5 @@ impl Fit {
             writeln!(f, "  the model had no value at some trial points; the last time it said: {error}")?;
         }
         Ok(())
-    }
-}
-
-/// A value with six digits, short where it is round.
-struct Plain(f64);
-
-impl fmt::Display for Plain {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let magnitude = self.0.abs();
-        if magnitude == 0.0 {
-            write!(f, "0")
-        } else if (1e-3..1e6).contains(&magnitude) {
-            let decimals = (5 - magnitude.log10().floor() as i32).max(0) as usize;
-            let text = format!("{:.decimals$}", self.0);
-            let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-            write!(f, "{short}")
-        } else {
-            write!(f, "{:.5e}", self.0)
-        }
-    }
-}
-
-/// A value rounded to two significant digits of its uncertainty.
-struct WithUncertainty {
-    value: f64,
-    uncertainty: f64,
-}
-
-impl fmt::Display for WithUncertainty {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { value, uncertainty } = *self;
-        if !(uncertainty > 0.0 && uncertainty.is_finite()) {
-            return write!(f, "{} ± {}", Plain(value), Plain(uncertainty));
-        }
-        // The decimal place of the second digit of the uncertainty; rounding up to 100 is harmless.
-        let place = uncertainty.log10().floor() as i32 - 1;
-        let leading = value.abs().max(uncertainty).log10().floor() as i32;
-        if (-4..6).contains(&leading) && place <= 0 && place > -12 {
-            let decimals = place.unsigned_abs() as usize;
-            write!(f, "{value:.decimals$} ± {uncertainty:.decimals$}")
-        } else {
-            // At most 17 digits mean anything.
-            let decimals = (leading - place).clamp(0, 16) as usize;
-            let scale = 10f64.powi(leading);
-            write!(f, "({:.decimals$} ± {:.decimals$})e{leading}", value / scale, uncertainty / scale)
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_are_rounded_to_their_uncertainty() {
-        let text = |value, uncertainty| WithUncertainty { value, uncertainty }.to_string();
-        assert_eq!(text(190.740_316_97, 0.005_601), "190.7403 ± 0.0056");
-        assert_eq!(text(0.1, 3.4e-5), "0.100000 ± 0.000034");
-        assert_eq!(text(238.942, 2.707), "238.9 ± 2.7");
-        assert_eq!(text(238.942, 27.07), "239 ± 27");
-        assert_eq!(text(238_942.0, 270.7), "(2.3894 ± 0.0027)e5");
-        assert_eq!(text(5.5e-7, 2.0e-9), "(5.500 ± 0.020)e-7");
-        assert_eq!(text(1.0, 0.0), "1 ± 0");
-        assert_eq!(text(1e-9, 0.2), "0.00 ± 0.20");
-    }
-
-    #[test]
-    fn plain_values_are_short() {
-        assert_eq!(Plain(0.27).to_string(), "0.27");
-        assert_eq!(Plain(1980.0).to_string(), "1980");
-        assert_eq!(Plain(-1.234_567_89e-7).to_string(), "-1.23457e-7");
     }
 }

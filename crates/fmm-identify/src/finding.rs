@@ -7,6 +7,7 @@ use fmm_model::{Dual, Parameter, Scalar};
 use crate::Machine;
 use crate::layout::{Layout, mass, mass_of_stiffness, named};
 use crate::machine::Scale;
+use crate::residual_structure::Covariance;
 
 /// Where the value of a finding comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -129,6 +130,7 @@ pub(crate) fn findings<F: LawFamily>(
     machine: &Machine,
     layout: &Layout,
     fit: &Fit,
+    covariance: &Covariance<'_>,
     gain_uncertainty: f64,
 ) -> Vec<Finding> {
     let fitted = fit.estimates().iter().enumerate().map(|(index, estimate)| {
@@ -137,7 +139,7 @@ pub(crate) fn findings<F: LawFamily>(
         Finding {
             parameter: estimate.parameter().clone(),
             value: estimate.value(),
-            uncertainty: estimate.standard_uncertainty().map(|u| u.hypot(gain)),
+            uncertainty: covariance.get(index, index).map(|variance| variance.sqrt().hypot(gain)),
             origin: Origin::Fitted(estimate.status()),
         }
     });
@@ -157,19 +159,19 @@ pub(crate) fn findings<F: LawFamily>(
         }
     }
     for ((parameter, value), gradient) in values.into_iter().zip(gradients) {
-        let uncertainty = variance(fit, &gradient, inputs.uncertainties()).map(f64::sqrt);
+        let uncertainty = variance(covariance, &gradient, inputs.uncertainties()).map(f64::sqrt);
         findings.push(Finding { parameter, value, uncertainty, origin: Origin::Derived });
     }
     findings
 }
 
 /// gᵀ V g over the fitted values plus the variances of the inputs; none if a value that matters has none.
-fn variance(fit: &Fit, gradient: &[f64], inputs: [f64; KNOWN]) -> Option<f64> {
+fn variance(covariance: &Covariance<'_>, gradient: &[f64], inputs: [f64; KNOWN]) -> Option<f64> {
     let (shared, known) = gradient.split_at(gradient.len() - inputs.len());
     let mut variance: f64 = known.iter().zip(inputs).map(|(slope, u)| (slope * u).powi(2)).sum();
     for (i, row) in shared.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
         for (j, column) in shared.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
-            variance += row * column * fit.covariance(i, j)?;
+            variance += row * column * covariance.get(i, j)?;
         }
     }
     Some(variance)

@@ -2,11 +2,12 @@
 
 use std::ops::ControlFlow;
 
-use fmm_fit::{Fit, Options, Progress, autocorrelation_time, solve_observed};
+use fmm_fit::{EvaluationError, Fit, Options, Progress, solve_observed};
 use fmm_sim::{EventKind, Simulated, Trajectory};
 
 use crate::finding::{Finding, findings};
 use crate::problem::RingDownProblem;
+use crate::residual_structure::{Covariance, ResidualStructure};
 use crate::{IdentifyError, Machine, RingDown, Warning};
 
 /// How the fitted motion of one record ends.
@@ -51,12 +52,17 @@ pub struct Identification {
     findings: Vec<Finding>,
     motions: Vec<FittedMotion>,
     warnings: Vec<Warning>,
-    autocorrelation_time: f64,
+    structure: ResidualStructure,
+    inflation: f64,
     amplitude: f64,
     model: fn(Machine, &[RingDown], usize, &[f64]) -> Option<Vec<f64>>,
 }
 
 /// Identifies the parameters of law family `F` from ring-downs of one machine.
+///
+/// Standard uncertainties take the residuals as independent if they look like noise. If the law misses something, so
+/// that neighbouring residuals are alike, they come from [`CorrelatedCovariance`](fmm_fit::CorrelatedCovariance) where
+/// that gives more, and a warning says so; the [`Fit`] keeps those of independent residuals.
 ///
 /// The law explains all dissipation that `machine` does not claim as its own known damping. Start values come
 /// from the records; the fit starts from each hypothesis that the amplitudes allow and keeps the best end.
@@ -103,29 +109,33 @@ pub fn identify_observed<F: Simulated>(
     let fit = best_fit(&problem, options, observer)?;
     // One instrument for all records; the worst statement counts.
     let gain = decays.iter().map(|decay| decay.summary().gain_uncertainty).fold(0.0, f64::max);
-    let mut found = findings::<F>(machine, problem.layout(), &fit, gain);
+    let failure = |error: EvaluationError| IdentifyError::Simulation { law: F::NAME, message: error.to_string() };
+    let structure = ResidualStructure::of(&fit, decays);
+    let covariance = Covariance::of(&problem, &fit, &structure, decays).map_err(failure)?;
+    let mut found = findings::<F>(machine, problem.layout(), &fit, &covariance, gain);
+    let inflation = covariance.inflation();
     if let Some(moved) = machine.with_damping_moved() {
         let mut ends = Vec::new();
         for machine in moved {
             let problem = RingDownProblem::<F>::new(machine, decays)?;
             let fit = solve_observed(&problem, fit.values(), options, |progress| observer(progress))
                 .map_err(|source| IdentifyError::Fit { law: F::NAME, source })?;
-            ends.push(findings::<F>(&machine, problem.layout(), &fit, gain));
+            let covariance = Covariance::of(&problem, &fit, &structure, decays).map_err(failure)?;
+            ends.push(findings::<F>(&machine, problem.layout(), &fit, &covariance, gain));
         }
         add_in_quadrature(&mut found, &ends[0], &ends[1]);
     }
 
     let mut motions = Vec::with_capacity(decays.len());
     for (record, decay) in decays.iter().enumerate() {
-        let trajectory = problem
-            .events(record, fit.values())
-            .map_err(|error| IdentifyError::Simulation { law: F::NAME, message: error.to_string() })?;
+        let trajectory = problem.events(record, fit.values()).map_err(failure)?;
         motions.push(FittedMotion::of(decay, &trajectory));
     }
     let mut identification = Identification {
         law: F::NAME,
         machine: *machine,
-        autocorrelation_time: autocorrelation_time(fit.residuals()).unwrap_or(1.0),
+        structure,
+        inflation,
         amplitude: decays.iter().map(|decay| decay.summary().amplitudes.0).fold(0.0, f64::max),
         fit,
         findings: found,
@@ -203,12 +213,12 @@ impl Identification {
 
     /// Root mean square of the residuals, in the unit of the records.
     pub fn rms_residual(&self) -> f64 {
-        (self.fit.sum_of_squares() / self.fit.residuals().len() as f64).sqrt()
+        self.structure.residual
     }
 
     /// τ, how many neighbouring residuals tell no more than one (1).
     pub fn autocorrelation_time(&self) -> f64 {
-        self.autocorrelation_time
+        self.structure.autocorrelation_time
     }
 
     /// What the law says for every sample of record number `record` of `decays`, which must be those of the
@@ -217,6 +227,15 @@ impl Identification {
         (record < decays.len() && decays.len() == self.motions.len())
             .then(|| (self.model)(self.machine, decays, record, self.fit.values()))
             .flatten()
+    }
+
+    pub(crate) fn structure(&self) -> ResidualStructure {
+        self.structure
+    }
+
+    /// Largest factor by which an uncertainty exceeds that of independent residuals (1).
+    pub(crate) fn inflation(&self) -> f64 {
+        self.inflation
     }
 
     /// Largest first amplitude of the records, in their unit.

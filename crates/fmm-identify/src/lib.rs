@@ -48,6 +48,7 @@ mod machine;
 mod preparation;
 mod problem;
 mod report;
+mod residual_structure;
 mod ring_down;
 #[cfg(feature = "serde")]
 mod serialised;

@@ -24,8 +24,8 @@ pub enum Warning {
         noise: f64,
         /// Unit of both.
         unit: String,
-        /// √τ, the factor by which the standard uncertainties of slowly varying influences are too small.
-        factor: f64,
+        /// Largest factor by which a standard uncertainty was widened over that of independent residuals.
+        inflation: f64,
     },
     /// The period changes with the amplitude: the restoring force is not a linear spring.
     PeriodDependsOnAmplitude {
@@ -91,10 +91,6 @@ pub enum Warning {
     Undecided,
 }
 
-/// Above this ratio of residual to noise, and with neighbours that tell each other's value, a law misses something.
-const EXCESS: f64 = 1.5;
-/// Autocorrelation time (samples) below which residuals pass for independent.
-const INDEPENDENT: f64 = 3.0;
 /// Fewer half swings than this are few.
 const ENOUGH_HALF_SWINGS: usize = 4;
 /// A decision between stop and reversal closer than this is narrow.
@@ -159,16 +155,14 @@ impl Warning {
     }
 
     fn of_residuals(identification: &Identification, decays: &[RingDown], warnings: &mut Vec<Self>) {
-        // A converter step counts as the noise of rounding; a simulated record without noise has that of doubles.
-        let noise = decays
-            .iter()
-            .map(|decay| decay.summary())
-            .map(|summary| summary.noise.hypot(summary.resolution.unwrap_or(0.0) / 12f64.sqrt()))
-            .fold(1e-9 * identification.amplitude(), f64::max);
-        let (residual, time) = (identification.rms_residual(), identification.autocorrelation_time());
-        if residual > EXCESS * noise && time > INDEPENDENT {
-            let unit = decays.first().map_or_else(String::new, |decay| decay.record().unit().to_owned());
-            warnings.push(Self::StructuredResiduals { residual, noise, unit, factor: time.sqrt() });
+        let structure = identification.structure();
+        if structure.is_structured() {
+            warnings.push(Self::StructuredResiduals {
+                residual: structure.residual,
+                noise: structure.noise,
+                unit: decays.first().map_or_else(String::new, |decay| decay.record().unit().to_owned()),
+                inflation: identification.inflation(),
+            });
         }
     }
 }
@@ -188,11 +182,11 @@ impl fmt::Display for Warning {
             Self::NormalLoadUnknown => {
                 write!(f, "the normal load is unknown: the friction force is found, but no coefficient mu")
             }
-            Self::StructuredResiduals { residual, noise, unit, factor } => write!(
+            Self::StructuredResiduals { residual, noise, unit, inflation } => write!(
                 f,
                 "the residuals are structured, not noise: {residual:.3e} {unit} rms against {noise:.1e} {unit} of noise \
                  between samples, and neighbours are alike; the law leaves something out, and the standard \
-                 uncertainties, which count every sample as independent, are too small by a factor of up to about {factor:.0}"
+                 uncertainties were widened for it, by up to a factor of {inflation:.1}"
             ),
             Self::PeriodDependsOnAmplitude { change } => write!(
                 f,

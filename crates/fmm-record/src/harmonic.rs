@@ -154,9 +154,9 @@ mod tests {
             .map(|i| (PI * (f64::from(i) - zero) / half).sin())
             .map(|sine| if sine < 0.0 { sine } else { 0.5 * sine })
             .collect();
-        let mut at = 495.0;
+        let mut at = 495.0f64;
         for _ in 0..4 {
-            let centre = (at as f64).round() as usize;
+            let centre = at.round() as usize;
             at = Harmonic::fit_about(&values, centre - 33..centre + 34, at, half, 0.0, true).unwrap().crossing();
         }
         // A fit without a kink is off by w Δ/4 = 0.09 rad, 5.5 samples; each step here leaves a seventh or so.

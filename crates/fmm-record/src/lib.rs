@@ -1,4 +1,45 @@
-//! x
+//! What was *measured*: a uniformly sampled [`Record`] with its quantity and unit, readers that find it in a file,
+//! and what must be known of it before a model is fitted.
+//!
+//! | question | answer |
+//! |---|---|
+//! | what is in this file? | modules `csv`, `mat`: a `Reading`, the record with the choices that led to it |
+//! | when does motion begin, and what is the offset? | [`Release`] |
+//! | how does it swing? | [`Swings`]: peaks, crossings, frequency |
+//! | how good is it? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`] |
+//! | another form of it? | [`Record::crop`], [`Record::scaled`], [`Record::shifted`], [`Record::smoothed`], [`Record::integrate`], [`Record::differentiate`] |
+//!
+//! Nothing is repaired in silence: a file that contradicts itself is an error that says where, and what conditioning
+//! finds is reported, not removed.
+//!
+//! ```
+//! use fmm_record::{Quantity, Record, Release, Swings, noise};
+//!
+//! // A mass on a spring is let go at 0.5 s: 2.2 Hz, friction takes 5 % of the first swing from every half swing.
+//! let velocity = |t: f64| {
+//!     let half_swings = (t - 0.5).max(0.0) * 4.4;
+//!     let swing = 0.975 - 0.05 * half_swings.floor();
+//!     if swing > 0.0 { swing * (std::f64::consts::PI * half_swings).sin() } else { 0.0 }
+//! };
+//! let values = (0..8000).map(|i| 0.03 + velocity(f64::from(i) * 1e-3)).collect();
+//! let record = Record::sampled(1000.0, values, Quantity::Velocity, "m/s")?;
+//!
+//! let release = Release::of(&record).expect("the record begins at rest");
+//! assert!((release.rest_end - 0.5).abs() < 1e-4 && (release.offset - 0.03).abs() < 1e-12);
+//!
+//! let swings = Swings::of(&record.shifted(release.offset)?);
+//! assert!((swings.frequency().unwrap() - 2.2).abs() < 1e-4);
+//! let heights: Vec<f64> = swings.peaks().iter().map(|peak| peak.value.abs()).collect();
+//! assert!((heights[0] - 0.975).abs() < 1e-4 && (heights[1] - 0.925).abs() < 1e-4);
+//! assert!(noise(record.values()) < 1e-5);
+//! # Ok::<(), fmm_record::RecordError>(())
+//! ```
+//!
+//! # Features
+//!
+//! `csv` and `mat`, both on by default, are the readers of text and of MATLAB files. Without them the crate has no
+//! dependency but `thiserror`.
+
 #[cfg(feature = "csv")]
 pub mod csv;
 #[cfg(feature = "mat")]
@@ -12,6 +53,7 @@ mod offset_step;
 mod order;
 mod quantisation;
 mod quantity;
+#[cfg(any(feature = "csv", feature = "mat"))]
 mod reading;
 mod record;
 mod release;
@@ -29,6 +71,7 @@ pub use noise::noise;
 pub use offset_step::OffsetStep;
 pub use quantisation::quantisation_step;
 pub use quantity::Quantity;
+#[cfg(any(feature = "csv", feature = "mat"))]
 pub use reading::{Column, Reading};
 pub use record::Record;
 pub use release::Release;
@@ -37,3 +80,8 @@ pub use saturation::{Saturation, saturation};
 pub use smooth::{EndRule, moving_average};
 pub use spikes::{Spike, spikes};
 pub use swings::{Crossing, Peak, Swings};
+
+/// Runs the example of the README.
+#[cfg(all(doctest, feature = "mat"))]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -82,7 +82,7 @@ fn sharpest(values: &[f64], first: usize, last: usize, width: usize, side: f64) 
     (begin..end)
         .map(|i| {
             let [a, b, c, d] = [sum(i - 2 * width), sum(i - width), sum(i), sum(i + width)];
-            (i, side * ((c - b) - ((b - a) + (d - c)) / 2.0))
+            (i, side * ((c - b) - f64::midpoint(b - a, d - c)))
         })
         .max_by(|a, b| a.1.total_cmp(&b.1))
         .map_or((first + last) as f64 / 2.0, |(i, _)| i as f64)

@@ -48,7 +48,7 @@ impl EndRule {
 /// [`RecordError::EvenSpan`] if the span is even, 0 included: an even window has no centre. (`smooth` takes the odd
 /// number below, `movmean` a window that is shifted by half a sample.)
 pub fn moving_average(values: &[f64], span: usize, ends: EndRule) -> Result<Vec<f64>, RecordError> {
-    if span % 2 == 0 { Err(RecordError::EvenSpan { span }) } else { Ok(averaged(values, span / 2, ends)) }
+    if span.is_multiple_of(2) { Err(RecordError::EvenSpan { span }) } else { Ok(averaged(values, span / 2, ends)) }
 }
 
 /// Moving average over `half` samples to either side.

@@ -228,7 +228,7 @@ fn centre(fitted: &[Fitted], k: usize) -> f64 {
     } else if k > 0 {
         (value(k - 1) + 2.0 * value(k) + value(k + 1)) / 4.0
     } else {
-        (value(k) + value(k + 1)) / 2.0
+        f64::midpoint(value(k), value(k + 1))
     }
 }
 

@@ -7,7 +7,11 @@ use super::CsvError;
 /// The longest line that is read (bytes). A file without line ends is refused instead of filling the memory.
 pub const LONGEST_LINE: usize = 1 << 20;
 
-/// Passes lines on and empties those that are comments or blank, so that the parser behind still counts them.
+/// What stands for a line without data: a row of one empty field. The parser behind skips empty lines in silence,
+/// and then tells the line of a row wrong.
+pub(super) const NO_DATA: &[u8] = b"\"\"\n";
+
+/// Passes lines on, with [`NO_DATA`] for those that are comments or blank.
 ///
 /// The csv crate knows comments of its own, but of one kind only.
 pub(super) struct WithoutComments<R> {
@@ -45,7 +49,7 @@ impl<R: BufRead> WithoutComments<R> {
         let first = self.line.iter().find(|byte| !byte.is_ascii_whitespace());
         if matches!(first, None | Some(b'#' | b'%')) {
             self.line.clear();
-            self.line.push(b'\n');
+            self.line.extend_from_slice(NO_DATA);
         }
         Ok(true)
     }

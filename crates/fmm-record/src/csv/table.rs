@@ -5,7 +5,7 @@ use std::io::{BufReader, Chain, Cursor, Read};
 use ::csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder, Trim};
 
 use super::CsvError;
-use super::lines::WithoutComments;
+use super::lines::{NO_DATA, WithoutComments};
 use super::number::{self, Mark};
 use crate::Column;
 
@@ -144,7 +144,7 @@ impl<R: Read> Table<R> {
 /// them is a decimal comma. Two lines are asked, because the head may end within one; they are the last, because
 /// the first may be a header of any text.
 fn likely_separator(head: &[u8]) -> u8 {
-    let rows = head.split(|byte| *byte == b'\n').rev().filter(|line| !line.trim_ascii().is_empty()).take(2);
+    let rows = head.split_inclusive(|byte| *byte == b'\n').rev().filter(|line| *line != NO_DATA).take(2);
     let found = |separator: &u8| rows.clone().any(|row| row.contains(separator));
     [b';', b'\t'].into_iter().find(found).unwrap_or(b',')
 }

@@ -1,0 +1,110 @@
+//! Whether the residuals are noise, and the covariance of the estimates either way.
+
+use std::ops::Range;
+
+use fmm_fit::{CorrelatedCovariance, EvaluationError, Fit, Residuals, autocorrelation_time};
+
+use crate::RingDown;
+
+/// What the residuals of a fit look like beside the noise of the records.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ResidualStructure {
+    /// Root mean square of the residuals, in the unit of the records.
+    pub(crate) residual: f64,
+    /// Standard deviation of what cannot be fitted: white noise and rounding, in the same unit.
+    pub(crate) noise: f64,
+    /// τ (samples).
+    pub(crate) autocorrelation_time: f64,
+}
+
+/// Above this ratio of residual to noise, and with neighbours that tell each other's value, a law misses something.
+const EXCESS: f64 = 1.5;
+/// Autocorrelation time (samples) below which residuals pass for independent.
+const INDEPENDENT: f64 = 3.0;
+/// Windows of this many correlation times lose little of the correlation,
+const WINDOW: f64 = 5.0;
+/// and with this many of them the covariance is known to about a third.
+const FEWEST_WINDOWS: usize = 8;
+
+impl ResidualStructure {
+    pub(crate) fn of(fit: &Fit, decays: &[RingDown]) -> Self {
+        // A converter step counts as the noise of rounding; a simulated record without noise has that of doubles.
+        let noise = decays
+            .iter()
+            .map(RingDown::summary)
+            .map(|summary| {
+                let rounding = summary.resolution.unwrap_or(0.0) / 12f64.sqrt();
+                summary.noise.hypot(rounding).max(1e-9 * summary.amplitudes.0)
+            })
+            .fold(0.0, f64::max);
+        let count = fit.residuals().len() as f64;
+        Self {
+            residual: (fit.sum_of_squares() / count).sqrt(),
+            noise,
+            autocorrelation_time: autocorrelation_time(fit.residuals()).unwrap_or(1.0),
+        }
+    }
+
+    /// Whether the law misses something that the record shows.
+    pub(crate) fn is_structured(&self) -> bool {
+        self.residual > EXCESS * self.noise && self.autocorrelation_time > INDEPENDENT
+    }
+}
+
+/// Covariance of the estimates: that of independent residuals or, if they are structured, the larger of that and the
+/// one that takes their correlation into account.
+pub(crate) struct Covariance<'a> {
+    fit: &'a Fit,
+    correlated: Option<CorrelatedCovariance>,
+}
+
+impl<'a> Covariance<'a> {
+    pub(crate) fn of(
+        problem: &impl Residuals,
+        fit: &'a Fit,
+        structure: &ResidualStructure,
+        decays: &[RingDown],
+    ) -> Result<Self, EvaluationError> {
+        let mut correlated = None;
+        if structure.is_structured() {
+            let mut end = 0;
+            let series: Vec<Range<usize>> = decays
+                .iter()
+                .map(|decay| {
+                    let start = end;
+                    end += decay.summary().samples;
+                    start..end
+                })
+                .collect();
+            let longest = series.iter().map(Range::len).min().unwrap_or(0) / FEWEST_WINDOWS;
+            let span = ((WINDOW * structure.autocorrelation_time) as usize).min(longest).max(1);
+            correlated = CorrelatedCovariance::of(problem, fit, span, &series)?;
+        }
+        Ok(Self { fit, correlated })
+    }
+
+    /// Covariance of parameters `i` and `j`; none where the record does not determine them.
+    pub(crate) fn get(&self, i: usize, j: usize) -> Option<f64> {
+        match &self.correlated {
+            None => self.fit.covariance(i, j),
+            Some(correlated) => Some(correlated.covariance(i, j)? * self.widening(i) * self.widening(j)),
+        }
+    }
+
+    /// Factor that keeps an uncertainty from falling below that of independent residuals.
+    fn widening(&self, i: usize) -> f64 {
+        let correlated = self.correlated.as_ref().and_then(|covariance| covariance.standard_uncertainty(i));
+        match (correlated, self.fit.estimates()[i].standard_uncertainty()) {
+            (Some(correlated), Some(white)) if correlated > 0.0 => (white / correlated).max(1.0),
+            _ => 1.0,
+        }
+    }
+
+    /// Largest ratio of an uncertainty to that of independent residuals.
+    pub(crate) fn inflation(&self) -> f64 {
+        let estimates = self.fit.estimates().iter().enumerate();
+        estimates
+            .filter_map(|(i, estimate)| Some(self.get(i, i)?.sqrt() / estimate.standard_uncertainty()?))
+            .fold(1.0, f64::max)
+    }
+}
