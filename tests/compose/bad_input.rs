@@ -108,8 +108,9 @@ fn records_in_which_nothing_moves() {
 fn records_with_few_swings() {
     let error = prepare(vibration(200)).unwrap_err();
     assert!(matches!(error, IdentifyError::TooFewHalfSwings { needed: 2, .. }), "{error}");
-    let found = identified(vibration(800));
-    assert!(found.warnings().contains(&Warning::FewHalfSwings { count: 3 }), "{found}");
+    let found = identified(vibration(700));
+    let few = |warning: &Warning| matches!(warning, Warning::FewHalfSwings { count: 2..=3 });
+    assert!(found.warnings().iter().any(few), "{found}");
 }
 
 /// Without decay both dissipations go to zero and stay there, and the report says that there is nothing to find.

@@ -76,16 +76,26 @@ fn centre(centres: &[f64]) -> f64 {
 /// Where between samples `first` and `last` the means of `width` samples before and after differ most, towards
 /// `side`, from what they differ one width earlier and later.
 fn sharpest(values: &[f64], first: usize, last: usize, width: usize, side: f64) -> f64 {
-    let sum = |from: usize| values[from..from + width].iter().sum::<f64>();
     let begin = first.max(2 * width);
     let end = last.min(values.len().saturating_sub(2 * width));
+    if begin >= end {
+        return (first + last) as f64 / 2.0;
+    }
+    // Sums from the first sample looked at, about its value: differences of two of them are the sums wanted.
+    let origin = begin - 2 * width;
+    let mut sums = vec![0.0];
+    sums.extend(values[origin..end + 2 * width].iter().scan(0.0, |sum, value| {
+        *sum += value - values[origin];
+        Some(*sum)
+    }));
+    let sum = |from: usize| sums[from + width - origin] - sums[from - origin];
     (begin..end)
         .map(|i| {
             let [a, b, c, d] = [sum(i - 2 * width), sum(i - width), sum(i), sum(i + width)];
             (i, side * ((c - b) - f64::midpoint(b - a, d - c)))
         })
         .max_by(|a, b| a.1.total_cmp(&b.1))
-        .map_or((first + last) as f64 / 2.0, |(i, _)| i as f64)
+        .map_or(begin as f64, |(i, _)| i as f64)
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::order::range;
 use crate::record::mean;
+use crate::spikes::without_spikes;
 use crate::{Quantity, Record, noise, quantisation_step};
 
 /// A record that begins at rest and then moves.
@@ -52,7 +53,7 @@ impl Release {
     /// # Ok::<(), fmm_record::RecordError>(())
     /// ```
     pub fn of(record: &Record) -> Option<Self> {
-        let values = record.values();
+        let values = &*without_spikes(record);
         let (low, high) = range(values);
         let beginning = values.get(..SHORTEST)?;
         let half_range = (high - low) / 2.0;

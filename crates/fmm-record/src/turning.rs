@@ -38,11 +38,16 @@ pub(crate) fn turning_points(values: &[f64], noise: f64, step: f64, bridged: usi
 }
 
 /// Length of a half swing (samples) of the largest regular oscillation; none if nothing oscillates.
+///
+/// Two turning points show no regularity. They are taken all the same if nothing regular is found and the swing between
+/// them spans most of the range: a motion that dry friction stops after two half swings.
 fn half_swing(values: &[f64], range: f64, floor: impl Fn(usize) -> f64) -> Option<usize> {
     const ENOUGH: usize = 6;
     const FEWEST: usize = 3;
     const NEXT: f64 = 0.4;
+    const MOST: f64 = 0.8;
     let mut half = 0;
+    let mut single = None;
     loop {
         let smooth = averaged(values, half, EndRule::Shrinking);
         let mut best: Vec<usize> = Vec::new();
@@ -58,10 +63,15 @@ fn half_swing(values: &[f64], range: f64, floor: impl Fn(usize) -> f64) -> Optio
             let mut lengths: Vec<f64> = best.windows(2).map(|pair| (pair[1] - pair[0]) as f64).collect();
             return Some((median(&mut lengths) as usize).max(1));
         }
+        if single.is_none() && floor(half) < 0.25 * range {
+            let large = |pair: &&[usize]| (smooth[pair[1]] - smooth[pair[0]]).abs() > MOST * range;
+            let found = reversals(&smooth, |_| 0.25 * range);
+            single = found.windows(2).find(large).map(|pair| pair[1] - pair[0]);
+        }
         // Without noise there is nothing to be gained from smoothing.
         half = 5 * half + 2;
         if 16 * half > values.len() || floor(0) <= floor(half) {
-            return None;
+            return single;
         }
     }
 }
