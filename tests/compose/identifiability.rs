@@ -42,7 +42,7 @@ fn mass_stiffness_and_damping_are_not_separable() {
 fn a_known_mass_makes_them_separable() {
     let decay = RingDown::prepare(&without_friction(), &Preparation::default()).unwrap();
     let machine = Machine::of_mass(Known::new(MASS, 0.01).unwrap()).unwrap();
-    let found = identify::<Viscous>(&machine, &[decay.clone()]).unwrap();
+    let found = identify::<Viscous>(&machine, std::slice::from_ref(&decay)).unwrap();
     let stiffness = found.finding("stiffness").unwrap();
     assert!((stiffness.value() / STIFFNESS - 1.0).abs() < 1e-9, "stiffness {} N/m", stiffness.value());
     // The mass is all that is uncertain: u(k)/k = u(m)/m.

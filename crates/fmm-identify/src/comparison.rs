@@ -86,10 +86,10 @@ fn tests(candidates: &[Candidate], identifications: &[Identification]) -> Vec<Ne
     let mut tests = Vec::new();
     for (restricted, small) in candidates.iter().zip(identifications) {
         for (full, large) in candidates.iter().zip(identifications) {
-            if restricted.is_nested_in(full) {
-                if let Ok(test) = f_test(small.fit(), large.fit()) {
-                    tests.push(NestedTest { restricted: restricted.name(), full: full.name(), test });
-                }
+            if restricted.is_nested_in(full)
+                && let Ok(test) = f_test(small.fit(), large.fit())
+            {
+                tests.push(NestedTest { restricted: restricted.name(), full: full.name(), test });
             }
         }
     }

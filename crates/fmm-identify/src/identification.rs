@@ -41,6 +41,9 @@ impl FittedMotion {
     }
 }
 
+/// What the law of an identification says for one record, given the machine, all records and the fitted values.
+type ModelOf = fn(Machine, &[RingDown], usize, &[f64]) -> Option<Vec<f64>>;
+
 /// Friction parameters of one law, with their uncertainty and what limits them.
 ///
 /// `Display` gives the report.
@@ -55,7 +58,7 @@ pub struct Identification {
     structure: ResidualStructure,
     inflation: f64,
     amplitude: f64,
-    model: fn(Machine, &[RingDown], usize, &[f64]) -> Option<Vec<f64>>,
+    model: ModelOf,
 }
 
 /// Identifies the parameters of law family `F` from ring-downs of one machine.
@@ -158,7 +161,7 @@ fn best_fit<F: Simulated>(
     for start in problem.starts() {
         match solve_observed(problem, &start, options, |progress| observer(progress)) {
             Ok(fit) if best.as_ref().is_none_or(|best| fit.sum_of_squares() < best.sum_of_squares()) => {
-                best = Some(fit)
+                best = Some(fit);
             }
             Ok(_) => {}
             Err(source) => failure = Some(IdentifyError::Fit { law: F::NAME, source }),
