@@ -168,10 +168,10 @@ fn variable(file: &fmm_record::mat::MatFile, column: &Column) -> Result<fmm_reco
         Column::Index(index) => *index,
     };
     let arrays: Vec<_> = file.arrays().iter().filter(|array| array.values().len() > 1).collect();
-    if let [array] = arrays[..] {
-        if array.dimensions().iter().all(|length| *length > 1) {
-            return Ok(Channel::column(array.name(), index + 1));
-        }
+    if let [array] = arrays[..]
+        && array.dimensions().iter().all(|length| *length > 1)
+    {
+        return Ok(Channel::column(array.name(), index + 1));
     }
     match arrays.get(index) {
         Some(array) => Ok(Channel::variable(array.name())),

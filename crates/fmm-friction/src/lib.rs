@@ -45,3 +45,8 @@ pub use error::LawError;
 pub use family::{LawFamily, LawParameter, Role};
 pub use law::{BristleLaw, SlidingLaw};
 pub use viscous::Viscous;
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -65,3 +65,8 @@ pub use preparation::{Offset, Preparation, RecordSummary};
 pub use problem::RingDownProblem;
 pub use ring_down::RingDown;
 pub use warning::Warning;
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -30,3 +30,8 @@ pub use oscillator::Oscillator;
 pub use parameter::Parameter;
 pub use rounded::Rounded;
 pub use scalar::{Dual, Scalar};
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -49,3 +49,8 @@ pub use scenario::{Scenario, State};
 pub use simulated::Simulated;
 pub use thesis::Thesis;
 pub use trajectory::Trajectory;
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
