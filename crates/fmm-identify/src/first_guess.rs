@@ -4,14 +4,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use fmm_record::Quantity;
 
-/// Oscillation as the eye sees it: one extremum per half swing and the crossings between them, times counted
-/// from the first sample (s).
+/// Oscillation as the eye sees it: one extremum per half swing, and how fast they follow each other.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Oscillation {
-    /// Time and value of each extremum, in order, alternating about the centre.
+    /// Time (s), counted from the first sample, and value of each extremum, in order, alternating about the centre.
     pub(crate) extrema: Vec<(f64, f64)>,
-    /// Times at which the record crosses its centre.
-    pub(crate) crossings: Vec<f64>,
+    /// Frequency between zero crossings (Hz), if there are enough.
+    pub(crate) frequency: Option<f64>,
 }
 
 /// Start values for one record.
@@ -53,8 +52,14 @@ impl FirstGuess {
     pub(crate) fn of(oscillation: &Oscillation, quantity: Quantity) -> Option<Self> {
         let extrema = &oscillation.extrema;
         let (first, second) = (*extrema.first()?, *extrema.get(1)?);
-        let crossings = oscillation.crossings.iter().enumerate().map(|(i, time)| (i as f64, *time));
-        let half_period = line(crossings).map_or(second.0 - first.0, |(slope, _)| slope);
+        // Turning points follow each other by exactly half a period whatever the friction; they are the peaks of a
+        // displacement and the crossings of a velocity. Crossings of a displacement are shifted by friction.
+        let half_period = if quantity == Quantity::Displacement {
+            line(extrema.iter().enumerate().map(|(i, (time, _))| (i as f64, *time))).map(|(slope, _)| slope)
+        } else {
+            oscillation.frequency.map(|frequency| 0.5 / frequency)
+        };
+        let half_period = half_period.unwrap_or(second.0 - first.0);
         // Half the difference of neighbouring extrema of opposite sign is an amplitude; a third one between them
         // takes the decay out of their mean.
         let centres = extrema.windows(3).map(|three| 0.25 * (three[0].1 + three[2].1) + 0.5 * three[1].1);
@@ -163,17 +168,18 @@ mod tests {
         let motion = Exact.run(&scenario, &Sampling::uniform(interval, 30_000).unwrap()).unwrap();
         let values = if displacement { motion.position().values() } else { motion.velocity().values() };
         let values: Vec<f64> = values.iter().map(|value| value + 0.3).collect();
-        let mut oscillation = Oscillation { extrema: Vec::new(), crossings: Vec::new() };
+        let (mut extrema, mut crossings) = (Vec::new(), Vec::new());
         for i in 1..values.len() - 1 {
             let time = i as f64 * interval;
             if (values[i] - values[i - 1]) * (values[i + 1] - values[i]) < 0.0 {
-                oscillation.extrema.push((time, values[i]));
+                extrema.push((time, values[i]));
             }
             if (values[i - 1] - 0.3) * (values[i] - 0.3) < 0.0 {
-                oscillation.crossings.push(time);
+                crossings.push(time);
             }
         }
-        oscillation
+        let span = crossings[crossings.len() - 1] - crossings[0];
+        Oscillation { extrema, frequency: Some((crossings.len() - 1) as f64 / (2.0 * span)) }
     }
 
     /// Both dissipations come back within a few percent, which is what a start value needs.
@@ -187,7 +193,8 @@ mod tests {
                 let both = *guess.hypotheses().last().unwrap();
                 assert!((both.damping / 0.3 - 1.0).abs() < 0.1, "c/m = {} 1/s", both.damping);
                 assert!((both.friction / 0.08 - 1.0).abs() < 0.1, "F/m = {} m/s²", both.friction);
-                assert!((guess.natural_frequency(both) / 2.0 - 1.0).abs() < 1e-3);
+                let frequency = guess.natural_frequency(both);
+                assert!((frequency / 2.0 - 1.0).abs() < 1e-3, "f = {frequency} Hz from {start:?}, {quantity}");
                 assert!((guess.offset - 0.3).abs() < 1e-3 * if displacement { 1.0 } else { 10.0 });
                 let (position, velocity) = guess.initial_state(both);
                 assert!((position - start.0).abs() < 1e-3, "x₀ = {position} m for {} m", start.0);
@@ -198,7 +205,7 @@ mod tests {
 
     #[test]
     fn a_single_extremum_gives_no_guess() {
-        let oscillation = Oscillation { extrema: vec![(0.1, 1.0)], crossings: vec![] };
+        let oscillation = Oscillation { extrema: vec![(0.1, 1.0)], frequency: None };
         assert_eq!(FirstGuess::of(&oscillation, Quantity::Velocity), None);
     }
 }

@@ -60,10 +60,15 @@ impl RingDown {
         let start = record.start();
         let after = |time: f64| time > start - record.interval();
         let peaks: Vec<Peak> = swings.peaks().iter().copied().filter(|peak| after(peak.time)).collect();
-        let crossings = swings.crossings().iter().map(|crossing| crossing.time);
+        let crossings = swings.crossings().iter().map(|crossing| crossing.time).filter(|time| after(*time));
         let oscillation = Oscillation {
             extrema: peaks.iter().map(|peak| ((peak.time - start).max(0.0), peak.value)).collect(),
-            crossings: crossings.filter(|time| after(*time)).map(|time| time - start).collect(),
+            frequency: swings.frequency(),
+        };
+        // As in the first guess: turning points are peaks of a displacement and crossings of a velocity.
+        let turning_times: Vec<f64> = match quantity {
+            Quantity::Displacement => peaks.iter().map(|peak| peak.time).collect(),
+            _ => crossings.collect(),
         };
         let few = IdentifyError::TooFewHalfSwings { found: peaks.len(), needed: FEWEST_HALF_SWINGS };
         let guess = FirstGuess::of(&oscillation, quantity).ok_or(few)?;
@@ -89,7 +94,7 @@ impl RingDown {
             spikes: spikes.iter().map(|spike| spike.count).sum(),
             saturation: saturation(record.values()),
             offset_step: OffsetStep::of(&record),
-            period_change: period_change(&oscillation.crossings),
+            period_change: period_change(&turning_times),
         };
         let peaks = peaks.iter().map(|peak| (peak.time, peak.value)).collect();
         Ok(Self { record, kept, guess, peaks, summary })
@@ -161,13 +166,13 @@ fn without(count: usize, holes: impl Iterator<Item = Range<usize>>) -> Vec<Range
     kept
 }
 
-/// Relative change of the period from the first third of `crossings` to the last, if it exceeds both its own scatter
+/// Relative change of the period from the first third of the turning points at `times` to the last, if it exceeds both its own scatter
 /// by a factor of five and half a percent, which is more than a good spring shows.
-fn period_change(crossings: &[f64]) -> Option<f64> {
+fn period_change(times: &[f64]) -> Option<f64> {
     const SIGNIFICANT: f64 = 5.0;
     const LARGE: f64 = 5e-3;
-    // From crossing to the next but one, so that an offset does not make periods alternate.
-    let periods: Vec<f64> = crossings.windows(3).map(|three| three[2] - three[0]).collect();
+    // From each to the next but one, so that an offset does not make periods alternate.
+    let periods: Vec<f64> = times.windows(3).map(|three| three[2] - three[0]).collect();
     let third = periods.len() / 3;
     if third < 3 {
         return None;
@@ -198,7 +203,7 @@ mod tests {
 
     #[test]
     fn only_a_large_and_significant_change_of_period_counts() {
-        let crossings = |change: f64| -> Vec<f64> {
+        let times = |change: f64| -> Vec<f64> {
             let mut time = 0.0;
             (0..40)
                 .map(|i| {
@@ -207,9 +212,9 @@ mod tests {
                 })
                 .collect()
         };
-        assert_eq!(period_change(&crossings(0.0)), None);
-        assert_eq!(period_change(&crossings(0.002)), None);
-        let change = period_change(&crossings(-0.15)).unwrap();
+        assert_eq!(period_change(&times(0.0)), None);
+        assert_eq!(period_change(&times(0.002)), None);
+        let change = period_change(&times(-0.15)).unwrap();
         assert!((-0.12..-0.08).contains(&change), "change {change}");
     }
 }
