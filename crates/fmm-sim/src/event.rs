@@ -71,11 +71,11 @@ pub struct Event<D = f64> {
 
 impl<D: Scalar> Event<D> {
     /// How far the load is beyond the static level, (|L| − F_s)/F_s: positive where the contact passes, zero or
-    /// negative where it holds, and infinite where nothing can hold it.
+    /// negative where it holds, and infinite where there is a load and nothing to hold it.
     ///
     /// A margin near zero says that a small change of the inputs turns a reversal into a stop or back; a
     /// gradient does not see that change.
     pub fn margin(&self) -> f64 {
-        if self.static_level > 0.0 { (self.load - self.static_level) / self.static_level } else { f64::INFINITY }
+        if self.load == self.static_level { 0.0 } else { (self.load - self.static_level) / self.static_level }
     }
 }

@@ -32,7 +32,11 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
         let linear = oscillator.damping().linear_coefficient();
         let quadratic = oscillator.damping().quadratic_coefficient();
         let step = sampling.interval();
-        let hold = law.breakaway() * load / stiffness;
+        let static_level = law.breakaway() * load;
+        let hold = static_level / stiffness;
+        if !hold.is_finite() {
+            return Err(SimulationError::NotFinite { time: 0.0 });
+        }
         let (mut x, mut v) = (scenario.initial().position, scenario.initial().velocity);
         let event = |kind, index: usize, x: f64, v: f64, next| Event {
             kind,
@@ -41,7 +45,7 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
             velocity: v,
             next,
             load: (stiffness * x).abs(),
-            static_level: law.breakaway() * load,
+            static_level,
         };
         // The appendix starts every run as if the motion before had been in the positive direction.
         let mut before = 1.0;
@@ -85,7 +89,7 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
                 mode = next;
                 trajectory.push(event(EventKind::Reversal, index + 1, x, v, mode));
             }
-            if !(x.is_finite() && v.is_finite()) {
+            if !((stiffness * x).is_finite() && x.is_finite() && v.is_finite()) {
                 return Err(SimulationError::NotFinite { time: (index + 1) as f64 * step });
             }
         }

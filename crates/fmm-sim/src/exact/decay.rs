@@ -108,11 +108,21 @@ impl<D: Scalar> Decay<D> {
         }
     }
 
+    /// A position and, in other units, a velocity that the motion from `state` on does not exceed; not finite if the
+    /// motion cannot be written in numbers of this type.
+    pub(super) fn reach(&self, state: State<D>) -> D {
+        let per_angular = self.half_swing.map_or(D::from(0.0), |half_swing| D::from(1.0) / half_swing.angular);
+        let sine = (state.velocity + self.rate * state.position) * per_angular;
+        state.position + sine + state.velocity + self.pull(state) * per_angular
+    }
+
     /// Time (s) until the velocity is zero again, the zero at which `state` may sit left aside; none if it never is.
     pub(super) fn time_to_zero_velocity(&self, state: State<D>) -> Option<D> {
         let velocity = state.velocity;
         if velocity.value() == 0.0 {
-            return self.half_swing.map(|half_swing| half_swing.duration);
+            // A velocity of zero may still have a derivative: a push in the direction of the motion to come starts
+            // that motion earlier.
+            return self.half_swing.map(|half_swing| half_swing.duration + velocity / self.pull(state));
         }
         // v = 0 where S/C = v₀/(a v₀ + ω₀² x₀); S/C is tan(ωτ)/ω below and tanh(στ)/σ above critical damping.
         let pull = self.pull(state);
@@ -125,9 +135,6 @@ impl<D: Scalar> Decay<D> {
             return None;
         }
         let argument = self.spread * quotient * quotient;
-        if argument.value() >= 1.0 {
-            return None;
-        }
         if argument.value().abs() < 0.05 {
             // atanh(√u)/√u = Σ uⁿ/(2n+1); 0.05¹⁴ < 1e-18.
             let mut series = D::from(1.0 / 29.0);
@@ -140,9 +147,13 @@ impl<D: Scalar> Decay<D> {
             let angular = (-self.spread).sqrt();
             return Some((angular * quotient).atan2(D::from(1.0)) / angular);
         }
+        // 1 ± σ v₀/(a v₀ + ω₀² x₀) over the common denominator; a − σ as ω₀²/(a + σ), which does not cancel.
         let sigma = self.spread.sqrt();
-        let tangent = sigma * quotient;
-        Some(((tangent + 1.0) / (-tangent + 1.0)).ln() / (sigma * 2.0))
+        let fast = self.rate + sigma;
+        let above = fast * velocity + self.square * state.position;
+        let below = (velocity / fast + state.position) * self.square;
+        let ratio = above / below;
+        (ratio.value() > 1.0 && ratio.value().is_finite()).then(|| ratio.ln() / (sigma * 2.0))
     }
 
     /// Position after `duration`, which [`time_to_zero_velocity`](Self::time_to_zero_velocity) gave for `state`.

@@ -93,12 +93,18 @@ impl<D: Scalar> Contact<D> {
         let Affine { level, slope, breakaway } = scenario.law().affine();
         let (mass, stiffness) = (oscillator.mass(), oscillator.stiffness());
         let damping = oscillator.damping().linear_coefficient() + load * slope;
-        Ok(Self {
+        let contact = Self {
             decay: Decay::new(damping / (mass * 2.0), stiffness / mass),
             stiffness,
             sliding_force: load * level,
             static_force: (load * breakaway).value(),
-        })
+        };
+        let edge = contact.centre(Direction::Positive).value();
+        if edge.is_finite() && contact.static_force.is_finite() {
+            Ok(contact)
+        } else {
+            Err(SimulationError::NotFinite { time: 0.0 })
+        }
     }
 
     /// Where the spring balances friction while the contact slips in `direction`.
@@ -111,10 +117,12 @@ impl<D: Scalar> Contact<D> {
         let load = -(self.stiffness * position).value();
         let next = if velocity.value() != 0.0 {
             Mode::Slip(Direction::of(velocity.value()))
-        } else if load.abs() <= self.static_force {
-            Mode::Stick
         } else {
-            Mode::Slip(Direction::of(load))
+            let direction = Direction::of(load);
+            // Beyond the static level the centre lies ahead, as the sliding level is not higher; where rounding says
+            // otherwise, nothing moves.
+            let ahead = (self.centre(direction) - position).value() * direction.sign() > 0.0;
+            if load.abs() > self.static_force && ahead { Mode::Slip(direction) } else { Mode::Stick }
         };
         let kind = if kind == EventKind::Reversal && next == Mode::Stick { EventKind::Stop } else { kind };
         Event { kind, time, position, velocity, next, load: load.abs(), static_level: self.static_force }
@@ -158,7 +166,7 @@ impl<'a, D: Scalar> Writer<'a, D> {
         while self.written < stop {
             let anchor = self.sampling.time(self.written);
             let at_anchor = self.decay.advance(phase, -event.time + anchor);
-            if !(at_anchor.position.value().is_finite() && at_anchor.velocity.value().is_finite()) {
+            if !(centre + self.decay.reach(at_anchor)).value().is_finite() {
                 return Err(SimulationError::NotFinite { time: anchor });
             }
             self.written += if let Some(powers) = &self.powers {

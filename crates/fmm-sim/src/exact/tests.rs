@@ -1,1 +1,138 @@
+use std::f64::consts::PI;
 
+use fmm_friction::{Coulomb, CoulombStatic, Viscous};
+use fmm_model::{Damping, Oscillator};
+
+use super::*;
+
+/// 1 kg on 2 N/m: with forces that are powers of two all centres and turning points of an undamped motion are exact.
+fn machine(damping: f64) -> Oscillator {
+    Oscillator::new(1.0, 2.0).unwrap().with_damping(Damping::linear(damping).unwrap())
+}
+
+fn run<L: AffineLaw<f64>>(
+    machine: Oscillator,
+    law: L,
+    load: f64,
+    start: (f64, f64),
+) -> Result<Trajectory, SimulationError> {
+    let scenario = Scenario::new(machine, law, load)?.starting_at(start.0, start.1)?;
+    Exact.run(&scenario, &Sampling::uniform(0.01, 3001)?)
+}
+
+/// Kinds and positions (m) of the events.
+fn story(motion: &Trajectory) -> Vec<(EventKind, f64)> {
+    motion.events().iter().map(|event| (event.kind, event.position)).collect()
+}
+
+#[test]
+fn a_load_equal_to_the_static_level_holds() {
+    for sign in [1.0, -1.0] {
+        for (law, edge) in [((0.25, 0.25), 0.125), ((0.25, 0.5), 0.25)] {
+            let law = CoulombStatic::new(law.0, law.1).unwrap();
+            let motion = run(machine(0.1), law, 1.0, (sign * edge, 0.0)).unwrap();
+            assert_eq!(story(&motion), [(EventKind::Start, sign * edge)], "{law:?}");
+            assert_eq!((motion.events()[0].next, motion.events()[0].margin()), (Mode::Stick, 0.0), "{law:?}");
+            assert!(motion.position().values().iter().all(|x| *x == sign * edge), "{law:?}: it moves");
+            assert!(motion.velocity().values().iter().all(|v| *v == 0.0), "{law:?}: it moves");
+        }
+    }
+}
+
+#[test]
+fn one_ulp_beyond_breaks_away_towards_the_centre() {
+    for sign in [1.0f64, -1.0] {
+        for (breakaway, edge) in [(0.25, 0.125f64), (0.5, 0.25)] {
+            let (law, beyond) = (CoulombStatic::new(0.25, breakaway).unwrap(), sign * edge.next_up());
+            let motion = run(machine(0.0), law, 1.0, (beyond, 0.0)).unwrap();
+            // The sliding level shifts the centre to 0.125 m, about which the start is mirrored.
+            let mirrored = 2.0 * sign * 0.125 - beyond;
+            assert_eq!(story(&motion), [(EventKind::Start, beyond), (EventKind::Stop, mirrored)], "{law:?}");
+            assert_eq!(motion.events()[0].next, Mode::Slip(Direction::of(-sign)), "{law:?}");
+        }
+    }
+}
+
+/// At the edge of the stick zone as division gives it, k x rounds to above N μ for some loads. Nothing drives the
+/// contact there either, so that it must not be said to reverse for ever without moving.
+#[test]
+fn a_load_that_rounding_puts_beyond_the_static_level_comes_to_rest() {
+    let (stiffness, force) = (1982.0, 7.79);
+    let edge = force / stiffness;
+    assert!(stiffness * edge > force, "the case is one in which rounding goes up");
+    let machine = Oscillator::new(10.391, stiffness).unwrap();
+    let motion = run(machine, Coulomb::new(force).unwrap(), 1.0, (edge, 0.0)).unwrap();
+    assert!(motion.rest().is_some() && motion.half_swings() <= 1, "{} half swings", motion.half_swings());
+}
+
+#[test]
+fn a_higher_static_level_ends_the_motion_at_an_earlier_turning_point() {
+    // The centres are at ∓0.125 m, so that each half swing is 0.25 m shorter; held are 0.125, 0.25, 0.3 and 0.75 m.
+    let turns = [1.0, -0.75, 0.5, -0.25, 0.0];
+    for (breakaway, half_swings) in [(0.25, 4), (0.5, 3), (0.6, 3), (1.5, 1)] {
+        let law = CoulombStatic::new(0.25, breakaway).unwrap();
+        let motion = run(machine(0.0), law, 1.0, (1.0, 0.0)).unwrap();
+        let positions: Vec<_> = motion.events().iter().map(|event| event.position).collect();
+        assert_eq!(positions, turns[..=half_swings], "{law:?}");
+        assert_eq!(motion.rest().map(|rest| rest.kind), Some(EventKind::Stop), "{law:?}");
+    }
+}
+
+#[test]
+fn without_oscillation_nothing_reverses_twice() {
+    let critical = 2.0 * 2f64.sqrt();
+    for ratio in [1.0, 1.0 + 1e-9, 1.5, 40.0] {
+        for start in [(1.0, 0.0), (1.0, 5.0), (1.0, -20.0), (-0.1, 3.0), (0.0, -1.0)] {
+            let motion = run(machine(ratio * critical), Coulomb::new(0.25).unwrap(), 1.0, start).unwrap();
+            assert!(motion.half_swings() <= 1, "ζ = {ratio}: {} half swings from {start:?}", motion.half_swings());
+            // It holds, or creeps on towards the edge of the stick zone without ever reaching it.
+            let (last, end) = (motion.events().last().unwrap(), motion.position().values().last().unwrap());
+            assert!(last.next == Mode::Stick || end.abs() >= 0.125 - 1e-15, "ζ = {ratio}: {end} m from {start:?}");
+        }
+    }
+}
+
+#[test]
+fn without_friction_reversals_are_half_a_damped_period_apart() {
+    let machine = machine(0.02);
+    let half_period = PI / machine.damped_angular_frequency().unwrap();
+    let ratio = (-machine.logarithmic_decrement().unwrap() / 2.0).exp();
+    let motion = run(machine, Coulomb::new(0.0).unwrap(), 1.0, (0.3, 0.0)).unwrap();
+    assert_eq!(motion.events().len(), 1 + (30.0 / half_period) as usize);
+    for (n, event) in motion.events().iter().enumerate() {
+        // 14 half swings, each of a few ulp.
+        let (time, position) = (n as f64 * half_period, 0.3 * (-ratio).powi(n as i32));
+        assert!((event.time - time).abs() < 1e-13, "reversal {n} at {} s, not {time} s", event.time);
+        assert!((event.position - position).abs() < 1e-14, "reversal {n} at {} m, not {position} m", event.position);
+    }
+}
+
+#[test]
+fn an_unloaded_contact_does_nothing() {
+    let free = run(machine(0.02), Viscous::new(0.0).unwrap(), 0.0, (0.3, -0.2)).unwrap();
+    let unloaded = run(machine(0.02), CoulombStatic::new(0.3, 0.8).unwrap(), 0.0, (0.3, -0.2)).unwrap();
+    assert_eq!(unloaded, free);
+    assert_eq!(free.rest(), None);
+    let resting = run(machine(0.02), Coulomb::new(0.3).unwrap(), 0.0, (0.0, 0.0)).unwrap();
+    assert_eq!(resting.rest().map(Event::margin), Some(0.0), "a contact without load holds a spring without force");
+}
+
+#[test]
+fn what_cannot_be_simulated_is_refused() {
+    let coulomb = |level| Coulomb::new(level).unwrap();
+    let quadratic = machine(0.0).with_damping(Damping::new(0.1, 0.5).unwrap());
+    let error = run(quadratic, coulomb(0.1), 1.0, (1.0, 0.0)).unwrap_err();
+    assert_eq!(error, SimulationError::QuadraticDamping { quadratic: 0.5 });
+
+    // Ten million half swings in 30 s.
+    let fast = Oscillator::new(1.0, 1e12).unwrap();
+    let error = run(fast, coulomb(0.0), 1.0, (1.0, 0.0)).unwrap_err();
+    assert!(matches!(error, SimulationError::EventBudget { budget: EVENT_BUDGET, .. }), "{error}");
+
+    // v₀/ω is not a number of metres that exists, and neither is N μ_s one of newtons.
+    let slow = Oscillator::new(1.0, 1e-20).unwrap();
+    let error = run(slow, coulomb(0.0), 1.0, (0.0, 1e300)).unwrap_err();
+    assert!(matches!(error, SimulationError::NotFinite { .. }), "{error}");
+    let error = run(machine(0.0), coulomb(1e200), 1e200, (1.0, 0.0)).unwrap_err();
+    assert!(matches!(error, SimulationError::NotFinite { .. }), "{error}");
+}
