@@ -76,7 +76,7 @@ fn survive<D: Scalar>(engine: &impl Engine<D, CoulombStatic<D>>, seed: u64, coun
         let samples = random.random_range(1..8);
         let sampling =
             Sampling::uniform(inputs[8], samples + 4).unwrap().window(random.random_range(0..3)..samples + 4);
-        let case = || format!("[m, k, c, μ, μ_s, N, x₀, v₀, Δt] = {inputs:e?} in SI units, {sampling:?}");
+        let case = || format!("[m, k, c, μ, μ_s, N, x₀, v₀, Δt] = {inputs:?} in SI units, {sampling:?}");
         match engine.run_into(&scenario::<D>(&inputs), &sampling.unwrap(), &mut motion) {
             Ok(()) => {
                 let (last, end) = (motion.events().last().unwrap().time.value(), sampling.unwrap().end());

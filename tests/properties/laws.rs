@@ -1,8 +1,6 @@
 //! Laws that are others in a limit are them to the last bit, and all keep the promises of their trait.
 
-use fmm_friction::{
-    AffineLaw, BristleLaw, Coulomb, CoulombStatic, CoulombViscous, Dahl, LawFamily, SlidingLaw, Viscous,
-};
+use fmm_friction::{AffineLaw, BristleLaw, Coulomb, CoulombStatic, CoulombViscous, Dahl, SlidingLaw, Viscous};
 use fmm_sim::{Mode, Simulated, Trajectory};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -99,7 +97,7 @@ fn families_make_their_laws() {
 #[test]
 fn sliding_laws_never_push() {
     fn kept<L: SlidingLaw<f64>>(law: &L, speed: f64) {
-        assert!(law.coefficient(speed) >= 0.0 && law.coefficient(speed).is_finite(), "{} m/s", speed);
+        assert!(law.coefficient(speed) >= 0.0 && law.coefficient(speed).is_finite(), "{speed} m/s");
         assert!(law.coefficient(0.0) <= law.breakaway(), "{} > {}", law.coefficient(0.0), law.breakaway());
     }
     let mut random = ChaCha8Rng::seed_from_u64(96);

@@ -1,8 +1,12 @@
 //! The motion itself: the equation of motion between any two samples, and the automaton at every event.
 
-use fmm_sim::{Direction, EventKind, Mode, Trajectory};
+use std::f64::consts::TAU;
 
-use crate::case::{Case, cases, sense};
+use fmm_sim::{Direction, EventKind, Mode, Sampling, Trajectory};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use crate::case::{Case, cases, exactly, log_uniform, sense};
 use crate::series::advance;
 
 /// From each sample the power series of the equation of motion leads to the next one, over every event on the
@@ -97,4 +101,102 @@ fn equation_of_motion_and_automaton() {
         reversed += usize::from(motion.half_swings() > 3);
     }
     assert!(stopped > 200 && reversed > 200, "{stopped} cases stop and {reversed} reverse more than thrice");
+}
+
+/// Machine and start of a case that is chosen rather than drawn, without sampling to speak of.
+fn started(mass: f64, stiffness: f64, damping: f64, friction: f64, start: (f64, f64)) -> Case {
+    Case {
+        mass,
+        stiffness,
+        damping,
+        sliding: friction,
+        breakaway: friction,
+        normal_load: 1.0,
+        position: start.0,
+        velocity: start.1,
+        interval: TAU / (stiffness / mass).sqrt() / 4.0,
+        count: 40,
+    }
+}
+
+/// A start where N μ/k puts the edge of the stick zone, and a few ulp around it, holds or stops within a half swing,
+/// whichever way k x is rounded.
+#[test]
+fn starts_on_the_edge_come_to_rest() {
+    let mut random = ChaCha8Rng::seed_from_u64(51);
+    for _ in 0..1000 {
+        let (mass, stiffness) = (log_uniform(&mut random, -3.0, 3.0), log_uniform(&mut random, -3.0, 6.0));
+        let friction = log_uniform(&mut random, -3.0, 3.0);
+        let mut edge = friction / stiffness;
+        edge = if random.random_bool(0.5) { edge } else { -edge };
+        for position in [edge.next_down().next_down(), edge.next_down(), edge, edge.next_up(), edge.next_up().next_up()]
+        {
+            let case = started(mass, stiffness, 0.0, friction, (position, 0.0));
+            let motion = case.run();
+            assert!(
+                motion.rest().is_some() && motion.half_swings() <= 1,
+                "{} half swings: {case}",
+                motion.half_swings()
+            );
+        }
+    }
+}
+
+/// However large the damping, a motion away from the centre turns at
+///
+/// ```text
+/// t = ln[(λ₁ v₀ + ω₀² y₀)/(λ₂ v₀ + ω₀² y₀)]/(λ₁ − λ₂),   λ₁ = a + √(a² − ω₀²),   λ₂ = ω₀²/λ₁
+/// ```
+///
+/// with y counted from the centre, in which nothing cancels. There it stops, or creeps back.
+#[test]
+fn any_overdamped_motion_turns_in_time() {
+    let mut random = ChaCha8Rng::seed_from_u64(52);
+    for _ in 0..1000 {
+        let (mass, angular) = (log_uniform(&mut random, -3.0, 3.0), log_uniform(&mut random, -1.0, 4.0));
+        let (ratio, stiffness) = (log_uniform(&mut random, 0.05, 12.0), mass * angular * angular);
+        let velocity = angular * log_uniform(&mut random, -4.0, 0.0);
+        let reach = velocity / angular / ratio;
+        let position = if random.random_bool(0.5) { 0.0 } else { reach * random.random_range(0.0..3.0) };
+        let friction = stiffness * reach * random.random_range(0.0..1.0);
+        let case = started(mass, stiffness, 2.0 * ratio * (mass * stiffness).sqrt(), friction, (position, velocity));
+
+        let (rate, square) = (case.damping / (2.0 * mass), stiffness / mass);
+        let root = rate * (1.0 - square / rate / rate).sqrt();
+        let (fast, distance) = (rate + root, position + friction / stiffness);
+        let slow = square / fast;
+        let time = ((fast * velocity + square * distance) / (slow * velocity + square * distance)).ln() / (2.0 * root);
+        let turn = ((fast * distance + velocity) * (-slow * time).exp()
+            - (slow * distance + velocity) * (-fast * time).exp())
+            / (2.0 * root)
+            - friction / stiffness;
+        let motion = exactly(&case, &case.scenario(), &Sampling::uniform(1.01 * time, 2).unwrap());
+        assert_eq!(motion.half_swings(), 1, "no turn at {time} s: {case}");
+        let event = &motion.events()[1];
+        // 1 − 1/ζ² > 0.2 costs up to 5 ulp of the root, once in each factor; the engine has as many from a² − ω₀².
+        assert!((event.time / time - 1.0).abs() < 1e-13, "turns at {} s, not {time} s: {case}", event.time);
+        let slack = 1e-14 * (distance + reach);
+        assert!((event.position - turn).abs() < slack, "turns at {} m, not {turn} m: {case}", event.position);
+    }
+}
+
+/// Turning points of a machine without friction follow its logarithmic decrement at its damped frequency.
+#[test]
+fn decrement_and_damped_frequency_are_those_of_the_machine() {
+    let mut random = ChaCha8Rng::seed_from_u64(53);
+    for _ in 0..1000 {
+        let (mass, stiffness) = (log_uniform(&mut random, -3.0, 3.0), log_uniform(&mut random, -3.0, 6.0));
+        let ratio = log_uniform(&mut random, -5.0, -0.3);
+        let start = (log_uniform(&mut random, -6.0, 0.0), 0.0);
+        let case = started(mass, stiffness, 2.0 * ratio * (mass * stiffness).sqrt(), 0.0, start);
+        let (motion, machine) = (case.run(), case.oscillator());
+        let (decrement, frequency) = (machine.logarithmic_decrement().unwrap(), machine.damped_frequency().unwrap());
+        assert!(motion.half_swings() >= 15, "{} half swings: {case}", motion.half_swings());
+        for triple in motion.events().windows(3) {
+            let (got, period) = ((triple[0].position / triple[2].position).ln(), triple[2].time - triple[0].time);
+            // Ten periods are counted from zero, so that one of them is known to about ten ulp.
+            assert!((period * frequency - 1.0).abs() < 1e-14, "period {period} s at {frequency} Hz: {case}");
+            assert!((got - decrement).abs() < 1e-14 * (1.0 + decrement), "decrement {got}, not {decrement}: {case}");
+        }
+    }
 }

@@ -17,6 +17,7 @@
 
 mod bounds;
 mod damping;
+mod dual;
 mod error;
 mod oscillator;
 mod parameter;
@@ -25,11 +26,12 @@ mod scalar;
 
 pub use bounds::Bounds;
 pub use damping::Damping;
+pub use dual::Dual;
 pub use error::ModelError;
 pub use oscillator::Oscillator;
 pub use parameter::Parameter;
 pub use rounded::Rounded;
-pub use scalar::{Dual, Scalar};
+pub use scalar::Scalar;
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

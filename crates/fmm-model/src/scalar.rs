@@ -3,20 +3,16 @@
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use num_dual::{Dual64, DualNum, DualSVec64};
-
-/// A number that carries its derivatives in `N` directions through every operation.
-pub type Dual<const N: usize> = DualSVec64<N>;
-
 /// What a formula of FMM needs of its number type.
 ///
 /// A law or an engine written over `Scalar` gives its value at `f64` and its exact gradient at [`Dual`], from
 /// the same lines. The trait is deliberately small: the arithmetic, with `f64` on the right, and the functions
-/// that friction laws and linear oscillators use. A general trait such as num-dual's `DualNum` would serve as
-/// well but would put its forty methods and its version number into every signature of a user's own law.
+/// that friction laws and linear oscillators use. A general trait such as num-dual's `DualNum` would put its
+/// forty methods and its version number into every signature of a user's own law, and its division, x·(1/y), does not
+/// keep the promise below.
 ///
-/// An implementor promises that `value` of each operation is the `f64` operation on the `value`s, so that
-/// branches taken on values are the same for every number type.
+/// An implementor promises that `value` of each operation is, to the last bit, the `f64` operation on the `value`s, so
+/// that branches taken on values, exact ties among them, are the same for every number type.
 ///
 /// ```
 /// use fmm_model::{Dual, Scalar};
@@ -112,68 +108,10 @@ impl Scalar for f64 {
     }
 }
 
-/// The functions that num-dual names the same for each of its types.
-macro_rules! functions_of_dual_numbers {
-    () => {
-        fn value(self) -> f64 {
-            self.re
-        }
-        fn exp(self) -> Self {
-            DualNum::exp(&self)
-        }
-        fn ln(self) -> Self {
-            DualNum::ln(&self)
-        }
-        fn sqrt(self) -> Self {
-            DualNum::sqrt(&self)
-        }
-        fn sin_cos(self) -> (Self, Self) {
-            DualNum::sin_cos(&self)
-        }
-        fn tanh(self) -> Self {
-            DualNum::tanh(&self)
-        }
-        fn powf(self, exponent: Self) -> Self {
-            DualNum::powd(&self, exponent)
-        }
-        fn atan2(self, x: Self) -> Self {
-            // num-dual goes through the quotient of the two, which has no derivative where x = 0. The difference below
-            // has value 0 and the derivative y′x − x′y.
-            let (y_value, x_value) = (self.re, x.re);
-            (self * x_value - x * y_value) / (x_value * x_value + y_value * y_value) + y_value.atan2(x_value)
-        }
-    };
-}
-
-impl Scalar for Dual64 {
-    const DIRECTIONS: usize = 1;
-
-    fn variable(value: f64, direction: usize) -> Self {
-        let constant = Self::from_re(value);
-        if direction == 0 { constant.derivative() } else { constant }
-    }
-    fn partial(self, direction: usize) -> f64 {
-        if direction == 0 { self.eps } else { 0.0 }
-    }
-    functions_of_dual_numbers!();
-}
-
-impl<const N: usize> Scalar for DualSVec64<N> {
-    const DIRECTIONS: usize = N;
-
-    fn variable(value: f64, direction: usize) -> Self {
-        let constant = Self::from_re(value);
-        if direction < N { constant.derivative(direction) } else { constant }
-    }
-    fn partial(self, direction: usize) -> f64 {
-        self.eps.0.and_then(|eps| eps.get(direction).copied()).unwrap_or(0.0)
-    }
-    functions_of_dual_numbers!();
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Dual;
 
     fn all_functions<D: Scalar>(x: D, y: D) -> D {
         let (sin, cos) = (x * 0.7).sin_cos();
@@ -199,7 +137,7 @@ mod tests {
     #[test]
     fn derivatives_agree_with_differences() {
         check::<f64>(0);
-        check::<Dual64>(1);
+        check::<Dual<1>>(1);
         check::<Dual<2>>(2);
     }
 
@@ -213,6 +151,5 @@ mod tests {
     #[test]
     fn directions_beyond_the_type_are_constants() {
         assert_eq!(Dual::<2>::variable(1.0, 2).partial(0), 0.0);
-        assert_eq!(Dual64::variable(1.0, 1).partial(0), 0.0);
     }
 }

@@ -73,6 +73,9 @@ impl<D: Scalar> Event<D> {
     /// How far the load is beyond the static level, (|L| − F_s)/F_s: positive where the contact passes, zero or
     /// negative where it holds, and infinite where there is a load and nothing to hold it.
     ///
+    /// It says something only where the velocity is zero: at a start in motion nothing is decided. Where the load
+    /// exceeds the level by no more than rounding, the contact holds although the margin is not negative.
+    ///
     /// A margin near zero says that a small change of the inputs turns a reversal into a stop or back; a
     /// gradient does not see that change.
     pub fn margin(&self) -> f64 {

@@ -108,12 +108,13 @@ impl<D: Scalar> Decay<D> {
         }
     }
 
-    /// A position and, in other units, a velocity that the motion from `state` on does not exceed; not finite if the
-    /// motion cannot be written in numbers of this type.
-    pub(super) fn reach(&self, state: State<D>) -> D {
-        let per_angular = self.half_swing.map_or(D::from(0.0), |half_swing| D::from(1.0) / half_swing.angular);
-        let sine = (state.velocity + self.rate * state.position) * per_angular;
-        state.position + sine + state.velocity + self.pull(state) * per_angular
+    /// What neither position nor velocity exceeds in magnitude from `state` on; not finite if the motion cannot be
+    /// written in numbers of this type.
+    pub(super) fn reach(&self, state: State<D>) -> f64 {
+        let per_angular = self.half_swing.map_or(0.0, |half_swing| half_swing.angular.value().recip());
+        let sine = (state.velocity + self.rate * state.position).value() * per_angular;
+        let velocity_sine = self.pull(state).value() * per_angular;
+        state.position.value().abs() + sine.abs() + state.velocity.value().abs() + velocity_sine.abs()
     }
 
     /// Time (s) until the velocity is zero again, the zero at which `state` may sit left aside; none if it never is.

@@ -115,14 +115,14 @@ impl<D: Scalar> Contact<D> {
     /// The event at which the state is (`position`, `velocity`): the automaton's only decision.
     fn event(&self, time: D, position: D, velocity: D, kind: EventKind) -> Event<D> {
         let load = -(self.stiffness * position).value();
-        let next = if velocity.value() != 0.0 {
-            Mode::Slip(Direction::of(velocity.value()))
-        } else {
+        let next = if velocity.value() == 0.0 {
             let direction = Direction::of(load);
             // Beyond the static level the centre lies ahead, as the sliding level is not higher; where rounding says
             // otherwise, nothing moves.
             let ahead = (self.centre(direction) - position).value() * direction.sign() > 0.0;
             if load.abs() > self.static_force && ahead { Mode::Slip(direction) } else { Mode::Stick }
+        } else {
+            Mode::Slip(Direction::of(velocity.value()))
         };
         let kind = if kind == EventKind::Reversal && next == Mode::Stick { EventKind::Stop } else { kind };
         Event { kind, time, position, velocity, next, load: load.abs(), static_level: self.static_force }
@@ -166,7 +166,7 @@ impl<'a, D: Scalar> Writer<'a, D> {
         while self.written < stop {
             let anchor = self.sampling.time(self.written);
             let at_anchor = self.decay.advance(phase, -event.time + anchor);
-            if !(centre + self.decay.reach(at_anchor)).value().is_finite() {
+            if !(centre.value().abs() + self.decay.reach(at_anchor)).is_finite() {
                 return Err(SimulationError::NotFinite { time: anchor });
             }
             self.written += if let Some(powers) = &self.powers {

@@ -99,9 +99,9 @@ fn without_friction_reversals_are_half_a_damped_period_apart() {
     let ratio = (-machine.logarithmic_decrement().unwrap() / 2.0).exp();
     let motion = run(machine, Coulomb::new(0.0).unwrap(), 1.0, (0.3, 0.0)).unwrap();
     assert_eq!(motion.events().len(), 1 + (30.0 / half_period) as usize);
-    for (n, event) in motion.events().iter().enumerate() {
+    for (n, event) in (0..).zip(motion.events()) {
         // 14 half swings, each of a few ulp.
-        let (time, position) = (n as f64 * half_period, 0.3 * (-ratio).powi(n as i32));
+        let (time, position) = (f64::from(n) * half_period, 0.3 * (-ratio).powi(n));
         assert!((event.time - time).abs() < 1e-13, "reversal {n} at {} s, not {time} s", event.time);
         assert!((event.position - position).abs() < 1e-14, "reversal {n} at {} m, not {position} m", event.position);
     }
