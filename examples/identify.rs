@@ -8,6 +8,7 @@
 mod figure;
 
 use std::error::Error;
+use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -38,13 +39,13 @@ struct Arguments {
     /// What the channel measures
     #[arg(long, value_enum, default_value = "velocity")]
     quantity: Measured,
-    /// Factor that turns the channel into SI units (m/s, m, rad/s or rad)
+    /// Factor that turns the channel into SI units; a unit in the channel's name, as in "v [mm/s]", does so by itself
     #[arg(long, value_name = "FACTOR")]
     scale: Option<f64>,
     /// Relative standard uncertainty of that factor, or of the gain of the instrument
     #[arg(long, value_name = "RELATIVE", default_value_t = 0.0)]
     scale_u: f64,
-    /// Unit of the channel, after scaling
+    /// Unit of the channel after scaling; m/s or m unless the channel's name says another
     #[arg(long)]
     unit: Option<String>,
     /// The law: viscous, coulomb, coulomb_static, coulomb_viscous, or all (viscous, coulomb and both)
@@ -145,18 +146,44 @@ fn read(arguments: &Arguments) -> Result<Input, Box<dyn Error>> {
     };
     let name = path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
     let origin = format!("{name}, channel {}; the sampling rate was {}", reading.channel, reading.sampling);
-    let unit = match (&arguments.unit, quantity, &arguments.file) {
-        (Some(unit), ..) => unit.clone(),
+    let stated = unit_in(&reading.channel);
+    let (factor, unit) = match (&arguments.unit, arguments.scale, stated, &arguments.file) {
+        (Some(unit), factor, ..) => (factor, unit.as_str()),
+        (None, None, Some((factor, unit)), _) => (Some(factor), unit),
         // The gain of the fork's gyro was not published.
-        (None, _, None) if arguments.scale.is_none() => "V".to_owned(),
-        (None, Quantity::Displacement, _) => "m".to_owned(),
-        _ => "m/s".to_owned(),
+        (None, None, None, None) => (None, "V"),
+        (None, factor, ..) if quantity == Quantity::Displacement => (factor, "m"),
+        (None, factor, ..) => (factor, "m/s"),
     };
-    let record = match arguments.scale {
+    let record = match factor {
         Some(factor) => reading.record.scaled(factor, unit)?,
         None => reading.record.with_unit(unit),
     };
     Ok(Input { record, origin })
+}
+
+/// The unit in brackets at the end of a channel's name, as a factor to SI and the SI unit: `v [mm/s]`, `theta (deg)`.
+fn unit_in(channel: &str) -> Option<(f64, &'static str)> {
+    let name = channel.trim();
+    let inside = name.strip_suffix(']').map(|rest| rest.rsplit_once('['));
+    let inside = inside.or_else(|| name.strip_suffix(')').map(|rest| rest.rsplit_once('(')))?;
+    let degree = std::f64::consts::PI / 180.0;
+    Some(match inside?.1.trim() {
+        "m/s" => (1.0, "m/s"),
+        "cm/s" => (1e-2, "m/s"),
+        "mm/s" => (1e-3, "m/s"),
+        "µm/s" | "um/s" => (1e-6, "m/s"),
+        "m" => (1.0, "m"),
+        "cm" => (1e-2, "m"),
+        "mm" => (1e-3, "m"),
+        "µm" | "um" => (1e-6, "m"),
+        "rad/s" => (1.0, "rad/s"),
+        "deg/s" | "°/s" => (degree, "rad/s"),
+        "rad" => (1.0, "rad"),
+        "deg" | "°" => (degree, "rad"),
+        "V" => (1.0, "V"),
+        _ => return None,
+    })
 }
 
 /// A MATLAB channel by the name of its variable, or by number: of the arrays in the file, or, if it has but one
@@ -219,7 +246,6 @@ fn identify(arguments: &Arguments, decay: &RingDown) -> Result<Comparison, Box<d
 
 /// Draws the record with the preferred fit, the decay of its amplitude, and the residuals.
 fn draw(folder: &Path, decay: &RingDown, comparison: &Comparison) -> Result<(), Box<dyn Error>> {
-    std::fs::create_dir_all(folder)?;
     let preferred = comparison.preferred();
     let record = decay.record();
     let model = preferred.model(std::slice::from_ref(decay), 0).ok_or("the fitted motion cannot be drawn")?;
@@ -269,12 +295,20 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if let Some(to) = arguments.to {
         preparation = preparation.to(to);
     }
+    if let Some(folder) = &arguments.figures {
+        std::fs::create_dir_all(folder).map_err(|error| format!("cannot create {}: {error}", folder.display()))?;
+    }
     let decay = RingDown::prepare(&input.record, &preparation)?;
     let comparison = identify(arguments, &decay)?;
-    if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&comparison)?);
+    let report = if arguments.json {
+        serde_json::to_string_pretty(&comparison)?
     } else {
-        println!("{}\n{comparison}", input.origin);
+        format!("{}\n{comparison}", input.origin)
+    };
+    match writeln!(std::io::stdout(), "{report}") {
+        // Whoever reads may stop reading.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {}
+        written => written?,
     }
     if let Some(folder) = &arguments.figures {
         draw(folder, &decay, &comparison)?;

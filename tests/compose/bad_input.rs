@@ -11,23 +11,16 @@ use fmm_model::ModelError;
 use fmm_record::csv::{CsvError, CsvReader};
 use fmm_record::mat::{MatError, MatFile};
 use fmm_record::{Quantity, Record, RecordError};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, Normal};
 
-use crate::measurement::release;
+use crate::measurement::{release, white};
 use crate::real_records::{data, fork};
 
 const INTERVAL: f64 = 1e-3;
+/// Standard deviation of white noise (m/s).
+const NOISE: f64 = 1e-4;
 
 fn record(values: Vec<f64>) -> Record {
     Record::new(0.0, INTERVAL, values, Quantity::Velocity, "m/s").unwrap()
-}
-
-/// White noise of standard deviation 0.1 mm/s (m/s).
-fn noise(count: usize) -> Vec<f64> {
-    let white = Normal::new(0.0, 1e-4).unwrap();
-    white.sample_iter(ChaCha8Rng::seed_from_u64(1)).take(count).collect()
 }
 
 /// `count` samples of a 2 Hz vibration that loses 0.01 m/s in a second, from 0.1 m/s on, with a little noise.
@@ -36,7 +29,7 @@ fn vibration(count: usize) -> Vec<f64> {
         let time = i as f64 * INTERVAL;
         (0.1 - 0.01 * time) * (TAU * 2.0 * time).cos() + noise
     };
-    noise(count).into_iter().enumerate().map(at).collect()
+    white(NOISE, 1, count).into_iter().enumerate().map(at).collect()
 }
 
 fn prepare(values: Vec<f64>) -> Result<RingDown, IdentifyError> {
@@ -97,7 +90,7 @@ fn numbers_that_are_not_finite() {
 fn records_in_which_nothing_moves() {
     assert!(matches!(prepare(vec![0.0; 5000]), Err(IdentifyError::NoMotion { value: 0.0, .. })));
     assert!(matches!(prepare(vec![0.0; 3]), Err(IdentifyError::TooShort { samples: 3, .. })));
-    assert!(matches!(prepare(noise(5000)), Err(IdentifyError::TooFewHalfSwings { .. })));
+    assert!(matches!(prepare(white(NOISE, 1, 5000)), Err(IdentifyError::TooFewHalfSwings { .. })));
     let force = Record::new(0.0, 1.0, vec![0.0; 99], Quantity::Force, "N").unwrap();
     let error = RingDown::prepare(&force, &Preparation::default()).unwrap_err();
     assert!(matches!(error, IdentifyError::Quantity { quantity: Quantity::Force }), "{error}");

@@ -1,7 +1,7 @@
 //! What a free vibration cannot tell.
 
-use fmm_friction::{Coulomb, CoulombStatic, Viscous};
-use fmm_identify::{Known, Machine, Offset, Preparation, RingDown, Warning, identify};
+use fmm_friction::{Coulomb, CoulombStatic, CoulombViscous, Viscous};
+use fmm_identify::{Identification, Known, Machine, Offset, Preparation, RingDown, Warning, identify};
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -55,14 +55,41 @@ fn a_known_mass_makes_them_separable() {
     assert!((mass.uncertainty().unwrap() / MASS / (2.0 / STIFFNESS) - 1.0).abs() < 1e-3);
 }
 
-/// A static level only decides at which turning point the motion ends.
+/// A static level only decides at which turning point the motion ends: it is not fitted, and the sliding level is that
+/// of plain Coulomb friction.
 #[test]
-fn the_static_level_has_no_influence_on_a_free_decay() {
+fn the_static_level_is_held() {
     let decay = RingDown::prepare(&release(15e-3, 2e-4, 3), &Preparation::default()).unwrap();
-    let found = identify::<CoulombStatic>(&Machine::per_unit_mass(), &[decay]).unwrap();
-    let name = "static_friction_per_mass";
-    assert_eq!(found.finding(name).unwrap().uncertainty(), None);
-    assert!(found.warnings().contains(&Warning::NoInfluence { parameter: name.to_owned() }), "{found}");
+    let decays = std::slice::from_ref(&decay);
+    let found = identify::<CoulombStatic>(&Machine::per_unit_mass(), decays).unwrap();
+    let coulomb = identify::<Coulomb>(&Machine::per_unit_mass(), decays).unwrap();
+    let sliding = found.finding("sliding_friction_per_mass").unwrap();
+    let plain = coulomb.finding("friction_per_mass").unwrap();
+    assert_eq!((sliding.value(), sliding.uncertainty()), (plain.value(), plain.uncertainty()));
+    assert_eq!(found.finding("static_friction_per_mass"), None);
+    assert!(found.warnings().contains(&Warning::StaticLevelHeld { parameter: "static_coefficient".into() }), "{found}");
+}
+
+/// A parameter that ends on its bound is not known to be there: the others are less certain than with it fixed.
+#[test]
+fn a_bound_does_not_make_the_others_certain() {
+    let truth = Coulomb::new(0.3).unwrap();
+    let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), truth, 1.0).unwrap();
+    let scenario = scenario.starting_at(0.02, 0.0).unwrap();
+    let velocity = Exact.run(&scenario, &Sampling::uniform(1e-3, 1500).unwrap()).unwrap().velocity().values().to_vec();
+    let mut at_bound = 0;
+    for seed in 0..10 {
+        let noise = crate::measurement::white(2e-4, seed, velocity.len());
+        let noisy = velocity.iter().zip(noise).map(|(v, noise)| v + noise).collect();
+        let record = Record::new(0.0, 1e-3, noisy, Quantity::Velocity, "m/s").unwrap();
+        let decays = [RingDown::prepare(&record, &Preparation::default()).unwrap()];
+        let both = identify::<CoulombViscous>(&Machine::per_unit_mass(), &decays).unwrap();
+        let alone = identify::<Coulomb>(&Machine::per_unit_mass(), &decays).unwrap();
+        let u = |found: &Identification| found.finding("friction_per_mass").unwrap().uncertainty().unwrap();
+        assert!(u(&both) > 2.0 * u(&alone), "u(F/m) = {} against {} m/s²", u(&both), u(&alone));
+        at_bound += usize::from(both.finding("damping_per_mass").unwrap().value() == 0.0);
+    }
+    assert!(at_bound > 0, "no damping ended at its bound, so the test shows nothing");
 }
 
 /// u(μ) grows with what is uncertain from elsewhere, in quadrature.

@@ -22,6 +22,12 @@ const INTERVAL: f64 = 1e-3;
 const REST: f64 = 1.0;
 const AFTER: f64 = 2.0;
 
+/// White noise of standard deviation `deviation`.
+pub(crate) fn white(deviation: f64, seed: u64, count: usize) -> Vec<f64> {
+    let normal = Normal::new(0.0, deviation).unwrap();
+    normal.sample_iter(ChaCha8Rng::seed_from_u64(seed)).take(count).collect()
+}
+
 /// A velocity record of a release at `position` (m), with white noise of standard deviation `noise` (m/s).
 ///
 /// The rest of the measurement is as it would be in the laboratory, drawn from `seed`: a 16-bit converter over

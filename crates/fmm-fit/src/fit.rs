@@ -42,6 +42,7 @@ pub struct Fit {
     singular_values: Vec<f64>,
     null_directions: Vec<NullDirection>,
     unit_covariance: Vec<Option<f64>>,
+    relaxed_unit_covariance: Option<Vec<Option<f64>>>,
     iterations: usize,
     residual_evaluations: usize,
     jacobian_evaluations: usize,
@@ -73,7 +74,19 @@ impl Fit {
             }
         }
         let sum_of_squares = minimizer.sum_of_squares();
-        let unit_covariance = unit_covariance(&spectrum, rank, &columns, &estimates);
+        let unit_covariance = self::unit_covariance(&spectrum, rank, &columns, estimates.len(), |j| {
+            estimates[j].status == EstimateStatus::Determined
+        });
+        let relaxed_unit_covariance = if inside.len() == free.len() {
+            None
+        } else {
+            let all: Vec<usize> = (0..free.len()).collect();
+            let mut triangle = Triangle::default();
+            triangle.select(minimizer.triangle(), &all, |row| minimizer.triangle().q(row), &mut Vec::new());
+            let spectrum = Spectrum::of(&triangle);
+            let rank = spectrum.rank(threshold);
+            (rank == free.len()).then(|| self::unit_covariance(&spectrum, rank, free, estimates.len(), |_| true))
+        };
         let mut fit = Self {
             outcome: minimizer.outcome().unwrap_or(Outcome::Cancelled),
             estimates,
@@ -85,6 +98,7 @@ impl Fit {
             singular_values: spectrum.singular,
             null_directions,
             unit_covariance,
+            relaxed_unit_covariance,
             iterations: minimizer.iterations(),
             residual_evaluations: minimizer.residual_evaluations(),
             jacobian_evaluations: minimizer.jacobian_evaluations(),
@@ -177,6 +191,19 @@ impl Fit {
         if i < count && j < count { self.unit_covariance[i * count + j] } else { None }
     }
 
+    /// Covariance of the estimates of parameters `i` and `j` as if the bounds that values lie on were not there.
+    ///
+    /// A parameter that ends on its bound is not known to be there: it could be off it by its own uncertainty and
+    /// take the others along. [`covariance`](Self::covariance) is that of the others for the bound itself; this is the
+    /// larger one to state for them. The two are the same if no value is at a bound; none also if the directions are
+    /// then not all determined.
+    pub fn relaxed_covariance(&self, i: usize, j: usize) -> Option<f64> {
+        let Some(relaxed) = &self.relaxed_unit_covariance else { return self.covariance(i, j) };
+        let count = self.estimates.len();
+        let unit = if i < count && j < count { relaxed[i * count + j] } else { None };
+        Some(self.residual_standard_deviation()?.powi(2) * unit?)
+    }
+
     /// Correlation coefficient of the estimates of parameters `i` and `j`; none where there is no covariance or no
     /// variance.
     pub fn correlation(&self, i: usize, j: usize) -> Option<f64> {
@@ -259,11 +286,15 @@ fn estimates(minimizer: &Minimizer) -> Vec<Estimate> {
     minimizer.parameters().iter().enumerate().map(estimate).collect()
 }
 
-/// `S⁻¹ V Σ⁻² Vᵀ S⁻¹` over the determined parameters, as a square matrix over all.
-fn unit_covariance(spectrum: &Spectrum, rank: usize, columns: &[usize], estimates: &[Estimate]) -> Vec<Option<f64>> {
-    let count = estimates.len();
+/// `S⁻¹ V Σ⁻² Vᵀ S⁻¹` over the determined ones among `columns`, as a square matrix over all `count` parameters.
+fn unit_covariance(
+    spectrum: &Spectrum,
+    rank: usize,
+    columns: &[usize],
+    count: usize,
+    is_determined: impl Fn(usize) -> bool,
+) -> Vec<Option<f64>> {
     let mut matrix = vec![None; count * count];
-    let is_determined = |j: usize| estimates[j].status == EstimateStatus::Determined;
     for (a, &i) in columns.iter().enumerate().filter(|(_, i)| is_determined(**i)) {
         for (b, &j) in columns.iter().enumerate().filter(|(_, j)| is_determined(**j)) {
             let along = spectrum.right.iter().zip(&spectrum.singular).take(rank);

@@ -45,7 +45,7 @@ impl<D: Scalar> CoulombStatic<D> {
 impl LawFamily for CoulombStatic {
     const NAME: &'static str = "coulomb_static";
     const PARAMETERS: &'static [LawParameter] =
-        &[LawParameter::level("sliding_coefficient", "μ_d"), LawParameter::level("static_coefficient", "μ_s")];
+        &[LawParameter::level("sliding_coefficient", "μ_d"), LawParameter::breakaway("static_coefficient", "μ_s")];
     type At<D: Scalar> = CoulombStatic<D>;
 
     fn at<D: Scalar>(values: &[D]) -> Result<CoulombStatic<D>, LawError> {

@@ -15,6 +15,9 @@ pub enum Role {
     Level,
     /// A coefficient per speed: proportional to the load, and inseparable from linear damping of the machine.
     Slope,
+    /// A coefficient that the load must exceed to leave rest, not below the sliding level. A free decay depends on it
+    /// only in where it stops.
+    Breakaway,
     /// Anything that does not scale with the force, such as a speed at which the law bends.
     Shape,
 }
@@ -35,6 +38,11 @@ impl LawParameter {
     /// A coefficient, not negative (1).
     pub(crate) const fn level(name: &'static str, symbol: &'static str) -> Self {
         Self::new(Parameter::new(name, symbol, "1").bounded(Bounds::NOT_NEGATIVE), Role::Level)
+    }
+
+    /// A static level, not negative (1).
+    pub(crate) const fn breakaway(name: &'static str, symbol: &'static str) -> Self {
+        Self::new(Parameter::new(name, symbol, "1").bounded(Bounds::NOT_NEGATIVE), Role::Breakaway)
     }
 
     /// A coefficient per speed, not negative (s/m).

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use fmm_fit::{FTest, Options, Progress, f_test};
+use fmm_fit::{FTest, Fit, Options, Progress, f_test};
 
 use crate::{Candidate, Identification, IdentifyError, Machine, RecordSummary, RingDown, Warning};
 
@@ -29,6 +29,7 @@ pub struct NestedTest {
 pub struct Comparison {
     records: Vec<RecordSummary>,
     identifications: Vec<Identification>,
+    scores: Vec<f64>,
     tests: Vec<NestedTest>,
     preferred: usize,
     is_decided: bool,
@@ -41,7 +42,7 @@ const CLOSE: f64 = 2.0;
 /// Identifies `decays` by each of `candidates` and compares them.
 ///
 /// # Errors
-/// [`IdentifyError`] as for [`identify`](crate::identify), and [`IdentifyError::UnknownLaw`] if there is no candidate.
+/// [`IdentifyError`] as for [`identify`](crate::identify), and [`IdentifyError::NoCandidate`].
 pub fn compare(machine: &Machine, decays: &[RingDown], candidates: &[Candidate]) -> Result<Comparison, IdentifyError> {
     compare_observed(machine, decays, candidates, &Options::default(), |_, _| ControlFlow::Continue(()))
 }
@@ -62,13 +63,15 @@ pub fn compare_observed(
         let mut observe = |progress: &Progress<'_>| observer(candidate.name(), progress);
         identifications.push(candidate.identify(machine, decays, options, &mut observe)?);
     }
-    let Some((preferred, is_decided)) = preferred(candidates, &identifications) else {
-        return Err(IdentifyError::UnknownLaw {
-            name: String::new(),
-            known: Candidate::catalogue().map(|candidate| candidate.name()).join(", "),
-        });
+    let scores = scores(&identifications);
+    let Some((preferred, is_decided)) = preferred(candidates, &identifications, &scores) else {
+        return Err(IdentifyError::NoCandidate);
     };
     let mut warnings = identifications[preferred].warnings().to_vec();
+    let others = unfinished(candidates, &identifications);
+    let is_decided = is_decided && others.is_empty();
+    warnings.extend(others);
+    warnings.extend(dependence(candidates, &identifications, preferred));
     if !is_decided {
         warnings.push(Warning::Undecided);
     }
@@ -76,6 +79,7 @@ pub fn compare_observed(
         records: decays.iter().map(|decay| decay.summary().clone()).collect(),
         tests: tests(candidates, &identifications),
         identifications,
+        scores,
         preferred,
         is_decided,
         warnings,
@@ -96,21 +100,70 @@ fn tests(candidates: &[Candidate], identifications: &[Identification]) -> Vec<Ne
     tests
 }
 
-/// Index of the preferred law, and whether no other comes close; none without candidates.
-fn preferred(candidates: &[Candidate], identifications: &[Identification]) -> Option<(usize, bool)> {
-    let fits = identifications.iter().map(Identification::fit);
-    let best = identifications.iter().min_by(|a, b| a.rms_residual().total_cmp(&b.rms_residual()))?;
+/// Laws that were not fitted to their minimum, or not to the lowest: a law cannot be worse than a special case of it.
+fn unfinished(candidates: &[Candidate], identifications: &[Identification]) -> Vec<Warning> {
+    /// Rounding of a sum of squares.
+    const ROUNDING: f64 = 1e-9;
+    let mut warnings = Vec::new();
+    for (candidate, found) in candidates.iter().zip(identifications) {
+        let law = candidate.name();
+        if !found.fit().outcome().is_success() {
+            warnings.push(Warning::OtherLaw { law, sentence: format!("the fit {}", found.fit().outcome()) });
+        }
+        let sum = found.fit().sum_of_squares();
+        let lower = |(special, other): &(&Candidate, &Identification)| {
+            special.is_nested_in(candidate) && other.fit().sum_of_squares() < sum * (1.0 - ROUNDING) - found.floor()
+        };
+        if let Some((special, _)) = candidates.iter().zip(identifications).find(lower) {
+            let sentence = format!("the fit missed its lowest minimum, as {} fits better", special.name());
+            warnings.push(Warning::OtherLaw { law, sentence });
+        }
+    }
+    warnings
+}
+
+/// Parameters of the preferred law that a more general one, which the record does not exclude, sees differently.
+fn dependence(candidates: &[Candidate], identifications: &[Identification], preferred: usize) -> Vec<Warning> {
+    /// A change of so many standard uncertainties, or an uncertainty so many times as large, is worth a line.
+    const NOTABLE: f64 = 2.0;
+    let (candidate, found) = (&candidates[preferred], &identifications[preferred]);
+    let general = candidates.iter().zip(identifications).filter(|(other, _)| candidate.is_nested_in(other));
+    let mut warnings = Vec::new();
+    for (other, wider) in general {
+        let roles = wider.findings().iter().filter(|finding| finding.is_of_law());
+        for finding in roles {
+            let Some(own) = found.finding(finding.parameter().name()) else { continue };
+            let (Some(u), Some(wider_u)) = (own.uncertainty(), finding.uncertainty()) else { continue };
+            if (own.value() - finding.value()).abs() > NOTABLE * u || wider_u > NOTABLE * u {
+                warnings.push(Warning::DependsOnLaw {
+                    parameter: own.parameter().name().to_owned(),
+                    law: other.name(),
+                    finding: finding.quantity(),
+                });
+            }
+        }
+    }
+    warnings
+}
+
+/// Corrected Akaike criterion of each identification with the number of independent residuals instead of all, so far as
+/// differences of it count; empty without identifications.
+fn scores(identifications: &[Identification]) -> Vec<f64> {
+    let Some(best) = identifications.iter().min_by(|a, b| a.rms_residual().total_cmp(&b.rms_residual())) else {
+        return Vec::new();
+    };
     let total = best.fit().residuals().len() as f64;
-    // A model that reproduces the record to rounding is not better than another that does so too.
-    let floor = (best.amplitude() * 1e-12).powi(2) * total;
-    let scores: Vec<f64> = fits
-        .map(|fit| {
-            let parameters = fit.rank() as f64 + 1.0;
-            let count = (total / best.autocorrelation_time()).max(parameters + 2.0);
-            let correction = 2.0 * parameters * count / (count - parameters - 1.0);
-            count * (fit.sum_of_squares().max(floor) / total).ln() + correction
-        })
-        .collect();
+    let score = |fit: &Fit| {
+        let parameters = fit.rank() as f64 + 1.0;
+        let count = (total / best.autocorrelation_time()).max(parameters + 2.0);
+        let correction = 2.0 * parameters * count / (count - parameters - 1.0);
+        count * (fit.sum_of_squares().max(best.floor()) / total).ln() + correction
+    };
+    identifications.iter().map(|found| score(found.fit())).collect()
+}
+
+/// Index of the preferred law, and whether no other comes close; none without candidates.
+fn preferred(candidates: &[Candidate], identifications: &[Identification], scores: &[f64]) -> Option<(usize, bool)> {
     let least = scores.iter().copied().fold(f64::INFINITY, f64::min);
     let close: Vec<usize> = (0..scores.len()).filter(|i| scores[*i] - least <= CLOSE).collect();
     let simplest = close.iter().copied().min_by_key(|i| candidates[*i].parameter_count())?;
@@ -133,6 +186,12 @@ impl Comparison {
     /// Whether the data decide for the preferred law.
     pub fn is_decided(&self) -> bool {
         self.is_decided
+    }
+
+    /// The criterion by which laws are preferred, one per identification: Akaike's, corrected, with n/τ residuals. Only
+    /// differences mean anything.
+    pub fn scores(&self) -> &[f64] {
+        &self.scores
     }
 
     /// F-tests of every law against the more general ones.

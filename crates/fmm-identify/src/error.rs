@@ -16,6 +16,9 @@ pub enum IdentifyError {
         /// What the record is.
         quantity: Quantity,
     },
+    /// No law was given to compare.
+    #[error("there is no law to compare; give at least one candidate")]
+    NoCandidate,
     /// Records of different quantities or units cannot be fitted together.
     #[error("records fitted together must agree in quantity and unit: one is {first}, another {other}")]
     MixedRecords {
@@ -42,7 +45,8 @@ pub enum IdentifyError {
     },
     /// Too few half swings.
     #[error(
-        "the record shows {found} half swings above its noise; at least {needed} are needed to see a period and a decay"
+        "the record shows {found} half swings above its noise; at least {needed} are needed to see a period and a \
+         decay, and four samples in each to see a half swing"
     )]
     TooFewHalfSwings {
         /// How many were found.

@@ -2,10 +2,10 @@
 
 use fmm_fit::{EstimateStatus, Fit};
 use fmm_friction::{LawFamily, Role};
-use fmm_model::{Dual, Parameter, Scalar};
+use fmm_model::{Dual, Parameter, Rounded, Scalar};
 
 use crate::Machine;
-use crate::layout::{Layout, mass, mass_of_stiffness, named};
+use crate::layout::{Layout, fitted, mass, mass_of_stiffness, named};
 use crate::machine::Scale;
 use crate::residual_structure::Covariance;
 
@@ -42,6 +42,21 @@ impl Finding {
     /// u, its standard uncertainty, in the unit of the parameter; none if the record does not determine it.
     pub fn uncertainty(&self) -> Option<f64> {
         self.uncertainty
+    }
+
+    /// Value, uncertainty and unit as text.
+    pub(crate) fn quantity(&self) -> String {
+        let value = Rounded::new(self.value, self.uncertainty);
+        match self.parameter.unit() {
+            "1" => value.to_string(),
+            unit => format!("{value} {unit}"),
+        }
+    }
+
+    /// Whether it is a parameter of the law, or follows from one.
+    pub(crate) fn is_of_law(&self) -> bool {
+        let name = self.parameter.name();
+        ["friction_per_mass", "damping_per_mass", "friction_force", "damping", "mu"].iter().any(|of| name.ends_with(of))
     }
 
     /// Where it comes from.
@@ -98,10 +113,10 @@ impl Inputs<'_> {
             _ => mass,
         };
         let Some(to_force) = to_force else { return derived };
-        let first_of_law = self.shared.len() - F::PARAMETERS.len();
+        let first_of_law = self.shared.len() - fitted::<F>().count();
         let load = self.machine.normal_load().map(|load| variable(load.value(), self.shared.len() + 1));
         let gain = variable(1.0, self.shared.len() + 2);
-        for (i, law_parameter) in F::PARAMETERS.iter().enumerate() {
+        for (i, law_parameter) in fitted::<F>().enumerate() {
             let force = variable(self.shared[first_of_law + i], first_of_law + i) * to_force;
             let parameter = law_parameter.parameter();
             match law_parameter.role() {

@@ -19,11 +19,11 @@ pub(crate) struct FirstGuess {
     /// ω_d (rad/s).
     angular: f64,
     /// Centre of the record, in its unit.
-    pub(crate) offset: f64,
+    offset: f64,
     /// Amplitude of each half swing, in the unit of the record.
     amplitudes: Vec<f64>,
-    /// Time (s) and signed amplitude of the first extremum.
-    first: (f64, f64),
+    /// Time (s) and value of the first extremum, and value of the second.
+    first: (f64, f64, f64),
     quantity: Quantity,
 }
 
@@ -35,6 +35,11 @@ pub(crate) struct Dissipation {
     /// F/m (unit of acceleration).
     pub(crate) friction: f64,
 }
+
+/// From this many turning points on their centre is known well enough to see the amplitudes fall.
+const ENOUGH_TURNS: usize = 4;
+/// Shifts of the centre by friction, as shares of the amplitude, to begin with where the amplitudes do not tell.
+const SHARES: [f64; 6] = [0.0, 0.03, 0.06, 0.12, 0.2, 0.3];
 
 /// Slope and intercept of the least-squares line through `points`; none for fewer than two distinct abscissae.
 fn line(points: impl Iterator<Item = (f64, f64)> + Clone) -> Option<(f64, f64)> {
@@ -70,7 +75,7 @@ impl FirstGuess {
             angular: PI / half_period,
             offset,
             amplitudes,
-            first: (first.0, first.1 - offset),
+            first: (first.0, first.1, second.1),
             quantity,
         })
     }
@@ -99,10 +104,30 @@ impl FirstGuess {
         Dissipation { damping: -2.0 * ratio.ln() * self.angular / PI, friction: friction.max(0.0) }
     }
 
+    /// Whether the amplitudes depend on an offset that they cannot tell: the turning points of a displacement that
+    /// turns only a few times.
+    fn is_ambiguous(&self) -> bool {
+        self.quantity == Quantity::Displacement && self.amplitudes.len() < ENOUGH_TURNS
+    }
+
+    /// Offset of the record, in its unit, under one hypothesis.
+    pub(crate) fn offset(&self, dissipation: Dissipation) -> f64 {
+        if !self.is_ambiguous() {
+            return self.offset;
+        }
+        // Two turning points lie symmetric to the centre of the swing between them, which friction shifts.
+        let (_, first, second) = self.first;
+        f64::midpoint(first, second) - (first - second).signum() * dissipation.friction / self.angular.powi(2)
+    }
+
     /// Every hypothesis that the amplitudes allow: dry friction alone, viscous damping alone, and both, from the
     /// line through the amplitude sequence.
     pub(crate) fn hypotheses(&self) -> Vec<Dissipation> {
         let amplitudes = &self.amplitudes;
+        if self.is_ambiguous() {
+            let friction = |share: &f64| share * amplitudes[0] * self.angular.powi(2);
+            return SHARES.iter().map(|share| Dissipation { damping: 0.0, friction: friction(share) }).collect();
+        }
         let numbered = amplitudes.iter().enumerate().map(|(i, amplitude)| (i as f64, *amplitude));
         let mut hypotheses = Vec::new();
         if let Some((slope, _)) = line(numbered.clone()) {
@@ -134,7 +159,7 @@ impl FirstGuess {
     pub(crate) fn initial_state(&self, dissipation: Dissipation) -> (f64, f64) {
         let omega = self.angular;
         let shift = dissipation.friction / (omega * omega);
-        let (time, amplitude) = self.first;
+        let (time, amplitude) = (self.first.0, self.first.1 - self.offset(dissipation));
         let (turning_time, turning_point) = if self.quantity == Quantity::Displacement {
             (time, amplitude)
         } else {
@@ -195,7 +220,7 @@ mod tests {
                 assert!((both.friction / 0.08 - 1.0).abs() < 0.1, "F/m = {} m/s²", both.friction);
                 let frequency = guess.natural_frequency(both);
                 assert!((frequency / 2.0 - 1.0).abs() < 1e-3, "f = {frequency} Hz from {start:?}, {quantity}");
-                assert!((guess.offset - 0.3).abs() < 1e-3 * if displacement { 1.0 } else { 10.0 });
+                assert!((guess.offset(both) - 0.3).abs() < 1e-3 * if displacement { 1.0 } else { 10.0 });
                 let (position, velocity) = guess.initial_state(both);
                 assert!((position - start.0).abs() < 1e-3, "x₀ = {position} m for {} m", start.0);
                 assert!((velocity - start.1).abs() < 1e-2, "v₀ = {velocity} m/s for {} m/s", start.1);

@@ -3,7 +3,8 @@
 use std::ops::ControlFlow;
 
 use fmm_fit::{EvaluationError, Fit, Options, Progress, solve_observed};
-use fmm_sim::{EventKind, Simulated, Trajectory};
+use fmm_friction::Role;
+use fmm_sim::{Event, EventKind, Simulated, Trajectory};
 
 use crate::finding::{Finding, findings};
 use crate::problem::RingDownProblem;
@@ -21,11 +22,13 @@ pub struct FittedMotion {
 impl FittedMotion {
     fn of(decay: &RingDown, trajectory: &Trajectory) -> Self {
         let start = decay.record().start();
-        let decided = trajectory.events().iter().filter(|event| event.kind != EventKind::Start);
-        let margins = decided.map(|event| (event.margin(), start + event.time));
+        // A velocity of nearly zero at the first sample reverses at once, or does not: that is no swing of the record.
+        let begun = |event: &&Event| event.kind != EventKind::Start && event.time > decay.record().interval();
+        let decided = trajectory.events().iter().filter(begun);
+        let margins = decided.clone().map(|event| (event.margin(), start + event.time));
         Self {
             stop_time: trajectory.rest().map(|event| start + event.time),
-            half_swings: trajectory.half_swings(),
+            half_swings: decided.count(),
             narrowest: margins.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs())),
         }
     }
@@ -109,7 +112,7 @@ pub fn identify_observed<F: Simulated>(
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Identification, IdentifyError> {
     let problem = RingDownProblem::<F>::new(*machine, decays)?;
-    let fit = best_fit(&problem, options, observer)?;
+    let fit = fit_in_stages(&problem, options, observer)?;
     // One instrument for all records; the worst statement counts.
     let gain = decays.iter().map(|decay| decay.summary().gain_uncertainty).fold(0.0, f64::max);
     let failure = |error: EvaluationError| IdentifyError::Simulation { law: F::NAME, message: error.to_string() };
@@ -147,18 +150,40 @@ pub fn identify_observed<F: Simulated>(
         model: |machine, decays, record, p| RingDownProblem::<F>::new(machine, decays).ok()?.model(record, p).ok(),
     };
     identification.warnings = Warning::of(&identification, decays);
+    let held = F::PARAMETERS.iter().filter(|parameter| parameter.role() == Role::Breakaway);
+    identification
+        .warnings
+        .extend(held.map(|held| Warning::StaticLevelHeld { parameter: held.parameter().name().to_owned() }));
     Ok(identification)
 }
 
-/// The best end of the fits from all start values.
+/// The best end of the fits from all start values. Displacements are first fitted up to their last peak, and from
+/// there as a whole.
+fn fit_in_stages<F: Simulated>(
+    problem: &RingDownProblem<'_, F>,
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, IdentifyError> {
+    let mut starts = problem.starts();
+    if let Some(swinging) = problem.up_to_last_peaks() {
+        let problem = problem.with_records(&swinging);
+        if let Ok(fit) = best_fit(&problem, problem.starts(), options, observer) {
+            starts.push(fit.values().to_vec());
+        }
+    }
+    best_fit(problem, starts, options, observer)
+}
+
+/// The best end of the fits from `starts`.
 fn best_fit<F: Simulated>(
     problem: &RingDownProblem<'_, F>,
+    starts: Vec<Vec<f64>>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
     let mut best: Option<Fit> = None;
     let mut failure = None;
-    for start in problem.starts() {
+    for start in starts {
         match solve_observed(problem, &start, options, |progress| observer(progress)) {
             Ok(fit) if best.as_ref().is_none_or(|best| fit.sum_of_squares() < best.sum_of_squares()) => {
                 best = Some(fit);
@@ -241,9 +266,9 @@ impl Identification {
         self.inflation
     }
 
-    /// Largest first amplitude of the records, in their unit.
-    pub(crate) fn amplitude(&self) -> f64 {
-        self.amplitude
+    /// Sum of squares below which a fit reproduces its records to rounding, and none is better than another.
+    pub(crate) fn floor(&self) -> f64 {
+        (1e-12 * self.amplitude).powi(2) * self.fit.residuals().len() as f64
     }
 
     pub(crate) fn narrowest_decision(&self) -> Option<(f64, f64)> {

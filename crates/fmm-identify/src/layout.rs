@@ -12,6 +12,12 @@ use fmm_sim::Scenario;
 use crate::machine::Scale;
 use crate::{Machine, RingDown};
 
+/// The parameters of a law that a ring-down is fitted by: all but static levels, on which a free decay depends only in
+/// where it stops. They are held at the sliding level that precedes them.
+pub(crate) fn fitted<F: LawFamily>() -> impl Iterator<Item = &'static LawParameter> {
+    F::PARAMETERS.iter().filter(|parameter| parameter.role() != Role::Breakaway)
+}
+
 /// Order of the parameters: oscillator, law, then for each record its initial state and, unless it is fixed, its
 /// offset.
 #[derive(Debug, Clone)]
@@ -39,7 +45,7 @@ impl Layout {
             vec![Parameter::new("natural_frequency_hz", "f₀", "Hz").bounded(bounds)]
         };
         let oscillator = parameters.len();
-        for law_parameter in F::PARAMETERS {
+        for law_parameter in fitted::<F>() {
             let parameter = law_parameter.parameter();
             let renamed = match law_parameter.role() {
                 Role::Level if unknown_scale => named(parameter, "friction_force", "N"),
@@ -79,8 +85,25 @@ impl Layout {
 
     /// Whether the parameter at `index` is proportional to the record: friction levels, initial states, offsets.
     pub(crate) fn scales_with_record<F: LawFamily>(&self, index: usize) -> bool {
-        let role = index.checked_sub(self.oscillator).and_then(|i| F::PARAMETERS.get(i)).map(LawParameter::role);
+        let role = index.checked_sub(self.oscillator).and_then(|i| fitted::<F>().nth(i)).map(LawParameter::role);
         index >= self.shared || role == Some(Role::Level)
+    }
+
+    /// Values for all parameters of the law, static levels included.
+    fn law_values<F: LawFamily, D: Scalar>(&self, motion: &[D]) -> Vec<D> {
+        let mut fitted = motion[self.oscillator..self.shared].iter().copied();
+        let mut level = D::from(0.0);
+        let value = |parameter: &LawParameter| {
+            if parameter.role() == Role::Breakaway {
+                return Some(level);
+            }
+            let value = fitted.next()?;
+            if parameter.role() == Role::Level {
+                level = value;
+            }
+            Some(value)
+        };
+        F::PARAMETERS.iter().filter_map(value).collect()
     }
 
     /// The scenario of one record; `motion` holds the shared values and then its initial position and velocity.
@@ -99,7 +122,7 @@ impl Layout {
             }
         };
         let oscillator = oscillator.with_damping(Damping::linear(damping)?);
-        let law = F::at(&motion[self.oscillator..self.shared])?;
+        let law = F::at(&self.law_values::<F, D>(motion))?;
         let scenario = Scenario::new(oscillator, law, D::from(1.0))?;
         Ok(scenario.starting_at(motion[self.shared], motion[self.shared + 1])?)
     }

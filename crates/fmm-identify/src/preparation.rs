@@ -34,14 +34,14 @@ pub enum Offset {
 }
 
 impl Preparation {
-    /// Begin at this time (s) instead of looking for the release.
+    /// Leave out what lies before this time (s).
     #[must_use]
     pub fn from(mut self, time: f64) -> Self {
         self.from = Some(time);
         self
     }
 
-    /// End at this time (s).
+    /// Leave out what lies after this time (s).
     #[must_use]
     pub fn to(mut self, time: f64) -> Self {
         self.to = Some(time);

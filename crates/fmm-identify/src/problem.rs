@@ -10,7 +10,7 @@ use fmm_record::Quantity;
 use fmm_sim::{Channels, Samples, Sampling, Simulated, Trajectory};
 
 use crate::first_guess::Dissipation;
-use crate::layout::{Layout, mass_of_stiffness};
+use crate::layout::{Layout, fitted, mass_of_stiffness};
 use crate::{IdentifyError, Machine, RingDown};
 
 /// The residuals "model less record" of one or several ring-downs by a law of family `F`, with exact derivatives.
@@ -48,6 +48,29 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
         }
         let (layout, parameters) = Layout::of::<F>(&machine, decays);
         Ok(Self { machine, decays, parameters, layout, family: PhantomData })
+    }
+
+    /// The ring-downs up to their last peaks, if they are displacements and that leaves something out.
+    pub(crate) fn up_to_last_peaks(&self) -> Option<Vec<RingDown>> {
+        if self.decays[0].record().quantity() != Quantity::Displacement {
+            return None;
+        }
+        let shortened = self.decays.iter().map(RingDown::up_to_last_peak).collect::<Vec<_>>();
+        let any = shortened.iter().any(Option::is_some);
+        let complete =
+            shortened.into_iter().zip(self.decays).map(|(short, whole)| short.unwrap_or_else(|| whole.clone()));
+        any.then(|| complete.collect())
+    }
+
+    /// The same problem with other records of the same kind and number.
+    pub(crate) fn with_records<'b>(&self, decays: &'b [RingDown]) -> RingDownProblem<'b, F> {
+        RingDownProblem {
+            machine: self.machine,
+            decays,
+            parameters: self.parameters.clone(),
+            layout: self.layout.clone(),
+            family: PhantomData,
+        }
     }
 
     pub(crate) fn layout(&self) -> &Layout {
@@ -122,7 +145,7 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
 
     /// Start values, one set per hypothesis that the law can express, each inside the bounds.
     pub(crate) fn starts(&self) -> Vec<Vec<f64>> {
-        let has = |role: Role| F::PARAMETERS.iter().any(|parameter| parameter.role() == role);
+        let has = |role: Role| fitted::<F>().any(|parameter| parameter.role() == role);
         let (has_level, has_slope) = (has(Role::Level), has(Role::Slope));
         let hypotheses = self.decays[0].guess().hypotheses();
         let expressible = |dissipation: &&Dissipation| {
@@ -144,7 +167,7 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
             1 => vec![frequency],
             _ => vec![1.0, 1.0 / mass_of_stiffness(1.0, frequency)],
         };
-        start.extend(F::PARAMETERS.iter().map(|parameter| match parameter.role() {
+        start.extend(fitted::<F>().map(|parameter| match parameter.role() {
             Role::Level => dissipation.friction,
             Role::Slope => dissipation.damping,
             _ => 1.0,
@@ -153,7 +176,7 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
             let (position, velocity) = decay.guess().initial_state(dissipation);
             start.extend([position, velocity]);
             if decay.fixed_offset().is_none() {
-                start.push(decay.guess().offset);
+                start.push(decay.guess().offset(dissipation));
             }
         }
         start.iter().zip(&self.parameters).map(|(value, parameter)| parameter.bounds().clamp(*value)).collect()

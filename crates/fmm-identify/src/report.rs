@@ -3,7 +3,6 @@
 use std::fmt;
 
 use fmm_fit::EstimateStatus;
-use fmm_model::Rounded;
 
 use crate::finding::Origin;
 use crate::{Comparison, Finding, Identification, Warning};
@@ -15,11 +14,7 @@ fn name_width(findings: &[Finding]) -> usize {
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let value = Rounded::new(self.value(), self.uncertainty());
-        match self.parameter().unit() {
-            "1" => write!(f, "{value}")?,
-            unit => write!(f, "{value} {unit}")?,
-        }
+        f.write_str(&self.quantity())?;
         match self.origin() {
             Origin::Derived => write!(f, "  (with what is known of the machine)"),
             Origin::Fitted(EstimateStatus::Undetermined) => write!(f, "  (not determined)"),
@@ -81,27 +76,25 @@ impl fmt::Display for Comparison {
         }
         writeln!(f, "\nLaws")?;
         let width = self.identifications().iter().map(|law| law.law().len()).max().unwrap_or(0);
-        let best = self.identifications().iter().filter_map(|law| law.fit().corrected_akaike());
-        let best = best.fold(f64::INFINITY, f64::min);
-        writeln!(f, "  {:<width$}  rms residual  rank  half swings    rest from   ΔAICc", "")?;
-        for law in self.identifications() {
+        let best = self.scores().iter().copied().fold(f64::INFINITY, f64::min);
+        writeln!(f, "  {:<width$}  rms residual  rank  half swings    rest from   ΔAICc (independent residuals)", "")?;
+        for (law, score) in self.identifications().iter().zip(self.scores()) {
             let stop = law.motions().iter().find_map(crate::FittedMotion::stop_time);
             let stop = stop.map_or_else(|| "-".to_owned(), |time| format!("{time:.4} s"));
-            let akaike =
-                law.fit().corrected_akaike().map_or_else(|| "-".to_owned(), |aicc| format!("{:.1}", aicc - best));
             let half_swings: usize = law.motions().iter().map(crate::FittedMotion::half_swings).sum();
             writeln!(
                 f,
-                "  {:<width$}  {:>12.4e}  {:>4}  {half_swings:>11}  {stop:>11}  {akaike:>6}",
+                "  {:<width$}  {:>12.4e}  {:>4}  {half_swings:>11}  {stop:>11}  {:>6.1}",
                 law.law(),
                 law.rms_residual(),
                 law.fit().rank(),
+                score - best,
             )?;
         }
         for nested in self.tests() {
             writeln!(
                 f,
-                "  {} within {}: F = {:.1} with {} and {} degrees of freedom, p = {:.2e}",
+                "  {} within {}: F = {:.1} with {} and {} degrees of freedom, p = {:.2e} if all residuals were independent",
                 nested.restricted,
                 nested.full,
                 nested.test.f,

@@ -13,6 +13,8 @@ pub(crate) struct ResidualStructure {
     pub(crate) residual: f64,
     /// Standard deviation of what cannot be fitted: white noise and rounding, in the same unit.
     pub(crate) noise: f64,
+    /// What rounding of doubles alone makes of a record without noise, in the same unit.
+    rounding: f64,
     /// τ (samples).
     pub(crate) autocorrelation_time: f64,
 }
@@ -28,31 +30,36 @@ const FEWEST_WINDOWS: usize = 8;
 
 impl ResidualStructure {
     pub(crate) fn of(fit: &Fit, decays: &[RingDown]) -> Self {
-        // A converter step counts as the noise of rounding; a simulated record without noise has that of doubles.
-        let noise = decays
-            .iter()
-            .map(RingDown::summary)
-            .map(|summary| {
-                let rounding = summary.resolution.unwrap_or(0.0) / 12f64.sqrt();
-                summary.noise.hypot(rounding).max(1e-9 * summary.amplitudes.0)
-            })
-            .fold(0.0, f64::max);
+        let summaries = || decays.iter().map(RingDown::summary);
+        let rounding = summaries().map(|summary| 1e-9 * summary.amplitudes.0).fold(0.0, f64::max);
+        // A converter step counts as the noise of its rounding.
+        let noise = summaries()
+            .map(|summary| summary.noise.hypot(summary.resolution.unwrap_or(0.0) / 12f64.sqrt()))
+            .fold(rounding, f64::max);
         let count = fit.residuals().len() as f64;
         Self {
             residual: (fit.sum_of_squares() / count).sqrt(),
             noise,
+            rounding,
             autocorrelation_time: autocorrelation_time(fit.residuals()).unwrap_or(1.0),
         }
     }
 
+    /// Whether neighbouring residuals tell each other's value: the law misses something, or a coarse converter rounds
+    /// neighbours alike.
+    pub(crate) fn is_correlated(&self) -> bool {
+        self.residual > self.rounding && self.autocorrelation_time > INDEPENDENT
+    }
+
     /// Whether the law misses something that the record shows.
     pub(crate) fn is_structured(&self) -> bool {
-        self.residual > EXCESS * self.noise && self.autocorrelation_time > INDEPENDENT
+        self.residual > EXCESS * self.noise && self.is_correlated()
     }
 }
 
-/// Covariance of the estimates: that of independent residuals or, if they are structured, the larger of that and the
-/// one that takes their correlation into account.
+/// Covariance of the estimates: that of independent residuals or, if they are correlated, the larger of that and the one
+/// that takes their correlation into account. A parameter that ended on its bound counts as free to leave it, so that
+/// the uncertainty of the others includes what it may take from them.
 pub(crate) struct Covariance<'a> {
     fit: &'a Fit,
     correlated: Option<CorrelatedCovariance>,
@@ -66,7 +73,7 @@ impl<'a> Covariance<'a> {
         decays: &[RingDown],
     ) -> Result<Self, EvaluationError> {
         let mut correlated = None;
-        if structure.is_structured() {
+        if structure.is_correlated() {
             let mut end = 0;
             let series: Vec<Range<usize>> = decays
                 .iter()
@@ -86,15 +93,18 @@ impl<'a> Covariance<'a> {
     /// Covariance of parameters `i` and `j`; none where the record does not determine them.
     pub(crate) fn get(&self, i: usize, j: usize) -> Option<f64> {
         match &self.correlated {
-            None => self.fit.covariance(i, j),
+            None if self.fit.estimates()[i].standard_uncertainty().is_some() => {
+                self.fit.relaxed_covariance(i, j).or_else(|| self.fit.covariance(i, j))
+            }
+            None => None,
             Some(correlated) => Some(correlated.covariance(i, j)? * self.widening(i) * self.widening(j)),
         }
     }
 
-    /// Factor that keeps an uncertainty from falling below that of independent residuals.
+    /// Factor that keeps an uncertainty from falling below that of independent residuals without bounds.
     fn widening(&self, i: usize) -> f64 {
         let correlated = self.correlated.as_ref().and_then(|covariance| covariance.standard_uncertainty(i));
-        match (correlated, self.fit.estimates()[i].standard_uncertainty()) {
+        match (correlated, self.fit.relaxed_covariance(i, i).map(f64::sqrt)) {
             (Some(correlated), Some(white)) if correlated > 0.0 => (white / correlated).max(1.0),
             _ => 1.0,
         }
@@ -104,7 +114,8 @@ impl<'a> Covariance<'a> {
     pub(crate) fn inflation(&self) -> f64 {
         let estimates = self.fit.estimates().iter().enumerate();
         estimates
-            .filter_map(|(i, estimate)| Some(self.get(i, i)?.sqrt() / estimate.standard_uncertainty()?))
+            .filter(|(_, estimate)| estimate.standard_uncertainty().is_some())
+            .filter_map(|(i, _)| Some((self.get(i, i)? / self.fit.relaxed_covariance(i, i)?).sqrt()))
             .fold(1.0, f64::max)
     }
 }

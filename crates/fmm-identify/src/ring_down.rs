@@ -53,7 +53,7 @@ impl RingDown {
             return Err(IdentifyError::NoMotion { value: first, unit: record.unit().to_owned() });
         }
         let swings = Swings::of(&record);
-        let release = if preparation.from.is_none() { Release::of(&record) } else { None };
+        let release = Release::of(&record);
         let begin = release.map_or(record.start(), |release| beginning(&swings, release.rest_end, quantity));
         let record = record.crop(begin, record.end())?;
 
@@ -118,6 +118,24 @@ impl RingDown {
     /// Ranges of samples that are fitted; what lies between them is left out.
     pub fn kept(&self) -> &[Range<usize>] {
         &self.kept
+    }
+
+    /// The same ring-down up to its last peak; none if that leaves nothing out or too little.
+    ///
+    /// In the displacement a stop one swing too early or too late shows as a jump, over which no gradient leads. Without
+    /// the end of the motion there is no such jump.
+    pub(crate) fn up_to_last_peak(&self) -> Option<Self> {
+        let (last, _) = *self.peaks.last()?;
+        let record = self.record.crop(self.record.start(), last).ok()?;
+        let count = record.len();
+        if count < FEWEST_SAMPLES || count == self.record.len() {
+            return None;
+        }
+        let kept: Vec<Range<usize>> = self.kept.iter().map(|range| range.start..range.end.min(count)).collect();
+        let kept: Vec<Range<usize>> = kept.into_iter().filter(|range| !range.is_empty()).collect();
+        let summary =
+            RecordSummary { to: record.end(), samples: kept.iter().map(Range::len).sum(), ..self.summary.clone() };
+        Some(Self { record, kept, summary, ..self.clone() })
     }
 
     pub(crate) fn guess(&self) -> &FirstGuess {

@@ -2,27 +2,37 @@
 
 use std::collections::BTreeMap;
 
+use fmm_fit::EstimateStatus;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-use crate::{Comparison, Finding, Identification, Offset, RecordSummary};
+use crate::{Comparison, Finding, Identification, Offset, Origin, RecordSummary};
 
 impl Serialize for Finding {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut document = serializer.serialize_struct("Finding", 3)?;
+        let status = match self.origin() {
+            Origin::Derived => "derived",
+            Origin::Fitted(EstimateStatus::Undetermined) => "undetermined",
+            Origin::Fitted(EstimateStatus::Fixed) => "fixed",
+            Origin::Fitted(status) if status.is_at_bound() => "at_bound",
+            Origin::Fitted(_) => "fitted",
+        };
+        let mut document = serializer.serialize_struct("Finding", 4)?;
         document.serialize_field("value", &self.value())?;
         document.serialize_field("u", &self.uncertainty())?;
         document.serialize_field("unit", self.parameter().unit())?;
+        document.serialize_field("status", status)?;
         document.end()
     }
 }
 
 /// `law`, `parameters` (by name), `rms_residual`, `rank`, `stop_time_s` and `swings` (of the first record),
-/// `aicc`, `outcome`, `autocorrelation_time`.
+/// `aicc` (all residuals counted), `outcome`, `autocorrelation_time`, `warnings`.
 impl Serialize for Identification {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let parameters: BTreeMap<_, _> =
             self.findings().iter().map(|finding| (finding.parameter().name(), finding)).collect();
-        let mut document = serializer.serialize_struct("Identification", 9)?;
+        let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();
+        let mut document = serializer.serialize_struct("Identification", 10)?;
         document.serialize_field("law", self.law())?;
         document.serialize_field("parameters", &parameters)?;
         document.serialize_field("rms_residual", &self.rms_residual())?;
@@ -32,6 +42,7 @@ impl Serialize for Identification {
         document.serialize_field("aicc", &self.fit().corrected_akaike())?;
         document.serialize_field("outcome", &self.fit().outcome().to_string())?;
         document.serialize_field("autocorrelation_time", &self.autocorrelation_time())?;
+        document.serialize_field("warnings", &warnings)?;
         document.end()
     }
 }
@@ -43,7 +54,7 @@ impl Serialize for RecordSummary {
             Offset::Fixed(value) => Some(value),
             Offset::Fitted => None,
         };
-        let mut document = serializer.serialize_struct("RecordSummary", 18)?;
+        let mut document = serializer.serialize_struct("RecordSummary", 19)?;
         document.serialize_field("from_s", &self.from)?;
         document.serialize_field("to_s", &self.to)?;
         document.serialize_field("samples", &self.samples)?;
@@ -61,19 +72,21 @@ impl Serialize for RecordSummary {
         document.serialize_field("resolution", &self.resolution)?;
         document.serialize_field("spikes", &self.spikes)?;
         document.serialize_field("saturated", &self.saturation.map_or(0, |saturation| saturation.samples))?;
+        document.serialize_field("offset_step_s", &self.offset_step.map(|step| step.time))?;
         document.serialize_field("period_change", &self.period_change)?;
         document.end()
     }
 }
 
-/// `preferred` (name of the law), `decided`, `models`, `preparation` (one object, or a list if there are several
+/// `preferred` (name of the law), `decided`, `scores` (one per model, by which laws are preferred), `models`, `preparation` (one object, or a list if there are several
 /// records), `warnings`.
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();
-        let mut document = serializer.serialize_struct("Comparison", 5)?;
+        let mut document = serializer.serialize_struct("Comparison", 6)?;
         document.serialize_field("preferred", self.preferred().law())?;
         document.serialize_field("decided", &self.is_decided())?;
+        document.serialize_field("scores", self.scores())?;
         document.serialize_field("models", self.identifications())?;
         match self.records() {
             [record] => document.serialize_field("preparation", record)?,

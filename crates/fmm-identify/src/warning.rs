@@ -87,6 +87,27 @@ pub enum Warning {
         /// When (s).
         time: f64,
     },
+    /// A static level was asked for, which a free decay does not determine.
+    StaticLevelHeld {
+        /// Name of the parameter of the law.
+        parameter: String,
+    },
+    /// A more general law that fits no worse finds something else for a parameter, or knows it less well.
+    DependsOnLaw {
+        /// Name of the parameter.
+        parameter: String,
+        /// Name of the more general law.
+        law: &'static str,
+        /// What it finds, as text with its uncertainty and unit.
+        finding: String,
+    },
+    /// Another law was not fitted to its minimum, so that the comparison does not count it in full.
+    OtherLaw {
+        /// Name of that law.
+        law: &'static str,
+        /// What happened.
+        sentence: String,
+    },
     /// The models are too close to prefer one.
     Undecided,
 }
@@ -119,7 +140,8 @@ impl Warning {
 
     fn of_record(summary: &RecordSummary, warnings: &mut Vec<Self>) {
         let (first, last) = summary.amplitudes;
-        if last >= first {
+        // Two turning points give one amplitude.
+        if last >= first && summary.half_swings > 2 {
             warnings.push(Self::NoDecay);
         }
         if summary.half_swings < ENOUGH_HALF_SWINGS {
@@ -218,16 +240,23 @@ impl fmt::Display for Warning {
                 )
             }
             Self::Inseparable { sentence } | Self::NotConverged { sentence } => f.write_str(sentence),
-            Self::NoInfluence { parameter } => write!(
-                f,
-                "{parameter} does not change the motion: in a free decay it only decides at which turning point the contact stops"
-            ),
+            Self::NoInfluence { parameter } => {
+                write!(f, "{parameter} has no influence on this record, which therefore says nothing about it")
+            }
             Self::NarrowStop { margin, time } => write!(
                 f,
                 "at {time:.3} s the load is within {:.2} % of the static level: a small change would add or remove a half swing, \
                  which the uncertainties do not see",
                 100.0 * margin.abs()
             ),
+            Self::StaticLevelHeld { parameter } => write!(
+                f,
+                "{parameter} was held at the sliding level: a free decay depends on it only in where it stops"
+            ),
+            Self::DependsOnLaw { parameter, law, finding } => {
+                write!(f, "{parameter} depends on the law: {law}, which the record cannot exclude, gives {finding}")
+            }
+            Self::OtherLaw { law, sentence } => write!(f, "{law}: {sentence}"),
             Self::Undecided => write!(
                 f,
                 "the data do not decide between the models; the simplest of the close ones is shown as preferred"

@@ -5,7 +5,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// What a formula of FMM needs of its number type.
 ///
-/// A law or an engine written over `Scalar` gives its value at `f64` and its exact gradient at [`Dual`], from
+/// A law or an engine written over `Scalar` gives its value at `f64` and its exact gradient at [`Dual`](crate::Dual), from
 /// the same lines. The trait is deliberately small: the arithmetic, with `f64` on the right, and the functions
 /// that friction laws and linear oscillators use. A general trait such as num-dual's `DualNum` would put its
 /// forty methods and its version number into every signature of a user's own law, and its division, x·(1/y), does not
