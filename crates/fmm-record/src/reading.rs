@@ -21,6 +21,50 @@ pub struct Reading {
     pub sampling: Sampling,
 }
 
+/// The choices that all readers offer, as methods of a builder with fields of these names; `$column` is how a format
+/// names a column.
+#[cfg(any(feature = "csv", feature = "mat"))]
+macro_rules! builder_of_choices {
+    ($column:ty) => {
+        /// The column to read.
+        #[must_use]
+        pub fn channel(mut self, column: impl Into<$column>) -> Self {
+            self.channel = Some(column.into());
+            self
+        }
+
+        /// The column of time stamps, in seconds unless its name tells another unit.
+        #[must_use]
+        pub fn time(mut self, column: impl Into<$column>) -> Self {
+            self.time = Some(column.into());
+            self
+        }
+
+        /// The sampling rate (Hz).
+        #[must_use]
+        pub fn rate(mut self, rate: f64) -> Self {
+            self.rate = Some(rate);
+            self
+        }
+
+        /// What the channel measured.
+        #[must_use]
+        pub fn quantity(mut self, quantity: Quantity) -> Self {
+            self.quantity = quantity;
+            self
+        }
+
+        /// Unit of the numbers in the channel.
+        #[must_use]
+        pub fn unit(mut self, unit: impl Into<String>) -> Self {
+            self.unit = unit.into();
+            self
+        }
+    };
+}
+#[cfg(any(feature = "csv", feature = "mat"))]
+pub(crate) use builder_of_choices;
+
 /// A column of a table, by name or by position.
 ///
 /// A name matches exactly or, if no column does, without regard to case; a position counts from **0**. Text of

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::CsvError;
 use super::table::Table;
+use crate::reading::builder_of_choices;
 use crate::reading::{seconds_per_unit_of_time, to_seconds};
 use crate::{Column, Quantity, Reading, Record, Sampling, UniformTimes};
 
@@ -39,40 +40,7 @@ impl CsvReader {
         self
     }
 
-    /// The column of time stamps, in seconds unless its name tells another unit.
-    #[must_use]
-    pub fn time(mut self, column: impl Into<Column>) -> Self {
-        self.time = Some(column.into());
-        self
-    }
-
-    /// The column to read.
-    #[must_use]
-    pub fn channel(mut self, column: impl Into<Column>) -> Self {
-        self.channel = Some(column.into());
-        self
-    }
-
-    /// The sampling rate (Hz).
-    #[must_use]
-    pub fn rate(mut self, rate: f64) -> Self {
-        self.rate = Some(rate);
-        self
-    }
-
-    /// What the channel measured.
-    #[must_use]
-    pub fn quantity(mut self, quantity: Quantity) -> Self {
-        self.quantity = quantity;
-        self
-    }
-
-    /// Unit of the numbers in the channel.
-    #[must_use]
-    pub fn unit(mut self, unit: impl Into<String>) -> Self {
-        self.unit = unit.into();
-        self
-    }
+    builder_of_choices!(Column);
 
     /// Reads the file at `path`.
     ///

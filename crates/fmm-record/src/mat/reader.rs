@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::{Array, Channel, MatError, MatFile, sampling};
+use crate::reading::builder_of_choices;
 use crate::reading::{seconds_per_unit_of_time, to_seconds};
 use crate::{Quantity, Reading, Record, Sampling, UniformTimes};
 
@@ -24,40 +25,7 @@ pub struct MatReader {
 }
 
 impl MatReader {
-    /// The channel to read.
-    #[must_use]
-    pub fn channel(mut self, channel: impl Into<Channel>) -> Self {
-        self.channel = Some(channel.into());
-        self
-    }
-
-    /// The time stamps, in seconds unless the name of their variable tells another unit.
-    #[must_use]
-    pub fn time(mut self, channel: impl Into<Channel>) -> Self {
-        self.time = Some(channel.into());
-        self
-    }
-
-    /// The sampling rate (Hz).
-    #[must_use]
-    pub fn rate(mut self, rate: f64) -> Self {
-        self.rate = Some(rate);
-        self
-    }
-
-    /// What the channel measured.
-    #[must_use]
-    pub fn quantity(mut self, quantity: Quantity) -> Self {
-        self.quantity = quantity;
-        self
-    }
-
-    /// Unit of the numbers in the channel.
-    #[must_use]
-    pub fn unit(mut self, unit: impl Into<String>) -> Self {
-        self.unit = unit.into();
-        self
-    }
+    builder_of_choices!(Channel);
 
     /// Reads the file at `path`.
     ///
