@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use fmm_fit::{FitError, Options, Residuals, solve};
 use fmm_friction::{Coulomb, CoulombViscous, Viscous};
 use fmm_identify::{
-    Identification, IdentifyError, Known, Machine, Preparation, RingDown, RingDownProblem, Warning, identify,
+    Identification, IdentifyError, Known, Machine, Offset, Preparation, RingDown, RingDownProblem, Warning, identify,
 };
 use fmm_model::ModelError;
 use fmm_record::csv::{CsvError, CsvReader};
@@ -204,6 +204,19 @@ fn spikes_are_left_out() {
     assert!(found.warnings().contains(&Warning::Spikes { count: 2 }), "{found}");
     let friction = |found: &Identification| found.finding("friction_per_mass").unwrap().value();
     assert!((friction(&found) / friction(&clean) - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn the_offset_of_a_rest_needs_a_rest() {
+    let rest = Preparation::default().offset(Offset::Rest);
+    let decay = RingDown::prepare(&release(22e-3, 2e-4, 5), &rest).unwrap();
+    let fitted = RingDown::prepare(&release(22e-3, 2e-4, 5), &Preparation::default()).unwrap();
+    let held = decay.summary().held_offset.expect("held");
+    let found = identify::<CoulombViscous>(&Machine::per_unit_mass(), &[fitted]).unwrap();
+    let offset = found.finding("offset").unwrap().value();
+    assert!((held - offset).abs() < 5e-5, "held at {held} m/s, fitted {offset} m/s");
+    let error = RingDown::prepare(&record(vibration(4000)), &rest).unwrap_err();
+    assert!(matches!(error, IdentifyError::NoRest), "{error}");
 }
 
 /// A record that begins at rest is used from its first peak on.

@@ -1,6 +1,7 @@
 //! The crates together: real records, synthetic ones of known truth, and records that should be refused.
 
 mod bad_input;
+mod document;
 mod identifiability;
 mod measurement;
 mod real_records;

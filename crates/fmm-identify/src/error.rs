@@ -43,6 +43,9 @@ pub enum IdentifyError {
         /// How many are needed.
         needed: usize,
     },
+    /// The offset was to be taken from a rest that the record does not have.
+    #[error("the record does not begin at rest, so there is no rest to take the offset from; fit the offset instead")]
+    NoRest,
     /// Too few half swings.
     #[error(
         "the record shows {found} half swings above its noise; at least {needed} are needed to see a period and a \

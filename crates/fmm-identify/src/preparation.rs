@@ -29,6 +29,8 @@ pub enum Offset {
     /// is free of force; the mean of a part in which the contact sticks would be wrong for it.
     #[default]
     Fitted,
+    /// It is the mean of the record while it rests before the release.
+    Rest,
     /// It is known, in the unit of the record.
     Fixed(f64),
 }
@@ -83,8 +85,8 @@ pub struct RecordSummary {
     pub quantity: Quantity,
     /// Its unit.
     pub unit: String,
-    /// What is done about the offset.
-    pub offset: Offset,
+    /// The offset that is held, in the unit of the record; none if it is fitted.
+    pub held_offset: Option<f64>,
     /// Relative standard uncertainty of the instrument's gain (1).
     pub gain_uncertainty: f64,
     /// When the motion was released (s), if the record begins at rest.
@@ -116,9 +118,9 @@ impl fmt::Display for RecordSummary {
         if let Some(time) = self.release {
             write!(f, ", released at {time:.4} s")?;
         }
-        match self.offset {
-            Offset::Fitted => write!(f, "; offset fitted")?,
-            Offset::Fixed(value) => write!(f, "; offset held at {value} {unit}")?,
+        match self.held_offset {
+            None => write!(f, "; offset fitted")?,
+            Some(value) => write!(f, "; offset held at {value:.6} {unit}")?,
         }
         let (first, last) = self.amplitudes;
         write!(f, "; {half_swings} half swings at {frequency:.4} Hz, amplitude {first:.3e} to {last:.3e} {unit}")?;

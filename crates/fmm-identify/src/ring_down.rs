@@ -40,9 +40,6 @@ impl RingDown {
             return Err(IdentifyError::Quantity { quantity });
         }
         let gain_uncertainty = ModelError::require_not_negative("gain uncertainty", preparation.gain_uncertainty, "")?;
-        if let Offset::Fixed(value) = preparation.offset {
-            ModelError::require_finite("offset", value, "in the unit of the record")?;
-        }
         let (from, to) = (preparation.from.unwrap_or(record.start()), preparation.to.unwrap_or(record.end()));
         let record = record.crop(from, to)?;
         if record.len() < FEWEST_SAMPLES {
@@ -54,6 +51,11 @@ impl RingDown {
         }
         let swings = Swings::of(&record);
         let release = Release::of(&record);
+        let held_offset = match preparation.offset {
+            Offset::Fitted => None,
+            Offset::Rest => Some(release.ok_or(IdentifyError::NoRest)?.offset),
+            Offset::Fixed(value) => Some(ModelError::require_finite("offset", value, "in the unit of the record")?),
+        };
         let begin = release.map_or(record.start(), |release| beginning(&swings, release.rest_end, quantity));
         let record = record.crop(begin, record.end())?;
 
@@ -83,7 +85,7 @@ impl RingDown {
             rate: record.rate(),
             quantity,
             unit: record.unit().to_owned(),
-            offset: preparation.offset,
+            held_offset,
             gain_uncertainty,
             release: release.map(|release| release.rest_end),
             half_swings: peaks.len(),
@@ -144,10 +146,7 @@ impl RingDown {
 
     /// The offset, if it is held.
     pub(crate) fn fixed_offset(&self) -> Option<f64> {
-        match self.summary.offset {
-            Offset::Fixed(value) => Some(value),
-            Offset::Fitted => None,
-        }
+        self.summary.held_offset
     }
 
     /// Two octaves either way of what the crossings show: wide enough for any law, and no fit that leaves it

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use fmm_fit::EstimateStatus;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-use crate::{Comparison, Finding, Identification, Offset, Origin, RecordSummary};
+use crate::{Comparison, Finding, Identification, Origin, RecordSummary};
 
 impl Serialize for Finding {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -50,10 +50,6 @@ impl Serialize for Identification {
 /// What a record is: times in s, rates in Hz, values in `unit`.
 impl Serialize for RecordSummary {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let fixed = match self.offset {
-            Offset::Fixed(value) => Some(value),
-            Offset::Fitted => None,
-        };
         let mut document = serializer.serialize_struct("RecordSummary", 19)?;
         document.serialize_field("from_s", &self.from)?;
         document.serialize_field("to_s", &self.to)?;
@@ -61,7 +57,7 @@ impl Serialize for RecordSummary {
         document.serialize_field("rate_hz", &self.rate)?;
         document.serialize_field("quantity", &self.quantity.to_string())?;
         document.serialize_field("unit", &self.unit)?;
-        document.serialize_field("offset_held_at", &fixed)?;
+        document.serialize_field("offset_held_at", &self.held_offset)?;
         document.serialize_field("gain_uncertainty", &self.gain_uncertainty)?;
         document.serialize_field("release_s", &self.release)?;
         document.serialize_field("half_swings", &self.half_swings)?;
