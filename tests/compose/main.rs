@@ -4,5 +4,6 @@ mod bad_input;
 mod document;
 mod identifiability;
 mod measurement;
+mod own_law;
 mod real_records;
 mod synthetic;

@@ -2,9 +2,9 @@
 
 use fmm_model::Scalar;
 
-use crate::SlidingLaw;
+use crate::{Coulomb, CoulombStatic, CoulombViscous, SlidingLaw, Viscous};
 
-/// The numbers of an affine law: coefficient(v) = `level` + `slope` v.
+/// The numbers of an affine law, and the law itself: coefficient(v) = `level` + `slope` v.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Affine<D = f64> {
     /// Coefficient in the limit of zero speed while sliding (1).
@@ -15,21 +15,43 @@ pub struct Affine<D = f64> {
     pub breakaway: D,
 }
 
+impl<D: Scalar> SlidingLaw<D> for Affine<D> {
+    fn coefficient(&self, speed: D) -> D {
+        self.level + self.slope * speed
+    }
+
+    fn breakaway(&self) -> D {
+        self.breakaway
+    }
+}
+
 /// A sliding law that is affine in the speed, so that every swing is a damped harmonic about a shifted centre.
 ///
-/// Implementing this trait gives [`SlidingLaw`] as well.
-pub trait AffineLaw<D: Scalar> {
+/// An implementor promises that it slides as [`affine`](Self::affine) says:
+///
+/// ```text
+/// self.coefficient(v) = self.affine().coefficient(v),     self.breakaway() = self.affine().breakaway
+/// ```
+///
+/// The trait does not give [`SlidingLaw`] to its implementors by itself: that would forbid everyone else to
+/// implement it for a law that is not affine.
+pub trait AffineLaw<D: Scalar>: SlidingLaw<D> {
     /// Level, slope and static level.
     fn affine(&self) -> Affine<D>;
 }
 
-impl<D: Scalar, L: AffineLaw<D>> SlidingLaw<D> for L {
-    fn coefficient(&self, speed: D) -> D {
-        let Affine { level, slope, .. } = self.affine();
-        level + slope * speed
-    }
+macro_rules! slides_as_affine {
+    ($($law:ident),+) => {$(
+        impl<D: Scalar> SlidingLaw<D> for $law<D> {
+            fn coefficient(&self, speed: D) -> D {
+                self.affine().coefficient(speed)
+            }
 
-    fn breakaway(&self) -> D {
-        self.affine().breakaway
-    }
+            fn breakaway(&self) -> D {
+                self.affine().breakaway
+            }
+        }
+    )+};
 }
+
+slides_as_affine!(Viscous, Coulomb, CoulombStatic, CoulombViscous);

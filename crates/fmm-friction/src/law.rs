@@ -14,6 +14,29 @@ use fmm_model::Scalar;
 /// along the motion, and no law needs a dead zone or a smoothed signum. A single method taking a velocity was
 /// turned down for that reason, and a method taking the load as well because a law would then have to decide
 /// between stick and slip, which depends on the machine.
+///
+/// ```
+/// use fmm_friction::SlidingLaw;
+/// use fmm_model::{Dual, Scalar};
+///
+/// /// Friction that falls with the speed, μ₀ + μ₁ exp(−α v).
+/// struct Falling<D>(D, D, D);
+///
+/// impl<D: Scalar> SlidingLaw<D> for Falling<D> {
+///     fn coefficient(&self, speed: D) -> D {
+///         self.0 + self.1 * (-self.2 * speed).exp()
+///     }
+///     fn breakaway(&self) -> D {
+///         self.0 + self.1
+///     }
+/// }
+///
+/// let law = Falling(Dual::<1>::from(0.228), Dual::from(0.261), Dual::variable(2.852, 0));
+/// let coefficient = law.coefficient(Dual::from(0.2));
+/// let exp = (-2.852f64 * 0.2).exp();
+/// assert_eq!(coefficient.value(), 0.228 + 0.261 * exp);
+/// assert!((coefficient.partial(0) + 0.261 * 0.2 * exp).abs() < 1e-16);
+/// ```
 pub trait SlidingLaw<D: Scalar> {
     /// Friction coefficient (1) while sliding at `speed` ≥ 0 (m/s).
     fn coefficient(&self, speed: D) -> D;

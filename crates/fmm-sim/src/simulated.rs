@@ -11,7 +11,7 @@ use crate::{Engine, Exact, Sampling, Scenario, SimulationError, Trajectory};
 /// [`Engine`] for *all* number types cannot be written, so the family names its engine here once.
 ///
 /// ```
-/// # use fmm_friction::{Affine, AffineLaw, LawError, LawFamily, LawParameter, Role};
+/// # use fmm_friction::{Affine, AffineLaw, LawError, LawFamily, LawParameter, Role, SlidingLaw};
 /// # use fmm_model::{Bounds, Parameter, Scalar};
 /// # use fmm_sim::{Engine, Exact, Sampling, Scenario, SimulationError, Simulated, Trajectory};
 /// // A law of one's own, with a static level half as high again as the sliding level.
@@ -24,7 +24,18 @@ use crate::{Engine, Exact, Sampling, Scenario, SimulationError, Trajectory};
 ///         &[LawParameter::new(Parameter::new("coefficient", "μ", "1").bounded(Bounds::NOT_NEGATIVE), Role::Level)];
 ///     type At<D: Scalar> = Sticky<D>;
 ///     fn at<D: Scalar>(values: &[D]) -> Result<Sticky<D>, LawError> {
-///         Ok(Sticky(Self::PARAMETERS[0].check(values[0])?))
+///         match values {
+///             [coefficient] => Ok(Sticky(Self::PARAMETERS[0].check(*coefficient)?)),
+///             _ => Err(LawError::WrongCount { law: Self::NAME, expected: 1, got: values.len() }),
+///         }
+///     }
+/// }
+/// impl<D: Scalar> SlidingLaw<D> for Sticky<D> {
+///     fn coefficient(&self, speed: D) -> D {
+///         self.affine().coefficient(speed)
+///     }
+///     fn breakaway(&self) -> D {
+///         self.affine().breakaway
 ///     }
 /// }
 /// impl<D: Scalar> AffineLaw<D> for Sticky<D> {
