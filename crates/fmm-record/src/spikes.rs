@@ -121,8 +121,17 @@ fn culprit(values: &[f64], suspect: Range<usize>, limit: f64) -> Option<Range<us
         }
         (suspect.start - from..suspect.end - from).all(|i| (bridged[i] - median_around(&bridged, i)).abs() <= limit)
     };
+    // A spike jumps away and jumps back, much farther than the samples beside it move. A motion that stops or sets in
+    // does one of the two, and a smooth peak neither.
+    let returns = |run: &Range<usize>| {
+        let step = |from: usize, to: usize| values[to] - values[from];
+        let (away, back) = (step(run.start - 1, run.start), step(run.end, run.end - 1));
+        let beside = step(run.start - 2, run.start - 1).abs().max(step(run.end + 1, run.end).abs());
+        away * back > 0.0 && away.abs().min(back.abs()) > (0.5 * limit).max(2.0 * beside)
+    };
     (1..=LONGEST.min(suspect.len())).find_map(|length| {
-        (suspect.start..=suspect.end - length).map(|start| start..start + length).find(|run| explains(run))
+        let runs = (suspect.start..=suspect.end - length).map(|start| start..start + length);
+        runs.filter(returns).find(explains)
     })
 }
 
@@ -139,6 +148,19 @@ mod tests {
     use super::*;
     use crate::Quantity;
     use crate::synthetic::{CoulombDecay, pendulum, pendulum_velocity, sampled, wheel};
+
+    #[test]
+    fn a_stop_an_onset_or_a_peak_is_no_spike() {
+        // Eight samples of a velocity that falls at a constant rate, then rest; and the reverse.
+        let stop: Vec<f64> = (0..60).map(|i| if i < 8 { 8.0 - f64::from(i) } else { 0.0 }).collect();
+        let onset: Vec<f64> = stop.iter().rev().copied().collect();
+        // A smooth peak in a record that is at rest nearly always.
+        let peak: Vec<f64> = (0..5000).map(|i| if i < 30 { (f64::from(i) * 0.1).sin() } else { 0.0 }).collect();
+        for values in [stop, onset, peak] {
+            let record = Record::sampled(100.0, values, crate::Quantity::Velocity, "m/s").unwrap();
+            assert_eq!(spikes(&record), []);
+        }
+    }
 
     #[test]
     fn measured_records_have_none() {
