@@ -76,3 +76,21 @@ fn dry_friction_is_preferred_and_white_residuals_raise_no_alarm() {
     let viscous = &comparison.identifications()[0];
     assert!(viscous.warnings().iter().any(structured), "{viscous}");
 }
+
+/// A record too short to show a damping prefers plain Coulomb friction; its μ must be as uncertain as the damping
+/// that is left out makes it.
+#[test]
+fn preferring_a_simple_law_does_not_make_it_true() {
+    let mut preferred = 0;
+    for seed in 0..40 {
+        let comparison = compare(&machine(), &[prepared(8e-3, 2000 + seed)], &Candidate::standard()).unwrap();
+        let (simple, general) = (&comparison.identifications()[1], &comparison.identifications()[2]);
+        if comparison.preferred().law() == "coulomb" {
+            preferred += 1;
+            let (value, u) = mu(simple);
+            assert!(u >= mu(general).1, "seed {seed}: u(μ) = {u} against {}", mu(general).1);
+            assert!((value - MU).abs() < 3.5 * u, "seed {seed}: μ = {value} ± {u}\n{comparison}");
+        }
+    }
+    assert!(preferred > 0, "plain Coulomb friction was never preferred, so the test shows nothing");
+}

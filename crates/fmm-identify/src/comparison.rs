@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use fmm_fit::{FTest, Fit, Options, Progress, f_test};
 
-use crate::{Candidate, Identification, IdentifyError, Machine, RecordSummary, RingDown, Warning};
+use crate::{Candidate, Finding, Identification, IdentifyError, Machine, RecordSummary, RingDown, Warning};
 
 /// A law and the more general one that it was tested against.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,7 +22,8 @@ pub struct NestedTest {
 /// The preferred law has the smallest corrected Akaike criterion, with the number of residuals replaced by the
 /// number of *independent* ones, n/τ: residuals that a record samples a thousand times a second are no thousand
 /// witnesses. Laws within 2 of the best are too close to call; among them the one with the fewest parameters is
-/// preferred, and [`is_decided`](Self::is_decided) is false.
+/// preferred, and [`is_decided`](Self::is_decided) is false. The uncertainties of its parameters then include what the
+/// more general laws would change.
 ///
 /// `Display` gives the report.
 #[derive(Debug, Clone)]
@@ -71,7 +72,7 @@ pub fn compare_observed(
     let others = unfinished(candidates, &identifications);
     let is_decided = is_decided && others.is_empty();
     warnings.extend(others);
-    warnings.extend(dependence(candidates, &identifications, preferred));
+    warnings.extend(widen_for_other_laws(candidates, &mut identifications, preferred));
     if !is_decided {
         warnings.push(Warning::Undecided);
     }
@@ -122,22 +123,34 @@ fn unfinished(candidates: &[Candidate], identifications: &[Identification]) -> V
     warnings
 }
 
-/// Parameters of the preferred law that a more general one, which the record does not exclude, sees differently.
-fn dependence(candidates: &[Candidate], identifications: &[Identification], preferred: usize) -> Vec<Warning> {
-    /// A change of so many standard uncertainties, or an uncertainty so many times as large, is worth a line.
+/// Widens the uncertainties of the preferred law's parameters for what a more general law, which the record does not
+/// exclude, sees differently; returns a warning for each that matters.
+///
+/// Preferring a law because the record is too short to show that it is too simple does not make it true. The
+/// standard uncertainty becomes the root sum of squares of that under the general law and the difference between the two.
+fn widen_for_other_laws(
+    candidates: &[Candidate],
+    identifications: &mut [Identification],
+    preferred: usize,
+) -> Vec<Warning> {
+    /// An uncertainty that grows by this factor is worth a line.
     const NOTABLE: f64 = 2.0;
-    let (candidate, found) = (&candidates[preferred], &identifications[preferred]);
-    let general = candidates.iter().zip(identifications).filter(|(other, _)| candidate.is_nested_in(other));
     let mut warnings = Vec::new();
-    for (other, wider) in general {
-        let roles = wider.findings().iter().filter(|finding| finding.is_of_law());
-        for finding in roles {
-            let Some(own) = found.finding(finding.parameter().name()) else { continue };
-            let (Some(u), Some(wider_u)) = (own.uncertainty(), finding.uncertainty()) else { continue };
-            if (own.value() - finding.value()).abs() > NOTABLE * u || wider_u > NOTABLE * u {
+    for general in 0..candidates.len() {
+        if !candidates[preferred].is_nested_in(&candidates[general]) {
+            continue;
+        }
+        let wider: Vec<Finding> =
+            identifications[general].findings().iter().filter(|finding| finding.is_of_law()).cloned().collect();
+        for finding in wider {
+            let Some(own) = identifications[preferred].finding_mut(finding.parameter().name()) else { continue };
+            let (Some(u), Some(wider_u)) = (own.uncertainty, finding.uncertainty()) else { continue };
+            let widened = wider_u.hypot(own.value - finding.value());
+            own.uncertainty = Some(u.max(widened));
+            if widened > NOTABLE * u {
                 warnings.push(Warning::DependsOnLaw {
-                    parameter: own.parameter().name().to_owned(),
-                    law: other.name(),
+                    parameter: finding.parameter().name().to_owned(),
+                    law: candidates[general].name(),
                     finding: finding.quantity(),
                 });
             }

@@ -229,6 +229,10 @@ impl Identification {
         self.findings.iter().find(|finding| finding.parameter().name() == name)
     }
 
+    pub(crate) fn finding_mut(&mut self, name: &str) -> Option<&mut Finding> {
+        self.findings.iter_mut().find(|finding| finding.parameter().name() == name)
+    }
+
     /// The fitted motion of each record.
     pub fn motions(&self) -> &[FittedMotion] {
         &self.motions

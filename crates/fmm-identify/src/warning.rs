@@ -92,7 +92,8 @@ pub enum Warning {
         /// Name of the parameter of the law.
         parameter: String,
     },
-    /// A more general law that fits no worse finds something else for a parameter, or knows it less well.
+    /// A more general law, which the record does not exclude, finds something else for a parameter or knows it less well;
+    /// its uncertainty was widened for that.
     DependsOnLaw {
         /// Name of the parameter.
         parameter: String,
@@ -254,7 +255,11 @@ impl fmt::Display for Warning {
                 "{parameter} was held at the sliding level: a free decay depends on it only in where it stops"
             ),
             Self::DependsOnLaw { parameter, law, finding } => {
-                write!(f, "{parameter} depends on the law: {law}, which the record cannot exclude, gives {finding}")
+                write!(
+                    f,
+                    "{parameter} depends on the law: {law}, which the record cannot exclude, gives {finding}; the standard \
+                 uncertainty was widened for that"
+                )
             }
             Self::OtherLaw { law, sentence } => write!(f, "{law}: {sentence}"),
             Self::Undecided => write!(
