@@ -3,7 +3,11 @@
 use fmm_friction::{Coulomb, CoulombViscous};
 use fmm_identify::{Candidate, Identification, Known, Machine, Preparation, RingDown, compare, identify};
 
-use crate::measurement::{DAMPING, LOAD, MASS, MU, release};
+use fmm_model::{Damping, Oscillator};
+use fmm_record::{Quantity, Record};
+use fmm_sim::{Engine, Exact, Sampling, Scenario};
+
+use crate::measurement::{DAMPING, LOAD, MASS, MU, STIFFNESS, release, white};
 
 const RELEASES: [f64; 3] = [8e-3, 15e-3, 22e-3];
 /// White noise (m/s).
@@ -75,6 +79,28 @@ fn dry_friction_is_preferred_and_white_residuals_raise_no_alarm() {
     assert!(!comparison.warnings().iter().any(structured), "{comparison}");
     let viscous = &comparison.identifications()[0];
     assert!(viscous.warnings().iter().any(structured), "{viscous}");
+}
+
+/// Displacements that stop off their centre, after two, four and six half swings: the offset, which is where the spring is
+/// free of force, is known from nowhere else, and a stop one swing off shows as a jump that no gradient leads over.
+#[test]
+fn displacements_that_stop_off_centre() {
+    let machine = machine().with_damping(Known::exact(DAMPING).unwrap()).unwrap();
+    let oscillator = Oscillator::new(MASS, STIFFNESS).unwrap().with_damping(Damping::linear(DAMPING).unwrap());
+    for position in RELEASES {
+        let scenario = Scenario::new(oscillator, Coulomb::new(MU).unwrap(), LOAD).unwrap();
+        let scenario = scenario.starting_at(position, 0.0).unwrap();
+        let motion = Exact.run(&scenario, &Sampling::uniform(1e-3, 2000).unwrap()).unwrap();
+        let noise = white(1e-5, 1, 2000);
+        let values = motion.position().values().iter().zip(noise).map(|(x, noise)| 0.3 + x + noise).collect();
+        let record = Record::new(0.0, 1e-3, values, Quantity::Displacement, "m").unwrap();
+        let decay = RingDown::prepare(&record, &Preparation::default()).unwrap();
+        let found = identify::<Coulomb>(&machine, &[decay]).unwrap();
+        let (value, u) = mu(&found);
+        assert!((value - MU).abs() < 4.0 * u && u < 1e-3 * MU, "released at {position} m: μ = {value} ± {u}\n{found}");
+        let offset = found.finding("offset").unwrap();
+        assert!((offset.value() - 0.3).abs() < 4.0 * offset.uncertainty().unwrap(), "{found}");
+    }
 }
 
 /// A record too short to show a damping prefers plain Coulomb friction; its μ must be as uncertain as the damping

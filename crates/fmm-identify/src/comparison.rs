@@ -140,14 +140,13 @@ fn widen_for_other_laws(
         if !candidates[preferred].is_nested_in(&candidates[general]) {
             continue;
         }
-        let wider: Vec<Finding> =
-            identifications[general].findings().iter().filter(|finding| finding.is_of_law()).cloned().collect();
+        let wider: Vec<Finding> = identifications[general].findings().to_vec();
         for finding in wider {
             let Some(own) = identifications[preferred].finding_mut(finding.parameter().name()) else { continue };
             let (Some(u), Some(wider_u)) = (own.uncertainty, finding.uncertainty()) else { continue };
             let widened = wider_u.hypot(own.value - finding.value());
             own.uncertainty = Some(u.max(widened));
-            if widened > NOTABLE * u {
+            if widened > NOTABLE * u && !finding.is_of_record() {
                 warnings.push(Warning::DependsOnLaw {
                     parameter: finding.parameter().name().to_owned(),
                     law: candidates[general].name(),

@@ -26,6 +26,7 @@ pub struct Finding {
     pub(crate) value: f64,
     pub(crate) uncertainty: Option<f64>,
     pub(crate) origin: Origin,
+    is_of_record: bool,
 }
 
 impl Finding {
@@ -53,10 +54,9 @@ impl Finding {
         }
     }
 
-    /// Whether it is a parameter of the law, or follows from one.
-    pub(crate) fn is_of_law(&self) -> bool {
-        let name = self.parameter.name();
-        ["friction_per_mass", "damping_per_mass", "friction_force", "damping", "mu"].iter().any(|of| name.ends_with(of))
+    /// Whether it belongs to one record alone: its initial state or its offset.
+    pub fn is_of_record(&self) -> bool {
+        self.is_of_record
     }
 
     /// Where it comes from.
@@ -156,6 +156,7 @@ pub(crate) fn findings<F: LawFamily>(
             value: estimate.value(),
             uncertainty: covariance.get(index, index).map(|variance| variance.sqrt().hypot(gain)),
             origin: Origin::Fitted(estimate.status()),
+            is_of_record: index >= layout.shared,
         }
     });
     let mut findings: Vec<Finding> = fitted.collect();
@@ -175,7 +176,7 @@ pub(crate) fn findings<F: LawFamily>(
     }
     for ((parameter, value), gradient) in values.into_iter().zip(gradients) {
         let uncertainty = variance(covariance, &gradient, inputs.uncertainties()).map(f64::sqrt);
-        findings.push(Finding { parameter, value, uncertainty, origin: Origin::Derived });
+        findings.push(Finding { parameter, value, uncertainty, origin: Origin::Derived, is_of_record: false });
     }
     findings
 }
