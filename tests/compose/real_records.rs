@@ -53,6 +53,14 @@ fn bicycle_fork() {
     assert_eq!(both.finding("mu"), None);
     assert!(comparison.warnings().contains(&Warning::ScaleUnknown { load_known: false }));
     assert!(comparison.is_decided());
+
+    // The residuals are correlated over hundreds of samples: their number is no number of witnesses, for the
+    // uncertainties no more than for the preference.
+    let damping = both.fit().estimate("damping_per_mass").unwrap().standard_uncertainty().unwrap();
+    let widened = both.finding("damping_per_mass").unwrap().uncertainty().unwrap();
+    assert!((3.0..10.0).contains(&(widened / damping)), "u(c/m) = {widened} 1/s, {damping} 1/s if independent");
+    let lead = comparison.scores()[1] - comparison.scores()[2];
+    assert!((2.0..100.0).contains(&lead), "Coulomb and viscous leads Coulomb by {lead}");
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Friction of known truth back from synthetic measurements, and the coverage of its uncertainty.
 
+use std::f64::consts::TAU;
+
 use fmm_friction::{Coulomb, CoulombViscous};
 use fmm_identify::{Candidate, Identification, Known, Machine, Preparation, RingDown, compare, identify};
 
@@ -100,6 +102,38 @@ fn displacements_that_stop_off_centre() {
         assert!((value - MU).abs() < 4.0 * u && u < 1e-3 * MU, "released at {position} m: μ = {value} ± {u}\n{found}");
         let offset = found.finding("offset").unwrap();
         assert!((offset.value() - 0.3).abs() < 4.0 * offset.uncertainty().unwrap(), "{found}");
+    }
+}
+
+/// Cases found at random in which a fit of the whole displacement from its first guess ends with the wrong number of half
+/// swings: samples per period, periods, damping ratio, friction as a share of the stiffness force, phase.
+const TRAPS: [[f64; 5]; 5] = [
+    [34.6, 12.5, 0.0549, 0.0412, 3.858],
+    [195.9, 19.3, 0.00676, 0.0791, 1.700],
+    [101.1, 30.9, 0.1056, 0.00394, 3.357],
+    [33.9, 17.0, 0.1835, 0.00416, 1.216],
+    [19.3, 16.0, 0.0264, 0.00871, 1.732],
+];
+
+#[test]
+fn displacements_do_not_end_one_half_swing_off() {
+    /// Standard deviation of the noise as a share of the amplitude.
+    const NOISE: f64 = 5e-4;
+    let angular = 2.0 * TAU;
+    for [per_period, periods, ratio, share, phase] in TRAPS {
+        let law = CoulombViscous::new(share * angular * angular, 2.0 * ratio * angular).unwrap();
+        let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), law, 1.0).unwrap();
+        let scenario = scenario.starting_at(phase.cos(), -angular * phase.sin()).unwrap();
+        let (interval, count) = (0.5 / per_period, (periods * per_period) as usize);
+        let motion = Exact.run(&scenario, &Sampling::uniform(interval, count).unwrap()).unwrap();
+        let noise = white(NOISE, 1, count);
+        let values = motion.position().values().iter().zip(noise).map(|(x, noise)| x + noise).collect();
+        let record = Record::new(0.0, interval, values, Quantity::Displacement, "m").unwrap();
+        let decay = RingDown::prepare(&record, &Preparation::default()).unwrap();
+        let found = identify::<CoulombViscous>(&Machine::per_unit_mass(), &[decay]).unwrap();
+        // Noise of n samples has an rms within 3/√(2n) of its standard deviation.
+        let excess = found.rms_residual() / NOISE - 1.0;
+        assert!(excess < 3.0 / (2.0 * count as f64).sqrt(), "{ratio}, {share}: residual {excess} too large\n{found}");
     }
 }
 
