@@ -1,6 +1,6 @@
 //! A friction law of one's own, written outside the crates: simulated, differentiated, fitted and compared.
 
-use fmm_friction::{Affine, AffineLaw, LawError, LawFamily, LawParameter, Role, SlidingLaw};
+use fmm_friction::{Affine, LawError, LawFamily, LawParameter, PiecewiseLinearLaw, Role, SlidingLaw};
 use fmm_identify::{Candidate, Machine, Preparation, RingDown, compare};
 use fmm_model::{Bounds, Oscillator, Parameter, Scalar};
 use fmm_record::{Quantity, Record};
@@ -38,7 +38,7 @@ impl<D: Scalar> SlidingLaw<D> for Rising<D> {
     }
 }
 
-impl<D: Scalar> AffineLaw<D> for Rising<D> {
+impl<D: Scalar> PiecewiseLinearLaw<D> for Rising<D> {
     fn affine(&self) -> Affine<D> {
         Affine { level: self.0, slope: self.0 / DOUBLING, breakaway: self.0 }
     }

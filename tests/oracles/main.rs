@@ -1,6 +1,8 @@
 //! Values that other mathematics gives: 256-bit reference solutions, each with its own tolerance.
 
 mod free_decay;
+mod laws;
 mod oracle;
 mod sensitivities;
+mod stick_slip;
 mod thesis_euler;

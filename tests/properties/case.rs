@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use fmm_friction::{AffineLaw, CoulombStatic};
+use fmm_friction::{CoulombStatic, PiecewiseLinearLaw};
 use fmm_model::{Damping, Oscillator, Scalar};
 use fmm_sim::{Engine, Exact, Mode, Sampling, Scenario, Trajectory};
 use rand::{RngExt, SeedableRng};
@@ -163,7 +163,7 @@ pub(crate) fn energy(case: &Case, position: f64, velocity: f64) -> f64 {
 }
 
 /// A run of the exact engine that has to succeed.
-pub(crate) fn exactly<D: Scalar, L: AffineLaw<D>>(
+pub(crate) fn exactly<D: Scalar, L: PiecewiseLinearLaw<D>>(
     case: &Case,
     scenario: &Scenario<D, L>,
     sampling: &Sampling,

@@ -1,13 +1,15 @@
 //! Laws that are others in a limit are them to the last bit, and all keep the promises of their trait.
 
-use fmm_friction::{AffineLaw, BristleLaw, Coulomb, CoulombStatic, CoulombViscous, Dahl, SlidingLaw, Viscous};
+use fmm_friction::{
+    BristleLaw, Coulomb, CoulombStatic, CoulombViscous, Dahl, PiecewiseLinearLaw, Regime, SlidingLaw, Viscous,
+};
 use fmm_sim::{Mode, Simulated, Trajectory};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::case::{Case, cases, exactly, log_uniform};
 
-fn with<L: AffineLaw<f64>>(case: &Case, law: L) -> Trajectory {
+fn with<L: PiecewiseLinearLaw<f64>>(case: &Case, law: L) -> Trajectory {
     exactly(case, &case.with_law(law), &case.sampling())
 }
 
@@ -121,7 +123,7 @@ fn dahl_keeps_the_promises_of_a_bristle() {
         let law = Dahl::new(mu, stiffness, random.random_range(0.3..4.0)).unwrap();
         let rate = |velocity: f64, state: f64| {
             let mut rate = [0.0];
-            law.rate(velocity, &[state], &mut rate);
+            law.rate(velocity, &[state], Regime::ALL_HOLD, &mut rate);
             rate[0]
         };
         let (bound, velocity) = (law.bound(0), log_uniform(&mut random, -6.0, 1.0));

@@ -1,61 +1,42 @@
 //! Dahl's model: friction that builds up over a small displacement.
 
-use fmm_model::{Bounds, Parameter, Scalar};
+use fmm_model::Scalar;
 
-use crate::family::exactly;
-use crate::{BristleLaw, LawError, LawFamily, LawParameter, Role};
+use crate::elements::direction;
+use crate::family::law_family;
+use crate::power::power;
+use crate::{BristleLaw, LawError, LawFamily, LawParameter, Regime, Role};
 
-/// Dahl's presliding model.
-///
-/// ```text
-/// F = N σ z,   dz/dt = v |1 − sgn(v) σ z/μ|ⁱ sgn(1 − sgn(v) σ z/μ)
-/// ```
-///
-/// | symbol | field | unit | meaning |
-/// |---|---|---|---|
-/// | μ | `coefficient` | 1 | coefficient that steady sliding approaches |
-/// | σ | `stiffness` | 1/m | slope of the coefficient at zero deflection |
-/// | i | `exponent` | 1 | sharpness of the bend; 1 is the usual choice |
-///
-/// The state z (m) is the bristle deflection; |z| ≤ μ/σ is invariant. For σ → ∞ the law becomes
-/// [`Coulomb`](crate::Coulomb).
-///
-/// # References
-/// P. R. Dahl, *A solid friction model*, The Aerospace Corporation TOR-0158(3107-18)-1, 1968.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Dahl<D = f64> {
-    coefficient: D,
-    stiffness: D,
-    exponent: D,
-}
+law_family! {
+    /// Dahl's presliding model.
+    ///
+    /// ```text
+    /// F = N σ z,   dz/dt = v |1 − sgn(v) σ z/μ|ⁱ sgn(1 − sgn(v) σ z/μ)
+    /// ```
+    ///
+    /// | symbol | field | unit | meaning |
+    /// |---|---|---|---|
+    /// | μ | `coefficient` | 1 | coefficient that steady sliding approaches |
+    /// | σ | `stiffness` | 1/m | slope of the coefficient at zero deflection |
+    /// | i | `exponent` | 1 | sharpness of the bend; 1 is the usual choice |
+    ///
+    /// The state z (m) is the bristle deflection; |z| ≤ μ/σ is invariant. For σ → ∞ the law becomes
+    /// [`Coulomb`](crate::Coulomb); with i = 1 it is [`LuGre`](crate::LuGre) with equal levels and without damping, and
+    /// [`BoucWen`](crate::BoucWen) with A = n = 1, γ = 0, β = σ/μ.
+    ///
+    /// # References
+    /// P. R. Dahl, *A solid friction model*, The Aerospace Corporation TOR-0158(3107-18)-1, 1968.
+    pub struct Dahl, "dahl" {
+        coefficient: LawParameter::positive("coefficient", "μ", "1", Role::Level),
+        stiffness: LawParameter::positive("stiffness", "σ", "1/m", Role::Level),
+        exponent: LawParameter::positive("exponent", "i", "1", Role::Shape),
+    }
 
-impl<D: Scalar> Dahl<D> {
     /// Coefficient `μ` (1), presliding `stiffness` σ (1/m) and `exponent` i (1).
     ///
     /// # Errors
     /// [`LawError::OutOfBounds`] if a parameter is not positive or not finite.
-    pub fn new(coefficient: D, stiffness: D, exponent: D) -> Result<Self, LawError> {
-        Ok(Self {
-            coefficient: Dahl::PARAMETERS[0].check(coefficient)?,
-            stiffness: Dahl::PARAMETERS[1].check(stiffness)?,
-            exponent: Dahl::PARAMETERS[2].check(exponent)?,
-        })
-    }
-}
-
-impl LawFamily for Dahl {
-    const NAME: &'static str = "dahl";
-    const PARAMETERS: &'static [LawParameter] = &[
-        LawParameter::new(Parameter::new("coefficient", "μ", "1").bounded(Bounds::POSITIVE), Role::Level),
-        LawParameter::new(Parameter::new("stiffness", "σ", "1/m").bounded(Bounds::POSITIVE), Role::Level),
-        LawParameter::new(Parameter::new("exponent", "i", "1").bounded(Bounds::POSITIVE), Role::Shape),
-    ];
-    type At<D: Scalar> = Dahl<D>;
-
-    fn at<D: Scalar>(values: &[D]) -> Result<Dahl<D>, LawError> {
-        let [coefficient, stiffness, exponent] = exactly(Self::NAME, values)?;
-        Dahl::new(coefficient, stiffness, exponent)
-    }
+    pub fn new {}
 }
 
 impl<D: Scalar> BristleLaw<D> for Dahl<D> {
@@ -63,15 +44,12 @@ impl<D: Scalar> BristleLaw<D> for Dahl<D> {
         1
     }
 
-    fn rate(&self, velocity: D, state: &[D], rate: &mut [D]) {
-        let direction = if velocity.value() < 0.0 { -1.0 } else { 1.0 };
-        let reserve = D::from(1.0) - self.stiffness * state[0] / self.coefficient * direction;
-        rate[0] = if reserve.value() > 0.0 {
-            velocity * reserve.powf(self.exponent)
-        } else if reserve.value() < 0.0 {
-            -velocity * (-reserve).powf(self.exponent)
+    fn rate(&self, velocity: D, state: &[D], _regime: Regime, rate: &mut [D]) {
+        let reserve = D::from(1.0) - self.stiffness * state[0] / self.coefficient * direction(velocity);
+        rate[0] = if reserve.value() < 0.0 {
+            -velocity * power(-reserve, self.exponent)
         } else {
-            D::from(0.0)
+            velocity * power(reserve, self.exponent)
         };
     }
 
@@ -90,7 +68,7 @@ mod tests {
 
     fn rate(law: &Dahl, velocity: f64, state: f64) -> f64 {
         let mut rate = [0.0];
-        law.rate(velocity, &[state], &mut rate);
+        law.rate(velocity, &[state], Regime::ALL_HOLD, &mut rate);
         rate[0]
     }
 

@@ -11,7 +11,7 @@ use crate::LawError;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Role {
-    /// A coefficient: the force is proportional to it and to the normal load.
+    /// A coefficient, or one per length or power of the speed: the force is proportional to it and to the normal load.
     Level,
     /// A coefficient per speed: proportional to the load, and inseparable from linear damping of the machine.
     Slope,
@@ -37,17 +37,27 @@ impl LawParameter {
 
     /// A coefficient, not negative (1).
     pub(crate) const fn level(name: &'static str, symbol: &'static str) -> Self {
-        Self::new(Parameter::new(name, symbol, "1").bounded(Bounds::NOT_NEGATIVE), Role::Level)
+        Self::not_negative(name, symbol, "1", Role::Level)
     }
 
     /// A static level, not negative (1).
     pub(crate) const fn breakaway(name: &'static str, symbol: &'static str) -> Self {
-        Self::new(Parameter::new(name, symbol, "1").bounded(Bounds::NOT_NEGATIVE), Role::Breakaway)
+        Self::not_negative(name, symbol, "1", Role::Breakaway)
     }
 
     /// A coefficient per speed, not negative (s/m).
     pub(crate) const fn slope(name: &'static str, symbol: &'static str) -> Self {
-        Self::new(Parameter::new(name, symbol, "s/m").bounded(Bounds::NOT_NEGATIVE), Role::Slope)
+        Self::not_negative(name, symbol, "s/m", Role::Slope)
+    }
+
+    /// A parameter of unit `unit` that is not negative.
+    pub(crate) const fn not_negative(name: &'static str, symbol: &'static str, unit: &'static str, role: Role) -> Self {
+        Self::new(Parameter::new(name, symbol, unit).bounded(Bounds::NOT_NEGATIVE), role)
+    }
+
+    /// A parameter of unit `unit` that is positive.
+    pub(crate) const fn positive(name: &'static str, symbol: &'static str, unit: &'static str, role: Role) -> Self {
+        Self::new(Parameter::new(name, symbol, unit).bounded(Bounds::POSITIVE), role)
     }
 
     /// Name, symbol, unit and bounds.
@@ -106,3 +116,72 @@ pub trait LawFamily: 'static {
 pub(crate) fn exactly<const N: usize, D: Scalar>(law: &'static str, values: &[D]) -> Result<[D; N], LawError> {
     <[D; N]>::try_from(values).map_err(|_| LawError::WrongCount { law, expected: N, got: values.len() })
 }
+
+/// The values, each within the bounds of its parameter.
+pub(crate) fn checked<const N: usize, D: Scalar>(
+    parameters: &[LawParameter],
+    values: [D; N],
+) -> Result<[D; N], LawError> {
+    for (parameter, value) in parameters.iter().zip(values) {
+        parameter.check(value)?;
+    }
+    Ok(values)
+}
+
+/// That a static level is not below the sliding level at zero speed.
+pub(crate) fn static_not_below<D: Scalar>(sliding: D, breakaway: D) -> Result<(), LawError> {
+    if breakaway.value() < sliding.value() {
+        return Err(LawError::StaticBelowSliding { breakaway: breakaway.value(), sliding: sliding.value() });
+    }
+    Ok(())
+}
+
+/// A law that is a fixed list of numbers: its struct, its validating constructor and its [`LawFamily`].
+///
+/// Each field stands beside the parameter that it is. The braces after the constructor hold what must be true of
+/// several parameters together. `Scalar`, `LawError`, `LawFamily` and `LawParameter` must be in scope, as the documents
+/// refer to them.
+macro_rules! law_family {
+    (
+        $(#[$law_doc:meta])*
+        pub struct $law:ident, $name:literal {
+            $($field:ident: $parameter:expr,)+
+        }
+
+        $(#[$new_doc:meta])*
+        pub fn $new:ident { $($condition:tt)* }
+    ) => {
+        $(#[$law_doc])*
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $law<D = f64> {
+            $(pub(crate) $field: D,)+
+        }
+
+        impl<D: Scalar> $law<D> {
+            $(#[$new_doc])*
+            pub fn $new($($field: D),+) -> Result<Self, LawError> {
+                let [$($field),+] = $crate::family::checked($law::PARAMETERS, [$($field),+])?;
+                $($condition)*
+                Ok(Self { $($field),+ })
+            }
+
+            /// The values of the law's parameters, in the order of [`LawFamily::PARAMETERS`].
+            pub fn values(&self) -> [D; $law::PARAMETERS.len()] {
+                [$(self.$field),+]
+            }
+        }
+
+        impl LawFamily for $law {
+            const NAME: &'static str = $name;
+            const PARAMETERS: &'static [LawParameter] = &[$($parameter),+];
+            type At<D: Scalar> = $law<D>;
+
+            fn at<D: Scalar>(values: &[D]) -> Result<$law<D>, LawError> {
+                let [$($field),+] = $crate::family::exactly(Self::NAME, values)?;
+                $law::$new($($field),+)
+            }
+        }
+    };
+}
+
+pub(crate) use law_family;

@@ -43,6 +43,51 @@ pub trait SlidingLaw<D: Scalar> {
 
     /// Static level: the coefficient (1) that the load must exceed to break away from rest.
     fn breakaway(&self) -> D;
+
+    /// Whether friction is different while the speed falls: then [`coefficient`](Self::coefficient) holds while the
+    /// speed grows and [`coefficient_losing_speed`](Self::coefficient_losing_speed) while it falls. While the speed
+    /// is constant any value between the two is possible.
+    fn depends_on_acceleration(&self) -> bool {
+        false
+    }
+
+    /// Friction coefficient (1) while sliding at `speed` ≥ 0 (m/s) that falls; the same as while it grows unless the
+    /// law [depends on the acceleration](Self::depends_on_acceleration).
+    fn coefficient_losing_speed(&self, speed: D) -> D {
+        self.coefficient(speed)
+    }
+
+    /// The speed (m/s) at and below which a contact is taken to be at rest if the load lets it. Zero, but for laws that
+    /// have a dead zone by definition ([`Karnopp`](crate::Karnopp)).
+    fn capture_speed(&self) -> D {
+        D::from(0.0)
+    }
+}
+
+/// Which elements of a bristle law slide, one bit an element; the others hold.
+///
+/// Laws whose elements switch ([`MaxwellSlip`](crate::MaxwellSlip), [`Gms`](crate::Gms)) need this memory beside
+/// their state. All elements hold when the velocity passes zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Regime(u64);
+
+impl Regime {
+    /// No element slides.
+    pub const ALL_HOLD: Self = Self(0);
+
+    /// The most elements that a law can have.
+    pub const CAPACITY: usize = 64;
+
+    /// Whether the element of this `index` slides.
+    pub const fn slides(self, index: usize) -> bool {
+        index < Self::CAPACITY && self.0 >> index & 1 == 1
+    }
+
+    /// The same, with the element of this `index` sliding.
+    #[must_use]
+    pub const fn sliding(self, index: usize) -> Self {
+        if index < Self::CAPACITY { Self(self.0 | 1 << index) } else { self }
+    }
 }
 
 /// A law with an internal state, the deflection of bristles that stand for the asperities in contact.
@@ -51,7 +96,8 @@ pub trait SlidingLaw<D: Scalar> {
 ///
 /// 1. all methods are pure functions of the law's parameters and their arguments;
 /// 2. `rate` and `coefficient` are odd: both change sign with velocity and state together;
-/// 3. the box |zᵢ| ≤ `bound(i)` is invariant: a state that starts inside stays inside.
+/// 3. the box |zᵢ| ≤ `bound(i)` is invariant: a state that starts inside stays inside;
+/// 4. within one regime and one sign of the velocity, `rate` and `coefficient` are smooth.
 ///
 /// Such a law needs no stick phase: at rest the bristles carry the load.
 pub trait BristleLaw<D: Scalar> {
@@ -60,7 +106,7 @@ pub trait BristleLaw<D: Scalar> {
 
     /// Writes dz/dt (unit of the state per second) at relative `velocity` (m/s) and `state` into `rate`; both
     /// slices hold [`states`](Self::states) values.
-    fn rate(&self, velocity: D, state: &[D], rate: &mut [D]);
+    fn rate(&self, velocity: D, state: &[D], regime: Regime, rate: &mut [D]);
 
     /// Friction coefficient (1), with the sign of the force that opposes a positive velocity. `rate` is what
     /// [`rate`](Self::rate) gave at the same arguments.
@@ -68,4 +114,11 @@ pub trait BristleLaw<D: Scalar> {
 
     /// Half width of the invariant interval of state `index`.
     fn bound(&self, index: usize) -> D;
+
+    /// For an element that holds and moves with `velocity`, how far it is from sliding: positive while it holds. None
+    /// for laws without elements that switch.
+    fn reserve(&self, index: usize, velocity: D, state: &[D]) -> Option<D> {
+        let _ = (index, velocity, state);
+        None
+    }
 }

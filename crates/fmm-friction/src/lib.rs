@@ -5,8 +5,8 @@
 //! with symbol and unit, and [`LawFamily`] lists them, so that a fit, a budget or a report can speak of them.
 //!
 //! Two small traits say what a law is: [`SlidingLaw`] for laws of the sliding speed alone, which need a stick
-//! phase, and [`BristleLaw`] for laws with an internal state, which do not. [`AffineLaw`] marks the sliding laws
-//! that are a level plus a slope and can therefore be simulated in closed form.
+//! phase, and [`BristleLaw`] for laws with an internal state, which do not. [`PiecewiseLinearLaw`] marks
+//! the laws that can be simulated in closed form. [`Shifted`] and [`Smoothed`] make a law of another law.
 //!
 //! All laws give a *coefficient*, the friction force divided by the normal load. With a normal load of 1 the
 //! coefficient is the force itself.
@@ -26,24 +26,64 @@
 //! # Ok::<(), fmm_friction::LawError>(())
 //! ```
 
+mod acceleration_coulomb;
 mod affine;
+mod berger;
+mod blend;
+mod bouc_wen;
 mod coulomb;
 mod coulomb_static;
 mod coulomb_viscous;
 mod dahl;
+mod elements;
 mod error;
+mod exponential_pair;
 mod family;
+mod gms;
+mod hyperbolic;
+mod karnopp;
 mod law;
+mod lugre;
+mod makkar_dixon;
+mod maxwell_slip;
+mod power;
+mod power_law;
+mod regularised_stribeck;
+mod shifted;
+mod smoothed;
+mod stribeck;
+mod stribeck_lorentzian;
 mod viscous;
 
-pub use affine::{Affine, AffineLaw};
+#[cfg(test)]
+mod bristle_properties;
+#[cfg(test)]
+mod sliding_properties;
+
+pub use acceleration_coulomb::AccelerationCoulomb;
+pub use affine::{Affine, Element, PiecewiseLinearLaw};
+pub use berger::Berger;
+pub use bouc_wen::BoucWen;
 pub use coulomb::Coulomb;
 pub use coulomb_static::CoulombStatic;
 pub use coulomb_viscous::CoulombViscous;
 pub use dahl::Dahl;
 pub use error::LawError;
+pub use exponential_pair::ExponentialPair;
 pub use family::{LawFamily, LawParameter, Role};
-pub use law::{BristleLaw, SlidingLaw};
+pub use gms::Gms;
+pub use hyperbolic::Hyperbolic;
+pub use karnopp::Karnopp;
+pub use law::{BristleLaw, Regime, SlidingLaw};
+pub use lugre::LuGre;
+pub use makkar_dixon::MakkarDixon;
+pub use maxwell_slip::MaxwellSlip;
+pub use power_law::PowerLaw;
+pub use regularised_stribeck::RegularisedStribeck;
+pub use shifted::{Inflected, Shifted};
+pub use smoothed::Smoothed;
+pub use stribeck::Stribeck;
+pub use stribeck_lorentzian::StribeckLorentzian;
 pub use viscous::Viscous;
 
 /// The README's example, run as a test.

@@ -2,45 +2,31 @@
 
 use fmm_model::Scalar;
 
-use crate::family::exactly;
-use crate::{Affine, AffineLaw, LawError, LawFamily, LawParameter};
+use crate::family::law_family;
+use crate::{Affine, LawError, LawFamily, LawParameter, PiecewiseLinearLaw};
 
-/// Viscous friction alone, the hypothesis against which dry friction has to prove itself.
-///
-/// ```text
-/// F = N β |v|
-/// ```
-///
-/// | symbol | field | unit | meaning |
-/// |---|---|---|---|
-/// | β | `viscous` | s/m | coefficient per speed |
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Viscous<D = f64> {
-    viscous: D,
-}
+law_family! {
+    /// Viscous friction alone, the hypothesis against which dry friction has to prove itself.
+    ///
+    /// ```text
+    /// F = N β |v|
+    /// ```
+    ///
+    /// | symbol | field | unit | meaning |
+    /// |---|---|---|---|
+    /// | β | `viscous` | s/m | coefficient per speed |
+    pub struct Viscous, "viscous" {
+        viscous: LawParameter::slope("viscous", "β"),
+    }
 
-impl<D: Scalar> Viscous<D> {
     /// Viscous friction with a coefficient of `viscous` per speed (s/m).
     ///
     /// # Errors
     /// [`LawError::OutOfBounds`] if it is negative or not finite.
-    pub fn new(viscous: D) -> Result<Self, LawError> {
-        Ok(Self { viscous: Viscous::PARAMETERS[0].check(viscous)? })
-    }
+    pub fn new {}
 }
 
-impl LawFamily for Viscous {
-    const NAME: &'static str = "viscous";
-    const PARAMETERS: &'static [LawParameter] = &[LawParameter::slope("viscous", "β")];
-    type At<D: Scalar> = Viscous<D>;
-
-    fn at<D: Scalar>(values: &[D]) -> Result<Viscous<D>, LawError> {
-        let [viscous] = exactly(Self::NAME, values)?;
-        Viscous::new(viscous)
-    }
-}
-
-impl<D: Scalar> AffineLaw<D> for Viscous<D> {
+impl<D: Scalar> PiecewiseLinearLaw<D> for Viscous<D> {
     fn affine(&self) -> Affine<D> {
         Affine { level: D::from(0.0), slope: self.viscous, breakaway: D::from(0.0) }
     }

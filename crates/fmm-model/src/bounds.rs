@@ -39,6 +39,28 @@ impl Bounds {
         }
     }
 
+    /// The same interval from `lower` on; an end beyond the upper one becomes the upper one.
+    ///
+    /// With [`at_most`](Self::at_most) this makes bounds that are constants:
+    ///
+    /// ```
+    /// use fmm_model::Bounds;
+    ///
+    /// const EXPONENT: Bounds = Bounds::POSITIVE.at_least(0.5).at_most(2.0);
+    /// assert_eq!(EXPONENT, Bounds::new(0.5, 2.0)?);
+    /// # Ok::<(), fmm_model::ModelError>(())
+    /// ```
+    #[must_use]
+    pub const fn at_least(self, lower: f64) -> Self {
+        Self { lower: self.lower.max(lower).min(self.upper), upper: self.upper }
+    }
+
+    /// The same interval up to `upper`; an end below the lower one becomes the lower one.
+    #[must_use]
+    pub const fn at_most(self, upper: f64) -> Self {
+        Self { lower: self.lower, upper: self.upper.min(upper).max(self.lower) }
+    }
+
     /// The lower end, possibly −∞.
     pub const fn lower(&self) -> f64 {
         self.lower

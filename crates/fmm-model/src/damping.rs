@@ -1,31 +1,39 @@
-//! Damping of the machine itself: linear and quadratic in the velocity.
+//! Damping of the machine itself: sums of powers of the velocity.
 
 use std::f64::consts::PI;
 
 use crate::{ModelError, Scalar};
 
-/// Damping force opposing the motion, as the sum of a linear and a quadratic part.
+/// Damping force opposing the motion, as the sum of a linear, a quadratic, a cubic and a free power of the velocity.
 ///
 /// ```text
-/// F(v) = c₁ v + c₂ |v| v                                          (thesis A3–A6; A dx² there)
+/// F(v) = c₁ v + c₂ |v| v + c₃ v³ + c_p |v|ᵖ sgn v                 (thesis A3–A6; A dx² there)
 /// ```
 ///
-/// | symbol | field | unit | meaning |
+/// | symbol | method | unit | meaning |
 /// |---|---|---|---|
-/// | c₁ | `linear` | N s/m | viscous coefficient |
-/// | c₂ | `quadratic` | N s²/m² | drag coefficient |
+/// | c₁ | [`linear`](Self::linear) | N s/m | viscous coefficient |
+/// | c₂ | [`new`](Self::new) | N s²/m² | drag coefficient |
+/// | c₃ | [`with_cubic`](Self::with_cubic) | N s³/m³ | nonlinear damping |
+/// | c_p, p | [`with_power`](Self::with_power) | N (s/m)ᵖ, 1 | power law with a free exponent |
 ///
-/// Per unit mass the units are 1/s and 1/m.
+/// Per unit mass the units are 1/s, 1/m, s/m² and so on.
+///
+/// # References
+/// S. Zaitsev, O. Shtempluck, E. Buks, O. Gottlieb, "Nonlinear damping in a micromechanical oscillator", Nonlinear
+/// Dynamics 67 (2012) 859 (the cubic term).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damping<D = f64> {
     linear: D,
     quadratic: D,
+    cubic: D,
+    power: Option<(D, D)>,
 }
 
 impl<D: Scalar> Damping<D> {
     /// No damping at all.
     pub fn none() -> Self {
-        Self { linear: D::from(0.0), quadratic: D::from(0.0) }
+        Self { linear: D::from(0.0), quadratic: D::from(0.0), cubic: D::from(0.0), power: None }
     }
 
     /// Viscous damping `c₁` (N s/m).
@@ -43,7 +51,54 @@ impl<D: Scalar> Damping<D> {
     pub fn new(linear: D, quadratic: D) -> Result<Self, ModelError> {
         ModelError::require_not_negative("linear damping", linear.value(), "N s/m")?;
         ModelError::require_not_negative("quadratic damping", quadratic.value(), "N s²/m²")?;
-        Ok(Self { linear, quadratic })
+        Ok(Self { linear, quadratic, ..Self::none() })
+    }
+
+    /// The damping whose equivalent viscous coefficient is a straight line in the *peak* velocity V of a swing,
+    /// c(V) = `intercept` (N s/m) + `slope` (N s²/m²) · V, as a fit to whole swings gives it (thesis Eq. 5.5).
+    ///
+    /// ```text
+    /// c₁ = intercept,   c₂ = 3π/8 · slope
+    /// ```
+    ///
+    /// The inverse of [`cycle_equivalent`](Self::cycle_equivalent): the line of the thesis, 0.2005 + 0.437 V, is the
+    /// drag coefficient 0.5148 N s²/m² of the instantaneous velocity.
+    ///
+    /// ```
+    /// use fmm_model::Damping;
+    ///
+    /// let damping = Damping::<f64>::from_peak_velocity_line(0.2005, 0.437)?;
+    /// assert!((damping.quadratic_coefficient() - 0.5148).abs() < 5e-5);
+    /// assert!((damping.cycle_equivalent(0.2) - (0.2005 + 0.437 * 0.2)).abs() < 1e-15);
+    /// # Ok::<(), fmm_model::ModelError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ModelError::Negative`] if a coefficient is negative or not finite.
+    pub fn from_peak_velocity_line(intercept: D, slope: D) -> Result<Self, ModelError> {
+        Self::new(intercept, slope * (3.0 * PI / 8.0))
+    }
+
+    /// The same damping with a cubic part `c₃` (N s³/m³).
+    ///
+    /// # Errors
+    /// [`ModelError::Negative`] if the coefficient is negative or not finite.
+    pub fn with_cubic(mut self, coefficient: D) -> Result<Self, ModelError> {
+        ModelError::require_not_negative("cubic damping", coefficient.value(), "N s³/m³")?;
+        self.cubic = coefficient;
+        Ok(self)
+    }
+
+    /// The same damping with a part c_p |v|ᵖ of `coefficient` c_p (N (s/m)ᵖ) and `exponent` p (1).
+    ///
+    /// # Errors
+    /// [`ModelError::Negative`] if the coefficient is negative or not finite, [`ModelError::NotPositive`] if the
+    /// exponent is not positive or not finite.
+    pub fn with_power(mut self, coefficient: D, exponent: D) -> Result<Self, ModelError> {
+        ModelError::require_not_negative("power-law damping", coefficient.value(), "N (s/m)^p")?;
+        ModelError::require_positive("damping exponent", exponent.value(), "(dimensionless)")?;
+        self.power = (coefficient.value() != 0.0).then_some((coefficient, exponent));
+        Ok(self)
     }
 
     /// c₁, the viscous coefficient (N s/m).
@@ -56,18 +111,76 @@ impl<D: Scalar> Damping<D> {
         self.quadratic
     }
 
-    /// The viscous coefficient (N s/m) that dissipates as much per cycle as both parts together, for a harmonic
-    /// motion of velocity amplitude `peak_velocity` (m/s).
+    /// c₃, the cubic coefficient (N s³/m³).
+    pub fn cubic_coefficient(&self) -> D {
+        self.cubic
+    }
+
+    /// Coefficient c_p (N (s/m)ᵖ) and exponent p of the power-law part, if there is one.
+    pub fn power(&self) -> Option<(D, D)> {
+        self.power
+    }
+
+    /// Whether there is no part but the linear one.
+    pub fn is_linear(&self) -> bool {
+        self.quadratic.value() == 0.0 && self.cubic.value() == 0.0 && self.power.is_none()
+    }
+
+    /// F(v), the damping force (N) at `velocity` (m/s); it has the sign of the velocity.
+    pub fn force(&self, velocity: D) -> D {
+        let speed = velocity.abs();
+        let force = velocity * (self.linear + speed * (self.quadratic + speed * self.cubic));
+        match self.power {
+            Some((coefficient, exponent)) if speed.value() > 0.0 => {
+                force + coefficient * speed.powf(exponent) * velocity.value().signum()
+            }
+            _ => force,
+        }
+    }
+
+    /// The viscous coefficient (N s/m) that dissipates as much per cycle as all parts together, for a harmonic
+    /// motion of velocity amplitude `peak_velocity` V ≥ 0 (m/s).
     ///
     /// ```text
-    /// c(V) = c₁ + 8/(3π) c₂ V
+    /// c(V) = c₁ + 8/(3π) c₂ V + 3/4 c₃ V² + γ(p) c_p Vᵖ⁻¹,   γ(p) = 2/√π Γ(p/2 + 1)/Γ(p/2 + 3/2)
     /// ```
     ///
-    /// The factor is the cycle average of |sin³| over that of sin²; a line fitted to damping against *peak*
+    /// The factors are the cycle averages of |sin|ᵖ⁺¹ over that of sin²; a line fitted to damping against *peak*
     /// velocity (thesis Eq. 5.5) therefore has a slope of 8/(3π) c₂, not c₂.
     pub fn cycle_equivalent(&self, peak_velocity: D) -> D {
-        self.linear + self.quadratic * peak_velocity * (8.0 / (3.0 * PI))
+        let polynomial = self.linear
+            + self.quadratic * peak_velocity * (8.0 / (3.0 * PI))
+            + self.cubic * peak_velocity * peak_velocity * 0.75;
+        match self.power {
+            Some((coefficient, exponent)) => {
+                polynomial + coefficient * peak_velocity.powf(exponent - 1.0) * mean_of_sine_power(exponent + 1.0) * 2.0
+            }
+            None => polynomial,
+        }
     }
+}
+
+/// (2/π) ∫₀^{π/2} sin^p θ dθ, the mean of |sin θ|ᵖ over a cycle.
+///
+/// The substitution θ = g(u) with all low derivatives of g zero at both ends turns the integrand into one for which
+/// the trapezoidal rule converges faster than any power, also where p is not an integer.
+fn mean_of_sine_power<D: Scalar>(power: D) -> D {
+    const STEPS: i32 = 64;
+    // tanh-sinh: θ = π/4 (1 + tanh(π/2 sinh u)), |u| ≤ 3.2, where the weights have fallen below 1e-15.
+    let step = 6.4 / f64::from(STEPS);
+    let mut sum = D::from(0.0);
+    for i in 0..=STEPS {
+        let u = -3.2 + step * f64::from(i);
+        let inner = PI / 2.0 * u.sinh();
+        // sin(π/4 (1 + tanh s)) with 1 + tanh s as 2/(1 + e^(−2s)): no cancellation at the lower end.
+        let angle = PI / 2.0 / (1.0 + (-2.0 * inner).exp());
+        let weight = PI / 2.0 * u.cosh() / inner.cosh().powi(2);
+        let sine = angle.sin();
+        if sine > 0.0 {
+            sum = sum + (power * sine.ln()).exp() * weight;
+        }
+    }
+    sum * (step / 2.0)
 }
 
 #[cfg(test)]
@@ -90,8 +203,27 @@ mod tests {
         assert!((damping.cycle_equivalent(1.0) - 0.2005 - 0.437).abs() < 5e-5);
     }
 
+    /// Γ-function values: mean of |sin|ᵖ is 1/2, 4/(3π), 3/8 for p = 2, 3, 4 and Γ(5/4)/(√π Γ(7/4)) = 0.556417… for 3/2.
+    #[test]
+    fn powers_have_the_equivalent_of_their_closed_form() {
+        for (power, mean) in [(2.0, 0.5), (3.0, 4.0 / (3.0 * PI)), (4.0, 0.375), (1.5, 0.556_417_894_449_382_2)] {
+            let got = mean_of_sine_power(power);
+            assert!((got - mean).abs() < 1e-12, "p = {power}: {got} against {mean}");
+        }
+        let quadratic = Damping::new(0.1, 0.5).unwrap();
+        let power = Damping::new(0.1, 0.0).unwrap().with_power(0.5, 2.0).unwrap();
+        assert!((quadratic.cycle_equivalent(0.3) - power.cycle_equivalent(0.3)).abs() < 1e-14);
+        for v in [-0.7, 0.0, 0.2] {
+            assert!((quadratic.force(v) - power.force(v)).abs() < 1e-16, "at {v} m/s");
+            assert_eq!(quadratic.force(v), -quadratic.force(-v));
+        }
+        assert_eq!(Damping::none().with_cubic(2.0).unwrap().force(-0.5), -0.25);
+    }
+
     #[test]
     fn negative_or_infinite_coefficients_are_refused() {
+        assert!(Damping::none().with_cubic(-1.0).is_err());
+        assert!(Damping::none().with_power(1.0, 0.0).is_err());
         assert!(Damping::<f64>::linear(-0.1).is_err());
         assert!(Damping::new(0.0, f64::NAN).is_err());
         assert!(Damping::new(f64::INFINITY, 0.0).is_err());

@@ -21,6 +21,7 @@ mod dual;
 mod error;
 mod oscillator;
 mod parameter;
+mod restoring;
 mod rounded;
 mod scalar;
 
@@ -30,6 +31,7 @@ pub use dual::Dual;
 pub use error::ModelError;
 pub use oscillator::Oscillator;
 pub use parameter::Parameter;
+pub use restoring::Restoring;
 pub use rounded::Rounded;
 pub use scalar::Scalar;
 

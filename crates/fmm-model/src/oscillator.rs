@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
-use crate::{Damping, ModelError, Scalar};
+use crate::{Damping, ModelError, Restoring, Scalar};
 
 /// Mass, stiffness and damping of a machine that moves in one direction.
 ///
 /// ```text
-/// m x″ + c₁ x′ + c₂ |x′| x′ + k x = f                              (thesis Eq. 5.1)
+/// m x″ + c₁ x′ + c₂ |x′| x′ + … + k x = f                          (thesis Eq. 5.1)
 /// ```
 ///
 /// | symbol | field | unit | per unit mass |
@@ -23,6 +23,7 @@ pub struct Oscillator<D = f64> {
     mass: D,
     stiffness: D,
     damping: Damping<D>,
+    restoring: Restoring<D>,
 }
 
 impl<D: Scalar> Oscillator<D> {
@@ -33,7 +34,7 @@ impl<D: Scalar> Oscillator<D> {
     pub fn new(mass: D, stiffness: D) -> Result<Self, ModelError> {
         ModelError::require_positive("mass", mass.value(), "kg")?;
         ModelError::require_positive("stiffness", stiffness.value(), "N/m")?;
-        Ok(Self { mass, stiffness, damping: Damping::none() })
+        Ok(Self { mass, stiffness, damping: Damping::none(), restoring: Restoring::Linear })
     }
 
     /// The oscillator of unit mass with an undamped `natural_frequency` (Hz).
@@ -51,6 +52,38 @@ impl<D: Scalar> Oscillator<D> {
     pub fn with_damping(mut self, damping: Damping<D>) -> Self {
         self.damping = damping;
         self
+    }
+
+    /// The same oscillator with another `restoring` force; the stiffness is then its slope at the origin.
+    #[must_use]
+    pub fn with_restoring(mut self, restoring: Restoring<D>) -> Self {
+        self.restoring = restoring;
+        self
+    }
+
+    /// Whether both the damping and the restoring force are linear, so that the motion has a closed form.
+    pub fn is_linear(&self) -> bool {
+        self.damping.is_linear() && matches!(self.restoring, Restoring::Linear)
+    }
+
+    /// How the restoring force depends on the position.
+    pub fn restoring(&self) -> Restoring<D> {
+        self.restoring
+    }
+
+    /// The restoring force (N) at `position` (m); it has the sign of the position.
+    pub fn restoring_force(&self, position: D) -> D {
+        self.restoring.force(self.stiffness, position)
+    }
+
+    /// Potential energy (J) at `position` (m).
+    pub fn potential_energy(&self, position: D) -> D {
+        self.restoring.energy(self.stiffness, position)
+    }
+
+    /// Kinetic energy (J) at `velocity` (m/s).
+    pub fn kinetic_energy(&self, velocity: D) -> D {
+        self.mass * velocity * velocity * 0.5
     }
 
     /// m, mass (kg).

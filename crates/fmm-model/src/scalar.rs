@@ -71,6 +71,11 @@ pub trait Scalar:
     /// The angle of the point (`x`, `self`) in (−π, π].
     #[must_use]
     fn atan2(self, x: Self) -> Self;
+    /// Magnitude.
+    #[must_use]
+    fn abs(self) -> Self {
+        if self.value() < 0.0 { -self } else { self }
+    }
 }
 
 impl Scalar for f64 {

@@ -19,14 +19,69 @@ pub enum SimulationError {
         /// Their interval (s).
         interval: f64,
     },
-    /// The engine has no closed form for quadratic damping.
-    #[error("the exact engine needs linear damping, but the quadratic coefficient is {quadratic} N s²/m²")]
-    QuadraticDamping {
-        /// The coefficient given (N s²/m²).
-        quadratic: f64,
+    /// Sample times that do not ascend from zero.
+    #[error("sample times must be finite and ascend from 0, but time {index} is {time} s after {before} s")]
+    Times {
+        /// Which one is wrong.
+        index: usize,
+        /// What it is (s).
+        time: f64,
+        /// The one before it, or 0 (s).
+        before: f64,
+    },
+    /// A method of fixed step was asked for samples that are not equally spaced.
+    #[error("a method of fixed step needs uniform sampling; simulate with another engine or sample uniformly")]
+    NotUniform,
+    /// The engine has no closed form for this machine.
+    #[error(
+        "the exact engine needs linear damping and a linear spring, but there is {found}; take the Runge-Kutta engine"
+    )]
+    NotLinear {
+        /// What is not linear.
+        found: &'static str,
+    },
+    /// A machine that is hardly damped is driven so near its natural frequency that the closed form loses its digits.
+    #[error(
+        "a wave of {angular_frequency} rad/s is too near the resonance of a machine with hardly any damping for the closed form; take the Runge-Kutta engine"
+    )]
+    Resonance {
+        /// Frequency of the wave (rad/s).
+        angular_frequency: f64,
+    },
+    /// The law and the engine, or a property of the scenario, do not go together.
+    #[error("the {engine} engine cannot take {what}")]
+    NotSupported {
+        /// Name of the engine.
+        engine: &'static str,
+        /// What it cannot take.
+        what: &'static str,
+    },
+    /// A tolerance that no method can keep.
+    #[error("the relative tolerance must lie between 1e-15 and 1e-2, but is {tolerance}")]
+    Tolerance {
+        /// The tolerance given (1).
+        tolerance: f64,
+    },
+    /// The steps that the tolerance asks for are smaller than the resolution of time.
+    #[error("the motion cannot be integrated to a relative tolerance of {tolerance} at {time} s; ask for less")]
+    StepTooSmall {
+        /// The tolerance (1).
+        tolerance: f64,
+        /// Where it happened (s).
+        time: f64,
+    },
+    /// The integration takes more steps than any record needs.
+    #[error(
+        "the motion takes more than {budget} steps before {end} s; shorten the sampled time or ask for less accuracy"
+    )]
+    StepBudget {
+        /// How many steps are allowed.
+        budget: usize,
+        /// End of the sampled time (s).
+        end: f64,
     },
     /// The motion has more events in the sampled time than any record can show.
-    #[error("the motion reverses more than {budget} times before {end} s; shorten the sampled time")]
+    #[error("the motion has more than {budget} events before {end} s; shorten the sampled time")]
     EventBudget {
         /// How many events are allowed.
         budget: usize,

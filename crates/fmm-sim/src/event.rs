@@ -32,8 +32,26 @@ impl Direction {
 pub enum Mode {
     /// It slides in one direction.
     Slip(Direction),
+    /// It slides and gains speed, under a law that depends on the acceleration.
+    Gaining(Direction),
+    /// It slides at constant speed, its friction being between the two levels of a law that depends on the acceleration.
+    Steady(Direction),
+    /// It slides and loses speed, under a law that depends on the acceleration.
+    Losing(Direction),
     /// It holds.
     Stick,
+}
+
+impl Mode {
+    /// The direction in which it slides; none if it holds.
+    pub const fn direction(self) -> Option<Direction> {
+        match self {
+            Self::Slip(direction) | Self::Gaining(direction) | Self::Steady(direction) | Self::Losing(direction) => {
+                Some(direction)
+            }
+            Self::Stick => None,
+        }
+    }
 }
 
 /// What happens at an event.
@@ -48,6 +66,10 @@ pub enum EventKind {
     Stop,
     /// The load left the static level and the contact slides again.
     Breakaway,
+    /// The contact begins to gain speed, to lose it, or to keep it, under a law that depends on the acceleration.
+    BranchChange,
+    /// The element of this index of a bristle law begins to slide.
+    Yield(usize),
 }
 
 /// An event of a trajectory: when, where, what, and how narrowly it was decided.
@@ -59,7 +81,7 @@ pub struct Event<D = f64> {
     pub time: D,
     /// x, position at that time (m), with its derivatives.
     pub position: D,
-    /// v, velocity right after the event (m/s).
+    /// v, velocity right after the event (m/s), with its derivatives.
     pub velocity: D,
     /// What the contact does from here on.
     pub next: Mode,
@@ -67,6 +89,8 @@ pub struct Event<D = f64> {
     pub load: f64,
     /// F_s, the static level that the load is compared with (N).
     pub static_level: f64,
+    /// Whether the event was only grazed, so that its time has no derivative; derivatives after it leave its change out.
+    pub grazing: bool,
 }
 
 impl<D: Scalar> Event<D> {

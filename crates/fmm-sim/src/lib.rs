@@ -28,27 +28,41 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod automaton;
+mod bristle;
+mod curve;
+mod decay;
+mod drive;
 mod engine;
 mod error;
 mod event;
 mod exact;
+mod excitation;
+mod first_zero;
+mod recorder;
+mod runge_kutta;
 mod samples;
 mod sampling;
 mod scenario;
 mod simulated;
 mod thesis;
 mod trajectory;
+mod work;
 
+pub use bristle::Bristle;
 pub use engine::Engine;
 pub use error::SimulationError;
 pub use event::{Direction, Event, EventKind, Mode};
 pub use exact::Exact;
+pub use excitation::Excitation;
+pub use runge_kutta::RungeKutta;
 pub use samples::Samples;
 pub use sampling::{Channels, Sampling};
 pub use scenario::{Scenario, State};
 pub use simulated::Simulated;
 pub use thesis::Thesis;
 pub use trajectory::Trajectory;
+pub use work::Work;
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

@@ -44,6 +44,34 @@ impl<D: Scalar> Samples<D> {
         }
     }
 
+    /// Adds one number, value and partial derivatives, to what is at `index`.
+    pub(crate) fn add(&mut self, index: usize, number: D) {
+        self.values[index] += number.value();
+        for direction in 0..D::DIRECTIONS {
+            self.partial_mut(direction)[index] += number.partial(direction);
+        }
+    }
+
+    /// Writes the polynomial Σ cᵢ θⁱ at every index of `range`, `theta` giving θ.
+    pub(crate) fn polynomial<const N: usize>(
+        &mut self,
+        range: std::ops::Range<usize>,
+        coefficients: &[D; N],
+        theta: impl Fn(usize) -> f64,
+    ) {
+        let fill = |out: &mut [f64], coefficients: [f64; N]| {
+            for (index, out) in range.clone().zip(out) {
+                let theta = theta(index);
+                *out = coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * theta + coefficient);
+            }
+        };
+        fill(&mut self.values[range.clone()], coefficients.map(|coefficient| coefficient.value()));
+        for direction in 0..D::DIRECTIONS {
+            let column = &mut self.partial_mut(direction)[range.clone()];
+            fill(column, coefficients.map(|coefficient| coefficient.partial(direction)));
+        }
+    }
+
     /// Writes the same number at every index of `range`.
     pub(crate) fn fill(&mut self, range: std::ops::Range<usize>, number: D) {
         self.values[range.clone()].fill(number.value());

@@ -1,5 +1,7 @@
 //! When a simulation is sampled, and what is kept.
 
+use std::sync::Arc;
+
 use fmm_model::ModelError;
 
 use crate::SimulationError;
@@ -28,16 +30,24 @@ impl Channels {
     }
 }
 
-/// Uniform sample times `t_i = i · interval` for `i` from `first` to `first + count − 1`, counted from the
-/// initial state at t = 0.
+/// The sample times of a run, counted from the initial state at t = 0.
 ///
-/// Any window of a long record can be sampled on its own; the samples are the same as those of the whole.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Uniform times are `t_i = i · interval` for `i` from `first` to `first + count − 1`. Any window of a long record can
+/// be sampled on its own; the samples are the same as those of the whole. The motion itself does not depend on when it
+/// is sampled.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Sampling {
-    interval: f64,
+    grid: Grid,
     first: usize,
     count: usize,
     channels: Channels,
+    work: bool,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Grid {
+    Uniform { interval: f64 },
+    Times(Arc<[f64]>),
 }
 
 impl Sampling {
@@ -51,7 +61,27 @@ impl Sampling {
         if count == 0 || !(interval * count as f64).is_finite() {
             return Err(SimulationError::Sampling { count, interval });
         }
-        Ok(Self { interval, first: 0, count, channels: Channels::Both })
+        Ok(Self { grid: Grid::Uniform { interval }, first: 0, count, channels: Channels::Both, work: false })
+    }
+
+    /// Samples at the given `times` (s), which must ascend from 0 on; position and velocity.
+    ///
+    /// # Errors
+    /// [`SimulationError::Times`] if there is no time, or one that is negative, not finite or before its predecessor.
+    pub fn at(times: impl Into<Arc<[f64]>>) -> Result<Self, SimulationError> {
+        let times = times.into();
+        let mut before = 0.0;
+        for (index, &time) in times.iter().enumerate() {
+            if !(time.is_finite() && time >= before) {
+                return Err(SimulationError::Times { index, time, before });
+            }
+            before = time;
+        }
+        if times.is_empty() {
+            return Err(SimulationError::Sampling { count: 0, interval: 0.0 });
+        }
+        let count = times.len();
+        Ok(Self { grid: Grid::Times(times), first: 0, count, channels: Channels::Both, work: false })
     }
 
     /// The same sample times, keeping only `channels`.
@@ -61,15 +91,30 @@ impl Sampling {
         self
     }
 
+    /// The same sample times, with the [`Work`](crate::Work) done by friction, damping and excitation up to each of
+    /// them. It costs several evaluations per sample.
+    #[must_use]
+    pub fn with_work(mut self) -> Self {
+        self.work = true;
+        self
+    }
+
     /// The part of the samples whose index lies in `window`, cut to those that exist; none if nothing is left.
     pub fn window(&self, window: std::ops::Range<usize>) -> Option<Self> {
         let end = window.end.min(self.count);
-        (window.start < end).then(|| Self { first: self.first + window.start, count: end - window.start, ..*self })
+        (window.start < end).then(|| Self {
+            first: self.first + window.start,
+            count: end - window.start,
+            ..self.clone()
+        })
     }
 
-    /// Time between samples (s).
-    pub const fn interval(&self) -> f64 {
-        self.interval
+    /// Time between samples (s); none if the times are not uniform.
+    pub fn interval(&self) -> Option<f64> {
+        match self.grid {
+            Grid::Uniform { interval } => Some(interval),
+            Grid::Times(_) => None,
+        }
     }
 
     /// Number of samples.
@@ -82,14 +127,22 @@ impl Sampling {
         self.channels
     }
 
-    /// Number of intervals between t = 0 and the first sample.
+    /// Whether the work up to each sample is asked for.
+    pub const fn wants_work(&self) -> bool {
+        self.work
+    }
+
+    /// Number of sample times of the whole grid before the first of these.
     pub const fn first(&self) -> usize {
         self.first
     }
 
-    /// Time of sample `index` (s).
+    /// Time of sample `index` (s), which must be below [`count`](Self::count).
     pub fn time(&self, index: usize) -> f64 {
-        (self.first + index) as f64 * self.interval
+        match &self.grid {
+            Grid::Uniform { interval } => (self.first + index) as f64 * interval,
+            Grid::Times(times) => times[self.first + index],
+        }
     }
 
     /// Time of the last sample (s).
@@ -99,16 +152,21 @@ impl Sampling {
 
     /// Index of the first sample at or after `time`, at most [`count`](Self::count).
     pub(crate) fn index_at_or_after(&self, time: f64) -> usize {
-        // The quotient may be off by one ulp; the two comparisons with the sample times themselves decide.
-        let estimate = (time / self.interval).ceil() - self.first as f64;
-        let mut index = if estimate > 0.0 { (estimate as usize).min(self.count) } else { 0 };
-        while index > 0 && self.time(index - 1) >= time {
-            index -= 1;
+        match &self.grid {
+            Grid::Uniform { interval } => {
+                // The quotient may be off by one ulp; the two comparisons with the sample times themselves decide.
+                let estimate = (time / interval).ceil() - self.first as f64;
+                let mut index = if estimate > 0.0 { (estimate as usize).min(self.count) } else { 0 };
+                while index > 0 && self.time(index - 1) >= time {
+                    index -= 1;
+                }
+                while index < self.count && self.time(index) < time {
+                    index += 1;
+                }
+                index
+            }
+            Grid::Times(times) => times[self.first..self.first + self.count].partition_point(|&t| t < time),
         }
-        while index < self.count && self.time(index) < time {
-            index += 1;
-        }
-        index
     }
 }
 
@@ -139,5 +197,18 @@ mod tests {
         assert_eq!(window.index_at_or_after(4.2), 1);
         assert!(Sampling::uniform(0.0, 3).is_err() && Sampling::uniform(1.0, 0).is_err());
         assert!(Sampling::uniform(1e308, 1000).is_err());
+    }
+
+    #[test]
+    fn given_times_are_found_again() {
+        let sampling = Sampling::at(vec![0.0, 0.5, 0.5, 2.0]).unwrap();
+        assert_eq!((sampling.count(), sampling.end(), sampling.interval()), (4, 2.0, None));
+        for (time, index) in [(-1.0, 0), (0.0, 0), (0.2, 1), (0.5, 1), (0.6, 3), (2.0, 3), (2.1, 4)] {
+            assert_eq!(sampling.index_at_or_after(time), index, "{time} s");
+        }
+        assert_eq!(sampling.window(1..9).unwrap().time(0), 0.5);
+        for bad in [vec![], vec![-1.0], vec![1.0, 0.5], vec![0.0, f64::NAN]] {
+            assert!(Sampling::at(bad.clone()).is_err(), "{bad:?}");
+        }
     }
 }

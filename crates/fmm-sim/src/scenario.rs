@@ -2,7 +2,7 @@
 
 use fmm_model::{ModelError, Oscillator, Scalar};
 
-use crate::SimulationError;
+use crate::{Excitation, SimulationError};
 
 /// Position and velocity at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,8 +16,12 @@ pub struct State<D = f64> {
 /// A machine with a sliding contact, and the state in which it is let go at t = 0.
 ///
 /// ```text
-/// m x″ + c₁ x′ + c₂ |x′| x′ + k x + N μ(|x′|) sgn(x′) = 0,   |k x| ≤ N μ_s in stick       (thesis Eq. 5.2)
+/// m x″ + c₁ x′ + c₂ |x′| x′ + … + k x + N μ(|u|) sgn(u) = f(t),   u = x′ − v_b         (thesis Eq. 5.2, 8.1)
+/// |L| ≤ N μ_s in stick,   L = f(t) − k x − c₁ v_b − …
 /// ```
+///
+/// with v_b the velocity of the counterface. The load L is the thesis' k x where nothing else acts; taking k x also
+/// under a force, as its Eq. 8.1 does, would let a machine at rest neither start nor stop.
 ///
 /// With a normal load of 1 the law's coefficient is the friction force (N); per unit mass it is the friction
 /// force per mass (m/s²). A scenario begins at rest in the force-free position until
@@ -28,6 +32,7 @@ pub struct Scenario<D, L> {
     law: L,
     normal_load: D,
     initial: State<D>,
+    excitations: Vec<Excitation<D>>,
 }
 
 impl<D: Scalar, L> Scenario<D, L> {
@@ -38,7 +43,8 @@ impl<D: Scalar, L> Scenario<D, L> {
     pub fn new(oscillator: Oscillator<D>, law: L, normal_load: D) -> Result<Self, SimulationError> {
         ModelError::require_not_negative("normal load", normal_load.value(), "N")?;
         let zero = D::from(0.0);
-        Ok(Self { oscillator, law, normal_load, initial: State { position: zero, velocity: zero } })
+        let initial = State { position: zero, velocity: zero };
+        Ok(Self { oscillator, law, normal_load, initial, excitations: Vec::new() })
     }
 
     /// The same machine, let go at `position` (m) with `velocity` (m/s).
@@ -50,6 +56,18 @@ impl<D: Scalar, L> Scenario<D, L> {
         ModelError::require_finite("initial velocity", velocity.value(), "m/s")?;
         self.initial = State { position, velocity };
         Ok(self)
+    }
+
+    /// The same machine with one more `excitation` acting on it.
+    #[must_use]
+    pub fn driven_by(mut self, excitation: Excitation<D>) -> Self {
+        self.excitations.push(excitation);
+        self
+    }
+
+    /// What acts on the machine from outside.
+    pub fn excitations(&self) -> &[Excitation<D>] {
+        &self.excitations
     }
 
     /// The machine.

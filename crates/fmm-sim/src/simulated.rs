@@ -1,17 +1,30 @@
 //! Which engine simulates a family of laws when nobody chooses one.
 
-use fmm_friction::{Coulomb, CoulombStatic, CoulombViscous, LawFamily, Viscous};
+use fmm_friction::{
+    AccelerationCoulomb, Berger, BoucWen, BristleLaw, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair,
+    Hyperbolic, Karnopp, LawFamily, LuGre, MakkarDixon, PiecewiseLinearLaw, PowerLaw, RegularisedStribeck, Shifted,
+    SlidingLaw, Stribeck, StribeckLorentzian, Viscous,
+};
 use fmm_model::Scalar;
 
-use crate::{Engine, Exact, Sampling, Scenario, SimulationError, Trajectory};
+use crate::{Bristle, Engine, Exact, RungeKutta, Sampling, Scenario, SimulationError, Trajectory};
 
-/// A family of laws together with the engine that suits it, at every number type.
+/// A family of laws together with the engine that suits it, at every number type: what "auto" means.
+///
+/// | law | machine and force | engine |
+/// |---|---|---|
+/// | a level plus a slope, also with two levels | linear | [`Exact`](crate::Exact) |
+/// | the same | not linear, or driven at the resonance of an undamped machine | [`RungeKutta`](crate::RungeKutta) |
+/// | any other of the sliding speed | any | [`RungeKutta`](crate::RungeKutta) |
+/// | with internal state | any | [`Bristle`](crate::Bristle) |
+///
+/// [`Trajectory::engine`] says which was taken.
 ///
 /// An identification is generic in the law and needs the motion at plain and at dual numbers; a bound on
 /// [`Engine`] for *all* number types cannot be written, so the family names its engine here once.
 ///
 /// ```
-/// # use fmm_friction::{Affine, AffineLaw, LawError, LawFamily, LawParameter, Role, SlidingLaw};
+/// # use fmm_friction::{Affine, PiecewiseLinearLaw, LawError, LawFamily, LawParameter, Role, SlidingLaw};
 /// # use fmm_model::{Bounds, Parameter, Scalar};
 /// # use fmm_sim::{Engine, Exact, Sampling, Scenario, SimulationError, Simulated, Trajectory};
 /// // A law of one's own, with a static level half as high again as the sliding level.
@@ -38,7 +51,7 @@ use crate::{Engine, Exact, Sampling, Scenario, SimulationError, Trajectory};
 ///         self.affine().breakaway
 ///     }
 /// }
-/// impl<D: Scalar> AffineLaw<D> for Sticky<D> {
+/// impl<D: Scalar> PiecewiseLinearLaw<D> for Sticky<D> {
 ///     fn affine(&self) -> Affine<D> {
 ///         Affine { level: self.0, slope: D::from(0.0), breakaway: self.0 * 1.5 }
 ///     }
@@ -65,19 +78,53 @@ pub trait Simulated: LawFamily {
     ) -> Result<(), SimulationError>;
 }
 
-/// Laws with a closed-form motion.
-macro_rules! simulated_by_the_exact_engine {
-    ($($law:ident),+) => {$(
+/// Runs the exact engine, or the Runge-Kutta engine if the machine or the force has no closed form.
+fn exact_where_possible<D: Scalar, L: PiecewiseLinearLaw<D> + SlidingLaw<D>>(
+    scenario: &Scenario<D, L>,
+    sampling: &Sampling,
+    trajectory: &mut Trajectory<D>,
+) -> Result<(), SimulationError> {
+    match Exact.run_into(scenario, sampling, trajectory) {
+        Err(SimulationError::NotLinear { .. } | SimulationError::Resonance { .. }) => {
+            RungeKutta::default().run_into(scenario, sampling, trajectory)
+        }
+        other => other,
+    }
+}
+
+/// Runs the Runge-Kutta engine.
+fn integrated<D: Scalar, L: SlidingLaw<D>>(
+    scenario: &Scenario<D, L>,
+    sampling: &Sampling,
+    trajectory: &mut Trajectory<D>,
+) -> Result<(), SimulationError> {
+    RungeKutta::default().run_into(scenario, sampling, trajectory)
+}
+
+/// Runs the engine for laws with internal state.
+fn with_bristles<D: Scalar, L: BristleLaw<D>>(
+    scenario: &Scenario<D, L>,
+    sampling: &Sampling,
+    trajectory: &mut Trajectory<D>,
+) -> Result<(), SimulationError> {
+    Bristle::default().run_into(scenario, sampling, trajectory)
+}
+
+macro_rules! simulated {
+    ($run:ident: $($law:ty),+) => {$(
         impl Simulated for $law {
             fn simulate_into<D: Scalar>(
-                scenario: &Scenario<D, $law<D>>,
+                scenario: &Scenario<D, Self::At<D>>,
                 sampling: &Sampling,
                 trajectory: &mut Trajectory<D>,
             ) -> Result<(), SimulationError> {
-                Exact.run_into(scenario, sampling, trajectory)
+                $run(scenario, sampling, trajectory)
             }
         }
     )+};
 }
 
-simulated_by_the_exact_engine!(Viscous, Coulomb, CoulombStatic, CoulombViscous);
+simulated!(exact_where_possible: Viscous, Coulomb, CoulombStatic, CoulombViscous, AccelerationCoulomb);
+simulated!(integrated: Stribeck, StribeckLorentzian, Hyperbolic, Berger, PowerLaw, ExponentialPair, Karnopp);
+simulated!(integrated: MakkarDixon, Shifted<MakkarDixon>, RegularisedStribeck);
+simulated!(with_bristles: Dahl, LuGre, BoucWen);

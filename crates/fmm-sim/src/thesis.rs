@@ -2,22 +2,45 @@
 
 use fmm_friction::SlidingLaw;
 
+use crate::drive::Drive;
 use crate::{Direction, Engine, Event, EventKind, Mode, Sampling, Scenario, SimulationError, Trajectory};
 
-/// Semi-implicit Euler with the branch order of the thesis' appendix (A3, A4), for reproduction only.
+/// Semi-implicit Euler with the branch order of the thesis' appendix (A3 to A6), for reproduction only.
 ///
 /// ```text
-/// x″ = (−s μ(|x′|) N − c₁ x′ − s c₂ x′² − k x)/m,   x′ ← x′ + x″ Δt,   x ← x + x′ Δt         (thesis Eq. 7.1)
+/// x″ = (f − s μ(|x′|) N − F_c(x′) − F_k(x))/m,   x′ ← x′ + x″ Δt,   x ← x + x′ Δt         (thesis Eq. 7.1, 8.1)
 /// ```
 ///
 /// While the velocity keeps its sign, s is that sign. In the step after a change of sign the velocity is set to
-/// zero if |x| < μ_s N/k, and otherwise s is minus the sign of x. One step is one sampling interval.
+/// zero if the load is below the static level, and otherwise s is the sign of the load. One step is one sampling interval;
+/// a force is held over it. For a law that depends on the acceleration, that of the step before decides (thesis Eq. 7.3).
 ///
 /// The method is of first order, its stops and reversals snap to the sampling grid, and a least-squares
 /// objective built on it jumps whenever one of them moves by a sample. It therefore offers no derivatives;
 /// [`Exact`](crate::Exact) is both faster and free of these errors.
+///
+/// The load is f − F_k(x). The thesis' Eq. 8.1 takes F_k(x) alone, which would never let a hammer move a machine at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Thesis;
+pub struct Thesis {
+    level: StaticLevel,
+}
+
+/// What the load is compared with after a change of sign.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum StaticLevel {
+    #[default]
+    Breakaway,
+    AtSpeed,
+}
+
+impl Thesis {
+    /// As in A3, A4 and A5: the machine stops if |x| < μ_s N/k.
+    pub const A3: Self = Self { level: StaticLevel::Breakaway };
+
+    /// As in A6: the machine stops if k |x| < μ(|x′|) N, at the speed with which it has overshot. With a law that vanishes
+    /// at zero speed it hardly ever does.
+    pub const A6: Self = Self { level: StaticLevel::AtSpeed };
+}
 
 impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
     fn run_into(
@@ -26,35 +49,47 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
         sampling: &Sampling,
         trajectory: &mut Trajectory<f64>,
     ) -> Result<(), SimulationError> {
-        trajectory.reset(sampling);
+        let step = sampling.interval().ok_or(SimulationError::NotUniform)?;
+        trajectory.reset("thesis", 0, sampling);
         let (oscillator, law, load) = (scenario.oscillator(), scenario.law(), scenario.normal_load());
-        let (mass, stiffness) = (oscillator.mass(), oscillator.stiffness());
-        let linear = oscillator.damping().linear_coefficient();
-        let quadratic = oscillator.damping().quadratic_coefficient();
-        let step = sampling.interval();
+        let drive = Drive::new(scenario.excitations(), oscillator.mass());
+        if drive.has_belt() {
+            return Err(SimulationError::NotSupported { engine: "thesis", what: "a moving counterface" });
+        }
+        let (mass, damping) = (oscillator.mass(), oscillator.damping());
         let static_level = law.breakaway() * load;
-        let hold = static_level / stiffness;
-        if !hold.is_finite() {
+        if !(static_level / oscillator.stiffness()).is_finite() {
             return Err(SimulationError::NotFinite { time: 0.0 });
         }
+        let hold = static_level / oscillator.stiffness();
+        let literal = oscillator.is_linear() && scenario.excitations().is_empty();
+        // The appendix compares positions in A3 to A5, which rounds differently from comparing forces.
+        let holds = |x: f64, v: f64, balance: f64| match self.level {
+            StaticLevel::Breakaway if literal => x < hold && x > -hold,
+            StaticLevel::Breakaway => balance.abs() < static_level,
+            StaticLevel::AtSpeed => balance.abs() < law.coefficient(v.abs()) * load,
+        };
         let (mut x, mut v) = (scenario.initial().position, scenario.initial().velocity);
-        let event = |kind, index: usize, x: f64, v: f64, next| Event {
+        let event = |kind, index: usize, x: f64, v: f64, next, balance: f64| Event {
             kind,
             time: index as f64 * step,
             position: x,
             velocity: v,
             next,
-            load: (stiffness * x).abs(),
+            load: balance.abs(),
             static_level,
+            grazing: false,
         };
+        let mut pieces = PieceAt::new(&drive);
         // The appendix starts every run as if the motion before had been in the positive direction.
-        let mut before = 1.0;
-        let mut mode = if v == 0.0 && x.abs() < hold {
+        let (mut before, mut acceleration) = (1.0, 0.0);
+        let balance = pieces.force(0.0) - oscillator.restoring_force(x);
+        let mut mode = if v == 0.0 && holds(x, v, balance) {
             Mode::Stick
         } else {
-            Mode::Slip(Direction::of(if v == 0.0 { -x } else { v }))
+            Mode::Slip(Direction::of(if v == 0.0 { balance } else { v }))
         };
-        trajectory.push(event(EventKind::Start, 0, x, v, mode));
+        trajectory.push(event(EventKind::Start, 0, x, v, mode, balance));
         for index in 0..sampling.first() + sampling.count() {
             if let Some(sample) = index.checked_sub(sampling.first()) {
                 trajectory.set(sample, sampling.channels(), x, v);
@@ -64,35 +99,73 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
             }
             let sliding = v * before > 0.0;
             before = v;
-            if !sliding && x < hold && x > -hold {
+            let balance = pieces.force(index as f64 * step) - oscillator.restoring_force(x);
+            if !sliding && holds(x, v, balance) {
                 v = 0.0;
+                acceleration = 0.0;
                 if mode != Mode::Stick {
                     mode = Mode::Stick;
-                    trajectory.push(event(EventKind::Stop, index + 1, x, v, mode));
+                    trajectory.push(event(EventKind::Stop, index + 1, x, v, mode, balance));
                 }
                 continue;
             }
             let sign = if sliding {
                 v.signum()
-            } else if x > 0.0 {
+            } else if balance < 0.0 {
                 -1.0
             } else {
                 1.0
             };
-            let acceleration =
-                (-sign * (law.coefficient(v.abs()) * load) - linear * v - sign * quadratic * v * v - stiffness * x)
-                    / mass;
+            let coefficient = if law.depends_on_acceleration() && v * acceleration < 0.0 {
+                law.coefficient_losing_speed(v.abs())
+            } else {
+                law.coefficient(v.abs())
+            };
+            // In the step after a change of sign the appendix turns the quadratic part round with the friction.
+            let drag = if sliding {
+                damping.force(v)
+            } else {
+                against(damping.force(v), damping.linear_coefficient() * v, sign)
+            };
+            acceleration = (balance - sign * (coefficient * load) - drag) / mass;
             v += acceleration * step;
             x += v * step;
             let next = Mode::Slip(Direction::of(v));
             if v != 0.0 && next != mode {
+                let kind = if mode == Mode::Stick { EventKind::Breakaway } else { EventKind::Reversal };
                 mode = next;
-                trajectory.push(event(EventKind::Reversal, index + 1, x, v, mode));
+                trajectory.push(event(kind, index + 1, x, v, mode, balance));
             }
-            if !((stiffness * x).is_finite() && x.is_finite() && v.is_finite()) {
+            if !((oscillator.stiffness() * x).is_finite() && x.is_finite() && v.is_finite()) {
                 return Err(SimulationError::NotFinite { time: (index + 1) as f64 * step });
             }
         }
         Ok(())
+    }
+}
+
+/// Damping force `force` whose part beyond the `linear` one has the given sign.
+fn against(force: f64, linear: f64, sign: f64) -> f64 {
+    linear + sign * (force - linear).abs()
+}
+
+/// The force at times that ascend.
+struct PieceAt<'a> {
+    drive: &'a Drive<'a, f64>,
+    piece: crate::drive::Piece<f64>,
+    index: usize,
+}
+
+impl<'a> PieceAt<'a> {
+    fn new(drive: &'a Drive<'a, f64>) -> Self {
+        Self { drive, piece: drive.piece(0), index: 0 }
+    }
+
+    fn force(&mut self, time: f64) -> f64 {
+        while time >= self.piece.end {
+            self.index += 1;
+            self.piece = self.drive.piece(self.index);
+        }
+        if self.piece.is_free() { 0.0 } else { self.piece.force(time) }
     }
 }

@@ -3,7 +3,7 @@
 use fmm_model::Scalar;
 
 use crate::sampling::{Channels, Sampling};
-use crate::{Event, EventKind, Samples};
+use crate::{Event, EventKind, Samples, Work};
 
 /// A simulated motion: sampled position and velocity, and the events that shaped it.
 ///
@@ -14,6 +14,9 @@ pub struct Trajectory<D = f64> {
     position: Samples<D>,
     velocity: Samples<D>,
     events: Vec<Event<D>>,
+    states: Vec<Samples<D>>,
+    work: [Samples<D>; 3],
+    engine: &'static str,
 }
 
 impl<D: Scalar> Default for Trajectory<D> {
@@ -25,15 +28,40 @@ impl<D: Scalar> Default for Trajectory<D> {
 impl<D: Scalar> Trajectory<D> {
     /// An empty trajectory, to be filled and refilled by [`Engine::run_into`](crate::Engine::run_into).
     pub const fn new() -> Self {
-        Self { position: Samples::new(), velocity: Samples::new(), events: Vec::new() }
+        Self {
+            position: Samples::new(),
+            velocity: Samples::new(),
+            events: Vec::new(),
+            states: Vec::new(),
+            work: [Samples::new(), Samples::new(), Samples::new()],
+            engine: "",
+        }
     }
 
     /// Forgets everything and makes room for the samples asked for.
-    pub(crate) fn reset(&mut self, sampling: &Sampling) {
+    pub(crate) fn reset(&mut self, engine: &'static str, states: usize, sampling: &Sampling) {
+        self.engine = engine;
         let count = |wanted: bool| if wanted { sampling.count() } else { 0 };
         self.position.reset(count(sampling.channels().position()));
         self.velocity.reset(count(sampling.channels().velocity()));
         self.events.clear();
+        self.states.resize_with(states, Samples::new);
+        for state in &mut self.states {
+            state.reset(sampling.count());
+        }
+        for work in &mut self.work {
+            work.reset(count(sampling.wants_work()));
+        }
+    }
+
+    pub(crate) fn state_mut(&mut self, index: usize) -> &mut Samples<D> {
+        &mut self.states[index]
+    }
+
+    pub(crate) fn set_work(&mut self, index: usize, work: &Work<D>) {
+        for (samples, value) in self.work.iter_mut().zip([work.friction, work.viscous, work.external]) {
+            samples.set(index, value);
+        }
     }
 
     pub(crate) fn push(&mut self, event: Event<D>) {
@@ -66,6 +94,23 @@ impl<D: Scalar> Trajectory<D> {
     /// Sampled velocity (m/s); empty if it was not asked for.
     pub const fn velocity(&self) -> &Samples<D> {
         &self.velocity
+    }
+
+    /// Sampled internal states of a bristle law, in the law's order; none for other laws.
+    pub fn states(&self) -> &[Samples<D>] {
+        &self.states
+    }
+
+    /// Work done up to sample `index` (J); none unless [`Sampling::with_work`] asked for it.
+    pub fn work(&self, index: usize) -> Option<Work> {
+        let [friction, viscous, external] = &self.work;
+        let at = |samples: &Samples<D>| samples.values().get(index).copied();
+        Some(Work { friction: at(friction)?, viscous: at(viscous)?, external: at(external)? })
+    }
+
+    /// Name of the engine that made it.
+    pub const fn engine(&self) -> &'static str {
+        self.engine
     }
 
     /// The events up to the last sample, in order; the first is the start.

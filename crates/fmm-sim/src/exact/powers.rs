@@ -2,8 +2,9 @@
 
 use fmm_model::Scalar;
 
-use super::decay::Decay;
-use crate::{Samples, Sampling, State, Trajectory};
+use crate::decay::Decay;
+use crate::recorder::Recorder;
+use crate::{Samples, Sampling, State};
 
 /// zʲ = exp((−a + iω)Δt)ʲ for j from 0 on, real and imaginary parts apart.
 ///
@@ -21,6 +22,14 @@ const LONGEST: usize = 256;
 const STRIDE: usize = 16;
 
 impl Powers {
+    /// Powers for the swings of `decay` at the times of `sampling`; none if it does not oscillate or the times are not
+    /// uniform.
+    pub(super) fn for_swings<D: Scalar>(decay: &Decay<D>, sampling: &Sampling) -> Option<Self> {
+        let (half_swing, interval) = (decay.half_swing()?, sampling.interval()?);
+        let longest = (half_swing.duration.value() / interval).min(sampling.count() as f64) as usize + 1;
+        Some(Self::new(decay.rate().value(), half_swing.angular.value(), interval, longest))
+    }
+
     /// Powers for at least `longest` samples, or [`LONGEST`] if that is less.
     pub(super) fn new(rate: f64, angular: f64, interval: f64, longest: usize) -> Self {
         let count = longest.clamp(1, LONGEST).next_multiple_of(STRIDE);
@@ -59,28 +68,27 @@ impl Powers {
         self.real.len()
     }
 
-    /// Writes `count` samples from index `first` on, the motion about `centre` being in `state` at the first.
-    #[expect(clippy::too_many_arguments, reason = "one call site, and each argument is one thing")]
+    /// Writes the next `count` samples, `interval` apart, the motion about `centre` being in `state` at the first.
     pub(super) fn write<D: Scalar>(
         &self,
-        trajectory: &mut Trajectory<D>,
-        sampling: &Sampling,
-        first: usize,
+        recorder: &mut Recorder<D>,
         count: usize,
+        interval: f64,
         decay: &Decay<D>,
         centre: D,
         state: State<D>,
     ) {
         let Some(half_swing) = decay.half_swing() else { return };
-        let wave = Wave { rate: decay.rate(), angular: half_swing.angular, interval: sampling.interval() };
-        let range = first..first + count;
-        if sampling.channels().position() {
+        let wave = Wave { rate: decay.rate(), angular: half_swing.angular, interval };
+        let range = recorder.written..recorder.written + count;
+        let channels = recorder.sampling.channels();
+        if channels.position() {
             let sine = (state.velocity + decay.rate() * state.position) / wave.angular;
-            self.write_wave(trajectory.position_mut(), range.clone(), &wave, centre, state.position, sine);
+            self.write_wave(recorder.trajectory.position_mut(), range.clone(), &wave, centre, state.position, sine);
         }
-        if sampling.channels().velocity() {
+        if channels.velocity() {
             let sine = -decay.pull(state) / wave.angular;
-            self.write_wave(trajectory.velocity_mut(), range, &wave, D::from(0.0), state.velocity, sine);
+            self.write_wave(recorder.trajectory.velocity_mut(), range, &wave, D::from(0.0), state.velocity, sine);
         }
     }
 

@@ -14,7 +14,8 @@ use crate::State;
 ///
 /// C and S are entire functions of δτ²: cosine and sine below critical damping, hyperbolic above, and smooth, with
 /// all derivatives, in between.
-pub(super) struct Decay<D> {
+#[derive(Debug)]
+pub(crate) struct Decay<D> {
     rate: D,
     square: D,
     spread: D,
@@ -22,12 +23,12 @@ pub(super) struct Decay<D> {
 }
 
 /// One half period of an oscillating decay, from zero velocity to zero velocity.
-#[derive(Clone, Copy)]
-pub(super) struct HalfSwing<D> {
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HalfSwing<D> {
     /// ω_d (rad/s).
-    pub(super) angular: D,
+    pub(crate) angular: D,
     /// π/ω_d (s).
-    pub(super) duration: D,
+    pub(crate) duration: D,
     /// q = exp(−π a/ω_d), ratio of successive amplitudes (1).
     ratio: D,
 }
@@ -42,7 +43,7 @@ const SERIES_TERMS: i32 = 12;
 
 impl<D: Scalar> Decay<D> {
     /// `rate` a (1/s) and `square` ω₀² (1/s²).
-    pub(super) fn new(rate: D, square: D) -> Self {
+    pub(crate) fn new(rate: D, square: D) -> Self {
         let spread = rate * rate - square;
         let half_swing = (-spread.value() > OSCILLATING * square.value()).then(|| {
             let angular = (-spread).sqrt();
@@ -53,17 +54,22 @@ impl<D: Scalar> Decay<D> {
     }
 
     /// a (1/s).
-    pub(super) fn rate(&self) -> D {
+    pub(crate) fn rate(&self) -> D {
         self.rate
     }
 
+    /// ω₀ (rad/s).
+    pub(crate) fn natural(&self) -> f64 {
+        self.square.value().sqrt()
+    }
+
     /// The half period, if the motion oscillates.
-    pub(super) fn half_swing(&self) -> Option<HalfSwing<D>> {
+    pub(crate) fn half_swing(&self) -> Option<HalfSwing<D>> {
         self.half_swing
     }
 
     /// a v + ω₀² x, minus which is the slope of the sine part of the velocity.
-    pub(super) fn pull(&self, state: State<D>) -> D {
+    pub(crate) fn pull(&self, state: State<D>) -> D {
         self.rate * state.velocity + self.square * state.position
     }
 
@@ -100,7 +106,7 @@ impl<D: Scalar> Decay<D> {
     }
 
     /// The state a time `elapsed` (s) after `state`.
-    pub(super) fn advance(&self, state: State<D>, elapsed: D) -> State<D> {
+    pub(crate) fn advance(&self, state: State<D>, elapsed: D) -> State<D> {
         let (cosine, sine) = self.basis(elapsed);
         State {
             position: state.position * cosine + (state.velocity + self.rate * state.position) * sine,
@@ -108,9 +114,32 @@ impl<D: Scalar> Decay<D> {
         }
     }
 
+    /// The same decay without derivatives.
+    pub(crate) fn plain(&self) -> Decay<f64> {
+        Decay::new(self.rate.value(), self.square.value())
+    }
+
+    /// Velocity and acceleration at `state`: the derivative of a free decay is a free decay.
+    pub(crate) fn derivative(&self, state: State<D>) -> State<D> {
+        State { position: state.velocity, velocity: -(state.velocity * self.rate * 2.0 + state.position * self.square) }
+    }
+
+    /// What |position| does not exceed from `state` on.
+    pub(crate) fn most(&self, state: State<D>) -> f64 {
+        let (position, push) = (state.position.value(), (state.velocity + self.rate * state.position).value());
+        match self.half_swing {
+            Some(HalfSwing { angular, .. }) => position.hypot(push / angular.value()),
+            None => {
+                // e^(−aτ) C ≤ 1 and e^(−aτ) S ≤ τ e^(−(a−σ)τ) ≤ 1/(e (a−σ)), with 1/(a−σ) as (a+σ)/ω₀².
+                let sigma = self.spread.value().max(0.0).sqrt();
+                position.abs() + push.abs() * (self.rate.value() + sigma) / (self.square.value() * std::f64::consts::E)
+            }
+        }
+    }
+
     /// What neither position nor velocity exceeds in magnitude from `state` on; not finite if the motion cannot be
     /// written in numbers of this type.
-    pub(super) fn reach(&self, state: State<D>) -> f64 {
+    pub(crate) fn reach(&self, state: State<D>) -> f64 {
         let per_angular = self.half_swing.map_or(0.0, |half_swing| half_swing.angular.value().recip());
         let sine = (state.velocity + self.rate * state.position).value() * per_angular;
         let velocity_sine = self.pull(state).value() * per_angular;
@@ -118,7 +147,7 @@ impl<D: Scalar> Decay<D> {
     }
 
     /// Time (s) until the velocity is zero again, the zero at which `state` may sit left aside; none if it never is.
-    pub(super) fn time_to_zero_velocity(&self, state: State<D>) -> Option<D> {
+    pub(crate) fn time_to_zero_velocity(&self, state: State<D>) -> Option<D> {
         let velocity = state.velocity;
         if velocity.value() == 0.0 {
             // A velocity of zero may still have a derivative: a push in the direction of the motion to come starts
@@ -158,7 +187,7 @@ impl<D: Scalar> Decay<D> {
     }
 
     /// Position after `duration`, which [`time_to_zero_velocity`](Self::time_to_zero_velocity) gave for `state`.
-    pub(super) fn position_at_zero_velocity(&self, state: State<D>, duration: D) -> D {
+    pub(crate) fn position_at_zero_velocity(&self, state: State<D>, duration: D) -> D {
         match self.half_swing {
             // Exact without damping: a swing from rest ends at the mirror image, to the last bit.
             Some(HalfSwing { ratio, .. }) if state.velocity.value() == 0.0 => -(state.position * ratio),

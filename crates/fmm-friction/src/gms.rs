@@ -1,0 +1,133 @@
+//! The generalised Maxwell slip model: elements that follow a Stribeck curve while they slide.
+
+use fmm_model::Scalar;
+
+use crate::elements::{check, direction};
+use crate::{BristleLaw, LawError, LawParameter, Regime, Role, Stribeck};
+
+const ATTRACTION: LawParameter = LawParameter::positive("attraction", "C", "1/s", Role::Level);
+const LEAST: LawParameter = LawParameter::positive("sliding_coefficient", "μ_c", "1", Role::Level);
+
+/// The generalised Maxwell slip model (GMS).
+///
+/// ```text
+/// F = N (Σ fᵢ + β v)
+/// dfᵢ/dt = κᵢ v                               while element i holds, until sgn(v) fᵢ = αᵢ s(v)
+/// dfᵢ/dt = C (αᵢ sgn(v) − fᵢ/s(v))            while it slides, until v passes zero
+/// ```
+///
+/// | symbol | meaning | unit |
+/// |---|---|---|
+/// | s(v) | [`Stribeck::dry_coefficient`] at \|v\| | 1 |
+/// | β | viscous part of the same Stribeck law | s/m |
+/// | C | attraction, how fast a sliding element follows the curve | 1/s |
+/// | κᵢ | stiffness of element i | 1/m |
+/// | αᵢ | its share of the contact, Σ αᵢ = 1 | 1 |
+///
+/// The state is fᵢ (1), the part of the coefficient that element i carries; |fᵢ| ≤ αᵢ μ_s is invariant if
+/// [`Regime`] follows the rules above. An element slides at its own *share* αᵢ s(v), not at s(v). Steady
+/// sliding gives s(v) + β v; a sliding element approaches its share with the time constant s(v)/C. For C → ∞ and constant
+/// s this is [`MaxwellSlip`](crate::MaxwellSlip) with levels αᵢ s.
+///
+/// # References
+/// F. Al-Bender, V. Lampaert, J. Swevers, "The generalized Maxwell-slip model: a novel model for friction simulation and
+/// compensation", IEEE Trans. Automatic Control 50 (2005) 1883, doi 10.1109/TAC.2005.858676.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gms<D = f64> {
+    curve: Stribeck<D>,
+    attraction: D,
+    elements: Vec<(D, D)>,
+}
+
+impl<D: Scalar> Gms<D> {
+    /// `curve` with s(v) and β, `attraction` C (1/s) and elements of (stiffness κᵢ (1/m), share αᵢ (1)).
+    ///
+    /// # Errors
+    /// [`LawError::OutOfBounds`] if a number is not positive or not finite, the sliding coefficient of the curve among
+    /// them; [`LawError::ElementCount`] for no elements or more than [`Regime::CAPACITY`];
+    /// [`LawError::SharesNotOne`] if the shares do not sum to 1 within 1e-9.
+    pub fn new(curve: Stribeck<D>, attraction: D, elements: &[(D, D)]) -> Result<Self, LawError> {
+        LEAST.check(curve.sliding)?;
+        ATTRACTION.check(attraction)?;
+        check(elements, "share", "α")?;
+        let sum: f64 = elements.iter().map(|(_, share)| share.value()).sum();
+        if (sum - 1.0).abs() > 1e-9 {
+            return Err(LawError::SharesNotOne { sum });
+        }
+        Ok(Self { curve, attraction, elements: elements.to_vec() })
+    }
+
+    /// The law of steady sliding, s(v) + β v.
+    pub fn steady(&self) -> &Stribeck<D> {
+        &self.curve
+    }
+}
+
+impl<D: Scalar> BristleLaw<D> for Gms<D> {
+    fn states(&self) -> usize {
+        self.elements.len()
+    }
+
+    fn rate(&self, velocity: D, state: &[D], regime: Regime, rate: &mut [D]) {
+        let level = self.curve.dry_coefficient(velocity.abs());
+        for (index, (stiffness, share)) in self.elements.iter().enumerate() {
+            rate[index] = if regime.slides(index) {
+                self.attraction * (*share * direction(velocity) - state[index] / level)
+            } else {
+                *stiffness * velocity
+            };
+        }
+    }
+
+    fn coefficient(&self, velocity: D, state: &[D], _rate: &[D]) -> D {
+        state.iter().fold(self.curve.viscous * velocity, |sum, part| sum + *part)
+    }
+
+    fn bound(&self, index: usize) -> D {
+        self.elements[index].1 * self.curve.breakaway
+    }
+
+    fn reserve(&self, index: usize, velocity: D, state: &[D]) -> Option<D> {
+        let (_, share) = self.elements.get(index)?;
+        Some(*share * self.curve.dry_coefficient(velocity.abs()) - state[index] * direction(velocity))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(sliding: f64) -> Stribeck {
+        Stribeck::new(sliding, 0.3, 0.01, 2.0, 0.5).unwrap()
+    }
+
+    /// An element is tested against its own share of s(v): at 0.2 of the curve's 0.3 it slides at 0.06.
+    #[test]
+    fn elements_slide_at_their_share() {
+        let law = Gms::new(curve(0.1), 3.0, &[(1e4, 0.2), (1e4, 0.8)]).unwrap();
+        for velocity in [1e-9_f64, -1e-9] {
+            let state = [0.06 * velocity.signum(), 0.06 * velocity.signum()];
+            assert!(law.reserve(0, velocity, &state).unwrap().abs() < 1e-14);
+            assert!((law.reserve(1, velocity, &state).unwrap() - 0.18).abs() < 1e-14);
+        }
+        assert_eq!(law.reserve(2, 1.0, &[0.0, 0.0]), None);
+        let mut rate = [0.0; 2];
+        // At 1 m/s s = 0.1: the element relaxes from 0.06 towards 0.02 at C (0.2 − 0.06/0.1).
+        law.rate(1.0, &[0.06, 0.06], Regime::ALL_HOLD.sliding(0), &mut rate);
+        assert!((rate[0] + 3.0 * 0.4).abs() < 1e-15, "{}", rate[0]);
+        assert_eq!(rate[1], 1e4);
+        assert!((law.coefficient(1.0, &[0.06, 0.06], &rate) - 0.62).abs() < 1e-15);
+    }
+
+    #[test]
+    fn shares_must_be_of_one_whole() {
+        let refused = |elements: &[(f64, f64)]| Gms::new(curve(0.1), 3.0, elements).unwrap_err().to_string();
+        assert_eq!(
+            refused(&[(1e4, 0.5), (1e4, 0.25)]),
+            "the shares of the elements must sum to 1 within 1e-9, but sum to 0.75"
+        );
+        assert!(refused(&[(1e4, 1.5), (1e4, -0.5)]).starts_with("share_2 must lie in"));
+        assert!(Gms::new(curve(0.0), 3.0, &[(1e4, 1.0)]).is_err(), "a curve that falls to zero");
+        assert!(Gms::new(curve(0.1), 0.0, &[(1e4, 1.0)]).is_err());
+    }
+}

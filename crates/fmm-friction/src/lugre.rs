@@ -1,0 +1,140 @@
+//! The LuGre model: bristles, damping and a Stribeck curve.
+
+use fmm_model::Scalar;
+
+use crate::elements::direction;
+use crate::family::{law_family, static_not_below};
+use crate::stribeck::EXPONENT;
+use crate::{BristleLaw, LawError, LawFamily, LawParameter, Regime, Role, SlidingLaw, Stribeck};
+
+law_family! {
+    /// The LuGre model.
+    ///
+    /// ```text
+    /// F = N (σ₀ z + σ₁ dz/dt + σ₂ v),    dz/dt = v − σ₀ |v| z/g(v),    g(v) = μ_c + (μ_s − μ_c) exp(−(|v|/v_s)^δ)
+    /// ```
+    ///
+    /// | symbol | field | unit | meaning |
+    /// |---|---|---|---|
+    /// | μ_c | `sliding` | 1 | coefficient of steady sliding at large speed, without the viscous part |
+    /// | μ_s | `breakaway` | 1 | coefficient of steady sliding in the limit of zero speed, ≥ μ_c |
+    /// | v_s | `fall_speed` | m/s | Stribeck speed, over which the coefficient falls |
+    /// | δ | `exponent` | 1 | shape of the fall, 0.5 to 2; 1 and 2 are the usual choices |
+    /// | σ₀ | `stiffness` | 1/m | slope of the coefficient at zero deflection |
+    /// | σ₁ | `bristle_damping` | s/m | damping of the deflection |
+    /// | σ₂ | `viscous` | s/m | increase of the coefficient with speed |
+    ///
+    /// The state z (m) is the mean bristle deflection; |z| ≤ μ_s/σ₀ is invariant. The contact shows presliding, frictional
+    /// lag and a breakaway level that falls as the load grows faster. With μ_s = μ_c and σ₁ = σ₂ = 0 this is
+    /// [`Dahl`](crate::Dahl) with i = 1; for σ₀ → ∞ it becomes [`Stribeck`].
+    ///
+    /// # References
+    /// C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky, "A new model for control of systems with friction",
+    /// IEEE Trans. Automatic Control 40 (1995) 419, doi 10.1109/9.376053.
+    pub struct LuGre, "lugre" {
+        sliding: LawParameter::positive("sliding_coefficient", "μ_c", "1", Role::Level),
+        breakaway: LawParameter::positive("static_coefficient", "μ_s", "1", Role::Level),
+        fall_speed: LawParameter::positive("stribeck_speed", "v_s", "m/s", Role::Shape),
+        exponent: EXPONENT,
+        stiffness: LawParameter::positive("stiffness", "σ₀", "1/m", Role::Level),
+        bristle_damping: LawParameter::not_negative("bristle_damping", "σ₁", "s/m", Role::Level),
+        viscous: LawParameter::slope("viscous", "σ₂"),
+    }
+
+    /// Coefficients `sliding` μ_c and `breakaway` μ_s (1), `fall_speed` v_s (m/s), `exponent` δ (1), `stiffness` σ₀
+    /// (1/m), `bristle_damping` σ₁ and `viscous` σ₂ (s/m).
+    ///
+    /// # Errors
+    /// [`LawError::OutOfBounds`] if a parameter lies outside its bounds or is not finite,
+    /// [`LawError::StaticBelowSliding`] if μ_s < μ_c.
+    pub fn new {
+        static_not_below(sliding, breakaway)?;
+    }
+}
+
+impl<D: Scalar> LuGre<D> {
+    /// The law of steady sliding, g(v) + σ₂ v.
+    pub fn steady(&self) -> Stribeck<D> {
+        Stribeck {
+            sliding: self.sliding,
+            breakaway: self.breakaway,
+            fall_speed: self.fall_speed,
+            exponent: self.exponent,
+            viscous: self.viscous,
+        }
+    }
+
+    /// The friction coefficient (1) of steady sliding at `speed` ≥ 0 (m/s).
+    pub fn steady_coefficient(&self, speed: D) -> D {
+        self.steady().coefficient(speed)
+    }
+
+    /// Whether the contact is sure never to give back more energy than its bristles store: a sufficient condition.
+    ///
+    /// ```text
+    /// σ₂ ≥ σ₁ (μ_s − μ_c)/μ_c
+    /// ```
+    ///
+    /// From F v − d/dt(N σ₀ z²/2) ≥ N (σ₂ − σ₁ (μ_s − μ_c)/μ_c) v². The parameter sets in common use do not meet it.
+    pub fn is_passive(&self) -> bool {
+        let excess = (self.breakaway.value() - self.sliding.value()) / self.sliding.value();
+        self.viscous.value() >= self.bristle_damping.value() * excess
+    }
+}
+
+impl<D: Scalar> BristleLaw<D> for LuGre<D> {
+    fn states(&self) -> usize {
+        1
+    }
+
+    fn rate(&self, velocity: D, state: &[D], _regime: Regime, rate: &mut [D]) {
+        let level = self.steady().dry_coefficient(velocity.abs());
+        rate[0] = velocity * (D::from(1.0) - self.stiffness * state[0] / level * direction(velocity));
+    }
+
+    fn coefficient(&self, velocity: D, state: &[D], rate: &[D]) -> D {
+        self.stiffness * state[0] + self.bristle_damping * rate[0] + self.viscous * velocity
+    }
+
+    fn bound(&self, _index: usize) -> D {
+        self.breakaway / self.stiffness
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The set that the original paper and most ports use: 316 · 0.5 is far above 0.4.
+    #[test]
+    fn the_usual_parameters_are_not_passive() {
+        let with = |damping: f64| LuGre::new(1.0, 1.5, 1e-3, 2.0, 1e5, damping, 0.4).unwrap();
+        assert!(!with(1e5f64.sqrt()).is_passive());
+        assert!(with(0.8).is_passive() && !with(0.81).is_passive());
+    }
+
+    /// At constant velocity z = (g/σ₀) (1 − exp(−σ₀ v t/g)), so dz/dt = v exp(−σ₀ v t/g).
+    #[test]
+    fn follows_the_closed_form_at_constant_velocity() {
+        let law = LuGre::new(1.0, 1.5, 1e-3, 2.0, 1e5, 316.0, 0.4).unwrap();
+        let velocity = 2e-3;
+        let level = 1.0 + 0.5 * f64::exp(-4.0);
+        for path in [0.1, 1.0, 5.0] {
+            let state = [level / 1e5 * -f64::exp_m1(-path)];
+            let mut rate = [0.0];
+            law.rate(velocity, &state, Regime::ALL_HOLD, &mut rate);
+            let expected = velocity * f64::exp(-path);
+            assert!((rate[0] - expected).abs() < 1e-17, "{} m/s instead of {expected} m/s", rate[0]);
+            let coefficient = 1e5 * state[0] + 316.0 * expected + 0.4 * velocity;
+            assert!((law.coefficient(velocity, &state, &rate) - coefficient).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn contradictions_are_refused() {
+        let refused = |values: [f64; 7]| LuGre::at(&values).unwrap_err().to_string();
+        assert!(refused([1.5, 1.0, 1e-3, 2.0, 1e5, 0.0, 0.0]).starts_with("the static coefficient 1 must not"));
+        assert!(refused([0.0, 1.0, 1e-3, 2.0, 1e5, 0.0, 0.0]).starts_with("sliding_coefficient must lie in"));
+        assert!(refused([1.0, 1.5, 1e-3, 2.0, 1e5, -1.0, 0.0]).starts_with("bristle_damping must lie in"));
+    }
+}

@@ -1,0 +1,390 @@
+//! The stick-slip automaton: modes, guards and transitions, the same for every engine of sliding laws.
+
+use fmm_friction::{Affine, SlidingLaw};
+use fmm_model::{Oscillator, Restoring, Scalar};
+
+use crate::curve::{Curve, Wave};
+use crate::drive::{Drive, Piece};
+use crate::first_zero::{SEARCH_BUDGET, first_zero};
+use crate::recorder::Recorder;
+use crate::work::Power;
+use crate::{Direction, Event, EventKind, Mode, Scenario, SimulationError, State};
+
+/// Friction levels of a law as the automaton asks for them.
+pub(crate) trait Levels<D> {
+    /// Coefficient while the speed grows, and the only one unless there are two branches.
+    fn gaining(&self, speed: D) -> D;
+    /// Coefficient while the speed falls.
+    fn losing(&self, speed: D) -> D;
+    fn breakaway(&self) -> D;
+    fn has_branches(&self) -> bool;
+}
+
+/// How exactly an engine finds the load at which the acceleration vanishes, relative to the friction force.
+const ON_BOUND: f64 = 1e-9;
+
+/// A [`SlidingLaw`] as levels.
+pub(crate) struct Sliding<'a, L>(pub(crate) &'a L);
+
+impl<D: Scalar, L: SlidingLaw<D>> Levels<D> for Sliding<'_, L> {
+    fn gaining(&self, speed: D) -> D {
+        self.0.coefficient(speed)
+    }
+    fn losing(&self, speed: D) -> D {
+        self.0.coefficient_losing_speed(speed)
+    }
+    fn breakaway(&self) -> D {
+        self.0.breakaway()
+    }
+    fn has_branches(&self) -> bool {
+        self.0.depends_on_acceleration()
+    }
+}
+
+/// The two branches of a piecewise linear law as levels.
+#[derive(Clone, Copy)]
+pub(crate) struct Branches<D> {
+    pub(crate) gaining: Affine<D>,
+    pub(crate) losing: Affine<D>,
+    pub(crate) differ: bool,
+}
+
+impl<D: Scalar> Levels<D> for Branches<D> {
+    fn gaining(&self, speed: D) -> D {
+        self.gaining.coefficient(speed)
+    }
+    fn losing(&self, speed: D) -> D {
+        self.losing.coefficient(speed)
+    }
+    fn breakaway(&self) -> D {
+        self.gaining.breakaway
+    }
+    fn has_branches(&self) -> bool {
+        self.differ
+    }
+}
+
+/// Which branch of the law a sliding contact is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Branch {
+    Only,
+    Gaining,
+    Losing,
+}
+
+/// A stretch of sliding in one direction on one branch, under one piece of the force.
+pub(crate) struct Phase<'p, D> {
+    /// When it begins (s), with derivatives if an event began it.
+    pub(crate) time: D,
+    pub(crate) state: State<D>,
+    pub(crate) direction: Direction,
+    pub(crate) branch: Branch,
+    pub(crate) piece: &'p Piece<D>,
+    /// When it ends at the latest (s).
+    pub(crate) limit: f64,
+    /// Whether the limit is the end of the simulation, so that samples at the limit belong to the phase.
+    pub(crate) last: bool,
+}
+
+impl<D: Scalar> Phase<'_, D> {
+    /// The end of the samples that belong to the phase if nothing ends it before its limit.
+    pub(crate) fn samples_end(&self) -> f64 {
+        if self.last { f64::INFINITY } else { self.limit }
+    }
+}
+
+/// Why a phase of sliding ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Ending {
+    /// Its limit was reached.
+    Limit,
+    /// The velocity of the counterface was reached.
+    RelativeRest,
+    /// The acceleration reached zero; only on a branch of a law that depends on it.
+    SteadySpeed,
+}
+
+/// How a phase of sliding ended.
+pub(crate) struct Ended<D> {
+    pub(crate) ending: Ending,
+    pub(crate) time: D,
+    pub(crate) state: State<D>,
+    pub(crate) grazing: bool,
+}
+
+/// What an engine does for the automaton: follow one phase of sliding, and write its samples and its work.
+pub(crate) trait Slide<D> {
+    fn slide(&mut self, phase: &Phase<D>, recorder: &mut Recorder<D>) -> Result<Ended<D>, SimulationError>;
+}
+
+/// Machine and contact as the automaton sees them.
+pub(crate) struct Contact<'a, D, V> {
+    pub(crate) oscillator: &'a Oscillator<D>,
+    pub(crate) levels: V,
+    pub(crate) normal_load: D,
+    pub(crate) belt: D,
+    static_force: D,
+    budget: usize,
+}
+
+impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
+    pub(crate) fn new<L>(scenario: &'a Scenario<D, L>, levels: V, drive: &Drive<D>) -> Result<Self, SimulationError> {
+        let static_force = scenario.normal_load() * levels.breakaway();
+        if !static_force.value().is_finite() {
+            return Err(SimulationError::NotFinite { time: 0.0 });
+        }
+        Ok(Self {
+            oscillator: scenario.oscillator(),
+            levels,
+            normal_load: scenario.normal_load(),
+            belt: drive.belt(),
+            static_force,
+            budget: SEARCH_BUDGET,
+        })
+    }
+
+    /// What is left for friction at constant `velocity` from `position` at `time` on: L = f − F_c − F_k.
+    fn load(&self, piece: &Piece<D>, time: D, position: D, velocity: D) -> Curve<'static, D> {
+        let mut load = Curve::force(piece, time);
+        load.constant = load.constant - self.oscillator.damping().force(velocity);
+        match self.oscillator.restoring() {
+            Restoring::Sine { length } if velocity.value() != 0.0 => {
+                // −k ℓ sin((x + v τ)/ℓ) is a wave.
+                let (sin, cos) = (position / length).sin_cos();
+                let force = self.oscillator.stiffness() * length;
+                let sign = velocity.value().signum();
+                let angular = velocity.abs() / length;
+                load.waves.push(Wave { angular, cosine: -(force * sin), sine: -(force * cos) * sign });
+            }
+            Restoring::Linear if velocity.value() != 0.0 => {
+                load.constant = load.constant - self.oscillator.stiffness() * position;
+                load.slope = load.slope - self.oscillator.stiffness() * velocity;
+            }
+            _ => load.constant = load.constant - self.oscillator.restoring_force(position),
+        }
+        load
+    }
+
+    /// The mode in which a contact goes on from `state`, the automaton's only decision; and the load at zero relative
+    /// velocity.
+    fn mode(&self, piece: &Piece<D>, time: D, state: State<D>) -> (Mode, f64) {
+        let resting = self.load(piece, time, state.position, self.belt);
+        let load = resting.at(D::from(0.0)).value();
+        let relative = state.velocity.value() - self.belt.value();
+        if relative != 0.0 {
+            let direction = Direction::of(relative);
+            if !self.levels.has_branches() {
+                return (Mode::Slip(direction), load);
+            }
+            let moving = self.load(piece, time, state.position, state.velocity);
+            let drive = moving.at(D::from(0.0)).value() * direction.sign();
+            let (gaining, losing) = self.branch_forces(D::from(relative.abs()));
+            let mode = if drive > gaining.value() {
+                Mode::Gaining(direction)
+            } else if drive < losing.value() {
+                Mode::Losing(direction)
+            } else {
+                Mode::Steady(direction)
+            };
+            return (mode, load);
+        }
+        let direction = Direction::of(load);
+        let held = self.static_force.value();
+        let growing = resting.derivative().at(D::from(0.0)).value() * direction.sign() > 0.0;
+        let slips = growing && load.abs() >= held || load.abs() > held && self.is_ahead(&resting, state, direction);
+        (if slips { self.sliding(direction) } else { Mode::Stick }, load)
+    }
+
+    /// Whether the position in which friction balances the load lies ahead. Beyond the static level it does, as the
+    /// sliding level is not higher; where rounding says otherwise, nothing moves.
+    fn is_ahead(&self, load: &Curve<D>, state: State<D>, direction: Direction) -> bool {
+        let sliding = (self.levels.gaining(D::from(0.0)) * self.normal_load).value();
+        let load = load.at(D::from(0.0)).value();
+        match self.oscillator.restoring() {
+            Restoring::Linear => {
+                let (stiffness, position) = (self.oscillator.stiffness().value(), state.position.value());
+                let outside = load + stiffness * position;
+                ((outside - sliding * direction.sign()) / stiffness - position) * direction.sign() > 0.0
+            }
+            _ => load.abs() > sliding,
+        }
+    }
+
+    /// The mode of a contact that begins to slide.
+    fn sliding(&self, direction: Direction) -> Mode {
+        if self.levels.has_branches() { Mode::Gaining(direction) } else { Mode::Slip(direction) }
+    }
+
+    /// Friction forces at `speed` while it grows and while it falls.
+    fn branch_forces(&self, speed: D) -> (D, D) {
+        (self.levels.gaining(speed) * self.normal_load, self.levels.losing(speed) * self.normal_load)
+    }
+
+    fn event(&self, kind: EventKind, time: D, state: State<D>, next: Mode, load: f64, grazing: bool) -> Event<D> {
+        Event {
+            kind,
+            time,
+            position: state.position,
+            velocity: state.velocity,
+            next,
+            load: load.abs(),
+            static_level: self.static_force.value(),
+            grazing,
+        }
+    }
+
+    /// Runs the automaton from the scenario's initial state to the last sample.
+    pub(crate) fn run<S: Slide<D>>(
+        mut self,
+        initial: State<D>,
+        drive: &Drive<D>,
+        slide: &mut S,
+        recorder: &mut Recorder<D>,
+    ) -> Result<(), SimulationError> {
+        let (mut index, mut piece) = (0, drive.piece(0));
+        let (mut time, mut state) = (D::from(0.0), initial);
+        let (mut mode, load) = self.mode(&piece, time, state);
+        recorder.push(self.event(EventKind::Start, time, state, mode, load, false))?;
+        let end = recorder.sampling.end();
+        loop {
+            let (limit, last) = (piece.end.min(end), piece.end > end);
+            let phase = |direction, branch| Phase { time, state, direction, branch, piece: &piece, limit, last };
+            let (ended, next) = match mode {
+                Mode::Stick => self.hold(&phase(Direction::Positive, Branch::Only), None, recorder)?,
+                Mode::Steady(direction) => self.hold(&phase(direction, Branch::Only), Some(direction), recorder)?,
+                Mode::Slip(direction) => (slide.slide(&phase(direction, Branch::Only), recorder)?, mode),
+                Mode::Gaining(direction) => (slide.slide(&phase(direction, Branch::Gaining), recorder)?, mode),
+                Mode::Losing(direction) => (slide.slide(&phase(direction, Branch::Losing), recorder)?, mode),
+            };
+            (time, state) = (ended.time, ended.state);
+            let (kind, next, load) = match ended.ending {
+                Ending::Limit if last => return Ok(()),
+                Ending::Limit => {
+                    index += 1;
+                    piece = drive.piece(index);
+                    continue;
+                }
+                Ending::RelativeRest if mode == Mode::Stick => {
+                    let load = self.load(&piece, time, state.position, state.velocity).at(D::from(0.0)).value();
+                    (EventKind::Breakaway, next, load)
+                }
+                Ending::RelativeRest => {
+                    state.velocity = self.belt;
+                    let (next, load) = self.mode(&piece, time, state);
+                    (if next == Mode::Stick { EventKind::Stop } else { EventKind::Reversal }, next, load)
+                }
+                Ending::SteadySpeed => {
+                    let next = if matches!(mode, Mode::Steady(_)) { next } else { self.after_branch(mode, state) };
+                    let load = self.load(&piece, time, state.position, state.velocity).at(D::from(0.0)).value();
+                    (EventKind::BranchChange, next, load)
+                }
+            };
+            mode = next;
+            recorder.push(self.event(kind, time, state, mode, load, ended.grazing))?;
+        }
+    }
+
+    /// Where a contact goes whose acceleration has become zero on a branch.
+    fn after_branch(&self, mode: Mode, state: State<D>) -> Mode {
+        let (gaining, losing) = self.branch_forces((state.velocity - self.belt).abs());
+        match mode {
+            // Between the levels nothing but a constant speed is consistent.
+            Mode::Gaining(direction) | Mode::Losing(direction) if gaining.value() >= losing.value() => {
+                Mode::Steady(direction)
+            }
+            Mode::Gaining(direction) => Mode::Losing(direction),
+            Mode::Losing(direction) => Mode::Gaining(direction),
+            other => other,
+        }
+    }
+
+    /// A phase of constant velocity: the contact sticks, or it slides steadily in direction `steady`. Friction balances
+    /// the load until that leaves the levels between which it can.
+    fn hold(
+        &mut self,
+        phase: &Phase<D>,
+        steady: Option<Direction>,
+        recorder: &mut Recorder<D>,
+    ) -> Result<(Ended<D>, Mode), SimulationError> {
+        let State { position, velocity } = phase.state;
+        let load = self.load(phase.piece, phase.time, position, velocity);
+        // Friction along the positive direction lies between −below and above.
+        let (above, below) = match steady {
+            None => (self.static_force, self.static_force),
+            Some(direction) => {
+                let (gaining, losing) = self.branch_forces((velocity - self.belt).abs());
+                match direction {
+                    Direction::Positive => (gaining, -losing),
+                    Direction::Negative => (-losing, gaining),
+                }
+            }
+        };
+        let begin = phase.time.value();
+        let mut leaving = None;
+        let span = phase.limit - begin;
+        let plain = load.plain_without_decay();
+        let reach = plain.slope.abs() * span + plain.waves.iter().map(|w| w.cosine.hypot(w.sine)).sum::<f64>();
+        let now = plain.at(0.0);
+        for (bound, sign) in [(above, 1.0), (below, -1.0)] {
+            let excess = sign * now - bound.value();
+            // A steady phase begins on a bound, as exactly as the engine has found it.
+            let slack = steady.is_some() && excess > 0.0 && excess < ON_BOUND * bound.value().abs();
+            let bound = if slack { bound + excess } else { bound };
+            // What is out of reach need not be searched for.
+            if bound.value() - sign * plain.constant > reach && span.is_finite() {
+                continue;
+            }
+            let reserve = plain.clone().scaled(-sign, bound.value());
+            let span = leaving.map_or(span, |(elapsed, _, _)| elapsed);
+            if let Some(elapsed) = first_zero(&reserve, span, &mut self.budget)? {
+                leaving = Some((elapsed, bound, sign));
+            }
+        }
+        let stop = leaving.map_or(phase.samples_end(), |(elapsed, _, _)| begin + elapsed);
+        let at = |time: D| position + velocity * (time - phase.time);
+        recorder.samples(stop, |time| State { position: at(D::from(time)), velocity })?;
+        let (relative, damping) = (velocity - self.belt, self.oscillator.damping().force(velocity));
+        recorder.work(begin, stop.min(phase.limit), self.scale(&load), |time| {
+            let friction = load.at(-phase.time + time);
+            let force = phase.piece.force(time);
+            Power {
+                friction: friction * relative,
+                viscous: damping * velocity,
+                external: force * velocity - friction * self.belt,
+            }
+        });
+        let Some((elapsed, bound, sign)) = leaving else {
+            let time = D::from(phase.limit);
+            let state = State { position: at(time), velocity };
+            return Ok((Ended { ending: Ending::Limit, time, state, grazing: false }, Mode::Stick));
+        };
+        let (time, grazing) = crossing(&load.scaled(D::from(-sign), bound), phase.time, begin + elapsed);
+        let state = State { position: at(time), velocity };
+        let direction = if sign > 0.0 { Direction::Positive } else { Direction::Negative };
+        let (ending, next) = match steady {
+            None => (Ending::RelativeRest, self.sliding(direction)),
+            Some(along) if along == direction => (Ending::SteadySpeed, Mode::Gaining(along)),
+            Some(along) => (Ending::SteadySpeed, Mode::Losing(along)),
+        };
+        Ok((Ended { ending, time, state, grazing }, next))
+    }
+
+    /// A time (s) within which a curve with these waves varies little.
+    fn scale(&self, curve: &Curve<D>) -> f64 {
+        curve.waves.iter().map(|wave| 1.0 / wave.angular.value()).fold(f64::MAX, f64::min)
+    }
+}
+
+/// The time at which `guard`, counted from `start`, crosses zero near `time`, with its derivatives; and whether it only
+/// grazes zero there, so that there are none.
+pub(crate) fn crossing<D: Scalar>(guard: &Curve<D>, start: D, time: f64) -> (D, bool) {
+    if D::DIRECTIONS == 0 {
+        return (D::from(time), false);
+    }
+    let elapsed = -start + time;
+    let value = guard.at(elapsed);
+    let jet = guard.plain_jet(elapsed.value());
+    // Where the slope is that small, rounding moves the zero further than it is from the turning point.
+    let grazing = jet.slope * jet.slope <= 4.0 * f64::EPSILON * jet.size * jet.most_curvature.max(f64::MIN_POSITIVE);
+    if grazing { (D::from(time), true) } else { (-(value - value.value()) / jet.slope + time, false) }
+}

@@ -1,0 +1,155 @@
+//! The equations of motion of one swing: the oscillator, the bristles, and their Jacobian.
+
+use fmm_friction::{BristleLaw, Regime};
+use fmm_model::{Oscillator, Scalar};
+
+use crate::{Direction, Scenario};
+
+/// On which smooth branch of the law the contact moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Branch {
+    pub(super) direction: Direction,
+    pub(super) regime: Regime,
+}
+
+/// Steps of the differences of the Jacobian, relative to the arguments; about √ε, as the Jacobian only has to make
+/// Newton's method converge.
+const DIFFERENCE: f64 = 1e-7;
+
+/// The right-hand side of (x, v, z)′.
+///
+/// Everything is evaluated as if the swing went in the positive direction, with u and z of the other direction mirrored:
+/// the law is odd, so this changes nothing but which side of its kink u = 0 belongs to, and that is the side of the
+/// swing. Behind the end of the swing, where a step may reach before its end is found, the bristles stay as they are.
+pub(super) struct Field<'a, D, L> {
+    pub(super) oscillator: &'a Oscillator<D>,
+    pub(super) normal_load: D,
+    pub(super) belt: D,
+    pub(super) law: &'a L,
+    mirrored: Vec<D>,
+    rate: Vec<D>,
+}
+
+impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
+    pub(super) fn new(scenario: &'a Scenario<D, L>, belt: D) -> Self {
+        let zeros = vec![D::from(0.0); scenario.law().states()];
+        Self {
+            oscillator: scenario.oscillator(),
+            normal_load: scenario.normal_load(),
+            belt,
+            law: scenario.law(),
+            mirrored: zeros.clone(),
+            rate: zeros,
+        }
+    }
+
+    /// Number of unknowns: x, v and the states of the law.
+    pub(super) fn size(&self) -> usize {
+        2 + self.rate.len()
+    }
+
+    /// Relative speed along `branch`, and the mirrored states in `self.mirrored`.
+    fn mirror(&mut self, branch: Branch, state: &[D]) -> D {
+        let sign = branch.direction.sign();
+        for (mirrored, z) in self.mirrored.iter_mut().zip(&state[2..]) {
+            *mirrored = *z * sign;
+        }
+        let speed = (state[1] - self.belt) * sign;
+        if speed.value() < 0.0 { speed - speed.value() } else { speed }
+    }
+
+    /// Friction force (N) along the direction of the swing; the mirrored rates of the bristles are left in `self.rate`.
+    fn mirrored_friction(&mut self, branch: Branch, speed: D) -> D {
+        self.law.rate(speed, &self.mirrored, branch.regime, &mut self.rate);
+        self.normal_load * self.law.coefficient(speed, &self.mirrored, &self.rate)
+    }
+
+    /// Friction force (N), with its sign.
+    pub(super) fn friction(&mut self, branch: Branch, state: &[D]) -> D {
+        let speed = self.mirror(branch, state);
+        self.mirrored_friction(branch, speed) * branch.direction.sign()
+    }
+
+    /// Writes (x, v, z)′ at `state` under `force` (N) into `rates`.
+    pub(super) fn rates(&mut self, force: D, branch: Branch, state: &[D], rates: &mut [D]) {
+        let friction = self.friction(branch, state);
+        let [x, v] = [state[0], state[1]];
+        let machine = self.oscillator.damping().force(v) + self.oscillator.restoring_force(x);
+        rates[0] = v;
+        rates[1] = (force - machine - friction) / self.oscillator.mass();
+        for (rate, z) in rates[2..].iter_mut().zip(&self.rate) {
+            *rate = *z * branch.direction.sign();
+        }
+    }
+
+    /// How far element `index` is from sliding, if it holds and can.
+    pub(super) fn reserve(&mut self, index: usize, branch: Branch, state: &[D]) -> Option<D> {
+        if branch.regime.slides(index) {
+            return None;
+        }
+        let speed = self.mirror(branch, state);
+        self.law.reserve(index, speed, &self.mirrored)
+    }
+
+    /// Sum of the magnitudes of the forces (N) that `rates` adds up, whose rounding the acceleration carries.
+    pub(super) fn force_size(&mut self, force: D, branch: Branch, state: &[D]) -> f64 {
+        let friction = self.friction(branch, state).value().abs();
+        let damping = self.oscillator.damping().force(state[1]).value().abs();
+        force.value().abs() + damping + self.oscillator.restoring_force(state[0]).value().abs() + friction
+    }
+
+    /// Writes the Jacobian of `rates` in the values at `state`, row by row, into `jacobian`. `speed` (m/s) is a typical
+    /// velocity; differences are taken away from u = 0.
+    pub(super) fn jacobian(&mut self, branch: Branch, state: &[D], speed: f64, jacobian: &mut [f64]) {
+        let size = self.size();
+        let sign = branch.direction.sign();
+        let mass = self.oscillator.mass().value();
+        jacobian.fill(0.0);
+        jacobian[1] = 1.0;
+
+        let x = state[0].value();
+        let reach = DIFFERENCE * x.abs().max(f64::MIN_POSITIVE / DIFFERENCE);
+        let restoring = |x: f64| self.oscillator.restoring_force(D::from(x)).value();
+        jacobian[size] = -slope(restoring(x + reach) - restoring(x), x + reach - x) / mass;
+
+        let u = D::from(self.mirror(branch, state).value());
+        for (mirrored, z) in self.mirrored.iter_mut().zip(&state[2..]) {
+            *mirrored = D::from(z.value() * sign);
+        }
+        let before = self.mirrored_friction(branch, u).value();
+        let rates: Vec<f64> = self.rate.iter().map(|rate| rate.value()).collect();
+
+        let reach = DIFFERENCE * u.value().max(1e-2 * speed).max(f64::MIN_POSITIVE / DIFFERENCE);
+        let change = (u + reach - u).value();
+        let after = self.mirrored_friction(branch, u + reach).value();
+        let v = state[1].value();
+        let damping = |v: f64| self.oscillator.damping().force(D::from(v)).value();
+        let drag = slope(damping(v + sign * reach) - damping(v), (v + sign * reach) - v);
+        jacobian[size + 1] = -(drag + slope(after - before, change)) / mass;
+        for (row, rate) in rates.iter().enumerate() {
+            jacobian[(2 + row) * size + 1] = slope(self.rate[row].value() - rate, change);
+        }
+
+        for column in 0..rates.len() {
+            let z = self.mirrored[column];
+            let bound = self.law.bound(column).value().abs();
+            let reach =
+                DIFFERENCE * z.value().abs().max(1e-2 * bound.min(f64::MAX)).max(f64::MIN_POSITIVE / DIFFERENCE);
+            // Towards the origin, where the states of the motion come from.
+            let reach = if z.value() > 0.0 { -reach } else { reach };
+            self.mirrored[column] = z + reach;
+            let change = (z + reach - z).value();
+            let after = self.mirrored_friction(branch, u).value();
+            jacobian[size + 2 + column] = -slope(after - before, change) / mass;
+            for (row, rate) in rates.iter().enumerate() {
+                jacobian[(2 + row) * size + 2 + column] = slope(self.rate[row].value() - rate, change);
+            }
+            self.mirrored[column] = z;
+        }
+    }
+}
+
+/// A difference quotient.
+fn slope(difference: f64, change: f64) -> f64 {
+    if difference == 0.0 { 0.0 } else { difference / change }
+}

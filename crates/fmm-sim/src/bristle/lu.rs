@@ -1,0 +1,112 @@
+//! Small dense linear systems: factored in plain numbers, solved for numbers with derivatives.
+
+use fmm_model::Scalar;
+
+/// The factors of a square matrix, by Gaussian elimination with partial pivoting.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Factors {
+    size: usize,
+    /// Row by row: below the diagonal the multipliers, on it the inverses of the pivots, above it the upper factor.
+    factors: Vec<f64>,
+    swaps: Vec<usize>,
+}
+
+impl Factors {
+    /// Makes room for a matrix of `size` rows and gives it, row by row, to be filled before [`factor`](Self::factor).
+    pub(super) fn matrix(&mut self, size: usize) -> &mut [f64] {
+        self.size = size;
+        self.factors.resize(size * size, 0.0);
+        &mut self.factors
+    }
+
+    /// Factors the matrix. False if it is singular or not finite.
+    pub(super) fn factor(&mut self) -> bool {
+        let size = self.size;
+        self.swaps.clear();
+        for column in 0..size {
+            let entry = |row: usize| self.factors[row * size + column].abs();
+            let mut pivot = column;
+            for row in column + 1..size {
+                if entry(row) > entry(pivot) {
+                    pivot = row;
+                }
+            }
+            self.swaps.push(pivot);
+            if pivot != column {
+                for k in 0..size {
+                    self.factors.swap(pivot * size + k, column * size + k);
+                }
+            }
+            let inverse = 1.0 / self.factors[column * size + column];
+            if !(inverse.is_finite() && inverse != 0.0) {
+                return false;
+            }
+            self.factors[column * size + column] = inverse;
+            let (upper, lower) = self.factors.split_at_mut((column + 1) * size);
+            let pivot_row = &upper[column * size + column + 1..];
+            for row in lower.chunks_exact_mut(size) {
+                let multiplier = row[column] * inverse;
+                if multiplier != 0.0 {
+                    for (entry, pivot) in row[column + 1..].iter_mut().zip(pivot_row) {
+                        *entry -= multiplier * pivot;
+                    }
+                }
+                row[column] = multiplier;
+            }
+        }
+        true
+    }
+
+    /// Replaces `right` by the solution for it.
+    pub(super) fn solve<D: Scalar>(&self, right: &mut [D]) {
+        let size = self.size;
+        for (row, pivot) in self.swaps.iter().enumerate() {
+            right.swap(row, *pivot);
+        }
+        for row in 0..size {
+            let mut sum = right[row];
+            for (factor, known) in self.factors[row * size..row * size + row].iter().zip(&right[..row]) {
+                sum = sum - *known * *factor;
+            }
+            right[row] = sum;
+        }
+        for row in (0..size).rev() {
+            let mut sum = right[row];
+            let upper = &self.factors[row * size + row + 1..(row + 1) * size];
+            for (factor, known) in upper.iter().zip(&right[row + 1..]) {
+                sum = sum - *known * *factor;
+            }
+            right[row] = sum * self.factors[row * size + row];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fmm_model::Dual;
+
+    #[test]
+    fn solves_what_needs_pivots_with_derivatives() {
+        let rows = [[0.0, 2.0, 1.0], [4.0, -1.0, 3.0], [2.0, 2.0, -5.0]];
+        let expected = [Dual::<2>::variable(3.0, 0), Dual::variable(-1.0, 1), Dual::from(0.5)];
+        let mut right = [Dual::from(0.0); 3];
+        for (right, row) in right.iter_mut().zip(rows) {
+            for (factor, known) in row.iter().zip(expected) {
+                *right = *right + known * *factor;
+            }
+        }
+        let mut factors = Factors::default();
+        factors.matrix(3).copy_from_slice(&rows.concat());
+        assert!(factors.factor());
+        factors.solve(&mut right);
+        for (got, expected) in right.iter().zip(expected) {
+            assert!((got.value() - expected.value()).abs() < 1e-15, "{got:?}");
+            for direction in 0..2 {
+                assert!((got.partial(direction) - expected.partial(direction)).abs() < 1e-15, "{got:?}");
+            }
+        }
+        factors.matrix(2).copy_from_slice(&[1.0, 2.0, 2.0, 4.0]);
+        assert!(!factors.factor(), "a singular matrix");
+    }
+}

@@ -1,0 +1,194 @@
+//! The excitations of a scenario, cut into pieces of time in which the force is a line plus waves.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use fmm_model::Scalar;
+
+use crate::Excitation;
+use crate::excitation::Source;
+
+/// amplitude · cos(angular · t + phase), with t counted from the start of the simulation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Harmonic<D> {
+    pub(crate) amplitude: D,
+    pub(crate) angular: D,
+    pub(crate) phase: D,
+}
+
+/// The force between two knots.
+#[derive(Debug, Clone)]
+pub(crate) struct Piece<D> {
+    /// When it begins (s).
+    pub(crate) start: f64,
+    /// When it ends (s); infinite for the last.
+    pub(crate) end: f64,
+    force: D,
+    slope: D,
+    waves: Vec<Harmonic<D>>,
+}
+
+impl<D: Scalar> Piece<D> {
+    /// Straight part of the force at `time` (N), and its slope (N/s).
+    pub(crate) fn line(&self, time: D) -> (D, D) {
+        (self.force + self.slope * (time - self.start), self.slope)
+    }
+
+    pub(crate) fn waves(&self) -> &[Harmonic<D>] {
+        &self.waves
+    }
+
+    /// Whether there is no force at all.
+    pub(crate) fn is_free(&self) -> bool {
+        self.waves.is_empty() && self.slope.value() == 0.0 && self.force.value() == 0.0
+    }
+
+    /// The force at `time` (N).
+    pub(crate) fn force(&self, time: f64) -> D {
+        let mut force = self.line(D::from(time)).0;
+        for wave in &self.waves {
+            force = force + wave.amplitude * (wave.angular * time + wave.phase).sin_cos().1;
+        }
+        force
+    }
+}
+
+/// All excitations of a scenario.
+pub(crate) struct Drive<'a, D> {
+    excitations: &'a [Excitation<D>],
+    mass: D,
+    /// Times at which the force changes its formula, ascending; the first is 0.
+    knots: Vec<f64>,
+}
+
+impl<'a, D: Scalar> Drive<'a, D> {
+    pub(crate) fn new(excitations: &'a [Excitation<D>], mass: D) -> Self {
+        let mut knots = vec![0.0];
+        for Excitation { source, delay } in excitations {
+            match source {
+                Source::SampledForce { interval, values } => {
+                    let at = |index: usize| values.get(index).copied().unwrap_or(0.0);
+                    for index in 0..values.len() {
+                        // A sample on the line through its neighbours is none; a record's quiet parts cost nothing.
+                        let straight = index > 0
+                            && index + 1 < values.len()
+                            && at(index + 1) - at(index) == at(index) - at(index - 1);
+                        if !straight {
+                            knots.push(delay + index as f64 * interval);
+                        }
+                    }
+                }
+                Source::HalfSine { duration, .. } => knots.extend([*delay, delay + duration.value()]),
+                Source::Ramp { .. } => knots.push(*delay),
+                Source::Harmonic { .. } | Source::Base { .. } | Source::Belt { .. } => {}
+            }
+        }
+        knots.sort_by(f64::total_cmp);
+        knots.dedup();
+        Self { excitations, mass, knots }
+    }
+
+    /// Whether the counterface moves, or may move in a derivative.
+    pub(crate) fn has_belt(&self) -> bool {
+        self.excitations.iter().any(|excitation| matches!(excitation.source, Source::Belt { .. }))
+    }
+
+    /// Velocity of the counterface (m/s).
+    pub(crate) fn belt(&self) -> D {
+        self.excitations.iter().fold(D::from(0.0), |sum, excitation| match excitation.source {
+            Source::Belt { velocity } => sum + velocity,
+            _ => sum,
+        })
+    }
+
+    pub(crate) fn pieces(&self) -> usize {
+        self.knots.len()
+    }
+
+    /// The piece of this `index`.
+    pub(crate) fn piece(&self, index: usize) -> Piece<D> {
+        let start = self.knots[index];
+        let end = self.knots.get(index + 1).copied().unwrap_or(f64::INFINITY);
+        let middle = if end.is_finite() { start + 0.5 * (end - start) } else { f64::INFINITY };
+        let zero = D::from(0.0);
+        let mut piece = Piece { start, end, force: zero, slope: zero, waves: Vec::new() };
+        for Excitation { source, delay } in self.excitations {
+            let begun = start >= *delay;
+            match source {
+                Source::SampledForce { interval, values } => {
+                    let position = (middle - delay) / interval;
+                    if position > 0.0 && position < values.len().saturating_sub(1) as f64 {
+                        let left = position as usize;
+                        let slope = (values[left + 1] - values[left]) / interval;
+                        piece.force = piece.force + (values[left] + slope * (start - delay - left as f64 * interval));
+                        piece.slope = piece.slope + slope;
+                    }
+                }
+                Source::HalfSine { peak, duration } if begun && middle < delay + duration.value() => {
+                    let angular = D::from(PI) / *duration;
+                    piece.waves.push(Harmonic { amplitude: *peak, angular, phase: -angular * *delay - FRAC_PI_2 });
+                }
+                Source::Ramp { rate } if begun => {
+                    piece.force = piece.force + *rate * (start - delay);
+                    piece.slope = piece.slope + *rate;
+                }
+                Source::Harmonic { amplitude, angular, phase } => {
+                    piece.waves.push(Harmonic { amplitude: *amplitude, angular: *angular, phase: *phase });
+                }
+                Source::Base { amplitude, angular, phase } => {
+                    let amplitude = self.mass * *amplitude * *angular * *angular;
+                    piece.waves.push(Harmonic { amplitude, angular: *angular, phase: *phase });
+                }
+                Source::HalfSine { .. } | Source::Ramp { .. } | Source::Belt { .. } => {}
+            }
+        }
+        piece.waves.retain(|wave| wave.amplitude.value() != 0.0 || D::DIRECTIONS > 0);
+        piece
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_follow_the_sum_of_all_forces() {
+        let excitations = [
+            Excitation::sampled_force(0.1, vec![0.0, 2.0, 4.0, 6.0, 1.0, 1.0, 1.0]).unwrap(),
+            Excitation::half_sine(10.0, 0.25).unwrap().delayed(0.05).unwrap(),
+            Excitation::ramp(3.0).unwrap(),
+            Excitation::harmonic(1.5, 7.0, 0.3).unwrap(),
+            Excitation::base(0.01, 20.0, 1.0).unwrap(),
+            Excitation::belt(0.2).unwrap(),
+        ];
+        let drive: Drive<f64> = Drive::new(&excitations, 2.0);
+        // 0, the straight samples 1 and 2 left out, the pulse from 0.05 to 0.3, the last sample.
+        assert_eq!(drive.pieces(), 6, "{:?}", drive.knots);
+        assert_eq!(drive.belt(), 0.2);
+        for index in 0..drive.pieces() {
+            let piece = drive.piece(index);
+            let end = if piece.end.is_finite() { piece.end } else { piece.start + 1.0 };
+            for part in [0.1, 0.5, 0.9] {
+                let t = piece.start + part * (end - piece.start);
+                let sampled = match t {
+                    t if t < 0.3 => 20.0 * t,
+                    t if t < 0.4 => 6.0 - 50.0 * (t - 0.3),
+                    t if t < 0.6 => 1.0,
+                    _ => 0.0,
+                };
+                let pulse = if (0.05..0.3).contains(&t) { 10.0 * (PI * (t - 0.05) / 0.25).sin() } else { 0.0 };
+                let waves = 1.5 * (7.0 * t + 0.3).cos() + 2.0 * 0.01 * 400.0 * (20.0 * t + 1.0).cos();
+                let expected = sampled + pulse + 3.0 * t + waves;
+                assert!((piece.force(t) - expected).abs() < 1e-13, "at {t} s: not {expected} N");
+            }
+        }
+    }
+
+    #[test]
+    fn an_empty_record_is_no_force() {
+        let excitations = [Excitation::<f64>::sampled_force(0.1, Vec::new()).unwrap()];
+        assert!(Drive::new(&excitations, 1.0).piece(0).is_free());
+        assert!(Excitation::<f64>::sampled_force(0.1, vec![f64::NAN]).is_err());
+        assert!(Excitation::<f64>::half_sine(1.0, 0.0).is_err());
+        assert!(Excitation::<f64>::ramp(1.0).unwrap().delayed(-1.0).is_err());
+    }
+}

@@ -1,0 +1,253 @@
+//! Elastic elements that yield, in closed form: a linear machine whose stiffness grows by that of the elements that hold.
+
+use fmm_friction::{Element, PiecewiseLinearLaw, Regime};
+use fmm_model::Scalar;
+
+use super::response::respond;
+use crate::automaton::crossing;
+use crate::curve::Curve;
+use crate::decay::Decay;
+use crate::drive::{Drive, Piece};
+use crate::first_zero::{SEARCH_BUDGET, first_zero};
+use crate::recorder::Recorder;
+use crate::work::Power;
+use crate::{Direction, Event, EventKind, Mode, Scenario, SimulationError, State};
+
+/// A machine with a contact of elements in parallel, on its way.
+pub(super) struct Elements<'a, D, L> {
+    scenario: &'a Scenario<D, L>,
+    drive: &'a Drive<'a, D>,
+    elements: &'a [Element<D>],
+    belt: D,
+    /// zᵢ at `time` (m).
+    deflections: Vec<D>,
+    regime: Regime,
+    direction: Direction,
+    /// Whether nothing moves and nothing will under the present piece of force.
+    at_rest: bool,
+    time: D,
+    state: State<D>,
+    budget: usize,
+}
+
+/// What ends a stretch of motion in one regime.
+#[derive(Clone, Copy)]
+enum Guard {
+    RelativeRest,
+    Yield(usize),
+}
+
+impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Elements<'a, D, L> {
+    pub(super) fn new(scenario: &'a Scenario<D, L>, drive: &'a Drive<'a, D>) -> Self {
+        let elements = scenario.law().elements();
+        Self {
+            scenario,
+            drive,
+            elements,
+            belt: drive.belt(),
+            deflections: vec![D::from(0.0); elements.len()],
+            regime: Regime::ALL_HOLD,
+            direction: Direction::Positive,
+            at_rest: false,
+            time: D::from(0.0),
+            state: scenario.initial(),
+            budget: SEARCH_BUDGET,
+        }
+    }
+
+    /// Runs from the initial state to the last sample.
+    pub(super) fn run(mut self, recorder: &mut Recorder<D>) -> Result<(), SimulationError> {
+        let (mut index, mut piece) = (0, self.drive.piece(0));
+        self.turn(&piece);
+        self.push(EventKind::Start, false, recorder)?;
+        let end = recorder.sampling.end();
+        loop {
+            let (limit, last) = (piece.end.min(end), piece.end > end);
+            match self.follow(&piece, limit, last, recorder)? {
+                Some((Guard::RelativeRest, grazing)) => {
+                    self.state.velocity = self.belt;
+                    self.turn(&piece);
+                    let kind = if self.at_rest { EventKind::Stop } else { EventKind::Reversal };
+                    self.push(kind, grazing, recorder)?;
+                }
+                Some((Guard::Yield(element), grazing)) => {
+                    self.regime = self.regime.sliding(element);
+                    let Element { stiffness, level } = self.elements[element];
+                    self.deflections[element] = level / stiffness * self.direction.sign();
+                    self.push(EventKind::Yield(element), grazing, recorder)?;
+                }
+                None if last => return Ok(()),
+                None => {
+                    index += 1;
+                    piece = self.drive.piece(index);
+                    if self.at_rest {
+                        self.turn(&piece);
+                        if !self.at_rest {
+                            self.push(EventKind::Breakaway, false, recorder)?;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Force on the machine but for inertia: what is left of the load by damping, spring and elements.
+    fn force(&self, piece: &Piece<D>) -> Curve<'static, D> {
+        let oscillator = self.scenario.oscillator();
+        let mut force = Curve::force(piece, self.time);
+        force.constant = force.constant
+            - oscillator.damping().linear_coefficient() * self.state.velocity
+            - oscillator.stiffness() * self.state.position
+            - self.friction();
+        force
+    }
+
+    fn friction(&self) -> D {
+        let sum = |sum, (element, deflection): (&Element<D>, &D)| sum + element.stiffness * *deflection;
+        self.elements.iter().zip(&self.deflections).fold(D::from(0.0), sum) * self.scenario.normal_load()
+    }
+
+    /// Decides where the contact goes from here; at zero relative velocity all elements hold again.
+    fn turn(&mut self, piece: &Piece<D>) {
+        self.at_rest = false;
+        let relative = self.state.velocity.value() - self.belt.value();
+        if relative != 0.0 {
+            self.direction = Direction::of(relative);
+            return;
+        }
+        self.regime = Regime::ALL_HOLD;
+        let (now, zero) = (self.force(piece), D::from(0.0));
+        let grows = now.derivative();
+        // The first derivative of the relative velocity that is not zero decides; moving with the counterface loads the
+        // spring but no element.
+        let spring = self.scenario.oscillator().stiffness() * self.belt;
+        let candidates = [now.at(zero).value(), (grows.at(zero) - spring).value(), grows.derivative().at(zero).value()];
+        match candidates.into_iter().find(|value| *value != 0.0) {
+            Some(value) => self.direction = Direction::of(value),
+            None => self.at_rest = true,
+        }
+    }
+
+    fn push(&self, kind: EventKind, grazing: bool, recorder: &mut Recorder<D>) -> Result<(), SimulationError> {
+        let level = self.elements.iter().fold(0.0, |sum, element| sum + element.level.value());
+        recorder.push(Event {
+            kind,
+            time: self.time,
+            position: self.state.position,
+            velocity: self.state.velocity,
+            next: if self.at_rest { Mode::Stick } else { Mode::Slip(self.direction) },
+            load: self.friction().value().abs(),
+            static_level: level * self.scenario.normal_load().value(),
+            grazing,
+        })
+    }
+
+    /// Moves on to the next event or to `limit`, writing samples; the event's guard, and whether it was grazed.
+    fn follow(
+        &mut self,
+        piece: &Piece<D>,
+        limit: f64,
+        last: bool,
+        recorder: &mut Recorder<D>,
+    ) -> Result<Option<(Guard, bool)>, SimulationError> {
+        let oscillator = self.scenario.oscillator();
+        let (load, sign) = (self.scenario.normal_load(), self.direction.sign());
+        let (mass, damping) = (oscillator.mass(), oscillator.damping().linear_coefficient());
+        // An element that holds is a spring to where it would be relaxed; one that slides is a force.
+        let (mut stiffness, mut forced) = (oscillator.stiffness(), Curve::force(piece, self.time));
+        for (index, (element, deflection)) in self.elements.iter().zip(&self.deflections).enumerate() {
+            if self.regime.slides(index) {
+                forced.constant = forced.constant - load * element.level * sign;
+            } else {
+                let spring = load * element.stiffness;
+                stiffness = stiffness + spring;
+                forced.constant = forced.constant - spring * (*deflection - self.state.position);
+                forced.slope = forced.slope + spring * self.belt;
+            }
+        }
+        let decay = Decay::new(damping / (mass * 2.0), stiffness / mass);
+        let plain = decay.plain();
+        let path = respond(forced, mass, damping, stiffness, &decay, self.state)?;
+        let velocity = path.derivative();
+
+        let begin = self.time.value();
+        let mut found: Option<(Guard, f64, Curve<D>)> = None;
+        if !self.at_rest {
+            let mut guards = vec![(Guard::RelativeRest, velocity.scaled(D::from(sign), self.belt * -sign))];
+            for (index, (element, deflection)) in self.elements.iter().zip(&self.deflections).enumerate() {
+                if !self.regime.slides(index) {
+                    // Its reserve, level − s κ (z + x − x₀ − v_b τ).
+                    let slope = element.stiffness * -sign;
+                    let mut reserve =
+                        path.clone().scaled(slope, element.level + slope * (*deflection - self.state.position));
+                    reserve.slope = reserve.slope - slope * self.belt;
+                    guards.push((Guard::Yield(index), reserve));
+                }
+            }
+            for (guard, curve) in guards {
+                let span = found.as_ref().map_or(limit - begin, |(_, elapsed, _)| *elapsed);
+                if let Some(elapsed) = first_zero(&curve.plain(&plain), span, &mut self.budget)? {
+                    // The earlier guard stays where two act at once.
+                    if found.as_ref().is_none_or(|(_, earlier, _)| elapsed < *earlier) {
+                        found = Some((guard, elapsed, curve));
+                    }
+                }
+            }
+        }
+        let (time, event) = match found {
+            Some((guard, elapsed, curve)) => {
+                let (time, grazing) = crossing(&curve, self.time, begin + elapsed);
+                (time, Some((guard, grazing)))
+            }
+            None => (D::from(limit), None),
+        };
+        let stop = if event.is_none() && last { f64::INFINITY } else { time.value() };
+        self.record(&path, piece, &plain, stop, limit.min(time.value()), recorder)?;
+        let next = path.state(time - self.time);
+        let moved = self.moved(next.position, time);
+        self.deflections = moved;
+        (self.time, self.state) = (time, next);
+        Ok(event)
+    }
+
+    /// The deflections at `position` and `time` within the present regime.
+    fn moved(&self, position: D, time: D) -> Vec<D> {
+        let shift = position - self.state.position - self.belt * (time - self.time);
+        let deflection = |(index, z): (usize, &D)| if self.regime.slides(index) { *z } else { *z + shift };
+        self.deflections.iter().enumerate().map(deflection).collect()
+    }
+
+    fn record(
+        &self,
+        path: &Curve<D>,
+        piece: &Piece<D>,
+        plain: &Decay<f64>,
+        stop: f64,
+        end: f64,
+        recorder: &mut Recorder<D>,
+    ) -> Result<(), SimulationError> {
+        for index in recorder.written..recorder.sampling.index_at_or_after(stop) {
+            let time = D::from(recorder.sampling.time(index));
+            let deflections = self.moved(path.at(time - self.time), time);
+            for (element, deflection) in deflections.into_iter().enumerate() {
+                recorder.trajectory.state_mut(element).set(index, deflection);
+            }
+        }
+        recorder.samples(stop, |time| path.state(-self.time + time))?;
+        let waves = path.waves.iter().map(|wave| wave.angular.value());
+        let frequency = waves.fold(plain.natural() + 2.0 * plain.rate(), f64::max);
+        let oscillator = self.scenario.oscillator();
+        recorder.work(self.time.value(), end, 1.0 / frequency, |time| {
+            let State { position, velocity } = path.state(-self.time + time);
+            let sum = |sum, (element, deflection): (&Element<D>, D)| sum + element.stiffness * deflection;
+            let deflections = self.moved(position, D::from(time));
+            let friction = self.elements.iter().zip(deflections).fold(D::from(0.0), sum) * self.scenario.normal_load();
+            Power {
+                friction: friction * (velocity - self.belt),
+                viscous: oscillator.damping().force(velocity) * velocity,
+                external: piece.force(time) * velocity - friction * self.belt,
+            }
+        });
+        Ok(())
+    }
+}

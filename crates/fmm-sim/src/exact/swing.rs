@@ -1,0 +1,241 @@
+//! One stretch of sliding under a piecewise linear law, in closed form.
+
+use fmm_friction::Affine;
+use fmm_model::{Oscillator, Scalar};
+
+use super::powers::Powers;
+use super::response::respond;
+use crate::automaton::{Branch, Branches, Ended, Ending, Phase, Slide, crossing};
+use crate::curve::Curve;
+use crate::decay::Decay;
+use crate::drive::Drive;
+use crate::first_zero::{SEARCH_BUDGET, first_zero};
+use crate::recorder::Recorder;
+use crate::work::Power;
+use crate::{Sampling, Scenario, SimulationError, State};
+
+/// Follows phases of sliding for the exact engine.
+pub(super) struct Swing<'a, D> {
+    oscillator: &'a Oscillator<D>,
+    normal_load: D,
+    belt: D,
+    has_belt: bool,
+    flows: &'a Flows<D>,
+    /// First zero velocity of an uninterrupted free decay, and half swings since. Counting half periods from there keeps
+    /// the rounding of a sum out of later event times.
+    rhythm: Option<(D, u32)>,
+    budget: usize,
+}
+
+/// The linear machine on each branch of the law.
+pub(super) struct Flows<D> {
+    gaining: Flow<D>,
+    losing: Option<Flow<D>>,
+}
+
+impl<D: Scalar> Flows<D> {
+    pub(super) fn new<L>(
+        scenario: &Scenario<D, L>,
+        branches: Branches<D>,
+        sampling: &Sampling,
+    ) -> Result<Self, SimulationError> {
+        let flow = |friction| Flow::new(scenario.oscillator(), scenario.normal_load(), friction, sampling);
+        let losing = if branches.differ { Some(flow(branches.losing)?) } else { None };
+        Ok(Self { gaining: flow(branches.gaining)?, losing })
+    }
+
+    fn on(&self, branch: Branch) -> &Flow<D> {
+        match (branch, &self.losing) {
+            (Branch::Losing, Some(losing)) => losing,
+            _ => &self.gaining,
+        }
+    }
+}
+
+/// The linear machine on one branch of the law.
+struct Flow<D> {
+    friction: Affine<D>,
+    decay: Decay<D>,
+    plain: Decay<f64>,
+    powers: Option<Powers>,
+}
+
+impl<D: Scalar> Flow<D> {
+    fn new(
+        oscillator: &Oscillator<D>,
+        normal_load: D,
+        friction: Affine<D>,
+        sampling: &Sampling,
+    ) -> Result<Self, SimulationError> {
+        let damping = oscillator.damping().linear_coefficient() + normal_load * friction.slope;
+        let decay = Decay::new(damping / (oscillator.mass() * 2.0), oscillator.stiffness() / oscillator.mass());
+        let edge = (normal_load * friction.level / oscillator.stiffness()).value();
+        if !(edge.is_finite() && damping.value().is_finite()) {
+            return Err(SimulationError::NotFinite { time: 0.0 });
+        }
+        let powers = Powers::for_swings(&decay, sampling);
+        Ok(Self { friction, plain: decay.plain(), decay, powers })
+    }
+}
+
+impl<'a, D: Scalar> Swing<'a, D> {
+    pub(super) fn new<L>(scenario: &'a Scenario<D, L>, flows: &'a Flows<D>, drive: &Drive<D>) -> Self {
+        Self {
+            oscillator: scenario.oscillator(),
+            normal_load: scenario.normal_load(),
+            belt: drive.belt(),
+            has_belt: drive.has_belt(),
+            flows,
+            rhythm: None,
+            budget: SEARCH_BUDGET,
+        }
+    }
+
+    /// The position from the beginning of `phase` on.
+    fn position<'f>(&self, flow: &'f Flow<D>, phase: &Phase<D>) -> Result<Curve<'f, D>, SimulationError> {
+        let (mass, stiffness) = (self.oscillator.mass(), self.oscillator.stiffness());
+        let mut forced = Curve::force(phase.piece, phase.time);
+        let sliding = self.normal_load * flow.friction.level;
+        forced.constant = forced.constant - sliding * phase.direction.sign();
+        if self.has_belt {
+            forced.constant = forced.constant + self.normal_load * flow.friction.slope * self.belt;
+        }
+        let damping = flow.decay.rate() * mass * 2.0;
+        respond(forced, mass, damping, stiffness, &flow.decay, phase.state)
+    }
+
+    /// The time of the next zero velocity of a free decay about `centre`, and the position there.
+    fn next_rest(&mut self, phase: &Phase<D>, centre: D, decay: &Decay<D>, free: State<D>) -> Option<(D, D)> {
+        let duration = decay.time_to_zero_velocity(free)?;
+        let (zero, swings) = match self.rhythm {
+            None => (phase.time + duration, 0),
+            Some((zero, swings)) => (zero, swings + 1),
+        };
+        self.rhythm = Some((zero, swings));
+        let time = if swings == 0 { zero } else { zero + duration * f64::from(swings) };
+        Some((time, centre + decay.position_at_zero_velocity(free, duration)))
+    }
+
+    /// The first guard that the motion along `position` reaches before the limit of `phase`, with its time.
+    fn first_guard(
+        &mut self,
+        phase: &Phase<D>,
+        position: &Curve<D>,
+        plain: &Decay<f64>,
+    ) -> Result<Option<(Ending, D, bool)>, SimulationError> {
+        let sign = phase.direction.sign();
+        let velocity = position.derivative();
+        let begin = phase.time.value();
+        let speed = || (Ending::RelativeRest, velocity.clone().scaled(D::from(sign), self.belt * -sign));
+        let gain = |sign: f64| (Ending::SteadySpeed, velocity.derivative().scaled(D::from(sign), D::from(0.0)));
+        let guards = match phase.branch {
+            Branch::Only => vec![speed()],
+            Branch::Gaining => vec![gain(sign)],
+            Branch::Losing => vec![speed(), gain(-sign)],
+        };
+        let mut found: Option<(Ending, f64, Curve<D>)> = None;
+        for (ending, guard) in guards {
+            let span = found.as_ref().map_or(phase.limit - begin, |(_, elapsed, _)| *elapsed);
+            if let Some(elapsed) = first_zero(&guard.plain(plain), span, &mut self.budget)? {
+                found = Some((ending, elapsed, guard));
+            }
+        }
+        Ok(found.map(|(ending, elapsed, guard)| {
+            let (time, grazing) = crossing(&guard, phase.time, begin + elapsed);
+            (ending, time, grazing)
+        }))
+    }
+}
+
+impl<D: Scalar> Slide<D> for Swing<'_, D> {
+    fn slide(&mut self, phase: &Phase<D>, recorder: &mut Recorder<D>) -> Result<Ended<D>, SimulationError> {
+        let flow = self.flows.on(phase.branch);
+        let path = self.position(flow, phase)?;
+        let undisturbed = path.is_free() && !self.has_belt && phase.branch == Branch::Only;
+        let found = match path.free() {
+            Some((decay, free)) if undisturbed => self
+                .next_rest(phase, path.constant, decay, free)
+                .filter(|(time, _)| time.value() <= phase.limit)
+                .map(|(time, position)| (Ending::RelativeRest, time, State { position, velocity: self.belt }, false)),
+            _ => self
+                .first_guard(phase, &path, &flow.plain)?
+                .map(|(ending, time, grazing)| (ending, time, path.state(time - phase.time), grazing)),
+        };
+        let end = found.as_ref().map_or(phase.samples_end(), |(_, time, _, _)| time.value());
+        write(&path, flow.powers.as_ref(), phase.time, end, recorder)?;
+        self.write_work(&path, flow, phase, end.min(phase.limit), recorder);
+        if let Some((ending, time, state, grazing)) = found {
+            if !undisturbed {
+                self.rhythm = None;
+            }
+            return Ok(Ended { ending, time, state, grazing });
+        }
+        self.rhythm = None;
+        let time = D::from(phase.limit);
+        let state = if phase.last { phase.state } else { path.state(time - phase.time) };
+        Ok(Ended { ending: Ending::Limit, time, state, grazing: false })
+    }
+}
+
+impl<D: Scalar> Swing<'_, D> {
+    fn write_work(&self, path: &Curve<D>, flow: &Flow<D>, phase: &Phase<D>, end: f64, recorder: &mut Recorder<D>) {
+        let waves = path.waves.iter().map(|wave| wave.angular.value());
+        let frequency = waves.fold(flow.plain.natural() + 2.0 * flow.plain.rate(), f64::max);
+        recorder.work(phase.time.value(), end, 1.0 / frequency, |time| {
+            let velocity = path.state(-phase.time + time).velocity;
+            let relative = velocity - self.belt;
+            let friction =
+                self.normal_load * (flow.friction.level * phase.direction.sign() + flow.friction.slope * relative);
+            Power {
+                friction: friction * relative,
+                viscous: self.oscillator.damping().force(velocity) * velocity,
+                external: phase.piece.force(time) * velocity - friction * self.belt,
+            }
+        });
+    }
+}
+
+/// Writes the samples of the motion along `path`, counted from `start`, that come before `end`.
+pub(super) fn write<D: Scalar>(
+    path: &Curve<D>,
+    powers: Option<&Powers>,
+    start: D,
+    end: f64,
+    recorder: &mut Recorder<D>,
+) -> Result<(), SimulationError> {
+    let stop = recorder.sampling.index_at_or_after(end);
+    let (Some(powers), Some((decay, free)), Some(interval)) = (powers, path.free(), recorder.sampling.interval())
+    else {
+        return recorder.samples(end, |time| path.state(-start + time));
+    };
+    while recorder.written < stop {
+        let anchor = recorder.sampling.time(recorder.written);
+        let at_anchor = decay.advance(free, -start + anchor);
+        let forced = path.forced_state(-start + anchor);
+        let reach = decay.reach(at_anchor) + path.constant.value().abs() + forced.position.value().abs();
+        if !(reach + forced.velocity.value().abs()).is_finite() {
+            return Err(SimulationError::NotFinite { time: anchor });
+        }
+        let count = powers.len().min(stop - recorder.written);
+        powers.write(recorder, count, interval, decay, path.constant, at_anchor);
+        if !path.is_free() {
+            add_forced(path, start, count, recorder);
+        }
+        recorder.written += count;
+    }
+    Ok(())
+}
+
+/// Adds what a force contributes to `count` samples beyond a constant.
+fn add_forced<D: Scalar>(path: &Curve<D>, start: D, count: usize, recorder: &mut Recorder<D>) {
+    let channels = recorder.sampling.channels();
+    for index in recorder.written..recorder.written + count {
+        let forced = path.forced_state(-start + recorder.sampling.time(index));
+        if channels.position() {
+            recorder.trajectory.position_mut().add(index, forced.position - path.constant);
+        }
+        if channels.velocity() {
+            recorder.trajectory.velocity_mut().add(index, forced.velocity);
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! What acts on the machine from outside: forces over time, a shaking base, a moving counterface.
+
+use std::sync::Arc;
+
+use fmm_model::{ModelError, Scalar};
+
+use crate::SimulationError;
+
+/// One cause of motion. Several can act on a [`Scenario`](crate::Scenario) together; their forces add up.
+///
+/// A release or a push is none of these: it is an initial state
+/// ([`Scenario::starting_at`](crate::Scenario::starting_at)).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Excitation<D = f64> {
+    pub(crate) source: Source<D>,
+    /// When it begins (s); only for those that begin.
+    pub(crate) delay: f64,
+}
+
+/// The mathematics of an excitation.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Source<D> {
+    SampledForce { interval: f64, values: Arc<[f64]> },
+    HalfSine { peak: D, duration: D },
+    Ramp { rate: D },
+    Harmonic { amplitude: D, angular: D, phase: D },
+    Base { amplitude: D, angular: D, phase: D },
+    Belt { velocity: D },
+}
+
+impl<D: Scalar> Excitation<D> {
+    fn of(source: Source<D>) -> Self {
+        Self { source, delay: 0.0 }
+    }
+
+    /// A measured force: `values` (N), one every `interval` (s) from t = 0 on, straight lines between them
+    /// (first-order hold), and no force after the last.
+    ///
+    /// Holding each value until the next instead would shift a hammer pulse by half an interval and lose part of its
+    /// impulse.
+    ///
+    /// # Errors
+    /// [`SimulationError::Quantity`] if the interval is not positive or a value is not finite.
+    pub fn sampled_force(interval: f64, values: impl Into<Arc<[f64]>>) -> Result<Self, SimulationError> {
+        let values = values.into();
+        ModelError::require_positive("interval of the sampled force", interval, "s")?;
+        for value in values.iter() {
+            ModelError::require_finite("sampled force", *value, "N")?;
+        }
+        Ok(Self::of(Source::SampledForce { interval, values }))
+    }
+
+    /// A hammer blow, `peak` · sin(π t/`duration`) (N) for 0 ≤ t ≤ `duration` (s); its impulse is 2/π · peak · duration.
+    ///
+    /// # Errors
+    /// [`SimulationError::Quantity`] if the peak is not finite or the duration not positive.
+    pub fn half_sine(peak: D, duration: D) -> Result<Self, SimulationError> {
+        ModelError::require_finite("peak force", peak.value(), "N")?;
+        ModelError::require_positive("pulse duration", duration.value(), "s")?;
+        Ok(Self::of(Source::HalfSine { peak, duration }))
+    }
+
+    /// A force that grows from zero by `rate` (N/s).
+    ///
+    /// # Errors
+    /// [`SimulationError::Quantity`] if the rate is not finite.
+    pub fn ramp(rate: D) -> Result<Self, SimulationError> {
+        ModelError::require_finite("rate of the force", rate.value(), "N/s")?;
+        Ok(Self::of(Source::Ramp { rate }))
+    }
+
+    /// A harmonic force, `amplitude` · cos(`angular_frequency` t + `phase`) (N, rad/s, rad).
+    ///
+    /// # Errors
+    /// [`SimulationError::Quantity`] if amplitude or phase is not finite or the frequency is negative.
+    pub fn harmonic(amplitude: D, angular_frequency: D, phase: D) -> Result<Self, SimulationError> {
+        ModelError::require_finite("force amplitude", amplitude.value(), "N")?;
+        ModelError::require_not_negative("angular frequency", angular_frequency.value(), "rad/s")?;
+        ModelError::require_finite("phase", phase.value(), "rad")?;
+        Ok(Self::of(Source::Harmonic { amplitude, angular: angular_frequency, phase }))
+    }
+
+    /// A shaking base, displaced by `amplitude` · cos(`angular_frequency` t + `phase`) (m, rad/s, rad), to which both
+    /// the spring and the counterface are fixed. Position and velocity of the scenario are then relative to the base,
+    /// and the base acts through the inertial force −m b″.
+    ///
+    /// # Errors
+    /// As [`harmonic`](Self::harmonic).
+    pub fn base(amplitude: D, angular_frequency: D, phase: D) -> Result<Self, SimulationError> {
+        ModelError::require_finite("base amplitude", amplitude.value(), "m")?;
+        ModelError::require_not_negative("angular frequency", angular_frequency.value(), "rad/s")?;
+        ModelError::require_finite("phase", phase.value(), "rad")?;
+        Ok(Self::of(Source::Base { amplitude, angular: angular_frequency, phase }))
+    }
+
+    /// A counterface that moves with `velocity` (m/s), such as a belt or a disc: friction opposes the motion relative
+    /// to it.
+    ///
+    /// # Errors
+    /// [`SimulationError::Quantity`] if the velocity is not finite.
+    pub fn belt(velocity: D) -> Result<Self, SimulationError> {
+        ModelError::require_finite("belt velocity", velocity.value(), "m/s")?;
+        Ok(Self::of(Source::Belt { velocity }))
+    }
+
+    /// The same sampled force, half sine or ramp, begun `delay` (s) later. Harmonic motion and a belt have no
+    /// beginning and stay as they are.
+    ///
+    /// # Errors
+    /// [`SimulationError::Quantity`] if the delay is negative or not finite.
+    pub fn delayed(mut self, delay: f64) -> Result<Self, SimulationError> {
+        ModelError::require_not_negative("delay", delay, "s")?;
+        self.delay = delay;
+        Ok(self)
+    }
+}

@@ -1,0 +1,128 @@
+//! Writes what an engine finds into a trajectory: samples up to a time, events, and the work done.
+
+use fmm_model::Scalar;
+
+use crate::runge_kutta::Within;
+use crate::work::{Power, Work};
+use crate::{Event, Sampling, SimulationError, State, Trajectory};
+
+/// No record resolves more events than this.
+pub(crate) const EVENT_BUDGET: usize = 1_000_000;
+
+/// A trajectory in the making.
+pub(crate) struct Recorder<'a, D> {
+    pub(crate) sampling: &'a Sampling,
+    pub(crate) trajectory: &'a mut Trajectory<D>,
+    /// Samples written so far.
+    pub(crate) written: usize,
+    work: Work<D>,
+    /// Samples whose work is written.
+    worked: usize,
+}
+
+impl<'a, D: Scalar> Recorder<'a, D> {
+    pub(crate) fn new(
+        engine: &'static str,
+        states: usize,
+        sampling: &'a Sampling,
+        trajectory: &'a mut Trajectory<D>,
+    ) -> Self {
+        trajectory.reset(engine, states, sampling);
+        Self { sampling, trajectory, written: 0, work: Work::none(), worked: 0 }
+    }
+
+    /// Whether the sampled time is over at `time`.
+    pub(crate) fn is_over(&self, time: f64) -> bool {
+        time > self.sampling.end()
+    }
+
+    pub(crate) fn push(&mut self, event: Event<D>) -> Result<(), SimulationError> {
+        let finite = event.time.value().is_finite()
+            && event.position.value().is_finite()
+            && event.velocity.value().is_finite()
+            && event.load.is_finite();
+        if !finite {
+            return Err(SimulationError::NotFinite { time: event.time.value() });
+        }
+        if self.trajectory.events().len() >= EVENT_BUDGET {
+            return Err(SimulationError::EventBudget { budget: EVENT_BUDGET, end: self.sampling.end() });
+        }
+        self.trajectory.push(event);
+        Ok(())
+    }
+
+    /// Writes the samples before `end`, `state` giving the state at a sample's time.
+    pub(crate) fn samples(&mut self, end: f64, mut state: impl FnMut(f64) -> State<D>) -> Result<(), SimulationError> {
+        let stop = self.sampling.index_at_or_after(end);
+        let channels = self.sampling.channels();
+        while self.written < stop {
+            let time = self.sampling.time(self.written);
+            let State { position, velocity } = state(time);
+            if !(position.value().is_finite() && velocity.value().is_finite()) {
+                return Err(SimulationError::NotFinite { time });
+            }
+            self.trajectory.set(self.written, channels, position, velocity);
+            self.written += 1;
+        }
+        Ok(())
+    }
+
+    /// Whether a sample before `end` is still to be written.
+    pub(crate) fn has_samples_before(&self, end: f64) -> bool {
+        self.written < self.sampling.count() && self.sampling.time(self.written) < end
+    }
+
+    /// Writes the samples before `end` from the polynomials of a step that begins at `begin` and is `length` long (s).
+    pub(crate) fn polynomial(
+        &mut self,
+        end: f64,
+        begin: f64,
+        length: f64,
+        within: &Within<D>,
+    ) -> Result<(), SimulationError> {
+        let range = self.written..self.sampling.index_at_or_after(end);
+        if range.is_empty() {
+            return Ok(());
+        }
+        let last = within.at(1.0);
+        if !(last.position.value().is_finite() && last.velocity.value().is_finite()) {
+            return Err(SimulationError::NotFinite { time: begin });
+        }
+        let (sampling, channels) = (self.sampling, self.sampling.channels());
+        let part = |index| (sampling.time(index) - begin) / length;
+        if channels.position() {
+            self.trajectory.position_mut().polynomial(range.clone(), &within.position, part);
+        }
+        if channels.velocity() {
+            self.trajectory.velocity_mut().polynomial(range.clone(), &within.velocity, part);
+        }
+        self.written = range.end;
+        Ok(())
+    }
+
+    /// Adds the work done from `begin` to `end`, of which the samples at or after `begin` and before `end` get their
+    /// part; `power` gives the power at a time, which must be smooth and vary little within `scale` (s).
+    pub(crate) fn work(&mut self, begin: f64, end: f64, scale: f64, mut power: impl FnMut(f64) -> Power<D>) {
+        if !self.sampling.wants_work() {
+            return;
+        }
+        let end = end.min(self.sampling.end());
+        let mut from = begin;
+        let stop = self.sampling.index_at_or_after(end);
+        while self.worked < stop {
+            let time = self.sampling.time(self.worked).max(begin);
+            self.work.add(from, time, scale, &mut power);
+            self.trajectory.set_work(self.worked, &self.work);
+            from = from.max(time);
+            self.worked += 1;
+        }
+        self.work.add(from, end, scale, &mut power);
+        // The last sample is at the end itself.
+        if end == self.sampling.end() {
+            while self.worked < self.sampling.count() {
+                self.trajectory.set_work(self.worked, &self.work);
+                self.worked += 1;
+            }
+        }
+    }
+}

@@ -1,0 +1,311 @@
+//! One stretch of sliding, step by step.
+
+use fmm_friction::SlidingLaw;
+use fmm_model::{Oscillator, Scalar};
+
+use super::step::{COEFFICIENTS, Step, Within, first_zero_within};
+use crate::automaton::{Branch, Ended, Ending, Phase, Slide};
+use crate::drive::Drive;
+use crate::recorder::Recorder;
+use crate::work::Power;
+use crate::{Scenario, SimulationError, State};
+
+/// Steps of one run; a record of a million samples has fewer.
+const STEP_BUDGET: usize = 10_000_000;
+
+/// Attempts at landing on an event; Newton's method needs two or three.
+const LANDINGS: usize = 12;
+
+/// Follows stretches of sliding for the Runge-Kutta engine.
+pub(super) struct Integrator<'a, D, L> {
+    oscillator: &'a Oscillator<D>,
+    law: &'a L,
+    normal_load: D,
+    belt: D,
+    tolerance: f64,
+    /// ω₀ of small vibrations (rad/s).
+    angular: f64,
+    /// Displacement that the static level holds on the spring (m), below which no motion matters.
+    held: f64,
+    /// Length of the step to try next (s).
+    length: f64,
+    budget: usize,
+}
+
+/// A stretch in progress: the state at a time that is a plain number.
+struct Progress<D> {
+    time: f64,
+    state: State<D>,
+    acceleration: D,
+    /// Whether the speed has exceeded the capture speed of the law, at which it is then caught.
+    armed: bool,
+}
+
+impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
+    pub(super) fn new(scenario: &'a Scenario<D, L>, drive: &Drive<D>, tolerance: f64) -> Self {
+        let oscillator = scenario.oscillator();
+        let angular = oscillator.natural_angular_frequency().value();
+        let law = scenario.law();
+        let held = (law.breakaway() * scenario.normal_load() / oscillator.stiffness()).value();
+        Self {
+            oscillator,
+            law,
+            normal_load: scenario.normal_load(),
+            belt: drive.belt(),
+            tolerance,
+            angular,
+            held,
+            length: 0.1 / angular,
+            budget: STEP_BUDGET,
+        }
+    }
+
+    /// Friction force while sliding with `velocity` in the direction of `phase`.
+    #[inline]
+    fn friction(&self, phase: &Phase<D>, velocity: D) -> D {
+        let sign = phase.direction.sign();
+        let mut speed = (velocity - self.belt) * sign;
+        if speed.value() < 0.0 {
+            // Stages may look past the stop; a law knows no negative speed.
+            speed = D::from(0.0);
+        }
+        let coefficient = match phase.branch {
+            Branch::Losing => self.law.coefficient_losing_speed(speed),
+            Branch::Only | Branch::Gaining => self.law.coefficient(speed),
+        };
+        self.normal_load * coefficient * sign
+    }
+
+    #[inline]
+    fn acceleration(&self, phase: &Phase<D>, time: f64, state: State<D>) -> D {
+        let mut force = -self.friction(phase, state.velocity)
+            - self.oscillator.damping().force(state.velocity)
+            - self.oscillator.restoring_force(state.position);
+        if !phase.piece.is_free() {
+            force = force + phase.piece.force(time);
+        }
+        force / self.oscillator.mass()
+    }
+
+    /// Amplitudes (m, m/s) that errors are relative to.
+    fn scale(&self, state: State<D>, acceleration: D) -> State<f64> {
+        let velocity = state.velocity.value().abs()
+            + self.angular * (state.position.value().abs() + self.held)
+            + acceleration.value().abs() / self.angular;
+        let velocity = velocity.max(f64::MIN_POSITIVE);
+        State { position: velocity / self.angular, velocity }
+    }
+
+    /// The speed less that at which the contact is caught.
+    fn spare_speed(&self, phase: &Phase<D>, velocity: D, armed: bool) -> D {
+        let speed = (velocity - self.belt) * phase.direction.sign();
+        if armed { speed - self.law.capture_speed() } else { speed }
+    }
+
+    fn exceeds_capture(&self, phase: &Phase<D>, state: State<D>) -> bool {
+        let capture = self.law.capture_speed().value();
+        capture > 0.0 && self.spare_speed(phase, state.velocity, false).value() > capture
+    }
+
+    /// The value at the end of `step` of the guard that `ending` stands for, positive before the event, and its rate.
+    fn guard(&self, phase: &Phase<D>, step: &Step<D>, ending: Ending, armed: bool) -> (D, f64) {
+        let sign = phase.direction.sign();
+        if ending == Ending::SteadySpeed {
+            let sign = if phase.branch == Branch::Losing { -sign } else { sign };
+            let (first, last) = (step.first_acceleration().value(), step.last_acceleration());
+            (last * sign, (last.value() - first) * sign / step.length)
+        } else {
+            (self.spare_speed(phase, step.end.velocity, armed), step.last_acceleration().value() * sign)
+        }
+    }
+
+    /// The guards of a phase.
+    fn endings(phase: &Phase<D>) -> &'static [Ending] {
+        match phase.branch {
+            Branch::Only => &[Ending::RelativeRest],
+            Branch::Gaining => &[Ending::SteadySpeed],
+            Branch::Losing => &[Ending::RelativeRest, Ending::SteadySpeed],
+        }
+    }
+
+    /// The guard that `step` reaches first, and the part of the step at which it does.
+    fn reached(&self, phase: &Phase<D>, at: &Progress<D>, step: &mut Step<D>) -> Option<(Ending, f64)> {
+        let sign = phase.direction.sign();
+        let mut first: Option<(Ending, f64)> = None;
+        for &ending in Self::endings(phase) {
+            let crossed = self.guard(phase, step, ending, at.armed).0.value() <= 0.0;
+            let turning =
+                step.first_acceleration().value() * sign < 0.0 && step.last_acceleration().value() * sign > 0.0;
+            if !(crossed || turning && ending == Ending::RelativeRest) {
+                continue;
+            }
+            let velocity = self.within(phase, at.time, step).velocity.map(|coefficient| coefficient.value() * sign);
+            let mut guard = velocity;
+            if ending == Ending::SteadySpeed {
+                let sign = if phase.branch == Branch::Losing { -1.0 } else { 1.0 };
+                guard = [0.0; COEFFICIENTS];
+                for power in 1..COEFFICIENTS {
+                    guard[power - 1] = velocity[power] * power as f64 * sign;
+                }
+            } else {
+                guard[0] = self.spare_speed(phase, at.state.velocity, at.armed).value();
+            }
+            if guard[0] <= 0.0 {
+                // A stretch that begins on its guard leaves it; rounding may say otherwise.
+                (guard[0], guard[1]) = (0.0, guard[1].max(0.0));
+            }
+            let theta = first_zero_within(guard).or(crossed.then_some(1.0));
+            if let Some(theta) = theta.filter(|theta| first.is_none_or(|(_, other)| *theta < other)) {
+                first = Some((ending, theta));
+            }
+        }
+        first
+    }
+
+    #[inline]
+    fn take(&self, phase: &Phase<D>, at: &Progress<D>, length: f64) -> Step<D> {
+        Step::take(at.state, at.acceleration, length, |elapsed, state| {
+            self.acceleration(phase, at.time + elapsed, state)
+        })
+    }
+
+    fn within(&self, phase: &Phase<D>, time: f64, step: &mut Step<D>) -> Within<D> {
+        step.within(|elapsed, state| self.acceleration(phase, time + elapsed, state))
+    }
+
+    /// The step from `at` that ends where the guard of `ending` is zero, about `length` long and shorter than `longest`.
+    fn land(&self, phase: &Phase<D>, at: &Progress<D>, ending: Ending, mut length: f64, longest: f64) -> Step<D> {
+        let mut step = self.take(phase, at, length);
+        let mut before: Option<(f64, f64)> = None;
+        for _ in 0..LANDINGS {
+            let (value, mut rate) = self.guard(phase, &step, ending, at.armed);
+            if let (Ending::SteadySpeed, Some((other, at_other))) = (ending, before) {
+                // The law has no formula for the rate of an acceleration; a secant does.
+                rate = (value.value() - at_other) / (length - other);
+            }
+            before = Some((length, value.value()));
+            let correction = value.value() / rate;
+            let next = length - correction;
+            let resolution = 2.0 * f64::EPSILON * (at.time + length);
+            if !(rate < 0.0 && correction.abs() > resolution && next > 0.0 && next <= longest) {
+                break;
+            }
+            length = next;
+            step = self.take(phase, at, length);
+        }
+        step
+    }
+
+    /// The event at the end of `step`, which begins at `at`.
+    fn ended(&self, phase: &Phase<D>, at: &Progress<D>, step: &Step<D>, ending: Ending) -> Ended<D> {
+        let time = D::from(at.time + step.length);
+        let (value, rate) = self.guard(phase, step, ending, at.armed);
+        let scale = self.scale(step.end, step.last_acceleration());
+        // A velocity that is rounding at a slope like this may as well be zero a period away.
+        let grazing = D::DIRECTIONS > 0 && rate * rate <= 16.0 * f64::EPSILON * (scale.velocity * self.angular).powi(2);
+        let late = if grazing { D::from(0.0) } else { -(value - value.value()) / rate };
+        let state = State {
+            position: step.end.position + step.end.velocity * late,
+            velocity: step.end.velocity + step.last_acceleration() * late,
+        };
+        Ended { ending, time: time + late, state, grazing }
+    }
+
+    /// Writes the samples and the work of `step`, which begins at `time`.
+    fn record(
+        &self,
+        phase: &Phase<D>,
+        time: f64,
+        step: &mut Step<D>,
+        stop: f64,
+        recorder: &mut Recorder<D>,
+    ) -> Result<(), SimulationError> {
+        let length = step.length;
+        if !recorder.sampling.wants_work() && !recorder.has_samples_before(stop) {
+            return Ok(());
+        }
+        let within = self.within(phase, time, step);
+        recorder.polynomial(stop, time, length, &within)?;
+        recorder.work(time, time + length, length, |time_within| {
+            let state = within.at((time_within - time) / length);
+            let friction = self.friction(phase, state.velocity);
+            Power {
+                friction: friction * (state.velocity - self.belt),
+                viscous: self.oscillator.damping().force(state.velocity) * state.velocity,
+                external: phase.piece.force(time_within) * state.velocity - friction * self.belt,
+            }
+        });
+        Ok(())
+    }
+
+    /// The longest step that resolves the machine and every wave (s).
+    fn longest(&self, phase: &Phase<D>) -> f64 {
+        1.0 / phase.piece.waves().iter().map(|wave| wave.angular.value()).fold(self.angular, f64::max)
+    }
+}
+
+impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
+    fn slide(&mut self, phase: &Phase<D>, recorder: &mut Recorder<D>) -> Result<Ended<D>, SimulationError> {
+        let time = phase.time.value();
+        // From the time of the event, which has derivatives, to the number that is its value.
+        let late = -phase.time + time;
+        let acceleration = self.acceleration(phase, time, phase.state);
+        let state = State {
+            position: phase.state.position + phase.state.velocity * late,
+            velocity: phase.state.velocity + acceleration * late,
+        };
+        let acceleration = self.acceleration(phase, time, state);
+        let armed = self.exceeds_capture(phase, state);
+        let mut at = Progress { time, state, acceleration, armed };
+        let longest = self.longest(phase);
+        while at.time < phase.limit {
+            let rest = phase.limit - at.time;
+            let mut length = self.length.min(longest);
+            if length >= rest {
+                length = rest;
+            } else if 2.0 * length > rest {
+                // Two halves instead of a step and a sliver that would cost as much.
+                length = 0.5 * rest;
+            }
+            self.budget = self
+                .budget
+                .checked_sub(1)
+                .ok_or(SimulationError::StepBudget { budget: STEP_BUDGET, end: recorder.sampling.end() })?;
+            let mut step = self.take(phase, &at, length);
+            let error = step.error(self.scale(at.state, at.acceleration)) / self.tolerance;
+            if !(error <= 1.0) {
+                let factor = if error.is_finite() { (0.9 * error.powf(-0.125)).clamp(0.1, 0.9) } else { 0.1 };
+                self.length = length * factor;
+                if at.time + self.length <= at.time {
+                    let finite = at.acceleration.value().is_finite() && at.state.position.value().is_finite();
+                    return Err(if finite {
+                        SimulationError::StepTooSmall { tolerance: self.tolerance, time: at.time }
+                    } else {
+                        SimulationError::NotFinite { time: at.time }
+                    });
+                }
+                continue;
+            }
+            let proposed = length * (0.9 * error.powf(-0.125)).min(5.0);
+            self.length = if length < self.length { self.length.max(proposed) } else { proposed };
+            if let Some((ending, theta)) = self.reached(phase, &at, &mut step) {
+                let mut step = self.land(phase, &at, ending, theta * length, length);
+                let end = at.time + step.length;
+                self.record(phase, at.time, &mut step, end, recorder)?;
+                return Ok(self.ended(phase, &at, &step, ending));
+            }
+            let (next, whole) = (at.time + length, length == rest);
+            let next = if whole { phase.limit } else { next };
+            let stop = if whole { phase.samples_end() } else { next };
+            self.record(phase, at.time, &mut step, stop, recorder)?;
+            at = Progress {
+                time: next,
+                state: step.end,
+                acceleration: step.last_acceleration(),
+                armed: at.armed || self.exceeds_capture(phase, step.end),
+            };
+        }
+        recorder.samples(phase.samples_end(), |_| at.state)?;
+        Ok(Ended { ending: Ending::Limit, time: D::from(phase.limit), state: at.state, grazing: false })
+    }
+}
