@@ -342,7 +342,12 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         }
         let stop = leaving.map_or(phase.samples_end(), |(elapsed, _, _)| begin + elapsed);
         let at = |time: D| position + velocity * (time - phase.time);
-        recorder.samples(stop, |time| State { position: at(D::from(time)), velocity })?;
+        let still = velocity.value() == 0.0 && (0..D::DIRECTIONS).all(|direction| velocity.partial(direction) == 0.0);
+        if still {
+            recorder.hold(stop, position);
+        } else {
+            recorder.samples(stop, |time| State { position: at(D::from(time)), velocity })?;
+        }
         let (relative, damping) = (velocity - self.belt, self.oscillator.damping().force(velocity));
         recorder.work(begin, stop.min(phase.limit), self.scale(&load), |time| {
             let friction = load.at(-phase.time + time);

@@ -41,6 +41,7 @@ pub(crate) struct Jet {
 
 impl<'a, D: Scalar> Curve<'a, D> {
     /// A line.
+    #[cfg(test)]
     pub(crate) fn line(constant: D, slope: D) -> Self {
         Self { constant, slope, waves: Vec::new(), decay: None }
     }

@@ -100,7 +100,8 @@ impl<'a, D: Scalar> Drive<'a, D> {
         })
     }
 
-    pub(crate) fn pieces(&self) -> usize {
+    #[cfg(test)]
+    fn pieces(&self) -> usize {
         self.knots.len()
     }
 

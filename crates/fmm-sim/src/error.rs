@@ -62,6 +62,12 @@ pub enum SimulationError {
         /// The tolerance given (1).
         tolerance: f64,
     },
+    /// A θ for which the θ-method is not stable.
+    #[error("theta must lie between 1/2 and 1, but is {theta}")]
+    Theta {
+        /// The value given (1).
+        theta: f64,
+    },
     /// The steps that the tolerance asks for are smaller than the resolution of time.
     #[error("the motion cannot be integrated to a relative tolerance of {tolerance} at {time} s; ask for less")]
     StepTooSmall {

@@ -4,10 +4,13 @@ use fmm_model::Scalar;
 
 use crate::runge_kutta::Within;
 use crate::work::{Power, Work};
-use crate::{Event, Sampling, SimulationError, State, Trajectory};
+use crate::{Channels, Event, Sampling, SimulationError, State, Trajectory};
 
 /// No record resolves more events than this.
 pub(crate) const EVENT_BUDGET: usize = 1_000_000;
+
+/// Samples written in one go from one polynomial.
+const LONGEST_RUN: usize = 1 << 16;
 
 /// A trajectory in the making.
 pub(crate) struct Recorder<'a, D> {
@@ -31,11 +34,6 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         Self { sampling, trajectory, written: 0, work: Work::none(), worked: 0 }
     }
 
-    /// Whether the sampled time is over at `time`.
-    pub(crate) fn is_over(&self, time: f64) -> bool {
-        time > self.sampling.end()
-    }
-
     pub(crate) fn push(&mut self, event: Event<D>) -> Result<(), SimulationError> {
         let finite = event.time.value().is_finite()
             && event.position.value().is_finite()
@@ -53,26 +51,49 @@ impl<'a, D: Scalar> Recorder<'a, D> {
 
     /// Writes the samples before `end`, `state` giving the state at a sample's time.
     pub(crate) fn samples(&mut self, end: f64, mut state: impl FnMut(f64) -> State<D>) -> Result<(), SimulationError> {
+        self.samples_with_states(end, &mut [], |time, _| state(time))
+    }
+
+    /// Writes the samples before `end`, `state` giving the state at a sample's time and, from the third entry of
+    /// `unknowns` on, the internal states.
+    pub(crate) fn samples_with_states(
+        &mut self,
+        end: f64,
+        unknowns: &mut [D],
+        mut state: impl FnMut(f64, &mut [D]) -> State<D>,
+    ) -> Result<(), SimulationError> {
         let stop = self.sampling.index_at_or_after(end);
         let channels = self.sampling.channels();
         while self.written < stop {
             let time = self.sampling.time(self.written);
-            let State { position, velocity } = state(time);
+            let State { position, velocity } = state(time, unknowns);
             if !(position.value().is_finite() && velocity.value().is_finite()) {
                 return Err(SimulationError::NotFinite { time });
             }
             self.trajectory.set(self.written, channels, position, velocity);
+            for (index, unknown) in unknowns.iter().skip(2).enumerate() {
+                self.trajectory.state_mut(index).set(self.written, *unknown);
+            }
             self.written += 1;
         }
         Ok(())
     }
 
-    /// Whether a sample before `end` is still to be written.
+    /// Writes rest at `position` into the samples before `end`; velocities are zero until something else is written.
+    pub(crate) fn hold(&mut self, end: f64, position: D) {
+        let range = self.written..self.sampling.index_at_or_after(end).max(self.written);
+        self.written = range.end;
+        if self.sampling.channels().position() {
+            self.trajectory.position_mut().fill(range, position);
+        }
+    }
+
+    /// Whether there are samples left before `end`.
     pub(crate) fn has_samples_before(&self, end: f64) -> bool {
         self.written < self.sampling.count() && self.sampling.time(self.written) < end
     }
 
-    /// Writes the samples before `end` from the polynomials of a step that begins at `begin` and is `length` long (s).
+    /// Writes the samples before `end`, which lie on the polynomials `within` a step of `length` from `begin`.
     pub(crate) fn polynomial(
         &mut self,
         end: f64,
@@ -80,24 +101,46 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         length: f64,
         within: &Within<D>,
     ) -> Result<(), SimulationError> {
-        let range = self.written..self.sampling.index_at_or_after(end);
-        if range.is_empty() {
+        let stop = self.sampling.index_at_or_after(end);
+        if stop <= self.written {
             return Ok(());
         }
-        let last = within.at(1.0);
-        if !(last.position.value().is_finite() && last.velocity.value().is_finite()) {
-            return Err(SimulationError::NotFinite { time: begin });
-        }
         let (sampling, channels) = (self.sampling, self.sampling.channels());
-        let part = |index| (sampling.time(index) - begin) / length;
+        for index in [self.written, stop - 1] {
+            let State { position, velocity } = within.at((sampling.time(index) - begin) / length);
+            if !(position.value().is_finite() && velocity.value().is_finite()) {
+                return Err(SimulationError::NotFinite { time: sampling.time(index) });
+            }
+        }
+        let per_length = 1.0 / length;
+        while self.written < stop {
+            let range = self.written..stop.min(self.written + LONGEST_RUN);
+            if let Some(interval) = sampling.interval() {
+                let first = (sampling.first() + range.start) as f64;
+                let theta = |index: u32| ((first + f64::from(index)) * interval - begin) * per_length;
+                self.write_polynomials(range.clone(), within, channels, theta);
+            } else {
+                let theta = |index: u32| (sampling.time(range.start + index as usize) - begin) * per_length;
+                self.write_polynomials(range.clone(), within, channels, theta);
+            }
+            self.written = range.end;
+        }
+        Ok(())
+    }
+
+    fn write_polynomials(
+        &mut self,
+        range: std::ops::Range<usize>,
+        within: &Within<D>,
+        channels: Channels,
+        theta: impl Fn(u32) -> f64,
+    ) {
         if channels.position() {
-            self.trajectory.position_mut().polynomial(range.clone(), &within.position, part);
+            self.trajectory.position_mut().polynomial(range.clone(), &within.position, &theta);
         }
         if channels.velocity() {
-            self.trajectory.velocity_mut().polynomial(range.clone(), &within.velocity, part);
+            self.trajectory.velocity_mut().polynomial(range, &within.velocity, &theta);
         }
-        self.written = range.end;
-        Ok(())
     }
 
     /// Adds the work done from `begin` to `end`, of which the samples at or after `begin` and before `end` get their

@@ -52,15 +52,16 @@ impl<D: Scalar> Samples<D> {
         }
     }
 
-    /// Writes the polynomial Σ cᵢ θⁱ at every index of `range`, `theta` giving θ.
+    /// Writes the polynomial Σ cᵢ θⁱ at every index of `range`, `theta` giving θ for an index counted from its start.
     pub(crate) fn polynomial<const N: usize>(
         &mut self,
         range: std::ops::Range<usize>,
         coefficients: &[D; N],
-        theta: impl Fn(usize) -> f64,
+        theta: impl Fn(u32) -> f64,
     ) {
         let fill = |out: &mut [f64], coefficients: [f64; N]| {
-            for (index, out) in range.clone().zip(out) {
+            // Steps hold far fewer samples than a u32 counts, and its conversion is one that vectors have.
+            for (index, out) in (0u32..).zip(out) {
                 let theta = theta(index);
                 *out = coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * theta + coefficient);
             }

@@ -154,8 +154,8 @@ impl Sampling {
     pub(crate) fn index_at_or_after(&self, time: f64) -> usize {
         match &self.grid {
             Grid::Uniform { interval } => {
-                // The quotient may be off by one ulp; the two comparisons with the sample times themselves decide.
-                let estimate = (time / interval).ceil() - self.first as f64;
+                // The quotient is cut and may be off by one ulp; comparisons with the sample times themselves decide.
+                let estimate = time / interval - self.first as f64;
                 let mut index = if estimate > 0.0 { (estimate as usize).min(self.count) } else { 0 };
                 while index > 0 && self.time(index - 1) >= time {
                     index -= 1;

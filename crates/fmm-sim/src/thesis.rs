@@ -3,6 +3,7 @@
 use fmm_friction::SlidingLaw;
 
 use crate::drive::Drive;
+use crate::piece_at::PieceAt;
 use crate::{Direction, Engine, Event, EventKind, Mode, Sampling, Scenario, SimulationError, Trajectory};
 
 /// Semi-implicit Euler with the branch order of the thesis' appendix (A3 to A6), for reproduction only.
@@ -147,25 +148,4 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
 /// Damping force `force` whose part beyond the `linear` one has the given sign.
 fn against(force: f64, linear: f64, sign: f64) -> f64 {
     linear + sign * (force - linear).abs()
-}
-
-/// The force at times that ascend.
-struct PieceAt<'a> {
-    drive: &'a Drive<'a, f64>,
-    piece: crate::drive::Piece<f64>,
-    index: usize,
-}
-
-impl<'a> PieceAt<'a> {
-    fn new(drive: &'a Drive<'a, f64>) -> Self {
-        Self { drive, piece: drive.piece(0), index: 0 }
-    }
-
-    fn force(&mut self, time: f64) -> f64 {
-        while time >= self.piece.end {
-            self.index += 1;
-            self.piece = self.drive.piece(self.index);
-        }
-        if self.piece.is_free() { 0.0 } else { self.piece.force(time) }
-    }
 }

@@ -41,6 +41,9 @@ pub(super) struct Solved {
     pub(super) quick: bool,
 }
 
+/// One number at each stage.
+type Stages<D> = [D; STAGES];
+
 /// A step: the polynomial of degree s that meets the equations of motion at the s stages.
 pub(super) struct Collocation<D> {
     size: usize,
@@ -48,21 +51,20 @@ pub(super) struct Collocation<D> {
     pub(super) failed: usize,
     /// The state at its beginning.
     pub(super) begin: Vec<D>,
-    /// Yᵢ − y₀, stage by stage.
-    increments: Vec<D>,
-    /// f(Yᵢ), stage by stage.
-    rates: Vec<D>,
-    residual: Vec<D>,
-    modes: Vec<D>,
+    /// Yᵢ − y₀ at all stages, for each component.
+    increments: Vec<Stages<D>>,
+    /// f(Yᵢ) at all stages, for each component.
+    rates: Vec<Stages<D>>,
+    residual: Vec<Stages<D>>,
+    modes: Vec<Stages<D>>,
     right: Vec<D>,
     state: Vec<D>,
+    rate: Vec<D>,
     /// Increments and length of a step from which this one is predicted, and where in units of that step this one begins:
     /// at 1, or at 0 if it is a first attempt at the same step.
-    guess: Vec<D>,
+    guess: Vec<Stages<D>>,
     guess_length: f64,
     guess_begin: f64,
-    /// f(y₀), if there is no step before.
-    slope: Vec<D>,
     forces: [D; STAGES],
     jacobian: Vec<f64>,
     real: Factors,
@@ -74,7 +76,7 @@ impl<D: Scalar> Collocation<D> {
     pub(super) fn new(begin: Vec<D>) -> Self {
         let size = begin.len();
         let zero = D::from(0.0);
-        let stages = || vec![zero; size * STAGES];
+        let stages = || vec![[zero; STAGES]; size];
         Self {
             size,
             iterations: 0,
@@ -84,12 +86,12 @@ impl<D: Scalar> Collocation<D> {
             rates: stages(),
             residual: stages(),
             modes: stages(),
-            right: vec![zero; 2 * size],
+            right: vec![zero; 2 * (size - 1)],
             state: vec![zero; size],
+            rate: vec![zero; size],
             guess: stages(),
             guess_length: 0.0,
             guess_begin: 1.0,
-            slope: vec![zero; size],
             forces: [zero; STAGES],
             jacobian: vec![0.0; size * size],
             real: Factors::default(),
@@ -111,8 +113,8 @@ impl<D: Scalar> Collocation<D> {
 
     /// Goes to the end of a step of `length`, from which the next one begins.
     pub(super) fn advance(&mut self, length: f64) {
-        for (y, increment) in self.begin.iter_mut().zip(&self.increments[(STAGES - 1) * self.size..]) {
-            *y = *y + *increment;
+        for (y, increments) in self.begin.iter_mut().zip(&self.increments) {
+            *y = *y + increments[STAGES - 1];
         }
         std::mem::swap(&mut self.increments, &mut self.guess);
         (self.guess_length, self.guess_begin) = (length, 1.0);
@@ -120,32 +122,22 @@ impl<D: Scalar> Collocation<D> {
 
     /// Goes on by `time` (s) along the tangent, which must be short.
     pub(super) fn nudge(&mut self, time: f64) {
-        let end = (STAGES - 1) * self.size;
-        for (y, rate) in self.begin.iter_mut().zip(&self.rates[end..]) {
-            *y = *y + *rate * time;
+        for (y, rates) in self.begin.iter_mut().zip(&self.rates) {
+            *y = *y + rates[STAGES - 1] * time;
         }
     }
 
     /// The state at `tau` in units of the step.
     pub(super) fn at(&self, tau: f64, state: &mut [D]) {
         let basis = basis(tau);
-        state.copy_from_slice(&self.begin);
-        for (weight, stage) in basis.iter().zip(self.increments.chunks_exact(self.size)) {
-            for (y, increment) in state.iter_mut().zip(stage) {
-                *y = *y + *increment * *weight;
-            }
+        for ((state, y), increments) in state.iter_mut().zip(&self.begin).zip(&self.increments) {
+            *state = *y + dot(&basis, increments);
         }
     }
 
-    /// One component of the state at `tau` in units of the step.
-    pub(super) fn component(&self, index: usize, basis: &[f64; STAGES]) -> D {
-        let stages = self.increments.iter().skip(index).step_by(self.size);
-        self.begin[index] + basis.iter().zip(stages).fold(D::from(0.0), |sum, (weight, w)| sum + *w * *weight)
-    }
-
-    /// y′ at the end of the step.
-    pub(super) fn end_rates(&self) -> &[D] {
-        &self.rates[(STAGES - 1) * self.size..]
+    /// The acceleration at the end of the step.
+    pub(super) fn end_acceleration(&self) -> D {
+        self.rates[1][STAGES - 1]
     }
 
     /// The Bernstein coefficients of the polynomial through what `value` gives at the states at the beginning and at all
@@ -153,10 +145,8 @@ impl<D: Scalar> Collocation<D> {
     pub(super) fn bernstein(&mut self, mut value: impl FnMut(&[D]) -> f64) -> [f64; STAGES + 1] {
         let mut nodal = [0.0; STAGES + 1];
         nodal[0] = value(&self.begin);
-        for (nodal, stage) in nodal[1..].iter_mut().zip(self.increments.chunks_exact(self.size)) {
-            for ((y, y0), increment) in self.state.iter_mut().zip(&self.begin).zip(stage) {
-                *y = *y0 + *increment;
-            }
+        for (index, nodal) in nodal[1..].iter_mut().enumerate() {
+            load(&mut self.state, &self.begin, &self.increments, index);
             *nodal = value(&self.state);
         }
         BERNSTEIN.map(|row| row.iter().zip(nodal).map(|(factor, value)| factor * value).sum())
@@ -213,40 +203,36 @@ impl<D: Scalar> Collocation<D> {
         Ok(error.is_finite().then_some(Solved { error, quick: iterations <= 9 }))
     }
 
-    /// Guesses the increments: the polynomial of the step before, or straight lines.
+    /// Guesses the increments: the polynomial of another step, or straight lines.
     fn predict<L: BristleLaw<D>>(&mut self, field: &mut Field<D, L>, branch: Branch, span: Span) {
         if self.guess_length > 0.0 {
             let ratio = span.length / self.guess_length;
             let origin = basis(self.guess_begin);
-            for (node, stage) in NODES.iter().zip(self.increments.chunks_exact_mut(self.size)) {
-                stage.fill(D::from(0.0));
-                let ahead = basis(self.guess_begin + node * ratio);
-                for ((ahead, origin), known) in ahead.iter().zip(origin).zip(self.guess.chunks_exact(self.size)) {
-                    for (increment, w) in stage.iter_mut().zip(known) {
-                        *increment = *increment + *w * (ahead - origin);
-                    }
+            for (index, node) in NODES.iter().enumerate() {
+                let mut ahead = basis(self.guess_begin + node * ratio);
+                for (ahead, origin) in ahead.iter_mut().zip(origin) {
+                    *ahead -= origin;
+                }
+                for (increments, known) in self.increments.iter_mut().zip(&self.guess) {
+                    increments[index] = dot(&ahead, known);
                 }
             }
         } else {
-            field.rates(self.forces[0], branch, &self.begin, &mut self.slope);
-            for (stage, node) in self.increments.chunks_exact_mut(self.size).zip(NODES) {
-                stage.fill(D::from(0.0));
-                for (increment, slope) in stage.iter_mut().zip(&self.slope).take(2) {
-                    *increment = *slope * (node * span.length);
-                }
+            field.rates(self.forces[0], branch, &self.begin, &mut self.rate);
+            for (component, (increments, rate)) in self.increments.iter_mut().zip(&self.rate).enumerate() {
+                let rate = if component < 2 { *rate } else { D::from(0.0) };
+                *increments = NODES.map(|node| rate * (node * span.length));
             }
         }
     }
 
     /// What errors of each component are compared with: the motion as it is in this step.
     fn rescale<L: BristleLaw<D>>(&mut self, field: &Field<D, L>, span: Span, rounding: f64) {
-        let mut most = [0, 1].map(|component| self.begin[component].value().abs());
-        for stage in self.increments.chunks_exact(self.size) {
-            for (component, most) in most.iter_mut().enumerate() {
-                *most = most.max((self.begin[component].value() + stage[component].value()).abs());
-            }
-        }
-        let [x, v] = most;
+        let most = |component: usize| {
+            let y = self.begin[component].value();
+            self.increments[component].iter().fold(y.abs(), |most, w| most.max((y + w.value()).abs()))
+        };
+        let [x, v] = [most(0), most(1)];
         self.scale[0] = x.max(v * span.memory).max(f64::MIN_POSITIVE);
         self.scale[1] = v.max(span.angular * x).max(rounding).max(f64::MIN_POSITIVE);
         for (index, scale) in self.scale[2..].iter_mut().enumerate() {
@@ -255,33 +241,41 @@ impl<D: Scalar> Collocation<D> {
     }
 
     /// The Jacobian in the middle of the step, and the factors of the systems of all modes.
+    ///
+    /// Each mode is a system (λ − J) q = r with λ an eigenvalue of A⁻¹/h. Its first row, λ q_x − q_v = r_x, is used to
+    /// eliminate the position.
     fn prepare<L: BristleLaw<D>>(&mut self, field: &mut Field<D, L>, branch: Branch, span: Span) -> bool {
-        let middle = &self.increments[STAGES / 2 * self.size..];
-        for ((y, y0), increment) in self.state.iter_mut().zip(&self.begin).zip(middle) {
-            *y = *y0 + *increment;
-        }
+        load(&mut self.state, &self.begin, &self.increments, STAGES / 2);
         field.jacobian(branch, &self.state, self.scale[1], &mut self.jacobian);
-        let size = self.size;
-        let fill = |matrix: &mut [f64], width: usize, offset: usize, diagonal: f64, jacobian: &[f64]| {
-            for (row, slopes) in jacobian.chunks_exact(size).enumerate() {
+        let (size, rest) = (self.size, self.size - 1);
+        let spring = self.jacobian[size];
+        let fill = |matrix: &mut [f64], width: usize, offset: usize, alpha: f64, spring: f64| {
+            for (row, slopes) in self.jacobian.chunks_exact(size).skip(1).enumerate() {
                 let start = (row + offset) * width + offset;
-                for (entry, slope) in matrix[start..start + size].iter_mut().zip(slopes) {
+                for (entry, slope) in matrix[start..start + rest].iter_mut().zip(&slopes[1..]) {
                     *entry = -slope;
                 }
-                matrix[start + row] += diagonal;
+                matrix[start + row] += alpha;
             }
+            matrix[offset * width + offset] -= spring;
         };
-        fill(self.real.matrix(size), size, 0, REAL / span.length, &self.jacobian);
+        let gamma = REAL / span.length;
+        fill(self.real.matrix(rest), rest, 0, gamma, spring / gamma);
         let mut regular = self.real.factor();
         for (factors, (alpha, beta)) in self.pairs.iter_mut().zip(COMPLEX) {
-            let matrix = factors.matrix(2 * size);
+            // Real and imaginary parts one below the other, (q₁, q₂) of q₁ − iq₂.
+            let (alpha, beta) = (alpha / span.length, beta / span.length);
+            let square = alpha * alpha + beta * beta;
+            let matrix = factors.matrix(2 * rest);
             matrix.fill(0.0);
-            fill(matrix, 2 * size, 0, alpha / span.length, &self.jacobian);
-            fill(matrix, 2 * size, size, alpha / span.length, &self.jacobian);
-            for row in 0..size {
-                matrix[row * 2 * size + size + row] = beta / span.length;
-                matrix[(size + row) * 2 * size + row] = -beta / span.length;
+            fill(matrix, 2 * rest, 0, alpha, spring * alpha / square);
+            fill(matrix, 2 * rest, rest, alpha, spring * alpha / square);
+            for row in 0..rest {
+                matrix[row * 2 * rest + rest + row] = beta;
+                matrix[(rest + row) * 2 * rest + row] = -beta;
             }
+            matrix[rest] += spring * beta / square;
+            matrix[rest * 2 * rest] -= spring * beta / square;
             regular &= factors.factor();
         }
         regular
@@ -290,40 +284,77 @@ impl<D: Scalar> Collocation<D> {
     /// One iteration of Newton's method; afterwards `residual` holds the change of the increments. Without `values` these
     /// stay what they are.
     fn iterate<L: BristleLaw<D>>(&mut self, field: &mut Field<D, L>, branch: Branch, span: Span, values: bool) {
-        let size = self.size;
-        for (index, rates) in self.rates.chunks_exact_mut(size).enumerate() {
-            let stage = &self.increments[index * size..(index + 1) * size];
-            for ((y, y0), increment) in self.state.iter_mut().zip(&self.begin).zip(stage) {
-                *y = *y0 + *increment;
+        for (index, force) in self.forces.iter().enumerate() {
+            load(&mut self.state, &self.begin, &self.increments, index);
+            field.rates(*force, branch, &self.state, &mut self.rate);
+            for (rates, rate) in self.rates.iter_mut().zip(&self.rate) {
+                rates[index] = *rate;
             }
-            field.rates(self.forces[index], branch, &self.state, rates);
         }
         // f(Y) − (1/h) A⁻¹ W
-        combine(&INVERSE, size, &self.increments, &mut self.residual);
-        for (residual, rate) in self.residual.iter_mut().zip(&self.rates) {
-            *residual = *rate - *residual / span.length;
-            if !values {
-                *residual = *residual - residual.value();
+        let per_second = 1.0 / span.length;
+        for ((modes, increments), rates) in self.modes.iter_mut().zip(&self.increments).zip(&self.rates) {
+            let mut residual = product(&INVERSE, increments);
+            for (residual, rate) in residual.iter_mut().zip(rates) {
+                *residual = *rate - *residual * per_second;
+                if !values {
+                    *residual = *residual - residual.value();
+                }
+            }
+            *modes = product(&TO_MODES, &residual);
+        }
+        self.solve_modes(span.length);
+        for ((residual, modes), increments) in self.residual.iter_mut().zip(&self.modes).zip(&mut self.increments) {
+            *residual = product(&FROM_MODES, modes);
+            for (increment, change) in increments.iter_mut().zip(residual) {
+                *increment = *increment + *change;
             }
         }
-        combine(&TO_MODES, size, &self.residual, &mut self.modes);
-        self.real.solve(&mut self.modes[..size]);
-        for (factors, pair) in self.pairs.iter().zip(self.modes[size..].chunks_exact_mut(2 * size)) {
-            self.right.copy_from_slice(pair);
-            factors.solve(&mut self.right);
-            pair.copy_from_slice(&self.right);
+    }
+
+    /// Solves the systems of all modes in place.
+    fn solve_modes(&mut self, length: f64) {
+        let (size, rest) = (self.size, self.size - 1);
+        let spring = self.jacobian[size];
+        let inverse = length / REAL;
+        let position = self.modes[0][0];
+        for (right, modes) in self.right.iter_mut().zip(&self.modes[1..]) {
+            *right = modes[0];
         }
-        combine(&FROM_MODES, size, &self.modes, &mut self.residual);
-        for (increment, change) in self.increments.iter_mut().zip(&self.residual) {
-            *increment = *increment + *change;
+        self.right[0] = self.right[0] + position * (spring * inverse);
+        self.real.solve(&mut self.right[..rest]);
+        self.modes[0][0] = (position + self.right[0]) * inverse;
+        for (modes, right) in self.modes[1..].iter_mut().zip(&self.right) {
+            modes[0] = *right;
+        }
+        for (pair, (factors, (alpha, beta))) in self.pairs.iter().zip(COMPLEX).enumerate() {
+            let (one, two) = (1 + 2 * pair, 2 + 2 * pair);
+            // 1/λ = (α − iβ) h/(α² + β²), applied to q₁ − iq₂.
+            let square = alpha * alpha + beta * beta;
+            let (alpha, beta) = (alpha * length / square, beta * length / square);
+            let divide = |first: D, second: D| (first * alpha - second * beta, first * beta + second * alpha);
+            let (first, second) = (self.modes[0][one], self.modes[0][two]);
+            for (index, modes) in self.modes[1..].iter().enumerate() {
+                self.right[index] = modes[one];
+                self.right[rest + index] = modes[two];
+            }
+            let (real, imaginary) = divide(first, second);
+            self.right[0] = self.right[0] + real * spring;
+            self.right[rest] = self.right[rest] + imaginary * spring;
+            factors.solve(&mut self.right);
+            (self.modes[0][one], self.modes[0][two]) = divide(first + self.right[0], second + self.right[rest]);
+            for (index, modes) in self.modes[1..].iter_mut().enumerate() {
+                modes[one] = self.right[index];
+                modes[two] = self.right[rest + index];
+            }
         }
     }
 
     /// The greatest `part` of the last change of an increment, relative to its scale.
     fn correction(&self, part: impl Fn(D) -> f64) -> f64 {
         let mut most = 0.0f64;
-        for stage in self.residual.chunks_exact(self.size) {
-            for (change, scale) in stage.iter().zip(&self.scale) {
+        for (changes, scale) in self.residual.iter().zip(&self.scale) {
+            for change in changes {
                 let relative = (part(*change) / scale).abs();
                 // NaN must not be lost in a maximum.
                 most = if relative > most || relative.is_nan() { relative } else { most };
@@ -346,11 +377,9 @@ impl<D: Scalar> Collocation<D> {
             for (direction, before) in before.iter_mut().enumerate() {
                 let correction = self.correction(|change| change.partial(direction));
                 let mut size = 0.0f64;
-                for stage in self.increments.chunks_exact(self.size) {
-                    for ((w, y0), scale) in stage.iter().zip(&self.begin).zip(&self.scale) {
-                        let most = w.partial(direction).abs().max(y0.partial(direction).abs());
-                        size = size.max(most / scale);
-                    }
+                for ((increments, y), scale) in self.increments.iter().zip(&self.begin).zip(&self.scale) {
+                    let most = |most: f64, w: &D| most.max(w.partial(direction).abs());
+                    size = size.max(increments.iter().fold(y.partial(direction).abs(), most) / scale);
                 }
                 let ratio = correction / *before;
                 let left = if ratio < 1.0 { ratio / (1.0 - ratio) * correction } else { correction };
@@ -370,16 +399,9 @@ impl<D: Scalar> Collocation<D> {
     /// of y relative to its scale.
     fn error(&self) -> f64 {
         let mut worst = 0.0f64;
-        for (component, scale) in self.scale.iter().enumerate() {
-            let mut coefficients = [0.0; 4];
-            for (row, legendre) in INVERSE.iter().zip(0..) {
-                let stages = self.increments.iter().skip(component).step_by(self.size);
-                let slope: f64 = row.iter().zip(stages).map(|(factor, w)| factor * w.value()).sum();
-                for (coefficient, row) in coefficients.iter_mut().zip(&LEGENDRE) {
-                    *coefficient += row[legendre] * slope;
-                }
-            }
-            let [first, second, third, last] = coefficients.map(f64::abs);
+        for (increments, scale) in self.increments.iter().zip(&self.scale) {
+            let values = increments.map(D::value);
+            let [first, second, third, last] = LEGENDRE.map(|row| dot(&row, &values).abs());
             // Even and odd coefficients may differ in size, so pairs of them are compared.
             let pair = third.max(last);
             let decay = if pair < first.max(second) { (pair / first.max(second)).sqrt() } else { 1.0 };
@@ -391,14 +413,21 @@ impl<D: Scalar> Collocation<D> {
     }
 }
 
-/// `out` = `matrix` ⊗ I · `stages`.
-fn combine<D: Scalar>(matrix: &[[f64; STAGES]; STAGES], size: usize, stages: &[D], out: &mut [D]) {
-    for (row, out) in matrix.iter().zip(out.chunks_exact_mut(size)) {
-        out.fill(D::from(0.0));
-        for (factor, stage) in row.iter().zip(stages.chunks_exact(size)) {
-            for (out, value) in out.iter_mut().zip(stage) {
-                *out = *out + *value * *factor;
-            }
-        }
+/// The state at stage `index`.
+fn load<D: Scalar>(state: &mut [D], begin: &[D], increments: &[Stages<D>], index: usize) {
+    for ((state, y), increments) in state.iter_mut().zip(begin).zip(increments) {
+        *state = *y + increments[index];
     }
+}
+
+fn dot<D: Scalar>(factors: &[f64; STAGES], values: &Stages<D>) -> D {
+    let mut sum = values[0] * factors[0];
+    for index in 1..STAGES {
+        sum = sum + values[index] * factors[index];
+    }
+    sum
+}
+
+fn product<D: Scalar>(matrix: &[[f64; STAGES]; STAGES], values: &Stages<D>) -> Stages<D> {
+    std::array::from_fn(|row| dot(&matrix[row], values))
 }

@@ -15,6 +15,7 @@ pub(super) struct Branch {
 /// Steps of the differences of the Jacobian, relative to the arguments; about √ε, as the Jacobian only has to make
 /// Newton's method converge.
 const DIFFERENCE: f64 = 1e-7;
+const STATE_DIFFERENCE: f64 = 1e-12;
 
 /// The right-hand side of (x, v, z)′.
 ///
@@ -108,7 +109,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
         jacobian[1] = 1.0;
 
         let x = state[0].value();
-        let reach = DIFFERENCE * x.abs().max(f64::MIN_POSITIVE / DIFFERENCE);
+        let reach = (DIFFERENCE * x.abs().max(f64::MIN_POSITIVE / DIFFERENCE)).copysign(x);
         let restoring = |x: f64| self.oscillator.restoring_force(D::from(x)).value();
         jacobian[size] = -slope(restoring(x + reach) - restoring(x), x + reach - x) / mass;
 

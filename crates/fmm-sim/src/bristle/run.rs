@@ -165,6 +165,16 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 length *= 0.25;
                 continue;
             };
+            if std::env::var("BDBG2").is_ok() && self.steps > 300 && self.steps < 400 {
+                let b = self.field.law.bound(0).value();
+                eprintln!(
+                    "t {:.9} h {length:e} err {:e} z/b-1 {:e} its {}",
+                    self.time,
+                    solved.error,
+                    self.step.begin[2].value().abs() / b - 1.0,
+                    self.step.iterations
+                );
+            }
             let found = self.first_guard();
             if let Some((tau, guard)) = found {
                 if tau * length <= 2.0 * f64::EPSILON * (self.time + length) {
@@ -273,7 +283,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
     fn landing(&mut self, guard: Guard, length: f64) -> Landing {
         let coefficients = self.guard_polynomial(guard);
         let slope = match guard {
-            Guard::Speed => self.step.end_rates()[1].value() * self.branch.direction.sign() * length,
+            Guard::Speed => self.step.end_acceleration().value() * self.branch.direction.sign() * length,
             Guard::Reserve(_) => end_slope(coefficients),
         };
         let [.., before, last, end] = coefficients;
@@ -315,13 +325,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             Some(length) => step.at((sample - *time) / length, state),
             None => state.copy_from_slice(&step.begin),
         };
-        for index in recorder.written..recorder.sampling.index_at_or_after(end) {
-            at(recorder.sampling.time(index), state);
-            for (state, z) in state[2..].iter().enumerate() {
-                recorder.trajectory.state_mut(state).set(index, *z);
-            }
-        }
-        recorder.samples(end, |sample| {
+        recorder.samples_with_states(end, state, |sample, state| {
             at(sample, state);
             State { position: state[0], velocity: state[1] }
         })

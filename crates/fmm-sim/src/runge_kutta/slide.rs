@@ -22,6 +22,10 @@ pub(super) struct Integrator<'a, D, L> {
     law: &'a L,
     normal_load: D,
     belt: D,
+    /// 1/m.
+    per_mass: D,
+    /// Whether any force acts from outside.
+    is_driven: bool,
     tolerance: f64,
     /// ω₀ of small vibrations (rad/s).
     angular: f64,
@@ -52,6 +56,8 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
             law,
             normal_load: scenario.normal_load(),
             belt: drive.belt(),
+            per_mass: D::from(1.0) / oscillator.mass(),
+            is_driven: !scenario.excitations().is_empty(),
             tolerance,
             angular,
             held,
@@ -64,15 +70,14 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
     #[inline]
     fn friction(&self, phase: &Phase<D>, velocity: D) -> D {
         let sign = phase.direction.sign();
-        let mut speed = (velocity - self.belt) * sign;
-        if speed.value() < 0.0 {
-            // Stages may look past the stop; a law knows no negative speed.
-            speed = D::from(0.0);
-        }
-        let coefficient = match phase.branch {
+        let speed = (velocity - self.belt) * sign;
+        let at = |speed| match phase.branch {
             Branch::Losing => self.law.coefficient_losing_speed(speed),
             Branch::Only | Branch::Gaining => self.law.coefficient(speed),
         };
+        // Stages may look past the stop, and a law knows no negative speed: its curve is turned about its end, which keeps
+        // the slope.
+        let coefficient = if speed.value() >= 0.0 { at(speed) } else { at(D::from(0.0)) * 2.0 - at(-speed) };
         self.normal_load * coefficient * sign
     }
 
@@ -81,10 +86,10 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         let mut force = -self.friction(phase, state.velocity)
             - self.oscillator.damping().force(state.velocity)
             - self.oscillator.restoring_force(state.position);
-        if !phase.piece.is_free() {
+        if self.is_driven {
             force = force + phase.piece.force(time);
         }
-        force / self.oscillator.mass()
+        force * self.per_mass
     }
 
     /// Amplitudes (m, m/s) that errors are relative to.
@@ -173,7 +178,12 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         step.within(|elapsed, state| self.acceleration(phase, time + elapsed, state))
     }
 
-    /// The step from `at` that ends where the guard of `ending` is zero, about `length` long and shorter than `longest`.
+    /// How near to an event a step must end (s) for a straight line to reach it: what a parabola would add is below rounding.
+    fn close(&self) -> f64 {
+        1e-9 / self.angular
+    }
+
+    /// The step from `at` that ends near where the guard of `ending` is zero, about `length` long and shorter than `longest`.
     fn land(&self, phase: &Phase<D>, at: &Progress<D>, ending: Ending, mut length: f64, longest: f64) -> Step<D> {
         let mut step = self.take(phase, at, length);
         let mut before: Option<(f64, f64)> = None;
@@ -186,8 +196,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
             before = Some((length, value.value()));
             let correction = value.value() / rate;
             let next = length - correction;
-            let resolution = 2.0 * f64::EPSILON * (at.time + length);
-            if !(rate < 0.0 && correction.abs() > resolution && next > 0.0 && next <= longest) {
+            if !(rate < 0.0 && correction.abs() > self.close() && next > 0.0 && next <= longest) {
                 break;
             }
             length = next;
@@ -203,7 +212,9 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         let scale = self.scale(step.end, step.last_acceleration());
         // A velocity that is rounding at a slope like this may as well be zero a period away.
         let grazing = D::DIRECTIONS > 0 && rate * rate <= 16.0 * f64::EPSILON * (scale.velocity * self.angular).powi(2);
-        let late = if grazing { D::from(0.0) } else { -(value - value.value()) / rate };
+        let late = if grazing { D::from(0.0) } else { -value / rate };
+        // A zero within rounding of the step's end is at its end.
+        let late = if late.value().abs() <= self.close() { late } else { late - late.value() };
         let state = State {
             position: step.end.position + step.end.velocity * late,
             velocity: step.end.velocity + step.last_acceleration() * late,
@@ -238,10 +249,22 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         Ok(())
     }
 
+    /// Proposes the next step after one of `length` that was good, at most `most` times as long.
+    fn adapt(&mut self, length: f64, most: f64, error: f64) {
+        let proposed = length * factor(error).min(most);
+        self.length = if length < self.length { self.length.max(proposed) } else { proposed };
+    }
+
     /// The longest step that resolves the machine and every wave (s).
     fn longest(&self, phase: &Phase<D>) -> f64 {
         1.0 / phase.piece.waves().iter().map(|wave| wave.angular.value()).fold(self.angular, f64::max)
     }
+}
+
+/// How much longer a step may be than one of this `error`, for which 1 is allowed: with the eighth power of the length the
+/// error grows, and a tenth is left to chance.
+fn factor(error: f64) -> f64 {
+    0.9 / error.sqrt().sqrt().sqrt()
 }
 
 impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
@@ -272,10 +295,27 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
                 .checked_sub(1)
                 .ok_or(SimulationError::StepBudget { budget: STEP_BUDGET, end: recorder.sampling.end() })?;
             let mut step = self.take(phase, &at, length);
-            let error = step.error(self.scale(at.state, at.acceleration)) / self.tolerance;
+            let scale = self.scale(at.state, at.acceleration);
+            let mut error = step.error(scale) / self.tolerance;
+            let crossed = Self::endings(phase)
+                .iter()
+                .any(|&ending| !(self.guard(phase, &step, ending, at.armed).0.value() > 0.0));
+            if crossed || error <= 1.0 {
+                if let Some((ending, theta)) = self.reached(phase, &at, &mut step) {
+                    // What lies behind the event does not belong to the stretch; the step that ends there must be good.
+                    let mut step = self.land(phase, &at, ending, theta * length, length);
+                    error = step.error(scale) / self.tolerance;
+                    if error <= 1.0 {
+                        self.adapt(length, 1.0, error);
+                        let ended = self.ended(phase, &at, &step, ending);
+                        self.record(phase, at.time, &mut step, ended.time.value(), recorder)?;
+                        return Ok(ended);
+                    }
+                    length = step.length;
+                }
+            }
             if !(error <= 1.0) {
-                let factor = if error.is_finite() { (0.9 * error.powf(-0.125)).clamp(0.1, 0.9) } else { 0.1 };
-                self.length = length * factor;
+                self.length = length * if error.is_finite() { factor(error).clamp(0.1, 0.9) } else { 0.1 };
                 if at.time + self.length <= at.time {
                     let finite = at.acceleration.value().is_finite() && at.state.position.value().is_finite();
                     return Err(if finite {
@@ -286,14 +326,7 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
                 }
                 continue;
             }
-            let proposed = length * (0.9 * error.powf(-0.125)).min(5.0);
-            self.length = if length < self.length { self.length.max(proposed) } else { proposed };
-            if let Some((ending, theta)) = self.reached(phase, &at, &mut step) {
-                let mut step = self.land(phase, &at, ending, theta * length, length);
-                let end = at.time + step.length;
-                self.record(phase, at.time, &mut step, end, recorder)?;
-                return Ok(self.ended(phase, &at, &step, ending));
-            }
+            self.adapt(length, 5.0, error);
             let (next, whole) = (at.time + length, length == rest);
             let next = if whole { phase.limit } else { next };
             let stop = if whole { phase.samples_end() } else { next };
