@@ -327,8 +327,10 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         let now = plain.at(0.0);
         for (bound, sign) in [(above, 1.0), (below, -1.0)] {
             let excess = sign * now - bound.value();
-            // A steady phase begins on a bound, as exactly as the engine has found it.
-            let slack = steady.is_some() && excess > 0.0 && excess < ON_BOUND * bound.value().abs();
+            // A steady phase begins on a bound, as exactly as the engine has found it; a contact that has just been found to
+            // hold does so although rounding may put the load beyond the level.
+            let exactness = if steady.is_some() { ON_BOUND } else { 4.0 * f64::EPSILON };
+            let slack = excess > 0.0 && excess <= exactness * bound.value().abs();
             let bound = if slack { bound + excess } else { bound };
             // What is out of reach need not be searched for.
             if bound.value() - sign * plain.constant > reach && span.is_finite() {

@@ -15,13 +15,13 @@ pub(super) struct Branch {
 /// Steps of the differences of the Jacobian, relative to the arguments; about √ε, as the Jacobian only has to make
 /// Newton's method converge.
 const DIFFERENCE: f64 = 1e-7;
-const STATE_DIFFERENCE: f64 = 1e-12;
 
 /// The right-hand side of (x, v, z)′.
 ///
 /// Everything is evaluated as if the swing went in the positive direction, with u and z of the other direction mirrored:
 /// the law is odd, so this changes nothing but which side of its kink u = 0 belongs to, and that is the side of the
-/// swing. Behind the end of the swing, where a step may reach before its end is found, the bristles stay as they are.
+/// swing. Behind the end of the swing, where a step may reach before its end is found, the law is that of its end; and
+/// so it is behind the zero of a state, where the law may have a corner.
 pub(super) struct Field<'a, D, L> {
     pub(super) oscillator: &'a Oscillator<D>,
     pub(super) normal_load: D,
@@ -29,6 +29,8 @@ pub(super) struct Field<'a, D, L> {
     pub(super) law: &'a L,
     mirrored: Vec<D>,
     rate: Vec<D>,
+    /// Which states have not yet come back through zero in this swing, and stay below it until that is found.
+    below: Vec<bool>,
 }
 
 impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
@@ -40,6 +42,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
             belt,
             law: scenario.law(),
             mirrored: zeros.clone(),
+            below: vec![false; zeros.len()],
             rate: zeros,
         }
     }
@@ -49,11 +52,26 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
         2 + self.rate.len()
     }
 
+    /// Notes which states at the beginning of a step are to come back through zero.
+    pub(super) fn begin(&mut self, branch: Branch, state: &[D]) {
+        self.below.fill(false);
+        for index in 0..self.below.len() {
+            let switches = self.reserve(index, branch, state).is_some() || branch.regime.slides(index);
+            self.below[index] = !switches && state[2 + index].value() * branch.direction.sign() < 0.0;
+        }
+    }
+
+    /// Whether the state of this `index` is to come back through zero.
+    pub(super) fn is_below(&self, index: usize) -> bool {
+        self.below[index]
+    }
+
     /// Relative speed along `branch`, and the mirrored states in `self.mirrored`.
     fn mirror(&mut self, branch: Branch, state: &[D]) -> D {
         let sign = branch.direction.sign();
-        for (mirrored, z) in self.mirrored.iter_mut().zip(&state[2..]) {
-            *mirrored = *z * sign;
+        for ((mirrored, z), below) in self.mirrored.iter_mut().zip(&state[2..]).zip(&self.below) {
+            let z = *z * sign;
+            *mirrored = if *below && z.value() >= 0.0 { z - z.value() - f64::MIN_POSITIVE } else { z };
         }
         let speed = (state[1] - self.belt) * sign;
         if speed.value() < 0.0 { speed - speed.value() } else { speed }
@@ -114,8 +132,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
         jacobian[size] = -slope(restoring(x + reach) - restoring(x), x + reach - x) / mass;
 
         let u = D::from(self.mirror(branch, state).value());
-        for (mirrored, z) in self.mirrored.iter_mut().zip(&state[2..]) {
-            *mirrored = D::from(z.value() * sign);
+        for mirrored in &mut self.mirrored {
+            *mirrored = D::from(mirrored.value());
         }
         let before = self.mirrored_friction(branch, u).value();
         let rates: Vec<f64> = self.rate.iter().map(|rate| rate.value()).collect();

@@ -14,7 +14,7 @@ use crate::work::Power;
 use crate::{Direction, Event, EventKind, Mode, Scenario, SimulationError, State};
 
 /// No record needs more steps.
-const STEP_BUDGET: usize = 5_000_000;
+const STEP_BUDGET: usize = 1_000_000;
 
 /// Attempts at one step before it is given up.
 const MOST_ATTEMPTS: usize = 100;
@@ -25,8 +25,12 @@ const TANGENT: f64 = 1e-9;
 /// Where an event is sought: how the smooth branch can end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Guard {
+    /// The relative velocity reaches zero.
     Speed,
+    /// An element begins to slide.
     Reserve(usize),
+    /// The velocity, or a state of the law, passes zero, where damping or law may have a corner. This is no event.
+    Corner(usize),
 }
 
 /// How far the end of a step is from the zero of a guard, in units of its length.
@@ -129,6 +133,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
     fn go(&mut self, direction: Option<Direction>) {
         self.resting = direction.is_none();
         self.branch = Branch { direction: direction.unwrap_or(self.branch.direction), regime: Regime::ALL_HOLD };
+        self.field.begin(self.branch, &self.step.begin);
         self.proposed = f64::INFINITY;
         self.step.forget();
     }
@@ -141,6 +146,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 return self.arrive(Guard::Reserve(index), piece, false);
             }
         }
+        self.field.begin(self.branch, &self.step.begin);
         let at_zero = self.step.begin[1].value() == self.field.belt.value();
         let room = limit - self.time;
         let mut length = self.first_length().min(room);
@@ -165,16 +171,6 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 length *= 0.25;
                 continue;
             };
-            if std::env::var("BDBG2").is_ok() && self.steps > 300 && self.steps < 400 {
-                let b = self.field.law.bound(0).value();
-                eprintln!(
-                    "t {:.9} h {length:e} err {:e} z/b-1 {:e} its {}",
-                    self.time,
-                    solved.error,
-                    self.step.begin[2].value().abs() / b - 1.0,
-                    self.step.iterations
-                );
-            }
             let found = self.first_guard();
             if let Some((tau, guard)) = found {
                 if tau * length <= 2.0 * f64::EPSILON * (self.time + length) {
@@ -185,6 +181,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                     length *= if turned { 0.1 } else { 1.0 };
                     turned = !turned;
                     self.branch.direction = Direction::of(-self.branch.direction.sign());
+                    self.field.begin(self.branch, &self.step.begin);
                     self.step.forget();
                     continue;
                 }
@@ -262,6 +259,13 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 look(self.guard_polynomial(Guard::Reserve(index)), Guard::Reserve(index));
             }
         }
+        let drag = !self.field.oscillator.damping().is_linear() && self.field.belt.value() != 0.0;
+        for component in 1..self.field.size() {
+            let may_bend = if component == 1 { drag } else { self.field.is_below(component - 2) };
+            if may_bend && self.step.begin[component].value() != 0.0 {
+                look(self.guard_polynomial(Guard::Corner(component)), Guard::Corner(component));
+            }
+        }
         first
     }
 
@@ -276,6 +280,10 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             Guard::Reserve(index) => step.bernstein(|state| {
                 field.reserve(index, *branch, state).map_or(f64::INFINITY, |reserve| reserve.value())
             }),
+            Guard::Corner(component) => {
+                let sign = step.begin[component].value().signum();
+                step.bernstein(|state| state[component].value() * sign)
+            }
         }
     }
 
@@ -284,7 +292,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         let coefficients = self.guard_polynomial(guard);
         let slope = match guard {
             Guard::Speed => self.step.end_acceleration().value() * self.branch.direction.sign() * length,
-            Guard::Reserve(_) => end_slope(coefficients),
+            Guard::Reserve(_) | Guard::Corner(_) => end_slope(coefficients),
         };
         let [.., before, last, end] = coefficients;
         let curvature = (STAGES * (STAGES - 1)) as f64 * (end - 2.0 * last + before);
@@ -346,42 +354,50 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         Ok(())
     }
 
-    /// Passes the event that `guard` has led to.
+    /// Passes what `guard` has led to.
     fn arrive(&mut self, guard: Guard, piece: &Piece<D>, grazing: bool) -> Result<(), SimulationError> {
-        let force = piece.force(self.time);
-        self.field.rates(force, self.branch, &self.step.begin, &mut self.before);
-        // −g_θ/ġ: by how much the event shifts, with value 0.
-        let shift = match guard {
-            Guard::Speed => {
-                let speed = self.step.begin[1] - self.field.belt;
-                -(speed - speed.value()) / self.before[1].value()
-            }
-            Guard::Reserve(index) => self.reserve_shift(index),
-        };
-        let shift = if grazing || D::DIRECTIONS == 0 { D::from(0.0) } else { shift };
-        let kind = match guard {
+        self.field.rates(piece.force(self.time), self.branch, &self.step.begin, &mut self.before);
+        match guard {
             Guard::Speed => {
                 let velocity = self.step.begin[1];
+                let speed = velocity - self.field.belt;
+                let shift = -(speed - speed.value()) / self.before[1].value();
                 self.step.begin[1] = velocity - velocity.value() + self.field.belt.value();
                 let direction = self.departure(piece);
                 self.go(direction);
                 self.since = self.time;
-                if direction.is_none() { EventKind::Stop } else { EventKind::Reversal }
+                let kind = if direction.is_none() { EventKind::Stop } else { EventKind::Reversal };
+                self.pass(kind, piece, shift, grazing)
             }
             Guard::Reserve(index) => {
+                let shift = self.reserve_shift(index);
                 self.branch.regime = self.branch.regime.sliding(index);
+                self.field.begin(self.branch, &self.step.begin);
                 self.step.forget();
-                EventKind::Yield(index)
+                self.pass(EventKind::Yield(index), piece, shift, grazing)
             }
-        };
-        self.after.fill(D::from(0.0));
-        if !self.resting {
-            self.field.rates(force, self.branch, &self.step.begin, &mut self.after);
+            Guard::Corner(component) => {
+                let y = &mut self.step.begin[component];
+                *y = *y - y.value();
+                Ok(())
+            }
         }
-        let [x, v] = [self.step.begin[0] + self.before[0] * shift, self.step.begin[1] + self.before[1] * shift];
-        let velocity = if guard == Guard::Speed { self.field.belt } else { v };
-        for ((y, before), after) in self.step.begin.iter_mut().zip(&self.before).zip(&self.after) {
-            *y = *y + (*before - *after) * shift;
+    }
+
+    /// Goes over from the rates `self.before` an event to those after it: the event shifts by `shift`, whose value is 0,
+    /// and with it the time from which on the new rates hold, y_θ⁺ = y_θ⁻ + (f⁻ − f⁺) t_θ.
+    fn pass(&mut self, kind: EventKind, piece: &Piece<D>, shift: D, grazing: bool) -> Result<(), SimulationError> {
+        let shift = if grazing || D::DIRECTIONS == 0 { D::from(0.0) } else { shift };
+        let [x, v] = [0, 1].map(|component| self.step.begin[component] + self.before[component] * shift);
+        let velocity = if matches!(kind, EventKind::Yield(_)) { v } else { self.field.belt };
+        if D::DIRECTIONS > 0 {
+            self.after.fill(D::from(0.0));
+            if !self.resting {
+                self.field.rates(piece.force(self.time), self.branch, &self.step.begin, &mut self.after);
+            }
+            for ((y, before), after) in self.step.begin.iter_mut().zip(&self.before).zip(&self.after) {
+                *y = *y + (*before - *after) * shift;
+            }
         }
         self.push(kind, piece, State { position: x, velocity }, shift, grazing)
     }
