@@ -1,14 +1,17 @@
-//! The exact engine against the thesis' Euler loop, and its gradient against a plain run, in one run.
+//! Each engine against the thesis' Euler loop on the same motion, and gradients against plain runs, in one run.
 //!
-//! `cargo bench --bench simulator` prints criterion's estimates and then the ratios of their medians.
+//! `cargo bench --bench simulator` prints criterion's estimates and then the ratios of their medians. The package `peers` beside
+//! this file compares with a general solver.
 
 use std::hint::black_box;
 use std::path::Path;
 
 use criterion::{Criterion, criterion_group};
-use fmm_friction::{Berger, Coulomb, LawFamily, SlidingLaw};
+use fmm_friction::{Berger, Coulomb, Dahl, LawFamily, MaxwellSlip, SlidingLaw};
 use fmm_model::{Damping, Dual, Oscillator, Scalar};
-use fmm_sim::{Channels, Engine, Exact, Excitation, RungeKutta, Sampling, Scenario, Thesis, Trajectory};
+use fmm_sim::{
+    Bristle, Channels, Engine, Exact, Excitation, Moreau, RungeKutta, Sampling, Scenario, Thesis, Trajectory,
+};
 
 /// Workload W1: the Monte Carlo case of the thesis, 1501 velocity samples at 1 kHz.
 fn thesis_case<D: Scalar>(coefficient: D, position: D) -> (Scenario<D, Coulomb<D>>, Sampling) {
@@ -112,8 +115,27 @@ fn ring_down(criterion: &mut Criterion) {
     group.bench_function("thesis", |bencher| {
         bencher.iter(|| Thesis::A3.run_into(black_box(&scenario), &sampling, &mut trajectory));
     });
+    group.bench_function("moreau", |bencher| {
+        bencher.iter(|| Moreau::default().run_into(black_box(&scenario), &sampling, &mut trajectory));
+    });
     group.bench_function("exact", |bencher| {
         bencher.iter(|| Exact.run_into(black_box(&scenario), &sampling, &mut trajectory));
+    });
+    group.bench_function("runge_kutta", |bencher| {
+        bencher.iter(|| RungeKutta::default().run_into(black_box(&scenario), &sampling, &mut trajectory));
+    });
+    // The same levels with an elastic contact of 1e4/m, a thousandth of the swing.
+    let dahl = Dahl::new(0.15, 1e4, 1.0).expect("valid");
+    let dahl = Scenario::new(*scenario.oscillator(), dahl, 7.2).and_then(|case| case.starting_at(0.0, 0.101));
+    let dahl = dahl.expect("valid");
+    group.bench_function("bristle", |bencher| {
+        bencher.iter(|| Bristle::default().run_into(black_box(&dahl), &sampling, &mut trajectory));
+    });
+    let elements = MaxwellSlip::new(&[(6e3, 0.05), (4e3, 0.1)]).expect("valid");
+    let maxwell = Scenario::new(*scenario.oscillator(), elements, 7.2).and_then(|case| case.starting_at(0.0, 0.101));
+    let maxwell = maxwell.expect("valid");
+    group.bench_function("exact_elements", |bencher| {
+        bencher.iter(|| Exact.run_into(black_box(&maxwell), &sampling, &mut trajectory));
     });
     let (scenario, sampling) = thesis_case(Dual::<2>::variable(0.15, 0), Dual::variable(0.0, 1));
     let mut trajectory = Trajectory::new();
@@ -134,14 +156,20 @@ fn median(group: &str, benchmark: &str) -> Option<f64> {
 /// Prints how many times as long one benchmark takes as another, beside what is wanted.
 fn print_ratio(group: &str, slow: &str, fast: &str, wanted: &str) {
     if let (Some(slow_time), Some(fast_time)) = (median(group, slow), median(group, fast)) {
-        println!("{group}: {slow} / {fast} = {:.2} (wanted: {wanted})", slow_time / fast_time);
+        let wanted = if wanted.is_empty() { String::new() } else { format!(" (wanted: {wanted})") };
+        println!("{group}: {slow} / {fast} = {:.2}{wanted}", slow_time / fast_time);
     }
 }
 
 fn print_ratios() {
     print_ratio("ring_down", "thesis", "exact", "at least 13");
     print_ratio("ring_down", "exact_gradient", "exact", "at most 2.5, two columns");
-    print_ratio("berger", "thesis", "runge_kutta", "at least 1");
+    print_ratio("ring_down", "thesis", "moreau", "");
+    print_ratio("ring_down", "thesis", "runge_kutta", "");
+    print_ratio("ring_down", "thesis", "exact_elements", "");
+    print_ratio("ring_down", "bristle", "thesis", "");
+    print_ratio("berger", "thesis", "runge_kutta_1e-10", "at least 1");
+    print_ratio("berger", "thesis", "runge_kutta", "");
     print_ratio("berger", "own_law", "runge_kutta", "at most 2");
     print_ratio("berger", "runge_kutta_gradient", "runge_kutta", "at most 2.5, two columns");
     print_ratio("impact", "thesis", "exact", "at least 10");

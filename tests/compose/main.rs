@@ -6,4 +6,5 @@ mod identifiability;
 mod measurement;
 mod own_law;
 mod real_records;
+mod simulate;
 mod synthetic;

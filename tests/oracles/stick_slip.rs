@@ -248,3 +248,34 @@ fn elements_that_yield() {
     let scenario = case.scenario(MaxwellSlip::new(&elements).unwrap(), 1.0);
     case.check(&Exact, &scenario);
 }
+
+/// Every cell of the table for which a symmetric motion without stops exists: from its start, the first zero velocity comes
+/// half a period later at the mirror image.
+#[test]
+fn den_hartog() {
+    let file = read("den_hartog_non_stop");
+    let cells = file["amplitude"].as_array().unwrap().iter().filter(|cell| cell["non_stop_solution"] == true);
+    let mut count = 0;
+    for cell in cells {
+        let [ratio, friction, zeta] = ["r", "F_over_P", "zeta"].map(|name| number(&cell[name]));
+        let [amplitude, phase] = ["X_k_over_P", "phi_rad"].map(|name| number(&cell[name]));
+        let damping = Damping::linear(2.0 * zeta).unwrap();
+        let machine = Oscillator::new(1.0, 1.0).unwrap().with_damping(damping);
+        let law = CoulombStatic::new(friction, friction).unwrap();
+        let wave = Excitation::harmonic(1.0, ratio, phase).unwrap();
+        let scenario = Scenario::new(machine, law, 1.0).unwrap().starting_at(amplitude, 0.0).unwrap().driven_by(wave);
+        let half_period = std::f64::consts::PI / ratio;
+        let sampling = Sampling::uniform(1.01 * half_period, 2).unwrap();
+        let exact = Exact.run(&scenario, &sampling).unwrap();
+        let stepped = RungeKutta::default().run(&scenario, &sampling).unwrap();
+        // The table's own 1e-12; the engines start from its values, and a turn near rest magnifies their rounding.
+        for (engine, motion, tolerance) in [("exact", exact, 1e-11), ("stepped", stepped, 1e-10)] {
+            let case = format!("{engine}, r = {ratio}, F/P = {friction}, ζ = {zeta}");
+            let event = motion.events().get(1).unwrap_or_else(|| panic!("{case}: no turn"));
+            assert!((event.time / half_period - 1.0).abs() < tolerance, "{case}: turns at {} s", event.time);
+            assert!((event.position / amplitude + 1.0).abs() < tolerance, "{case}: turns at {} m", event.position);
+        }
+        count += 1;
+    }
+    assert!(count > 100, "{count} cells");
+}

@@ -359,7 +359,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                 viscous: damping * velocity,
                 external: force * velocity - friction * self.belt,
             }
-        });
+        })?;
         let Some((elapsed, bound, sign)) = leaving else {
             let time = D::from(phase.limit);
             let state = State { position: at(time), velocity };

@@ -4,12 +4,20 @@
 //! Stick and slip form a hybrid automaton. While the contact slips in one direction the equation of motion is
 //! smooth; when the relative velocity reaches zero the load on the contact decides whether it sticks or slips
 //! back. There is no velocity dead zone and no smoothed signum; the set of loads that stick is closed,
-//! |load| ≤ static level.
+//! |load| ≤ static level. The automaton is the same for all laws of the sliding speed; engines differ in how they follow
+//! one stretch of sliding.
 //!
 //! | engine | for | how |
 //! |---|---|---|
-//! | [`Exact`] | laws that are a level plus a slope, linear damping, free decay | closed form between events, event times in closed form, gradient in every input |
+//! | [`Exact`] | piecewise linear laws on a linear machine | closed form between events; event times in closed form or by steps that provably miss none |
+//! | [`RungeKutta`] | any law of the sliding speed, any machine | order 8 from event to event, landing on each, to a tolerance |
+//! | [`Bristle`] | laws with internal state | an L-stable collocation method, landing on every zero of the velocity and every yield |
 //! | [`Thesis`] | reproduction of the thesis only | the appendix' semi-implicit Euler, branch for branch |
+//! | [`Moreau`] | cross-check | time stepping of the set-valued law, of first order |
+//!
+//! The first three give exact gradients in every input, through every event. Which engine suits a family of laws when nobody
+//! chooses is said by [`Simulated`]. What acts from outside is an [`Excitation`], several of which add up; the [`Work`] done
+//! by friction, damping and excitation comes along on request.
 //!
 //! ```
 //! use fmm_friction::Coulomb;
@@ -33,6 +41,7 @@ mod bristle;
 mod curve;
 mod decay;
 mod drive;
+mod energy;
 mod engine;
 mod error;
 mod event;
@@ -52,6 +61,7 @@ mod trajectory;
 mod work;
 
 pub use bristle::Bristle;
+pub use energy::Energy;
 pub use engine::Engine;
 pub use error::SimulationError;
 pub use event::{Direction, Event, EventKind, Mode};

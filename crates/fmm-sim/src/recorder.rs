@@ -3,7 +3,7 @@
 use fmm_model::Scalar;
 
 use crate::runge_kutta::Within;
-use crate::work::{Power, Work};
+use crate::work::{PIECE_BUDGET, Power, Work};
 use crate::{Channels, Event, Sampling, SimulationError, State, Trajectory};
 
 /// No record resolves more events than this.
@@ -21,6 +21,8 @@ pub(crate) struct Recorder<'a, D> {
     work: Work<D>,
     /// Samples whose work is written.
     worked: usize,
+    /// Pieces of time over which work may still be added up.
+    pieces: usize,
 }
 
 impl<'a, D: Scalar> Recorder<'a, D> {
@@ -31,7 +33,7 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         trajectory: &'a mut Trajectory<D>,
     ) -> Self {
         trajectory.reset(engine, states, sampling);
-        Self { sampling, trajectory, written: 0, work: Work::none(), worked: 0 }
+        Self { sampling, trajectory, written: 0, work: Work::none(), worked: 0, pieces: PIECE_BUDGET }
     }
 
     pub(crate) fn push(&mut self, event: Event<D>) -> Result<(), SimulationError> {
@@ -145,21 +147,27 @@ impl<'a, D: Scalar> Recorder<'a, D> {
 
     /// Adds the work done from `begin` to `end`, of which the samples at or after `begin` and before `end` get their
     /// part; `power` gives the power at a time, which must be smooth and vary little within `scale` (s).
-    pub(crate) fn work(&mut self, begin: f64, end: f64, scale: f64, mut power: impl FnMut(f64) -> Power<D>) {
+    pub(crate) fn work(
+        &mut self,
+        begin: f64,
+        end: f64,
+        scale: f64,
+        mut power: impl FnMut(f64) -> Power<D>,
+    ) -> Result<(), SimulationError> {
         if !self.sampling.wants_work() {
-            return;
+            return Ok(());
         }
         let end = end.min(self.sampling.end());
         let mut from = begin;
         let stop = self.sampling.index_at_or_after(end);
         while self.worked < stop {
             let time = self.sampling.time(self.worked).max(begin);
-            self.work.add(from, time, scale, &mut power);
+            self.work.add(from, time, scale, &mut self.pieces, &mut power)?;
             self.trajectory.set_work(self.worked, &self.work);
             from = from.max(time);
             self.worked += 1;
         }
-        self.work.add(from, end, scale, &mut power);
+        self.work.add(from, end, scale, &mut self.pieces, &mut power)?;
         // The last sample is at the end itself.
         if end == self.sampling.end() {
             while self.worked < self.sampling.count() {
@@ -167,5 +175,7 @@ impl<'a, D: Scalar> Recorder<'a, D> {
                 self.worked += 1;
             }
         }
+        // What has once become infinite stays so.
+        if self.work.is_finite() { Ok(()) } else { Err(SimulationError::NotFinite { time: end }) }
     }
 }

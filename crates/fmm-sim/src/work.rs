@@ -2,6 +2,8 @@
 
 use fmm_model::Scalar;
 
+use crate::SimulationError;
+
 /// Powers (W) of friction, damping and excitation at one instant.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Power<D> {
@@ -39,8 +41,8 @@ const NODES: [(f64, f64); 7] = [
     (0.974_553_956_171_379_2, 0.064_742_483_084_434_85),
 ];
 
-/// Pieces of one interval are no more than this; beyond it a motion is not resolved by its samples anyway.
-const MOST_PIECES: f64 = 1e6;
+/// Pieces of one run are no more than this; a motion that needs more is not resolved by its samples anyway.
+pub(crate) const PIECE_BUDGET: usize = 2_000_000;
 
 impl<D: Scalar> Work<D> {
     pub(crate) fn none() -> Self {
@@ -48,12 +50,26 @@ impl<D: Scalar> Work<D> {
         Self { friction: zero, viscous: zero, external: zero }
     }
 
-    /// Adds the integral of `power` from `begin` to `end` (s), in pieces no longer than `scale`.
-    pub(crate) fn add(&mut self, begin: f64, end: f64, scale: f64, power: &mut impl FnMut(f64) -> Power<D>) {
+    /// Adds the integral of `power` from `begin` to `end` (s), in pieces no longer than `scale`, of which `budget` is what
+    /// is left.
+    ///
+    /// # Errors
+    /// [`SimulationError::StepBudget`] if there are more pieces.
+    pub(crate) fn add(
+        &mut self,
+        begin: f64,
+        end: f64,
+        scale: f64,
+        budget: &mut usize,
+        power: &mut impl FnMut(f64) -> Power<D>,
+    ) -> Result<(), SimulationError> {
         if !(end > begin) {
-            return;
+            return Ok(());
         }
-        let pieces = ((end - begin) / scale).ceil().clamp(1.0, MOST_PIECES);
+        let pieces = ((end - begin) / scale).ceil().max(1.0);
+        *budget = budget
+            .checked_sub(pieces as usize)
+            .ok_or(SimulationError::StepBudget { budget: PIECE_BUDGET, end })?;
         let step = (end - begin) / pieces;
         for piece in 0..pieces as usize {
             let start = begin + piece as f64 * step;
@@ -64,6 +80,12 @@ impl<D: Scalar> Work<D> {
                 self.external = self.external + power.external * (weight * step);
             }
         }
+        Ok(())
+    }
+
+    /// Whether all of it is within the range of the number type.
+    pub(crate) fn is_finite(&self) -> bool {
+        [self.friction, self.viscous, self.external].into_iter().all(|work| work.value().is_finite())
     }
 }
 
@@ -75,10 +97,15 @@ mod tests {
     #[test]
     fn the_quadrature_is_of_order_14() {
         let mut work = Work::<f64>::none();
-        work.add(0.0, 2.0, 1.0, &mut |t| Power { friction: t.powi(13), viscous: t.sin(), external: 1.0 });
+        let mut budget = 3;
+        work.add(0.0, 2.0, 1.0, &mut budget, &mut |t| Power { friction: t.powi(13), viscous: t.sin(), external: 1.0 })
+            .unwrap();
         assert!((work.friction / (2f64.powi(14) / 14.0) - 1.0).abs() < 1e-14, "{}", work.friction);
         assert!((work.viscous - (1.0 - 2f64.cos())).abs() < 1e-15, "{}", work.viscous);
         assert!((work.external - 2.0).abs() < 1e-15, "{}", work.external);
-        work.add(3.0, 3.0, 1.0, &mut |_| unreachable!("an empty interval has no work"));
+        work.add(3.0, 3.0, 1.0, &mut budget, &mut |_| unreachable!("an empty interval has no work")).unwrap();
+        assert_eq!(budget, 1);
+        let error = work.add(0.0, 1e9, 1e-9, &mut budget, &mut |_| unreachable!("too many pieces")).unwrap_err();
+        assert!(matches!(error, SimulationError::StepBudget { .. }), "{error}");
     }
 }

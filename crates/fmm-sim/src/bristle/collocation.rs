@@ -17,18 +17,13 @@ const MOST_DERIVATIVE_ITERATIONS: usize = 60;
 
 /// What is left over by Newton's method, in units of the tolerance; and rounding, below which it cannot get.
 const LEFT_OVER: f64 = 0.01;
-const ROUNDING: f64 = 1e-15;
+const ROUNDING: f64 = 2e-15;
 
-/// The interval of a step and what its errors are compared with.
+/// The interval of a step (s), and the error allowed in it (1).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Span {
     pub(super) begin: f64,
     pub(super) length: f64,
-    /// Time (s) over which a velocity changes the position at most: since the last event, or the inverse of the natural
-    /// frequency ω, if that is shorter.
-    pub(super) memory: f64,
-    /// ω, natural angular frequency (rad/s).
-    pub(super) angular: f64,
     pub(super) tolerance: f64,
 }
 
@@ -70,6 +65,10 @@ pub(super) struct Collocation<D> {
     real: Factors,
     pairs: [Factors; PAIRS],
     scale: Vec<f64>,
+    /// The state at the beginning of the swing, the velocity being that of the counterface, and how far each component has
+    /// moved from there.
+    origin: Vec<f64>,
+    moved: Vec<f64>,
 }
 
 impl<D: Scalar> Collocation<D> {
@@ -97,7 +96,19 @@ impl<D: Scalar> Collocation<D> {
             real: Factors::default(),
             pairs: std::array::from_fn(|_| Factors::default()),
             scale: vec![1.0; size],
+            origin: vec![0.0; size],
+            moved: vec![0.0; size],
         }
+    }
+
+    /// A swing begins; errors are relative to its motion. `belt` is the velocity of the counterface.
+    pub(super) fn turn(&mut self, belt: f64) {
+        for (origin, y) in self.origin.iter_mut().zip(&self.begin) {
+            *origin = y.value();
+        }
+        self.origin[1] = belt;
+        self.moved.fill(0.0);
+        self.guess_length = 0.0;
     }
 
     /// The next step has nothing to do with the one before.
@@ -113,6 +124,9 @@ impl<D: Scalar> Collocation<D> {
 
     /// Goes to the end of a step of `length`, from which the next one begins.
     pub(super) fn advance(&mut self, length: f64) {
+        for component in 0..self.size {
+            self.moved[component] = self.moved(component);
+        }
         for (y, increments) in self.begin.iter_mut().zip(&self.increments) {
             *y = *y + increments[STAGES - 1];
         }
@@ -168,8 +182,8 @@ impl<D: Scalar> Collocation<D> {
         }
         self.predict(field, branch, span);
         let forces = field.force_size(self.forces[0], branch, &self.begin);
-        let rounding = 16.0 * f64::EPSILON / span.tolerance * forces / field.oscillator.mass().value() * span.length;
-        self.rescale(field, span, rounding);
+        let rounding = ROUNDING / span.tolerance * forces / field.oscillator.mass().value() * span.length;
+        self.rescale(span, rounding);
         if !self.prepare(field, branch, span) {
             return Ok(None);
         }
@@ -177,7 +191,7 @@ impl<D: Scalar> Collocation<D> {
         let (mut before, mut iterations) = (f64::INFINITY, 0);
         loop {
             self.iterate(field, branch, span, true);
-            self.rescale(field, span, rounding);
+            self.rescale(span, rounding);
             let correction = self.correction(D::value);
             iterations += 1;
             self.iterations += 1;
@@ -226,18 +240,21 @@ impl<D: Scalar> Collocation<D> {
         }
     }
 
-    /// What errors of each component are compared with: the motion as it is in this step.
-    fn rescale<L: BristleLaw<D>>(&mut self, field: &Field<D, L>, span: Span, rounding: f64) {
-        let most = |component: usize| {
-            let y = self.begin[component].value();
-            self.increments[component].iter().fold(y.abs(), |most, w| most.max((y + w.value()).abs()))
-        };
-        let [x, v] = [most(0), most(1)];
-        self.scale[0] = x.max(v * span.memory).max(f64::MIN_POSITIVE);
-        self.scale[1] = v.max(span.angular * x).max(rounding).max(f64::MIN_POSITIVE);
-        for (index, scale) in self.scale[2..].iter_mut().enumerate() {
-            *scale = field.law.bound(index).value().abs().clamp(f64::MIN_POSITIVE, f64::MAX);
+    /// What errors of each component are compared with: how far it has moved in this swing, this step included, or what
+    /// rounding makes of it.
+    fn rescale(&mut self, span: Span, rounding: f64) {
+        for component in 0..self.size {
+            let floor = ROUNDING / span.tolerance * self.begin[component].value().abs();
+            let floor = if component == 1 { floor.max(rounding) } else { floor };
+            self.scale[component] = self.moved(component).max(floor).max(f64::MIN_POSITIVE);
         }
+    }
+
+    /// How far a component has moved in this swing, this step included.
+    fn moved(&self, component: usize) -> f64 {
+        let distance = self.begin[component].value() - self.origin[component];
+        let increments = &self.increments[component];
+        increments.iter().fold(self.moved[component], |most, w| most.max((distance + w.value()).abs()))
     }
 
     /// The Jacobian in the middle of the step, and the factors of the systems of all modes.

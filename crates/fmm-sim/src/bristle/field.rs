@@ -31,6 +31,8 @@ pub(super) struct Field<'a, D, L> {
     rate: Vec<D>,
     /// Which states have not yet come back through zero in this swing, and stay below it until that is found.
     below: Vec<bool>,
+    /// Which states have reached their bound for the rest of this swing.
+    saturated: Vec<bool>,
 }
 
 impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
@@ -43,6 +45,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
             law: scenario.law(),
             mirrored: zeros.clone(),
             below: vec![false; zeros.len()],
+            saturated: vec![false; zeros.len()],
             rate: zeros,
         }
     }
@@ -66,6 +69,39 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
         self.below[index]
     }
 
+    /// Lets no state be saturated, as at the beginning of a swing.
+    pub(super) fn release(&mut self) {
+        self.saturated.fill(false);
+    }
+
+    /// Puts states that are within `tolerance` of a bound that attracts them onto it, where they stay until the swing
+    /// ends. False if there are none.
+    ///
+    /// A law such as Dahl's with an exponent below 1 reaches its bound in finite time, with an infinite slope there: no
+    /// step of any length could be solved beyond.
+    pub(super) fn saturate(&mut self, branch: Branch, state: &mut [D], tolerance: f64) -> bool {
+        let mut found = false;
+        for index in 0..self.rate.len() {
+            let bound = self.law.bound(index);
+            let speed = self.mirror(branch, state);
+            let near = (self.mirrored[index] - bound).value().abs() <= tolerance * bound.value();
+            if self.saturated[index] || !near {
+                continue;
+            }
+            let mut rate = |factor: f64| {
+                self.mirrored[index] = bound * factor;
+                self.law.rate(speed, &self.mirrored, branch.regime, &mut self.rate);
+                self.rate[index].value()
+            };
+            if rate(1.0 - tolerance) >= 0.0 && rate(1.0 + tolerance) <= 0.0 {
+                self.saturated[index] = true;
+                state[2 + index] = bound * branch.direction.sign();
+                found = true;
+            }
+        }
+        found
+    }
+
     /// Relative speed along `branch`, and the mirrored states in `self.mirrored`.
     fn mirror(&mut self, branch: Branch, state: &[D]) -> D {
         let sign = branch.direction.sign();
@@ -80,6 +116,9 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
     /// Friction force (N) along the direction of the swing; the mirrored rates of the bristles are left in `self.rate`.
     fn mirrored_friction(&mut self, branch: Branch, speed: D) -> D {
         self.law.rate(speed, &self.mirrored, branch.regime, &mut self.rate);
+        for (rate, saturated) in self.rate.iter_mut().zip(&self.saturated) {
+            *rate = if *saturated { D::from(0.0) } else { *rate };
+        }
         self.normal_load * self.law.coefficient(speed, &self.mirrored, &self.rate)
     }
 

@@ -45,6 +45,20 @@ fn halves(mut right: [f64; STAGES + 1]) -> ([f64; STAGES + 1], [f64; STAGES + 1]
     (left, right)
 }
 
+/// The magnitude of the Legendre coefficient of degree s, relative to the greatest Bernstein coefficient.
+pub(super) fn last_coefficient(coefficients: [f64; STAGES + 1]) -> f64 {
+    let size = coefficients.iter().fold(f64::MIN_POSITIVE, |size, coefficient| size.max(coefficient.abs()));
+    // The s-th difference is the coefficient of τˢ, and that is (2s)!/(s!)² times the one sought.
+    let (mut differences, mut central) = (coefficients, 1.0);
+    for level in 1..=STAGES {
+        for index in 0..=STAGES - level {
+            differences[index] = differences[index + 1] - differences[index];
+        }
+        central *= (4 * level - 2) as f64 / level as f64;
+    }
+    differences[0].abs() / (central * size)
+}
+
 /// The slope at 1, per unit of the step.
 pub(super) fn end_slope(coefficients: [f64; STAGES + 1]) -> f64 {
     STAGES as f64 * (coefficients[STAGES] - coefficients[STAGES - 1])

@@ -5,7 +5,7 @@ use fmm_model::{Restoring, Scalar};
 
 use super::collocation::{Collocation, Span};
 use super::field::{Branch, Field};
-use super::first_root::{end_slope, first_root};
+use super::first_root::{end_slope, first_root, last_coefficient};
 use super::radau::STAGES;
 use crate::curve::Curve;
 use crate::drive::{Drive, Piece};
@@ -21,6 +21,9 @@ const MOST_ATTEMPTS: usize = 100;
 
 /// What is left of a step when an event has been landed on is covered by its tangent if it is no more than this.
 const TANGENT: f64 = 1e-9;
+
+/// How large the last Legendre coefficient of a guard on a step may be, relative to the guard.
+const SMOOTH: f64 = 1e-4;
 
 /// Where an event is sought: how the smooth branch can end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,8 +51,6 @@ pub(super) struct Run<'a, D, L> {
     branch: Branch,
     resting: bool,
     time: f64,
-    /// Time of the last event.
-    since: f64,
     proposed: f64,
     angular: f64,
     tolerance: f64,
@@ -76,7 +77,6 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             branch: Branch { direction: Direction::Positive, regime: Regime::ALL_HOLD },
             resting: false,
             time: 0.0,
-            since: 0.0,
             proposed: f64::INFINITY,
             angular: field.oscillator.natural_angular_frequency().value(),
             tolerance,
@@ -115,7 +115,6 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 && let Some(direction) = self.departure(&piece)
             {
                 self.go(Some(direction));
-                self.since = self.time;
                 self.push_here(EventKind::Breakaway, &piece, false)?;
             }
         }
@@ -133,9 +132,10 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
     fn go(&mut self, direction: Option<Direction>) {
         self.resting = direction.is_none();
         self.branch = Branch { direction: direction.unwrap_or(self.branch.direction), regime: Regime::ALL_HOLD };
+        self.step.turn(self.field.belt.value());
+        self.field.release();
         self.field.begin(self.branch, &self.step.begin);
         self.proposed = f64::INFINITY;
-        self.step.forget();
     }
 
     /// Goes on by one step, to `limit` (s) at most, or to an event before it.
@@ -153,7 +153,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         if length < room && room < 2.0 * length {
             length = 0.5 * room;
         }
-        let (mut target, mut turned) = (None, false);
+        let (mut target, mut turned, mut nearest) = (None, false, f64::INFINITY);
         for _ in 0..MOST_ATTEMPTS {
             if self.time + 0.125 * length == self.time && length < room {
                 break;
@@ -162,17 +162,20 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             let span = Span {
                 begin: self.time,
                 length,
-                memory: (self.time - self.since + length).min(1.0 / self.angular),
-                angular: self.angular,
                 tolerance: self.tolerance,
             };
             let Some(solved) = self.step.solve(&mut self.field, self.branch, piece, span)? else {
                 self.step.forget();
-                length *= 0.25;
+                let saturates = self.field.saturate(self.branch, &mut self.step.begin, self.tolerance);
+                length *= if saturates { 1.0 } else { 0.25 };
                 continue;
             };
-            let found = self.first_guard();
-            if let Some((tau, guard)) = found {
+            if !self.guards_are_smooth() {
+                self.step.retry(length);
+                length *= 0.5;
+                continue;
+            }
+            if let Some((tau, guard)) = self.first_guard() {
                 if tau * length <= 2.0 * f64::EPSILON * (self.time + length) {
                     if !(at_zero && guard == Guard::Speed) {
                         return self.arrive(guard, piece, false);
@@ -185,7 +188,9 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                     self.step.forget();
                     continue;
                 }
-                target = Some(guard);
+                if target != Some(guard) {
+                    (target, nearest) = (Some(guard), f64::INFINITY);
+                }
                 if tau < 0.99 {
                     self.dbg[1] += 1;
                     self.step.retry(length);
@@ -201,12 +206,15 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             }
             if let Some(guard) = target {
                 let landing = self.landing(guard, length);
-                if landing.grazing || landing.correction.abs() <= TANGENT {
+                let distance = landing.correction.abs();
+                // Corrections that no longer shrink are rounding.
+                if landing.grazing || distance <= TANGENT || (distance < 0.1 && distance > 0.5 * nearest) {
                     self.finish(length, landing.correction, f64::INFINITY, piece)?;
                     return self.arrive(guard, piece, landing.grazing);
                 }
                 let correction = 1.0 + landing.correction;
-                if landing.correction.abs() < 0.1 && correction * length <= room {
+                if distance < 0.1 && correction * length <= room {
+                    nearest = distance;
                     self.step.retry(length);
                     length *= correction;
                     self.dbg[2] += 1;
@@ -269,6 +277,15 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         first
     }
 
+    /// Whether the reserves of all elements are polynomials on the step as good as those of the motion, so that their
+    /// zeros can be sought on these: a reserve may depend on the velocity in a way that the motion does not.
+    fn guards_are_smooth(&mut self) -> bool {
+        (0..self.field.size() - 2).all(|index| {
+            self.field.reserve(index, self.branch, &self.step.begin).is_none()
+                || last_coefficient(self.guard_polynomial(Guard::Reserve(index))) <= SMOOTH
+        })
+    }
+
     /// Bernstein coefficients of a guard, positive before it is reached.
     fn guard_polynomial(&mut self, guard: Guard) -> [f64; STAGES + 1] {
         let Self { step, field, branch, .. } = self;
@@ -299,7 +316,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         let size = coefficients.iter().fold(0.0f64, |size, coefficient| size.max(coefficient.abs()));
         // Where the slope is that small, rounding moves the zero further than it is from the turning point.
         let grazing = !(slope < 0.0) || slope * slope <= 4.0 * f64::EPSILON * size * curvature.abs();
-        Landing { correction: if grazing { 0.0 } else { -end / slope }, grazing }
+        let correction = if grazing { 0.0 } else { -end / slope };
+        Landing { correction, grazing }
     }
 
     /// Writes what the step of `length` passes and goes to its end, or a part `correction` of it further.
@@ -317,7 +335,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 viscous: field.oscillator.damping().force(velocity) * velocity,
                 external: piece.force(at) * velocity - friction * field.belt,
             }
-        });
+        })?;
         self.step.advance(length);
         if correction != 0.0 {
             self.step.nudge(correction * length);
@@ -349,7 +367,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             friction: friction * (velocity - belt),
             viscous: D::from(0.0),
             external: piece.force(at) * velocity - friction * belt,
-        });
+        })?;
         self.time = limit;
         Ok(())
     }
@@ -365,7 +383,6 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 self.step.begin[1] = velocity - velocity.value() + self.field.belt.value();
                 let direction = self.departure(piece);
                 self.go(direction);
-                self.since = self.time;
                 let kind = if direction.is_none() { EventKind::Stop } else { EventKind::Reversal };
                 self.pass(kind, piece, shift, grazing)
             }

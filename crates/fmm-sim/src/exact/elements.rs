@@ -247,7 +247,6 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Elements<'a, D, L> {
                 viscous: oscillator.damping().force(velocity) * velocity,
                 external: piece.force(time) * velocity - friction * self.belt,
             }
-        });
-        Ok(())
+        })
     }
 }

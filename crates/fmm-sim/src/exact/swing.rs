@@ -163,7 +163,7 @@ impl<D: Scalar> Slide<D> for Swing<'_, D> {
         };
         let end = found.as_ref().map_or(phase.samples_end(), |(_, time, _, _)| time.value());
         write(&path, flow.powers.as_ref(), phase.time, end, recorder)?;
-        self.write_work(&path, flow, phase, end.min(phase.limit), recorder);
+        self.write_work(&path, flow, phase, end.min(phase.limit), recorder)?;
         if let Some((ending, time, state, grazing)) = found {
             if !undisturbed {
                 self.rhythm = None;
@@ -178,7 +178,14 @@ impl<D: Scalar> Slide<D> for Swing<'_, D> {
 }
 
 impl<D: Scalar> Swing<'_, D> {
-    fn write_work(&self, path: &Curve<D>, flow: &Flow<D>, phase: &Phase<D>, end: f64, recorder: &mut Recorder<D>) {
+    fn write_work(
+        &self,
+        path: &Curve<D>,
+        flow: &Flow<D>,
+        phase: &Phase<D>,
+        end: f64,
+        recorder: &mut Recorder<D>,
+    ) -> Result<(), SimulationError> {
         let waves = path.waves.iter().map(|wave| wave.angular.value());
         let frequency = waves.fold(flow.plain.natural() + 2.0 * flow.plain.rate(), f64::max);
         recorder.work(phase.time.value(), end, 1.0 / frequency, |time| {
@@ -191,7 +198,7 @@ impl<D: Scalar> Swing<'_, D> {
                 viscous: self.oscillator.damping().force(velocity) * velocity,
                 external: phase.piece.force(time) * velocity - friction * self.belt,
             }
-        });
+        })
     }
 }
 
