@@ -41,7 +41,7 @@ impl Trajectory {
     /// let energy = motion.energy(&scenario, 999).expect("all is sampled");
     /// // 0.5 J at the release; what is left is in the spring, the rest went into friction.
     /// assert_eq!(energy.kinetic, 0.0);
-    /// assert!((energy.total() + energy.work.friction - 0.5).abs() < 1e-15);
+    /// assert!((energy.total() + energy.work.friction - 0.5).abs() < 1e-14);
     /// assert!(motion.energy_imbalance(&scenario).is_some_and(|imbalance| imbalance < 1e-14));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

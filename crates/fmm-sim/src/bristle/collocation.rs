@@ -42,8 +42,6 @@ type Stages<D> = [D; STAGES];
 /// A step: the polynomial of degree s that meets the equations of motion at the s stages.
 pub(super) struct Collocation<D> {
     size: usize,
-    pub(super) iterations: usize,
-    pub(super) failed: usize,
     /// The state at its beginning.
     pub(super) begin: Vec<D>,
     /// Yᵢ − y₀ at all stages, for each component.
@@ -78,8 +76,6 @@ impl<D: Scalar> Collocation<D> {
         let stages = || vec![[zero; STAGES]; size];
         Self {
             size,
-            iterations: 0,
-            failed: 0,
             begin,
             increments: stages(),
             rates: stages(),
@@ -194,7 +190,6 @@ impl<D: Scalar> Collocation<D> {
             self.rescale(span, rounding);
             let correction = self.correction(D::value);
             iterations += 1;
-            self.iterations += 1;
             let ratio = correction / before;
             let left = if ratio < 1.0 { ratio / (1.0 - ratio) * correction } else { correction };
             if (iterations > 1 && left <= goal) || correction <= goal * 1e-2 {
@@ -205,7 +200,6 @@ impl<D: Scalar> Collocation<D> {
                 break;
             }
             if !(correction.is_finite() && iterations < MOST_ITERATIONS && (ratio < 0.9 || iterations < 3)) {
-                self.failed += 1;
                 return Ok(None);
             }
             before = correction;
