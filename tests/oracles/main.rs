@@ -1,5 +1,6 @@
 //! Values that other mathematics gives: 256-bit reference solutions, each with its own tolerance.
 
+mod bristle;
 mod free_decay;
 mod laws;
 mod oracle;

@@ -5,7 +5,7 @@ use fmm_model::{Oscillator, Restoring, Scalar};
 
 use crate::curve::{Curve, Wave};
 use crate::drive::{Drive, Piece};
-use crate::first_zero::{SEARCH_BUDGET, first_zero};
+use crate::first_zero::{ROUNDING, SEARCH_BUDGET, first_zero};
 use crate::recorder::Recorder;
 use crate::work::Power;
 use crate::{Direction, Event, EventKind, Mode, Scenario, SimulationError, State};
@@ -188,11 +188,25 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             };
             return (mode, load);
         }
-        let direction = Direction::of(load);
         let held = self.static_force.value();
-        let growing = resting.derivative().at(D::from(0.0)).value() * direction.sign() > 0.0;
-        let slips = growing && load.abs() >= held || load.abs() > held && self.is_ahead(&resting, state, direction);
+        let rate = resting.derivative().at(D::from(0.0)).value();
+        // What an exact comparison would decide by rounding is decided by where the load is going.
+        let rounding = if resting.is_free() { 0.0 } else { ROUNDING * self.magnitude(&resting, state) };
+        let direction = Direction::of(if load.abs() <= rounding { rate } else { load });
+        let growing = rate * direction.sign() > 0.0;
+        let slips = if (load.abs() - held).abs() <= rounding {
+            growing
+        } else {
+            growing && load.abs() >= held || load.abs() > held && self.is_ahead(&resting, state, direction)
+        };
         (if slips { self.sliding(direction) } else { Mode::Stick }, load)
+    }
+
+    /// Sum of the magnitudes of what makes up a `load` (N), whose rounding it carries.
+    fn magnitude(&self, load: &Curve<D>, state: State<D>) -> f64 {
+        load.constant.value().abs()
+            + 2.0 * self.oscillator.restoring_force(state.position).value().abs()
+            + load.waves.iter().map(|wave| wave.cosine.value().hypot(wave.sine.value())).sum::<f64>()
     }
 
     /// Whether the position in which friction balances the load lies ahead. Beyond the static level it does, as the

@@ -50,7 +50,7 @@ impl<'a, D: Scalar> Curve<'a, D> {
     pub(crate) fn force(piece: &Piece<D>, time: D) -> Self {
         let (constant, slope) = piece.line(time);
         let wave = |wave: &crate::drive::Harmonic<D>| {
-            let (sin, cos) = (wave.angular * time + wave.phase).sin_cos();
+            let (sin, cos) = wave.sin_cos(time);
             Wave { angular: wave.angular, cosine: wave.amplitude * cos, sine: -wave.amplitude * sin }
         };
         Self { constant, slope, waves: piece.waves().iter().map(wave).collect(), decay: None }

@@ -7,12 +7,21 @@ use fmm_model::Scalar;
 use crate::Excitation;
 use crate::excitation::Source;
 
-/// amplitude · cos(angular · t + phase), with t counted from the start of the simulation.
+/// amplitude · cos(angular · (t − since) + phase), with t counted from the start of the simulation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Harmonic<D> {
     pub(crate) amplitude: D,
     pub(crate) angular: D,
     pub(crate) phase: D,
+    /// Beginning of a pulse (s): the angle of a short pulse a long time after the start would be mostly rounding.
+    since: f64,
+}
+
+impl<D: Scalar> Harmonic<D> {
+    /// Sine and cosine of the angle at `time` (s).
+    pub(crate) fn sin_cos(&self, time: D) -> (D, D) {
+        (self.angular * (time - self.since) + self.phase).sin_cos()
+    }
 }
 
 /// The force between two knots.
@@ -46,7 +55,7 @@ impl<D: Scalar> Piece<D> {
     pub(crate) fn force(&self, time: f64) -> D {
         let mut force = self.line(D::from(time)).0;
         for wave in &self.waves {
-            force = force + wave.amplitude * (wave.angular * time + wave.phase).sin_cos().1;
+            force = force + wave.amplitude * wave.sin_cos(D::from(time)).1;
         }
         force
     }
@@ -125,19 +134,20 @@ impl<'a, D: Scalar> Drive<'a, D> {
                     }
                 }
                 Source::HalfSine { peak, duration } if begun && middle < delay + duration.value() => {
-                    let angular = D::from(PI) / *duration;
-                    piece.waves.push(Harmonic { amplitude: *peak, angular, phase: -angular * *delay - FRAC_PI_2 });
+                    let (angular, phase) = (D::from(PI) / *duration, D::from(-FRAC_PI_2));
+                    piece.waves.push(Harmonic { amplitude: *peak, angular, phase, since: *delay });
                 }
                 Source::Ramp { rate } if begun => {
                     piece.force = piece.force + *rate * (start - delay);
                     piece.slope = piece.slope + *rate;
                 }
                 Source::Harmonic { amplitude, angular, phase } => {
-                    piece.waves.push(Harmonic { amplitude: *amplitude, angular: *angular, phase: *phase });
+                    let (amplitude, angular, phase) = (*amplitude, *angular, *phase);
+                    piece.waves.push(Harmonic { amplitude, angular, phase, since: 0.0 });
                 }
                 Source::Base { amplitude, angular, phase } => {
                     let amplitude = self.mass * *amplitude * *angular * *angular;
-                    piece.waves.push(Harmonic { amplitude, angular: *angular, phase: *phase });
+                    piece.waves.push(Harmonic { amplitude, angular: *angular, phase: *phase, since: 0.0 });
                 }
                 Source::HalfSine { .. } | Source::Ramp { .. } | Source::Belt { .. } => {}
             }

@@ -8,7 +8,7 @@ use crate::curve::{Curve, Jet};
 pub(crate) const SEARCH_BUDGET: usize = 20_000_000;
 
 /// Rounding of a value, in units of the sum of the magnitudes of its terms.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
+pub(crate) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// The first time in (0, `limit`] at which `curve`, positive until then, reaches zero.
 ///

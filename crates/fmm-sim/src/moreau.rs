@@ -3,8 +3,8 @@
 use fmm_friction::SlidingLaw;
 
 use crate::drive::Drive;
-use crate::piece_at::PieceAt;
-use crate::{Direction, Engine, Event, EventKind, Mode, Sampling, Scenario, SimulationError, Trajectory};
+use crate::fixed_step::{GridEvents, PieceAt};
+use crate::{Direction, Engine, Event, EventKind, Mode, Sampling, Scenario, SimulationError, State, Trajectory};
 
 /// The Moreau-Jean θ-method: friction is an impulse in each step, as large as its level allows and as small as it must be for
 /// the contact to hold.
@@ -73,16 +73,7 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Moreau {
         }
 
         let (mut x, mut v) = (scenario.initial().position, scenario.initial().velocity);
-        let event = |kind, index: usize, x: f64, v: f64, next, balance: f64| Event {
-            kind,
-            time: index as f64 * h,
-            position: x,
-            velocity: v,
-            next,
-            load: balance.abs(),
-            static_level,
-            grazing: false,
-        };
+        let grid = GridEvents { step: h, static_level };
         let mut force = pieces.force(0.0);
         let balance = force - oscillator.restoring_force(x) - oscillator.damping().force(belt);
         let mut mode = if v != belt {
@@ -92,7 +83,7 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Moreau {
         } else {
             Mode::Slip(Direction::of(balance))
         };
-        trajectory.push(event(EventKind::Start, 0, x, v, mode, balance));
+        trajectory.push(grid.event(EventKind::Start, 0, State { position: x, velocity: v }, mode, balance));
         let mut stopped: Option<Event> = None;
         for index in 0..sampling.first() + sampling.count() {
             if let Some(sample) = index.checked_sub(sampling.first()) {
@@ -127,11 +118,17 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Moreau {
                 }
                 (Some(stop), _) => trajectory.push(stop),
                 (None, Mode::Stick) if !sticking => {
-                    stopped = Some(event(EventKind::Stop, index + 1, x, v, now, balance()));
+                    stopped = Some(grid.event(
+                        EventKind::Stop,
+                        index + 1,
+                        State { position: x, velocity: v },
+                        now,
+                        balance(),
+                    ));
                 }
                 (None, _) if now != mode => {
                     let kind = if sticking { EventKind::Breakaway } else { EventKind::Reversal };
-                    trajectory.push(event(kind, index + 1, x, v, now, balance()));
+                    trajectory.push(grid.event(kind, index + 1, State { position: x, velocity: v }, now, balance()));
                 }
                 (None, _) => {}
             }

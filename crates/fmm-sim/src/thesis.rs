@@ -3,8 +3,8 @@
 use fmm_friction::SlidingLaw;
 
 use crate::drive::Drive;
-use crate::piece_at::PieceAt;
-use crate::{Direction, Engine, Event, EventKind, Mode, Sampling, Scenario, SimulationError, Trajectory};
+use crate::fixed_step::{GridEvents, PieceAt};
+use crate::{Direction, Engine, EventKind, Mode, Sampling, Scenario, SimulationError, State, Trajectory};
 
 /// Semi-implicit Euler with the branch order of the thesis' appendix (A3 to A6), for reproduction only.
 ///
@@ -71,16 +71,7 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
             StaticLevel::AtSpeed => balance.abs() < law.coefficient(v.abs()) * load,
         };
         let (mut x, mut v) = (scenario.initial().position, scenario.initial().velocity);
-        let event = |kind, index: usize, x: f64, v: f64, next, balance: f64| Event {
-            kind,
-            time: index as f64 * step,
-            position: x,
-            velocity: v,
-            next,
-            load: balance.abs(),
-            static_level,
-            grazing: false,
-        };
+        let grid = GridEvents { step, static_level };
         let mut pieces = PieceAt::new(&drive);
         // The appendix starts every run as if the motion before had been in the positive direction.
         let (mut before, mut acceleration) = (1.0, 0.0);
@@ -90,7 +81,7 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
         } else {
             Mode::Slip(Direction::of(if v == 0.0 { balance } else { v }))
         };
-        trajectory.push(event(EventKind::Start, 0, x, v, mode, balance));
+        trajectory.push(grid.event(EventKind::Start, 0, State { position: x, velocity: v }, mode, balance));
         for index in 0..sampling.first() + sampling.count() {
             if let Some(sample) = index.checked_sub(sampling.first()) {
                 trajectory.set(sample, sampling.channels(), x, v);
@@ -106,7 +97,13 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
                 acceleration = 0.0;
                 if mode != Mode::Stick {
                     mode = Mode::Stick;
-                    trajectory.push(event(EventKind::Stop, index + 1, x, v, mode, balance));
+                    trajectory.push(grid.event(
+                        EventKind::Stop,
+                        index + 1,
+                        State { position: x, velocity: v },
+                        mode,
+                        balance,
+                    ));
                 }
                 continue;
             }
@@ -135,7 +132,7 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
             if v != 0.0 && next != mode {
                 let kind = if mode == Mode::Stick { EventKind::Breakaway } else { EventKind::Reversal };
                 mode = next;
-                trajectory.push(event(kind, index + 1, x, v, mode, balance));
+                trajectory.push(grid.event(kind, index + 1, State { position: x, velocity: v }, mode, balance));
             }
             if !((oscillator.stiffness() * x).is_finite() && x.is_finite() && v.is_finite()) {
                 return Err(SimulationError::NotFinite { time: (index + 1) as f64 * step });

@@ -130,10 +130,10 @@ impl<D: Scalar> Collocation<D> {
         (self.guess_length, self.guess_begin) = (length, 1.0);
     }
 
-    /// Goes on by `time` (s) along the tangent, which must be short.
-    pub(super) fn nudge(&mut self, time: f64) {
-        for (y, rates) in self.begin.iter_mut().zip(&self.rates) {
-            *y = *y + rates[STAGES - 1] * time;
+    /// Goes on from the end of the last step by a short `part` of it along the tangent of its polynomial.
+    pub(super) fn nudge(&mut self, part: f64) {
+        for (y, increments) in self.begin.iter_mut().zip(&self.guess) {
+            *y = *y + dot(&INVERSE[STAGES - 1], increments) * part;
         }
     }
 
@@ -145,9 +145,9 @@ impl<D: Scalar> Collocation<D> {
         }
     }
 
-    /// The acceleration at the end of the step.
-    pub(super) fn end_acceleration(&self) -> D {
-        self.rates[1][STAGES - 1]
+    /// The slope of a component at the end of the step, per unit of the step.
+    pub(super) fn end_slope(&self, component: usize) -> f64 {
+        dot(&INVERSE[STAGES - 1], &self.increments[component]).value()
     }
 
     /// The Bernstein coefficients of the polynomial through what `value` gives at the states at the beginning and at all

@@ -3,7 +3,7 @@
 use fmm_friction::{BristleLaw, Regime};
 use fmm_model::{Oscillator, Scalar};
 
-use crate::{Direction, Scenario};
+use crate::Direction;
 
 /// On which smooth branch of the law the contact moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,6 +27,8 @@ pub(super) struct Field<'a, D, L> {
     pub(super) normal_load: D,
     pub(super) belt: D,
     pub(super) law: &'a L,
+    /// Whether something outside keeps the velocity constant, whatever the forces are.
+    pub(super) guided: bool,
     mirrored: Vec<D>,
     rate: Vec<D>,
     /// Which states have not yet come back through zero in this swing, and stay below it until that is found.
@@ -36,13 +38,14 @@ pub(super) struct Field<'a, D, L> {
 }
 
 impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
-    pub(super) fn new(scenario: &'a Scenario<D, L>, belt: D) -> Self {
-        let zeros = vec![D::from(0.0); scenario.law().states()];
+    pub(super) fn new(oscillator: &'a Oscillator<D>, law: &'a L, normal_load: D, belt: D) -> Self {
+        let zeros = vec![D::from(0.0); law.states()];
         Self {
-            oscillator: scenario.oscillator(),
-            normal_load: scenario.normal_load(),
+            oscillator,
+            normal_load,
             belt,
-            law: scenario.law(),
+            law,
+            guided: false,
             mirrored: zeros.clone(),
             below: vec![false; zeros.len()],
             saturated: vec![false; zeros.len()],
@@ -131,10 +134,11 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
     /// Writes (x, v, z)′ at `state` under `force` (N) into `rates`.
     pub(super) fn rates(&mut self, force: D, branch: Branch, state: &[D], rates: &mut [D]) {
         let friction = self.friction(branch, state);
-        let [x, v] = [state[0], state[1]];
+        let (x, v) = (state[0], state[1]);
         let machine = self.oscillator.damping().force(v) + self.oscillator.restoring_force(x);
         rates[0] = v;
-        rates[1] = (force - machine - friction) / self.oscillator.mass();
+        let balance = (force - machine - friction) / self.oscillator.mass();
+        rates[1] = if self.guided { D::from(0.0) } else { balance };
         for (rate, z) in rates[2..].iter_mut().zip(&self.rate) {
             *rate = *z * branch.direction.sign();
         }
@@ -203,6 +207,9 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
                 jacobian[(2 + row) * size + 2 + column] = slope(self.rate[row].value() - rate, change);
             }
             self.mirrored[column] = z;
+        }
+        if self.guided {
+            jacobian[size..2 * size].fill(0.0);
         }
     }
 }

@@ -5,6 +5,9 @@ use super::radau::STAGES;
 /// Halvings after which an interval counts as a point; Newton's method on the motion itself takes over.
 const DEPTH: u32 = 44;
 
+/// The part of a step that begins at zero velocity in which the velocity counts as rising from it.
+const BEGINNING: f64 = 1.0 / 32.0;
+
 /// The first τ in [0, 1] at which the polynomial with these Bernstein coefficients, positive before, reaches zero.
 ///
 /// The polynomial lies within the convex hull of its coefficients: where all are positive there is no zero, and where some
@@ -17,6 +20,31 @@ pub(super) fn first_root(coefficients: [f64; STAGES + 1]) -> Option<f64> {
         return Some(0.0);
     }
     first_in(coefficients, 0.0, 1.0, DEPTH)
+}
+
+/// The first zero after one at 0, from which the polynomial rises; 0 if it does not rise.
+///
+/// Where it rises with hardly any slope, rounding decides its sign at first, so that is asked of a small part of the
+/// interval as a whole.
+pub(super) fn next_root(coefficients: [f64; STAGES + 1]) -> Option<f64> {
+    let (mut begin, mut width, mut left) = (0.0, 1.0, coefficients);
+    let mut parts = Vec::new();
+    while width > BEGINNING {
+        let (first, second) = halves(left);
+        width *= 0.5;
+        parts.push((second, width));
+        left = first;
+    }
+    if left[STAGES] <= 0.0 {
+        return Some(begin);
+    }
+    for (part, width) in parts.into_iter().rev() {
+        begin = width;
+        if let Some(tau) = if part[0] <= 0.0 { Some(begin) } else { first_in(part, begin, width, DEPTH) } {
+            return Some(tau);
+        }
+    }
+    None
 }
 
 fn first_in(coefficients: [f64; STAGES + 1], begin: f64, width: f64, depth: u32) -> Option<f64> {
@@ -36,11 +64,11 @@ fn first_in(coefficients: [f64; STAGES + 1], begin: f64, width: f64, depth: u32)
 /// The coefficients on both halves of the interval.
 fn halves(mut right: [f64; STAGES + 1]) -> ([f64; STAGES + 1], [f64; STAGES + 1]) {
     let mut left = right;
-    for level in 1..=STAGES {
+    for (level, left) in left.iter_mut().enumerate().skip(1) {
         for index in 0..=STAGES - level {
             right[index] = 0.5 * (right[index] + right[index + 1]);
         }
-        left[level] = right[0];
+        *left = right[0];
     }
     (left, right)
 }
@@ -62,4 +90,49 @@ pub(super) fn last_coefficient(coefficients: [f64; STAGES + 1]) -> f64 {
 /// The slope at 1, per unit of the step.
 pub(super) fn end_slope(coefficients: [f64; STAGES + 1]) -> f64 {
     STAGES as f64 * (coefficients[STAGES] - coefficients[STAGES - 1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::radau::{BERNSTEIN, NODES};
+    use super::*;
+
+    fn bernstein(polynomial: impl Fn(f64) -> f64) -> [f64; STAGES + 1] {
+        let mut nodal = [polynomial(0.0); STAGES + 1];
+        for (nodal, node) in nodal[1..].iter_mut().zip(NODES) {
+            *nodal = polynomial(node);
+        }
+        BERNSTEIN.map(|row| row.iter().zip(nodal).map(|(factor, value)| factor * value).sum())
+    }
+
+    #[test]
+    fn finds_the_first_of_two_close_zeros_and_none_that_is_not_there() {
+        for gap in [1e-2, 1e-4, 1e-6] {
+            let first = first_root(bernstein(|tau| (tau - 0.6).powi(2) - gap * gap)).expect("two zeros");
+            // Coefficients up to 1 carry rounding of about 1e-14, over a slope of 2 gap.
+            assert!((first - (0.6 - gap)).abs() < 1e-14 / gap + 1e-12, "gap {gap}: {first}");
+            assert_eq!(first_root(bernstein(|tau| (tau - 0.6).powi(2) + gap * gap)), None, "gap {gap}");
+        }
+        assert_eq!(first_root(bernstein(|tau| tau - 0.1)), Some(0.0));
+    }
+
+    #[test]
+    fn leaves_a_zero_at_the_start_behind() {
+        for power in 1..=3 {
+            let rises = |tau: f64| tau.powi(power) * (0.5 - tau);
+            let next = next_root(bernstein(rises)).expect("the zero at 0.5");
+            assert!((next - 0.5).abs() < 1e-12, "power {power}: {next}");
+            assert_eq!(next_root(bernstein(|tau| -rises(tau))), Some(0.0), "power {power}");
+            assert_eq!(next_root(bernstein(|tau| tau.powi(power))), None, "power {power}");
+        }
+    }
+
+    #[test]
+    fn the_last_coefficient_is_that_of_the_legendre_polynomial() {
+        // On [0, 1] the leading coefficient of P₇ is 14!/7!² = 3432.
+        let coefficients = bernstein(|tau| 1.0 + tau.powi(7));
+        let size = coefficients.iter().fold(0.0f64, |size, value| size.max(value.abs()));
+        assert!((last_coefficient(coefficients) * size * 3432.0 - 1.0).abs() < 1e-9);
+        assert!((end_slope(coefficients) - 7.0).abs() < 1e-11);
+    }
 }

@@ -3,7 +3,7 @@
 use fmm_friction::BristleLaw;
 use fmm_model::Scalar;
 
-use super::first_root::{end_slope, first_root, last_coefficient};
+use super::first_root::{end_slope, first_root, last_coefficient, next_root};
 use super::radau::STAGES;
 use super::run::Run;
 
@@ -31,11 +31,14 @@ pub(super) struct Landing {
 }
 
 impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
-    /// The first guard that is reached within the step, and where.
-    pub(super) fn first_guard(&mut self) -> Option<(f64, Guard)> {
+    /// The first guard that is reached within the step, and where. A step that begins `at_zero` velocity does not find that
+    /// zero.
+    pub(super) fn first_guard(&mut self, at_zero: bool) -> Option<(f64, Guard)> {
         let mut first: Option<(f64, Guard)> = None;
         let mut look = |coefficients, guard| {
-            if let Some(tau) = first_root(coefficients)
+            let root =
+                if at_zero && guard == Guard::Speed { next_root(coefficients) } else { first_root(coefficients) };
+            if let Some(tau) = root
                 && first.is_none_or(|(earliest, _)| tau < earliest)
             {
                 first = Some((tau, guard));
@@ -74,9 +77,9 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
                 let (belt, sign) = (field.belt.value(), branch.direction.sign());
                 step.bernstein(|state| (state[1].value() - belt) * sign)
             }
-            Guard::Reserve(index) => step.bernstein(|state| {
-                field.reserve(index, *branch, state).map_or(f64::INFINITY, |reserve| reserve.value())
-            }),
+            Guard::Reserve(index) => {
+                step.bernstein(|state| field.reserve(index, *branch, state).map_or(f64::INFINITY, Scalar::value))
+            }
             Guard::Corner(component) => {
                 let sign = step.begin[component].value().signum();
                 step.bernstein(|state| state[component].value() * sign)
@@ -85,17 +88,17 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
     }
 
     /// How far, in units of the step, its end is from the zero of `guard`.
-    pub(super) fn landing(&mut self, guard: Guard, length: f64) -> Landing {
+    pub(super) fn landing(&mut self, guard: Guard) -> Landing {
         let coefficients = self.guard_polynomial(guard);
         let slope = match guard {
-            Guard::Speed => self.step.end_acceleration().value() * self.branch.direction.sign() * length,
+            Guard::Speed => self.step.end_slope(1) * self.branch.direction.sign(),
             Guard::Reserve(_) | Guard::Corner(_) => end_slope(coefficients),
         };
         let [.., before, last, end] = coefficients;
         let curvature = (STAGES * (STAGES - 1)) as f64 * (end - 2.0 * last + before);
         let size = coefficients.iter().fold(0.0f64, |size, coefficient| size.max(coefficient.abs()));
         // Where the slope is that small, rounding moves the zero further than it is from the turning point.
-        let grazing = !(slope < 0.0) || slope * slope <= 4.0 * f64::EPSILON * size * curvature.abs();
+        let grazing = slope >= 0.0 || slope * slope <= 4.0 * f64::EPSILON * size * curvature.abs();
         let correction = if grazing { 0.0 } else { -end / slope };
         Landing { correction, grazing }
     }

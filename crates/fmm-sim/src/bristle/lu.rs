@@ -7,7 +7,7 @@ use fmm_model::Scalar;
 pub(super) struct Factors {
     size: usize,
     /// Row by row: below the diagonal the multipliers, on it the inverses of the pivots, above it the upper factor.
-    factors: Vec<f64>,
+    entries: Vec<f64>,
     swaps: Vec<usize>,
 }
 
@@ -15,8 +15,8 @@ impl Factors {
     /// Makes room for a matrix of `size` rows and gives it, row by row, to be filled before [`factor`](Self::factor).
     pub(super) fn matrix(&mut self, size: usize) -> &mut [f64] {
         self.size = size;
-        self.factors.resize(size * size, 0.0);
-        &mut self.factors
+        self.entries.resize(size * size, 0.0);
+        &mut self.entries
     }
 
     /// Factors the matrix. False if it is singular or not finite.
@@ -24,7 +24,7 @@ impl Factors {
         let size = self.size;
         self.swaps.clear();
         for column in 0..size {
-            let entry = |row: usize| self.factors[row * size + column].abs();
+            let entry = |row: usize| self.entries[row * size + column].abs();
             let mut pivot = column;
             for row in column + 1..size {
                 if entry(row) > entry(pivot) {
@@ -34,15 +34,15 @@ impl Factors {
             self.swaps.push(pivot);
             if pivot != column {
                 for k in 0..size {
-                    self.factors.swap(pivot * size + k, column * size + k);
+                    self.entries.swap(pivot * size + k, column * size + k);
                 }
             }
-            let inverse = 1.0 / self.factors[column * size + column];
+            let inverse = 1.0 / self.entries[column * size + column];
             if !(inverse.is_finite() && inverse != 0.0) {
                 return false;
             }
-            self.factors[column * size + column] = inverse;
-            let (upper, lower) = self.factors.split_at_mut((column + 1) * size);
+            self.entries[column * size + column] = inverse;
+            let (upper, lower) = self.entries.split_at_mut((column + 1) * size);
             let pivot_row = &upper[column * size + column + 1..];
             for row in lower.chunks_exact_mut(size) {
                 let multiplier = row[column] * inverse;
@@ -65,18 +65,18 @@ impl Factors {
         }
         for row in 0..size {
             let mut sum = right[row];
-            for (factor, known) in self.factors[row * size..row * size + row].iter().zip(&right[..row]) {
+            for (factor, known) in self.entries[row * size..row * size + row].iter().zip(&right[..row]) {
                 sum = sum - *known * *factor;
             }
             right[row] = sum;
         }
         for row in (0..size).rev() {
             let mut sum = right[row];
-            let upper = &self.factors[row * size + row + 1..(row + 1) * size];
+            let upper = &self.entries[row * size + row + 1..(row + 1) * size];
             for (factor, known) in upper.iter().zip(&right[row + 1..]) {
                 sum = sum - *known * *factor;
             }
-            right[row] = sum * self.factors[row * size + row];
+            right[row] = sum * self.entries[row * size + row];
         }
     }
 }

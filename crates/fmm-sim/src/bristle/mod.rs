@@ -3,7 +3,10 @@
 mod collocation;
 mod field;
 mod first_root;
+mod guard;
 mod lu;
+mod passage;
+mod path;
 mod radau;
 mod run;
 
@@ -13,28 +16,87 @@ use fmm_model::Scalar;
 use crate::drive::Drive;
 use crate::recorder::Recorder;
 use crate::{Engine, Sampling, Scenario, SimulationError, Trajectory};
+use field::Field;
 use run::Run;
 
-/// Simulates laws with bristles.
+pub(crate) use path::follow;
+
+/// Integrates laws with internal state, however stiff, with a collocation method of order 13 that ends a step wherever the
+/// motion has a kink.
+///
+/// ```text
+/// m x″ = f(t) − F_c(x′) − F_k(x) − N μ(u, z, z′),   z′ = r(u, z),   u = x′ − v_b,   z(0) = 0
+/// ```
+///
+/// The rates of bristles depend on |u|: they have a kink wherever the relative velocity u passes zero, and jump where an
+/// element of [`MaxwellSlip`](fmm_friction::MaxwellSlip) or [`Gms`](fmm_friction::Gms) begins to slide. Between such events
+/// the equations are smooth but stiff. Each step solves the 7 stages of the Radau IIA method together, by Newton's method
+/// with a Jacobian from differences of the law's own formulas; the method is L-stable, so that the stiffness of the
+/// bristles does not limit the step. Its polynomial gives the samples, and its Bernstein coefficients prove that no zero
+/// of u lies within a step, or show where: the step is then taken again to end there, by Newton's method on its length.
+///
+/// A law with bristles has no stick: a contact that seems to hold creeps or swings on its bristles. At u = 0 all elements
+/// hold again ([`EventKind::Reversal`](crate::EventKind::Reversal)), and the direction comes from the load, never from the
+/// velocity; [`EventKind::Yield`](crate::EventKind::Yield) says which element begins to slide. Where nothing drives the
+/// contact within rounding, it rests ([`Mode::Stick`](crate::Mode::Stick)) until the force changes. The
+/// [`static_level`](crate::Event::static_level) of an event is the force that the bristles carry.
+///
+/// `tolerance` bounds the error of a step, its inside included, relative to the motion since the last reversal. Steps are
+/// chosen by values alone: at a dual number they are those of the plain number, values agree to the last bit, and
+/// derivatives include the change of event times. At rest the derivatives are held as well; a start at rest that the
+/// inputs would disturb is marked as [`grazing`](crate::Event::grazing).
+///
+/// Guaranteed is a typed error instead of an endless run: at most a million steps, and a million events.
+///
+/// ```
+/// use fmm_friction::LuGre;
+/// use fmm_model::Oscillator;
+/// use fmm_sim::{Bristle, Engine, EventKind, Sampling, Scenario};
+///
+/// // 10 kg on 2 kN/m, released at 10 mm against 1 to 1.5 N on bristles of 100 kN/m.
+/// let law = LuGre::new(1.0, 1.5, 0.01, 2.0, 1e5, 300.0, 0.4)?;
+/// let scenario = Scenario::new(Oscillator::new(10.0, 2000.0)?, law, 1.0)?.starting_at(0.01, 0.0)?;
+/// let motion = Bristle::default().run(&scenario, &Sampling::uniform(1e-3, 500)?.with_work())?;
+/// assert_eq!(motion.events()[1].kind, EventKind::Reversal);
+/// // Each half swing loses about 2 F/k = 1 mm.
+/// assert!((motion.events()[1].position + 0.009).abs() < 1e-4);
+/// assert!(motion.energy_imbalance(&scenario).is_some_and(|imbalance| imbalance < 1e-10));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # References
+/// E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, Springer 1996, sections IV.5 and IV.8,
+/// doi 10.1007/978-3-642-05221-7; "Stiff differential equations solved by Radau methods", J. Comput. Appl. Math. 111
+/// (1999) 93, doi 10.1016/S0377-0427(99)00134-X.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct Bristle {
-    /// Greatest error of a step, relative to the motion (1).
-    pub tolerance: f64,
+    tolerance: f64,
 }
 
 impl Default for Bristle {
+    /// A relative tolerance of 1e-10: positions, velocities and event times of ring-downs are good to about 1e-11 of
+    /// theirs.
     fn default() -> Self {
-        Self { tolerance: 1e-11 }
+        Self { tolerance: 1e-10 }
     }
 }
 
 impl Bristle {
-    /// The engine with another `tolerance` (1).
-    #[must_use]
-    pub fn with_tolerance(mut self, tolerance: f64) -> Self {
-        self.tolerance = tolerance;
-        self
+    /// The engine with a relative `tolerance` (1) between 1e-15 and 1e-2; below about 1e-13, rounding decides.
+    ///
+    /// # Errors
+    /// [`SimulationError::Tolerance`] if it lies outside.
+    pub fn new(tolerance: f64) -> Result<Self, SimulationError> {
+        if (1e-15..=1e-2).contains(&tolerance) {
+            Ok(Self { tolerance })
+        } else {
+            Err(SimulationError::Tolerance { tolerance })
+        }
+    }
+
+    /// The relative tolerance (1).
+    pub const fn tolerance(&self) -> f64 {
+        self.tolerance
     }
 }
 
@@ -45,8 +107,13 @@ impl<D: Scalar, L: BristleLaw<D>> Engine<D, L> for Bristle {
         sampling: &Sampling,
         trajectory: &mut Trajectory<D>,
     ) -> Result<(), SimulationError> {
-        let drive = Drive::new(scenario.excitations(), scenario.oscillator().mass());
+        let oscillator = scenario.oscillator();
+        let drive = Drive::new(scenario.excitations(), oscillator.mass());
+        let field = Field::new(oscillator, scenario.law(), scenario.normal_load(), drive.belt());
         let recorder = Recorder::new("bristle", scenario.law().states(), sampling, trajectory);
-        Run::new(scenario, &drive, self.tolerance, recorder).run(&drive)
+        Run::new(field, scenario.initial(), self.tolerance, recorder).run(&drive)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -68,7 +68,7 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
             for ((after, y), rate) in self.after.iter_mut().zip(begin).zip(&self.before) {
                 *after = D::from(y.value() + rate.value() * time);
             }
-            self.field.reserve(index, self.branch, &self.after).map_or(0.0, |reserve| reserve.value())
+            self.field.reserve(index, self.branch, &self.after).map_or(0.0, Scalar::value)
         };
         let near = reserve(time) - reserve(-time);
         let far = reserve(2.0 * time) - reserve(-2.0 * time);
@@ -125,7 +125,12 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
     }
 
     /// An event whose time has no derivatives.
-    pub(super) fn push_here(&mut self, kind: EventKind, piece: &Piece<D>, grazing: bool) -> Result<(), SimulationError> {
+    pub(super) fn push_here(
+        &mut self,
+        kind: EventKind,
+        piece: &Piece<D>,
+        grazing: bool,
+    ) -> Result<(), SimulationError> {
         let state = State { position: self.step.begin[0], velocity: self.step.begin[1] };
         self.push(kind, piece, state, D::from(0.0), grazing)
     }

@@ -1,7 +1,7 @@
 //! From event to event: steps of the method, the last of them landing on what ends the smooth branch.
 
 use fmm_friction::{BristleLaw, Regime};
-use fmm_model::{Oscillator, Scalar};
+use fmm_model::Scalar;
 
 use super::collocation::{Collocation, Span};
 use super::field::{Branch, Field};
@@ -23,39 +23,34 @@ const TANGENT: f64 = 1e-9;
 
 /// A simulation under way.
 pub(super) struct Run<'a, D, L> {
-    field: Field<'a, D, L>,
-    step: Collocation<D>,
-    recorder: Recorder<'a, D>,
-    branch: Branch,
-    resting: bool,
-    time: f64,
+    pub(super) field: Field<'a, D, L>,
+    pub(super) step: Collocation<D>,
+    pub(super) recorder: Recorder<'a, D>,
+    pub(super) branch: Branch,
+    /// Whether nothing drives the contact from relative rest.
+    pub(super) resting: bool,
+    /// Time that the state belongs to (s).
+    pub(super) time: f64,
+    /// Length of the step to try next (s); infinite if nothing is known of it.
     proposed: f64,
-    angular: f64,
-    tolerance: f64,
+    pub(super) tolerance: f64,
     steps: usize,
-    before: Vec<D>,
-    after: Vec<D>,
+    /// Room for two states or rates.
+    pub(super) before: Vec<D>,
+    pub(super) after: Vec<D>,
 }
 
 impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
-    pub(super) fn new(
-        scenario: &'a Scenario<D, L>,
-        drive: &Drive<D>,
-        tolerance: f64,
-        recorder: Recorder<'a, D>,
-    ) -> Self {
-        let field = Field::new(scenario, drive.belt());
-        let State { position, velocity } = scenario.initial();
+    pub(super) fn new(field: Field<'a, D, L>, initial: State<D>, tolerance: f64, recorder: Recorder<'a, D>) -> Self {
         let mut begin = vec![D::from(0.0); field.size()];
-        begin[0] = position;
-        begin[1] = velocity;
+        begin[0] = initial.position;
+        begin[1] = initial.velocity;
         Self {
             step: Collocation::new(begin.clone()),
             branch: Branch { direction: Direction::Positive, regime: Regime::ALL_HOLD },
             resting: false,
             time: 0.0,
             proposed: f64::INFINITY,
-            angular: field.oscillator.natural_angular_frequency().value(),
             tolerance,
             steps: 0,
             before: begin.clone(),
@@ -65,6 +60,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         }
     }
 
+    /// Runs from the initial state to the last sample.
     pub(super) fn run(mut self, drive: &Drive<D>) -> Result<(), SimulationError> {
         let end = self.recorder.sampling.end();
         let mut piece = drive.piece(0);
@@ -99,7 +95,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
     }
 
     /// Sets the direction of the motion to come, or rest.
-    fn go(&mut self, direction: Option<Direction>) {
+    pub(super) fn go(&mut self, direction: Option<Direction>) {
         self.resting = direction.is_none();
         self.branch = Branch { direction: direction.unwrap_or(self.branch.direction), regime: Regime::ALL_HOLD };
         self.step.turn(self.field.belt.value());
@@ -109,7 +105,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
     }
 
     /// Goes on by one step, to `limit` (s) at most, or to an event before it.
-    fn advance(&mut self, piece: &Piece<D>, limit: f64) -> Result<(), SimulationError> {
+    pub(super) fn advance(&mut self, piece: &Piece<D>, limit: f64) -> Result<(), SimulationError> {
         for index in 0..self.field.size() - 2 {
             let reserve = self.field.reserve(index, self.branch, &self.step.begin);
             if reserve.is_some_and(|reserve| reserve.value() <= 0.0) {
@@ -129,11 +125,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 break;
             }
             self.count_step()?;
-            let span = Span {
-                begin: self.time,
-                length,
-                tolerance: self.tolerance,
-            };
+            let span = Span { begin: self.time, length, tolerance: self.tolerance };
             let Some(solved) = self.step.solve(&mut self.field, self.branch, piece, span)? else {
                 self.step.forget();
                 let saturates = self.field.saturate(self.branch, &mut self.step.begin, self.tolerance);
@@ -145,7 +137,10 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 length *= 0.5;
                 continue;
             }
-            if let Some((tau, guard)) = self.first_guard() {
+            let found = self.first_guard(at_zero);
+            // What is not accurate enough says nothing about where it begins.
+            let credible = solved.error <= 1.0 || found.is_none_or(|(tau, _)| tau > 0.0);
+            if let Some((tau, guard)) = found.filter(|_| credible) {
                 if tau * length <= 2.0 * f64::EPSILON * (self.time + length) {
                     if !(at_zero && guard == Guard::Speed) {
                         return self.arrive(guard, piece, false);
@@ -173,7 +168,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 continue;
             }
             if let Some(guard) = target {
-                let landing = self.landing(guard, length);
+                let landing = self.landing(guard);
                 let distance = landing.correction.abs();
                 // Corrections that no longer shrink are rounding.
                 if landing.grazing || distance <= TANGENT || (distance < 0.1 && distance > 0.5 * nearest) {
@@ -210,8 +205,9 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         let size = self.field.size();
         let mut jacobian = vec![0.0; size * size];
         let begin = &self.step.begin;
-        let bristles = self.field.law.bound(0).value().abs() * self.angular;
-        let speed = begin[1].value().abs().max(self.angular * begin[0].value().abs()).max(bristles);
+        let angular = self.field.oscillator.natural_angular_frequency().value();
+        let bristles = self.field.law.bound(0).value().abs() * angular;
+        let speed = begin[1].value().abs().max(angular * begin[0].value().abs()).max(bristles);
         self.field.jacobian(self.branch, begin, speed, &mut jacobian);
         let bristles = (2..size).map(|state| (jacobian[size + state] * jacobian[state * size + 1]).abs());
         let stiffness = jacobian[size].abs() + bristles.sum::<f64>();
@@ -236,7 +232,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         })?;
         self.step.advance(length);
         if correction != 0.0 {
-            self.step.nudge(correction * length);
+            self.step.nudge(correction);
         }
         self.time = end;
         Ok(())
@@ -269,7 +265,6 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         self.time = limit;
         Ok(())
     }
-
 }
 
 /// By which factor to change the length of a step with this error, in units of the tolerance.

@@ -215,6 +215,9 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         let late = if grazing { D::from(0.0) } else { -value / rate };
         // A zero within rounding of the step's end is at its end.
         let late = if late.value().abs() <= self.close() { late } else { late - late.value() };
+        // Nor is an event before the step that leads to it.
+        let early = at.time - (time + late).value();
+        let late = if early > 0.0 { late + early } else { late };
         let state = State {
             position: step.end.position + step.end.velocity * late,
             velocity: step.end.velocity + step.last_acceleration() * late,
@@ -294,7 +297,9 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
                 .checked_sub(1)
                 .ok_or(SimulationError::StepBudget { budget: STEP_BUDGET, end: recorder.sampling.end() })?;
             let mut step = self.take(phase, &at, length);
-            let scale = self.scale(at.state, at.acceleration);
+            // A motion may begin from nothing; then it is as large as it becomes.
+            let (first, last) = (self.scale(at.state, at.acceleration), self.scale(step.end, step.last_acceleration()));
+            let scale = if last.velocity > first.velocity { last } else { first };
             let mut error = step.error(scale) / self.tolerance;
             let crossed = Self::endings(phase)
                 .iter()

@@ -1,0 +1,88 @@
+//! Engines by their names, and what a run asks of them.
+
+use std::fmt;
+
+use fmm_friction::{BristleLaw, SlidingLaw};
+use fmm_sim::{Bristle, Engine, Moreau, RungeKutta, Sampling, Scenario, SimulationError, Thesis, Trajectory};
+use serde::Deserialize;
+
+/// The engines that a scenario can name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum EngineName {
+    /// The one that suits law and machine.
+    #[default]
+    Auto,
+    /// Closed form between events.
+    Exact,
+    /// Any law of the sliding speed, to a tolerance.
+    RungeKutta,
+    /// Any law with an internal state, to a tolerance.
+    Bristle,
+    /// The thesis' semi-implicit Euler, one step a sample.
+    Thesis,
+    /// Time stepping of the set-valued law, one step a sample.
+    Moreau,
+}
+
+impl EngineName {
+    /// Whether it keeps the work done along the motion.
+    pub(crate) const fn records_work(self) -> bool {
+        !matches!(self, Self::Thesis | Self::Moreau)
+    }
+}
+
+impl fmt::Display for EngineName {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Auto => "auto",
+            Self::Exact => "exact",
+            Self::RungeKutta => "runge_kutta",
+            Self::Bristle => "bristle",
+            Self::Thesis => "thesis",
+            Self::Moreau => "moreau",
+        })
+    }
+}
+
+/// An engine and how accurate it shall be.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Choice {
+    pub(crate) engine: EngineName,
+    /// Relative tolerance (1); none for the engine's own.
+    pub(crate) tolerance: Option<f64>,
+}
+
+impl Choice {
+    /// The Runge-Kutta engine at the tolerance chosen.
+    pub(crate) fn runge_kutta<L: SlidingLaw<f64>>(
+        self,
+        scenario: &Scenario<f64, L>,
+        sampling: &Sampling,
+    ) -> Result<Trajectory, SimulationError> {
+        self.tolerance.map_or_else(|| Ok(RungeKutta::default()), RungeKutta::new)?.run(scenario, sampling)
+    }
+
+    /// The bristle engine at the tolerance chosen.
+    pub(crate) fn bristle<L: BristleLaw<f64>>(
+        self,
+        scenario: &Scenario<f64, L>,
+        sampling: &Sampling,
+    ) -> Result<Trajectory, SimulationError> {
+        self.tolerance.map_or_else(|| Ok(Bristle::default()), Bristle::new)?.run(scenario, sampling)
+    }
+
+    /// An engine for laws of the sliding speed alone; none if the one chosen is not.
+    pub(crate) fn sliding<L: SlidingLaw<f64>>(
+        self,
+        scenario: &Scenario<f64, L>,
+        sampling: &Sampling,
+    ) -> Option<Result<Trajectory, SimulationError>> {
+        match self.engine {
+            EngineName::RungeKutta => Some(self.runge_kutta(scenario, sampling)),
+            EngineName::Thesis => Some(Thesis::default().run(scenario, sampling)),
+            EngineName::Moreau => Some(Moreau::default().run(scenario, sampling)),
+            EngineName::Auto | EngineName::Exact | EngineName::Bristle => None,
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Pictures of a motion: motion.svg and friction.svg.
+
+use std::error::Error;
+use std::path::Path;
+
+use fmm_sim::SimulationError;
+
+use crate::figure::{self, Layer, Panel, Role};
+use crate::simulation::{Motion, Plan, ScenarioError, Simulation};
+
+/// Points of a curve besides those at events.
+const POINTS: usize = 2000;
+
+/// Events marked in a curve; more of them would hide it.
+const MOST_MARKS: usize = 500;
+
+/// Draws what the motion was and what friction did, into `folder`. The curves are sampled anew, whatever the output of
+/// the scenario.
+///
+/// # Errors
+/// If the motion cannot be simulated again or a file cannot be written.
+pub(crate) fn draw(folder: &Path, scenario: &Simulation, motion: &Motion) -> Result<(), Box<dyn Error>> {
+    let end = motion.samples.t.last().copied().unwrap_or(0.0);
+    let end = motion.events.last().map_or(end, |event| event.t.max(end));
+    let mut times: Vec<f64> = (0..=POINTS).map(|index| end * index as f64 / POINTS as f64).collect();
+    times.extend(motion.events.iter().map(|event| event.t));
+    times.sort_by(f64::total_cmp);
+    let dense = match scenario.run_at(&Plan::at(times, end)?) {
+        Ok(dense) => dense,
+        // A method of fixed step has no times but its own.
+        Err(ScenarioError::Simulation(SimulationError::NotUniform)) => motion.clone(),
+        Err(error) => return Err(error.into()),
+    };
+    figure::stacked(&folder.join("motion.svg"), &motion_panels(scenario, &dense))?;
+    figure::stacked(&folder.join("friction.svg"), &friction_panels(scenario, &dense))?;
+    Ok(())
+}
+
+fn curve(times: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
+    times.iter().copied().zip(values.iter().copied()).collect()
+}
+
+fn motion_panels(scenario: &Simulation, motion: &Motion) -> Vec<Panel> {
+    let [position, velocity, _] = scenario.units();
+    let (times, samples) = (&motion.samples.t, &motion.samples);
+    let events = motion.events.iter().skip(1).take(MOST_MARKS);
+    let panel = |name: &str, unit: &str, values: &[f64], events: Vec<(f64, f64)>| {
+        Panel::new("time / s", figure::label(name, unit), 340.0)
+            .with(Layer::new(Role::Fitted, name, curve(times, values)))
+            .with(Layer::new(Role::Points, "events", events))
+    };
+    let mut panels = vec![
+        panel("position", position, &samples.x, events.clone().map(|event| (event.t, event.x)).collect()),
+        panel("velocity", velocity, &samples.v, events.map(|event| (event.t, event.v)).collect()),
+    ];
+    if let [state] = &samples.z[..] {
+        let layer = Layer::new(Role::Residual, "deflection of the bristles", curve(times, state));
+        panels.push(Panel::new("time / s", figure::label("deflection", position), 240.0).with(layer));
+    }
+    panels
+}
+
+fn friction_panels(scenario: &Simulation, motion: &Motion) -> Vec<Panel> {
+    let passed = Layer::new(Role::Fitted, "friction along the motion", friction(scenario, motion));
+    let [_, velocity, force] = scenario.units();
+    let force = Panel::new(
+        figure::label("velocity relative to the counterface", velocity),
+        figure::label("friction", force),
+        340.0,
+    )
+    .with(passed);
+    let (times, energy) = (&motion.samples.t, &motion.energy);
+    let mut balance = Panel::new("time / s", figure::label("energy", "J"), 440.0);
+    if let Some(work) = &energy.work {
+        let sum =
+            |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(one, other)| one + other).collect::<Vec<_>>();
+        let rubbed = sum(&energy.total, &work.friction);
+        let all = curve(times, &sum(&rubbed, &work.viscous));
+        balance = balance.with(Layer::new(Role::Measured, "+ lost to damping", all)).with(Layer::new(
+            Role::Fitted,
+            "+ lost to friction",
+            curve(times, &rubbed),
+        ));
+    }
+    let kept = Layer::new(Role::Residual, "kinetic + potential", curve(times, &energy.total));
+    vec![force, balance.with(kept)]
+}
+
+/// Friction force (N) against the relative velocity (m/s), in the order in which the motion passes through it. A contact
+/// that holds is left out, but for the level at which it lets go.
+fn friction(scenario: &Simulation, motion: &Motion) -> Vec<(f64, f64)> {
+    let samples = &motion.samples;
+    let sign = |next: &str| if next == "slip-" { -1.0 } else { 1.0 };
+    let mut points = Vec::with_capacity(samples.t.len());
+    let mut events = motion.events.iter().peekable();
+    let mut current = motion.events.first();
+    for (index, (t, v)) in samples.t.iter().zip(&samples.v).enumerate() {
+        let velocity = v - scenario.belt();
+        while let Some(event) = events.next_if(|event| event.t <= *t) {
+            // A law of the speed jumps at zero velocity, from one limit to the other or to the static level.
+            let limit = |sign: f64, losing| (0.0, scenario.friction(f64::MIN_POSITIVE * sign, &[], losing));
+            let jumps = samples.z.is_empty();
+            if jumps && event.kind.starts_with("breakaway") {
+                points.extend([(0.0, sign(event.next) * event.static_level), limit(sign(event.next), false)]);
+            }
+            if jumps
+                && event.kind == "zero_velocity"
+                && let Some(before) = current
+            {
+                points.push(limit(sign(before.next), true));
+                points.extend((event.next != "stick").then(|| limit(sign(event.next), false)));
+            }
+            current = Some(event);
+        }
+        let Some(event) = current.filter(|event| event.next != "stick") else { continue };
+        // At constant speed friction is between its two levels; the straight line from one to the other stands for it.
+        if event.phase == Some("const") || (velocity == 0.0 && samples.z.is_empty()) {
+            continue;
+        }
+        let states: Vec<f64> = samples.z.iter().map(|state| state[index]).collect();
+        points.push((velocity, scenario.friction(velocity, &states, event.phase == Some("dec"))));
+    }
+    points
+}

@@ -1,0 +1,26 @@
+//! A scenario file and the motion it describes.
+//!
+//! ```text
+//! text ── file ──> Simulation ── run ──> Motion ──> JSON or text
+//!           │
+//!           └─ catalogue: a law by its name, its parameters by name or symbol
+//! ```
+
+mod catalogue;
+mod contact;
+mod engine;
+mod entries;
+mod error;
+mod file;
+mod keys;
+mod law;
+mod motion;
+mod plan;
+mod run;
+
+pub(crate) use catalogue::CATALOGUE;
+pub(crate) use engine::EngineName;
+pub(crate) use error::ScenarioError;
+pub(crate) use motion::Motion;
+pub(crate) use plan::Plan;
+pub(crate) use run::Simulation;

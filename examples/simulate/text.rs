@@ -1,0 +1,123 @@
+//! A motion and the catalogue of laws as text.
+
+use std::fmt;
+
+use crate::figure::label;
+use crate::simulation::{CATALOGUE, Motion, Simulation};
+
+/// Events printed at most; the document of `--json` has them all.
+const MOST_EVENTS: usize = 60;
+
+/// What a scenario holds.
+pub(crate) const HELP: &str = r#"A scenario, all SI; only oscillator and an end (duration or output times) must be there:
+
+  { "title": "…", "description": "…",
+    "oscillator": {"mass": 10.391, "stiffness": 1982.0, "damping": {"linear": 0.2005, "quadratic": 0.437}},
+    "law": {"berger": {"mu0": 0.228, "mu1": 0.261, "alpha": 2.852}}, "normal_load": 8.604351,
+    "excitation": [{"half_sine": {"peak": 1000.0, "duration": 2.2e-3}}, {"belt": {"velocity": 0.2}}],
+    "initial": {"position": 0.0, "velocity": 0.196}, "duration": 1.6,
+    "output": {"rate": 1000.0}, "engine": "auto" }
+
+  oscillator   mass, stiffness, damping, restoring
+  damping      linear, quadratic, cubic, power {coefficient, exponent}, which add up; instead of linear and quadratic
+               peak_velocity_line {intercept, slope}; default none
+  restoring    "linear" (default) or {"sine": {"length": 1.0}}
+  law          an object with one key, see --laws; default no friction
+  normal_load  default 1, with which a coefficient is a force
+  excitation   a list of: sampled_force {interval, values}, half_sine {peak, duration}, ramp {rate}, each with an
+               optional delay; harmonic and base {amplitude, angular_frequency, phase}; belt {velocity}
+  initial      position, velocity; default 0
+  duration     default the last output time
+  output       {"times": […]} or {"rate": …}; default 1000 samples
+  engine       auto (default), exact, runge_kutta, bristle, thesis, moreau
+  tolerance    relative, for runge_kutta and bristle"#;
+
+/// The laws with their parameters.
+pub(crate) struct Laws;
+
+impl fmt::Display for Laws {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        writeln!(f, "A parameter goes by its name or its symbol. With a normal load of 1 a coefficient is a force.")?;
+        for entry in CATALOGUE {
+            writeln!(f, "\n{}", entry.name)?;
+            for slot in (entry.slots)() {
+                let description = slot.description();
+                let mut others = slot.keys();
+                others.retain(|key| !description.contains(key.as_str()));
+                let others = if others.is_empty() { String::new() } else { format!(", also {}", others.join(", ")) };
+                writeln!(f, "    {description}{others}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A motion for the eye.
+pub(crate) struct Report<'a> {
+    pub(crate) scenario: &'a Simulation,
+    pub(crate) motion: &'a Motion,
+}
+
+impl fmt::Display for Report<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { scenario, motion } = self;
+        for line in [scenario.title(), scenario.description()] {
+            if !line.is_empty() {
+                writeln!(f, "{line}")?;
+            }
+        }
+        writeln!(f, "law {}, engine {}\n", scenario.law(), motion.engine)?;
+
+        let [position, velocity, _] = scenario.units();
+        let head = [label("x", position), label("v", velocity)];
+        writeln!(f, "{:>16}  {:13} {:>15} {:>15}  {:10} {:>10}", "t / s", "event", head[0], head[1], "next", "margin")?;
+        for event in motion.events.iter().take(MOST_EVENTS) {
+            let next = event.phase.map_or_else(|| event.next.to_owned(), |phase| format!("{} {phase}", event.next));
+            // Only where the velocity is zero is anything decided, and bristles decide nothing.
+            let decided = motion.samples.z.is_empty()
+                && matches!(event.kind.as_str(), "zero_velocity" | "breakaway+" | "breakaway-");
+            let margin = if decided { format!("{:+.2e}", event.margin) } else { "-".to_owned() };
+            writeln!(
+                f,
+                "{:16.12}  {:13} {:+15.8e} {:+15.8e}  {next:10} {margin:>10}",
+                event.t, event.kind, event.x, event.v
+            )?;
+        }
+        if let Some(more) = motion.events.len().checked_sub(MOST_EVENTS).filter(|more| *more > 0) {
+            writeln!(f, "… and {more} more")?;
+        }
+
+        let (samples, energy) = (&motion.samples, &motion.energy);
+        let last = |values: &[f64]| values.last().copied().unwrap_or(0.0);
+        writeln!(f, "\nenergy at {} s (J)", last(&samples.t))?;
+        let line = |f: &mut fmt::Formatter, name, values: &[f64]| writeln!(f, "{name:>22} {:+.10e}", last(values));
+        line(f, "kinetic", &energy.kinetic)?;
+        line(f, "potential", &energy.potential)?;
+        match &energy.work {
+            Some(work) => {
+                line(f, "lost to friction", &work.friction)?;
+                line(f, "lost to damping", &work.viscous)?;
+                line(f, "brought from outside", &work.external)?;
+                line(f, "balance", &work.balance)?;
+            }
+            None => writeln!(f, "{:>22} not kept by this engine", "work")?,
+        }
+
+        let count = samples.t.len();
+        let first = samples.t.first().copied().unwrap_or(0.0);
+        let range = |values: &[f64]| {
+            let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
+            values.iter().fold((low, high), |(low, high), value| (low.min(*value), high.max(*value)))
+        };
+        writeln!(f, "\n{count} samples from {first} s to {} s", last(&samples.t))?;
+        for (name, values, unit) in [("position", &samples.x, position), ("velocity", &samples.v, velocity)] {
+            let (low, high) = range(values);
+            writeln!(f, "{name:>22} {low:+.6e} to {high:+.6e} {unit}")?;
+        }
+        for (index, values) in samples.z.iter().enumerate() {
+            let (low, high) = range(values);
+            writeln!(f, "{:>22} {low:+.6e} to {high:+.6e}", format!("state z{index}"))?;
+        }
+        Ok(())
+    }
+}

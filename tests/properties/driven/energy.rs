@@ -1,0 +1,71 @@
+//! Energy: what is there, was taken and was given, adds up.
+
+use fmm_model::{Oscillator, Restoring};
+use fmm_sim::RungeKutta;
+
+use super::contact::Family;
+use super::setup::{Setup, Solver, setups};
+
+/// Random setups of each family.
+const SETS: usize = 1000;
+
+/// The greatest imbalance of a motion over its samples, relative to the energies and works in play, after how many events.
+fn imbalance(setup: &Setup, solver: Solver) -> (f64, usize) {
+    let sampling = setup.sampling(24).with_work();
+    let motion = setup.motion(solver, &sampling);
+    let mut machine = Oscillator::new(setup.mass, setup.stiffness).unwrap();
+    if let Some(length) = setup.pendulum {
+        machine = machine.with_restoring(Restoring::sine(length).unwrap());
+    }
+    let (mut scale, mut worst, mut taken, mut start) = (0.0f64, 0.0f64, 0.0, None);
+    for (index, (&x, &v)) in motion.position().values().iter().zip(motion.velocity().values()).enumerate() {
+        let energy = machine.kinetic_energy(v) + machine.potential_energy(x);
+        let work = motion.work(index).unwrap();
+        let start = *start.get_or_insert(energy);
+        scale = scale.max(energy) + 0.0;
+        let size = scale + work.friction.abs() + work.viscous.abs() + work.external.abs();
+        let sum = energy + work.friction + work.viscous - work.external - start;
+        if size > 0.0 {
+            worst = worst.max(sum.abs() / size);
+        }
+        // Elements and bristles store energy and give it back; whatever only slides does not.
+        if setup.family != Family::MaxwellSlip {
+            let gain = taken - work.friction;
+            assert!(gain <= 1e-14 * size, "friction gave {gain:e} of {size:e} J back at sample {index}: {setup}");
+        }
+        taken = work.friction;
+    }
+    (worst, motion.events().len())
+}
+
+#[test]
+fn energy_balances_in_closed_form() {
+    for &family in Family::EXACT {
+        let mut worst = (0.0, String::new());
+        for setup in setups(1, family, true, SETS) {
+            let (error, events) = imbalance(&setup, Solver::Exact);
+            if error > worst.0 {
+                worst = (error, format!("{events} events, {setup}"));
+            }
+        }
+        println!("{family:?}: {:e}", worst.0);
+        assert!(worst.0 < 1e-12, "{:e} of the energy is missing: {}", worst.0, worst.1);
+    }
+}
+
+#[test]
+fn energy_balances_step_by_step() {
+    for tolerance in [3e-14, 1e-8] {
+        for &family in Family::SLIDING {
+            let solver = Solver::RungeKutta(RungeKutta::new(tolerance).unwrap());
+            let mut worst = (0.0, String::new());
+            for setup in setups(2, family, false, SETS) {
+                let (error, events) = imbalance(&setup, solver);
+                if error > worst.0 {
+                    worst = (error, format!("{events} events, {setup}"));
+                }
+            }
+            println!("{family:?} {tolerance:e}: {:e} {}", worst.0, worst.1);
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! Machines under every law, force, damping and restoring force, on the engines that take them.
+
+mod contact;
+mod energy;
+mod setup;
