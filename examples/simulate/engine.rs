@@ -25,13 +25,6 @@ pub(crate) enum EngineName {
     Moreau,
 }
 
-impl EngineName {
-    /// Whether it keeps the work done along the motion.
-    pub(crate) const fn records_work(self) -> bool {
-        !matches!(self, Self::Thesis | Self::Moreau)
-    }
-}
-
 impl fmt::Display for EngineName {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(match self {

@@ -77,7 +77,7 @@ pub(crate) struct Account {
 
 impl Motion {
     /// The part of `trajectory` that `plan` keeps, with its energies.
-    pub(crate) fn new(trajectory: &Trajectory, plan: &Plan, setting: &Setting, with_work: bool) -> Self {
+    pub(crate) fn new(trajectory: &Trajectory, plan: &Plan, setting: &Setting) -> Self {
         let kept = |values: &[f64]| values.iter().take(plan.kept).copied().collect::<Vec<f64>>();
         let samples = Series {
             t: (0..plan.kept).map(|index| plan.sampling.time(index)).collect(),
@@ -94,7 +94,7 @@ impl Motion {
                 incident
             })
             .collect();
-        let energy = Energy::new(trajectory, &samples, setting, with_work);
+        let energy = Energy::new(trajectory, &samples, setting);
         Self { engine: trajectory.engine(), events, samples, energy }
     }
 }
@@ -139,7 +139,7 @@ impl Incident {
 }
 
 impl Energy {
-    fn new(trajectory: &Trajectory, samples: &Series, setting: &Setting, with_work: bool) -> Self {
+    fn new(trajectory: &Trajectory, samples: &Series, setting: &Setting) -> Self {
         let oscillator = setting.oscillator;
         let kinetic: Vec<f64> = samples.v.iter().map(|v| oscillator.kinetic_energy(*v)).collect();
         let potential: Vec<f64> = samples.x.iter().map(|x| oscillator.potential_energy(*x)).collect();
@@ -155,7 +155,7 @@ impl Energy {
                 .collect(),
         };
         let works: Option<Vec<_>> = (0..total.len()).map(|index| trajectory.work(index)).collect();
-        let work = works.filter(|_| with_work).map(account);
+        let work = works.map(account);
         Self { kinetic, potential, total, work }
     }
 }

@@ -68,7 +68,7 @@ impl Simulation {
     pub(crate) fn run_at(&self, plan: &Plan) -> Result<Motion, ScenarioError> {
         let sampling = plan.sampling.clone().with_work();
         match self.contact.simulate(&self.setting, self.choice, &sampling)? {
-            Some(trajectory) => Ok(Motion::new(&trajectory, plan, &self.setting, self.choice.engine.records_work())),
+            Some(trajectory) => Ok(Motion::new(&trajectory, plan, &self.setting)),
             None => Err(wrong_engine(self.law, self.contact.as_ref(), self.choice.engine)),
         }
     }

@@ -275,8 +275,9 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                 Ending::Limit if last => return Ok(()),
                 Ending::Limit => {
                     index += 1;
-                    piece = drive.piece(index);
-                    continue;
+                    let before = std::mem::replace(&mut piece, drive.piece(index));
+                    let Some((next, load)) = self.after_jump(mode, &before, &piece, time, state) else { continue };
+                    (if next == Mode::Stick { EventKind::Stop } else { EventKind::BranchChange }, next, load)
                 }
                 Ending::RelativeRest if mode == Mode::Stick => {
                     let load = self.load(&piece, time, state.position, state.velocity).at(D::from(0.0)).value();
@@ -296,6 +297,32 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             mode = next;
             recorder.push(self.event(kind, time, state, mode, load, ended.grazing))?;
         }
+    }
+
+    /// Where a contact goes whose branch does not agree any more with its acceleration, as the force has jumped from one
+    /// piece to the next.
+    fn after_jump(
+        &self,
+        mode: Mode,
+        before: &Piece<D>,
+        piece: &Piece<D>,
+        time: D,
+        state: State<D>,
+    ) -> Option<(Mode, f64)> {
+        let direction = mode.direction().filter(|_| self.levels.has_branches())?;
+        let load = self.load(piece, time, state.position, state.velocity);
+        let jump = piece.force(time.value()).value() - before.force(time.value()).value();
+        if jump.abs() <= ROUNDING * self.magnitude(&load, state) {
+            return None;
+        }
+        let drive = load.at(D::from(0.0)).value() * direction.sign();
+        let (gaining, losing) = self.branch_forces((state.velocity - self.belt).abs());
+        let agrees = match mode {
+            Mode::Gaining(_) => drive >= gaining.value(),
+            Mode::Losing(_) => drive <= losing.value(),
+            _ => (losing.value()..=gaining.value()).contains(&drive),
+        };
+        (!agrees).then(|| self.mode(piece, time, state))
     }
 
     /// Where a contact goes whose acceleration has become zero on a branch.
@@ -365,7 +392,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             recorder.samples(stop, |time| State { position: at(D::from(time)), velocity })?;
         }
         let (relative, damping) = (velocity - self.belt, self.oscillator.damping().force(velocity));
-        recorder.work(begin, stop.min(phase.limit), self.scale(&load), |time| {
+        recorder.work(begin, stop.min(phase.limit), scale(&load), |time| {
             let friction = load.at(-phase.time + time);
             let force = phase.piece.force(time);
             Power {
@@ -389,11 +416,11 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         };
         Ok((Ended { ending, time, state, grazing }, next))
     }
+}
 
-    /// A time (s) within which a curve with these waves varies little.
-    fn scale(&self, curve: &Curve<D>) -> f64 {
-        curve.waves.iter().map(|wave| 1.0 / wave.angular.value()).fold(f64::MAX, f64::min)
-    }
+/// A time (s) within which a curve with these waves varies little.
+fn scale<D: Scalar>(curve: &Curve<D>) -> f64 {
+    curve.waves.iter().map(|wave| 1.0 / wave.angular.value()).fold(f64::MAX, f64::min)
 }
 
 /// The time at which `guard`, counted from `start`, crosses zero near `time`, with its derivatives; and whether it only

@@ -127,14 +127,12 @@ impl<D: Scalar> Decay<D> {
     /// What |position| does not exceed from `state` on.
     pub(crate) fn most(&self, state: State<D>) -> f64 {
         let (position, push) = (state.position.value(), (state.velocity + self.rate * state.position).value());
-        match self.half_swing {
-            Some(HalfSwing { angular, .. }) => position.hypot(push / angular.value()),
-            None => {
-                // e^(−aτ) C ≤ 1 and e^(−aτ) S ≤ τ e^(−(a−σ)τ) ≤ 1/(e (a−σ)), with 1/(a−σ) as (a+σ)/ω₀².
-                let sigma = self.spread.value().max(0.0).sqrt();
-                position.abs() + push.abs() * (self.rate.value() + sigma) / (self.square.value() * std::f64::consts::E)
-            }
+        if let Some(HalfSwing { angular, .. }) = self.half_swing {
+            return position.hypot(push / angular.value());
         }
+        // e^(−aτ) C ≤ 1 and e^(−aτ) S ≤ τ e^(−(a−σ)τ) ≤ 1/(e (a−σ)), with 1/(a−σ) as (a+σ)/ω₀².
+        let sigma = self.spread.value().max(0.0).sqrt();
+        position.abs() + push.abs() * (self.rate.value() + sigma) / (self.square.value() * std::f64::consts::E)
     }
 
     /// What neither position nor velocity exceeds in magnitude from `state` on; not finite if the motion cannot be

@@ -61,6 +61,7 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Moreau {
             });
         }
         trajectory.reset("moreau", 0, sampling);
+        trajectory.without_work();
         let drive = Drive::new(scenario.excitations(), oscillator.mass());
         let (belt, mut pieces) = (drive.belt(), PieceAt::new(&drive));
         let (mass, stiffness) = (oscillator.mass(), oscillator.stiffness());

@@ -66,7 +66,7 @@ impl<D: Scalar> Samples<D> {
                 *out = coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * theta + coefficient);
             }
         };
-        fill(&mut self.values[range.clone()], coefficients.map(|coefficient| coefficient.value()));
+        fill(&mut self.values[range.clone()], coefficients.map(D::value));
         for direction in 0..D::DIRECTIONS {
             let column = &mut self.partial_mut(direction)[range.clone()];
             fill(column, coefficients.map(|coefficient| coefficient.partial(direction)));

@@ -52,6 +52,7 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
     ) -> Result<(), SimulationError> {
         let step = sampling.interval().ok_or(SimulationError::NotUniform)?;
         trajectory.reset("thesis", 0, sampling);
+        trajectory.without_work();
         let (oscillator, law, load) = (scenario.oscillator(), scenario.law(), scenario.normal_load());
         let drive = Drive::new(scenario.excitations(), oscillator.mass());
         if drive.has_belt() {

@@ -54,6 +54,13 @@ impl<D: Scalar> Trajectory<D> {
         }
     }
 
+    /// Forgets the work, which the engine does not keep account of.
+    pub(crate) fn without_work(&mut self) {
+        for work in &mut self.work {
+            work.reset(0);
+        }
+    }
+
     pub(crate) fn state_mut(&mut self, index: usize) -> &mut Samples<D> {
         &mut self.states[index]
     }
@@ -101,7 +108,8 @@ impl<D: Scalar> Trajectory<D> {
         &self.states
     }
 
-    /// Work done up to sample `index` (J); none unless [`Sampling::with_work`] asked for it.
+    /// Work done up to sample `index` (J); none unless [`Sampling::with_work`] asked for it, and none by the methods of fixed
+    /// step, which keep no account of it.
     pub fn work(&self, index: usize) -> Option<Work> {
         let [friction, viscous, external] = &self.work;
         let at = |samples: &Samples<D>| samples.values().get(index).copied();

@@ -17,25 +17,27 @@ fn imbalance(setup: &Setup, solver: Solver) -> (f64, usize) {
     if let Some(length) = setup.pendulum {
         machine = machine.with_restoring(Restoring::sine(length).unwrap());
     }
-    let (mut scale, mut worst, mut taken, mut start) = (0.0f64, 0.0f64, 0.0, None);
-    for (index, (&x, &v)) in motion.position().values().iter().zip(motion.velocity().values()).enumerate() {
-        let energy = machine.kinetic_energy(v) + machine.potential_energy(x);
-        let work = motion.work(index).unwrap();
-        let start = *start.get_or_insert(energy);
-        scale = scale.max(energy) + 0.0;
-        let size = scale + work.friction.abs() + work.viscous.abs() + work.external.abs();
-        let sum = energy + work.friction + work.viscous - work.external - start;
-        if size > 0.0 {
-            worst = worst.max(sum.abs() / size);
-        }
-        // Elements and bristles store energy and give it back; whatever only slides does not.
-        if setup.family != Family::MaxwellSlip {
-            let gain = taken - work.friction;
+    let mut start = None;
+    let samples = motion.position().values().iter().zip(motion.velocity().values()).enumerate();
+    // What is missing, and what is in play.
+    let balances: Vec<_> = samples
+        .map(|(index, (&x, &v))| {
+            let energy = machine.kinetic_energy(v) + machine.potential_energy(x);
+            let work = motion.work(index).unwrap();
+            let missing = energy + work.friction + work.viscous - work.external - *start.get_or_insert(energy);
+            (missing, energy + work.friction.abs() + work.viscous.abs() + work.external.abs())
+        })
+        .collect();
+    let size = balances.iter().fold(f64::MIN_POSITIVE, |size, balance| size.max(balance.1));
+    // Elements store energy and give it back; whatever only slides does not.
+    if setup.family != Family::MaxwellSlip {
+        for index in 1..balances.len() {
+            let gain = motion.work(index - 1).unwrap().friction - motion.work(index).unwrap().friction;
             assert!(gain <= 1e-14 * size, "friction gave {gain:e} of {size:e} J back at sample {index}: {setup}");
         }
-        taken = work.friction;
     }
-    (worst, motion.events().len())
+    let worst = balances.iter().fold(0.0f64, |worst, balance| worst.max(balance.0.abs()));
+    (worst / size, motion.events().len())
 }
 
 #[test]

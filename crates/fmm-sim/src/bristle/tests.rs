@@ -309,3 +309,32 @@ fn what_cannot_be_simulated_is_an_error() {
         }
     }
 }
+
+/// Friction works, damps and stores: what is missing from the machine is in the works, whatever the numbers are.
+#[test]
+fn energy_balances_in_random_cases() {
+    let mut seed = 1u64;
+    let mut spread = |value: f64, decades: f64| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        value * 10f64.powf(decades * ((seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0))
+    };
+    for case in 0..100 {
+        let inputs = INPUTS.map(|input| spread(input, 0.7));
+        let amplitude = spread(8.0, 1.0);
+        let driven = |excitation| if case % 2 == 0 { None } else { Some(excitation) };
+        let force = driven(Excitation::harmonic(amplitude, spread(9.0, 1.0), 0.3).unwrap());
+        let imbalance = match case % 5 {
+            0 => imbalance(scenario(inputs, dahl), force),
+            1 => imbalance(scenario(inputs, lugre), force),
+            2 => imbalance(scenario(inputs, bouc_wen), force),
+            3 => imbalance(scenario(inputs, maxwell_slip), force),
+            _ => imbalance(scenario(inputs, gms), force),
+        };
+        assert!(imbalance < Bristle::default().tolerance(), "case {case}: energy is off by {imbalance:e}");
+    }
+}
+
+fn imbalance<L: BristleLaw<f64>>(scenario: Scenario<f64, L>, force: Option<Excitation>) -> f64 {
+    let scenario = force.into_iter().fold(scenario, Scenario::driven_by);
+    Bristle::default().run(&scenario, &sampling()).unwrap().energy_imbalance(&scenario).unwrap()
+}

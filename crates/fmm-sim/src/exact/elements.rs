@@ -14,7 +14,7 @@ use crate::work::Power;
 use crate::{Direction, Event, EventKind, Mode, Scenario, SimulationError, State};
 
 /// A machine with a contact of elements in parallel, on its way.
-pub(super) struct Elements<'a, D, L> {
+pub(super) struct Yielding<'a, D, L> {
     scenario: &'a Scenario<D, L>,
     drive: &'a Drive<'a, D>,
     elements: &'a [Element<D>],
@@ -37,7 +37,7 @@ enum Guard {
     Yield(usize),
 }
 
-impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Elements<'a, D, L> {
+impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
     pub(super) fn new(scenario: &'a Scenario<D, L>, drive: &'a Drive<'a, D>) -> Self {
         let elements = scenario.law().elements();
         Self {

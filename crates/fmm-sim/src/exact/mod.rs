@@ -12,7 +12,7 @@ use crate::automaton::{Branches, Contact};
 use crate::drive::Drive;
 use crate::recorder::Recorder;
 use crate::{Engine, Sampling, Scenario, SimulationError, Trajectory};
-use elements::Elements;
+use elements::Yielding;
 use swing::{Flows, Swing};
 
 /// Simulates piecewise linear laws without any integration error.
@@ -70,7 +70,7 @@ impl<D: Scalar, L: PiecewiseLinearLaw<D>> Engine<D, L> for Exact {
                 return Err(SimulationError::NotSupported { engine: "exact", what: "elements beside a sliding level" });
             }
             let mut recorder = Recorder::new("exact", elements, sampling, trajectory);
-            return Elements::new(scenario, &drive).run(&mut recorder);
+            return Yielding::new(scenario, &drive).run(&mut recorder);
         }
         let (gaining, losing) = (scenario.law().affine(), scenario.law().affine_losing_speed());
         let branches = Branches { gaining, losing: losing.unwrap_or(gaining), differ: losing.is_some() };

@@ -225,13 +225,13 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         Ended { ending, time: time + late, state, grazing }
     }
 
-    /// Writes the samples and the work of `step`, which begins at `time`.
+    /// Writes the samples before `stop` and the work until `end` of `step`, which begins at `time`.
     fn record(
         &self,
         phase: &Phase<D>,
         time: f64,
         step: &mut Step<D>,
-        stop: f64,
+        (end, stop): (f64, f64),
         recorder: &mut Recorder<D>,
     ) -> Result<(), SimulationError> {
         let length = step.length;
@@ -240,7 +240,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         }
         let within = self.within(phase, time, step);
         recorder.polynomial(stop, time, length, &within)?;
-        recorder.work(time, time + length, length, |time_within| {
+        recorder.work(time, end, end - time, |time_within| {
             let state = within.at((time_within - time) / length);
             let friction = self.friction(phase, state.velocity);
             Power {
@@ -304,19 +304,20 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
             let crossed = Self::endings(phase)
                 .iter()
                 .any(|&ending| !(self.guard(phase, &step, ending, at.armed).0.value() > 0.0));
-            if crossed || error <= 1.0 {
-                if let Some((ending, theta)) = self.reached(phase, &at, &mut step) {
-                    // What lies behind the event does not belong to the stretch; the step that ends there must be good.
-                    let mut step = self.land(phase, &at, ending, theta * length, length);
-                    error = step.error(scale) / self.tolerance;
-                    if error <= 1.0 {
-                        self.adapt(length, 1.0, error);
-                        let ended = self.ended(phase, &at, &step, ending);
-                        self.record(phase, at.time, &mut step, ended.time.value(), recorder)?;
-                        return Ok(ended);
-                    }
-                    length = step.length;
+            if (crossed || error <= 1.0)
+                && let Some((ending, theta)) = self.reached(phase, &at, &mut step)
+            {
+                // What lies behind the event does not belong to the stretch; the step that ends there must be good.
+                let mut step = self.land(phase, &at, ending, theta * length, length);
+                error = step.error(scale) / self.tolerance;
+                if error <= 1.0 {
+                    self.adapt(length, 1.0, error);
+                    let ended = self.ended(phase, &at, &step, ending);
+                    let end = ended.time.value();
+                    self.record(phase, at.time, &mut step, (end, end), recorder)?;
+                    return Ok(ended);
                 }
+                length = step.length;
             }
             if !(error <= 1.0) {
                 self.length = length * if error.is_finite() { factor(error).clamp(0.1, 0.9) } else { 0.1 };
@@ -334,7 +335,7 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
             let (next, whole) = (at.time + length, length == rest);
             let next = if whole { phase.limit } else { next };
             let stop = if whole { phase.samples_end() } else { next };
-            self.record(phase, at.time, &mut step, stop, recorder)?;
+            self.record(phase, at.time, &mut step, (next, stop), recorder)?;
             at = Progress {
                 time: next,
                 state: step.end,

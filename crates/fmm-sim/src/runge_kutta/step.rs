@@ -29,7 +29,7 @@ pub(crate) struct Within<D> {
     pub(crate) velocity: [D; COEFFICIENTS],
 }
 
-#[inline(always)]
+#[inline]
 fn sum<D: Scalar, const N: usize>(weights: &Weights<N>, rates: &[Rate<D>; 16]) -> Rate<D> {
     let (first, weight) = weights[0];
     let mut sum = State { position: rates[first].position * weight, velocity: rates[first].velocity * weight };
