@@ -3,12 +3,16 @@
 use crate::SimulationError;
 use crate::curve::{Curve, Jet};
 
-/// Steps of a search, over all events of a run, before it is given up: a contact that holds under a wave for a billion
+/// Steps of a search, over all events of a run, before it is given up: a contact that holds under a wave for a million
 /// periods is no record.
-pub(crate) const SEARCH_BUDGET: usize = 20_000_000;
+pub(crate) const SEARCH_BUDGET: usize = 5_000_000;
 
 /// Rounding of a value, in units of the sum of the magnitudes of its terms.
 pub(crate) const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// How far below zero, in the same units, a curve may begin that is known to begin at zero and rises: its terms have come
+/// out of other terms.
+const AT_ZERO: f64 = 1e-12;
 
 /// The first time in (0, `limit`] at which `curve`, positive until then, reaches zero.
 ///
@@ -28,7 +32,10 @@ pub(crate) fn first_zero(curve: &Curve<f64>, limit: f64, budget: &mut usize) -> 
         if !(value.is_finite() && slope.is_finite() && most_curvature.is_finite()) {
             return Err(SimulationError::NotFinite { time: elapsed });
         }
-        if elapsed == 0.0 && value < -ROUNDING * size {
+        let level = 1e-13 * (most_curvature * size).sqrt();
+        let (rises, falls) = (slope > level, slope < -level);
+        let bends = !falls && curvature > 1e-13 * most_curvature;
+        if elapsed == 0.0 && value < -(if rises || bends { AT_ZERO } else { ROUNDING }) * size {
             return Ok(Some(0.0));
         }
         let low = value <= ROUNDING * size;
@@ -42,9 +49,9 @@ pub(crate) fn first_zero(curve: &Curve<f64>, limit: f64, budget: &mut usize) -> 
         if most_curvature == 0.0 {
             // A straight line.
             step = if slope < 0.0 { value / -slope } else { f64::INFINITY };
-        } else if low && !(slope > 1e-13 * (most_curvature * size).sqrt()) {
+        } else if low && !rises {
             // It starts from zero with no slope to speak of: the curvature decides.
-            if !(curvature > 1e-13 * most_curvature) {
+            if !bends {
                 return Ok((elapsed == 0.0 || slope < 0.0).then_some(elapsed));
             }
             step = step.max(curvature / most_jerk.max(f64::MIN_POSITIVE));
@@ -108,6 +115,10 @@ mod tests {
         lifted.slope = 0.0;
         assert_eq!(zero(&lifted, 6.0), None);
         assert_eq!(zero(&wave(0.0, 1.0, 0.0, -1.0), 10.0), Some(0.0), "it falls from zero");
+        // 1 − cos τ − τ/2 falls from zero although it bends upwards.
+        let mut bent = wave(1.0, 1.0, -1.0, 0.0);
+        bent.slope = -0.5;
+        assert_eq!(zero(&bent, 10.0), Some(0.0));
     }
 
     #[test]

@@ -4,8 +4,8 @@ use fmm_friction::BristleLaw;
 use fmm_model::Scalar;
 
 use super::field::{Branch, Field};
-use super::lu::Factors;
-use super::radau::{BERNSTEIN, COMPLEX, FROM_MODES, INVERSE, LEGENDRE, NODES, PAIRS, REAL, STAGES, TO_MODES, basis};
+use super::modes::Modes;
+use super::radau::{BERNSTEIN, FROM_MODES, INVERSE, LEGENDRE, NODES, STAGES, Stages, TO_MODES, basis, dot, product};
 use crate::SimulationError;
 use crate::drive::Piece;
 
@@ -36,9 +36,6 @@ pub(super) struct Solved {
     pub(super) quick: bool,
 }
 
-/// One number at each stage.
-type Stages<D> = [D; STAGES];
-
 /// A step: the polynomial of degree s that meets the equations of motion at the s stages.
 pub(super) struct Collocation<D> {
     size: usize,
@@ -49,8 +46,7 @@ pub(super) struct Collocation<D> {
     /// f(Yᵢ) at all stages, for each component.
     rates: Vec<Stages<D>>,
     residual: Vec<Stages<D>>,
-    modes: Vec<Stages<D>>,
-    right: Vec<D>,
+    modes: Modes<D>,
     state: Vec<D>,
     rate: Vec<D>,
     /// Increments and length of a step from which this one is predicted, and where in units of that step this one begins:
@@ -59,9 +55,6 @@ pub(super) struct Collocation<D> {
     guess_length: f64,
     guess_begin: f64,
     forces: [D; STAGES],
-    jacobian: Vec<f64>,
-    real: Factors,
-    pairs: [Factors; PAIRS],
     scale: Vec<f64>,
     /// The state at the beginning of the swing, the velocity being that of the counterface, and how far each component has
     /// moved from there.
@@ -80,17 +73,13 @@ impl<D: Scalar> Collocation<D> {
             increments: stages(),
             rates: stages(),
             residual: stages(),
-            modes: stages(),
-            right: vec![zero; 2 * (size - 1)],
+            modes: Modes::new(size),
             state: vec![zero; size],
             rate: vec![zero; size],
             guess: stages(),
             guess_length: 0.0,
             guess_begin: 1.0,
             forces: [zero; STAGES],
-            jacobian: vec![0.0; size * size],
-            real: Factors::default(),
-            pairs: std::array::from_fn(|_| Factors::default()),
             scale: vec![1.0; size],
             origin: vec![0.0; size],
             moved: vec![0.0; size],
@@ -251,45 +240,11 @@ impl<D: Scalar> Collocation<D> {
         increments.iter().fold(self.moved[component], |most, w| most.max((distance + w.value()).abs()))
     }
 
-    /// The Jacobian in the middle of the step, and the factors of the systems of all modes.
-    ///
-    /// Each mode is a system (λ − J) q = r with λ an eigenvalue of A⁻¹/h. Its first row, λ q_x − q_v = r_x, is used to
-    /// eliminate the position.
+    /// The Jacobian in the middle of the step, factored. False if that cannot be.
     fn prepare<L: BristleLaw<D>>(&mut self, field: &mut Field<D, L>, branch: Branch, span: Span) -> bool {
         load(&mut self.state, &self.begin, &self.increments, STAGES / 2);
-        field.jacobian(branch, &self.state, self.scale[1], &mut self.jacobian);
-        let (size, rest) = (self.size, self.size - 1);
-        let spring = self.jacobian[size];
-        let fill = |matrix: &mut [f64], width: usize, offset: usize, alpha: f64, spring: f64| {
-            for (row, slopes) in self.jacobian.chunks_exact(size).skip(1).enumerate() {
-                let start = (row + offset) * width + offset;
-                for (entry, slope) in matrix[start..start + rest].iter_mut().zip(&slopes[1..]) {
-                    *entry = -slope;
-                }
-                matrix[start + row] += alpha;
-            }
-            matrix[offset * width + offset] -= spring;
-        };
-        let gamma = REAL / span.length;
-        fill(self.real.matrix(rest), rest, 0, gamma, spring / gamma);
-        let mut regular = self.real.factor();
-        for (factors, (alpha, beta)) in self.pairs.iter_mut().zip(COMPLEX) {
-            // Real and imaginary parts one below the other, (q₁, q₂) of q₁ − iq₂.
-            let (alpha, beta) = (alpha / span.length, beta / span.length);
-            let square = alpha * alpha + beta * beta;
-            let matrix = factors.matrix(2 * rest);
-            matrix.fill(0.0);
-            fill(matrix, 2 * rest, 0, alpha, spring * alpha / square);
-            fill(matrix, 2 * rest, rest, alpha, spring * alpha / square);
-            for row in 0..rest {
-                matrix[row * 2 * rest + rest + row] = beta;
-                matrix[(rest + row) * 2 * rest + row] = -beta;
-            }
-            matrix[rest] += spring * beta / square;
-            matrix[rest * 2 * rest] -= spring * beta / square;
-            regular &= factors.factor();
-        }
-        regular
+        field.jacobian(branch, &self.state, self.scale[1], self.modes.jacobian_mut());
+        self.modes.factor(span.length)
     }
 
     /// One iteration of Newton's method; afterwards `residual` holds the change of the increments. Without `values` these
@@ -304,7 +259,7 @@ impl<D: Scalar> Collocation<D> {
         }
         // f(Y) − (1/h) A⁻¹ W
         let per_second = 1.0 / span.length;
-        for ((modes, increments), rates) in self.modes.iter_mut().zip(&self.increments).zip(&self.rates) {
+        for ((modes, increments), rates) in self.modes.values.iter_mut().zip(&self.increments).zip(&self.rates) {
             let mut residual = product(&INVERSE, increments);
             for (residual, rate) in residual.iter_mut().zip(rates) {
                 *residual = *rate - *residual * per_second;
@@ -314,49 +269,13 @@ impl<D: Scalar> Collocation<D> {
             }
             *modes = product(&TO_MODES, &residual);
         }
-        self.solve_modes(span.length);
-        for ((residual, modes), increments) in self.residual.iter_mut().zip(&self.modes).zip(&mut self.increments) {
+        self.modes.solve();
+        for ((residual, modes), increments) in
+            self.residual.iter_mut().zip(&self.modes.values).zip(&mut self.increments)
+        {
             *residual = product(&FROM_MODES, modes);
             for (increment, change) in increments.iter_mut().zip(residual) {
                 *increment = *increment + *change;
-            }
-        }
-    }
-
-    /// Solves the systems of all modes in place.
-    fn solve_modes(&mut self, length: f64) {
-        let (size, rest) = (self.size, self.size - 1);
-        let spring = self.jacobian[size];
-        let inverse = length / REAL;
-        let position = self.modes[0][0];
-        for (right, modes) in self.right.iter_mut().zip(&self.modes[1..]) {
-            *right = modes[0];
-        }
-        self.right[0] = self.right[0] + position * (spring * inverse);
-        self.real.solve(&mut self.right[..rest]);
-        self.modes[0][0] = (position + self.right[0]) * inverse;
-        for (modes, right) in self.modes[1..].iter_mut().zip(&self.right) {
-            modes[0] = *right;
-        }
-        for (pair, (factors, (alpha, beta))) in self.pairs.iter().zip(COMPLEX).enumerate() {
-            let (one, two) = (1 + 2 * pair, 2 + 2 * pair);
-            // 1/λ = (α − iβ) h/(α² + β²), applied to q₁ − iq₂.
-            let square = alpha * alpha + beta * beta;
-            let (alpha, beta) = (alpha * length / square, beta * length / square);
-            let divide = |first: D, second: D| (first * alpha - second * beta, first * beta + second * alpha);
-            let (first, second) = (self.modes[0][one], self.modes[0][two]);
-            for (index, modes) in self.modes[1..].iter().enumerate() {
-                self.right[index] = modes[one];
-                self.right[rest + index] = modes[two];
-            }
-            let (real, imaginary) = divide(first, second);
-            self.right[0] = self.right[0] + real * spring;
-            self.right[rest] = self.right[rest] + imaginary * spring;
-            factors.solve(&mut self.right);
-            (self.modes[0][one], self.modes[0][two]) = divide(first + self.right[0], second + self.right[rest]);
-            for (index, modes) in self.modes[1..].iter_mut().enumerate() {
-                modes[one] = self.right[index];
-                modes[two] = self.right[rest + index];
             }
         }
     }
@@ -429,16 +348,4 @@ fn load<D: Scalar>(state: &mut [D], begin: &[D], increments: &[Stages<D>], index
     for ((state, y), increments) in state.iter_mut().zip(begin).zip(increments) {
         *state = *y + increments[index];
     }
-}
-
-fn dot<D: Scalar>(factors: &[f64; STAGES], values: &Stages<D>) -> D {
-    let mut sum = values[0] * factors[0];
-    for index in 1..STAGES {
-        sum = sum + values[index] * factors[index];
-    }
-    sum
-}
-
-fn product<D: Scalar>(matrix: &[[f64; STAGES]; STAGES], values: &Stages<D>) -> Stages<D> {
-    std::array::from_fn(|row| dot(&matrix[row], values))
 }

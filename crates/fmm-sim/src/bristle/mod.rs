@@ -5,6 +5,7 @@ mod field;
 mod first_root;
 mod guard;
 mod lu;
+mod modes;
 mod passage;
 mod path;
 mod radau;

@@ -7,6 +7,8 @@
 //! E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, Springer 1996, sections IV.5 and IV.8,
 //! doi 10.1007/978-3-642-05221-7.
 
+use fmm_model::Scalar;
+
 /// Number of stages s.
 pub(super) const STAGES: usize = 7;
 
@@ -140,4 +142,21 @@ pub(super) fn basis(tau: f64) -> [f64; STAGES] {
         after *= tau - NODES[last];
     }
     values
+}
+
+/// One number at each stage.
+pub(super) type Stages<D> = [D; STAGES];
+
+/// Σ `factors`ᵢ `values`ᵢ.
+pub(super) fn dot<D: Scalar>(factors: &[f64; STAGES], values: &Stages<D>) -> D {
+    let mut sum = values[0] * factors[0];
+    for index in 1..STAGES {
+        sum = sum + values[index] * factors[index];
+    }
+    sum
+}
+
+/// `matrix` · `values`.
+pub(super) fn product<D: Scalar>(matrix: &[[f64; STAGES]; STAGES], values: &Stages<D>) -> Stages<D> {
+    std::array::from_fn(|row| dot(&matrix[row], values))
 }

@@ -172,7 +172,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 let distance = landing.correction.abs();
                 // Corrections that no longer shrink are rounding.
                 if landing.grazing || distance <= TANGENT || (distance < 0.1 && distance > 0.5 * nearest) {
-                    self.finish(length, landing.correction, f64::INFINITY, piece)?;
+                    self.finish(length, landing.correction, limit, piece)?;
                     return self.arrive(guard, piece, landing.grazing);
                 }
                 let correction = 1.0 + landing.correction;
@@ -216,8 +216,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
 
     /// Writes what the step of `length` passes and goes to its end, or a part `correction` of it further.
     fn finish(&mut self, length: f64, correction: f64, limit: f64, piece: &Piece<D>) -> Result<(), SimulationError> {
-        let room = limit - self.time;
-        let end = if length == room { limit } else { self.time + length * (1.0 + correction) };
+        let whole = correction == 0.0 && length == limit - self.time;
+        let end = if whole { limit } else { (self.time + length * (1.0 + correction)).min(limit) };
         self.write(end, Some(length))?;
         let Self { step, field, recorder, branch, time, before, .. } = self;
         recorder.work(*time, end, length, |at| {

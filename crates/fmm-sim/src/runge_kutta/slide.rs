@@ -16,6 +16,9 @@ const STEP_BUDGET: usize = 1_000_000;
 /// Attempts at landing on an event; Newton's method needs two or three.
 const LANDINGS: usize = 12;
 
+/// What counts as the error of a step that has found an event and not landed on it: the next will be half as long.
+const NOT_LANDED: f64 = 256.0;
+
 /// Follows stretches of sliding for the Runge-Kutta engine.
 pub(super) struct Integrator<'a, D, L> {
     oscillator: &'a Oscillator<D>,
@@ -205,14 +208,23 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         step
     }
 
+    /// Whether the guard of `ending` is zero at the end of `step`, or so near that it is by rounding.
+    fn has_landed(&self, phase: &Phase<D>, step: &Step<D>, ending: Ending, armed: bool) -> bool {
+        let (value, rate) = self.guard(phase, step, ending, armed);
+        let value = value.value().abs();
+        let size = self.scale(step.end, step.last_acceleration()).velocity;
+        let size = if ending == Ending::SteadySpeed { size * self.angular } else { size };
+        value <= rate.abs() * self.close() || value <= 16.0 * f64::EPSILON * size
+    }
+
     /// The event at the end of `step`, which begins at `at`.
     fn ended(&self, phase: &Phase<D>, at: &Progress<D>, step: &Step<D>, ending: Ending) -> Ended<D> {
         let time = D::from(at.time + step.length);
         let (value, rate) = self.guard(phase, step, ending, at.armed);
         let scale = self.scale(step.end, step.last_acceleration());
         // A velocity that is rounding at a slope like this may as well be zero a period away.
-        let grazing = D::DIRECTIONS > 0 && rate * rate <= 16.0 * f64::EPSILON * (scale.velocity * self.angular).powi(2);
-        let late = if grazing { D::from(0.0) } else { -value / rate };
+        let flat = rate * rate <= 16.0 * f64::EPSILON * (scale.velocity * self.angular).powi(2);
+        let late = if flat { D::from(0.0) } else { -value / rate };
         // A zero within rounding of the step's end is at its end.
         let late = if late.value().abs() <= self.close() { late } else { late - late.value() };
         // Nor is an event before the step that leads to it.
@@ -222,7 +234,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
             position: step.end.position + step.end.velocity * late,
             velocity: step.end.velocity + step.last_acceleration() * late,
         };
-        Ended { ending, time: time + late, state, grazing }
+        Ended { ending, time: time + late, state, grazing: flat && D::DIRECTIONS > 0 }
     }
 
     /// Writes the samples before `stop` and the work until `end` of `step`, which begins at `time`.
@@ -310,14 +322,15 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
                 // What lies behind the event does not belong to the stretch; the step that ends there must be good.
                 let mut step = self.land(phase, &at, ending, theta * length, length);
                 error = step.error(scale) / self.tolerance;
-                if error <= 1.0 {
+                if error <= 1.0 && self.has_landed(phase, &step, ending, at.armed) {
                     self.adapt(length, 1.0, error);
                     let ended = self.ended(phase, &at, &step, ending);
                     let end = ended.time.value();
                     self.record(phase, at.time, &mut step, (end, end), recorder)?;
                     return Ok(ended);
                 }
-                length = step.length;
+                // A step too long for the machine may see an event that is none.
+                (length, error) = (step.length, error.max(NOT_LANDED));
             }
             if !(error <= 1.0) {
                 self.length = length * if error.is_finite() { factor(error).clamp(0.1, 0.9) } else { 0.1 };
