@@ -2,6 +2,7 @@
 
 mod bristle;
 mod free_decay;
+mod identities;
 mod laws;
 mod oracle;
 mod sensitivities;

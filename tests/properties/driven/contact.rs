@@ -105,8 +105,9 @@ impl<D: Scalar> PiecewiseLinearLaw<D> for AnyLaw<D> {
 
 impl Family {
     /// Parameters that matter to a motion in which a force of the contact's size is a coefficient of `level` and speeds are
-    /// about `speed` (m/s), on a machine that a viscous coefficient of `critical` (s/m) damps critically.
-    pub(crate) fn draw(self, random: &mut ChaCha8Rng, level: f64, speed: f64, critical: f64) -> Vec<f64> {
+    /// about `speed` (m/s), on a machine that a viscous coefficient of `critical` (s/m) damps critically and whose spring is a
+    /// coefficient of `spring` per displacement (1/m).
+    pub(crate) fn draw(self, random: &mut ChaCha8Rng, level: f64, speed: f64, critical: f64, spring: f64) -> Vec<f64> {
         let breakaway = level * if random.random_bool(0.3) { 1.0 } else { random.random_range(1.0..2.5) };
         let viscous = if random.random_bool(0.3) { 0.0 } else { critical * log_uniform(random, -3.0, -0.5) };
         let bend = speed * log_uniform(random, -1.5, 0.5);
@@ -117,10 +118,9 @@ impl Family {
             Self::CoulombViscous => vec![level, viscous],
             Self::AccelerationCoulomb => vec![level, level * random.random_range(0.3..1.7)],
             Self::MaxwellSlip => {
-                let slope = level * critical / speed;
-                (0..random.random_range(1..5))
-                    .flat_map(|_| [slope * log_uniform(random, 0.0, 2.0), level * random.random_range(0.1..1.0)])
-                    .collect()
+                let count = random.random_range(1..5);
+                let mut element = || [spring * log_uniform(random, -1.0, 2.0), level * random.random_range(0.1..1.0)];
+                (0..count).flat_map(|_| element()).collect()
             }
             Self::Stribeck => {
                 let exponent = [1.0, 2.0, random.random_range(0.5..2.0)][random.random_range(0..3)];
@@ -130,7 +130,7 @@ impl Family {
             Self::Hyperbolic => vec![breakaway, 1.0 / bend],
             Self::Berger => vec![level, breakaway - level, 1.0 / bend],
             Self::PowerLaw => {
-                let exponent: f64 = random.random_range(0.3..1.0);
+                let exponent: f64 = random.random_range(0.7..1.0);
                 vec![level * random.random_range(0.1..1.0) / speed.powf(exponent), exponent, level]
             }
             Self::ExponentialPair => vec![level, breakaway, 1.0 / bend, 1.0 / bend * random.random_range(0.3..3.0)],

@@ -9,8 +9,8 @@ use super::setup::{Setup, Solver, setups};
 /// Random setups of each family.
 const SETS: usize = 1000;
 
-/// The greatest imbalance of a motion over its samples, relative to the energies and works in play, after how many events.
-fn imbalance(setup: &Setup, solver: Solver) -> (f64, usize) {
+/// The greatest imbalance of a motion over its samples, relative to the energies and works in play.
+fn imbalance(setup: &Setup, solver: Solver) -> f64 {
     let sampling = setup.sampling(24).with_work();
     let motion = setup.motion(solver, &sampling);
     let mut machine = Oscillator::new(setup.mass, setup.stiffness).unwrap();
@@ -37,37 +37,41 @@ fn imbalance(setup: &Setup, solver: Solver) -> (f64, usize) {
         }
     }
     let worst = balances.iter().fold(0.0f64, |worst, balance| worst.max(balance.0.abs()));
-    (worst / size, motion.events().len())
+    worst / size
 }
 
+/// The worst imbalance of many setups of a family, and which it is.
+fn worst(seed: u64, family: Family, linear: bool, solver: Solver) -> (f64, String) {
+    let mut worst = (0.0, String::new());
+    for setup in setups(seed, family, linear, SETS) {
+        let error = imbalance(&setup, solver);
+        if error > worst.0 {
+            worst = (error, setup.to_string());
+        }
+    }
+    worst
+}
+
+/// The work is integrated over the closed form to rounding.
 #[test]
 fn energy_balances_in_closed_form() {
     for &family in Family::EXACT {
-        let mut worst = (0.0, String::new());
-        for setup in setups(1, family, true, SETS) {
-            let (error, events) = imbalance(&setup, Solver::Exact);
-            if error > worst.0 {
-                worst = (error, format!("{events} events, {setup}"));
-            }
-        }
-        println!("{family:?}: {:e}", worst.0);
-        assert!(worst.0 < 1e-12, "{:e} of the energy is missing: {}", worst.0, worst.1);
+        let (error, setup) = worst(1, family, true, Solver::Exact);
+        assert!(error < 1e-12, "{error:e} of the energy is missing: {setup}");
     }
 }
 
+/// Work is integrated along the polynomial within a step, whose error is of one order less than that of the step: the 8/9th
+/// power of the tolerance, and 500 for its constant and the number of steps.
 #[test]
 fn energy_balances_step_by_step() {
-    for tolerance in [3e-14, 1e-8] {
+    for tolerance in [3e-14, 1e-10, 1e-6f64] {
+        let solver = Solver::RungeKutta(RungeKutta::new(tolerance).unwrap());
         for &family in Family::SLIDING {
-            let solver = Solver::RungeKutta(RungeKutta::new(tolerance).unwrap());
-            let mut worst = (0.0, String::new());
-            for setup in setups(2, family, false, SETS) {
-                let (error, events) = imbalance(&setup, solver);
-                if error > worst.0 {
-                    worst = (error, format!("{events} events, {setup}"));
-                }
-            }
-            println!("{family:?} {tolerance:e}: {:e} {}", worst.0, worst.1);
+            let (error, setup) = worst(2, family, false, solver);
+            // A contact that is caught at the speed of its dead zone loses what it has by then.
+            let allowed = if family == Family::Karnopp { 1.0 } else { 500.0 * tolerance.powf(8.0 / 9.0) };
+            assert!(error <= allowed, "{error:e} of the energy is missing, {allowed:e} allowed: {setup}");
         }
     }
 }

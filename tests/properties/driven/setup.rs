@@ -90,7 +90,7 @@ impl Setup {
         });
         Self {
             family,
-            law: family.draw(random, friction / normal_load, speed, critical / normal_load),
+            law: family.draw(random, friction / normal_load, speed, critical / normal_load, stiffness / normal_load),
             mass,
             stiffness,
             damping,

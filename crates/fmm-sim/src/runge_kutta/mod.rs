@@ -78,7 +78,7 @@ impl<D: Scalar, L: SlidingLaw<D>> Engine<D, L> for RungeKutta {
     ) -> Result<(), SimulationError> {
         let drive = Drive::new(scenario.excitations(), scenario.oscillator().mass());
         let contact = Contact::new(scenario, Sliding(scenario.law()), &drive)?;
-        let mut integrator = Integrator::new(scenario, &drive, self.tolerance);
+        let mut integrator = Integrator::new(scenario, &drive, self.tolerance, sampling.end());
         let mut recorder = Recorder::new("runge_kutta", 0, sampling, trajectory);
         contact.run(scenario.initial(), &drive, &mut integrator, &mut recorder)
     }

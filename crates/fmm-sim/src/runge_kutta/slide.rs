@@ -13,6 +13,9 @@ use crate::{Scenario, SimulationError, State};
 /// Steps of one run; they last for 30 000 periods at the default tolerance, and take about a second.
 const STEP_BUDGET: usize = 1_000_000;
 
+/// ω₀ t over the sampled time t below which the spring does not shape the motion.
+const WEAK: f64 = 1e-2;
+
 /// Attempts at landing on an event; Newton's method needs two or three.
 const LANDINGS: usize = 12;
 
@@ -30,7 +33,7 @@ pub(super) struct Integrator<'a, D, L> {
     /// Whether any force acts from outside.
     is_driven: bool,
     tolerance: f64,
-    /// ω₀ of small vibrations (rad/s).
+    /// ω₀ of small vibrations, or what turns little within the sampled time if that is faster (rad/s).
     angular: f64,
     /// Displacement that the static level holds on the spring (m), below which no motion matters.
     held: f64,
@@ -49,11 +52,14 @@ struct Progress<D> {
 }
 
 impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
-    pub(super) fn new(scenario: &'a Scenario<D, L>, drive: &Drive<D>, tolerance: f64) -> Self {
+    pub(super) fn new(scenario: &'a Scenario<D, L>, drive: &Drive<D>, tolerance: f64, end: f64) -> Self {
         let oscillator = scenario.oscillator();
-        let angular = oscillator.natural_angular_frequency().value();
+        // A spring too weak to matter within the sampled time gives no scale.
+        let natural = oscillator.natural_angular_frequency().value();
+        let angular = if end > 0.0 { natural.max(WEAK / end) } else { natural };
         let law = scenario.law();
-        let held = (law.breakaway() * scenario.normal_load() / oscillator.stiffness()).value();
+        let static_force = (law.breakaway() * scenario.normal_load()).value();
+        let held = static_force / (oscillator.mass().value() * angular * angular);
         Self {
             oscillator,
             law,
@@ -309,9 +315,14 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
                 .checked_sub(1)
                 .ok_or(SimulationError::StepBudget { budget: STEP_BUDGET, end: recorder.sampling.end() })?;
             let mut step = self.take(phase, &at, length);
-            // A motion may begin from nothing; then it is as large as it becomes.
-            let (first, last) = (self.scale(at.state, at.acceleration), self.scale(step.end, step.last_acceleration()));
-            let scale = if last.velocity > first.velocity { last } else { first };
+            let mut scale = self.scale(at.state, at.acceleration);
+            if self.is_driven {
+                // A motion may begin from nothing; then it is as large as the force makes it.
+                let force = |time| phase.piece.force(time).value();
+                let rise = (force(at.time + length) - force(at.time)).abs() * self.per_mass.value() / self.angular;
+                scale.velocity += rise;
+                scale.position += rise / self.angular;
+            }
             let mut error = step.error(scale) / self.tolerance;
             let crossed = Self::endings(phase)
                 .iter()
