@@ -3,6 +3,7 @@
 mod case;
 mod driven;
 mod energy;
+mod engines;
 mod extremes;
 mod gradient;
 mod laws;

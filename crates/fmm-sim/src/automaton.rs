@@ -143,26 +143,8 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         })
     }
 
-    /// What is left for friction at constant `velocity` from `position` at `time` on: L = f − F_c − F_k.
     fn load(&self, piece: &Piece<D>, time: D, position: D, velocity: D) -> Curve<'static, D> {
-        let mut load = Curve::force(piece, time);
-        load.constant = load.constant - self.oscillator.damping().force(velocity);
-        match self.oscillator.restoring() {
-            Restoring::Sine { length } if velocity.value() != 0.0 => {
-                // −k ℓ sin((x + v τ)/ℓ) is a wave.
-                let (sin, cos) = (position / length).sin_cos();
-                let force = self.oscillator.stiffness() * length;
-                let sign = velocity.value().signum();
-                let angular = velocity.abs() / length;
-                load.waves.push(Wave { angular, cosine: -(force * sin), sine: -(force * cos) * sign });
-            }
-            Restoring::Linear if velocity.value() != 0.0 => {
-                load.constant = load.constant - self.oscillator.stiffness() * position;
-                load.slope = load.slope - self.oscillator.stiffness() * velocity;
-            }
-            _ => load.constant = load.constant - self.oscillator.restoring_force(position),
-        }
-        load
+        load(self.oscillator, piece, time, State { position, velocity })
     }
 
     /// The mode in which a contact goes on from `state`, the automaton's only decision; and the load at zero relative
@@ -421,6 +403,34 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
 /// A time (s) within which a curve with these waves varies little.
 fn scale<D: Scalar>(curve: &Curve<D>) -> f64 {
     curve.waves.iter().map(|wave| 1.0 / wave.angular.value()).fold(f64::MAX, f64::min)
+}
+
+/// What is left for friction at constant velocity from `state` at `time` on: L = f − F_c − F_k.
+pub(crate) fn load<D: Scalar>(
+    oscillator: &Oscillator<D>,
+    piece: &Piece<D>,
+    time: D,
+    state: State<D>,
+) -> Curve<'static, D> {
+    let State { position, velocity } = state;
+    let mut load = Curve::force(piece, time);
+    load.constant = load.constant - oscillator.damping().force(velocity);
+    match oscillator.restoring() {
+        Restoring::Sine { length } if velocity.value() != 0.0 => {
+            // −k ℓ sin((x + v τ)/ℓ) is a wave.
+            let (sin, cos) = (position / length).sin_cos();
+            let force = oscillator.stiffness() * length;
+            let sign = velocity.value().signum();
+            let angular = velocity.abs() / length;
+            load.waves.push(Wave { angular, cosine: -(force * sin), sine: -(force * cos) * sign });
+        }
+        Restoring::Linear if velocity.value() != 0.0 => {
+            load.constant = load.constant - oscillator.stiffness() * position;
+            load.slope = load.slope - oscillator.stiffness() * velocity;
+        }
+        _ => load.constant = load.constant - oscillator.restoring_force(position),
+    }
+    load
 }
 
 /// The time at which `guard`, counted from `start`, crosses zero near `time`, with its derivatives; and whether it only

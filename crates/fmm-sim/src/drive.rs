@@ -127,10 +127,10 @@ impl<'a, D: Scalar> Drive<'a, D> {
                 Source::SampledForce { interval, values } => {
                     let position = (middle - delay) / interval;
                     if position > 0.0 && position < values.len().saturating_sub(1) as f64 {
-                        let left = position as usize;
-                        let slope = (values[left + 1] - values[left]) / interval;
-                        piece.force = piece.force + (values[left] + slope * (start - delay - left as f64 * interval));
-                        piece.slope = piece.slope + slope;
+                        // From knot to knot, so that rounding of a knot's time does not move the force there.
+                        let at = |time: f64| interpolated(values, *interval, *delay, time);
+                        piece.force = piece.force + at(start);
+                        piece.slope = piece.slope + (at(end) - at(start)) / (end - start);
                     }
                 }
                 Source::HalfSine { peak, duration } if begun && middle < delay + duration.value() => {
@@ -155,6 +155,17 @@ impl<'a, D: Scalar> Drive<'a, D> {
         piece.waves.retain(|wave| wave.amplitude.value() != 0.0 || D::DIRECTIONS > 0);
         piece
     }
+}
+
+/// The sampled force (N) at `time`, which lies between its first and its last sample; exactly a sample at its own time.
+fn interpolated(values: &[f64], interval: f64, delay: f64, time: f64) -> f64 {
+    let position = ((time - delay) / interval).max(0.0);
+    let nearest = position.round() as usize;
+    if nearest < values.len() && delay + nearest as f64 * interval == time {
+        return values[nearest];
+    }
+    let left = (position as usize).min(values.len().saturating_sub(2));
+    values[left] + (values[left + 1] - values[left]) * (position - left as f64)
 }
 
 #[cfg(test)]

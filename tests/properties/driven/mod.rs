@@ -1,5 +1,7 @@
 //! Machines under every law, force, damping and restoring force, on the engines that take them.
 
+mod agreement;
 mod contact;
 mod energy;
+mod gradient;
 mod setup;

@@ -160,6 +160,15 @@ impl Setup {
         numbers
     }
 
+    /// Whether the end of a pulse passes `time` while the number `name` changes by two `step`s to either side.
+    pub(crate) fn changes_between(&self, name: &str, time: f64, step: f64) -> bool {
+        let ends_near = |cause: &Cause| match cause {
+            Cause::HalfSine { duration, delay, .. } => (time - delay - duration).abs() <= 2.0 * step,
+            _ => false,
+        };
+        name == "duration" && self.causes.iter().any(ends_near)
+    }
+
     /// ω₀ (rad/s).
     pub(crate) fn angular(&self) -> f64 {
         (self.stiffness / self.mass).sqrt()

@@ -4,7 +4,7 @@ use fmm_friction::SlidingLaw;
 use fmm_model::{Oscillator, Scalar};
 
 use super::step::{COEFFICIENTS, Step, Within, first_zero_within};
-use crate::automaton::{Branch, Ended, Ending, Phase, Slide};
+use crate::automaton::{Branch, Ended, Ending, Phase, Slide, load};
 use crate::drive::Drive;
 use crate::recorder::Recorder;
 use crate::work::Power;
@@ -121,16 +121,29 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         capture > 0.0 && self.spare_speed(phase, state.velocity, false).value() > capture
     }
 
-    /// The value at the end of `step` of the guard that `ending` stands for, positive before the event, and its rate.
-    fn guard(&self, phase: &Phase<D>, step: &Step<D>, ending: Ending, armed: bool) -> (D, f64) {
-        let sign = phase.direction.sign();
-        if ending == Ending::SteadySpeed {
-            let sign = if phase.branch == Branch::Losing { -sign } else { sign };
-            let (first, last) = (step.first_acceleration().value(), step.last_acceleration());
-            (last * sign, (last.value() - first) * sign / step.length)
-        } else {
-            (self.spare_speed(phase, step.end.velocity, armed), step.last_acceleration().value() * sign)
+    /// The value at the end of `step` of the guard that `ending` stands for, positive before the event.
+    fn guard(&self, phase: &Phase<D>, step: &Step<D>, ending: Ending, armed: bool) -> D {
+        match ending {
+            Ending::SteadySpeed => step.last_acceleration() * Self::gain(phase),
+            _ => self.spare_speed(phase, step.end.velocity, armed),
         }
+    }
+
+    /// The rate of the guard at the end of a step that begins at `time`, if it is zero there.
+    fn rate(&self, phase: &Phase<D>, time: f64, step: &Step<D>, ending: Ending) -> f64 {
+        match ending {
+            // At constant speed the law does not change, only the load does.
+            Ending::SteadySpeed => {
+                let load = load(self.oscillator, phase.piece, D::from(time + step.length), step.end);
+                (load.derivative().at(D::from(0.0)) * self.per_mass).value() * Self::gain(phase)
+            }
+            _ => step.last_acceleration().value() * phase.direction.sign(),
+        }
+    }
+
+    /// The sign of the acceleration on the branch of `phase`.
+    fn gain(phase: &Phase<D>) -> f64 {
+        if phase.branch == Branch::Losing { -phase.direction.sign() } else { phase.direction.sign() }
     }
 
     /// The guards of a phase.
@@ -147,7 +160,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         let sign = phase.direction.sign();
         let mut first: Option<(Ending, f64)> = None;
         for &ending in Self::endings(phase) {
-            let crossed = self.guard(phase, step, ending, at.armed).0.value() <= 0.0;
+            let crossed = self.guard(phase, step, ending, at.armed).value() <= 0.0;
             let turning =
                 step.first_acceleration().value() * sign < 0.0 && step.last_acceleration().value() * sign > 0.0;
             if !(crossed || turning && ending == Ending::RelativeRest) {
@@ -156,7 +169,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
             let velocity = self.within(phase, at.time, step).velocity.map(|coefficient| coefficient.value() * sign);
             let mut guard = velocity;
             if ending == Ending::SteadySpeed {
-                let sign = if phase.branch == Branch::Losing { -1.0 } else { 1.0 };
+                let sign = Self::gain(phase) * sign;
                 guard = [0.0; COEFFICIENTS];
                 for power in 1..COEFFICIENTS {
                     guard[power - 1] = velocity[power] * power as f64 * sign;
@@ -197,13 +210,14 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         let mut step = self.take(phase, at, length);
         let mut before: Option<(f64, f64)> = None;
         for _ in 0..LANDINGS {
-            let (value, mut rate) = self.guard(phase, &step, ending, at.armed);
+            let value = self.guard(phase, &step, ending, at.armed).value();
+            let mut rate = self.rate(phase, at.time, &step, ending);
             if let (Ending::SteadySpeed, Some((other, at_other))) = (ending, before) {
-                // The law has no formula for the rate of an acceleration; a secant does.
-                rate = (value.value() - at_other) / (length - other);
+                // Away from the event the acceleration changes with the law as well.
+                rate = (value - at_other) / (length - other);
             }
-            before = Some((length, value.value()));
-            let correction = value.value() / rate;
+            before = Some((length, value));
+            let correction = value / rate;
             let next = length - correction;
             if !(rate < 0.0 && correction.abs() > self.close() && next > 0.0 && next <= longest) {
                 break;
@@ -214,22 +228,26 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         step
     }
 
+    /// A size of the rate of the guard of `ending`, as long as it does not turn there.
+    fn rate_scale(&self, step: &Step<D>, ending: Ending) -> f64 {
+        let acceleration = self.scale(step.end, step.last_acceleration()).velocity * self.angular;
+        if ending == Ending::SteadySpeed { acceleration * self.angular } else { acceleration }
+    }
+
     /// Whether the guard of `ending` is zero at the end of `step`, or so near that it is by rounding.
-    fn has_landed(&self, phase: &Phase<D>, step: &Step<D>, ending: Ending, armed: bool) -> bool {
-        let (value, rate) = self.guard(phase, step, ending, armed);
-        let value = value.value().abs();
-        let size = self.scale(step.end, step.last_acceleration()).velocity;
-        let size = if ending == Ending::SteadySpeed { size * self.angular } else { size };
-        value <= rate.abs() * self.close() || value <= 16.0 * f64::EPSILON * size
+    fn has_landed(&self, phase: &Phase<D>, at: &Progress<D>, step: &Step<D>, ending: Ending) -> bool {
+        let value = self.guard(phase, step, ending, at.armed).value().abs();
+        let rate = self.rate(phase, at.time, step, ending).abs();
+        value <= rate * self.close() || value <= 16.0 * f64::EPSILON * self.rate_scale(step, ending) / self.angular
     }
 
     /// The event at the end of `step`, which begins at `at`.
     fn ended(&self, phase: &Phase<D>, at: &Progress<D>, step: &Step<D>, ending: Ending) -> Ended<D> {
         let time = D::from(at.time + step.length);
-        let (value, rate) = self.guard(phase, step, ending, at.armed);
-        let scale = self.scale(step.end, step.last_acceleration());
-        // A velocity that is rounding at a slope like this may as well be zero a period away.
-        let flat = rate * rate <= 16.0 * f64::EPSILON * (scale.velocity * self.angular).powi(2);
+        let value = self.guard(phase, step, ending, at.armed);
+        let rate = self.rate(phase, at.time, step, ending);
+        // What is rounding at a slope like this may as well be zero a period away.
+        let flat = rate.abs() <= 4.0 * f64::EPSILON.sqrt() * self.rate_scale(step, ending);
         let late = if flat { D::from(0.0) } else { -value / rate };
         // A zero within rounding of the step's end is at its end.
         let late = if late.value().abs() <= self.close() { late } else { late - late.value() };
@@ -326,14 +344,14 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
             let mut error = step.error(scale) / self.tolerance;
             let crossed = Self::endings(phase)
                 .iter()
-                .any(|&ending| !(self.guard(phase, &step, ending, at.armed).0.value() > 0.0));
+                .any(|&ending| !(self.guard(phase, &step, ending, at.armed).value() > 0.0));
             if (crossed || error <= 1.0)
                 && let Some((ending, theta)) = self.reached(phase, &at, &mut step)
             {
                 // What lies behind the event does not belong to the stretch; the step that ends there must be good.
                 let mut step = self.land(phase, &at, ending, theta * length, length);
                 error = step.error(scale) / self.tolerance;
-                if error <= 1.0 && self.has_landed(phase, &step, ending, at.armed) {
+                if error <= 1.0 && self.has_landed(phase, &at, &step, ending) {
                     self.adapt(length, 1.0, error);
                     let ended = self.ended(phase, &at, &step, ending);
                     let end = ended.time.value();
