@@ -151,7 +151,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     /// velocity.
     fn mode(&self, piece: &Piece<D>, time: D, state: State<D>) -> (Mode, f64) {
         let resting = self.load(piece, time, state.position, self.belt);
-        let load = resting.at(D::from(0.0)).value();
+        let load = resting.now().value();
         let relative = state.velocity.value() - self.belt.value();
         if relative != 0.0 {
             let direction = Direction::of(relative);
@@ -159,7 +159,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                 return (Mode::Slip(direction), load);
             }
             let moving = self.load(piece, time, state.position, state.velocity);
-            let drive = moving.at(D::from(0.0)).value() * direction.sign();
+            let drive = moving.now().value() * direction.sign();
             let (gaining, losing) = self.branch_forces(D::from(relative.abs()));
             let mode = if drive > gaining.value() {
                 Mode::Gaining(direction)
@@ -171,7 +171,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             return (mode, load);
         }
         let held = self.static_force.value();
-        let rate = resting.derivative().at(D::from(0.0)).value();
+        let rate = resting.slope_now().value();
         // What an exact comparison would decide by rounding is decided by where the load is going.
         let rounding = if resting.is_free() { 0.0 } else { ROUNDING * self.magnitude(&resting, state) };
         let direction = Direction::of(if load.abs() <= rounding { rate } else { load });
@@ -195,7 +195,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     /// sliding level is not higher; where rounding says otherwise, nothing moves.
     fn is_ahead(&self, load: &Curve<D>, state: State<D>, direction: Direction) -> bool {
         let sliding = (self.levels.gaining(D::from(0.0)) * self.normal_load).value();
-        let load = load.at(D::from(0.0)).value();
+        let load = load.now().value();
         match self.oscillator.restoring() {
             Restoring::Linear => {
                 let (stiffness, position) = (self.oscillator.stiffness().value(), state.position.value());
@@ -262,7 +262,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                     (if next == Mode::Stick { EventKind::Stop } else { EventKind::BranchChange }, next, load)
                 }
                 Ending::RelativeRest if mode == Mode::Stick => {
-                    let load = self.load(&piece, time, state.position, state.velocity).at(D::from(0.0)).value();
+                    let load = self.load(&piece, time, state.position, state.velocity).now().value();
                     (EventKind::Breakaway, next, load)
                 }
                 Ending::RelativeRest => {
@@ -272,7 +272,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                 }
                 Ending::SteadySpeed => {
                     let next = if matches!(mode, Mode::Steady(_)) { next } else { self.after_branch(mode, state) };
-                    let load = self.load(&piece, time, state.position, state.velocity).at(D::from(0.0)).value();
+                    let load = self.load(&piece, time, state.position, state.velocity).now().value();
                     (EventKind::BranchChange, next, load)
                 }
             };
@@ -297,7 +297,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         if jump.abs() <= ROUNDING * self.magnitude(&load, state) {
             return None;
         }
-        let drive = load.at(D::from(0.0)).value() * direction.sign();
+        let drive = load.now().value() * direction.sign();
         let (gaining, losing) = self.branch_forces((state.velocity - self.belt).abs());
         let agrees = match mode {
             Mode::Gaining(_) => drive >= gaining.value(),

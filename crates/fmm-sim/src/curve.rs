@@ -53,7 +53,9 @@ impl<'a, D: Scalar> Curve<'a, D> {
             let (sin, cos) = wave.sin_cos(time);
             Wave { angular: wave.angular, cosine: wave.amplitude * cos, sine: -wave.amplitude * sin }
         };
-        Self { constant, slope, waves: piece.waves().iter().map(wave).collect(), decay: None }
+        // Without waves nothing is collected, which is most of the time.
+        let waves = if piece.waves().is_empty() { Vec::new() } else { piece.waves().iter().map(wave).collect() };
+        Self { constant, slope, waves, decay: None }
     }
 
     /// The same with a free decay from `state` added.
@@ -70,6 +72,18 @@ impl<'a, D: Scalar> Curve<'a, D> {
     /// The free decay and its state at τ = 0.
     pub(crate) fn free(&self) -> Option<(&'a Decay<D>, State<D>)> {
         self.decay
+    }
+
+    /// The value at τ = 0.
+    pub(crate) fn now(&self) -> D {
+        let free = self.decay.map_or(D::from(0.0), |(_, state)| state.position);
+        self.waves.iter().fold(self.constant + free, |sum, wave| sum + wave.cosine)
+    }
+
+    /// The slope at τ = 0.
+    pub(crate) fn slope_now(&self) -> D {
+        let free = self.decay.map_or(D::from(0.0), |(_, state)| state.velocity);
+        self.waves.iter().fold(self.slope + free, |sum, wave| sum + wave.sine * wave.angular)
     }
 
     /// The value a time `elapsed` after τ = 0.

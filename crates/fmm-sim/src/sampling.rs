@@ -156,7 +156,7 @@ impl Sampling {
             Grid::Uniform { interval } => {
                 // The quotient is cut and may be off by one ulp; comparisons with the sample times themselves decide.
                 let estimate = time / interval - self.first as f64;
-                let mut index = if estimate > 0.0 { (estimate as usize).min(self.count) } else { 0 };
+                let mut index = if estimate > 0.0 { (estimate as usize).saturating_add(1).min(self.count) } else { 0 };
                 while index > 0 && self.time(index - 1) >= time {
                     index -= 1;
                 }

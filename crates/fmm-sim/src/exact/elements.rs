@@ -5,10 +5,10 @@ use fmm_model::Scalar;
 
 use super::response::respond;
 use crate::automaton::crossing;
-use crate::curve::Curve;
+use crate::curve::{Curve, Wave};
 use crate::decay::Decay;
 use crate::drive::{Drive, Piece};
-use crate::first_zero::{SEARCH_BUDGET, first_zero};
+use crate::first_zero::{ROUNDING, SEARCH_BUDGET, first_zero};
 use crate::recorder::Recorder;
 use crate::work::Power;
 use crate::{Direction, Event, EventKind, Mode, Scenario, SimulationError, State};
@@ -122,8 +122,21 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
         // spring but no element.
         let spring = self.scenario.oscillator().stiffness() * self.belt;
         let candidates = [now.at(zero).value(), (grows.at(zero) - spring).value(), grows.derivative().at(zero).value()];
-        match candidates.into_iter().find(|value| *value != 0.0) {
-            Some(value) => self.direction = Direction::of(value),
+        // What is rounding of the terms is zero.
+        let at_rest = self.scenario.oscillator().stiffness() * self.state.position;
+        let parts = [at_rest, self.friction(), spring].map(|part| part.value().abs());
+        let waves = |power: i32| {
+            let size = |wave: &Wave<D>| wave.cosine.value().hypot(wave.sine.value()) * wave.angular.value().powi(power);
+            now.waves.iter().map(size).sum::<f64>()
+        };
+        let sizes = [
+            now.constant.value().abs() + 2.0 * parts[0] + parts[1] + waves(0),
+            now.slope.value().abs() + parts[2] + waves(1),
+            waves(2),
+        ];
+        let decides = |(value, size): &(f64, f64)| value.abs() > ROUNDING * size;
+        match candidates.into_iter().zip(sizes).find(decides) {
+            Some((value, _)) => self.direction = Direction::of(value),
             None => self.at_rest = true,
         }
     }

@@ -186,6 +186,9 @@ impl<D: Scalar> Swing<'_, D> {
         end: f64,
         recorder: &mut Recorder<D>,
     ) -> Result<(), SimulationError> {
+        if !recorder.sampling.wants_work() {
+            return Ok(());
+        }
         let waves = path.waves.iter().map(|wave| wave.angular.value());
         let frequency = waves.fold(flow.plain.natural() + 2.0 * flow.plain.rate(), f64::max);
         recorder.work(phase.time.value(), end, 1.0 / frequency, |time| {
