@@ -77,7 +77,8 @@ fn both_engines_find_the_same_motion() {
             narrow += 1;
             continue;
         }
-        let kinds = |motion: &Trajectory| motion.events().iter().map(|event| (event.kind, event.next)).collect::<Vec<_>>();
+        let kinds =
+            |motion: &Trajectory| motion.events().iter().map(|event| (event.kind, event.next)).collect::<Vec<_>>();
         assert_eq!(kinds(&exact), kinds(&stepped), "{inputs:?}");
         // A slow approach to zero velocity magnifies the 1e-13 of the stepped motion in its times.
         for (a, b) in exact.events().iter().zip(stepped.events()) {
@@ -231,7 +232,8 @@ fn both_engines_agree_on_two_levels() {
         let machine = Oscillator::new(inputs[0], inputs[1]).unwrap();
         let machine = machine.with_damping(Damping::linear(inputs[2]).unwrap());
         let law = AccelerationCoulomb::new(inputs[3], inputs[3] * random.random_range(0.5..1.5)).unwrap();
-        let scenario = Scenario::new(machine, law, 1.0).and_then(|case| case.starting_at(inputs[5], inputs[6])).unwrap();
+        let scenario =
+            Scenario::new(machine, law, 1.0).and_then(|case| case.starting_at(inputs[5], inputs[6])).unwrap();
         let scenario = scenario.driven_by(Excitation::harmonic(inputs[7], inputs[8], inputs[9]).unwrap());
         let (Ok(exact), Ok(stepped)) =
             (Exact.run(&scenario, &sampling()), RungeKutta::default().run(&scenario, &sampling()))
@@ -241,7 +243,8 @@ fn both_engines_agree_on_two_levels() {
         if is_narrow(&exact) {
             continue;
         }
-        let kinds = |motion: &Trajectory| motion.events().iter().map(|event| (event.kind, event.next)).collect::<Vec<_>>();
+        let kinds =
+            |motion: &Trajectory| motion.events().iter().map(|event| (event.kind, event.next)).collect::<Vec<_>>();
         assert_eq!(kinds(&exact), kinds(&stepped), "{inputs:?} {law:?}");
         assert!(difference(&exact, &stepped) < 1e-8, "{inputs:?} {law:?}: {:e}", difference(&exact, &stepped));
         changes += exact.events().iter().filter(|event| event.kind == EventKind::BranchChange).count();

@@ -1,7 +1,7 @@
 //! Engines that know nothing of each other find the same motion: every event in kind and order, times, positions, samples.
 
 use fmm_model::Scalar;
-use fmm_sim::{Engine, Event, EventKind, Moreau, RungeKutta, Samples, Sampling, Trajectory};
+use fmm_sim::{Engine, Event, EventKind, Moreau, RungeKutta, Samples, Trajectory};
 
 use super::contact::Family;
 use super::setup::{Gradient, Setup, Solver, setups};
@@ -51,7 +51,7 @@ pub(crate) fn is_ambiguous<D: Scalar>(setup: &Setup, motion: &Trajectory<D>) -> 
 }
 
 /// The greatest difference between two motions, in units of how far an error reaches.
-fn difference(setup: &Setup, exact: &Trajectory<Gradient>, other: &Trajectory) -> f64 {
+pub(crate) fn difference(setup: &Setup, exact: &Trajectory<Gradient>, other: &Trajectory) -> f64 {
     let list = |events: Vec<_>| format!("{events:?}");
     let expected: Vec<_> = exact.events().iter().map(|event| (event.kind, event.next)).collect();
     let found: Vec<_> = other.events().iter().map(|event| (event.kind, event.next)).collect();
@@ -61,7 +61,8 @@ fn difference(setup: &Setup, exact: &Trajectory<Gradient>, other: &Trajectory) -
     let size = exact.position().values().iter().fold(setup.length, |size, x| size.max(x.abs()));
     let mut worst = 0.0f64;
     for (event, other) in exact.events().iter().zip(other.events()) {
-        let late = (other.time - event.time.value()).abs() / (reach.number(event.time) + event.time.value()).max(1e-300);
+        let late =
+            (other.time - event.time.value()).abs() / (reach.number(event.time) + event.time.value()).max(1e-300);
         let off = (other.position - event.position.value()).abs() / (reach.number(event.position) + size);
         worst = worst.max(late).max(off);
     }
@@ -76,7 +77,7 @@ fn difference(setup: &Setup, exact: &Trajectory<Gradient>, other: &Trajectory) -
 }
 
 /// A run takes some hundred steps, each off by up to the tolerance of 3e-14 and by rounding.
-const AGREEMENT: f64 = 1e-10;
+pub(crate) const AGREEMENT: f64 = 1e-10;
 
 #[test]
 fn exact_and_stepped_motion_agree() {
@@ -121,7 +122,7 @@ fn time_stepping_converges_to_the_exact_motion() {
             if is_ambiguous(&setup, &exact) {
                 continue;
             }
-            let scenario = setup.scenario(|_, value| value);
+            let scenario = setup.scenario(|_, value| value).unwrap();
             let stepped = |factor: usize| Moreau::default().run(&scenario, &setup.sampling(2000 * factor)).unwrap();
             let errors = [distance(&exact, &stepped(1), 1), distance(&exact, &stepped(16), 16)];
             assert!(errors[1] < 2e-3, "{errors:?} of the amplitude: {setup}");
@@ -159,6 +160,9 @@ fn the_error_follows_the_tolerance() {
         }
     }
     let slope = slopes / count;
-    assert!(count > 100.0 && (0.75..1.1).contains(&slope), "the error falls as the tolerance to the {slope}, {count} setups");
+    assert!(
+        count > 100.0 && (0.75..1.1).contains(&slope),
+        "the error falls as the tolerance to the {slope}, {count} setups"
+    );
     println!("{slope} {count}");
 }

@@ -33,15 +33,16 @@ macro_rules! any_law {
             /// Those that the Runge-Kutta engine takes.
             pub(crate) const SLIDING: &'static [Self] = &[$(Self::$affine,)+ $(Self::$curved),+];
 
-            pub(crate) fn law<D: Scalar>(self, values: &[D]) -> AnyLaw<D> {
-                match self {
-                    $(Self::$affine => AnyLaw::$affine(<$affine_law as LawFamily>::at(values).unwrap()),)+
+            /// The law of these parameters, if they make one.
+            pub(crate) fn law<D: Scalar>(self, values: &[D]) -> Option<AnyLaw<D>> {
+                Some(match self {
+                    $(Self::$affine => AnyLaw::$affine(<$affine_law as LawFamily>::at(values).ok()?),)+
                     Self::MaxwellSlip => {
                         let elements: Vec<_> = values.chunks(2).map(|pair| (pair[0], pair[1])).collect();
-                        AnyLaw::MaxwellSlip(MaxwellSlip::new(&elements).unwrap())
+                        AnyLaw::MaxwellSlip(MaxwellSlip::new(&elements).ok()?)
                     }
-                    $(Self::$curved => AnyLaw::$curved(<$curved_law as LawFamily>::at(values).unwrap())),+
-                }
+                    $(Self::$curved => AnyLaw::$curved(<$curved_law as LawFamily>::at(values).ok()?)),+
+                })
             }
         }
 

@@ -4,4 +4,8 @@ mod agreement;
 mod contact;
 mod energy;
 mod gradient;
+mod missed;
+mod reversal;
+mod sampling;
 mod setup;
+mod symmetry;

@@ -104,8 +104,12 @@ impl Setup {
         }
     }
 
-    /// The scenario, with each of its numbers passed through `number`, which gets its name too.
-    pub(crate) fn scenario<D: Scalar>(&self, mut number: impl FnMut(&'static str, f64) -> D) -> Scenario<D, AnyLaw<D>> {
+    /// The scenario, with each of its numbers passed through `number`, which gets its name too; none if the law is none at
+    /// these numbers.
+    pub(crate) fn scenario<D: Scalar>(
+        &self,
+        mut number: impl FnMut(&'static str, f64) -> D,
+    ) -> Option<Scenario<D, AnyLaw<D>>> {
         let mut machine = Oscillator::new(number("m", self.mass), number("k", self.stiffness)).unwrap();
         let [linear, quadratic, cubic] = self.damping;
         let damping = Damping::new(number("c₁", linear), number("c₂", quadratic)).unwrap();
@@ -116,28 +120,29 @@ impl Setup {
         let law: Vec<D> = self.law.iter().map(|value| number("law", *value)).collect();
         let normal_load = number("N", self.normal_load);
         let start = (number("x₀", self.position), number("v₀", self.velocity));
-        let scenario = Scenario::new(machine, self.family.law(&law), normal_load)
+        let scenario = Scenario::new(machine, self.family.law(&law)?, normal_load)
             .and_then(|scenario| scenario.starting_at(start.0, start.1))
             .unwrap();
-        self.causes.iter().fold(scenario, |scenario, cause| scenario.driven_by(cause.excitation(&mut number)))
+        Some(self.causes.iter().fold(scenario, |scenario, cause| scenario.driven_by(cause.excitation(&mut number))))
     }
 
-    /// The motion with each number passed through `number`.
+    /// The motion with each number passed through `number`; none if the law is none at these numbers.
     pub(crate) fn run<D: Scalar>(
         &self,
         solver: Solver,
         sampling: &Sampling,
         number: impl FnMut(&'static str, f64) -> D,
-    ) -> Result<Trajectory<D>, SimulationError> {
-        match solver {
-            Solver::Exact => Exact.run(&self.scenario(number), sampling),
-            Solver::RungeKutta(engine) => engine.run(&self.scenario(number), sampling),
-        }
+    ) -> Option<Result<Trajectory<D>, SimulationError>> {
+        let scenario = self.scenario(number)?;
+        Some(match solver {
+            Solver::Exact => Exact.run(&scenario, sampling),
+            Solver::RungeKutta(engine) => engine.run(&scenario, sampling),
+        })
     }
 
     /// The motion as it is.
     pub(crate) fn motion(&self, solver: Solver, sampling: &Sampling) -> Trajectory {
-        self.run(solver, sampling, |_, value| value).unwrap_or_else(|error| panic!("{error}: {self}"))
+        self.run(solver, sampling, |_, value| value).unwrap().unwrap_or_else(|error| panic!("{error}: {self}"))
     }
 
     /// The motion with derivatives in every number, in the order of [`numbers`](Self::numbers).
@@ -147,7 +152,7 @@ impl Setup {
             direction += 1;
             Gradient::variable(value, direction - 1)
         };
-        self.run(solver, sampling, seeded).unwrap_or_else(|error| panic!("{error}: {self}"))
+        self.run(solver, sampling, seeded).unwrap().unwrap_or_else(|error| panic!("{error}: {self}"))
     }
 
     /// Names and values of all numbers.
@@ -160,13 +165,25 @@ impl Setup {
         numbers
     }
 
-    /// Whether the end of a pulse passes `time` while the number `name` changes by two `step`s to either side.
-    pub(crate) fn changes_between(&self, name: &str, time: f64, step: f64) -> bool {
-        let ends_near = |cause: &Cause| match cause {
-            Cause::HalfSine { duration, delay, .. } => (time - delay - duration).abs() <= 2.0 * step,
-            _ => false,
+    /// Times at which the force has a kink or a jump (s).
+    pub(crate) fn knots(&self) -> Vec<f64> {
+        let knots = |cause: &Cause| match cause {
+            Cause::Sampled { interval, values } => (0..values.len()).map(|index| index as f64 * interval).collect(),
+            Cause::HalfSine { duration, delay, .. } => vec![*delay, delay + duration],
+            Cause::Ramp { delay, .. } => vec![*delay],
+            _ => Vec::new(),
         };
-        name == "duration" && self.causes.iter().any(ends_near)
+        self.causes.iter().flat_map(knots).collect()
+    }
+
+    /// Whether the slope of the law at rest is infinite or steeper than any other.
+    pub(crate) fn is_steep(&self) -> bool {
+        match self.family {
+            Family::Stribeck => self.law[3] < 1.0,
+            Family::PowerLaw => self.law[1] < 1.0,
+            Family::MakkarDixon | Family::RegularisedStribeck => true,
+            _ => false,
+        }
     }
 
     /// ω₀ (rad/s).

@@ -13,7 +13,7 @@ use crate::work::Power;
 use crate::{Direction, EventKind, SimulationError, State};
 
 /// No record needs more steps.
-const STEP_BUDGET: usize = 1_000_000;
+const STEP_BUDGET: usize = 100_000;
 
 /// Attempts at one step before it is given up.
 const MOST_ATTEMPTS: usize = 100;

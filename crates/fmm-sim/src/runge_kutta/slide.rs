@@ -342,9 +342,8 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
                 scale.position += rise / self.angular;
             }
             let mut error = step.error(scale) / self.tolerance;
-            let crossed = Self::endings(phase)
-                .iter()
-                .any(|&ending| !(self.guard(phase, &step, ending, at.armed).value() > 0.0));
+            let crossed =
+                Self::endings(phase).iter().any(|&ending| !(self.guard(phase, &step, ending, at.armed).value() > 0.0));
             if (crossed || error <= 1.0)
                 && let Some((ending, theta)) = self.reached(phase, &at, &mut step)
             {
