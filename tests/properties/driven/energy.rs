@@ -67,10 +67,10 @@ fn energy_balances_in_closed_form() {
 fn energy_balances_step_by_step() {
     for tolerance in [3e-14, 1e-10, 1e-6f64] {
         let solver = Solver::RungeKutta(RungeKutta::new(tolerance).unwrap());
-        for &family in Family::SLIDING {
+        // A contact that is caught at the speed of its dead zone loses what it has by then: Karnopp's law does not balance.
+        for &family in Family::SLIDING.iter().filter(|family| **family != Family::Karnopp) {
             let (error, setup) = worst(2, family, false, solver);
-            // A contact that is caught at the speed of its dead zone loses what it has by then.
-            let allowed = if family == Family::Karnopp { 1.0 } else { 500.0 * tolerance.powf(8.0 / 9.0) };
+            let allowed = 500.0 * tolerance.powf(8.0 / 9.0);
             assert!(error <= allowed, "{error:e} of the energy is missing, {allowed:e} allowed: {setup}");
         }
     }

@@ -10,7 +10,7 @@ use crate::recorder::Recorder;
 use crate::work::Power;
 use crate::{Scenario, SimulationError, State};
 
-/// Steps of one run; they last for 30 000 periods at the default tolerance, and take about a second.
+/// Steps of one run; they last for some 15 000 periods at the default tolerance, and take about a second.
 const STEP_BUDGET: usize = 1_000_000;
 
 /// ω₀ t over the sampled time t below which the spring does not shape the motion.
