@@ -101,3 +101,10 @@ pub enum SimulationError {
         time: f64,
     },
 }
+
+impl SimulationError {
+    /// That a relative `tolerance` (1) is one that a method can keep.
+    pub(crate) fn require_tolerance(tolerance: f64) -> Result<(), Self> {
+        if (1e-15..=1e-2).contains(&tolerance) { Ok(()) } else { Err(Self::Tolerance { tolerance }) }
+    }
+}

@@ -88,11 +88,8 @@ impl Bristle {
     /// # Errors
     /// [`SimulationError::Tolerance`] if it lies outside.
     pub fn new(tolerance: f64) -> Result<Self, SimulationError> {
-        if (1e-15..=1e-2).contains(&tolerance) {
-            Ok(Self { tolerance })
-        } else {
-            Err(SimulationError::Tolerance { tolerance })
-        }
+        SimulationError::require_tolerance(tolerance)?;
+        Ok(Self { tolerance })
     }
 
     /// The relative tolerance (1).

@@ -28,7 +28,9 @@ pub(crate) use step::Within;
 /// Samples come from the interpolant of order 7. The steps do not depend on them, so that more samples change nothing.
 ///
 /// `tolerance` bounds the local error of a step relative to the amplitude of the motion. At a dual number the steps are
-/// those of the plain number, and derivatives include the change of event times.
+/// those of the plain number, and derivatives include the change of event times. Nothing controls their own error: where a
+/// law is steep or stiff (Makkar-Dixon, Stribeck with an exponent below 1, power laws) they have been found up to 1 % off,
+/// and so have those of [`Karnopp`](fmm_friction::Karnopp), whose jump is no event while the speed grows.
 ///
 /// A law need only be a formula; where it has kinks or an infinite slope (power laws at zero speed) the steps become short
 /// there. A law with two branches ([`SlidingLaw::depends_on_acceleration`]) slides at constant speed where neither is
@@ -56,11 +58,8 @@ impl RungeKutta {
     /// # Errors
     /// [`SimulationError::Tolerance`] if it lies outside.
     pub fn new(tolerance: f64) -> Result<Self, SimulationError> {
-        if (1e-15..=1e-2).contains(&tolerance) {
-            Ok(Self { tolerance })
-        } else {
-            Err(SimulationError::Tolerance { tolerance })
-        }
+        SimulationError::require_tolerance(tolerance)?;
+        Ok(Self { tolerance })
     }
 
     /// The relative tolerance (1).
