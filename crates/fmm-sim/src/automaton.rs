@@ -173,7 +173,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         let held = self.static_force.value();
         let rate = resting.slope_now().value();
         // What an exact comparison would decide by rounding is decided by where the load is going.
-        let rounding = if resting.is_free() { 0.0 } else { ROUNDING * self.magnitude(&resting, state) };
+        let rounding = if resting.is_free() { 0.0 } else { rounding(self.oscillator, &resting, time, state) };
         let direction = Direction::of(if load.abs() <= rounding { rate } else { load });
         let growing = rate * direction.sign() > 0.0;
         let slips = if (load.abs() - held).abs() <= rounding {
@@ -182,13 +182,6 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             growing && load.abs() >= held || load.abs() > held && self.is_ahead(&resting, state, direction)
         };
         (if slips { self.sliding(direction) } else { Mode::Stick }, load)
-    }
-
-    /// Sum of the magnitudes of what makes up a `load` (N), whose rounding it carries.
-    fn magnitude(&self, load: &Curve<D>, state: State<D>) -> f64 {
-        load.constant.value().abs()
-            + 2.0 * self.oscillator.restoring_force(state.position).value().abs()
-            + load.waves.iter().map(|wave| wave.cosine.value().hypot(wave.sine.value())).sum::<f64>()
     }
 
     /// Whether the position in which friction balances the load lies ahead. Beyond the static level it does, as the
@@ -294,7 +287,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         let direction = mode.direction().filter(|_| self.levels.has_branches())?;
         let load = self.load(piece, time, state.position, state.velocity);
         let jump = piece.force(time.value()).value() - before.force(time.value()).value();
-        if jump.abs() <= ROUNDING * self.magnitude(&load, state) {
+        if jump.abs() <= rounding(self.oscillator, &load, time, state) {
             return None;
         }
         let drive = load.now().value() * direction.sign();
@@ -403,6 +396,18 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
 /// A time (s) within which a curve with these waves varies little.
 fn scale<D: Scalar>(curve: &Curve<D>) -> f64 {
     curve.waves.iter().map(|wave| 1.0 / wave.angular.value()).fold(f64::MAX, f64::min)
+}
+
+/// Rounding (N) that `load` carries, the load at `state` and `time`: that of its terms, and of the time itself.
+pub(crate) fn rounding<D: Scalar>(oscillator: &Oscillator<D>, load: &Curve<D>, time: D, state: State<D>) -> f64 {
+    let spring = 2.0 * oscillator.restoring_force(state.position).value().abs();
+    let (mut force, mut rate) = (load.constant.value().abs() + spring, load.slope.value().abs());
+    for wave in &load.waves {
+        let amplitude = wave.cosine.value().hypot(wave.sine.value());
+        force += amplitude;
+        rate += amplitude * wave.angular.value();
+    }
+    ROUNDING * (force + rate * time.value())
 }
 
 /// What is left for friction at constant velocity from `state` at `time` on: L = f − F_c − F_k.

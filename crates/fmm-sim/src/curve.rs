@@ -3,7 +3,7 @@
 use fmm_model::Scalar;
 
 use crate::State;
-use crate::decay::Decay;
+use crate::decay::{Ahead, Decay};
 use crate::drive::Piece;
 
 /// cosine · cos(angular τ) + sine · sin(angular τ).
@@ -176,6 +176,24 @@ impl<'a, D: Scalar> Curve<'a, D> {
 }
 
 impl Curve<'_, f64> {
+    /// The same curve, known to begin at zero and not to fall. Its free part gives up what rounding has left of the
+    /// value, and of a slope that does not exceed `noise`: at the rate of a fast decay, that would outlive what is to come.
+    pub(crate) fn risen_from_zero(mut self, noise: f64) -> Self {
+        let forced = self.forced_state(0.0);
+        if let Some((decay, free)) = &mut self.decay {
+            free.position = -forced.position;
+            if forced.velocity + free.velocity <= noise {
+                free.velocity = -forced.velocity;
+                let forced_curvature =
+                    self.waves.iter().map(|wave| wave.cosine * wave.angular * wave.angular).sum::<f64>();
+                if !(decay.derivative(*free).velocity > forced_curvature) {
+                    free.velocity += noise;
+                }
+            }
+        }
+        self
+    }
+
     /// Value, derivatives and their bounds at `elapsed`.
     pub(crate) fn jet(&self, elapsed: f64) -> Jet {
         let mut jet = Jet {
@@ -199,15 +217,13 @@ impl Curve<'_, f64> {
             jet.size += amplitude * (1.0 + wave.angular * elapsed);
         }
         if let Some((decay, free)) = self.decay {
-            let first = decay.advance(free, elapsed);
-            let second = decay.derivative(first);
-            let third = decay.derivative(second);
-            jet.value += first.position;
-            jet.slope += first.velocity;
-            jet.curvature += second.velocity;
-            jet.most_curvature += decay.most(third);
-            jet.most_jerk += decay.most(decay.derivative(third));
-            jet.size += decay.most(first);
+            let Ahead { derivatives, most } = decay.ahead(free, elapsed);
+            jet.value += derivatives[0];
+            jet.slope += derivatives[1];
+            jet.curvature += derivatives[2];
+            jet.most_curvature += most[2];
+            jet.most_jerk += most[3];
+            jet.size += most[0];
         }
         jet
     }

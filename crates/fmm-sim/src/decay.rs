@@ -194,6 +194,52 @@ impl<D: Scalar> Decay<D> {
     }
 }
 
+/// A free decay ahead of some time: its value and first two derivatives there, and what it and its derivatives up to the
+/// third do not exceed in magnitude from there on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ahead {
+    pub(crate) derivatives: [f64; 3],
+    pub(crate) most: [f64; 4],
+}
+
+/// From this ratio of σ to a on, the two exponentials of a motion without oscillation are far enough apart to be written
+/// as a sum.
+const APART: f64 = 0.1;
+
+impl Decay<f64> {
+    /// Rate (1/s) at which the fastest part of the motion changes.
+    pub(crate) fn fastest(&self) -> f64 {
+        if self.spread > 0.0 { self.rate + self.spread.sqrt() } else { self.natural() }
+    }
+
+    /// The decay from `free` on, as it is `elapsed` later.
+    pub(crate) fn ahead(&self, free: State<f64>, elapsed: f64) -> Ahead {
+        let sigma = self.spread.max(0.0).sqrt();
+        if sigma < APART * self.rate || sigma == 0.0 {
+            let first = self.advance(free, elapsed);
+            let second = self.derivative(first);
+            let third = self.derivative(second);
+            let derivatives = [first.position, first.velocity, second.velocity];
+            return Ahead { derivatives, most: [first, second, third, self.derivative(third)].map(|s| self.most(s)) };
+        }
+        // A e^(−st) + B e^(−ft): the derivatives of the slow part would drown in the rounding of a fast one that is long
+        // gone, each of them f/s times deeper.
+        let fast = self.rate + sigma;
+        let slow = self.square / fast;
+        let mut slow_part = (free.velocity + fast * free.position) / (2.0 * sigma) * (-slow * elapsed).exp();
+        let mut fast_part = -(free.velocity + slow * free.position) / (2.0 * sigma) * (-fast * elapsed).exp();
+        let (mut derivatives, mut most) = ([0.0; 3], [0.0; 4]);
+        for (order, most) in most.iter_mut().enumerate() {
+            if let Some(derivative) = derivatives.get_mut(order) {
+                *derivative = slow_part + fast_part;
+            }
+            *most = slow_part.abs() + fast_part.abs();
+            (slow_part, fast_part) = (-slow * slow_part, -fast * fast_part);
+        }
+        Ahead { derivatives, most }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -216,6 +262,33 @@ mod tests {
                 assert!((one.velocity - two.velocity).abs() < 1e-15, "ratio {ratio}, {elapsed} s");
             }
         }
+    }
+
+    /// A sum of exponentials and the recurrence of the equation of motion are two ways to the same derivatives; the first
+    /// keeps those of a slow motion whose fast part, a million times faster, is gone.
+    #[test]
+    fn derivatives_ahead_belong_to_the_motion() {
+        for ratio in [0.3, 1.0, 1.004, 1.006, 3.0] {
+            let decay: Decay<f64> = Decay::new(13.8 * ratio, 13.8 * 13.8);
+            let free = state(0.01, -0.07);
+            for elapsed in [0.0, 0.01, 0.3] {
+                let ahead = decay.ahead(free, elapsed);
+                let first = decay.advance(free, elapsed);
+                let curvature = decay.derivative(first).velocity;
+                for (order, expected) in [first.position, first.velocity, curvature].into_iter().enumerate() {
+                    let error = (ahead.derivatives[order] - expected).abs();
+                    assert!(error < 1e-13 * ahead.most[order], "ratio {ratio}, {elapsed} s, order {order}: {error}");
+                    for later in 0..50 {
+                        let later = decay.ahead(free, elapsed + 0.02 * f64::from(later)).derivatives[order];
+                        assert!(later.abs() <= ahead.most[order] * (1.0 + 1e-12), "ratio {ratio}, order {order}");
+                    }
+                }
+            }
+        }
+        let decay: Decay<f64> = Decay::new(1e6, 6.0);
+        let ahead = decay.ahead(state(1.0, 0.0), 1.0);
+        let slow = 3e-6f64;
+        assert!((ahead.most[3] / slow.powi(3) - 1.0).abs() < 1e-5, "jerk {} 1/s³", ahead.most[3]);
     }
 
     #[test]

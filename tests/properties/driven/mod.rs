@@ -4,6 +4,7 @@ mod agreement;
 mod contact;
 mod energy;
 mod gradient;
+mod hard;
 mod missed;
 mod reversal;
 mod sampling;

@@ -25,6 +25,8 @@ pub(super) struct Yielding<'a, D, L> {
     direction: Direction,
     /// Whether nothing moves and nothing will under the present piece of force.
     at_rest: bool,
+    /// Rounding (m/s²) of the acceleration with which the motion begins, if it begins at zero relative velocity.
+    noise: Option<f64>,
     time: D,
     state: State<D>,
     budget: usize,
@@ -49,6 +51,7 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
             regime: Regime::ALL_HOLD,
             direction: Direction::Positive,
             at_rest: false,
+            noise: None,
             time: D::from(0.0),
             state: scenario.initial(),
             budget: SEARCH_BUDGET,
@@ -109,7 +112,7 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
 
     /// Decides where the contact goes from here; at zero relative velocity all elements hold again.
     fn turn(&mut self, piece: &Piece<D>) {
-        self.at_rest = false;
+        (self.at_rest, self.noise) = (false, None);
         let relative = self.state.velocity.value() - self.belt.value();
         if relative != 0.0 {
             self.direction = Direction::of(relative);
@@ -134,6 +137,7 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
             now.slope.value().abs() + parts[2] + waves(1),
             waves(2),
         ];
+        self.noise = Some(ROUNDING * sizes[0] / self.scenario.oscillator().mass().value());
         let decides = |(value, size): &(f64, f64)| value.abs() > ROUNDING * size;
         match candidates.into_iter().zip(sizes).find(decides) {
             Some((value, _)) => self.direction = Direction::of(value),
@@ -199,7 +203,12 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
             }
             for (guard, curve) in guards {
                 let span = found.as_ref().map_or(limit - begin, |(_, elapsed, _)| *elapsed);
-                if let Some(elapsed) = first_zero(&curve.plain(&plain), span, &mut self.budget)? {
+                let plain_curve = curve.plain(&plain);
+                let plain_curve = match (guard, self.noise) {
+                    (Guard::RelativeRest, Some(noise)) => plain_curve.risen_from_zero(noise),
+                    _ => plain_curve,
+                };
+                if let Some(elapsed) = first_zero(&plain_curve, span, &mut self.budget)? {
                     // The earlier guard stays where two act at once.
                     if found.as_ref().is_none_or(|(_, earlier, _)| elapsed < *earlier) {
                         found = Some((guard, elapsed, curve));
@@ -219,7 +228,7 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
         let next = path.state(time - self.time);
         let moved = self.moved(next.position, time);
         self.deflections = moved;
-        (self.time, self.state) = (time, next);
+        (self.time, self.state, self.noise) = (time, next, None);
         Ok(event)
     }
 

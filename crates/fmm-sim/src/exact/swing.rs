@@ -5,7 +5,7 @@ use fmm_model::{Oscillator, Scalar};
 
 use super::powers::Powers;
 use super::response::respond;
-use crate::automaton::{Branch, Branches, Ended, Ending, Phase, Slide, crossing};
+use crate::automaton::{Branch, Branches, Ended, Ending, Phase, Slide, crossing, load, rounding};
 use crate::curve::Curve;
 use crate::decay::Decay;
 use crate::drive::Drive;
@@ -126,6 +126,11 @@ impl<'a, D: Scalar> Swing<'a, D> {
         let sign = phase.direction.sign();
         let velocity = position.derivative();
         let begin = phase.time.value();
+        // What starts at rest relative to the counterface, or on a branch that begins where another ends, starts from
+        // zero exactly: which way it goes, the automaton has decided.
+        let from_rest = phase.state.velocity.value() == self.belt.value();
+        let load = load(self.oscillator, phase.piece, phase.time, phase.state);
+        let noise = rounding(self.oscillator, &load, phase.time, phase.state) / self.oscillator.mass().value();
         let speed = || (Ending::RelativeRest, velocity.clone().scaled(D::from(sign), self.belt * -sign));
         let gain = |sign: f64| (Ending::SteadySpeed, velocity.derivative().scaled(D::from(sign), D::from(0.0)));
         let guards = match phase.branch {
@@ -136,7 +141,13 @@ impl<'a, D: Scalar> Swing<'a, D> {
         let mut found: Option<(Ending, f64, Curve<D>)> = None;
         for (ending, guard) in guards {
             let span = found.as_ref().map_or(phase.limit - begin, |(_, elapsed, _)| *elapsed);
-            if let Some(elapsed) = first_zero(&guard.plain(plain), span, &mut self.budget)? {
+            let mut plain_guard = guard.plain(plain);
+            if ending == Ending::RelativeRest && from_rest {
+                plain_guard = plain_guard.risen_from_zero(noise);
+            } else if ending == Ending::SteadySpeed && plain_guard.now().abs() <= noise {
+                plain_guard = plain_guard.risen_from_zero(noise * plain.fastest());
+            }
+            if let Some(elapsed) = first_zero(&plain_guard, span, &mut self.budget)? {
                 found = Some((ending, elapsed, guard));
             }
         }

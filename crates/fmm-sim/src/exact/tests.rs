@@ -1,11 +1,11 @@
 use std::f64::consts::PI;
 
-use fmm_friction::{Coulomb, CoulombStatic, Viscous};
+use fmm_friction::{AccelerationCoulomb, Coulomb, CoulombStatic, CoulombViscous, Viscous};
 use fmm_model::{Damping, Oscillator};
 
 use super::*;
 use crate::recorder::EVENT_BUDGET;
-use crate::{Direction, Event, EventKind, Mode};
+use crate::{Direction, Event, EventKind, Excitation, Mode};
 
 /// 1 kg on 2 N/m: with forces that are powers of two all centres and turning points of an undamped motion are exact.
 fn machine(damping: f64) -> Oscillator {
@@ -137,4 +137,44 @@ fn what_cannot_be_simulated_is_refused() {
     assert!(matches!(error, SimulationError::NotFinite { .. }), "{error}");
     let error = run(machine(0.0), coulomb(1e200), 1e200, (1.0, 0.0)).unwrap_err();
     assert!(matches!(error, SimulationError::NotFinite { .. }), "{error}");
+}
+
+/// A machine with a damper a billion times too strong: what rounding leaves of an acceleration that should vanish outlives
+/// the beginning of a slip, and once turned it round for ever. Without inertia the velocity is (f − F)/c, and the contact
+/// rests while |f| < F: it stops and lets go where the force crosses the level, within the delay m/c = 0.56 µs.
+#[test]
+fn a_damper_that_hides_inertia_leaves_the_events_of_the_force() {
+    let damping = Damping::linear(30_968_428.776).unwrap();
+    let machine = Oscillator::new(17.400_316, 104.571_22).unwrap().with_damping(damping);
+    let (level, amplitude, angular, phase) = (2.305_094_1e-5 * 33.531_225, 7.618_859_9e-6, 8.658_777_9, 1.364_145);
+    let scenario = Scenario::new(machine, CoulombViscous::new(2.305_094_1e-5, 0.0).unwrap(), 33.531_225)
+        .unwrap()
+        .driven_by(Excitation::base(-amplitude, angular, phase).unwrap());
+    let motion = Exact.run(&scenario, &Sampling::uniform(0.01, 409).unwrap()).unwrap();
+    let peak = 17.400_316 * amplitude * angular * angular;
+    let events = &motion.events()[1..];
+    assert!(events.len() >= 20, "{} events", events.len());
+    for event in events {
+        let force = -peak * (angular * event.time + phase).cos() - 104.571_22 * event.position;
+        let expected = if event.next == Mode::Stick { EventKind::Stop } else { EventKind::Breakaway };
+        assert_eq!(event.kind, expected, "at {} s", event.time);
+        // peak · angular · m/c of the force goes by in the delay.
+        assert!((force.abs() - level).abs() < 1e-4 * level, "{force} N at {} s", event.time);
+    }
+}
+
+/// A contact whose friction is higher while it slows down starts and stops again and again under a load that falls to the
+/// level of growing speed. At ten million seconds the last starts are nearer to that time than the numbers of a clock are to
+/// each other, and must not be.
+#[test]
+fn starts_and_stops_end_when_the_load_has_fallen() {
+    let damping = Damping::linear(2.853_2).unwrap();
+    let machine = Oscillator::new(1.128_76, 0.106_73).unwrap().with_damping(damping);
+    let law = AccelerationCoulomb::new(2.657_7e-5, 4.9e-3).unwrap();
+    let pulse = Excitation::half_sine(1.87, 400.0).unwrap().delayed(1e7).unwrap();
+    let scenario = Scenario::new(machine, law, 327.477).unwrap().driven_by(pulse);
+    let motion = Exact.run(&scenario, &Sampling::uniform(100_005.0, 101).unwrap()).unwrap();
+    let (first, last) = (motion.events()[1], motion.events().last().unwrap());
+    assert_eq!(first.kind, EventKind::Breakaway);
+    assert!(last.time > 1e7 + 400.0 && motion.events().len() < 2000, "{} events, {last:?}", motion.events().len());
 }
