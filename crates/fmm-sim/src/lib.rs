@@ -59,6 +59,7 @@ mod scenario;
 mod simulated;
 mod thesis;
 mod trajectory;
+mod widest;
 mod work;
 
 pub use bristle::Bristle;

@@ -154,16 +154,13 @@ impl Sampling {
     pub(crate) fn index_at_or_after(&self, time: f64) -> usize {
         match &self.grid {
             Grid::Uniform { interval } => {
-                // The quotient is cut and may be off by one ulp; comparisons with the sample times themselves decide.
-                let estimate = time / interval - self.first as f64;
-                let mut index = if estimate > 0.0 { (estimate as usize).saturating_add(1).min(self.count) } else { 0 };
-                while index > 0 && self.time(index - 1) >= time {
-                    index -= 1;
-                }
-                while index < self.count && self.time(index) < time {
-                    index += 1;
-                }
-                index
+                // The quotient is cut and may be off by one ulp; comparisons with the sample times themselves decide, without
+                // a branch, as which way they go is as good as random.
+                let (first, end) = (self.first as i64, (self.first + self.count) as i64);
+                let guess = ((time / interval) as i64).clamp(first, end);
+                let is_before = |index: i64| i64::from(index as f64 * interval < time);
+                let index = guess - 1 + is_before(guess - 1) + is_before(guess) + is_before(guess + 1);
+                (index.clamp(first, end) - first) as usize
             }
             Grid::Times(times) => times[self.first..self.first + self.count].partition_point(|&t| t < time),
         }

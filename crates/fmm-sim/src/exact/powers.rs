@@ -4,6 +4,7 @@ use fmm_model::Scalar;
 
 use crate::decay::Decay;
 use crate::recorder::Recorder;
+use crate::widest::widest;
 use crate::{Samples, Sampling, State};
 
 /// zʲ = exp((−a + iω)Δt)ʲ for j from 0 on, real and imaginary parts apart.
@@ -94,6 +95,22 @@ impl Powers {
 
     /// Writes e^(−aτ) (`cosine` cos ωτ + `sine` sin ωτ) + `offset` at τ = 0, Δt, 2Δt, … into `range`.
     fn write_wave<D: Scalar>(
+        &self,
+        samples: &mut Samples<D>,
+        range: std::ops::Range<usize>,
+        wave: &Wave<D>,
+        offset: D,
+        cosine: D,
+        sine: D,
+    ) {
+        widest(
+            #[inline(always)]
+            || self.write_wave_here(samples, range, wave, offset, cosine, sine),
+        );
+    }
+
+    #[inline(always)]
+    fn write_wave_here<D: Scalar>(
         &self,
         samples: &mut Samples<D>,
         range: std::ops::Range<usize>,
