@@ -151,6 +151,7 @@ impl Sampling {
     }
 
     /// Index of the first sample at or after `time`, at most [`count`](Self::count).
+    #[expect(clippy::cast_possible_wrap, reason = "no memory holds 2⁶³ samples")]
     pub(crate) fn index_at_or_after(&self, time: f64) -> usize {
         match &self.grid {
             Grid::Uniform { interval } => {

@@ -109,6 +109,7 @@ impl Powers {
         );
     }
 
+    #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
     #[inline(always)]
     fn write_wave_here<D: Scalar>(
         &self,
