@@ -28,8 +28,8 @@ pub(crate) use step::Within;
 /// Samples come from the interpolant of order 7. The steps do not depend on them, so that more samples change nothing.
 ///
 /// `tolerance` bounds the local error of a step relative to the amplitude of the motion. At a dual number derivatives include
-/// the change of event times, and their own local error is held below the two thirds' power of the tolerance, relative to
-/// the largest so far; where that shortens steps, the motion differs from that of plain numbers within the tolerance. Two laws
+/// the change of event times, and their own local error is held below the square root of the tolerance, relative to the
+/// largest so far; where that shortens steps, the motion differs from that of plain numbers within the tolerance. Two laws
 /// defeat it: powers of the speed below one half, whose slope at rest is infinite (1e-4 off has been seen), and
 /// [`Karnopp`](fmm_friction::Karnopp), whose jump is no event while the speed grows (about 1 %).
 ///
@@ -118,7 +118,7 @@ mod tests {
             for (i, slope) in exact.iter().enumerate() {
                 let expected = (far_below[i] - far_above[i] + 8.0 * (above[i] - below[i])) / width;
                 let error = (slope - expected).abs() / largest;
-                assert!(error < 3e-8, "direction {direction}, sample {i}: {slope}, not {expected}: {error:e} off");
+                assert!(error < 3e-7, "direction {direction}, sample {i}: {slope}, not {expected}: {error:e} off");
             }
         }
     }

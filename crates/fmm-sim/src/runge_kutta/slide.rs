@@ -116,9 +116,9 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         State { position: velocity / self.angular, velocity }
     }
 
-    /// The error of `step` as a multiple of what is allowed. Its partial derivatives are allowed that of the two thirds'
-    /// power of the tolerance, relative to the largest so far, so that they shorten steps only where the law is much more
-    /// curved than the motion.
+    /// The error of `step` as a multiple of what is allowed. Its partial derivatives are allowed the square root
+    /// of the tolerance, relative to the largest so far, so that they shorten steps only where the law is much more curved
+    /// than the motion.
     fn error(&mut self, step: &Step<D>, scale: State<f64>) -> f64 {
         let error = step.error(scale) / self.tolerance;
         // Where a law has an infinite slope its derivatives would shorten steps without end.
@@ -127,14 +127,15 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         }
         for (direction, most) in self.partials.iter_mut().enumerate() {
             let partial = |number: D| number.partial(direction).abs();
-            *most = most.max(partial(step.end.velocity)).max(self.angular * partial(step.end.position));
+            let change = partial(step.last_acceleration()) / self.angular;
+            *most = most.max(partial(step.end.velocity) + self.angular * partial(step.end.position) + change);
         }
         let angular = self.angular;
         let scale = |direction: usize| {
             let velocity = self.partials[direction].max(f64::MIN_POSITIVE);
             State { position: velocity / angular, velocity }
         };
-        error.max(step.error_of_partials(scale) / self.tolerance.cbrt().powi(2))
+        error.max(step.error_of_partials(scale) / self.tolerance.sqrt())
     }
 
     /// The speed less that at which the contact is caught.
