@@ -5,6 +5,7 @@ mod document;
 mod identifiability;
 mod measurement;
 mod own_law;
+mod pendulum;
 mod real_records;
 mod simulate;
 mod synthetic;

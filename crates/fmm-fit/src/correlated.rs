@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::block::Structure;
 use crate::{EvaluationError, Fit, Residuals};
 
 /// Covariance of the estimates of a fit whose residuals are correlated with their neighbours.
@@ -39,11 +40,13 @@ impl CorrelatedCovariance {
         series: &[Range<usize>],
     ) -> Result<Option<Self>, EvaluationError> {
         let (rows, count) = (problem.len(), fit.values().len());
-        let mut jacobian = vec![0.0; rows * count];
+        let structure = Structure::of(problem)?;
+        let mut jacobian = vec![0.0; structure.len()];
         if span == 0 || !problem.jacobian(fit.values(), &mut jacobian)? {
             return Ok(None);
         }
-        let score = |i: usize, j: usize| jacobian[j * rows + i] * fit.residuals()[i];
+        let derivatives = structure.by_row(count);
+        let score = |i: usize, j: usize| derivatives.element(&jacobian, i, j) * fit.residuals()[i];
         let mut middle = vec![0.0; count * count];
         let mut windows = 0usize;
         for range in series.iter().filter(|range| range.len() >= span && range.end <= rows) {

@@ -59,6 +59,24 @@ pub enum FitError {
         /// Number of parameters that are not fixed.
         free: usize,
     },
+    /// A block names a parameter that does not exist, or one twice.
+    #[error("block {block} names parameter {index}; it may name each of the {parameters} parameters once")]
+    InvalidBlock {
+        /// Index of the block, from 0.
+        block: usize,
+        /// The index that it names, from 0.
+        index: usize,
+        /// Number of parameters.
+        parameters: usize,
+    },
+    /// The blocks do not cover the residuals.
+    #[error("the blocks have {rows} residuals together, but the problem has {residuals}")]
+    BlockRows {
+        /// Sum of the residuals of all blocks.
+        rows: usize,
+        /// Number of residuals.
+        residuals: usize,
+    },
     /// The model failed at the start.
     #[error("the model failed at the start: {0}")]
     ModelFailed(#[source] Box<dyn Error + Send + Sync>),
@@ -69,6 +87,22 @@ pub enum FitError {
         option: &'static str,
         /// What it may be.
         expected: &'static str,
+        /// The value given.
+        value: f64,
+    },
+    /// There is not one standard uncertainty per residual.
+    #[error("{uncertainties} standard uncertainties were given for {residuals} residuals; give one for each")]
+    UncertaintyCount {
+        /// Number of uncertainties given.
+        uncertainties: usize,
+        /// Number of residuals.
+        residuals: usize,
+    },
+    /// A standard uncertainty cannot be divided by.
+    #[error("the standard uncertainty of residual {index} must be positive and finite, but is {value}")]
+    BadUncertainty {
+        /// Index of the residual, from 0.
+        index: usize,
         /// The value given.
         value: f64,
     },

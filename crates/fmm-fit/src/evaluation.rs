@@ -1,7 +1,9 @@
 //! Asking the problem for residuals and derivatives, by differences where it has none.
 
-use crate::Residuals;
+use crate::block::{Scratch, Structure};
+use crate::non_finite::worst;
 use crate::triangle::{Triangle, dot};
+use crate::{EvaluationError, FitError, NonFinite, Residuals};
 
 /// Where the derivatives come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -26,9 +28,18 @@ impl Scheme {
         })
     }
 
+    /// As [`relative_step`](Self::relative_step), for central differences of derivatives that come by this scheme.
+    pub(crate) fn relative_step_of_derivatives(self) -> f64 {
+        match self {
+            Self::Exact => f64::EPSILON.cbrt(),
+            // The error of central differences, 1e-10, in the place of rounding.
+            Self::Forward | Self::Central => 1e-10f64.cbrt(),
+        }
+    }
+
     /// The relative step that balances truncation against rounding.
     fn relative_step(self) -> f64 {
-        if self == Self::Central { f64::EPSILON.cbrt() } else { f64::EPSILON.sqrt() }
+        if self == Self::Forward { f64::EPSILON.sqrt() } else { f64::EPSILON.cbrt() }
     }
 }
 
@@ -42,41 +53,73 @@ pub(crate) struct Point {
     pub(crate) triangle: Triangle,
 }
 
+/// A problem about some values of its parameters.
+#[derive(Debug)]
+pub(crate) struct Linearised {
+    pub(crate) residuals: Vec<f64>,
+    pub(crate) structure: Structure,
+    pub(crate) jacobian: Vec<f64>,
+    pub(crate) scheme: Scheme,
+}
+
 /// Counts, buffers and the choice of derivatives during a fit.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Evaluator {
     pub(crate) scheme: Scheme,
     /// Indices of the parameters that are not fixed.
     pub(crate) free: Vec<usize>,
+    /// Those of them whose columns a problem with derivatives does not fill.
+    pub(crate) unfilled: Vec<usize>,
+    /// Where the elements of the Jacobian are.
+    pub(crate) structure: Structure,
     pub(crate) lower: Vec<f64>,
     pub(crate) upper: Vec<f64>,
     pub(crate) residual_evaluations: usize,
     pub(crate) jacobian_evaluations: usize,
     /// What the model said when it last failed at a trial point.
     pub(crate) model_error: Option<String>,
+    /// What was last not finite.
+    pub(crate) non_finite: Option<NonFinite>,
     /// The magnitude below which a value counts as zero in the choice of a difference step.
     floor: Vec<f64>,
     jacobian: Vec<f64>,
     is_jacobian_current: bool,
     probe: Vec<f64>,
     scratch: Vec<f64>,
-    block: Vec<f64>,
+    factoring: Scratch,
+    /// Whether the problem has told that it gives blocks only all together.
+    is_indivisible: bool,
+    /// Residuals of blocks evaluated alone, not yet enough for an evaluation of all.
+    evaluated_rows: usize,
 }
 
 impl Evaluator {
-    /// Prepares for `residuals` residuals of parameters within `bounds`, beginning at `start`.
-    pub(crate) fn begin(&mut self, residuals: usize, bounds: impl Iterator<Item = (f64, f64)>, start: &[f64]) {
+    /// Prepares for `problem` with its parameters within `bounds`, beginning at `start`.
+    ///
+    /// # Errors
+    /// [`FitError`] if the blocks of the problem do not fit it.
+    pub(crate) fn begin<P: Residuals + ?Sized>(
+        &mut self,
+        problem: &P,
+        bounds: impl Iterator<Item = (f64, f64)>,
+        start: &[f64],
+    ) -> Result<(), FitError> {
+        self.structure = Structure::of(problem)?;
         (self.lower, self.upper) = bounds.unzip();
         self.free.clear();
         self.free.extend((0..start.len()).filter(|&j| self.lower[j] < self.upper[j]));
+        self.unfilled.clear();
         self.scheme = Scheme::Exact;
-        (self.residual_evaluations, self.jacobian_evaluations) = (0, 0);
+        (self.residual_evaluations, self.jacobian_evaluations, self.evaluated_rows) = (0, 0, 0);
         self.model_error = None;
+        self.non_finite = None;
         self.is_jacobian_current = false;
-        self.jacobian.resize(if self.free.is_empty() { 0 } else { residuals * start.len() }, 0.0);
+        self.is_indivisible = false;
+        self.jacobian.resize(if self.free.is_empty() { 0 } else { self.structure.len() }, 0.0);
         self.floor.clear();
         self.floor.resize(start.len(), 0.0);
         self.remember_magnitudes(start);
+        Ok(())
     }
 
     /// Keeps the largest magnitude of each value in mind, so that a value passing through zero has a sensible
@@ -102,17 +145,38 @@ impl Evaluator {
         match result {
             Ok(is_jacobian_current) => self.is_jacobian_current = is_jacobian_current,
             Err(error) => {
-                self.model_error = Some(error.to_string());
+                self.remember_model_error(error.to_string());
                 point.sum_of_squares = f64::NAN;
                 return false;
             }
         }
         point.sum_of_squares = dot(&point.residuals, &point.residuals);
-        point.sum_of_squares.is_finite()
+        let is_finite = point.sum_of_squares.is_finite();
+        if !is_finite {
+            let (index, value) = worst(&point.residuals);
+            self.non_finite = Some(NonFinite::Residual { index, value });
+        }
+        is_finite
     }
 
     /// Evaluates the Jacobian at a point that has its residuals, and factors it; false if it is not finite.
     pub(crate) fn factor<P: Residuals + ?Sized>(&mut self, problem: &P, point: &mut Point) -> bool {
+        if !self.differentiate(problem, point) {
+            return false;
+        }
+        let Self { structure, jacobian, free, factoring, .. } = self;
+        structure.factor(jacobian, free, &point.residuals, &mut point.triangle, factoring);
+        let is_finite = point.triangle.is_finite();
+        if !is_finite {
+            let column = self.first_bad_column().unwrap_or(self.free[0]);
+            let parameter = problem.parameters()[column].name().to_owned();
+            self.non_finite = Some(NonFinite::Derivative { parameter });
+        }
+        is_finite
+    }
+
+    /// Evaluates the Jacobian at a point that has its residuals; false if the model fails there.
+    pub(crate) fn differentiate<P: Residuals + ?Sized>(&mut self, problem: &P, point: &Point) -> bool {
         if !self.is_jacobian_current && self.scheme == Scheme::Exact {
             self.jacobian_evaluations += 1;
             match problem.jacobian(&point.values, &mut self.jacobian) {
@@ -122,100 +186,184 @@ impl Evaluator {
                     self.scheme = Scheme::Forward;
                 }
                 Err(error) => {
-                    self.model_error = Some(error.to_string());
+                    self.remember_model_error(error.to_string());
                     return false;
                 }
             }
         }
         self.is_jacobian_current = false;
-        if self.scheme != Scheme::Exact {
+        let count = if self.scheme == Scheme::Exact { self.unfilled.len() } else { self.free.len() };
+        if count > 0 {
             self.scratch.resize(point.residuals.len(), 0.0);
             self.probe.clone_from(&point.values);
-            for index in 0..self.free.len() {
-                self.difference(problem, point, self.free[index]);
-            }
         }
-        point.triangle.factor(&self.jacobian, &self.free, &point.residuals, &mut self.block);
-        point.triangle.is_finite()
+        for index in 0..count {
+            let j = if self.scheme == Scheme::Exact { self.unfilled[index] } else { self.free[index] };
+            self.difference(problem, point, j);
+        }
+        true
+    }
+
+    fn remember_model_error(&mut self, error: String) {
+        self.non_finite = Some(NonFinite::Model(error.clone()));
+        self.model_error = Some(error);
+    }
+
+    /// Residuals and derivatives of `problem` at `values`, by central differences if it has none of its own; none if they
+    /// are not finite. The columns of fixed parameters are meaningless.
+    pub(crate) fn linearise<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Option<Linearised> {
+        let mut evaluator = Self::default();
+        let bounds =
+            problem.parameters().iter().map(|parameter| (parameter.bounds().lower(), parameter.bounds().upper()));
+        evaluator.begin(problem, bounds, values).ok()?;
+        let mut point = Point { values: values.to_vec(), ..Point::default() };
+        let mut is_finite = evaluator.residuals(problem, &mut point) && evaluator.factor(problem, &mut point);
+        if evaluator.scheme == Scheme::Forward {
+            evaluator.scheme = Scheme::Central;
+            is_finite = evaluator.factor(problem, &mut point);
+        }
+        let Self { structure, jacobian, scheme, .. } = evaluator;
+        is_finite.then_some(Linearised { residuals: point.residuals, structure, jacobian, scheme })
+    }
+
+    /// Σᵢ aᵢ ∂rᵢ/∂θ for one parameter, with the Jacobian last evaluated.
+    pub(crate) fn product(&self, parameter: usize, a: &[f64]) -> f64 {
+        self.structure.product(&self.jacobian, parameter, a)
+    }
+
+    /// How many numbers the buffers that grow with the problem have room for.
+    #[cfg(test)]
+    pub(crate) fn buffered(&self) -> usize {
+        self.jacobian.capacity() + self.scratch.capacity() + self.factoring.block.capacity()
     }
 
     /// The first free parameter whose column of the Jacobian is not finite.
-    pub(crate) fn first_bad_column(&self, residuals: usize) -> Option<usize> {
-        let norm = |j: usize| {
-            let column = &self.jacobian[j * residuals..(j + 1) * residuals];
-            dot(column, column)
-        };
-        self.free.iter().copied().find(|&j| !norm(j).is_finite())
+    pub(crate) fn first_bad_column(&self) -> Option<usize> {
+        self.free.iter().copied().find(|&j| !self.structure.square(&self.jacobian, j).is_finite())
+    }
+
+    /// What a step of parameter `j` from `value` is measured by.
+    pub(crate) fn magnitude(&self, value: f64, j: usize) -> f64 {
+        let width = self.upper[j] - self.lower[j];
+        let magnitude = value.abs().max(self.floor[j]);
+        match (magnitude > 0.0, width.is_finite()) {
+            (true, _) => magnitude,
+            (false, true) => 1e-3 * width,
+            (false, false) => 1.0,
+        }
     }
 
     /// Fills column `j` by differences that stay inside the bounds and, if possible, where the model is finite.
     fn difference<P: Residuals + ?Sized>(&mut self, problem: &P, point: &Point, j: usize) {
         let value = point.values[j];
         let (below, above) = (value - self.lower[j], self.upper[j] - value);
-        let width = below + above;
-        let magnitude = value.abs().max(self.floor[j]);
-        let magnitude = match (magnitude > 0.0, width.is_finite()) {
-            (true, _) => magnitude,
-            (false, true) => 1e-3 * width,
-            (false, false) => 1.0,
-        };
+        let magnitude = self.magnitude(value, j);
+        let is_central = self.scheme != Scheme::Forward;
         let step = self.scheme.relative_step() * magnitude;
-        let reach = if self.scheme == Scheme::Central { 2.0 * step } else { step };
-        let found = (self.scheme == Scheme::Central
-            && step <= below.min(above)
-            && self.slope(problem, point, j, [value + step, value - step]))
-            || (above >= below.min(reach) && self.one_sided(problem, point, j, reach.min(above)))
-            || (below > 0.0 && self.one_sided(problem, point, j, -reach.min(below)))
-            || (above > 0.0 && self.one_sided(problem, point, j, reach.min(above)));
+        let reach = if is_central { 2.0 * step } else { step };
+        let found =
+            (is_central && step <= below.min(above) && self.slope(problem, point, j, [value + step, value - step]))
+                || (above >= below.min(reach) && self.one_sided(problem, point, j, reach.min(above)))
+                || (below > 0.0 && self.one_sided(problem, point, j, -reach.min(below)))
+                || (above > 0.0 && self.one_sided(problem, point, j, reach.min(above)));
         if !found {
-            self.jacobian[j * point.residuals.len()..][..point.residuals.len()].fill(f64::NAN);
+            for column in self.structure.columns_of(j) {
+                self.jacobian[column.elements].fill(f64::NAN);
+            }
         }
         self.probe[j] = value;
     }
 
     fn one_sided<P: Residuals + ?Sized>(&mut self, problem: &P, point: &Point, j: usize, reach: f64) -> bool {
         let value = point.values[j];
-        let near = if self.scheme == Scheme::Central { value + 0.5 * reach } else { value };
+        let near = if self.scheme == Scheme::Forward { value } else { value + 0.5 * reach };
         self.slope(problem, point, j, [value + reach, near])
     }
 
     /// The derivative at `point` of the parabola through the residuals there and at two other values of parameter
-    /// `j`; of the line through two points if one of the values is that of `point`.
-    ///
-    /// ```text
-    /// r′ = (a² (r_b − r) − b² (r_a − r)) / (a b (a − b)),   distances a, b
-    /// ```
-    ///
-    /// For a = −b this is the central difference. False if the residuals are not finite at the two values.
+    /// `j`; of the line through two points if one of the values is that of `point`. False if the residuals are not finite
+    /// at the two values.
     fn slope<P: Residuals + ?Sized>(&mut self, problem: &P, point: &Point, j: usize, at: [f64; 2]) -> bool {
-        let n = point.residuals.len();
         let [first, second] = at.map(|target| target.max(self.lower[j]).min(self.upper[j]));
         let value = point.values[j];
         // Differences of the values as they are stored, not as they were wished.
         let (a, b) = (first - value, second - value);
         self.probe[j] = first;
-        let column = &mut self.jacobian[j * n..(j + 1) * n];
-        self.residual_evaluations += 1;
-        if a == 0.0 || a == b || problem.residuals(&self.probe, column).is_err() {
+        if a == 0.0 || a == b || self.probe_columns(problem, j).is_err() {
             return false;
         }
-        if b == 0.0 {
-            for (c, r) in column.iter_mut().zip(&point.residuals) {
-                *c = (*c - r) / a;
-            }
-        } else {
+        if b != 0.0 {
             self.probe[j] = second;
-            self.residual_evaluations += 1;
-            if problem.residuals(&self.probe, &mut self.scratch).is_err() {
+            if self.probe_scratch(problem, j).is_err() {
                 return false;
             }
-            let (weight_a, weight_b) = (-b / (a * (a - b)), a / (b * (a - b)));
-            for ((c, s), r) in column.iter_mut().zip(&self.scratch).zip(&point.residuals) {
-                *c = weight_a * (*c - r) + weight_b * (s - r);
+        }
+        let mut square = 0.0;
+        for column in self.structure.columns_of(j) {
+            let elements = &mut self.jacobian[column.elements];
+            let residuals = &point.residuals[column.rows.clone()];
+            if b == 0.0 {
+                for (c, r) in elements.iter_mut().zip(residuals) {
+                    *c = (*c - r) / a;
+                }
+            } else {
+                let (weight_a, weight_b) = parabola(a, b);
+                for ((c, s), r) in elements.iter_mut().zip(&self.scratch[column.rows]).zip(residuals) {
+                    *c = weight_a * (*c - r) + weight_b * (s - r);
+                }
+            }
+            square += dot(elements, elements);
+        }
+        square.is_finite()
+    }
+
+    /// Writes the residuals at `probe` to the columns of parameter `j`.
+    fn probe_columns<P: Residuals + ?Sized>(&mut self, problem: &P, j: usize) -> Result<(), EvaluationError> {
+        if self.structure.is_dense() {
+            self.residual_evaluations += 1;
+            let rows = self.scratch.len();
+            return problem.residuals(&self.probe, &mut self.jacobian[j * rows..(j + 1) * rows]);
+        }
+        self.probe_scratch(problem, j)?;
+        for column in self.structure.columns_of(j) {
+            self.jacobian[column.elements].copy_from_slice(&self.scratch[column.rows]);
+        }
+        Ok(())
+    }
+
+    /// Writes the residuals at `probe` that depend on parameter `j` to their places in `scratch`.
+    fn probe_scratch<P: Residuals + ?Sized>(&mut self, problem: &P, j: usize) -> Result<(), EvaluationError> {
+        if !self.structure.is_dense() && !self.is_indivisible {
+            for column in self.structure.columns_of(j) {
+                // Blocks count by their share of the residuals.
+                self.evaluated_rows += column.rows.len();
+                if !problem.block_residuals(column.block, &self.probe, &mut self.scratch[column.rows])? {
+                    self.is_indivisible = true;
+                    self.evaluated_rows = 0;
+                    break;
+                }
+            }
+            let all = self.scratch.len().max(1);
+            self.residual_evaluations += self.evaluated_rows / all;
+            self.evaluated_rows %= all;
+            if !self.is_indivisible {
+                return Ok(());
             }
         }
-        dot(column, column).is_finite()
+        self.residual_evaluations += 1;
+        problem.residuals(&self.probe, &mut self.scratch)
     }
+}
+
+/// The weights of `f_a − f` and `f_b − f` in the derivative of the parabola through `f` and two neighbours.
+///
+/// ```text
+/// f′ = (a² (f_b − f) − b² (f_a − f)) / (a b (a − b)),   distances a, b
+/// ```
+///
+/// For a = −b this is the central difference.
+pub(crate) fn parabola(a: f64, b: f64) -> (f64, f64) {
+    (-b / (a * (a - b)), a / (b * (a - b)))
 }
 
 #[cfg(test)]
@@ -252,7 +400,7 @@ mod tests {
         let parameter = Parameter::new("rate", "b", "1/s").bounded(Bounds::new(bounds.0, bounds.1).unwrap());
         let problem = Exponential { parameters: [parameter], edge, asked: RefCell::default() };
         let mut evaluator = Evaluator::default();
-        evaluator.begin(1, std::iter::once(bounds), &[value]);
+        evaluator.begin(&problem, std::iter::once(bounds), &[value]).unwrap();
         let mut point = Point { values: vec![value], ..Point::default() };
         assert!(evaluator.residuals(&problem, &mut point));
         evaluator.scheme = scheme;

@@ -8,7 +8,7 @@ use crate::minimizer::Minimizer;
 use crate::null_direction::{NullDirection, null_directions};
 use crate::spectrum::Spectrum;
 use crate::triangle::Triangle;
-use crate::{Outcome, evaluation::Scheme};
+use crate::{NonFinite, Outcome, evaluation::Scheme};
 
 /// The result of a fit: estimates, their uncertainty, and what the residuals could not tell.
 ///
@@ -48,6 +48,7 @@ pub struct Fit {
     jacobian_evaluations: usize,
     has_exact_jacobian: bool,
     model_error: Option<String>,
+    non_finite: Option<NonFinite>,
 }
 
 impl Fit {
@@ -104,6 +105,7 @@ impl Fit {
             jacobian_evaluations: minimizer.jacobian_evaluations(),
             has_exact_jacobian: minimizer.scheme() == Scheme::Exact,
             model_error: minimizer.model_error().map(str::to_owned),
+            non_finite: minimizer.non_finite().cloned(),
         };
         for j in 0..fit.estimates.len() {
             fit.estimates[j].standard_uncertainty = fit.covariance(j, j).map(f64::sqrt);
@@ -119,6 +121,10 @@ impl Fit {
     /// One estimate per parameter, in the order of the problem.
     pub fn estimates(&self) -> &[Estimate] {
         &self.estimates
+    }
+
+    pub(crate) fn estimates_mut(&mut self) -> &mut [Estimate] {
+        &mut self.estimates
     }
 
     /// The estimate of the parameter called `name`.
@@ -258,6 +264,12 @@ impl Fit {
     /// What the model said when it last failed at a trial point.
     pub fn model_error(&self) -> Option<&str> {
         self.model_error.as_deref()
+    }
+
+    /// What had no finite value at the last trial point that was given up for this; none if all had one. In a fit that
+    /// ended as [`Outcome::NonFinite`] it is what stood in the way.
+    pub fn non_finite(&self) -> Option<&NonFinite> {
+        self.non_finite.as_ref()
     }
 }
 

@@ -172,9 +172,7 @@ impl Minimizer {
         if self.attempt < self.options.restarts.min(RADIUS_FACTORS.len() - 1) {
             self.attempt += 1;
             self.current.values.clone_from(&self.start);
-            // Both were finite when the fit began.
-            self.evaluator.residuals(problem, &mut self.current);
-            self.evaluator.factor(problem, &mut self.current);
+            self.evaluate_again(problem);
             self.begin_search(problem);
         } else {
             let reason = self.return_to_best(problem).unwrap_or(reason);
@@ -191,10 +189,19 @@ impl Minimizer {
         let best = self.best.take().filter(|best| best.sum_of_squares <= self.current.sum_of_squares)?;
         if best.values != self.current.values {
             self.current.values = best.values;
-            self.evaluator.residuals(problem, &mut self.current);
-            self.evaluator.factor(problem, &mut self.current);
+            self.evaluate_again(problem);
         }
         Some(best.reason)
+    }
+
+    /// Residuals and derivatives at current values that had both before. If that was by the shorter steps of forward
+    /// differences and the longer ones leave what the model can do, the shorter ones come back.
+    fn evaluate_again<P: Residuals + ?Sized>(&mut self, problem: &P) {
+        self.evaluator.residuals(problem, &mut self.current);
+        if !self.evaluator.factor(problem, &mut self.current) && self.evaluator.scheme == Scheme::Central {
+            self.evaluator.scheme = Scheme::Forward;
+            self.evaluator.factor(problem, &mut self.current);
+        }
     }
 
     fn begin_polish<P: Residuals + ?Sized>(&mut self, problem: &P, reason: Outcome) {

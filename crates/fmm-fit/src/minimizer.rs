@@ -5,9 +5,10 @@ use std::time::Instant;
 use fmm_model::Parameter;
 
 use crate::evaluation::{Evaluator, Point, Scheme};
+use crate::non_finite::worst;
 use crate::triangle::Triangle;
 use crate::trust_region::TrustRegion;
-use crate::{Fit, FitError, Options, Outcome, Residuals};
+use crate::{Fit, FitError, NonFinite, Options, Outcome, Residuals};
 
 /// The solver without its trimmings: what a Monte Carlo calculation with many small fits calls, as it keeps its
 /// buffers from one fit to the next. [`solve`](crate::solve) is the short way to one fit.
@@ -179,6 +180,10 @@ impl Minimizer {
         self.evaluator.model_error.as_deref()
     }
 
+    pub(crate) fn non_finite(&self) -> Option<&NonFinite> {
+        self.evaluator.non_finite.as_ref()
+    }
+
     pub(crate) fn radius(&self) -> f64 {
         self.region.radius
     }
@@ -197,7 +202,7 @@ impl Minimizer {
         self.start.clear();
         self.start.extend_from_slice(start);
         let bounds = parameters.iter().map(|parameter| (parameter.bounds().lower(), parameter.bounds().upper()));
-        self.evaluator.begin(problem.len(), bounds, start);
+        self.evaluator.begin(problem, bounds, start)?;
         let free = self.evaluator.free.len();
         if problem.len() < free {
             return Err(FitError::TooFewResiduals { residuals: problem.len(), free });
@@ -222,24 +227,16 @@ impl Minimizer {
         if self.evaluator.model_error.is_some() {
             // Ask again for the error itself: a pure function fails in the same way.
             let mut residuals = vec![0.0; problem.len()];
-            let mut jacobian = vec![0.0; problem.len() * self.parameters.len()];
+            let mut jacobian = vec![0.0; self.evaluator.structure.len()];
             if let Err(error) = problem.residuals_and_jacobian(&self.start, &mut residuals, &mut jacobian) {
                 return FitError::ModelFailed(error.into_boxed());
             }
         }
-        if !self.current.sum_of_squares.is_finite() {
-            let size = |value: f64| if value.is_nan() { f64::INFINITY } else { value.abs() };
-            let worst = self
-                .current
-                .residuals
-                .iter()
-                .copied()
-                .enumerate()
-                .fold((0, 0.0), |worst, next| if size(next.1) > size(worst.1) { next } else { worst });
-            return FitError::ResidualNotFinite { index: worst.0, value: worst.1 };
+        if let Some(NonFinite::Derivative { parameter }) = &self.evaluator.non_finite {
+            return FitError::DerivativeNotFinite { parameter: parameter.clone() };
         }
-        let column = self.evaluator.first_bad_column(problem.len()).unwrap_or(self.evaluator.free[0]);
-        FitError::DerivativeNotFinite { parameter: self.parameters[column].name().to_owned() }
+        let (index, value) = worst(&self.current.residuals);
+        FitError::ResidualNotFinite { index, value }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::FitError;
 
@@ -128,6 +128,12 @@ impl Options {
 
     pub(crate) fn is_cancelled(&self) -> bool {
         self.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+
+    /// The same options for a fit that is one of several, the first of which began then.
+    pub(crate) fn remaining(&self, began: Instant) -> Self {
+        let time_limit = self.time_limit.map(|limit| limit.saturating_sub(began.elapsed()));
+        Self { time_limit, ..self.clone() }
     }
 
     pub(crate) fn validate(&self) -> Result<(), FitError> {

@@ -5,7 +5,7 @@ use std::fmt;
 use fmm_model::Rounded;
 
 use crate::null_direction::enumerate;
-use crate::{EstimateStatus, Fit};
+use crate::{EstimateStatus, Fit, Outcome};
 
 /// Correlations weaker than this are not worth a line.
 const NOTABLE_CORRELATION: f64 = 0.1;
@@ -108,6 +108,11 @@ impl Fit {
         writeln!(f, "[[warnings]]")?;
         if !self.outcome().is_success() {
             writeln!(f, "  the values are the best found, not those of a minimum: {}", self.outcome())?;
+        }
+        if self.outcome() == Outcome::NonFinite
+            && let Some(reason) = self.non_finite()
+        {
+            writeln!(f, "  what had no finite value beyond them: {reason}")?;
         }
         for direction in self.null_directions() {
             writeln!(f, "  {direction}")?;

@@ -5,6 +5,8 @@ use std::fmt;
 
 use fmm_model::Parameter;
 
+use crate::Block;
+
 /// A least-squares problem: residuals as a function of parameters, and their derivatives if they are known.
 ///
 /// ```text
@@ -15,19 +17,21 @@ use fmm_model::Parameter;
 ///
 /// 1. **Shapes.** `parameters().len()` and `len()` do not change during a fit. Every `p` has one value per
 ///    parameter, in that order and in the unit of the parameter; `residuals` gets `n` elements and fills them all;
-///    `jacobian` gets `n × p` elements, column after column: `∂rᵢ/∂θⱼ` belongs at `jacobian[j * n + i]`.
+///    `jacobian` gets `n × p` elements, column after column: `∂rᵢ/∂θⱼ` belongs at `jacobian[j * n + i]`. A problem
+///    of [`blocks`](Self::blocks) gets those of each block instead, block after block.
 /// 2. **A pure function.** Equal `p` give equal bits, whatever was asked before.
 /// 3. **Signed residuals**, model minus data or the reverse, divided by their standard uncertainty where this
-///    differs. Absolute values have a kink where the fit is best and spoil every derivative.
+///    differs, for which there is [`Weighted`](crate::Weighted). Absolute values have a kink where the fit is best and spoil every derivative.
 /// 4. **Non-finite values mean "no value here".** At a trial point the solver then goes less far; only at the
 ///    start are they an error. The same holds for an `Err`, whose message is kept.
 /// 5. **One answer about the Jacobian**: always `Ok(true)` with all columns filled, or always `Ok(false)`. The
-///    columns of fixed parameters are not read.
+///    columns of fixed parameters are read only if [`fills_fixed_columns`](Self::fills_fixed_columns) says so.
 ///
 /// It may rely on:
 ///
 /// 1. Every value lies inside the closed interval of its parameter, in finite differences too.
-/// 2. A parameter with equal bounds always has that value.
+/// 2. A parameter with equal bounds always has that value in a fit. Only [`Sensitivity`](crate::Sensitivity), which
+///    asks what the fixed values did to a fit, moves them a little.
 /// 3. One call at a time, from the thread that runs the fit.
 ///
 /// # Why it is like this
@@ -118,6 +122,32 @@ pub trait Residuals {
     fn is_cheaper_combined(&self) -> bool {
         false
     }
+
+    /// The blocks of residuals, in their order, with the parameters that each depends on; together they have all `n`
+    /// residuals. Empty, the default, means one block of all residuals and all parameters.
+    ///
+    /// The Jacobian then has only the elements of the blocks, block after block and within each column after column,
+    /// in the order of the block's parameters. A type that wraps a problem and hands on its Jacobian has to hand on
+    /// its blocks too.
+    fn blocks(&self) -> &[Block] {
+        &[]
+    }
+
+    /// The residuals of one of the [`blocks`](Self::blocks) at `p`, so that a difference by a parameter costs only the
+    /// blocks that it moves; `Ok(false)`, the default, if there is no way to get them without the others.
+    ///
+    /// # Errors
+    /// Whatever keeps the model from having a value at `p`.
+    fn block_residuals(&self, block: usize, p: &[f64], residuals: &mut [f64]) -> Result<bool, EvaluationError> {
+        let _ = (block, p, residuals);
+        Ok(false)
+    }
+
+    /// Whether [`jacobian`](Self::jacobian) fills the columns of fixed parameters as well. If not, the default,
+    /// [`Sensitivity`](crate::Sensitivity) takes differences by them.
+    fn fills_fixed_columns(&self) -> bool {
+        false
+    }
 }
 
 impl<T: Residuals + ?Sized> Residuals for &T {
@@ -143,6 +173,15 @@ impl<T: Residuals + ?Sized> Residuals for &T {
     }
     fn is_cheaper_combined(&self) -> bool {
         (**self).is_cheaper_combined()
+    }
+    fn blocks(&self) -> &[Block] {
+        (**self).blocks()
+    }
+    fn block_residuals(&self, block: usize, p: &[f64], residuals: &mut [f64]) -> Result<bool, EvaluationError> {
+        (**self).block_residuals(block, p, residuals)
+    }
+    fn fills_fixed_columns(&self) -> bool {
+        (**self).fills_fixed_columns()
     }
 }
 

@@ -9,8 +9,8 @@ use std::time::Duration;
 use argmin::core::observers::{Observe, ObserverMode};
 use argmin::core::{Executor, KV, State};
 use fmm_fit::{
-    BoundedLevenbergMarquardt, ComparisonError, EstimateStatus, EvaluationError, FitError, Minimizer, Options, Outcome,
-    Residuals, f_test, solve, solve_observed,
+    BoundedLevenbergMarquardt, ComparisonError, EstimateStatus, EvaluationError, FitError, Minimizer, NonFinite,
+    Options, Outcome, Residuals, f_test, solve, solve_observed,
 };
 use fmm_model::{Bounds, Parameter};
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -110,6 +110,76 @@ fn a_region_without_values_is_avoided() {
     let fit = solve(&cut, &[2.0], &Options::default()).unwrap();
     assert_eq!(fit.outcome(), Outcome::NonFinite);
     assert!((fit.values()[0] - 1.0).abs() < 1e-6, "value {}", fit.values()[0]);
+    assert!(matches!(fit.non_finite(), Some(NonFinite::Residual { index: 0, value }) if value.is_nan()));
+    assert!(fit.to_string().contains("what had no finite value beyond them: residual 0 is NaN"), "{fit}");
+}
+
+/// A decay whose derivative by the rate, or one of whose residuals, has no value beyond a rate of `edge`.
+struct Edged {
+    edge: f64,
+    is_derivative: bool,
+    is_combined: bool,
+    parameters: [Parameter; 2],
+}
+
+impl Residuals for Edged {
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+    fn len(&self) -> usize {
+        50
+    }
+    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        residuals.iter_mut().enumerate().for_each(|(i, r)| *r = decay(p, i));
+        if !self.is_derivative && p[1] > self.edge {
+            residuals[17] = f64::INFINITY;
+        }
+        Ok(())
+    }
+    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
+        for i in 0..50 {
+            let t = 0.1 * i as f64;
+            jacobian[i] = (-p[1] * t).exp();
+            jacobian[50 + i] = -t * p[0] * jacobian[i];
+        }
+        if self.is_derivative && p[1] > self.edge {
+            jacobian[50 + 17] = f64::NAN;
+        }
+        Ok(true)
+    }
+    fn is_cheaper_combined(&self) -> bool {
+        self.is_combined
+    }
+}
+
+#[test]
+fn what_is_not_finite_neither_ends_nor_spoils_a_fit_and_is_named_if_it_stays() {
+    for (is_derivative, is_combined) in [(false, false), (false, true), (true, false), (true, true)] {
+        let parameters = [Parameter::new("amplitude", "a", "1"), Parameter::new("rate", "b", "1/s")];
+        let mut problem = Edged { edge: 1.5, is_derivative, is_combined, parameters };
+        // The first full step leads beyond the edge.
+        let fit = solve(&problem, &[0.2, 1.4], &Options::default()).unwrap();
+        assert!(fit.outcome().is_success(), "{}", fit.outcome());
+        assert!((fit.values()[1] - 0.7).abs() < 0.02, "rate {}", fit.values()[1]);
+        assert!(fit.estimates().iter().all(|estimate| estimate.standard_uncertainty().unwrap() > 0.0));
+
+        // The minimum itself is beyond it.
+        problem.edge = 0.5;
+        let fit = solve(&problem, &[2.0, 0.3], &Options::default()).unwrap();
+        assert_eq!(fit.outcome(), Outcome::NonFinite);
+        assert!(fit.values()[1] <= 0.5 && fit.sum_of_squares().is_finite());
+        match fit.non_finite().unwrap() {
+            NonFinite::Residual { index, value } => assert!(!is_derivative && (*index, *value) == (17, f64::INFINITY)),
+            NonFinite::Derivative { parameter } => assert!(is_derivative && parameter == "rate"),
+            other => panic!("{other:?}"),
+        }
+        let (named, report) = (fit.non_finite().unwrap().to_string(), fit.to_string());
+        assert!(report.contains(&named), "{report}");
+
+        // At the start it is an error with the same name.
+        let error = solve(&problem, &[2.0, 0.6], &Options::default()).unwrap_err();
+        assert!(error.to_string().contains(if is_derivative { "by rate" } else { "residual 17 is inf" }), "{error}");
+    }
 }
 
 #[test]

@@ -26,8 +26,8 @@ law_family! {
     /// * μ₁ < μ₂: at a load between the two levels both motions are possible. The contact goes on as it did, and
     ///   changes level only when its own acceleration changes sign.
     pub struct AccelerationCoulomb, "acceleration_coulomb" {
-        gaining: LawParameter::level("gaining_coefficient", "μ₁"),
-        losing: LawParameter::level("losing_coefficient", "μ₂"),
+        gaining: LawParameter::level("gaining_coefficient", "μ₁").typically(1.05),
+        losing: LawParameter::level("losing_coefficient", "μ₂").typically(0.95),
     }
 
     /// Coefficient `gaining` μ₁ (1) while the speed grows and `losing` μ₂ (1) while it falls.

@@ -35,9 +35,9 @@ law_family! {
     /// E. J. Berger, "Friction modeling for dynamic system simulation", Applied Mechanics Reviews 55 (2002) 535,
     /// doi 10.1115/1.1501080.
     pub struct Berger, "berger" {
-        floor: LawParameter::level("coefficient", "μ₀"),
-        excess: LawParameter::level("excess_coefficient", "μ₁"),
-        decay: LawParameter::not_negative("decay", "α", "s/m", Role::Shape),
+        floor: LawParameter::level("coefficient", "μ₀").typically(0.7),
+        excess: LawParameter::not_negative("excess_coefficient", "μ₁", "1", Role::Excess).typically(0.6),
+        decay: LawParameter::not_negative("decay", "α", "s/m", Role::Shape).typically(3.0),
     }
 
     /// Coefficient `floor` μ₀ (1) at large speed, `excess` μ₁ (1) at zero speed and its `decay` α (s/m).

@@ -31,9 +31,9 @@ law_family! {
     /// 366 (2008) 747; it is given here as it is cited, not as read in the paper.
     pub struct ExponentialPair, "exponential_pair" {
         sliding: LawParameter::level("sliding_coefficient", "μ_k"),
-        breakaway: LawParameter::level("static_coefficient", "μ_s"),
-        gaining_decay: LawParameter::positive("gaining_decay", "a", "s/m", Role::Shape),
-        losing_decay: LawParameter::positive("losing_decay", "b", "s/m", Role::Shape),
+        breakaway: LawParameter::level_above("static_coefficient", "μ_s").typically(0.3),
+        gaining_decay: LawParameter::positive("gaining_decay", "a", "s/m", Role::Shape).typically(5.0),
+        losing_decay: LawParameter::positive("losing_decay", "b", "s/m", Role::Shape).typically(20.0),
     }
 
     /// Coefficients `sliding` μ_k and `breakaway` μ_s (1), inverse speeds `gaining_decay` a and `losing_decay` b (s/m).

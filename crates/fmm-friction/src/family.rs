@@ -13,6 +13,11 @@ use crate::LawError;
 pub enum Role {
     /// A coefficient, or one per length or power of the speed: the force is proportional to it and to the normal load.
     Level,
+    /// A coefficient that the law adds to its first [`Level`](Self::Level) at rest, and which vanishes with speed.
+    Excess,
+    /// A coefficient that may not lie below the first [`Level`](Self::Level) of the law. A fit takes their difference, which has a
+    /// simple bound.
+    LevelAbove,
     /// A coefficient per speed: proportional to the load, and inseparable from linear damping of the machine.
     Slope,
     /// A coefficient that the load must exceed to leave rest, not below the sliding level. A free decay depends on it
@@ -27,17 +32,32 @@ pub enum Role {
 pub struct LawParameter {
     parameter: Parameter,
     role: Role,
+    typical: f64,
 }
 
 impl LawParameter {
     /// A parameter with its role.
     pub const fn new(parameter: Parameter, role: Role) -> Self {
-        Self { parameter, role }
+        Self { parameter, role, typical: 1.0 }
+    }
+
+    /// The same parameter with a value that a fit may begin at, relative to the scales of the motion at hand: friction
+    /// coefficients to that of Coulomb friction with the same losses (or their excess over another), speeds to the largest, lengths
+    /// to the amplitude, and numbers as they are. It is 1 unless it is set.
+    #[must_use]
+    pub const fn typically(mut self, relative: f64) -> Self {
+        self.typical = relative;
+        self
     }
 
     /// A coefficient, not negative (1).
     pub(crate) const fn level(name: &'static str, symbol: &'static str) -> Self {
         Self::not_negative(name, symbol, "1", Role::Level)
+    }
+
+    /// A coefficient that is not below the first level (1).
+    pub(crate) const fn level_above(name: &'static str, symbol: &'static str) -> Self {
+        Self::not_negative(name, symbol, "1", Role::LevelAbove)
     }
 
     /// A static level, not negative (1).
@@ -68,6 +88,11 @@ impl LawParameter {
     /// How it enters the force.
     pub const fn role(&self) -> Role {
         self.role
+    }
+
+    /// A value to begin a fit at, relative to the scales of the motion (1).
+    pub const fn typical(&self) -> f64 {
+        self.typical
     }
 
     /// Passes `value` through if it lies within the parameter's bounds.

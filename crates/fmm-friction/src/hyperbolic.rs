@@ -23,8 +23,8 @@ law_family! {
     /// R. I. Leine, D. H. van Campen, A. de Kraker, L. van den Steen, "Stick-slip vibrations induced by alternate
     /// friction models", Nonlinear Dynamics 16 (1998) 41, doi 10.1023/A:1008289604683.
     pub struct Hyperbolic, "hyperbolic" {
-        breakaway: LawParameter::level("static_coefficient", "μ_s"),
-        decay: LawParameter::not_negative("decay", "δ", "s/m", Role::Shape),
+        breakaway: LawParameter::level("static_coefficient", "μ_s").typically(1.3),
+        decay: LawParameter::not_negative("decay", "δ", "s/m", Role::Shape).typically(0.5),
     }
 
     /// Coefficient `breakaway` μ_s (1) at zero speed, falling with `decay` δ (s/m).

@@ -29,8 +29,8 @@ law_family! {
     /// Systems, Measurement, and Control 107 (1985) 100, doi 10.1115/1.3140698.
     pub struct Karnopp, "karnopp" {
         sliding: LawParameter::level("sliding_coefficient", "μ_d"),
-        breakaway: LawParameter::level("static_coefficient", "μ_s"),
-        dead_zone: LawParameter::positive("dead_zone", "v_d", "m/s", Role::Shape),
+        breakaway: LawParameter::level_above("static_coefficient", "μ_s").typically(0.1),
+        dead_zone: LawParameter::positive("dead_zone", "v_d", "m/s", Role::Shape).typically(0.01),
     }
 
     /// Coefficient `sliding` μ_d outside and `breakaway` μ_s (1) inside the `dead_zone` v_d (m/s).

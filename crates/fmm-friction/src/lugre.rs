@@ -32,12 +32,12 @@ law_family! {
     /// C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky, "A new model for control of systems with friction",
     /// IEEE Trans. Automatic Control 40 (1995) 419, doi 10.1109/9.376053.
     pub struct LuGre, "lugre" {
-        sliding: LawParameter::positive("sliding_coefficient", "μ_c", "1", Role::Level),
-        breakaway: LawParameter::positive("static_coefficient", "μ_s", "1", Role::Level),
-        fall_speed: LawParameter::positive("stribeck_speed", "v_s", "m/s", Role::Shape),
+        sliding: LawParameter::positive("sliding_coefficient", "μ_c", "1", Role::Level).typically(0.9),
+        breakaway: LawParameter::positive("static_coefficient", "μ_s", "1", Role::LevelAbove).typically(0.3),
+        fall_speed: LawParameter::positive("stribeck_speed", "v_s", "m/s", Role::Shape).typically(0.2),
         exponent: EXPONENT,
-        stiffness: LawParameter::positive("stiffness", "σ₀", "1/m", Role::Level),
-        bristle_damping: LawParameter::not_negative("bristle_damping", "σ₁", "s/m", Role::Level),
+        stiffness: LawParameter::positive("stiffness", "σ₀", "1/m", Role::Level).typically(50.0),
+        bristle_damping: LawParameter::not_negative("bristle_damping", "σ₁", "s/m", Role::Level).typically(0.1),
         viscous: LawParameter::slope("viscous", "σ₂"),
     }
 

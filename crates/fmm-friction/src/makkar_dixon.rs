@@ -43,11 +43,11 @@ law_family! {
     /// C. Makkar, W. E. Dixon, W. G. Sawyer, G. Hu, "A new continuously differentiable friction model for control
     /// systems design", Proc. IEEE/ASME Int. Conf. Advanced Intelligent Mechatronics (2005) 600.
     pub struct MakkarDixon, "makkar_dixon" {
-        difference: LawParameter::level("difference_coefficient", "γ₁"),
-        rise: LawParameter::positive("rise", "γ₂", "s/m", Role::Shape),
-        fall: LawParameter::positive("fall", "γ₃", "s/m", Role::Shape),
-        level: LawParameter::level("coefficient", "γ₄"),
-        level_rise: LawParameter::not_negative("level_rise", "γ₅", "s/m", Role::Shape),
+        difference: LawParameter::level("difference_coefficient", "γ₁").typically(0.4),
+        rise: LawParameter::positive("rise", "γ₂", "s/m", Role::Shape).typically(50.0),
+        fall: LawParameter::positive("fall", "γ₃", "s/m", Role::Shape).typically(3.0),
+        level: LawParameter::level("coefficient", "γ₄").typically(0.8),
+        level_rise: LawParameter::not_negative("level_rise", "γ₅", "s/m", Role::Shape).typically(50.0),
         viscous: LawParameter::slope("viscous", "γ₆"),
     }
 

@@ -26,12 +26,12 @@ law_family! {
     /// For p < 1 the slope at zero speed is +∞: the value at v = 0 carries the derivatives in the parameters, which are
     /// finite, and none in the speed.
     pub struct PowerLaw, "power_law" {
-        amplitude: LawParameter::not_negative("power_coefficient", "a", "(s/m)^p", Role::Level),
+        amplitude: LawParameter::not_negative("power_coefficient", "a", "(s/m)^p", Role::Level).typically(0.5),
         exponent: LawParameter::new(
             Parameter::new("exponent", "p", "1").bounded(Bounds::POSITIVE.at_most(1.0)),
             Role::Shape,
         ),
-        floor: LawParameter::level("coefficient", "b"),
+        floor: LawParameter::level("coefficient", "b").typically(0.6),
     }
 
     /// `amplitude` a ((s/m)ᵖ) and `exponent` p (1) of the power and its `floor` b (1).

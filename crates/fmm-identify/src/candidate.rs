@@ -3,27 +3,56 @@
 use std::ops::ControlFlow;
 
 use fmm_fit::{Options, Progress};
-use fmm_friction::{Coulomb, CoulombStatic, CoulombViscous, LawParameter, Viscous};
+use fmm_friction::{
+    AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, Hyperbolic,
+    Karnopp, LawParameter, LuGre, MakkarDixon, PowerLaw, RegularisedStribeck, Role, Shifted, Stribeck,
+    StribeckLorentzian, Viscous,
+};
 use fmm_sim::Simulated;
 
 use crate::identification::identify_observed;
-use crate::{Identification, IdentifyError, Machine, RingDown};
+use crate::terms::{LINEAR, QUADRATIC};
+use crate::{Identification, IdentifyError, Machine, RingDown, Terms};
 
 /// An observer of trial steps that may end the fit.
 pub(crate) type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
 
-/// A law family as a value, so that laws can be chosen at run time and compared in one list.
-#[derive(Debug, Clone, Copy)]
+/// A law family as a value, with terms beside it, so that laws can be chosen at run time and compared in one list.
+#[derive(Debug, Clone)]
 pub struct Candidate {
-    name: &'static str,
+    law: &'static str,
     parameters: &'static [LawParameter],
-    identify: fn(&Machine, &[RingDown], &Options, &mut Observer<'_>) -> Result<Identification, IdentifyError>,
+    terms: Terms,
+    identify: IdentifyBy,
+}
+
+type IdentifyBy =
+    fn(&Machine, &Terms, &[RingDown], &Options, &mut Observer<'_>) -> Result<Identification, IdentifyError>;
+
+macro_rules! catalogue {
+    ($($law:ty),+ $(,)?) => {
+        /// Every law that can be identified.
+        pub fn catalogue() -> Vec<Self> {
+            vec![$(Self::of::<$law>()),+]
+        }
+    };
 }
 
 impl Candidate {
     /// The candidate of family `F`, which may be a law of one's own.
     pub const fn of<F: Simulated>() -> Self {
-        Self { name: F::NAME, parameters: F::PARAMETERS, identify: |m, d, o, f| identify_observed::<F>(m, d, o, f) }
+        Self {
+            law: F::NAME,
+            parameters: F::PARAMETERS,
+            terms: Terms::NONE,
+            identify: |m, t, d, o, f| identify_observed::<F>(m, t, d, o, f),
+        }
+    }
+
+    /// The same law with `terms` beside it.
+    #[must_use]
+    pub fn with(self, terms: Terms) -> Self {
+        Self { terms, ..self }
     }
 
     /// Viscous, Coulomb, and both: the three that a ring-down is compared by when nothing else is asked for.
@@ -31,10 +60,26 @@ impl Candidate {
         [Self::of::<Viscous>(), Self::of::<Coulomb>(), Self::of::<CoulombViscous>()]
     }
 
-    /// Every law that can be identified.
-    pub const fn catalogue() -> [Self; 4] {
-        [Self::of::<Viscous>(), Self::of::<Coulomb>(), Self::of::<CoulombStatic>(), Self::of::<CoulombViscous>()]
-    }
+    catalogue!(
+        Viscous,
+        Coulomb,
+        CoulombStatic,
+        CoulombViscous,
+        AccelerationCoulomb,
+        Stribeck,
+        StribeckLorentzian,
+        Hyperbolic,
+        Berger,
+        PowerLaw,
+        ExponentialPair,
+        Karnopp,
+        MakkarDixon,
+        Shifted<MakkarDixon>,
+        RegularisedStribeck,
+        Dahl,
+        LuGre,
+        BoucWen,
+    );
 
     /// The law called `name` in the [`catalogue`](Self::catalogue).
     ///
@@ -42,27 +87,36 @@ impl Candidate {
     /// [`IdentifyError::UnknownLaw`], with the names there are.
     pub fn named(name: &str) -> Result<Self, IdentifyError> {
         let catalogue = Self::catalogue();
-        catalogue.into_iter().find(|candidate| candidate.name == name).ok_or_else(|| IdentifyError::UnknownLaw {
-            name: name.to_owned(),
-            known: catalogue.map(|candidate| candidate.name).join(", "),
-        })
+        let known = || catalogue.iter().map(|candidate| candidate.law).collect::<Vec<_>>().join(", ");
+        let found = catalogue.iter().find(|candidate| candidate.law == name);
+        found.cloned().ok_or_else(|| IdentifyError::UnknownLaw { name: name.to_owned(), known: known() })
     }
 
-    /// Name of the law.
-    pub const fn name(&self) -> &'static str {
-        self.name
+    /// Name of the law, with the terms beside it.
+    pub fn name(&self) -> String {
+        self.terms.name(self.law)
+    }
+
+    /// Names and roles of all parameters, of the law and beside it.
+    fn all_parameters(&self) -> Vec<(&str, Role)> {
+        // A linear damping is the viscous part of a law by another name.
+        let name = |parameter: &'static LawParameter| match parameter.role() {
+            Role::Slope => (LINEAR, Role::Slope),
+            role => (parameter.parameter().name(), role),
+        };
+        let linear = self.terms.has_linear_damping().then_some((LINEAR, Role::Slope));
+        let quadratic = self.terms.has_quadratic_damping().then_some((QUADRATIC, Role::Shape));
+        self.parameters.iter().map(name).chain(linear).chain(quadratic).collect()
     }
 
     /// Whether this law is a special case of `other`: every parameter of it is one of the other's, in the same role.
     pub(crate) fn is_nested_in(&self, other: &Self) -> bool {
-        let same =
-            |a: &LawParameter, b: &LawParameter| a.parameter().name() == b.parameter().name() && a.role() == b.role();
-        self.parameters.len() < other.parameters.len()
-            && self.parameters.iter().all(|own| other.parameters.iter().any(|theirs| same(own, theirs)))
+        let (own, theirs) = (self.all_parameters(), other.all_parameters());
+        own.len() < theirs.len() && own.iter().all(|parameter| theirs.contains(parameter))
     }
 
     pub(crate) fn parameter_count(&self) -> usize {
-        self.parameters.len()
+        self.all_parameters().len() - self.terms.held().count()
     }
 
     pub(crate) fn identify(
@@ -72,6 +126,6 @@ impl Candidate {
         options: &Options,
         observer: &mut Observer<'_>,
     ) -> Result<Identification, IdentifyError> {
-        (self.identify)(machine, decays, options, observer)
+        (self.identify)(machine, &self.terms, decays, options, observer)
     }
 }

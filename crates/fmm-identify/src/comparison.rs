@@ -7,12 +7,12 @@ use fmm_fit::{FTest, Fit, Options, Progress, f_test};
 use crate::{Candidate, Finding, Identification, IdentifyError, Machine, RecordSummary, RingDown, Warning};
 
 /// A law and the more general one that it was tested against.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct NestedTest {
     /// Name of the restricted law.
-    pub restricted: &'static str,
+    pub restricted: String,
     /// Name of the law that has it as a special case.
-    pub full: &'static str,
+    pub full: String,
     /// The test, which counts every residual as independent.
     pub test: FTest,
 }
@@ -57,11 +57,12 @@ pub fn compare_observed(
     decays: &[RingDown],
     candidates: &[Candidate],
     options: &Options,
-    mut observer: impl FnMut(&'static str, &Progress<'_>) -> ControlFlow<()>,
+    mut observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Comparison, IdentifyError> {
     let mut identifications = Vec::with_capacity(candidates.len());
     for candidate in candidates {
-        let mut observe = |progress: &Progress<'_>| observer(candidate.name(), progress);
+        let name = candidate.name();
+        let mut observe = |progress: &Progress<'_>| observer(&name, progress);
         identifications.push(candidate.identify(machine, decays, options, &mut observe)?);
     }
     let scores = scores(&identifications);
@@ -76,6 +77,10 @@ pub fn compare_observed(
     if !is_decided {
         warnings.push(Warning::Undecided);
     }
+    let others = identifications.iter().enumerate().filter(|(index, _)| *index != preferred);
+    let negative = |warning: &&Warning| matches!(warning, Warning::NegativeDamping { .. });
+    warnings.extend(others.flat_map(|(_, found)| found.warnings().iter().filter(negative).cloned()));
+    warnings.extend(misled(&identifications, preferred));
     Ok(Comparison {
         records: decays.iter().map(|decay| decay.summary().clone()).collect(),
         tests: tests(candidates, &identifications),
@@ -101,6 +106,28 @@ fn tests(candidates: &[Candidate], identifications: &[Identification]) -> Vec<Ne
     tests
 }
 
+/// The law among the others that states the most different friction at rest, if it does so by more than half of it and has
+/// missed the record by far: what somebody would have reported who had asked no further.
+fn misled(identifications: &[Identification], preferred: usize) -> Option<Warning> {
+    /// Residuals that exceed those of the preferred law by this factor do not describe the record.
+    const FAR: f64 = 2.0;
+    let right = &identifications[preferred];
+    let friction = right.friction_at_rest().filter(|friction| *friction > 0.0)?;
+    let ratio = |found: &Identification| found.friction_at_rest().map(|other| other / friction);
+    let wrong = identifications
+        .iter()
+        .filter(|found| found.rms_residual() > FAR * right.rms_residual())
+        .filter_map(|found| Some((found, ratio(found)?)))
+        .filter(|(_, ratio)| *ratio < 0.5)
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    wrong.map(|(found, ratio)| Warning::Misled {
+        law: found.law().to_owned(),
+        friction: ratio * friction,
+        preferred: friction,
+        residuals: found.rms_residual() / right.rms_residual(),
+    })
+}
+
 /// Laws that were not fitted to their minimum, or not to the lowest: a law cannot be worse than a special case of it.
 fn unfinished(candidates: &[Candidate], identifications: &[Identification]) -> Vec<Warning> {
     /// Rounding of a sum of squares.
@@ -109,7 +136,8 @@ fn unfinished(candidates: &[Candidate], identifications: &[Identification]) -> V
     for (candidate, found) in candidates.iter().zip(identifications) {
         let law = candidate.name();
         if !found.fit().outcome().is_success() {
-            warnings.push(Warning::OtherLaw { law, sentence: format!("the fit {}", found.fit().outcome()) });
+            let sentence = format!("the fit {}", found.fit().outcome());
+            warnings.push(Warning::OtherLaw { law: law.clone(), sentence });
         }
         let sum = found.fit().sum_of_squares();
         let lower = |(special, other): &(&Candidate, &Identification)| {

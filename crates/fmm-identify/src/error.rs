@@ -57,6 +57,46 @@ pub enum IdentifyError {
         /// How many are needed.
         needed: usize,
     },
+    /// Turning points that do not lie to either side of the centre by turns.
+    #[error("amplitudes must be positive, but is {amplitude} {unit} at {time} s; end the record before it")]
+    Amplitude {
+        /// When (s).
+        time: f64,
+        /// The amplitude found there.
+        amplitude: f64,
+        /// Its unit.
+        unit: String,
+    },
+    /// An estimator that works on velocities only.
+    #[error("{estimator} needs a velocity, but the record is: {quantity}")]
+    VelocityNeeded {
+        /// Which estimator.
+        estimator: &'static str,
+        /// What the record is.
+        quantity: Quantity,
+    },
+    /// Times of zero velocity that do not increase or do not lie in the record.
+    #[error(
+        "times of zero velocity must increase and lie within {start} s and {end} s, but number {index} is {time} s"
+    )]
+    Reversals {
+        /// Number of the time, from 0.
+        index: usize,
+        /// The time (s).
+        time: f64,
+        /// First sample of the record (s).
+        start: f64,
+        /// Last sample of the record (s).
+        end: f64,
+    },
+    /// Parameters that the half swings do not tell apart.
+    #[error("{estimator} cannot tell {parameters} apart in this record; hold one of them or give a longer record")]
+    Undetermined {
+        /// Which estimator.
+        estimator: &'static str,
+        /// Names of the parameters.
+        parameters: String,
+    },
     /// A law of this name is not in the catalogue.
     #[error("there is no law called {name:?}; the laws are: {known}")]
     UnknownLaw {
@@ -64,6 +104,36 @@ pub enum IdentifyError {
         name: String,
         /// The names there are.
         known: String,
+    },
+    /// A linear damping was to be fitted beside a law that has one.
+    #[error(
+        "{law} has a viscous part: a linear damping of the machine beside it could not be told apart; leave one out"
+    )]
+    TwoDampings {
+        /// Name of the law.
+        law: &'static str,
+    },
+    /// There is no parameter of this name to hold.
+    #[error("{law} has no parameter called {name:?} to hold; its parameters are: {known}")]
+    NothingToHold {
+        /// Name of the law.
+        law: &'static str,
+        /// The name given.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// A parameter was to be held outside its bounds.
+    #[error("{name} cannot be held at {value}: it must lie within {lower} and {upper}")]
+    HeldOutOfBounds {
+        /// Name of the parameter.
+        name: String,
+        /// The value given.
+        value: f64,
+        /// Its lower bound.
+        lower: f64,
+        /// Its upper bound.
+        upper: f64,
     },
     /// A number given for the preparation cannot be.
     #[error(transparent)]

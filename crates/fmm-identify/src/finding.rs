@@ -5,7 +5,8 @@ use fmm_friction::{LawFamily, Role};
 use fmm_model::{Dual, Parameter, Rounded, Scalar};
 
 use crate::Machine;
-use crate::layout::{Layout, fitted, mass, mass_of_stiffness, named};
+use crate::dimension::is_force;
+use crate::layout::{Layout, fitted, mass_of_stiffness, named};
 use crate::machine::Scale;
 use crate::residual_structure::Covariance;
 
@@ -69,6 +70,10 @@ impl Finding {
 struct Inputs<'a> {
     machine: &'a Machine,
     shared: &'a [f64],
+    /// Index of the first parameter of the law.
+    law: usize,
+    /// Unit of a force per mass.
+    acceleration: &'a str,
     gain_uncertainty: f64,
 }
 
@@ -112,25 +117,34 @@ impl Inputs<'_> {
             Scale::Unknown => Some(D::from(1.0)),
             _ => mass,
         };
-        let Some(to_force) = to_force else { return derived };
-        let first_of_law = self.shared.len() - fitted::<F>().count();
         let load = self.machine.normal_load().map(|load| variable(load.value(), self.shared.len() + 1));
         let gain = variable(1.0, self.shared.len() + 2);
+        let law_value = |index: usize| variable(self.shared[self.law + index], self.law + index);
+        let level = fitted::<F>().position(|parameter| parameter.role() == Role::Level).map(law_value);
         for (i, law_parameter) in fitted::<F>().enumerate() {
-            let force = variable(self.shared[first_of_law + i], first_of_law + i) * to_force;
-            let parameter = law_parameter.parameter();
-            match law_parameter.role() {
-                Role::Level => {
-                    let force = force / gain;
-                    if mass.is_some() {
-                        derived.push((named(parameter, "friction_force", "N"), force));
-                    }
-                    if let Some(load) = load {
-                        derived.push((named(parameter, "mu", "1"), force / load));
-                    }
+            let (parameter, role) = (law_parameter.parameter(), law_parameter.role());
+            let mut value = law_value(i);
+            if let (Role::LevelAbove, Some(level)) = (role, level) {
+                value = value + level;
+                if self.machine.scale() != Scale::Unknown {
+                    derived.push((named(parameter, "friction_per_mass", self.acceleration), value / gain));
                 }
-                Role::Slope if mass.is_some() => derived.push((Parameter::new("damping", "c", "N s/m"), force)),
-                _ => {}
+            }
+            let Some(to_force) = to_force else { continue };
+            let force = value * to_force;
+            if role == Role::Slope && mass.is_some() {
+                derived.push((Parameter::new("damping", "c", "N s/m"), force));
+            } else if is_force(role) && parameter.unit() == "1" {
+                let force = force / gain;
+                if mass.is_some() {
+                    derived.push((named(parameter, "friction_force", "N"), force));
+                }
+                if let Some(load) = load {
+                    derived.push((named(parameter, "mu", "1"), force / load));
+                }
+            } else if is_force(role) && parameter.unit() == "1/m" && mass.is_some() {
+                let name = format!("contact_{}", parameter.name());
+                derived.push((Parameter::named(name, parameter.symbol().to_owned(), "N/m"), force));
             }
         }
         derived
@@ -148,9 +162,9 @@ pub(crate) fn findings<F: LawFamily>(
     covariance: &Covariance<'_>,
     gain_uncertainty: f64,
 ) -> Vec<Finding> {
-    let fitted = fit.estimates().iter().enumerate().map(|(index, estimate)| {
-        // What is proportional to the record is uncertain with its gain.
-        let gain = if layout.scales_with_record::<F>(index) { gain_uncertainty * estimate.value() } else { 0.0 };
+    let estimated = fit.estimates().iter().enumerate().map(|(index, estimate)| {
+        // What is proportional to a power of the record is uncertain with its gain.
+        let gain = gain_uncertainty * layout.power_of_gain::<F>(index) * estimate.value();
         Finding {
             parameter: estimate.parameter().clone(),
             value: estimate.value(),
@@ -159,11 +173,11 @@ pub(crate) fn findings<F: LawFamily>(
             is_of_record: index >= layout.shared,
         }
     });
-    let mut findings: Vec<Finding> = fitted.collect();
-    if machine.scale() != Scale::Unknown && mass(machine.scale(), fit.values()[0]).is_none() {
-        return findings;
-    }
-    let inputs = Inputs { machine, shared: &fit.values()[..layout.shared], gain_uncertainty };
+    let mut findings: Vec<Finding> = estimated.collect();
+    let shared = &fit.values()[..layout.shared];
+    let force = fitted::<F>().position(|parameter| is_force(parameter.role()));
+    let acceleration = force.map_or("", |index| fit.estimates()[layout.law + index].parameter().unit());
+    let inputs = Inputs { machine, shared, law: layout.law, acceleration, gain_uncertainty };
     let directions = layout.shared + KNOWN;
     let values = inputs.derived::<F, f64>(0);
     let mut gradients = vec![vec![0.0; directions]; values.len()];

@@ -3,13 +3,15 @@
 use std::ops::ControlFlow;
 
 use fmm_fit::{EvaluationError, Fit, Options, Progress, solve_observed};
-use fmm_friction::Role;
+use fmm_friction::{CoulombViscous, Role};
+use fmm_model::Restoring;
 use fmm_sim::{Event, EventKind, Simulated, Trajectory};
 
 use crate::finding::{Finding, findings};
+use crate::layout::{Layout, fitted};
 use crate::problem::RingDownProblem;
 use crate::residual_structure::{Covariance, ResidualStructure};
-use crate::{IdentifyError, Machine, RingDown, Warning};
+use crate::{IdentifyError, Machine, RingDown, Terms, Warning};
 
 /// How the fitted motion of one record ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,14 +47,16 @@ impl FittedMotion {
 }
 
 /// What the law of an identification says for one record, given the machine, all records and the fitted values.
-type ModelOf = fn(Machine, &[RingDown], usize, &[f64]) -> Option<Vec<f64>>;
+type ModelOf = fn(Machine, Terms, &[RingDown], usize, &[f64]) -> Option<Vec<f64>>;
 
 /// Friction parameters of one law, with their uncertainty and what limits them.
 ///
 /// `Display` gives the report.
 #[derive(Debug, Clone)]
 pub struct Identification {
-    law: &'static str,
+    law: String,
+    friction_at_rest: Option<f64>,
+    terms: Terms,
     machine: Machine,
     fit: Fit,
     findings: Vec<Finding>,
@@ -98,20 +102,33 @@ pub struct Identification {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn identify<F: Simulated>(machine: &Machine, decays: &[RingDown]) -> Result<Identification, IdentifyError> {
-    identify_observed::<F>(machine, decays, &Options::default(), &mut |_| ControlFlow::Continue(()))
+    identify_with::<F>(machine, &Terms::NONE, decays)
 }
 
-/// As [`identify`], with options for the solver and an observer of every trial step, which may end the fit.
+/// As [`identify`], with damping of the machine beside the law, and parameters held.
 ///
 /// # Errors
-/// As for [`identify`].
+/// As for [`identify`], and if the terms do not fit the law.
+pub fn identify_with<F: Simulated>(
+    machine: &Machine,
+    terms: &Terms,
+    decays: &[RingDown],
+) -> Result<Identification, IdentifyError> {
+    identify_observed::<F>(machine, terms, decays, &Options::default(), &mut |_| ControlFlow::Continue(()))
+}
+
+/// As [`identify_with`], with options for the solver and an observer of every trial step, which may end the fit.
+///
+/// # Errors
+/// As for [`identify_with`].
 pub fn identify_observed<F: Simulated>(
     machine: &Machine,
+    terms: &Terms,
     decays: &[RingDown],
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Identification, IdentifyError> {
-    let problem = RingDownProblem::<F>::new(*machine, decays)?;
+    let problem = RingDownProblem::<F>::with_terms(*machine, terms.clone(), decays)?;
     let fit = fit_in_stages(&problem, options, observer)?;
     // One instrument for all records; the worst statement counts.
     let gain = decays.iter().map(|decay| decay.summary().gain_uncertainty).fold(0.0, f64::max);
@@ -123,7 +140,7 @@ pub fn identify_observed<F: Simulated>(
     if let Some(moved) = machine.with_damping_moved() {
         let mut ends = Vec::new();
         for machine in moved {
-            let problem = RingDownProblem::<F>::new(machine, decays)?;
+            let problem = RingDownProblem::<F>::with_terms(machine, terms.clone(), decays)?;
             let fit = solve_observed(&problem, fit.values(), options, |progress| observer(progress))
                 .map_err(|source| IdentifyError::Fit { law: F::NAME, source })?;
             let covariance = Covariance::of(&problem, &fit, &structure, decays).map_err(failure)?;
@@ -138,7 +155,9 @@ pub fn identify_observed<F: Simulated>(
         motions.push(FittedMotion::of(decay, &trajectory));
     }
     let mut identification = Identification {
-        law: F::NAME,
+        law: terms.name(F::NAME),
+        friction_at_rest: friction_at_rest::<F>(problem.layout(), fit.values()),
+        terms: terms.clone(),
         machine: *machine,
         structure,
         inflation,
@@ -147,7 +166,9 @@ pub fn identify_observed<F: Simulated>(
         findings: found,
         motions,
         warnings: Vec::new(),
-        model: |machine, decays, record, p| RingDownProblem::<F>::new(machine, decays).ok()?.model(record, p).ok(),
+        model: |machine, terms, decays, record, p| {
+            RingDownProblem::<F>::with_terms(machine, terms, decays).ok()?.model(record, p).ok()
+        },
     };
     identification.warnings = Warning::of(&identification, decays);
     let held = F::PARAMETERS.iter().filter(|parameter| parameter.role() == Role::Breakaway);
@@ -157,9 +178,51 @@ pub fn identify_observed<F: Simulated>(
     Ok(identification)
 }
 
+/// F/m at rest that fitted `values` stand for: the first level of the law with what lies above it; none for laws without.
+fn friction_at_rest<F: Simulated>(layout: &Layout, values: &[f64]) -> Option<f64> {
+    let parameters = || fitted::<F>().zip(&values[layout.law..]);
+    let (_, level) = parameters().find(|(parameter, _)| parameter.role() == Role::Level)?;
+    let above = parameters().filter(|(parameter, _)| matches!(parameter.role(), Role::Excess | Role::LevelAbove));
+    Some(level + above.map(|(_, excess)| excess).sum::<f64>())
+}
+
+/// Shares of a record to which a pendulum is fitted before the whole, as its period depends on the amplitude.
+const BEGINNINGS: [f64; 2] = [0.125, 0.4];
+
 /// The best end of the fits from all start values. Displacements are first fitted up to their last peak, and from
-/// there as a whole.
+/// there as a whole. Laws with more than a level and a viscous part continue the fit of one that has just these.
 fn fit_in_stages<F: Simulated>(
+    problem: &RingDownProblem<'_, F>,
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, IdentifyError> {
+    if let Some(thinned) = problem.thinned() {
+        // One fit of all samples, begun where a search with few of them has ended.
+        let search = problem.with_records(&thinned);
+        let found = fit_in_search(&search, options, observer)?;
+        return best_fit(problem, vec![found.values().to_vec()], options, observer);
+    }
+    fit_in_search(problem, options, observer)
+}
+
+/// The best end of the fits from everything that may be a start.
+fn fit_in_search<F: Simulated>(
+    problem: &RingDownProblem<'_, F>,
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, IdentifyError> {
+    if !problem.is_elaborate() {
+        return fit_simple(problem, options, observer);
+    }
+    let simple = RingDownProblem::<CoulombViscous>::new(*problem.machine(), problem.decays())?;
+    let known = fit_simple(&simple, options, observer)?;
+    let mut starts = problem.continued(&simple, known.values());
+    starts.extend(problem.starts().into_iter().next());
+    best_fit(problem, starts, options, observer)
+}
+
+/// The best end of the fits from start values that the records show.
+fn fit_simple<F: Simulated>(
     problem: &RingDownProblem<'_, F>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
@@ -170,6 +233,17 @@ fn fit_in_stages<F: Simulated>(
         if let Ok(fit) = best_fit(&problem, problem.starts(), options, observer) {
             starts.push(fit.values().to_vec());
         }
+    }
+    if problem.machine().restoring() != Restoring::Linear {
+        let mut begun = problem.starts();
+        for share in BEGINNINGS {
+            let beginning = problem.beginnings(share);
+            let problem = problem.with_records(&beginning);
+            if let Ok(fit) = best_fit(&problem, std::mem::take(&mut begun), options, observer) {
+                begun.push(fit.values().to_vec());
+            }
+        }
+        starts.extend(begun);
     }
     best_fit(problem, starts, options, observer)
 }
@@ -204,9 +278,20 @@ fn add_in_quadrature(findings: &mut [Finding], below: &[Finding], above: &[Findi
 }
 
 impl Identification {
-    /// Name of the law.
-    pub fn law(&self) -> &'static str {
-        self.law
+    /// Name of the law, with the terms beside it.
+    pub fn law(&self) -> &str {
+        &self.law
+    }
+
+    /// What was fitted beside the law, and what was held.
+    pub fn terms(&self) -> &Terms {
+        &self.terms
+    }
+
+    /// F/m at rest, in the unit of the friction per mass: the sliding level with what the law adds to it at zero speed; none for
+    /// laws without a level.
+    pub fn friction_at_rest(&self) -> Option<f64> {
+        self.friction_at_rest
     }
 
     /// What was known of the machine.
@@ -257,7 +342,7 @@ impl Identification {
     /// identification; none for another number.
     pub fn model(&self, decays: &[RingDown], record: usize) -> Option<Vec<f64>> {
         (record < decays.len() && decays.len() == self.motions.len())
-            .then(|| (self.model)(self.machine, decays, record, self.fit.values()))
+            .then(|| (self.model)(self.machine, self.terms.clone(), decays, record, self.fit.values()))
             .flatten()
     }
 

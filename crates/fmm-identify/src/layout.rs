@@ -5,12 +5,14 @@ use std::f64::consts::PI;
 
 use fmm_fit::EvaluationError;
 use fmm_friction::{LawFamily, LawParameter, Role};
-use fmm_model::{Bounds, Damping, Oscillator, Parameter, Scalar};
+use fmm_model::{Bounds, Damping, Oscillator, Parameter, Restoring, Scalar};
 use fmm_record::Quantity;
 use fmm_sim::Scenario;
 
+use crate::dimension::{is_force, power_of_gain};
 use crate::machine::Scale;
-use crate::{Machine, RingDown};
+use crate::terms::LINEAR;
+use crate::{IdentifyError, Machine, RingDown, Terms};
 
 /// The parameters of a law that a ring-down is fitted by: all but static levels, on which a free decay depends only in
 /// where it stops. They are held at the sliding level that precedes them.
@@ -18,21 +20,30 @@ pub(crate) fn fitted<F: LawFamily>() -> impl Iterator<Item = &'static LawParamet
     F::PARAMETERS.iter().filter(|parameter| parameter.role() != Role::Breakaway)
 }
 
-/// Order of the parameters: oscillator, law, then for each record its initial state and, unless it is fixed, its
-/// offset.
+/// Order of the parameters: oscillator, damping beside the law, law, then for each record its initial state and, unless it
+/// is fixed, its offset.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
     /// Parameters of the oscillator.
     pub(crate) oscillator: usize,
-    /// Parameters of oscillator and law: those that all records share.
+    /// Index of the first parameter of the law.
+    pub(crate) law: usize,
+    /// Parameters of oscillator, damping and law: those that all records share.
     pub(crate) shared: usize,
     /// For each record, the index of its initial position; velocity and offset follow.
     pub(crate) own: Vec<usize>,
 }
 
 impl Layout {
-    /// Layout and parameters of law family `F` for these records.
-    pub(crate) fn of<F: LawFamily>(machine: &Machine, decays: &[RingDown]) -> (Self, Vec<Parameter>) {
+    /// Layout and parameters of law family `F` with `terms` for these records.
+    pub(crate) fn of<F: LawFamily>(
+        machine: &Machine,
+        terms: &Terms,
+        decays: &[RingDown],
+    ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
+        if terms.has_linear_damping() && F::PARAMETERS.iter().any(|parameter| parameter.role() == Role::Slope) {
+            return Err(IdentifyError::TwoDampings { law: F::NAME });
+        }
         let units = Units::of(&decays[0]);
         let unknown_scale = machine.scale() == Scale::Unknown;
         let mut parameters = if unknown_scale {
@@ -45,17 +56,9 @@ impl Layout {
             vec![Parameter::new("natural_frequency_hz", "f₀", "Hz").bounded(bounds)]
         };
         let oscillator = parameters.len();
-        for law_parameter in fitted::<F>() {
-            let parameter = law_parameter.parameter();
-            let renamed = match law_parameter.role() {
-                Role::Level if unknown_scale => named(parameter, "friction_force", "N"),
-                Role::Level => named(parameter, "friction_per_mass", &units.acceleration),
-                Role::Slope if unknown_scale => Parameter::new("damping", "c", "N s/m"),
-                Role::Slope => Parameter::new("damping_per_mass", "c/m", "1/s"),
-                _ => parameter.clone(),
-            };
-            parameters.push(renamed.bounded(parameter.bounds()));
-        }
+        parameters.extend(terms.parameters(&units.position));
+        let law = parameters.len();
+        parameters.extend(fitted::<F>().map(|parameter| units.fitted(parameter, unknown_scale)));
         let shared = parameters.len();
         let mut own = Vec::with_capacity(decays.len());
         for (index, decay) in decays.iter().enumerate() {
@@ -70,7 +73,19 @@ impl Layout {
                 parameters.push(Parameter::named(of_record("offset"), "b", decay.record().unit().to_owned()));
             }
         }
-        (Self { oscillator, shared, own }, parameters)
+        for (name, value) in terms.held() {
+            let known = || parameters.iter().map(Parameter::name).collect::<Vec<_>>().join(", ");
+            let Some(index) = parameters.iter().position(|parameter| parameter.name() == name) else {
+                return Err(IdentifyError::NothingToHold { law: F::NAME, name: name.to_owned(), known: known() });
+            };
+            let bounds = parameters[index].bounds();
+            if !bounds.contains(value) {
+                let (name, lower, upper) = (name.to_owned(), bounds.lower(), bounds.upper());
+                return Err(IdentifyError::HeldOutOfBounds { name, value, lower, upper });
+            }
+            parameters[index] = parameters[index].clone().bounded(Bounds::new(value, value)?);
+        }
+        Ok((Self { oscillator, law, shared, own }, parameters))
     }
 
     /// How many parameters the motion of one record depends on: the shared ones and its initial state.
@@ -83,25 +98,29 @@ impl Layout {
         if direction < self.shared { direction } else { self.own[record] + direction - self.shared }
     }
 
-    /// Whether the parameter at `index` is proportional to the record: friction levels, initial states, offsets.
-    pub(crate) fn scales_with_record<F: LawFamily>(&self, index: usize) -> bool {
-        let role = index.checked_sub(self.oscillator).and_then(|i| fitted::<F>().nth(i)).map(LawParameter::role);
-        index >= self.shared || role == Some(Role::Level)
+    /// The power of the gain of the record to which the parameter at `index` is proportional.
+    pub(crate) fn power_of_gain<F: LawFamily>(&self, index: usize) -> f64 {
+        if index >= self.shared {
+            return 1.0;
+        }
+        // Linear damping does not depend on it, quadratic damping is per length.
+        match index.checked_sub(self.law) {
+            Some(index) => fitted::<F>().nth(index).map_or(0.0, power_of_gain),
+            None if index + 1 == self.law && index >= self.oscillator => -1.0,
+            None => 0.0,
+        }
     }
 
     /// Values for all parameters of the law, static levels included.
-    fn law_values<F: LawFamily, D: Scalar>(&self, motion: &[D]) -> Vec<D> {
-        let mut fitted = motion[self.oscillator..self.shared].iter().copied();
-        let mut level = D::from(0.0);
-        let value = |parameter: &LawParameter| {
-            if parameter.role() == Role::Breakaway {
-                return Some(level);
-            }
-            let value = fitted.next()?;
-            if parameter.role() == Role::Level {
-                level = value;
-            }
-            Some(value)
+    pub(crate) fn law_values<F: LawFamily, D: Scalar>(&self, motion: &[D]) -> Vec<D> {
+        let fitted = || fitted::<F>().zip(&motion[self.law..self.shared]);
+        let first = fitted().find(|(parameter, _)| parameter.role() == Role::Level);
+        let level = first.map_or(D::from(0.0), |(_, level)| *level);
+        let mut values = fitted();
+        let value = |parameter: &LawParameter| match parameter.role() {
+            Role::Breakaway => Some(level),
+            Role::LevelAbove => values.next().map(|(_, excess)| level + *excess),
+            _ => values.next().map(|(_, value)| *value),
         };
         F::PARAMETERS.iter().filter_map(value).collect()
     }
@@ -110,6 +129,7 @@ impl Layout {
     pub(crate) fn scenario<F: LawFamily, D: Scalar>(
         &self,
         machine: &Machine,
+        terms: &Terms,
         motion: &[D],
     ) -> Result<Scenario<D, F::At<D>>, EvaluationError> {
         let known_damping = D::from(machine.damping().map_or(0.0, |damping| damping.value()));
@@ -121,7 +141,15 @@ impl Layout {
                 (Oscillator::per_unit_mass(motion[0])?, known_damping / mass)
             }
         };
-        let oscillator = oscillator.with_damping(Damping::linear(damping)?);
+        let mut beside = motion[self.oscillator..self.law].iter().copied();
+        let linear = if terms.has_linear_damping() { beside.next() } else { None };
+        let quadratic = beside.next().unwrap_or(D::from(0.0));
+        let damping = linear.map_or(damping, |linear| damping + linear);
+        let restoring = match machine.restoring() {
+            Restoring::Sine { length } => Restoring::sine(D::from(length))?,
+            _ => Restoring::Linear,
+        };
+        let oscillator = oscillator.with_damping(Damping::of_any_sign(damping, quadratic)?).with_restoring(restoring);
         let law = F::at(&self.law_values::<F, D>(motion))?;
         let scenario = Scenario::new(oscillator, law, D::from(1.0))?;
         Ok(scenario.starting_at(motion[self.shared], motion[self.shared + 1])?)
@@ -148,9 +176,9 @@ pub(crate) fn mass_of_stiffness<D: Scalar>(stiffness: D, natural_frequency: D) -
 pub(crate) fn named(parameter: &Parameter, quantity: &'static str, unit: &str) -> Parameter {
     let stem =
         parameter.name().strip_suffix("coefficient").map_or_else(|| format!("{}_", parameter.name()), str::to_owned);
-    let symbol = match quantity {
-        "friction_per_mass" => "F/m",
-        "friction_force" => "F",
+    let symbol = match (quantity, stem.as_str()) {
+        ("friction_per_mass", "") => "F/m",
+        ("friction_force", "") => "F",
         _ => parameter.symbol(),
     };
     Parameter::named(format!("{stem}{quantity}"), symbol.to_owned(), unit.to_owned())
@@ -165,6 +193,50 @@ pub(crate) struct Units {
 }
 
 impl Units {
+    /// A parameter of a law as a fit has it: forces per mass, or as they are if the mass is fitted as well.
+    fn fitted(&self, law_parameter: &LawParameter, unknown_scale: bool) -> Parameter {
+        let parameter = law_parameter.parameter();
+        let quantity = if unknown_scale { "friction_force" } else { "friction_per_mass" };
+        let force = if unknown_scale { "N" } else { &self.acceleration };
+        let renamed = match (law_parameter.role(), parameter.unit()) {
+            (Role::Slope, _) if unknown_scale => Parameter::new("damping", "c", "N s/m"),
+            (Role::Slope, _) => Parameter::new(LINEAR, "c/m", "1/s"),
+            (Role::LevelAbove, _) => {
+                let name = parameter.name().replace("coefficient", "excess_coefficient");
+                named(&Parameter::named(name, parameter.symbol().to_owned(), "1"), quantity, force)
+            }
+            (role, "1") if is_force(role) => named(parameter, quantity, force),
+            (role, unit) if is_force(role) => {
+                let name = format!("contact_{}{}", parameter.name(), if unknown_scale { "" } else { "_per_mass" });
+                let unit = match (unit, unknown_scale) {
+                    ("1/m", true) => "N/m".to_owned(),
+                    ("1/m", false) => "1/s²".to_owned(),
+                    ("s/m", true) => "N s/m".to_owned(),
+                    ("s/m", false) => "1/s".to_owned(),
+                    _ => format!("{force} {unit}"),
+                };
+                Parameter::named(name, parameter.symbol().to_owned(), unit)
+            }
+            (_, unit) => {
+                let unit = match unit {
+                    "m/s" => self.velocity.clone(),
+                    "s/m" => self.inverse_velocity(),
+                    "1/m^n" => format!("1/{}^n", self.position),
+                    other => other.to_owned(),
+                };
+                Parameter::named(parameter.name().to_owned(), parameter.symbol().to_owned(), unit)
+            }
+        };
+        renamed.bounded(parameter.bounds())
+    }
+
+    fn inverse_velocity(&self) -> String {
+        match self.velocity.strip_suffix("/s") {
+            Some(base) => format!("s/{base}"),
+            None => format!("1/{}", self.velocity),
+        }
+    }
+
     fn of(decay: &RingDown) -> Self {
         let unit = decay.record().unit();
         if decay.record().quantity() == Quantity::Displacement {

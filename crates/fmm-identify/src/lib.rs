@@ -10,6 +10,8 @@
 //! | What can a free vibration show? | frequency, damping per mass and friction per mass; not the mass |
 //! | How do I get μ? | give a mass or a stiffness, and the normal load, with their uncertainties |
 //! | Which law? | [`compare`] tells, and says when the data do not decide |
+//! | How does damping depend on velocity? | [`decrements`] cycle by cycle, [`Windows`] a few cycles at a time |
+//! | Friction without a simulation? | [`WeakForm`]; [`EnergyMethod`] for its curve, [`half_swing_losses`] per half swing |
 //! | Are the uncertainties to be trusted? | read the [`warnings`](Identification::warnings): they name what breaks them |
 //!
 //! ```
@@ -36,11 +38,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod banded;
 mod candidate;
 mod comparison;
+mod decrement;
+mod dimension;
+mod energy_rates;
 mod error;
+mod estimated;
 mod finding;
 mod first_guess;
+mod free_vibration;
+mod half_swings;
 mod identification;
 mod known;
 mod layout;
@@ -52,19 +61,34 @@ mod residual_structure;
 mod ring_down;
 #[cfg(feature = "serde")]
 mod serialised;
+mod terms;
+mod test_function;
+mod thesis_decrement;
+mod turning_energies;
 mod warning;
+mod weak_equations;
+mod weak_form;
+mod windows;
 
 pub use candidate::Candidate;
 pub use comparison::{Comparison, NestedTest, compare, compare_observed};
+pub use decrement::{Decrement, decrements};
+pub use energy_rates::{EnergyMethod, EnergyRate, EnergyRates};
 pub use error::IdentifyError;
+pub use estimated::Estimated;
 pub use finding::{Finding, Origin};
-pub use identification::{FittedMotion, Identification, identify, identify_observed};
+pub use identification::{FittedMotion, Identification, identify, identify_observed, identify_with};
 pub use known::Known;
 pub use machine::{Machine, Scale};
 pub use preparation::{Offset, Preparation, RecordSummary};
 pub use problem::RingDownProblem;
 pub use ring_down::RingDown;
+pub use terms::Terms;
+pub use thesis_decrement::{ThesisCycle, ThesisDecrement};
+pub use turning_energies::{HalfSwing, half_swing_losses, half_swing_losses_of};
 pub use warning::Warning;
+pub use weak_form::{WeakForm, WeakFormEstimate};
+pub use windows::{WindowFit, Windows};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

@@ -1,6 +1,6 @@
 //! What is known about the machine besides its record.
 
-use fmm_model::ModelError;
+use fmm_model::{ModelError, Restoring};
 
 use crate::Known;
 
@@ -29,6 +29,7 @@ pub struct Machine {
     scale: Scale,
     damping: Option<Known>,
     normal_load: Option<Known>,
+    restoring: Restoring,
 }
 
 /// How the equation of motion is scaled.
@@ -48,7 +49,7 @@ pub enum Scale {
 impl Machine {
     /// Nothing is known: everything is found per unit mass.
     pub const fn per_unit_mass() -> Self {
-        Self { scale: Scale::PerUnitMass, damping: None, normal_load: None }
+        Self { scale: Scale::PerUnitMass, damping: None, normal_load: None, restoring: Restoring::Linear }
     }
 
     /// A machine of known `mass` (kg).
@@ -74,7 +75,7 @@ impl Machine {
     /// They cannot be: the fit reports the direction in which mass, stiffness, damping and friction may be scaled
     /// together. It is here to show that.
     pub const fn unknown() -> Self {
-        Self { scale: Scale::Unknown, damping: None, normal_load: None }
+        Self { scale: Scale::Unknown, damping: None, normal_load: None, restoring: Restoring::Linear }
     }
 
     /// The same machine with a linear damping of its own that is known, for instance from a ring-down without the
@@ -96,6 +97,19 @@ impl Machine {
         ModelError::require_positive("normal load", load.value(), "N")?;
         self.normal_load = Some(load);
         Ok(self)
+    }
+
+    /// The same machine with another restoring force than that of a linear spring. A length in it is in the unit of position
+    /// that belongs to the record: for angles in radians the sine has length 1.
+    #[must_use]
+    pub const fn with_restoring(mut self, restoring: Restoring) -> Self {
+        self.restoring = restoring;
+        self
+    }
+
+    /// The restoring force.
+    pub const fn restoring(&self) -> Restoring {
+        self.restoring
     }
 
     /// What is known of mass and stiffness.

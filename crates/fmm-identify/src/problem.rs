@@ -1,17 +1,19 @@
 //! The least-squares problem of an identification: these records by that law.
 
+use std::f64::consts::PI;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use fmm_fit::{EvaluationError, Residuals};
+use fmm_fit::{Block, EvaluationError, Residuals};
 use fmm_friction::Role;
 use fmm_model::{Dual, Parameter, Scalar};
 use fmm_record::Quantity;
 use fmm_sim::{Channels, Samples, Sampling, Simulated, Trajectory};
 
+use crate::dimension::{Scales, bends, is_force};
 use crate::first_guess::Dissipation;
 use crate::layout::{Layout, fitted, mass_of_stiffness};
-use crate::{IdentifyError, Machine, RingDown};
+use crate::{IdentifyError, Machine, RingDown, Terms};
 
 /// The residuals "model less record" of one or several ring-downs by a law of family `F`, with exact derivatives.
 ///
@@ -23,14 +25,20 @@ use crate::{IdentifyError, Machine, RingDown};
 #[derive(Debug, Clone)]
 pub struct RingDownProblem<'a, F> {
     machine: Machine,
+    terms: Terms,
     decays: &'a [RingDown],
     parameters: Vec<Parameter>,
     layout: Layout,
+    blocks: Vec<Block>,
     family: PhantomData<F>,
 }
 
 /// Directions of derivative that one simulation carries; a law with more parameters takes several.
 const DIRECTIONS: usize = 6;
+
+/// Samples of a record, and of each of its periods, that are enough to search with.
+const ENOUGH_SAMPLES: usize = 1500;
+const SAMPLES_PER_SWING: f64 = 24.0;
 
 /// Samples simulated at a time: memory beyond the solver's own stays below 2 MB however long the record.
 const WINDOW: usize = 1 << 15;
@@ -41,13 +49,48 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
     /// # Errors
     /// [`IdentifyError::NoRecord`] and [`IdentifyError::MixedRecords`].
     pub fn new(machine: Machine, decays: &'a [RingDown]) -> Result<Self, IdentifyError> {
+        Self::with_terms(machine, Terms::NONE, decays)
+    }
+
+    /// The problem of `decays` on `machine`, with `terms` beside the law.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new), and [`IdentifyError::TwoDampings`], [`IdentifyError::NothingToHold`] and
+    /// [`IdentifyError::HeldOutOfBounds`].
+    pub fn with_terms(machine: Machine, terms: Terms, decays: &'a [RingDown]) -> Result<Self, IdentifyError> {
         let describe = |decay: &RingDown| format!("{} in {}", decay.record().quantity(), decay.record().unit());
         let first = decays.first().ok_or(IdentifyError::NoRecord)?;
         if let Some(other) = decays.iter().find(|decay| describe(decay) != describe(first)) {
             return Err(IdentifyError::MixedRecords { first: describe(first), other: describe(other) });
         }
-        let (layout, parameters) = Layout::of::<F>(&machine, decays);
-        Ok(Self { machine, decays, parameters, layout, family: PhantomData })
+        let (layout, parameters) = Layout::of::<F>(&machine, &terms, decays)?;
+        let blocks = blocks(&layout, decays);
+        Ok(Self { machine, terms, decays, parameters, layout, blocks, family: PhantomData })
+    }
+
+    /// The ring-downs up to a `share` of their duration (1), for a fit in which a small error of the period does not yet add up.
+    pub(crate) fn beginnings(&self, share: f64) -> Vec<RingDown> {
+        self.decays.iter().map(|decay| decay.beginning(share)).collect()
+    }
+
+    /// The ring-downs with so few of their samples that a search among many starts is quick and yet sees every swing; none if
+    /// they have no more.
+    pub(crate) fn thinned(&self) -> Option<Vec<RingDown>> {
+        let stride = |decay: &RingDown| {
+            let swings = decay.record().duration() * decay.guess().frequency();
+            let enough = ENOUGH_SAMPLES.max((SAMPLES_PER_SWING * swings) as usize);
+            decay.record().len() / enough
+        };
+        let stride = self.decays.iter().map(stride).min().filter(|stride| *stride > 1)?;
+        self.decays.iter().map(|decay| decay.thinned(stride)).collect()
+    }
+
+    pub(crate) fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    pub(crate) fn decays(&self) -> &'a [RingDown] {
+        self.decays
     }
 
     /// The ring-downs up to their last peaks, if they are displacements and that leaves something out.
@@ -66,9 +109,11 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
     pub(crate) fn with_records<'b>(&self, decays: &'b [RingDown]) -> RingDownProblem<'b, F> {
         RingDownProblem {
             machine: self.machine,
+            terms: self.terms.clone(),
             decays,
             parameters: self.parameters.clone(),
             layout: self.layout.clone(),
+            blocks: blocks(&self.layout, decays),
             family: PhantomData,
         }
     }
@@ -100,7 +145,7 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
     ) -> Result<(), EvaluationError> {
         let decay = &self.decays[record];
         let motion = self.motion::<D>(record, p, first);
-        let scenario = self.layout.scenario::<F, D>(&self.machine, &motion)?;
+        let scenario = self.layout.scenario::<F, D>(&self.machine, &self.terms, &motion)?;
         let displacement = decay.record().quantity() == Quantity::Displacement;
         let channels = if displacement { Channels::Position } else { Channels::Velocity };
         let sampling = Sampling::uniform(decay.record().interval(), decay.record().len())?.keeping(channels);
@@ -123,7 +168,7 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
     /// The events of `record` up to its end.
     pub(crate) fn events(&self, record: usize, p: &[f64]) -> Result<Trajectory, EvaluationError> {
         let motion = self.motion::<f64>(record, p, 0);
-        let scenario = self.layout.scenario::<F, f64>(&self.machine, &motion)?;
+        let scenario = self.layout.scenario::<F, f64>(&self.machine, &self.terms, &motion)?;
         let mut trajectory = Trajectory::new();
         let ends = Sampling::uniform(self.decays[record].record().duration(), 2)?.keeping(Channels::Position);
         F::simulate_into(&scenario, &ends, &mut trajectory)?;
@@ -143,10 +188,17 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
         Ok(model)
     }
 
+    /// Whether the law or the terms beside it have more to find than levels and a viscous part.
+    pub(crate) fn is_elaborate(&self) -> bool {
+        self.layout.law > self.layout.oscillator
+            || fitted::<F>().filter(|parameter| is_force(parameter.role())).count() > 1
+            || fitted::<F>().any(bends)
+    }
+
     /// Start values, one set per hypothesis that the law can express, each inside the bounds.
     pub(crate) fn starts(&self) -> Vec<Vec<f64>> {
-        let has = |role: Role| fitted::<F>().any(|parameter| parameter.role() == role);
-        let (has_level, has_slope) = (has(Role::Level), has(Role::Slope));
+        let has_level = fitted::<F>().any(|parameter| is_force(parameter.role()));
+        let has_slope = self.has_linear_damping();
         let hypotheses = self.decays[0].guess().hypotheses();
         let expressible = |dissipation: &&Dissipation| {
             (has_level || dissipation.friction == 0.0) && (has_slope || dissipation.damping == 0.0)
@@ -159,19 +211,19 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
         starts
     }
 
+    fn has_linear_damping(&self) -> bool {
+        self.terms.has_linear_damping() || fitted::<F>().any(|parameter| parameter.role() == Role::Slope)
+    }
+
     /// Start values under one hypothesis.
     fn start(&self, dissipation: Dissipation) -> Vec<f64> {
-        let frequency = self.decays[0].guess().natural_frequency(dissipation);
+        let frequency = self.decays[0].natural_frequency(dissipation, &self.machine);
         // An unknown mass starts at 1 kg; nothing in the record says better.
         let mut start = match self.layout.oscillator {
             1 => vec![frequency],
             _ => vec![1.0, 1.0 / mass_of_stiffness(1.0, frequency)],
         };
-        start.extend(fitted::<F>().map(|parameter| match parameter.role() {
-            Role::Level => dissipation.friction,
-            Role::Slope => dissipation.damping,
-            _ => 1.0,
-        }));
+        self.push_dissipation(dissipation, 1.0, &mut start);
         for decay in self.decays {
             let (position, velocity) = decay.guess().initial_state(dissipation);
             start.extend([position, velocity]);
@@ -179,6 +231,47 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
                 start.push(decay.guess().offset(dissipation));
             }
         }
+        self.clamped(&start)
+    }
+
+    /// Start values that continue a fit of `simple`, which has a level and a viscous part: the same losses, put into the law
+    /// in as many ways as it offers.
+    pub(crate) fn continued<S: Simulated>(&self, simple: &RingDownProblem<'_, S>, values: &[f64]) -> Vec<Vec<f64>> {
+        let (oscillator, rest) = values.split_at(simple.layout.oscillator);
+        let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
+        // A damper and Coulomb friction lose the same in a swing if F = π/4 c V.
+        let as_friction = dissipation.friction + 0.25 * PI * dissipation.damping * 0.5 * self.decays[0].scales().1;
+        let all_friction = Dissipation { friction: as_friction, damping: 0.0 };
+        let half = Dissipation { friction: as_friction, damping: 0.5 * dissipation.damping };
+        let mut starts = Vec::new();
+        let sharpnesses: &[f64] = if fitted::<F>().any(bends) { &[1.0, 8.0, 0.125] } else { &[1.0] };
+        for sharpness in sharpnesses {
+            let shares = if self.has_linear_damping() { vec![dissipation, half] } else { vec![all_friction] };
+            for share in shares {
+                let mut start = oscillator.to_vec();
+                self.push_dissipation(share, *sharpness, &mut start);
+                start.extend_from_slice(&values[simple.layout.shared..]);
+                starts.push(self.clamped(&start));
+            }
+        }
+        starts
+    }
+
+    /// Pushes start values of the damping beside the law and of the law.
+    fn push_dissipation(&self, dissipation: Dissipation, sharpness: f64, start: &mut Vec<f64>) {
+        let (length, speed) = self.decays[0].scales();
+        let Dissipation { friction, damping } = dissipation;
+        if self.terms.has_linear_damping() {
+            start.push(damping);
+        }
+        if self.terms.has_quadratic_damping() {
+            start.push(0.1 * (damping + friction / speed) / speed);
+        }
+        let scales = Scales { length, speed, friction, damping, sharpness };
+        start.extend(fitted::<F>().map(|parameter| scales.typical(parameter)));
+    }
+
+    fn clamped(&self, start: &[f64]) -> Vec<f64> {
         start.iter().zip(&self.parameters).map(|(value, parameter)| parameter.bounds().clamp(*value)).collect()
     }
 
@@ -214,6 +307,18 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
     }
 }
 
+/// One block per record: the parameters of its motion and its offset.
+fn blocks(layout: &Layout, decays: &[RingDown]) -> Vec<Block> {
+    let block = |(record, decay): (usize, &RingDown)| {
+        let mut parameters: Vec<usize> = (0..layout.directions()).map(|j| layout.index(record, j)).collect();
+        if decay.fixed_offset().is_none() {
+            parameters.push(layout.own[record] + 2);
+        }
+        Block::new(decay.summary().samples, parameters)
+    };
+    decays.iter().enumerate().map(block).collect()
+}
+
 impl<F: Simulated> Residuals for RingDownProblem<'_, F> {
     fn parameters(&self) -> &[Parameter] {
         &self.parameters
@@ -242,9 +347,10 @@ impl<F: Simulated> Residuals for RingDownProblem<'_, F> {
         residuals: &mut [f64],
         jacobian: &mut [f64],
     ) -> Result<bool, EvaluationError> {
-        let rows = self.len();
         jacobian.fill(0.0);
+        let mut elements = 0;
         for (record, base) in self.bases() {
+            let rows = self.decays[record].summary().samples;
             for first in (0..self.layout.directions()).step_by(DIRECTIONS) {
                 let carried = (self.layout.directions() - first).min(DIRECTIONS);
                 let kept = self.decays[record].kept();
@@ -254,16 +360,84 @@ impl<F: Simulated> Residuals for RingDownProblem<'_, F> {
                     }
                     for direction in 0..carried {
                         let Some(partial) = simulated.partial(direction) else { continue };
-                        let start = self.layout.index(record, first + direction) * rows + base + before;
+                        let start = elements + (first + direction) * rows + before;
                         jacobian[start..start + partial.len()].copy_from_slice(partial);
                     }
                 })?;
             }
             if self.decays[record].fixed_offset().is_none() {
-                let start = (self.layout.own[record] + 2) * rows + base;
-                jacobian[start..start + self.decays[record].summary().samples].fill(1.0);
+                let start = elements + self.layout.directions() * rows;
+                jacobian[start..start + rows].fill(1.0);
             }
+            elements += rows * self.blocks[record].parameters().len();
         }
         Ok(true)
+    }
+
+    fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fmm_friction::CoulombViscous;
+    use fmm_model::Oscillator;
+    use fmm_record::Record;
+    use fmm_sim::{Engine, Exact, Scenario};
+
+    use super::*;
+    use crate::Preparation;
+
+    /// Two velocity records of a machine of 2 Hz, c/m = 0.05 1/s, F/m = 0.3 m/s², of different length.
+    fn decays() -> Vec<RingDown> {
+        [(0.02, 2000), (0.025, 2300)]
+            .map(|(position, samples)| {
+                let law = CoulombViscous::new(0.3, 0.05).unwrap();
+                let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), law, 1.0).unwrap();
+                let sampling = Sampling::uniform(1e-3, samples).unwrap();
+                let motion = Exact.run(&scenario.starting_at(position, 0.0).unwrap(), &sampling).unwrap();
+                let noise = |i: usize| 1e-4 * (((i * 7919) % 1009) as f64 / 1009.0 - 0.5);
+                let values = motion.velocity().values().iter().enumerate().map(|(i, v)| v + noise(i)).collect();
+                let record = Record::new(0.0, 1e-3, values, Quantity::Velocity, "m/s").unwrap();
+                RingDown::prepare(&record, &Preparation::default()).unwrap()
+            })
+            .to_vec()
+    }
+
+    #[test]
+    fn derivatives_of_joint_records_are_those_of_differences() {
+        let decays = decays();
+        let problem = RingDownProblem::<CoulombViscous>::new(Machine::per_unit_mass(), &decays).unwrap();
+        // Off the bounds, so that differences have room.
+        let p: Vec<f64> = problem.starts()[0].iter().map(|value| value + 1e-3).collect();
+        let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
+        let mut jacobian = vec![0.0; elements];
+        assert!(problem.jacobian(&p, &mut jacobian).unwrap());
+        let at = |j: usize, by: f64| {
+            let mut moved = p.clone();
+            moved[j] += by;
+            let mut residuals = vec![0.0; problem.len()];
+            problem.residuals(&moved, &mut residuals).unwrap();
+            residuals
+        };
+        let mut columns = jacobian.as_slice();
+        let mut row = 0;
+        for block in problem.blocks() {
+            for &j in block.parameters() {
+                let h = 1e-6;
+                let (above, below) = (at(j, h), at(j, -h));
+                let (column, rest) = columns.split_at(block.rows());
+                let difference = |i: usize| (above[row + i] - below[row + i]) / (2.0 * h);
+                let scale = column.iter().fold(0.0f64, |scale, d| scale.max(d.abs()));
+                // A reversal may cross a sample within h, which spoils its difference: one sample per half swing at most.
+                let off = (0..block.rows()).filter(|&i| (column[i] - difference(i)).abs() > 1e-5 * scale).count();
+                let name = problem.parameters()[j].name();
+                assert!(scale > 0.0 && off < 20, "{name}: {off} of {} samples differ", block.rows());
+                columns = rest;
+            }
+            row += block.rows();
+        }
+        assert_eq!((row, columns.len()), (problem.len(), 0));
     }
 }

@@ -1,12 +1,13 @@
 //! A record made ready for identification.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
-use fmm_model::{Bounds, ModelError};
+use fmm_model::{Bounds, ModelError, Restoring};
 use fmm_record::{OffsetStep, Peak, Quantity, Record, Release, Swings, noise, quantisation_step, saturation, spikes};
 
-use crate::first_guess::{FirstGuess, Oscillation};
-use crate::{IdentifyError, Offset, Preparation, RecordSummary};
+use crate::first_guess::{Dissipation, FirstGuess, Oscillation};
+use crate::{IdentifyError, Machine, Offset, Preparation, RecordSummary};
 
 /// A prepared ring-down: the part of a record in which a machine vibrates freely, and what was seen in it.
 ///
@@ -128,7 +129,20 @@ impl RingDown {
     /// the end of the motion there is no such jump.
     pub(crate) fn up_to_last_peak(&self) -> Option<Self> {
         let (last, _) = *self.peaks.last()?;
-        let record = self.record.crop(self.record.start(), last).ok()?;
+        self.up_to(last)
+    }
+
+    /// The first `share` of the ring-down (1), as much of it as can be fitted.
+    pub(crate) fn beginning(&self, share: f64) -> Self {
+        let end = self.record.start() + share * self.record.duration();
+        // Three periods tell a frequency.
+        let end = end.max(self.record.start() + 3.0 / self.guess.frequency());
+        self.up_to(end).unwrap_or_else(|| self.clone())
+    }
+
+    /// The part up to `end` (s); none if that leaves nothing out or too little.
+    fn up_to(&self, end: f64) -> Option<Self> {
+        let record = self.record.crop(self.record.start(), end).ok()?;
         let count = record.len();
         if count < FEWEST_SAMPLES || count == self.record.len() {
             return None;
@@ -138,6 +152,38 @@ impl RingDown {
         let summary =
             RecordSummary { to: record.end(), samples: kept.iter().map(Range::len).sum(), ..self.summary.clone() };
         Some(Self { record, kept, summary, ..self.clone() })
+    }
+
+    /// Every `stride`-th sample, for a search that need not see them all.
+    pub(crate) fn thinned(&self, stride: usize) -> Option<Self> {
+        let values: Vec<f64> = self.record.values().iter().copied().step_by(stride).collect();
+        let interval = self.record.interval() * stride as f64;
+        let record =
+            Record::new(self.record.start(), interval, values, self.record.quantity(), self.record.unit()).ok()?;
+        let thin = |range: &Range<usize>| range.start.div_ceil(stride)..range.end.div_ceil(stride);
+        let kept: Vec<Range<usize>> = self.kept.iter().map(thin).filter(|range| !range.is_empty()).collect();
+        let summary = RecordSummary { samples: kept.iter().map(Range::len).sum(), ..self.summary.clone() };
+        Some(Self { record, kept, summary, ..self.clone() })
+    }
+
+    /// Largest displacement and velocity of the motion, in the units of the record and its integral or derivative.
+    pub(crate) fn scales(&self) -> (f64, f64) {
+        let (largest, angular) = (self.summary.amplitudes.0, 2.0 * PI * self.guess.frequency());
+        match self.record.quantity() {
+            Quantity::Displacement => (largest, angular * largest),
+            _ => (largest / angular, largest),
+        }
+    }
+
+    /// f₀ (Hz) of small vibrations of an undamped `machine`, given what its contact loses: a pendulum swings more slowly the
+    /// farther it swings, by φ²/16.
+    pub(crate) fn natural_frequency(&self, dissipation: Dissipation, machine: &Machine) -> f64 {
+        let frequency = self.guess.natural_frequency(dissipation);
+        let Restoring::Sine { length } = machine.restoring() else { return frequency };
+        let amplitudes = self.guess.amplitudes();
+        let square = amplitudes.iter().map(|a| a * a).sum::<f64>() / amplitudes.len().max(1) as f64;
+        let unit = self.scales().0 / amplitudes[0] / length;
+        frequency * (1.0 + square * unit * unit / 16.0)
     }
 
     pub(crate) fn guess(&self) -> &FirstGuess {

@@ -2,8 +2,11 @@
 
 use std::fmt;
 
+use fmm_model::Restoring;
+
 use crate::machine::Scale;
-use crate::{Identification, RecordSummary, RingDown};
+use crate::terms::{LINEAR, QUADRATIC};
+use crate::{Identification, Machine, RecordSummary, RingDown};
 
 /// Something that limits what the record can tell, or that was done to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,16 +101,38 @@ pub enum Warning {
         /// Name of the parameter.
         parameter: String,
         /// Name of the more general law.
-        law: &'static str,
+        law: String,
         /// What it finds, as text with its uncertainty and unit.
         finding: String,
     },
     /// Another law was not fitted to its minimum, so that the comparison does not count it in full.
     OtherLaw {
         /// Name of that law.
-        law: &'static str,
+        law: String,
         /// What happened.
         sentence: String,
+    },
+    /// A damper came out negative.
+    NegativeDamping {
+        /// Name of the law.
+        law: String,
+        /// Name of the parameter.
+        parameter: String,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: String,
+    },
+    /// Another law, which misses the record, states much less friction at rest than the preferred one.
+    Misled {
+        /// Name of that law.
+        law: String,
+        /// F/m at rest that it states, in the unit of the friction per mass.
+        friction: f64,
+        /// F/m at rest that the preferred law states.
+        preferred: f64,
+        /// By what factor its residuals are larger (1).
+        residuals: f64,
     },
     /// The models are too close to prefer one.
     Undecided,
@@ -129,9 +154,10 @@ impl Warning {
             _ => {}
         }
         for decay in decays {
-            Self::of_record(decay.summary(), &mut warnings);
+            Self::of_record(decay.summary(), machine, &mut warnings);
         }
         Self::of_fit(identification, &mut warnings);
+        Self::of_damping(identification, &mut warnings);
         Self::of_residuals(identification, decays, &mut warnings);
         if let Some((margin, time)) = identification.narrowest_decision().filter(|(margin, _)| margin.abs() < NARROW) {
             warnings.push(Self::NarrowStop { margin, time });
@@ -139,7 +165,7 @@ impl Warning {
         warnings
     }
 
-    fn of_record(summary: &RecordSummary, warnings: &mut Vec<Self>) {
+    fn of_record(summary: &RecordSummary, machine: &Machine, warnings: &mut Vec<Self>) {
         let (first, last) = summary.amplitudes;
         // Two turning points give one amplitude.
         if last >= first && summary.half_swings > 2 {
@@ -148,7 +174,9 @@ impl Warning {
         if summary.half_swings < ENOUGH_HALF_SWINGS {
             warnings.push(Self::FewHalfSwings { count: summary.half_swings });
         }
-        warnings.extend(summary.period_change.map(|change| Self::PeriodDependsOnAmplitude { change }));
+        // A pendulum that is taken for one has such a period.
+        let period_change = summary.period_change.filter(|_| machine.restoring() == Restoring::Linear);
+        warnings.extend(period_change.map(|change| Self::PeriodDependsOnAmplitude { change }));
         warnings.extend(summary.saturation.map(|saturation| Self::Saturated { count: saturation.samples }));
         warnings.extend(summary.offset_step.map(|step| Self::OffsetStep {
             time: step.time,
@@ -174,6 +202,16 @@ impl Warning {
         }
         for estimate in fit.estimates().iter().filter(|estimate| estimate.status().is_at_bound()) {
             warnings.push(Self::AtBound { parameter: estimate.name().to_owned(), value: estimate.value() });
+        }
+    }
+
+    fn of_damping(identification: &Identification, warnings: &mut Vec<Self>) {
+        for estimate in identification.fit().estimates() {
+            if matches!(estimate.name(), LINEAR | QUADRATIC) && estimate.value() < 0.0 {
+                let (parameter, unit) = (estimate.name().to_owned(), estimate.parameter().unit().to_owned());
+                let law = identification.law().to_owned();
+                warnings.push(Self::NegativeDamping { law, parameter, value: estimate.value(), unit });
+            }
         }
     }
 
@@ -214,7 +252,7 @@ impl fmt::Display for Warning {
             Self::PeriodDependsOnAmplitude { change } => write!(
                 f,
                 "the period changes by {:+.2} % as the amplitude falls: the amplitude is too large for a linear spring \
-                 (a pendulum, or a spring that stiffens); use a part of smaller amplitude",
+                 (a pendulum, whose restoring force is a sine, or a spring that stiffens); give that force, or use a part of smaller amplitude",
                 100.0 * change
             ),
             Self::NoDecay => write!(f, "the amplitude does not fall: there is no dissipation to identify"),
@@ -262,6 +300,18 @@ impl fmt::Display for Warning {
                 )
             }
             Self::OtherLaw { law, sentence } => write!(f, "{law}: {sentence}"),
+            Self::NegativeDamping { law, parameter, value, unit } => write!(
+                f,
+                "{law}: {parameter} is negative, {value:.4} {unit}: no damper feeds the motion; it stands for friction that falls with \
+                 speed, so try a law that does (berger, stribeck) in its place"
+            ),
+            Self::Misled { law, friction, preferred, residuals } => write!(
+                f,
+                "{law} alone would have put the friction at rest at {friction:.3}, {:.1} times less than the {preferred:.3} of the \
+                 preferred law: with friction that changes with speed, a level and a straight line share the losses of large \
+                 swings and miss those of small ones (its residuals are {residuals:.1} times larger)",
+                preferred / friction
+            ),
             Self::Undecided => write!(
                 f,
                 "the data do not decide between the models; the simplest of the close ones is shown as preferred"

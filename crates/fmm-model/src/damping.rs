@@ -54,6 +54,17 @@ impl<D: Scalar> Damping<D> {
         Ok(Self { linear, quadratic, ..Self::none() })
     }
 
+    /// Linear damping `c₁` (N s/m) and quadratic damping `c₂` (N s²/m²) of any sign, for fits that ask what a record says when
+    /// nothing forbids it. Negative damping feeds the motion; in a fit it stands for friction that falls with speed.
+    ///
+    /// # Errors
+    /// [`ModelError::NotFinite`] if a coefficient is not finite.
+    pub fn of_any_sign(linear: D, quadratic: D) -> Result<Self, ModelError> {
+        ModelError::require_finite("linear damping", linear.value(), "N s/m")?;
+        ModelError::require_finite("quadratic damping", quadratic.value(), "N s²/m²")?;
+        Ok(Self { linear, quadratic, ..Self::none() })
+    }
+
     /// The damping whose equivalent viscous coefficient is a straight line in the *peak* velocity V of a swing,
     /// c(V) = `intercept` (N s/m) + `slope` (N s²/m²) · V, as a fit to whole swings gives it (thesis Eq. 5.5).
     ///
@@ -121,9 +132,11 @@ impl<D: Scalar> Damping<D> {
         self.power
     }
 
-    /// Whether there is no part but the linear one.
+    /// Whether there is no part but the linear one, in value and in every derivative.
     pub fn is_linear(&self) -> bool {
-        self.quadratic.value() == 0.0 && self.cubic.value() == 0.0 && self.power.is_none()
+        let vanishes =
+            |number: D| number.value() == 0.0 && (0..D::DIRECTIONS).all(|direction| number.partial(direction) == 0.0);
+        vanishes(self.quadratic) && vanishes(self.cubic) && self.power.is_none()
     }
 
     /// F(v), the damping force (N) at `velocity` (m/s); it has the sign of the velocity.

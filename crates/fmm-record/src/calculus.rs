@@ -63,20 +63,29 @@ impl Record {
     /// [`RecordError::NoDerivative`] unless this is displacement or velocity, [`RecordError::TooShort`] below three
     /// samples, [`RecordError::NonFinite`] if the derivative overflows.
     pub fn differentiate(&self) -> Result<Self, RecordError> {
-        let quantity = self.quantity().derivative()?;
-        let x = self.values();
-        let n = x.len();
-        if n < 3 {
-            return Err(RecordError::TooShort { operation: "a derivative", needed: 3, length: n });
-        }
-        let twice = 2.0 * self.interval();
-        let at_end = |end: f64, next: f64, third: f64| (4.0 * (next - end) - (third - end)) / twice;
-        let mut values = Vec::with_capacity(n);
-        values.push(at_end(x[0], x[1], x[2]));
-        values.extend(x.windows(3).map(|around| (around[2] - around[0]) / twice));
-        values.push(-at_end(x[n - 1], x[n - 2], x[n - 3]));
-        Self::new(self.start(), self.interval(), values, quantity, unit_of_derivative(self.unit()))
+        self.quantity().derivative()?;
+        let per_sample = central_differences(self.values())?;
+        self.with_derivative(per_sample.into_iter().map(|slope| slope / self.interval()).collect())
     }
+
+    /// A record of the derivative, with these `values` in its unit.
+    pub(crate) fn with_derivative(&self, values: Vec<f64>) -> Result<Self, RecordError> {
+        Self::new(self.start(), self.interval(), values, self.quantity().derivative()?, unit_of_derivative(self.unit()))
+    }
+}
+
+/// The slope per sample by central differences, by a parabola at the ends.
+pub(crate) fn central_differences(x: &[f64]) -> Result<Vec<f64>, RecordError> {
+    let n = x.len();
+    if n < 3 {
+        return Err(RecordError::TooShort { operation: "a derivative", needed: 3, length: n });
+    }
+    let at_end = |end: f64, next: f64, third: f64| 0.5 * (4.0 * (next - end) - (third - end));
+    let mut slopes = Vec::with_capacity(n);
+    slopes.push(at_end(x[0], x[1], x[2]));
+    slopes.extend(x.windows(3).map(|around| 0.5 * (around[2] - around[0])));
+    slopes.push(-at_end(x[n - 1], x[n - 2], x[n - 3]));
+    Ok(slopes)
 }
 
 fn unit_of_integral(unit: &str) -> String {

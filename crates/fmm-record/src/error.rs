@@ -122,6 +122,16 @@ pub enum RecordError {
         /// The span given.
         span: usize,
     },
+    /// A polynomial that a window does not determine, or that no filter needs.
+    #[error(
+        "the degree of a smoothing polynomial must be below its span and at most 8, but is {degree} for {span} samples"
+    )]
+    Degree {
+        /// The degree given.
+        degree: usize,
+        /// The span given.
+        span: usize,
+    },
     /// Too few samples for the operation.
     #[error("{operation} needs at least {needed} samples, but the record has {length}")]
     TooShort {

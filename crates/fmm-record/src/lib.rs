@@ -7,7 +7,7 @@
 //! | when does motion begin, and what is the offset? | [`Release`] |
 //! | how does it swing? | [`Swings`]: peaks, crossings, frequency |
 //! | how good is it? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`] |
-//! | another form of it? | [`Record::crop`], [`Record::scaled`], [`Record::shifted`], [`Record::smoothed`], [`Record::integrate`], [`Record::differentiate`] |
+//! | another form of it? | [`Record::crop`], [`Record::scaled`], [`Record::shifted`], [`Record::smoothed`], [`Record::smoothed_by`], [`Record::integrate`], [`Record::differentiate`] |
 //!
 //! Nothing is repaired in silence: a file that contradicts itself is an error that says where, and what conditioning
 //! finds is reported, not removed.
@@ -59,7 +59,9 @@ mod record;
 mod release;
 mod sampling;
 mod saturation;
+mod savitzky_golay;
 mod smooth;
+mod smoothing;
 mod spikes;
 mod swings;
 #[cfg(test)]
@@ -77,7 +79,9 @@ pub use record::Record;
 pub use release::Release;
 pub use sampling::{JITTER, RATE_ROUNDING, Sampling, UniformTimes};
 pub use saturation::{Saturation, saturation};
+pub use savitzky_golay::{savitzky_golay, savitzky_golay_derivative};
 pub use smooth::{EndRule, moving_average};
+pub use smoothing::Smoothing;
 pub use spikes::{Spike, spikes};
 pub use swings::{Crossing, Peak, Swings};
 

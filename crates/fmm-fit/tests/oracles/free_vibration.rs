@@ -13,7 +13,7 @@ struct FreeVibration {
 }
 
 /// Velocity (m/s) of x″ + c x′ + k x = 0 at time `t`.
-fn velocity<D: Scalar>(t: f64, k: D, c: D, x0: D, v0: D) -> D {
+pub(crate) fn velocity<D: Scalar>(t: f64, k: D, c: D, x0: D, v0: D) -> D {
     let rate = c * 0.5;
     let angular = (k - rate * rate).sqrt();
     let (sin, cos) = (angular * t).sin_cos();

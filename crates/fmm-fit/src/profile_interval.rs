@@ -1,0 +1,131 @@
+//! Intervals from the profile of the sum of squares.
+
+use crate::{FitError, Outcome};
+
+/// What is known of the variance of the residuals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ResidualVariance {
+    /// Nothing: it is s² = S/ν, and the quantile is Student's.
+    Estimated,
+    /// It is 1, each residual being divided by its standard uncertainty, and the quantile is the normal one.
+    Unit,
+}
+
+/// One end of a profile interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum ProfileEnd {
+    /// The residuals rule out values beyond this one.
+    At(f64),
+    /// The residuals rule nothing out up to the bound of the parameter, which is this value.
+    Bound(f64),
+    /// The residuals rule nothing out up to about this value, beyond which the model has no finite value.
+    Edge(f64),
+    /// The residuals rule nothing out however far the value goes.
+    Open,
+}
+
+impl ProfileEnd {
+    /// The value at which the interval ends; none if it is open.
+    pub fn value(self) -> Option<f64> {
+        match self {
+            Self::At(value) | Self::Bound(value) | Self::Edge(value) => Some(value),
+            Self::Open => None,
+        }
+    }
+}
+
+/// An interval from the profile of the sum of squares, and the profile as far as it was needed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProfileInterval {
+    pub(crate) level: f64,
+    pub(crate) lower: ProfileEnd,
+    pub(crate) upper: ProfileEnd,
+    pub(crate) points: Vec<(f64, f64)>,
+    pub(crate) residual_evaluations: usize,
+}
+
+impl ProfileInterval {
+    /// The probability with which the interval covers the parameter.
+    pub fn level(&self) -> f64 {
+        self.level
+    }
+
+    /// The lower end, in the unit of the parameter.
+    pub fn lower(&self) -> ProfileEnd {
+        self.lower
+    }
+
+    /// The upper end, in the unit of the parameter.
+    pub fn upper(&self) -> ProfileEnd {
+        self.upper
+    }
+
+    /// The profile where it was computed: values of the parameter, ascending, and the smallest sum of squares there.
+    pub fn points(&self) -> &[(f64, f64)] {
+        &self.points
+    }
+
+    /// Evaluations of the residuals.
+    pub fn residual_evaluations(&self) -> usize {
+        self.residual_evaluations
+    }
+}
+
+/// Why there is no profile interval.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProfileError {
+    /// The problem has no parameter of that name.
+    #[error("there is no parameter called {0}")]
+    UnknownParameter(String),
+    /// The fit is one of another problem.
+    #[error(
+        "the fit has {fit:?} residuals and parameters, but the problem {problem:?}; it must be that of the problem"
+    )]
+    DifferentProblem {
+        /// Residuals and parameters of the fit.
+        fit: (usize, usize),
+        /// Residuals and parameters of the problem.
+        problem: (usize, usize),
+    },
+    /// The parameter is fixed by its bounds.
+    #[error("{0} is fixed and has no interval")]
+    Fixed(String),
+    /// The level is no probability.
+    #[error("the level of an interval must be above 0 and below 1, but is {0}")]
+    Level(f64),
+    /// There is no variance to compare with.
+    #[error("the fit leaves no residual or no degree of freedom, so the variance cannot be estimated from it")]
+    NoVariance,
+    /// The fit given did not end at a minimum.
+    #[error("the fit is not at a minimum: {0}")]
+    NotConverged(Outcome),
+    /// The sum of squares is lower elsewhere: the fit was not at the minimum, or only at a local one.
+    #[error(
+        "the fit is not at the lowest minimum: the sum of squares is {lower} instead of {found} at {values:?}; \
+         take that for the fit"
+    )]
+    LowerMinimum {
+        /// Where the sum of squares is lower.
+        values: Vec<f64>,
+        /// The sum of squares there.
+        lower: f64,
+        /// The sum of squares of the fit.
+        found: f64,
+    },
+    /// A fit with the parameter held did not converge.
+    #[error("with {parameter} held at {value} the fit ended as: {outcome}")]
+    HeldFit {
+        /// Name of the parameter.
+        parameter: String,
+        /// The value it was held at.
+        value: f64,
+        /// How the fit ended.
+        outcome: Outcome,
+    },
+    /// A fit could not begin.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+}

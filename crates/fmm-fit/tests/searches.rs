@@ -1,0 +1,276 @@
+//! Many starts and profile intervals: what they find, and what they say when there is nothing to find.
+
+use std::cell::Cell;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use fmm_fit::{
+    EvaluationError, FitError, Minima, MultiStart, Options, Outcome, ProfileEnd, ProfileError, ProfileInterval,
+    ResidualVariance, Residuals, StartFailure, profile_interval, solve,
+};
+use fmm_model::{Bounds, Parameter};
+
+/// Residuals from a closure of the parameters and the index.
+struct Problem<F> {
+    parameters: Vec<Parameter>,
+    count: usize,
+    residual: F,
+}
+
+impl<F: Fn(&[f64], usize) -> f64> Residuals for Problem<F> {
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+    fn len(&self) -> usize {
+        self.count
+    }
+    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        residuals.iter_mut().enumerate().for_each(|(i, r)| *r = (self.residual)(p, i));
+        Ok(())
+    }
+}
+
+fn problem<F: Fn(&[f64], usize) -> f64>(bounds: &[(f64, f64)], count: usize, residual: F) -> Problem<F> {
+    let name = |(j, (lower, upper)): (usize, &(f64, f64))| {
+        Parameter::named(format!("p{j}"), format!("p{j}"), "1").bounded(Bounds::new(*lower, *upper).unwrap())
+    };
+    Problem { parameters: bounds.iter().enumerate().map(name).collect(), count, residual }
+}
+
+const FREE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
+/// Problem 2 of Moré, Garbow and Hillstrom: 0 at (5, 4), and a local minimum of 48.98 at (11.41…, −0.8968…).
+fn freudenstein_roth(p: &[f64], i: usize) -> f64 {
+    let y = p[1];
+    if i == 0 { -13.0 + p[0] + ((5.0 - y) * y - 2.0) * y } else { -29.0 + p[0] + ((y + 1.0) * y - 14.0) * y }
+}
+
+/// All that is found, as bits.
+fn signature(found: &Minima) -> Vec<(Vec<u64>, Vec<usize>)> {
+    let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect();
+    found.minima().iter().map(|minimum| (bits(minimum.fit().values()), minimum.starts().to_vec())).collect()
+}
+
+#[test]
+fn both_minima_of_a_textbook_function_are_found() {
+    let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
+    // From the usual start, and from no further than its own size, there is only the local one.
+    assert_eq!(MultiStart::default().solve(&problem, &[0.5, -2.0]).unwrap().minima().len(), 1);
+    let found = MultiStart::default().with_reach(vec![20.0, 10.0]).solve(&problem, &[0.5, -2.0]).unwrap();
+    let [lowest, other] = found.minima() else { panic!("{} minima", found.minima().len()) };
+    assert!((lowest.fit().values()[0] - 5.0).abs() < 1e-9 && (lowest.fit().values()[1] - 4.0).abs() < 1e-9);
+    assert!((other.fit().sum_of_squares() - 48.984_253_679_24).abs() < 1e-9, "S = {}", other.fit().sum_of_squares());
+    assert_eq!(other.starts()[0], 0, "the given start leads to the local minimum");
+    let total = lowest.starts().len() + other.starts().len() + found.failures().len();
+    assert_eq!((total, found.starts()), (64, 64));
+    assert!(lowest.starts().len() > 5, "{} starts led to the lowest", lowest.starts().len());
+}
+
+#[test]
+fn equal_seeds_give_equal_bits_on_any_number_of_threads() {
+    let problem = problem(&[FREE, (-10.0, 10.0)], 2, freudenstein_roth);
+    let search = MultiStart::default().with_starts(70).with_seed(42);
+    let found = signature(&search.solve(&problem, &[0.5, -2.0]).unwrap());
+    assert_eq!(found, signature(&search.solve(&problem, &[0.5, -2.0]).unwrap()));
+    let other = search.clone().with_seed(43).solve(&problem, &[0.5, -2.0]).unwrap();
+    assert_ne!(found, signature(&other));
+    #[cfg(feature = "rayon")]
+    for threads in [1, 2, 5] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let parallel = pool.install(|| search.solve_parallel(&problem, &[0.5, -2.0]).unwrap());
+        assert_eq!(found, signature(&parallel), "{threads} threads");
+    }
+}
+
+#[test]
+fn periods_of_a_wave_are_separate_minima() {
+    // A sine of 3 rad/s sampled for 10 s: a minimum about every 2 π/10 of frequency.
+    let wave = problem(&[(0.5, 6.0), FREE, FREE], 101, |p, i| {
+        let t = 0.1 * i as f64;
+        p[1] * (p[0] * t).cos() + p[2] * (p[0] * t).sin() - (3.0 * t + 0.4).sin() - 0.01 * ((i * 37 % 11) as f64 - 5.0)
+    });
+    let found = MultiStart::default().with_starts(40).solve(&wave, &[1.0, 1.0, 1.0]).unwrap();
+    let frequencies: Vec<f64> = found.minima().iter().map(|minimum| minimum.fit().values()[0]).collect();
+    println!("{frequencies:?}, {:?}", found.failures());
+    assert!((frequencies[0] - 3.0).abs() < 0.01);
+    assert!(found.minima().len() >= 8, "{frequencies:?}");
+    let sums: Vec<f64> = found.minima().iter().map(|minimum| minimum.fit().sum_of_squares()).collect();
+    assert!(sums.is_sorted(), "{sums:?}");
+}
+
+#[test]
+fn a_valley_is_one_minimum() {
+    let product = problem(&[(0.1, 10.0), (0.1, 10.0)], 5, |p, i| p[0] * p[1] - 2.0 + 0.1 * (i as f64 - 2.0));
+    let found = MultiStart::default().solve(&product, &[1.0, 1.0]).unwrap();
+    assert_eq!(found.minima().len(), 1);
+    assert_eq!(found.minima()[0].starts().len(), 64);
+}
+
+#[test]
+fn starts_without_values_are_counted_and_named() {
+    // No value in one half, a minimum in the other.
+    let half = problem(&[(-1.0, 1.0)], 3, |p, i| if p[0] < 0.0 { f64::NAN } else { p[0] - 0.5 + 0.1 * i as f64 });
+    let search = MultiStart::default().with_kicks(0, 0);
+    let found = search.solve(&half, &[-0.5]).unwrap();
+    assert_eq!((found.starts(), found.minima().len()), (32, 1));
+    assert!((found.best().unwrap().values()[0] - 0.4).abs() < 1e-9);
+    let (number, failure) = &found.failures()[0];
+    assert!(matches!((number, failure), (0, StartFailure::Refused(FitError::ResidualNotFinite { index: 0, .. }))));
+    // A Latin hypercube of 31 has 15 or 16 points on either side.
+    assert!((16..=17).contains(&found.failures().len()), "{} failures", found.failures().len());
+
+    let nowhere = problem(&[(-1.0, 1.0)], 3, |_, _| f64::NAN);
+    assert!(matches!(search.solve(&nowhere, &[0.0]), Err(FitError::ResidualNotFinite { .. })));
+    assert!(matches!(search.solve(&half, &[2.0]), Err(FitError::StartOutsideBounds { .. })));
+    let refused = search.with_reach(vec![1.0, 2.0]).solve(&half, &[0.0]);
+    assert!(matches!(refused, Err(FitError::InvalidOption { option: "reach", .. })));
+}
+
+#[test]
+fn a_cancelled_search_keeps_what_it_has() {
+    let flag = Arc::new(AtomicBool::new(true));
+    let options = Options::default().with_cancel_flag(flag);
+    let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
+    let found = MultiStart::default().with_options(options).solve(&problem, &[0.5, -2.0]).unwrap();
+    assert_eq!((found.starts(), found.minima().len()), (1, 0));
+    assert!(matches!(found.failures()[..], [(0, StartFailure::Ended(Outcome::Cancelled))]));
+    assert_eq!(found.unfinished().unwrap().values(), [0.5, -2.0]);
+}
+
+/// A straight line with some scatter.
+fn line(p: &[f64], i: usize) -> f64 {
+    p[0] + p[1] * i as f64 - 2.0 - 0.5 * i as f64 - 0.3 * ((i * 37 % 11) as f64 - 5.0)
+}
+
+fn interval<F: Fn(&[f64], usize) -> f64>(
+    problem: &Problem<F>,
+    start: &[f64],
+    name: &str,
+    variance: ResidualVariance,
+) -> Result<ProfileInterval, ProfileError> {
+    let fit = solve(problem, start, &Options::default()).unwrap();
+    profile_interval(problem, &fit, name, 0.95, variance, &Options::default())
+}
+
+#[test]
+fn a_straight_line_has_the_interval_of_student_and_of_gauss() {
+    let line = problem(&[FREE, FREE], 20, line);
+    let fit = solve(&line, &[0.0, 0.0], &Options::default()).unwrap();
+    for (j, name) in ["p0", "p1"].into_iter().enumerate() {
+        let (lower, upper) = fit.interval(name, 0.95).unwrap();
+        let found = interval(&line, &[0.0, 0.0], name, ResidualVariance::Estimated).unwrap();
+        let reach = 1.959_963_984_540_054 * fit.unit_covariance(j, j).unwrap().sqrt();
+        let value = fit.values()[j];
+        let known = interval(&line, &[0.0, 0.0], name, ResidualVariance::Unit).unwrap();
+        let ends = [found.lower(), found.upper(), known.lower(), known.upper()];
+        for (end, expected) in ends.into_iter().zip([lower, upper, value - reach, value + reach]) {
+            let ProfileEnd::At(end) = end else { panic!("{name}: {end:?}") };
+            // Differences are good to about 1e-10 of the slopes.
+            assert!((end - expected).abs() < 1e-8, "{name}: {end} instead of {expected}");
+        }
+        assert!(found.points().is_sorted_by_key(|point| point.0) && found.points().len() < 12);
+    }
+}
+
+#[test]
+fn a_parameter_at_its_bound_has_a_one_sided_interval() {
+    // Free, the offset would be negative by about half of its standard uncertainty.
+    let bounded = problem(&[(2.3, f64::INFINITY), FREE], 20, line);
+    let fit = solve(&bounded, &[3.0, 0.0], &Options::default()).unwrap();
+    assert!(fit.estimates()[0].status().is_at_bound());
+    let found = interval(&bounded, &[3.0, 0.0], "p0", ResidualVariance::Estimated).unwrap();
+    assert_eq!(found.lower(), ProfileEnd::Bound(2.3));
+    let ProfileEnd::At(upper) = found.upper() else { panic!("{:?}", found.upper()) };
+    // The equation of the end, from a fit with the offset held there.
+    let held = solve(&problem(&[(upper, upper), FREE], 20, line), &[upper, 0.0], &Options::default()).unwrap();
+    let t = (held.sum_of_squares() - fit.sum_of_squares()).sqrt() / fit.residual_standard_deviation().unwrap();
+    let nu = fit.degrees_of_freedom();
+    assert_eq!(nu, 19);
+    // Student's quantile for 19 degrees of freedom.
+    assert!((t - 2.093_024_054).abs() < 1e-7, "t = {t}");
+    // From inside, an end on the bound.
+    let wide = problem(&[(1.0, 2.2), FREE], 20, line);
+    let found = interval(&wide, &[2.0, 0.0], "p0", ResidualVariance::Estimated).unwrap();
+    assert_eq!(found.upper(), ProfileEnd::Bound(2.2));
+}
+
+#[test]
+fn ends_without_an_end_are_open_or_the_edge_of_the_model() {
+    // A rise that is over at the second reading: the rate has no upper limit.
+    let readings = [0.97, 1.01, 0.98, 1.02, 0.99];
+    let rise = |p: &[f64], i: usize| p[0] * (1.0 - (-p[1] * (i + 1) as f64).exp()) - readings[i];
+    let found = interval(&problem(&[FREE, FREE], 5, rise), &[1.0, 1.0], "p1", ResidualVariance::Estimated).unwrap();
+    assert!(matches!((found.lower(), found.upper()), (ProfileEnd::At(_), ProfileEnd::Open)), "{found:?}");
+    assert_eq!(found.upper().value(), None);
+    // The same model with no value beyond a rate of 30/s.
+    let cut = |p: &[f64], i: usize| if p[1] > 30.0 { f64::NAN } else { rise(p, i) };
+    let found = interval(&problem(&[FREE, FREE], 5, cut), &[1.0, 1.0], "p1", ResidualVariance::Estimated).unwrap();
+    let ProfileEnd::Edge(edge) = found.upper() else { panic!("{:?}", found.upper()) };
+    assert!((edge - 30.0).abs() < 1e-6, "edge at {edge}");
+    // Bounded, the bound ends it.
+    let bounds = [FREE, (0.0, 50.0)];
+    let found = interval(&problem(&bounds, 5, rise), &[1.0, 1.0], "p1", ResidualVariance::Estimated).unwrap();
+    assert_eq!(found.upper(), ProfileEnd::Bound(50.0));
+    // What nothing determines is open on both sides.
+    let idle = problem(&[FREE, FREE, FREE], 20, line);
+    let found = interval(&idle, &[0.0, 0.0, 1.0], "p2", ResidualVariance::Estimated).unwrap();
+    assert_eq!((found.lower(), found.upper()), (ProfileEnd::Open, ProfileEnd::Open));
+}
+
+#[test]
+fn a_lower_minimum_on_the_way_is_an_error_that_leads_there() {
+    // Two wells, the right one with S = 0 at 1, the left one with about 0.04 near -1.
+    let wells = problem(&[FREE], 2, |p, i| if i == 0 { p[0] * p[0] - 1.0 } else { 0.1 * (p[0] - 1.0) });
+    let fit = solve(&wells, &[-2.0], &Options::default()).unwrap();
+    assert!((fit.sum_of_squares() - 0.04).abs() < 1e-3, "S = {}", fit.sum_of_squares());
+    let found = profile_interval(&wells, &fit, "p0", 0.95, ResidualVariance::Unit, &Options::default());
+    let Err(ProfileError::LowerMinimum { values, lower, .. }) = found else { panic!("{found:?}") };
+    assert!((values[0] - 1.0).abs() < 1e-9 && lower < 1e-18, "{values:?}");
+    // From there the two wells are one interval.
+    let fit = solve(&wells, &values, &Options::default()).unwrap();
+    let found = profile_interval(&wells, &fit, "p0", 0.95, ResidualVariance::Unit, &Options::default()).unwrap();
+    for (end, sign) in [(found.lower(), -1.0), (found.upper(), 1.0)] {
+        let at = end.value().unwrap();
+        let square = (at * at - 1.0).powi(2) + 0.01 * (at - 1.0).powi(2);
+        assert!((square.sqrt() - 1.959_963_984_540_054).abs() < 1e-8 && at * sign > 1.5, "end at {at}");
+    }
+}
+
+#[test]
+fn what_is_no_question_for_a_profile_is_refused() {
+    let options = Options::default();
+    let variance = ResidualVariance::Estimated;
+    let straight = problem(&[FREE, FREE], 20, line);
+    let fit = solve(&straight, &[0.0, 0.0], &options).unwrap();
+    let ask = |name: &str, level: f64| profile_interval(&straight, &fit, name, level, variance, &options).unwrap_err();
+    assert_eq!(ask("mass", 0.95).to_string(), "there is no parameter called mass");
+    assert!(matches!(ask("p0", 1.0), ProfileError::Level(_)));
+    assert!(matches!(ask("p0", f64::NAN), ProfileError::Level(_)));
+    let fixed = problem(&[(2.0, 2.0), FREE], 20, line);
+    assert!(matches!(interval(&fixed, &[2.0, 0.0], "p0", variance), Err(ProfileError::Fixed(_))));
+    let other = problem(&[FREE, FREE], 19, line);
+    let refused = profile_interval(&other, &fit, "p0", 0.95, variance, &options);
+    assert!(matches!(refused, Err(ProfileError::DifferentProblem { .. })));
+    let exact = problem(&[FREE, FREE], 2, line);
+    assert!(matches!(interval(&exact, &[0.0, 0.0], "p0", variance), Err(ProfileError::NoVariance)));
+    let stopped = solve(&straight, &[0.0, 0.0], &Options::default().with_max_iterations(0)).unwrap();
+    let refused = profile_interval(&straight, &stopped, "p0", 0.95, variance, &options);
+    assert!(matches!(refused, Err(ProfileError::NotConverged(Outcome::MaxIterations))));
+    let refused = profile_interval(&straight, &fit, "p0", 0.95, variance, &Options::default().with_max_iterations(0));
+    assert!(matches!(refused, Err(ProfileError::HeldFit { .. })), "{refused:?}");
+}
+
+#[test]
+fn limits_of_one_fit_hold_for_all_of_a_search() {
+    let calls = Cell::new(0);
+    let slow = problem(&[FREE, FREE], 2, |p, i| {
+        calls.set(calls.get() + 1);
+        std::thread::sleep(std::time::Duration::from_millis(1));
+        freudenstein_roth(p, i)
+    });
+    let options = Options::default().with_time_limit(std::time::Duration::from_millis(100));
+    let found = MultiStart::default().with_options(options).solve(&slow, &[0.5, -2.0]).unwrap();
+    // 64 fits of some 60 calls take 4 s; a batch that has begun may run over by one step per start.
+    assert!(calls.get() < 1000, "{} calls", calls.get());
+    assert!(found.starts() < 64 && found.starts() >= 1);
+}

@@ -1,0 +1,36 @@
+//! A number and how well it is known.
+
+use std::fmt;
+
+use fmm_model::Rounded;
+
+/// An estimate with its standard uncertainty, both in the unit that stands beside the field.
+///
+/// `Display` writes it rounded to what is known of it.
+///
+/// ```
+/// use fmm_identify::Estimated;
+///
+/// let friction = Estimated { value: 0.029_918, uncertainty: 6.1e-4 };
+/// assert_eq!(friction.to_string(), "0.02992 ± 0.00061");
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimated {
+    /// The estimate.
+    pub value: f64,
+    /// u, its standard uncertainty.
+    pub uncertainty: f64,
+}
+
+impl Estimated {
+    /// Both times `factor`.
+    pub(crate) fn scaled(self, factor: f64) -> Self {
+        Self { value: self.value * factor, uncertainty: self.uncertainty * factor.abs() }
+    }
+}
+
+impl fmt::Display for Estimated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(&Rounded::new(self.value, Some(self.uncertainty)), f)
+    }
+}
