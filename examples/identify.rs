@@ -18,6 +18,7 @@ use clap::{Parser, ValueEnum};
 use figure::{Layer, Panel, Role};
 use fmm_fit::Options;
 use fmm_identify::{Candidate, Comparison, Known, Machine, Preparation, RingDown, compare_observed};
+use fmm_model::Restoring;
 use fmm_record::{Column, Quantity, Record};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -48,9 +49,16 @@ struct Arguments {
     /// Unit of the channel after scaling; m/s or m unless the channel's name says another
     #[arg(long)]
     unit: Option<String>,
-    /// The law: viscous, coulomb, coulomb_static, coulomb_viscous, or all (viscous, coulomb and both)
-    #[arg(long, value_name = "NAME|all", default_value = "all")]
-    law: String,
+    /// The laws to compare, such as coulomb,berger+quadratic: names with damping of the machine beside them (linear,
+    /// quadratic, any sign); or all (viscous, coulomb and both). An unknown name is answered with the list of laws
+    #[arg(long, value_name = "NAME,..|all", default_value = "all", value_delimiter = ',')]
+    law: Vec<String>,
+    /// Hold a fitted parameter of the laws at a value, as in exponent=2
+    #[arg(long, value_name = "NAME=VALUE")]
+    hold: Vec<String>,
+    /// The machine is a pendulum; for a record that is no angle in radians, with the length of the arc that makes one radian
+    #[arg(long, value_name = "LENGTH", num_args = 0..=1, default_missing_value = "1")]
+    pendulum: Option<f64>,
     /// The moving mass
     #[arg(long, value_name = "KG", conflicts_with = "stiffness")]
     mass: Option<f64>,
@@ -220,18 +228,36 @@ fn machine(arguments: &Arguments) -> Result<Machine, Box<dyn Error>> {
     if let Some(load) = arguments.normal_load {
         machine = machine.with_normal_load(Known::new(load, arguments.normal_load_u)?)?;
     }
+    if let Some(length) = arguments.pendulum {
+        machine = machine.with_restoring(Restoring::sine(length)?);
+    }
     Ok(machine)
 }
 
-fn candidates(law: &str) -> Result<Vec<Candidate>, Box<dyn Error>> {
-    if law == "all" { Ok(Candidate::standard().to_vec()) } else { Ok(vec![Candidate::named(law)?]) }
+fn candidates(arguments: &Arguments) -> Result<Vec<Candidate>, Box<dyn Error>> {
+    let mut candidates = Vec::new();
+    for law in &arguments.law {
+        if law == "all" {
+            candidates.extend(Candidate::standard());
+        } else {
+            candidates.push(Candidate::named(law)?);
+        }
+    }
+    for held in &arguments.hold {
+        let (name, value) = held.split_once('=').ok_or("--hold wants NAME=VALUE, such as exponent=2")?;
+        let value: f64 = value.trim().parse().map_err(|_| format!("--hold {held}: {value:?} is no number"))?;
+        for candidate in &mut candidates {
+            *candidate = candidate.clone().holding(name.trim(), value)?;
+        }
+    }
+    Ok(candidates)
 }
 
 /// Fits all candidates while a line on standard error shows how far they are.
 fn identify(arguments: &Arguments, decay: &RingDown) -> Result<Comparison, Box<dyn Error>> {
     let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {msg}")?);
     bar.enable_steady_tick(Duration::from_millis(100));
-    let candidates = candidates(&arguments.law)?;
+    let candidates = candidates(arguments)?;
     let decays = std::slice::from_ref(decay);
     let samples = decay.summary().samples as f64;
     let comparison =

@@ -63,9 +63,7 @@ fn the_report_says_why_the_first_answer_was_wrong() {
     let scores = COMPARISON.scores();
     assert!(scores.is_sorted_by(|worse, better| worse > better), "{scores:?}");
     assert!(COMPARISON.is_decided() && COMPARISON.preferred().law() == "berger + quadratic", "{}", *COMPARISON);
-    let negative = |warning: &Warning| {
-        matches!(warning, Warning::NegativeDamping { law, value, .. } if law.ends_with("of any sign") && *value < 0.0)
-    };
+    let negative = |warning: &Warning| matches!(warning, Warning::NegativeDamping { law, value, .. } if law.ends_with("of any sign") && *value < 0.0);
     assert!(COMPARISON.warnings().iter().any(negative), "{}", *COMPARISON);
     let misled = |warning: &Warning| {
         matches!(warning, Warning::Misled { law, friction, preferred, .. }

@@ -55,6 +55,15 @@ impl Candidate {
         Self { terms, ..self }
     }
 
+    /// The same law with the fitted parameter called `name` held at `value`, in the unit in which it would be fitted.
+    ///
+    /// # Errors
+    /// [`IdentifyError::InvalidInput`] if the value is not finite.
+    pub fn holding(mut self, name: &str, value: f64) -> Result<Self, IdentifyError> {
+        self.terms = self.terms.holding(name, value)?;
+        Ok(self)
+    }
+
     /// Viscous, Coulomb, and both: the three that a ring-down is compared by when nothing else is asked for.
     pub const fn standard() -> [Self; 3] {
         [Self::of::<Viscous>(), Self::of::<Coulomb>(), Self::of::<CoulombViscous>()]
@@ -81,15 +90,36 @@ impl Candidate {
         BoucWen,
     );
 
-    /// The law called `name` in the [`catalogue`](Self::catalogue).
+    /// The law called `name` in the [`catalogue`](Self::catalogue), with the terms that follow it after plus signs.
+    ///
+    /// ```
+    /// use fmm_identify::Candidate;
+    ///
+    /// assert_eq!(Candidate::named("berger + quadratic")?.name(), "berger + quadratic");
+    /// assert_eq!(Candidate::named("coulomb+linear+any sign")?.name(), "coulomb + linear of any sign");
+    /// assert!(Candidate::named("coulomb + cubic").is_err());
+    /// # Ok::<(), fmm_identify::IdentifyError>(())
+    /// ```
     ///
     /// # Errors
-    /// [`IdentifyError::UnknownLaw`], with the names there are.
+    /// [`IdentifyError::UnknownLaw`] and [`IdentifyError::UnknownTerm`], with the names there are.
     pub fn named(name: &str) -> Result<Self, IdentifyError> {
         let catalogue = Self::catalogue();
+        let mut parts = name.split('+').map(str::trim);
+        let law = parts.next().unwrap_or_default();
         let known = || catalogue.iter().map(|candidate| candidate.law).collect::<Vec<_>>().join(", ");
-        let found = catalogue.iter().find(|candidate| candidate.law == name);
-        found.cloned().ok_or_else(|| IdentifyError::UnknownLaw { name: name.to_owned(), known: known() })
+        let found = catalogue.iter().find(|candidate| candidate.law == law).cloned();
+        let found = found.ok_or_else(|| IdentifyError::UnknownLaw { name: law.to_owned(), known: known() })?;
+        let mut terms = Terms::NONE;
+        for term in parts {
+            terms = match term {
+                "linear" => terms.with_linear_damping(),
+                "quadratic" => terms.with_quadratic_damping(),
+                "any sign" => terms.with_damping_of_any_sign(),
+                _ => return Err(IdentifyError::UnknownTerm { name: term.to_owned() }),
+            };
+        }
+        Ok(found.with(terms))
     }
 
     /// Name of the law, with the terms beside it.

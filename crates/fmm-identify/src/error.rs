@@ -105,6 +105,12 @@ pub enum IdentifyError {
         /// The names there are.
         known: String,
     },
+    /// A term of this name cannot stand beside a law.
+    #[error("there is no term called {name:?} to put beside a law; the terms are: linear, quadratic, any sign")]
+    UnknownTerm {
+        /// The name given.
+        name: String,
+    },
     /// A linear damping was to be fitted beside a law that has one.
     #[error(
         "{law} has a viscous part: a linear damping of the machine beside it could not be told apart; leave one out"
