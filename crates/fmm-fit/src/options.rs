@@ -33,7 +33,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            max_iterations: 1000,
+            max_iterations: 5000,
             max_evaluations: usize::MAX,
             time_limit: None,
             cancel: None,
@@ -48,7 +48,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// At most this many trial steps, over all restarts (1000).
+    /// At most this many trial steps, over all restarts (5000).
     #[must_use]
     pub fn with_max_iterations(mut self, iterations: usize) -> Self {
         self.max_iterations = iterations;

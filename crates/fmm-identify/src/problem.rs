@@ -40,8 +40,8 @@ const DIRECTIONS: usize = 6;
 const ENOUGH_SAMPLES: usize = 1500;
 const SAMPLES_PER_SWING: f64 = 24.0;
 
-/// Samples simulated at a time: memory beyond the solver's own stays below 2 MB however long the record.
-const WINDOW: usize = 1 << 15;
+/// Samples simulated at a time: memory beyond the solver's own stays below 4 MB however long the record.
+const WINDOW: usize = 1 << 16;
 
 impl<'a, F: Simulated> RingDownProblem<'a, F> {
     /// The problem of `decays` on `machine`.

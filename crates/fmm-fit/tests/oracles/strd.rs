@@ -80,9 +80,15 @@ fn all(is_exact: bool) -> Vec<Run> {
     runs
 }
 
+/// SciPy's `trf` with exact derivatives and tolerances of 1e-15 needs 3540 residuals and 2726 Jacobians in all, and reaches
+/// ten digits from 24 of the 54 starts.
 #[test]
 fn exact_derivatives_give_ten_digits_everywhere() {
-    for run in all(true) {
+    let runs = all(true);
+    assert_eq!(runs.len(), 54);
+    let (evaluations, jacobians) = runs.iter().fold((0, 0), |(e, j), run| (e + run.evaluations, j + run.jacobians));
+    assert!(evaluations <= 3540 && jacobians <= 2726, "{evaluations} residuals, {jacobians} Jacobians");
+    for run in runs {
         assert!(run.values >= 10.0, "{}: values agree to {:.1} digits", run.label, run.values);
         assert!(run.is_success, "{} reports a failure", run.label);
         // Lanczos1 is exact data: its residuals are rounding noise, and so are its uncertainties.

@@ -85,7 +85,7 @@ fn model<D: Scalar>(name: &str, x: &[f64], b: &[D]) -> D {
         "Nelson" => b[0] - b[1] * t * (-b[2] * x[1]).exp(),
         "Rat42" => b[0] / ((b[1] - b[2] * t).exp() + 1.0),
         "Rat43" => b[0] / ((b[1] - b[2] * t).exp() + 1.0).powf(one / b[3]),
-        "Roszman1" => b[0] - b[1] * t - b[2].atan2(b[3] * -1.0 + t) / std::f64::consts::PI,
+        "Roszman1" => b[0] - b[1] * t - (b[2] / (b[3] * -1.0 + t)).atan2(one) / std::f64::consts::PI,
         "Bennett5" => b[0] * (b[1] + t).powf(-one / b[2]),
         other => panic!("no model called {other}"),
     }
