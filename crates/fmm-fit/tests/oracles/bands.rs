@@ -4,7 +4,7 @@ use fmm_fit::{Options, solve};
 use serde_json::Value;
 
 use crate::harness::{FormulaProblem, numbers, parameters};
-use crate::strd::datasets;
+use crate::strd::files;
 use crate::strd_models::Dataset;
 
 /// x, value, u, and half widths at 95 %: of confidence, of the simultaneous band, and for a new observation; Misra1a by
@@ -31,7 +31,7 @@ const EXPECTED: [[f64; 6]; 3] = [
 
 #[test]
 fn bands_of_misra1a() {
-    let sets = datasets();
+    let [sets, _] = files();
     let all = sets["datasets"].as_object().unwrap();
     let set: &Value = all.values().find(|set| set["name"] == "Misra1a").unwrap();
     let formula = Dataset::read(set);

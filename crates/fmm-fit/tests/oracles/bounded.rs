@@ -10,11 +10,13 @@ use fmm_model::Scalar;
 /// moved to the nearest point inside.
 #[test]
 fn bounded_reference_data_end_exactly_on_the_bound() {
-    let file: Value = serde_json::from_str(include_str!("../data/bounded_strd.json")).unwrap();
-    let sets = crate::strd::datasets();
+    let files: [Value; 2] = [include_str!("../data/bounded_strd.json"), include_str!("../data/bounded_strd_more.json")]
+        .map(|file| serde_json::from_str(file).unwrap());
+    let all_sets = crate::strd::files();
     let (mut agreement, mut on_bound, mut evaluations) = (vec![], 0, 0);
-    for problem in file["problems"].as_object().unwrap().values() {
-        let set = &sets["datasets"][problem["dataset"].as_str().unwrap()];
+    for problem in files.iter().flat_map(|file| file["problems"].as_object().unwrap().values()) {
+        let name = problem["dataset"].as_str().unwrap();
+        let set = all_sets.iter().find_map(|sets| sets["datasets"].get(name)).unwrap();
         let reference = numbers(&problem["params"]);
         for start in ["start1", "start2"] {
             let formula = Dataset::read(set);
@@ -37,11 +39,12 @@ fn bounded_reference_data_end_exactly_on_the_bound() {
             agreement.push(digits);
             on_bound += usize::from(is_on_bound);
             evaluations += fit.residual_evaluations();
-            if digits >= 10.0 {
+            // The residuals of Lanczos1 are rounding noise, and so is their gradient.
+            if digits >= 10.0 && name != "Lanczos1" {
                 let expected = number(&problem["gradient_half_rss"][active]);
                 let multiplier = fit.estimates()[active].multiplier().unwrap();
-                // The file has 15 digits; the multiplier is as good as the Jacobian and the values.
-                assert!((multiplier / expected - 1.0).abs() < 1e-7, "{label}: {multiplier} instead of {expected}");
+                // A sum of terms a million times larger than itself, as in Bennett5, keeps so many of their digits.
+                assert!((multiplier / expected - 1.0).abs() < 1e-6, "{label}: {multiplier} instead of {expected}");
             }
         }
     }
@@ -50,10 +53,10 @@ fn bounded_reference_data_end_exactly_on_the_bound() {
         at_least(&agreement, 10.0),
         agreement.len()
     );
-    // Lanczos3/1, MGH17/1 and Thurber/2 end in other local minima; in the first two of three decays have merged and
-    // none is at the bound.
-    assert!(at_least(&agreement, 10.0) + 3 >= agreement.len());
-    assert!(on_bound + 1 >= agreement.len());
+    assert_eq!(agreement.len(), 54);
+    // Lanczos3/1, MGH17/1 and Thurber/2 end in other local minima, on the bound as well.
+    assert!(at_least(&agreement, 10.0) >= 51);
+    assert_eq!(on_bound, 54);
 }
 
 /// The residuals of the published problems, by name.

@@ -10,7 +10,7 @@ use crate::strd_models::Dataset;
 #[test]
 fn intervals_agree_with_the_reference() {
     let file: Value = serde_json::from_str(include_str!("../data/profile_ci.json")).unwrap();
-    let sets = crate::strd::datasets();
+    let [sets, _] = crate::strd::files();
     let (mut worst, mut evaluations, mut count) = (15.0f64, 0, 0);
     for (name, intervals) in file["intervals"].as_object().unwrap() {
         let set = &sets["datasets"][name];

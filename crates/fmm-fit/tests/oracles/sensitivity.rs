@@ -36,7 +36,7 @@ fn refitted(set: &Value, fixed: &[(usize, f64)], moved: usize) -> Vec<f64> {
 /// The inputs are held up to a tenth away from where they would fit, so that the residuals are large.
 #[test]
 fn derivatives_are_those_of_repeated_fits() {
-    let sets = crate::strd::datasets();
+    let [sets, _] = crate::strd::files();
     let cases: [(&str, &[(usize, f64)]); 5] = [
         ("ENSO", &[(3, 44.0), (6, 26.5)]),
         ("Chwirut2", &[(2, 0.0125)]),

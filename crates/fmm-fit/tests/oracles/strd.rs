@@ -6,13 +6,10 @@ use serde_json::Value;
 use crate::harness::{FormulaProblem, at_least, digits, number, numbers, parameters};
 use crate::strd_models::Dataset;
 
-pub(crate) fn datasets() -> Value {
-    serde_json::from_str(include_str!("../data/nist_strd_nonlinear.json")).unwrap()
-}
-
-/// Sets that are known as hard.
-fn more_datasets() -> Value {
-    serde_json::from_str(include_str!("../data/nist_strd_nonlinear_more.json")).unwrap()
+/// The two files that hold the sets.
+pub(crate) fn files() -> [Value; 2] {
+    [include_str!("../data/nist_strd_nonlinear.json"), include_str!("../data/nist_strd_nonlinear_more.json")]
+        .map(|file| serde_json::from_str(file).unwrap())
 }
 
 struct Run {
@@ -60,7 +57,7 @@ fn run(set: &Value, start: &str, is_exact: bool) -> Run {
 }
 
 fn all(is_exact: bool) -> Vec<Run> {
-    let files = [datasets(), more_datasets()];
+    let files = files();
     let sets = files.iter().flat_map(|file| file["datasets"].as_object().unwrap().values());
     let runs: Vec<Run> = sets.flat_map(|set| ["start1", "start2"].map(|start| run(set, start, is_exact))).collect();
     let values: Vec<f64> = runs.iter().map(|run| run.values).collect();
