@@ -62,6 +62,33 @@ const FEWEST: usize = 4;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
+/// The line through them is [`StraightLine`](fmm_fit::StraightLine); for quadratic damping its intercept is c₁/m and its slope
+/// 8/(3π) c₂/m:
+///
+/// ```
+/// use std::f64::consts::PI;
+///
+/// use fmm_fit::{StraightLine, Weighting};
+/// use fmm_identify::{Preparation, RingDown, decrements};
+/// use fmm_model::{Damping, Oscillator};
+/// # use fmm_friction::Coulomb;
+/// # use fmm_record::{Quantity, Record};
+/// # use fmm_sim::{Engine, RungeKutta, Sampling, Scenario};
+///
+/// // A velocity record of a machine with c = 0.2005 + 0.5148 |v|.
+/// let machine = Oscillator::new(10.391, 1982.0)?.with_damping(Damping::new(0.2005, 0.5148)?);
+/// # let scenario = Scenario::new(machine, Coulomb::new(0.0)?, 0.0)?.starting_at(0.0, 0.25)?;
+/// # let motion = RungeKutta::new(1e-11)?.run(&scenario, &Sampling::uniform(1e-3, 30_000)?)?;
+/// # let record = Record::new(0.0, 1e-3, motion.velocity().values().to_vec(), Quantity::Velocity, "m/s")?;
+/// let cycles = decrements(&RingDown::prepare(&record, &Preparation::default())?)?;
+/// let velocity: Vec<f64> = cycles.iter().map(|cycle| cycle.peak_velocity).collect();
+/// let damping: Vec<f64> = cycles.iter().map(|cycle| 10.391 * cycle.damping.value).collect();
+/// let line = StraightLine::fit(&velocity, &damping, Weighting::Equal)?;
+/// assert!((line.intercept() / 0.2005 - 1.0).abs() < 0.01);
+/// assert!((line.slope() / (8.0 / (3.0 * PI) * 0.5148) - 1.0).abs() < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`IdentifyError::TooFewHalfSwings`] below four, [`IdentifyError::Amplitude`] where turning points do not alternate.
 pub fn decrements(decay: &RingDown) -> Result<Vec<Decrement>, IdentifyError> {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use fmm_fit::{EvaluationError, Fit, Options, Progress, solve_observed};
+use fmm_fit::{EvaluationError, Fit, Options, Outcome, Progress, solve_observed};
 use fmm_friction::{CoulombViscous, Role};
 use fmm_model::Restoring;
 use fmm_sim::{Event, EventKind, Simulated, Trajectory};
@@ -25,8 +25,9 @@ impl FittedMotion {
     fn of(decay: &RingDown, trajectory: &Trajectory) -> Self {
         let start = decay.record().start();
         // A velocity of nearly zero at the first sample reverses at once, or does not: that is no swing of the record.
-        let begun = |event: &&Event| event.kind != EventKind::Start && event.time > decay.record().interval();
-        let decided = trajectory.events().iter().filter(begun);
+        let turns = |event: &&Event| matches!(event.kind, EventKind::Reversal | EventKind::Stop);
+        let begun = |event: &&Event| event.time > decay.record().interval();
+        let decided = trajectory.events().iter().filter(turns).filter(begun);
         let margins = decided.clone().map(|event| (event.margin(), start + event.time));
         Self {
             stop_time: trajectory.rest().map(|event| start + event.time),
@@ -248,7 +249,7 @@ fn fit_simple<F: Simulated>(
     best_fit(problem, starts, options, observer)
 }
 
-/// The best end of the fits from `starts`.
+/// The best end of the fits from `starts`. No other end is better than one that leaves rounding only.
 fn best_fit<F: Simulated>(
     problem: &RingDownProblem<'_, F>,
     starts: Vec<Vec<f64>>,
@@ -259,6 +260,7 @@ fn best_fit<F: Simulated>(
     let mut failure = None;
     for start in starts {
         match solve_observed(problem, &start, options, |progress| observer(progress)) {
+            Ok(fit) if fit.outcome() == Outcome::AtNoiseFloor => return Ok(fit),
             Ok(fit) if best.as_ref().is_none_or(|best| fit.sum_of_squares() < best.sum_of_squares()) => {
                 best = Some(fit);
             }

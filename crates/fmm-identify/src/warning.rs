@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use fmm_fit::Fit;
 use fmm_model::Restoring;
 
 use crate::machine::Scale;
@@ -200,9 +201,26 @@ impl Warning {
                 _ => warnings.push(Self::Inseparable { sentence: direction.to_string() }),
             }
         }
+        warnings.extend(Self::of_correlations(fit));
         for estimate in fit.estimates().iter().filter(|estimate| estimate.status().is_at_bound()) {
             warnings.push(Self::AtBound { parameter: estimate.name().to_owned(), value: estimate.value() });
         }
+    }
+
+    /// Parameters that a rank does not show to be inseparable, as errors of an integrated motion tell them apart.
+    fn of_correlations(fit: &Fit) -> Option<Self> {
+        /// Correlation from which on two parameters are one.
+        const ONE: f64 = 1.0 - 1e-9;
+        let count = fit.estimates().len();
+        let as_one = |i: usize, j: usize| i != j && fit.correlation(i, j).is_some_and(|r| r.abs() > ONE);
+        let together = (0..count).filter(|i| (0..count).any(|j| as_one(*i, j)));
+        let names: Vec<&str> = together.map(|i| fit.estimates()[i].name()).collect();
+        (!names.is_empty()).then(|| Self::Inseparable {
+            sentence: format!(
+                "{} change together without an effect on this record, with correlations of ±1: hold one of them",
+                names.join(", ")
+            ),
+        })
     }
 
     fn of_damping(identification: &Identification, warnings: &mut Vec<Self>) {

@@ -44,6 +44,9 @@ pub struct WindowFit {
 /// those of independent residuals, or of correlated ones where that is more.
 ///
 /// ```
+/// use std::f64::consts::PI;
+///
+/// use fmm_fit::{StraightLine, Weighting};
 /// use fmm_identify::{Preparation, RingDown, Windows};
 /// use fmm_model::{Damping, Oscillator};
 /// # use fmm_friction::Coulomb;
@@ -62,6 +65,14 @@ pub struct WindowFit {
 ///     let expected = machine.damping().cycle_equivalent(window.peak_velocity);
 ///     assert!((10.391 * window.damping.value / expected - 1.0).abs() < 2e-3);
 /// }
+///
+/// // The line through them; with sliding windows it has more points.
+/// let windows = Windows::default().sliding_by(1).fit(&decay)?;
+/// let velocity: Vec<f64> = windows.iter().map(|window| window.peak_velocity).collect();
+/// let damping: Vec<f64> = windows.iter().map(|window| 10.391 * window.damping.value).collect();
+/// let line = StraightLine::fit(&velocity, &damping, Weighting::Equal)?;
+/// assert!((line.intercept() / 0.2005 - 1.0).abs() < 0.01);
+/// assert!((line.slope() / (8.0 / (3.0 * PI) * 0.5148) - 1.0).abs() < 0.01);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

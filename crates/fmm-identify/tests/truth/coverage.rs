@@ -1,0 +1,105 @@
+//! How often 95 % intervals contain the truth under white noise.
+
+use fmm_fit::{Fit, Options, solve};
+use fmm_friction::{AccelerationCoulomb, Berger, Coulomb, Stribeck};
+use fmm_identify::{Candidate, Machine, RingDown, RingDownProblem, Terms, compare};
+use fmm_model::{Damping, Oscillator};
+use fmm_sim::Simulated;
+
+use crate::records::{RELEASES, expected, machine, noisy, velocity};
+
+/// Of 300 intervals 95 ± 1.3 % contain the truth by chance alone.
+const SEEDS: u64 = 300;
+const SAMPLES: usize = 1500;
+const LEVEL: f64 = 0.95;
+
+/// The share of seeds whose interval contains the truth lies within 92 and 98 %, for each of the `names`.
+fn covers(names: &[&str], truth: &[f64], mut fit: impl FnMut(u64) -> Fit) {
+    let mut inside = vec![0_u32; names.len()];
+    for seed in 0..SEEDS {
+        let fit = fit(seed);
+        assert!(fit.outcome().is_success(), "seed {seed}: {}", fit.outcome());
+        for ((count, name), truth) in inside.iter_mut().zip(names).zip(truth) {
+            let (lower, upper) = fit.interval(name, LEVEL).unwrap();
+            *count += u32::from((lower..=upper).contains(truth));
+        }
+    }
+    let shares: Vec<f64> = inside.iter().map(|count| f64::from(*count) / SEEDS as f64).collect();
+    println!("{names:?}: {shares:?}");
+    for (share, name) in shares.iter().zip(names) {
+        assert!((0.92..=0.98).contains(share), "{share} of the intervals of {name} contain the truth");
+    }
+}
+
+/// Motions without noise, one for each release.
+fn motions<F: Simulated>(machine: Oscillator, values: &[f64], releases: &[f64]) -> Vec<Vec<f64>> {
+    releases.iter().map(|release| velocity::<F>(machine, values, *release, SAMPLES)).collect()
+}
+
+fn decays(motions: &[Vec<f64>], seed: u64) -> Vec<RingDown> {
+    motions.iter().enumerate().map(|(i, motion)| noisy(motion, 10_000 * i as u64 + seed)).collect()
+}
+
+/// The fit of law `F` from the true `start`: that it is found from elsewhere is not the question here.
+fn fitted<F: Simulated>(decays: &[RingDown], terms: &Terms, shared: &[f64], releases: &[f64]) -> Fit {
+    let problem = RingDownProblem::<F>::with_terms(Machine::per_unit_mass(), terms.clone(), decays).unwrap();
+    let own = releases.iter().flat_map(|release| [*release, 0.0, 0.0]);
+    let start: Vec<f64> = shared.iter().copied().chain(own).collect();
+    solve(&problem, &start, &Options::default()).unwrap()
+}
+
+fn with_frequency(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
+    std::iter::once(machine().natural_frequency()).chain(values).collect()
+}
+
+/// Both levels, by a search from automatic start values.
+#[test]
+fn acceleration_coulomb() {
+    let values = [0.25, 0.24];
+    let motions = motions::<AccelerationCoulomb>(machine(), &values, &RELEASES[2..]);
+    let names = ["gaining_friction_per_mass", "losing_friction_per_mass"];
+    covers(&names, &expected::<AccelerationCoulomb>(&values), |seed| {
+        let candidates = [Candidate::of::<AccelerationCoulomb>()];
+        let comparison = compare(&Machine::per_unit_mass(), &decays(&motions, seed), &candidates).unwrap();
+        comparison.identifications()[0].fit().clone()
+    });
+}
+
+/// Three releases with one law; one alone hardly tells floor and excess apart.
+#[test]
+fn berger_of_three_releases() {
+    let values = [0.15, 0.2, 10.0];
+    let motions = motions::<Berger>(machine(), &values, &RELEASES);
+    let names = ["friction_per_mass", "excess_friction_per_mass", "decay"];
+    let truth = expected::<Berger>(&values);
+    covers(&names, &truth, |seed| {
+        fitted::<Berger>(&decays(&motions, seed), &Terms::default(), &with_frequency(truth.clone()), &RELEASES)
+    });
+}
+
+/// The exponent held, as few records tell it.
+#[test]
+fn stribeck_of_known_exponent() {
+    let values = [0.15, 0.3, 0.05, 2.0, 0.3];
+    let motions = motions::<Stribeck>(machine(), &values, &RELEASES[2..]);
+    let terms = Terms::default().holding("exponent", 2.0).unwrap();
+    let truth = expected::<Stribeck>(&values);
+    let names = ["sliding_friction_per_mass", "static_excess_friction_per_mass", "stribeck_speed", "damping_per_mass"];
+    let of_names = [truth[0], truth[1], truth[2], truth[4]];
+    covers(&names, &of_names, |seed| {
+        fitted::<Stribeck>(&decays(&motions, seed), &terms, &with_frequency(truth.clone()), &RELEASES[2..])
+    });
+}
+
+/// The drag of air beside dry friction.
+#[test]
+fn quadratic_damping() {
+    const QUADRATIC: f64 = 0.3;
+    let machine = machine().with_damping(Damping::new(0.0, QUADRATIC * machine().mass()).unwrap());
+    let motions = motions::<Coulomb>(machine, &[0.1], &RELEASES[2..]);
+    let terms = Terms::default().with_quadratic_damping();
+    let [friction] = expected::<Coulomb>(&[0.1])[..] else { panic!("one parameter") };
+    covers(&["quadratic_damping_per_mass", "friction_per_mass"], &[QUADRATIC, friction], |seed| {
+        fitted::<Coulomb>(&decays(&motions, seed), &terms, &with_frequency([QUADRATIC, friction]), &RELEASES[2..])
+    });
+}
