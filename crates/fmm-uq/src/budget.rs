@@ -1,6 +1,7 @@
 //! The uncertainty of a result and where it comes from.
 
-use crate::{Input, Inputs, UncertaintyError, coverage_factor};
+use crate::derivatives::place;
+use crate::{Input, Inputs, Linearisation, SecondOrder, UncertaintyError};
 
 /// The result of a propagation: estimate, combined standard uncertainty, and the share of every input.
 ///
@@ -12,7 +13,7 @@ use crate::{Input, Inputs, UncertaintyError, coverage_factor};
 /// | c_i, c_i u_i | [`Budget::contributions`] | sensitivity and signed contribution of each input |
 /// | U | [`Budget::expanded`] | half width of an interval of given coverage probability |
 ///
-/// It prints as a table, with a line of warning where [`Budget::linearisation_suspect`].
+/// It prints as a table, with a line of warning where the [`Linearisation`] is suspect.
 ///
 /// ```
 /// use fmm_uq::{Input, Inputs, propagate};
@@ -37,6 +38,8 @@ pub struct Budget {
     estimate: f64,
     sensitivities: Vec<f64>,
     standard_uncertainty: f64,
+    second_order: Option<SecondOrder>,
+    linearisation: Linearisation,
     name: String,
     unit: String,
 }
@@ -56,25 +59,28 @@ pub struct Contribution<'a> {
     pub share: f64,
 }
 
-/// A symmetric coverage interval y ± U.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct Expanded {
-    /// p, coverage probability (1).
-    pub level: f64,
-    /// k, coverage factor (1).
-    pub coverage_factor: f64,
-    /// U = k u(y), half width of the interval (unit of the result).
-    pub uncertainty: f64,
-    /// ν, degrees of freedom that the factor was taken at (1): ν_eff truncated to a whole number, or infinite.
-    pub degrees_of_freedom: f64,
-}
-
 impl Budget {
     /// Combines sensitivities, one for each input.
     pub(crate) fn new(inputs: Inputs, estimate: f64, sensitivities: Vec<f64>) -> Result<Self, UncertaintyError> {
         let (name, unit) = ("result".to_owned(), String::new());
-        let mut budget = Self { inputs, estimate, sensitivities, standard_uncertainty: 0.0, name, unit };
+        let (second_order, linearisation) = (None, Linearisation::Unchecked);
+        let mut budget = Self {
+            inputs,
+            estimate,
+            sensitivities,
+            standard_uncertainty: 0.0,
+            second_order,
+            linearisation,
+            name,
+            unit,
+        };
+        for (i, &sensitivity) in budget.sensitivities.iter().enumerate() {
+            if !(sensitivity.is_finite() && budget.signed(i).is_finite()) {
+                let inputs = budget.inputs.as_slice();
+                let (input, at) = (inputs[i].name().to_owned(), place(&budget.inputs, inputs.iter().map(Input::value)));
+                return Err(UncertaintyError::SensitivityNotFinite { input, sensitivity, at });
+            }
+        }
         budget.standard_uncertainty = budget.combined();
         if budget.standard_uncertainty.is_finite() {
             Ok(budget)
@@ -135,60 +141,18 @@ impl Budget {
         })
     }
 
-    /// Whether u(y) is zero although an input is uncertain.
-    ///
-    /// The model is then flat at the estimates, or its slopes cancel, and a linear approximation cannot see what
-    /// the inputs do to the result: x² at x = 0 is the plainest case. The true uncertainty is of second order
-    /// and not zero, unless the model does not depend on its uncertain inputs at all.
-    pub fn linearisation_suspect(&self) -> bool {
-        self.standard_uncertainty == 0.0
-            && self.inputs.as_slice().iter().any(|input| input.standard_uncertainty() > 0.0)
+    /// The second-order terms; none if they were not asked for or are not finite.
+    pub const fn second_order(&self) -> Option<SecondOrder> {
+        self.second_order
     }
 
-    /// ν_eff, effective degrees of freedom of u(y) (1), possibly infinite.
-    ///
-    /// ```text
-    /// ν_eff = u⁴(y) / Σᵢ (c_i u_i)⁴/ν_i                                (JCGM 100:2008, Eq. G.2b)
-    /// ```
-    ///
-    /// None where the Welch–Satterthwaite formula does not hold: if an input of finite degrees of freedom is
-    /// correlated with another, both with a contribution; and if [`Budget::linearisation_suspect`]. Correlation
-    /// among inputs of infinite degrees of freedom does no harm.
-    pub fn effective_degrees_of_freedom(&self) -> Option<f64> {
-        let inputs = self.inputs.as_slice();
-        let mut pairs = self.inputs.correlated_pairs();
-        let correlated = pairs.any(|(i, j)| {
-            let finite = [i, j].iter().any(|&at| inputs[at].degrees_of_freedom().is_finite());
-            finite && self.signed(i) != 0.0 && self.signed(j) != 0.0
-        });
-        if correlated || self.linearisation_suspect() {
-            return None;
-        }
-        let contributing = inputs.iter().enumerate().filter(|&(i, _)| self.signed(i) != 0.0);
-        let terms = contributing
-            .map(|(i, input)| (self.signed(i) / self.standard_uncertainty).powi(4) / input.degrees_of_freedom());
-        // The sum of no term at all is −0, whose reciprocal would be −∞.
-        Some(1.0 / terms.sum::<f64>().abs())
+    /// Whether the linear approximation holds within the uncertainties of the inputs.
+    pub const fn linearisation(&self) -> Linearisation {
+        self.linearisation
     }
 
-    /// The expanded uncertainty for a coverage probability `level`, from Student's t at ν_eff.
-    ///
-    /// ν_eff is truncated to the next lower whole number, as JCGM 100:2008, G.4.1 and example H.1 do, which never
-    /// makes the interval too short; [`coverage_factor`] at ν_eff itself interpolates instead.
-    ///
-    /// # Errors
-    /// [`UncertaintyError::LevelOutOfRange`] unless 0 < level < 1; [`UncertaintyError::LinearisationSuspect`] and
-    /// [`UncertaintyError::DegreesOfFreedomUndefined`] where there is no ν_eff.
-    pub fn expanded(&self, level: f64) -> Result<Expanded, UncertaintyError> {
-        if self.linearisation_suspect() {
-            return Err(UncertaintyError::LinearisationSuspect);
-        }
-        let effective = self.effective_degrees_of_freedom().ok_or(UncertaintyError::DegreesOfFreedomUndefined)?;
-        // A whole ν_eff may come out of the sum a rounding error too low, and must not lose a whole one for it.
-        let degrees_of_freedom = (effective * (1.0 + 1e-12)).floor().max(1.0);
-        let coverage_factor = coverage_factor(level, degrees_of_freedom)?;
-        let uncertainty = coverage_factor * self.standard_uncertainty;
-        Ok(Expanded { level, coverage_factor, uncertainty, degrees_of_freedom })
+    pub(crate) fn set_curvature(&mut self, second_order: Option<SecondOrder>, verdict: Linearisation) {
+        (self.second_order, self.linearisation) = (second_order, verdict);
     }
 
     /// Covariance with another result of the same inputs (product of the two units).
@@ -211,7 +175,7 @@ impl Budget {
     }
 
     /// c_i u_i with its sign, which matters where inputs are correlated.
-    fn signed(&self, i: usize) -> f64 {
+    pub(crate) fn signed(&self, i: usize) -> f64 {
         self.sensitivities[i] * self.inputs.as_slice()[i].standard_uncertainty()
     }
 
@@ -234,118 +198,4 @@ impl Budget {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Dual, propagate};
-
-    fn inputs(uncertainties: &[(&str, f64, f64)]) -> Inputs {
-        let input = |&(name, u, nu): &(&str, f64, f64)| {
-            Input::new(name, 0.0, u, "m").unwrap().with_degrees_of_freedom(nu).unwrap()
-        };
-        Inputs::new(uncertainties.iter().map(input)).unwrap()
-    }
-
-    fn sum(x: &[Dual]) -> Dual {
-        x.iter().copied().sum()
-    }
-
-    #[test]
-    fn contributions_add_in_squares() {
-        let budget = propagate(&inputs(&[("a", 3.0, 5.0), ("b", 4.0, f64::INFINITY)]), |x| x[0] - x[1]).unwrap();
-        assert_eq!(budget.standard_uncertainty(), 5.0);
-        let rows: Vec<_> = budget.contributions().map(|row| (row.sensitivity, row.uncertainty)).collect();
-        assert_eq!(rows, [(1.0, 3.0), (-1.0, 4.0)]);
-        // (5/3)⁴ · 5 by hand.
-        assert!((budget.effective_degrees_of_freedom().unwrap() - 3125.0 / 81.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn shares_add_up_to_one_and_may_be_negative() {
-        let correlated = inputs(&[("a", 3.0, f64::INFINITY), ("b", 1.0, f64::INFINITY)])
-            .with_correlations(&[("a", "b", -0.6)])
-            .unwrap();
-        let budget = propagate(&correlated, sum).unwrap();
-        // u² = 9 + 1 − 2·0.6·3 = 6.4, of which a has 9 − 1.8 and b 1 − 1.8.
-        assert!((budget.standard_uncertainty().powi(2) - 6.4).abs() < 1e-14);
-        let shares: Vec<f64> = budget.contributions().map(|row| row.share).collect();
-        assert!((shares[0] - 1.125).abs() < 1e-15 && (shares[1] + 0.125).abs() < 1e-15, "{shares:?}");
-    }
-
-    #[test]
-    fn a_flat_model_is_flagged() {
-        // JCGM 101:2008, 9.4 with x₁ = x₂ = 0: the true uncertainty is 5e-5, and the first-order one is zero.
-        let flat = inputs(&[("x1", 0.005, f64::INFINITY), ("x2", 0.005, f64::INFINITY)]);
-        let budget = propagate(&flat, |x| x[0] * x[0] + x[1] * x[1]).unwrap();
-        assert!(budget.linearisation_suspect());
-        assert_eq!((budget.standard_uncertainty(), budget.effective_degrees_of_freedom()), (0.0, None));
-        assert!(matches!(budget.expanded(0.95), Err(UncertaintyError::LinearisationSuspect)));
-        assert!(budget.to_string().contains("linear approximation"), "{budget}");
-    }
-
-    #[test]
-    fn constants_have_no_uncertainty_and_no_flag() {
-        let budget = propagate(&inputs(&[("a", 0.0, 5.0)]), |x| x[0] + 2.0).unwrap();
-        assert!(!budget.linearisation_suspect());
-        assert_eq!(budget.effective_degrees_of_freedom(), Some(f64::INFINITY));
-        assert_eq!(budget.expanded(0.95).unwrap().uncertainty, 0.0);
-    }
-
-    #[test]
-    fn cancellation_to_rounding_is_zero_and_flagged() {
-        let full = inputs(&[("a", 0.1, f64::INFINITY), ("b", 0.3, f64::INFINITY)])
-            .with_correlations(&[("a", "b", 1.0)])
-            .unwrap();
-        let budget = propagate(&full, |x| x[0] * 3.0 - x[1]).unwrap();
-        assert_eq!(budget.standard_uncertainty(), 0.0);
-        assert!(budget.linearisation_suspect());
-    }
-
-    #[test]
-    fn correlated_inputs_of_finite_degrees_of_freedom_have_no_effective_ones() {
-        let three = [("a", 1.0, 4.0), ("b", 1.0, f64::INFINITY), ("c", 1.0, f64::INFINITY)];
-        let harmful = inputs(&three).with_correlations(&[("a", "b", 0.1)]).unwrap();
-        let budget = propagate(&harmful, sum).unwrap();
-        assert_eq!(budget.effective_degrees_of_freedom(), None);
-        assert!(matches!(budget.expanded(0.95), Err(UncertaintyError::DegreesOfFreedomUndefined)));
-        // b has no part in the result, so that its correlation has none either.
-        assert_eq!(propagate(&harmful, |x| x[0]).unwrap().effective_degrees_of_freedom(), Some(4.0));
-        let harmless = inputs(&three).with_correlations(&[("b", "c", 0.5)]).unwrap();
-        // u² = 1 + 1 + 1 + 2·0.5 = 4, so ν_eff = 4²/(1/4) = 64.
-        let effective = propagate(&harmless, sum).unwrap().effective_degrees_of_freedom().unwrap();
-        assert!((effective - 64.0).abs() < 1e-12, "{effective}");
-    }
-
-    #[test]
-    fn whole_degrees_of_freedom_survive_truncation() {
-        for nu in 1..=200 {
-            let alone = inputs(&[("a", 0.1, f64::from(nu)), ("b", 0.0, 1.0)]);
-            let expanded = propagate(&alone, |x| x[0] * 0.3 + x[1]).unwrap().expanded(0.95).unwrap();
-            assert_eq!(expanded.degrees_of_freedom, f64::from(nu));
-        }
-    }
-
-    #[test]
-    fn squares_of_extreme_contributions_stay_in_range() {
-        for size in [1e-200, 1e200] {
-            let extreme = inputs(&[("a", 3.0 * size, 5.0), ("b", 4.0 * size, 5.0)]);
-            let u = propagate(&extreme, sum).unwrap().standard_uncertainty();
-            assert!((u / size - 5.0).abs() < 1e-14, "u = {u} m");
-        }
-    }
-
-    #[test]
-    fn an_uncertainty_out_of_range_is_refused() {
-        let huge = inputs(&[("a", 1.5e308, 5.0), ("b", 1.5e308, 5.0)]);
-        let message = propagate(&huge, sum).unwrap_err().to_string();
-        assert!(message.starts_with("the standard uncertainty of the result"), "{message}");
-    }
-
-    #[test]
-    fn covariance_needs_the_same_inputs() {
-        let one = inputs(&[("a", 3.0, f64::INFINITY), ("b", 4.0, f64::INFINITY)]);
-        let (plus, minus) = (propagate(&one, sum).unwrap(), propagate(&one, |x| x[0] - x[1]).unwrap());
-        assert_eq!(plus.covariance_with(&minus).unwrap(), 9.0 - 16.0);
-        let other = propagate(&inputs(&[("a", 3.0, 5.0), ("b", 4.0, 5.0)]), sum).unwrap();
-        assert!(matches!(plus.covariance_with(&other), Err(UncertaintyError::DifferentInputs)));
-    }
-}
+mod tests;

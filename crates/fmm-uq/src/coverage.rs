@@ -1,12 +1,7 @@
 //! From a standard uncertainty to an interval: the coverage factor of Student's t.
 
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
-
-use crate::UncertaintyError;
 use crate::input::valid_degrees_of_freedom;
-
-/// Above this many degrees of freedom the expansion about the normal distribution is the more accurate.
-const EXPANSION_ABOVE: f64 = 1000.0;
+use crate::{UncertaintyError, student};
 
 /// The factor k that makes y ± k u a symmetric interval of coverage probability `level`, for a standard
 /// uncertainty of `degrees_of_freedom` ν: the (1 + p)/2 quantile of Student's t.
@@ -35,30 +30,19 @@ const EXPANSION_ABOVE: f64 = 1000.0;
 /// M. Abramowitz, I. A. Stegun, *Handbook of Mathematical Functions*, 26.7.5.
 pub fn coverage_factor(level: f64, degrees_of_freedom: f64) -> Result<f64, UncertaintyError> {
     let nu = valid_degrees_of_freedom("the result", degrees_of_freedom)?;
-    if !(level > 0.0 && level < 1.0) {
-        return Err(UncertaintyError::LevelOutOfRange { level });
-    }
-    // The lower tail keeps its digits where 1 − tail would round to 1.
-    let tail = 0.5 * (1.0 - level);
-    if nu <= EXPANSION_ABOVE {
-        let student = StudentsT::new(0.0, 1.0, nu)
-            .map_err(|_| UncertaintyError::DegreesOfFreedomOutOfRange { of: "the result".to_owned(), value: nu })?;
-        return Ok(-student.inverse_cdf(tail));
-    }
-    let z = -Normal::standard().inverse_cdf(tail);
-    let s = z * z;
-    let terms = [
-        z * (s + 1.0) / 4.0,
-        z * ((5.0 * s + 16.0) * s + 3.0) / 96.0,
-        z * (((3.0 * s + 19.0) * s + 17.0) * s - 15.0) / 384.0,
-        z * ((((79.0 * s + 776.0) * s + 1482.0) * s - 1920.0) * s - 945.0) / 92_160.0,
-    ];
-    Ok(z + terms.iter().rev().fold(0.0, |sum, term| (sum + term) / nu))
+    let level = valid_level(level)?;
+    Ok(student::upper_quantile(0.5 * (1.0 - level), nu))
+}
+
+/// Passes a coverage probability through if it lies between 0 and 1.
+pub(crate) fn valid_level(level: f64) -> Result<f64, UncertaintyError> {
+    if level > 0.0 && level < 1.0 { Ok(level) } else { Err(UncertaintyError::LevelOutOfRange { level }) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::student::EXPANSION_ABOVE;
 
     /// Relative error of the inverse incomplete beta function, which iterates to a fixed tolerance.
     const BETA_INVERSE: f64 = 1e-12;

@@ -147,4 +147,198 @@ pub enum UncertaintyError {
     /// Two budgets compared that do not rest on the same inputs.
     #[error("the two budgets do not rest on the same inputs, so that their covariance is not known")]
     DifferentInputs,
+    /// A parameter of a distribution outside its range.
+    #[error("the {parameter} must be {must_be}, but is {value}")]
+    ParameterOutOfRange {
+        /// Which parameter.
+        parameter: &'static str,
+        /// The value given.
+        value: f64,
+        /// The range that would be right.
+        must_be: &'static str,
+    },
+    /// Limits of a distribution that leave nothing between them.
+    #[error("the lower limit {lower} must lie below the upper limit {upper}, and their distance must be finite")]
+    LimitsOutOfOrder {
+        /// The lower limit given.
+        lower: f64,
+        /// The upper limit given.
+        upper: f64,
+    },
+    /// Too few observations to say anything about their spread.
+    #[error("at least {needed} observations are needed, but {found} were given")]
+    TooFewObservations {
+        /// How many were given.
+        found: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// An observation that is infinite or no number, or whose square is.
+    #[error("observation {index} must be finite, and its square too, but is {value}")]
+    ObservationNotFinite {
+        /// Position of the observation.
+        index: usize,
+        /// The observation.
+        value: f64,
+    },
+    /// Observations that cannot be simultaneous.
+    #[error("simultaneous observations come in equal numbers, but there are {first} and {second}")]
+    UnequalObservations {
+        /// Number of observations of the first quantity.
+        first: usize,
+        /// Number of observations of the second.
+        second: usize,
+    },
+    /// An input in two ensembles, or twice in one.
+    #[error("`{name}` is in an ensemble already; an uncertainty comes from one set of observations")]
+    AlreadyInEnsemble {
+        /// The name given.
+        name: String,
+    },
+    /// An ensemble is a multivariate t-distribution, which has room for normal and t-distributed inputs only.
+    #[error("`{name}` is neither normal nor t-distributed, and cannot be part of a multivariate t-distribution")]
+    NotNormal {
+        /// The name given.
+        name: String,
+    },
+    /// The model has another number of outputs than it should have.
+    #[error("the model must give {expected} outputs, but gives {found}")]
+    OutputCount {
+        /// How many there should be.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// Second-order terms that were not asked for, are not finite, or make the variance negative.
+    #[error("there is no uncertainty to second order: it was not asked for, or the model cannot be expanded that far")]
+    NoSecondOrder,
+    /// No trials at all.
+    #[error("at least one trial is needed, but none was asked for")]
+    NoTrials,
+    /// More trials than can be counted.
+    #[error("{trials} trials are more than can be told apart; at most {most} are possible")]
+    TooManyTrials {
+        /// How many were asked for.
+        trials: u64,
+        /// How many are possible.
+        most: u64,
+    },
+    /// So few trials that an interval would have to reach beyond the smallest or largest of them.
+    #[error(
+        "{trials} trials are too few for an interval of coverage probability {level}; at least {needed} are needed"
+    )]
+    TooFewTrials {
+        /// How many there are.
+        trials: usize,
+        /// The coverage probability.
+        level: f64,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// More trials failed than were allowed to.
+    #[error("{failed} of {trials} trials failed, more than the allowed share of {allowed}; the first: {first}")]
+    TooManyFailures {
+        /// How many failed.
+        failed: u64,
+        /// How many were made before the run was given up or ended.
+        trials: u64,
+        /// The share allowed (1).
+        allowed: f64,
+        /// The first failure, by block and trial.
+        first: Box<crate::Failure>,
+    },
+    /// No trial succeeded at all.
+    #[error("none of the trials succeeded")]
+    NoSuccess,
+    /// The progress callback asked for an end.
+    #[error("the run was cancelled after {trials} trials")]
+    Cancelled {
+        /// How many trials were done.
+        trials: u64,
+    },
+    /// The tolerance was not reached within the largest number of trials allowed.
+    #[error("the results are not stable to the tolerance after {trials} trials; allow more, or ask for fewer digits")]
+    NotStable {
+        /// How many trials were made.
+        trials: u64,
+    },
+    /// Partial results of different runs.
+    #[error("partial results belong together only if their {what} agree, but one has {first} and another {second}")]
+    LayoutMismatch {
+        /// What differs.
+        what: &'static str,
+        /// Its value in the first.
+        first: u64,
+        /// Its value in the second.
+        second: u64,
+    },
+    /// The same block of trials twice.
+    #[error("block {block} is in both partial results; a shard must not be counted twice")]
+    DuplicateBlock {
+        /// Index of the block.
+        block: u64,
+    },
+    /// A block of trials that no partial result holds.
+    #[error("block {block} is missing; merge the shard that holds it, or run it")]
+    MissingBlock {
+        /// Index of the first block that is missing.
+        block: u64,
+    },
+    /// A partial result that no run can have given.
+    #[error("block {block} of the partial result is damaged: {what}")]
+    DamagedPartial {
+        /// Index of the block.
+        block: u64,
+        /// What is wrong with it.
+        what: &'static str,
+    },
+    /// An output that does not exist.
+    #[error("there is no output {output}; the model has {outputs}, counted from 0")]
+    NoSuchOutput {
+        /// The position given.
+        output: usize,
+        /// How many outputs there are.
+        outputs: usize,
+    },
+    /// An option of a run outside its range.
+    #[error("the {option} must be {must_be}, but is {value}")]
+    OptionOutOfRange {
+        /// Which option.
+        option: &'static str,
+        /// The value given.
+        value: f64,
+        /// The range that would be right.
+        must_be: &'static str,
+    },
+    /// A covariance matrix of outputs that has no inverse, so that no ellipsoid belongs to it.
+    #[error(
+        "the outputs are fully correlated or constant, so that their coverage region has no extent in some direction"
+    )]
+    SingularCovariance,
+    /// Sensitivity indices of correlated inputs have no meaning as shares of a variance.
+    #[error("variance shares need independent inputs, but `{first}` and `{second}` are not")]
+    CorrelatedInputs {
+        /// One of the pair.
+        first: String,
+        /// The other.
+        second: String,
+    },
+    /// More inputs than the Sobol sequence has dimensions.
+    #[error("the Sobol sequence has {most} dimensions, but these inputs need {needed}")]
+    TooManyDimensions {
+        /// How many are needed.
+        needed: usize,
+        /// How many there are.
+        most: usize,
+    },
+    /// Too many rows of a variance analysis in which the model failed.
+    #[error("the model failed in {failed} of {rows} rows, more than the allowed share of {allowed}")]
+    RowsFailed {
+        /// Rows with at least one failure.
+        failed: u64,
+        /// Rows in all.
+        rows: u64,
+        /// The share allowed (1).
+        allowed: f64,
+    },
 }

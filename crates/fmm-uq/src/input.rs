@@ -1,6 +1,7 @@
 //! One input quantity of a measurement.
 
-use crate::UncertaintyError;
+use crate::distribution::Shape;
+use crate::{Distribution, Observations, UncertaintyError};
 
 /// An input quantity: its estimate, the standard uncertainty of that, and how well the uncertainty is known.
 ///
@@ -9,6 +10,7 @@ use crate::UncertaintyError;
 /// | x | `value` | `unit` | estimate |
 /// | u | `standard_uncertainty` | `unit` | standard deviation attributed to the estimate |
 /// | ν | `degrees_of_freedom` | 1 | n − 1 for the mean of n observations; infinite if u is known exactly |
+/// | | `distribution` | `unit` | what the trials of a Monte Carlo are drawn from |
 ///
 /// The unit is a label and is not converted: the model sees the bare values, so that all must belong to one
 /// coherent system. Uncertainty exactly zero is allowed and describes a constant.
@@ -28,10 +30,11 @@ pub struct Input {
     standard_uncertainty: f64,
     unit: String,
     degrees_of_freedom: f64,
+    distribution: Distribution,
 }
 
 impl Input {
-    /// An input of infinite degrees of freedom; `unit` is `"1"` for a pure number.
+    /// A normally distributed input of infinite degrees of freedom; `unit` is `"1"` for a pure number.
     ///
     /// # Errors
     /// [`UncertaintyError::Unnamed`], [`UncertaintyError::ValueNotFinite`] or, if the uncertainty is negative or
@@ -52,16 +55,75 @@ impl Input {
         if !(standard_uncertainty >= 0.0 && standard_uncertainty.is_finite()) {
             return Err(UncertaintyError::UncertaintyOutOfRange { input: name, value: standard_uncertainty, unit });
         }
-        Ok(Self { name, value, standard_uncertainty, unit, degrees_of_freedom: f64::INFINITY })
+        let distribution = if standard_uncertainty == 0.0 {
+            Shape::Constant(value).into()
+        } else {
+            Shape::Normal { mean: value, standard_deviation: standard_uncertainty }.into()
+        };
+        Ok(Self { name, value, standard_uncertainty, unit, degrees_of_freedom: f64::INFINITY, distribution })
+    }
+
+    /// An input of the given distribution, with its mean, standard uncertainty and degrees of freedom.
+    ///
+    /// ```
+    /// use fmm_uq::{Distribution, Input};
+    ///
+    /// let density = Input::of("ρ_W", Distribution::rectangular(7000.0, 9000.0)?, "kg/m³")?;
+    /// assert_eq!((density.value(), density.standard_uncertainty()), (8000.0, 2000.0 / 12f64.sqrt()));
+    /// # Ok::<(), fmm_uq::UncertaintyError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`UncertaintyError::Unnamed`].
+    pub fn of(
+        name: impl Into<String>,
+        distribution: Distribution,
+        unit: impl Into<String>,
+    ) -> Result<Self, UncertaintyError> {
+        let mut input = Self::new(name, distribution.mean(), distribution.standard_uncertainty(), unit)?;
+        input.degrees_of_freedom = distribution.degrees_of_freedom();
+        input.distribution = distribution;
+        Ok(input)
+    }
+
+    /// The mean of repeated observations, an uncertainty of type A: u = s/√n, ν = n − 1, Student's t.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::Unnamed`].
+    pub fn mean_of(
+        name: impl Into<String>,
+        observations: &Observations,
+        unit: impl Into<String>,
+    ) -> Result<Self, UncertaintyError> {
+        Self::new(name, observations.mean(), observations.standard_uncertainty(), unit)?
+            .with_degrees_of_freedom(observations.degrees_of_freedom())
     }
 
     /// The same input with ν degrees of freedom, which need not be whole.
+    ///
+    /// A normal input thereby becomes one of Student's t (JCGM 101:2008, 6.4.9.7): an uncertainty that is not known
+    /// exactly leaves heavier tails. Inputs of other distributions keep theirs, and ν only counts in ν_eff.
     ///
     /// # Errors
     /// [`UncertaintyError::DegreesOfFreedomOutOfRange`] if they are below 1 or NaN.
     pub fn with_degrees_of_freedom(mut self, degrees_of_freedom: f64) -> Result<Self, UncertaintyError> {
         self.degrees_of_freedom = valid_degrees_of_freedom(&self.name, degrees_of_freedom)?;
+        if self.is_normal_or_t() {
+            self.distribution = Distribution::student_t(self.value, self.standard_uncertainty, degrees_of_freedom)?;
+        }
         Ok(self)
+    }
+
+    /// The same input known exactly: its estimate as a constant.
+    #[must_use]
+    pub(crate) fn held(&self) -> Self {
+        let (name, unit) = (self.name.clone(), self.unit.clone());
+        let (distribution, degrees_of_freedom) = (Shape::Constant(self.value).into(), f64::INFINITY);
+        Self { name, value: self.value, standard_uncertainty: 0.0, unit, degrees_of_freedom, distribution }
+    }
+
+    pub(crate) fn is_normal_or_t(&self) -> bool {
+        matches!(self.distribution.shape, Shape::Normal { .. } | Shape::StudentT { .. })
     }
 
     /// Name, unique in its set.
@@ -87,6 +149,11 @@ impl Input {
     /// ν, degrees of freedom of the standard uncertainty (1), at least 1, possibly infinite.
     pub const fn degrees_of_freedom(&self) -> f64 {
         self.degrees_of_freedom
+    }
+
+    /// What a Monte Carlo draws from.
+    pub const fn distribution(&self) -> &Distribution {
+        &self.distribution
     }
 }
 

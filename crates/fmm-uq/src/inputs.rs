@@ -2,12 +2,17 @@
 
 use nalgebra::DMatrix;
 
-use crate::{Input, UncertaintyError};
+use crate::{Input, Observations, UncertaintyError};
 
 /// A non-empty set of inputs of different names, with their correlation matrix.
 ///
 /// Inputs are uncorrelated unless [`Inputs::with_correlations`] says otherwise. The matrix is symmetric with a
 /// unit diagonal by construction and always positive semidefinite.
+///
+/// In a Monte Carlo correlated normal inputs are multivariate normal, and an ensemble ([`Inputs::with_ensemble`])
+/// is multivariate t. Correlated inputs of other distributions keep them under a Gaussian copula: the
+/// coefficient is then that of the normal scores, from which that of the values themselves differs a little
+/// (0.483 for two rectangular inputs and 0.5).
 ///
 /// ```
 /// use fmm_uq::{Input, Inputs};
@@ -23,8 +28,16 @@ use crate::{Input, UncertaintyError};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inputs {
-    inputs: Vec<Input>,
+    all: Vec<Input>,
     correlation: DMatrix<f64>,
+    ensembles: Vec<Ensemble>,
+}
+
+/// Inputs whose standard uncertainties come from the same observations.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Ensemble {
+    pub(crate) members: Vec<usize>,
+    pub(crate) degrees_of_freedom: f64,
 }
 
 impl Inputs {
@@ -43,7 +56,7 @@ impl Inputs {
             }
         }
         let correlation = DMatrix::identity(inputs.len(), inputs.len());
-        Ok(Self { inputs, correlation })
+        Ok(Self { all: inputs, correlation, ensembles: Vec::new() })
     }
 
     /// The same inputs with correlation coefficients r (1) for the named pairs; other pairs keep theirs.
@@ -84,9 +97,93 @@ impl Inputs {
         Ok(self)
     }
 
+    /// The means of simultaneous observations, each a name, a unit and its values: correlated as the observations
+    /// are, and one ensemble of n − 1 degrees of freedom (JCGM 100:2008, 5.2.3 and example H.2).
+    ///
+    /// JCGM 102:2011, 5.3.2 takes n − N degrees of freedom for N quantities instead, and scales that are larger by the root
+    /// of (n − 1)/(n − N).
+    ///
+    /// # Errors
+    /// Those of [`Observations::new`], [`Observations::correlation`], [`Input::new`], [`Inputs::new`] and
+    /// [`Inputs::with_ensemble`].
+    pub fn from_observations(quantities: &[(&str, &str, &[f64])]) -> Result<Self, UncertaintyError> {
+        let observed = quantities.iter().map(|(_, _, values)| Observations::new(values));
+        let observed = observed.collect::<Result<Vec<_>, _>>()?;
+        let means = quantities.iter().zip(&observed).map(|((name, unit, _), mean)| Input::mean_of(*name, mean, *unit));
+        let inputs = Self::new(means.collect::<Result<Vec<_>, _>>()?)?;
+        let mut coefficients = Vec::new();
+        for j in 0..observed.len() {
+            for i in 0..j {
+                coefficients.push((quantities[i].0, quantities[j].0, observed[i].correlation(&observed[j])?));
+            }
+        }
+        let varying: Vec<&str> = inputs.all.iter().filter(|i| i.is_normal_or_t()).map(Input::name).collect();
+        let degrees_of_freedom = observed.first().map_or(f64::INFINITY, Observations::degrees_of_freedom);
+        let inputs = inputs.clone().with_correlations(&coefficients)?;
+        if varying.is_empty() { Ok(inputs) } else { inputs.with_ensemble(&varying, degrees_of_freedom) }
+    }
+
+    /// The same inputs with the named ones declared an ensemble: estimates whose uncertainties rest on the same
+    /// observations, of ν degrees of freedom in common.
+    ///
+    /// In a Monte Carlo they follow a multivariate t-distribution; their scales are their standard uncertainties and
+    /// their correlations those of the set. In the GUM they count as one contribution to ν_eff, which holds also where
+    /// they are correlated with each other.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::UnknownName`]; [`UncertaintyError::AlreadyInEnsemble`];
+    /// [`UncertaintyError::NotNormal`] for an input that is neither normal nor t;
+    /// [`UncertaintyError::DegreesOfFreedomOutOfRange`] if ν is below 1 or NaN.
+    pub fn with_ensemble(mut self, names: &[&str], degrees_of_freedom: f64) -> Result<Self, UncertaintyError> {
+        let mut members = Vec::with_capacity(names.len());
+        for &name in names {
+            let at = self.position(name)?;
+            if members.contains(&at) || self.ensembles.iter().any(|other| other.members.contains(&at)) {
+                return Err(UncertaintyError::AlreadyInEnsemble { name: name.to_owned() });
+            }
+            if !self.all[at].is_normal_or_t() {
+                return Err(UncertaintyError::NotNormal { name: name.to_owned() });
+            }
+            self.all[at] = self.all[at].clone().with_degrees_of_freedom(degrees_of_freedom)?;
+            members.push(at);
+        }
+        if degrees_of_freedom.is_finite() && !members.is_empty() {
+            self.ensembles.push(Ensemble { members, degrees_of_freedom });
+        }
+        Ok(self)
+    }
+
+    /// The same inputs with all but one held at their estimates; with none left uncertain if there is no such position.
+    pub(crate) fn only(&self, position: usize) -> Self {
+        let inputs = self.all.iter().enumerate();
+        let inputs: Vec<Input> = inputs.map(|(i, x)| if i == position { x.clone() } else { x.held() }).collect();
+        let correlation = DMatrix::identity(inputs.len(), inputs.len());
+        Self { all: inputs, correlation, ensembles: Vec::new() }
+    }
+
+    /// The names of two inputs that do not vary independently, if there are any.
+    pub(crate) fn dependent_pair(&self) -> Option<(String, String)> {
+        let together = self.ensembles.iter().find(|e| e.members.len() > 1).map(|e| (e.members[0], e.members[1]));
+        let name = |at: usize| self.all[at].name().to_owned();
+        self.correlated_pairs().next().or(together).map(|(i, j)| (name(i), name(j)))
+    }
+
+    /// A number that changes with any name, parameter or correlation, though not between runs of one build.
+    pub(crate) fn fingerprint(&self) -> u64 {
+        // FNV-1a of what tells two sets apart; the standard hasher promises no value.
+        format!("{self:?}")
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
+    }
+
+    /// The ensembles, each of finite degrees of freedom.
+    pub(crate) fn ensembles(&self) -> &[Ensemble] {
+        &self.ensembles
+    }
+
     /// The inputs in the order in which a model receives them.
     pub fn as_slice(&self) -> &[Input] {
-        &self.inputs
+        &self.all
     }
 
     /// Correlation coefficient of two inputs by name (1), 1 of an input with itself; none if a name is unknown.
@@ -101,19 +198,19 @@ impl Inputs {
 
     /// The pairs of positions whose correlation coefficient is not zero.
     pub(crate) fn correlated_pairs(&self) -> impl Iterator<Item = (usize, usize)> {
-        let pairs = (0..self.inputs.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
+        let pairs = (0..self.all.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
         pairs.filter(|&(i, j)| self.correlation_at(i, j) != 0.0)
     }
 
     /// The relative rounding error that a quadratic form with the correlation matrix may carry, which is also
     /// that of the matrix' eigenvalues.
     pub(crate) fn rounding(&self) -> f64 {
-        16.0 * f64::EPSILON * self.inputs.len() as f64
+        16.0 * f64::EPSILON * self.all.len() as f64
     }
 
     fn position(&self, name: &str) -> Result<usize, UncertaintyError> {
-        self.inputs.iter().position(|input| input.name() == name).ok_or_else(|| {
-            let known: Vec<&str> = self.inputs.iter().map(Input::name).collect();
+        self.all.iter().position(|input| input.name() == name).ok_or_else(|| {
+            let known: Vec<&str> = self.all.iter().map(Input::name).collect();
             UncertaintyError::UnknownName { name: name.to_owned(), known: known.join(", ") }
         })
     }

@@ -1,46 +1,125 @@
-//! Measurement uncertainty after the *Guide to the expression of uncertainty in measurement* (GUM, JCGM 100:2008):
-//! a measurement is a set of [`Inputs`] and a function of them; [`propagate`] gives the [`Budget`] of its result.
+//! Measurement uncertainty after the *Guide to the expression of uncertainty in measurement* (GUM, JCGM 100:2008) and its
+//! supplements (JCGM 101:2008, JCGM 102:2011): a measurement is a set of [`Inputs`] and a function of them.
 //!
-//! ```text
-//! y = f(x₁ … x_n),   u²(y) = Σᵢ Σⱼ c_i c_j u_i u_j r_ij,   c_i = ∂f/∂x_i
+//! | question | answer |
+//! |---|---|
+//! | what is known of an input? | [`Distribution`], [`Input`], [`Observations`] (type A), [`Inputs`] (correlated) |
+//! | what follows for the result, if the model is nearly linear? | [`propagate`], [`Gum`]: a [`Budget`] |
+//! | is it nearly linear? | [`Linearisation`], from exact second-order terms |
+//! | what follows if it is not? | [`MonteCarlo`], with as many trials as it takes ([`Adaptive`]): an [`OutputSample`] |
+//! | was the GUM good enough? | [`validate`] |
+//! | which input matters? | [`Budget::contributions`], [`variance_shares`], [`MonteCarlo::run_one_at_a_time`] |
+//! | what if a trial takes a second? | [`QuasiMonteCarlo`]; or many machines and [`Partial`] results |
+//!
+//! Write a model once, generic in its number: `f64` for trials, [`Taylor`] for exact derivatives.
+//!
 //! ```
-//!
-//! The sensitivities c are exact derivatives: the model is an ordinary closure over [`Dual`] numbers. Nothing is
-//! reported in silence that does not hold: impossible correlations, results that are no numbers, degrees of
-//! freedom outside the Welch–Satterthwaite formula, and a first-order uncertainty of zero are told apart.
-//!
-//! ```
-//! use fmm_uq::{DualNum, Input, Inputs, propagate};
+//! use fmm_uq::{Input, Inputs, MonteCarlo, Scalar, propagate};
 //!
 //! // Stiffness of a flexure from its mass and its natural frequency: k = m (2π f)².
+//! fn stiffness<D: Scalar>(x: &[D]) -> D {
+//!     let angular_frequency = x[1] * std::f64::consts::TAU;
+//!     x[0] * angular_frequency * angular_frequency
+//! }
 //! let inputs = Inputs::new([
 //!     Input::new("mass", 10.391, 0.005, "kg")?,
 //!     Input::new("frequency", 2.198_08, 0.0004, "Hz")?.with_degrees_of_freedom(9.0)?,
 //! ])?;
-//! let stiffness = propagate(&inputs, |x| x[0] * (x[1] * std::f64::consts::TAU).powi(2))?.named("stiffness", "N/m");
-//! assert!((stiffness.estimate() - 1982.0).abs() < 0.01);
-//! assert!((stiffness.standard_uncertainty() - 1.1958).abs() < 5e-5);
-//! let interval = stiffness.expanded(0.95)?;
+//! let budget = propagate(&inputs, stiffness)?.named("stiffness", "N/m");
+//! assert!((budget.estimate() - 1982.0).abs() < 0.01);
+//! assert!((budget.standard_uncertainty() - 1.1958).abs() < 5e-5);
+//! let interval = budget.expanded(0.95)?;
 //! assert_eq!(interval.degrees_of_freedom, 67.0);
 //! assert!((interval.uncertainty - 2.39).abs() < 5e-3);
+//!
+//! let trials = MonteCarlo::new(&inputs, 100_000)?.run(stiffness)?;
+//! // Student's t of ν = 9 spreads wider than its scale, by √(9/7): 1.257 N/m together with the mass.
+//! assert!((trials.standard_uncertainty(0)? - 1.257).abs() < 0.015);
 //! # Ok::<(), fmm_uq::UncertaintyError>(())
 //! ```
+//!
+//! Nothing is reported in silence that does not hold: impossible correlations, results that are no numbers, degrees of
+//! freedom outside the Welch–Satterthwaite formula, a first-order uncertainty of zero, and failed trials are told apart.
+//!
+//! # Features
+//! * `rayon`: blocks of trials on all threads of the current pool, with the same bits.
+//! * `serde`: [`Partial`] results, failures, intervals and histograms as text.
 
+mod adaptive;
+mod arc_sine;
+#[cfg(feature = "serde")]
+mod bits;
+mod block;
 mod budget;
 mod coverage;
+mod curvilinear_trapezoid;
+mod derivatives;
+mod differences;
+mod distribution;
+mod empirical;
 mod error;
+mod exact_derivatives;
+mod expanded;
+mod factor;
+mod failure;
+mod histogram;
 mod input;
 mod inputs;
+mod interval;
+mod linearisation;
+mod moments;
+mod monte_carlo;
+mod observations;
+mod order_statistics;
+mod outcome;
+mod output_sample;
+mod partial;
 mod propagate;
+mod propagation;
+mod quasi_monte_carlo;
+mod region;
+mod run;
+mod sampler;
+mod second_order;
+mod sensitivity;
+mod sobol_directions;
+mod sobol_sequence;
+mod stream;
+mod student;
 mod table;
+mod taylor;
+mod tolerance;
+mod trapezoid;
+mod validation;
 
-pub use budget::{Budget, Contribution, Expanded};
+pub use adaptive::{Adaptive, IntervalKind};
+pub use budget::{Budget, Contribution};
 pub use coverage::coverage_factor;
+pub use distribution::Distribution;
 pub use error::UncertaintyError;
+pub use expanded::Expanded;
+pub use failure::{Failure, FailureKind, Failures};
+pub use fmm_model::Scalar;
+pub use histogram::Histogram;
 pub use input::Input;
 pub use inputs::Inputs;
-pub use num_dual::DualNum;
-pub use propagate::{Dual, propagate, try_propagate};
+pub use interval::Interval;
+pub use linearisation::Linearisation;
+pub use moments::Moments;
+pub use monte_carlo::{MonteCarlo, Progress};
+pub use observations::Observations;
+pub use outcome::Outcome;
+pub use output_sample::OutputSample;
+pub use partial::Partial;
+pub use propagate::{Gum, propagate};
+pub use propagation::Propagation;
+pub use quasi_monte_carlo::{QuasiMonteCarlo, QuasiSample};
+pub use region::Region;
+pub use second_order::SecondOrder;
+pub use sensitivity::{VarianceShare, variance_shares};
+pub use taylor::Taylor;
+pub use tolerance::numerical_tolerance;
+pub use validation::{Validation, validate};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

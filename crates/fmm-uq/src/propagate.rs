@@ -1,33 +1,23 @@
-//! The law of propagation of uncertainty, with derivatives that are exact.
+//! The law of propagation of uncertainty.
 
-use std::convert::Infallible;
-use std::error::Error;
+use crate::derivatives::Derivatives;
+use crate::differences::Differences;
+use crate::exact_derivatives::Exact;
+use crate::linearisation::Linearisation;
+use crate::second_order::second_order;
+use crate::{Budget, Inputs, Outcome, Propagation, Taylor, UncertaintyError};
 
-use num_dual::Dual64;
-
-use crate::{Budget, Input, Inputs, UncertaintyError};
-
-/// The number in which a model is evaluated: a value together with one derivative.
-///
-/// It is `Copy` and does arithmetic with itself and with `f64`; import [`DualNum`](crate::DualNum) for its
-/// functions (`x.sqrt()`, `x.sin()`, `x.powi(2)`, …). Comparisons look at the value alone.
-///
-/// One derivative at a time is a choice: a number that carries all of them needs either its count in the type,
-/// which is not known where inputs come from a file, or the heap, and then a `clone` at every use of a variable.
-/// The price is one evaluation of the model per input, and each is about as cheap as two in plain `f64`.
-pub type Dual = Dual64;
-
-/// Propagates the uncertainty of `inputs` through `model` to first order.
+/// Propagates the uncertainty of `inputs` through a `model` of one output, with exact derivatives.
 ///
 /// ```text
 /// y = f(x₁ … x_n),   c_i = ∂f/∂x_i,   u²(y) = Σᵢ Σⱼ c_i c_j u_i u_j r_ij    (JCGM 100:2008, Eq. 13 and 16)
 /// ```
 ///
-/// The model receives the values in the order of the inputs, once for every input. It must be deterministic and
-/// differentiable at the estimates; the sensitivities are derivatives, not differences.
+/// The model receives the values in the order of the inputs and must be deterministic. It may fail: whatever is an
+/// [`Outcome`] can be given back. [`Gum`] has more outputs, differences, and a way to save the second order.
 ///
 /// ```
-/// use fmm_uq::{Input, Inputs, propagate};
+/// use fmm_uq::{Input, Inputs, Linearisation, propagate};
 ///
 /// // Friction coefficient from the amplitude loss per half swing: μ = k ΔA / (2 N).
 /// let inputs = Inputs::new([
@@ -39,72 +29,119 @@ pub type Dual = Dual64;
 /// // The relative uncertainties 0.61 %, 1.13 % and 0.75 % add in squares: 1.49 %.
 /// assert!((budget.estimate() - 0.262_98).abs() < 5e-6);
 /// assert!((budget.standard_uncertainty() / budget.estimate() - 0.0149).abs() < 5e-5);
+/// assert_eq!(budget.linearisation(), Linearisation::Adequate);
 /// # Ok::<(), fmm_uq::UncertaintyError>(())
 /// ```
 ///
 /// # Errors
-/// [`UncertaintyError::ResultNotFinite`], [`UncertaintyError::SensitivityNotFinite`] or
-/// [`UncertaintyError::ModelNotRepeatable`], each with the values of the inputs; and
-/// [`UncertaintyError::UncertaintyOutOfRange`] if the contributions are finite but their sum overflows.
-pub fn propagate(inputs: &Inputs, model: impl Fn(&[Dual]) -> Dual) -> Result<Budget, UncertaintyError> {
-    try_propagate(inputs, |x| Ok::<_, Infallible>(model(x)))
-}
-
-/// Propagates like [`propagate`] through a model that may fail.
-///
-/// ```
-/// use fmm_uq::{DualNum, Input, Inputs, UncertaintyError, try_propagate};
-///
-/// let inputs = Inputs::new([Input::new("stiffness", -1982.0, 12.0, "N/m")?])?;
-/// let failure = try_propagate(&inputs, |x| {
-///     if x[0] > 0.0 { Ok(x[0].sqrt()) } else { Err("a spring must push back") }
-/// });
-/// assert_eq!(failure.unwrap_err().to_string(), "the model failed at stiffness = -1982 N/m");
-/// # Ok::<(), UncertaintyError>(())
-/// ```
-///
-/// # Errors
-/// [`UncertaintyError::ModelFailed`] with the model's own error as its source, and those of [`propagate`].
-pub fn try_propagate<E: Into<Box<dyn Error + Send + Sync>>>(
+/// Those of [`Gum::propagate`]; [`UncertaintyError::OutputCount`] unless there is one output.
+pub fn propagate<R: Outcome<Taylor>>(
     inputs: &Inputs,
-    model: impl Fn(&[Dual]) -> Result<Dual, E>,
+    model: impl Fn(&[Taylor]) -> R,
 ) -> Result<Budget, UncertaintyError> {
-    let mut x: Vec<Dual> = inputs.as_slice().iter().map(|input| Dual::from_re(input.value())).collect();
-    let mut estimate = None;
-    let mut sensitivities = Vec::with_capacity(x.len());
-    for (i, input) in inputs.as_slice().iter().enumerate() {
-        x[i].eps = 1.0;
-        let y = model(&x).map_err(|e| UncertaintyError::ModelFailed { at: values(inputs), source: e.into() })?;
-        x[i].eps = 0.0;
-        if !y.re.is_finite() {
-            return Err(UncertaintyError::ResultNotFinite { result: y.re, at: values(inputs) });
-        }
-        let first = *estimate.get_or_insert(y.re);
-        if first != y.re {
-            return Err(UncertaintyError::ModelNotRepeatable { first, again: y.re, at: values(inputs) });
-        }
-        if !(y.eps * input.standard_uncertainty()).is_finite() || !y.eps.is_finite() {
-            let (input, sensitivity) = (input.name().to_owned(), y.eps);
-            return Err(UncertaintyError::SensitivityNotFinite { input, sensitivity, at: values(inputs) });
-        }
-        sensitivities.push(y.eps);
-    }
-    let estimate = estimate.ok_or(UncertaintyError::NoInputs)?;
-    Budget::new(inputs.clone(), estimate, sensitivities)
+    Gum::new(inputs).propagate(model)?.single()
 }
 
-/// "V = 4.999 V, I = 0.019661 A": where the model was evaluated.
-fn values(inputs: &Inputs) -> String {
-    let value = |input: &Input| format!("{} = {} {}", input.name(), input.value(), input.unit());
-    inputs.as_slice().iter().map(value).collect::<Vec<_>>().join(", ")
+/// The propagation of uncertainty after JCGM 100:2008 and JCGM 102:2011, for any number of outputs.
+///
+/// ```
+/// use fmm_uq::{Gum, Input, Inputs, Scalar};
+///
+/// // Resistance and reactance from voltage, current and phase.
+/// fn impedance<D: Scalar>(x: &[D]) -> [D; 2] {
+///     let (sin, cos) = x[2].sin_cos();
+///     [x[0] / x[1] * cos, x[0] / x[1] * sin]
+/// }
+/// let inputs = Inputs::from_observations(&[
+///     ("V", "V", &[5.007, 4.994, 5.005, 4.990, 4.999]),
+///     ("I", "A", &[0.019_663, 0.019_639, 0.019_640, 0.019_685, 0.019_678]),
+///     ("φ", "rad", &[1.0456, 1.0438, 1.0468, 1.0428, 1.0433]),
+/// ])?;
+/// let exact = Gum::new(&inputs).propagate(impedance)?;
+/// assert!((exact.outputs()[0].standard_uncertainty() - 0.071_07).abs() < 5e-6);
+/// assert!((exact.correlation(0, 1) + 0.588_43).abs() < 5e-6);
+/// let stepped = Gum::new(&inputs).propagate_by_differences(impedance::<f64>)?;
+/// assert!((stepped.correlation(0, 1) + 0.588_43).abs() < 5e-6);
+/// # Ok::<(), fmm_uq::UncertaintyError>(())
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct Gum<'a> {
+    inputs: &'a Inputs,
+    curvature: bool,
+}
+
+impl<'a> Gum<'a> {
+    /// The propagation of these inputs, with second-order terms beside the first-order uncertainty.
+    pub const fn new(inputs: &'a Inputs) -> Self {
+        Self { inputs, curvature: true }
+    }
+
+    /// The same without second-order terms: [`Linearisation::Unchecked`], and for n inputs n/2 evaluations of
+    /// Taylor numbers instead of about n²/2, or 2n differences instead of about 7n²/2.
+    #[must_use]
+    pub const fn first_order_only(mut self) -> Self {
+        self.curvature = false;
+        self
+    }
+
+    /// Propagates with exact derivatives.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::ModelFailed`] with the model's own error as its source,
+    /// [`UncertaintyError::ResultNotFinite`], [`UncertaintyError::SensitivityNotFinite`],
+    /// [`UncertaintyError::ModelNotRepeatable`], each with the values of the inputs;
+    /// [`UncertaintyError::OutputCount`] if the number of outputs changes or is zero; and
+    /// [`UncertaintyError::UncertaintyOutOfRange`] if the contributions are finite but their sum overflows.
+    pub fn propagate<R: Outcome<Taylor>>(
+        &self,
+        model: impl Fn(&[Taylor]) -> R,
+    ) -> Result<Propagation, UncertaintyError> {
+        self.combine(&Exact::new(self.inputs, model))
+    }
+
+    /// Propagates with central differences over ± one standard uncertainty (JCGM 100:2008, 5.1.3, note 2), for
+    /// models that take plain numbers.
+    ///
+    /// Such a difference averages the slope over the range that matters, and the noise of a fit or of a fixed-step
+    /// simulation is small against it. A constant is stepped by 6e-6 of its value.
+    ///
+    /// # Errors
+    /// Those of [`Gum::propagate`], also at the points one standard uncertainty away.
+    pub fn propagate_by_differences<R: Outcome<f64>>(
+        &self,
+        model: impl Fn(&[f64]) -> R,
+    ) -> Result<Propagation, UncertaintyError> {
+        self.combine(&Differences::new(self.inputs, model))
+    }
+
+    fn combine(&self, model: &impl Derivatives) -> Result<Propagation, UncertaintyError> {
+        let slopes = model.slopes()?;
+        let count = slopes.values.len();
+        if count == 0 {
+            return Err(UncertaintyError::OutputCount { expected: 1, found: 0 });
+        }
+        let mut budgets = Vec::with_capacity(count);
+        for (value, sensitivities) in slopes.values.into_iter().zip(slopes.sensitivities) {
+            budgets.push(Budget::new(self.inputs.clone(), value, sensitivities)?);
+        }
+        let curvature = if self.curvature { Some(second_order(self.inputs, model, count)?) } else { None };
+        let vary = self.inputs.as_slice().iter().any(|input| input.standard_uncertainty() > 0.0);
+        for (k, budget) in budgets.iter_mut().enumerate() {
+            let terms = curvature.as_ref().and_then(|terms| terms[k]);
+            let verdict = Linearisation::judge(budget.standard_uncertainty(), vary, self.curvature, terms);
+            budget.set_curvature(terms, verdict);
+        }
+        Ok(Propagation::new(budgets))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use std::cell::Cell;
+    use std::error::Error;
 
     use super::*;
-    use crate::DualNum;
+    use crate::{Input, Scalar};
 
     fn one(value: f64, uncertainty: f64) -> Inputs {
         Inputs::new([Input::new("x", value, uncertainty, "m").unwrap()]).unwrap()
@@ -114,8 +151,10 @@ mod tests {
     fn results_that_are_no_numbers_name_the_values() {
         let error = propagate(&one(-2.0, 0.1), |x| x[0].ln()).unwrap_err();
         assert_eq!(error.to_string(), "the model gives NaN at x = -2 m");
-        let error = propagate(&one(0.0, 0.1), |x| x[0].recip()).unwrap_err();
+        let error = propagate(&one(0.0, 0.1), |x| Taylor::from(1.0) / x[0]).unwrap_err();
         assert_eq!(error.to_string(), "the model gives inf at x = 0 m");
+        let error = Gum::new(&one(0.05, 0.1)).propagate_by_differences(|x| x[0].sqrt()).unwrap_err();
+        assert_eq!(error.to_string(), "the model gives NaN at x = -0.05 m");
     }
 
     #[test]
@@ -129,19 +168,50 @@ mod tests {
 
     #[test]
     fn a_model_must_repeat_itself() {
-        let inputs = Inputs::new(["a", "b"].map(|name| Input::new(name, 1.0, 0.1, "m").unwrap())).unwrap();
+        let inputs = Inputs::new(["a", "b", "c"].map(|name| Input::new(name, 1.0, 0.1, "m").unwrap())).unwrap();
         let calls = Cell::new(0.0);
-        let error = propagate(&inputs, |x| {
+        let next = || {
             calls.set(calls.get() + 1.0);
-            x[0] + x[1] + calls.get()
-        })
-        .unwrap_err();
+            calls.get()
+        };
+        let error = propagate(&inputs, |x| x[0] + x[1] + next()).unwrap_err();
         assert!(matches!(error, UncertaintyError::ModelNotRepeatable { first: 3.0, again: 4.0, .. }), "{error}");
+        let error = Gum::new(&inputs).propagate_by_differences(|x| x[0] + next()).unwrap_err();
+        assert!(matches!(error, UncertaintyError::ModelNotRepeatable { .. }), "{error}");
+        let error = Gum::new(&inputs).propagate(|_| vec![Taylor::from(1.0); next() as usize]).unwrap_err();
+        assert!(matches!(error, UncertaintyError::OutputCount { .. }), "{error}");
     }
 
     #[test]
     fn the_cause_of_a_failure_is_kept() {
-        let error = try_propagate(&one(1.0, 0.1), |_| Err("no root")).unwrap_err();
+        let error = propagate(&one(1.0, 0.1), |_| Err::<Taylor, _>("no root")).unwrap_err();
         assert_eq!(error.source().unwrap().to_string(), "no root");
+        assert!(matches!(
+            propagate(&one(1.0, 0.1), |x| [x[0], x[0]]),
+            Err(UncertaintyError::OutputCount { expected: 1, found: 2 })
+        ));
+    }
+
+    #[test]
+    fn differences_and_exact_derivatives_agree() {
+        fn model<D: Scalar>(x: &[D]) -> D {
+            x[0] * x[0] * x[1] + (x[1] / x[0]).exp()
+        }
+        let inputs = Inputs::new([Input::new("a", 2.0, 2e-3, "m").unwrap(), Input::new("b", 3.0, 3e-3, "m").unwrap()]);
+        let inputs = inputs.unwrap().with_correlations(&[("a", "b", 0.4)]).unwrap();
+        let exact = propagate(&inputs, model).unwrap();
+        let stepped = Gum::new(&inputs).propagate_by_differences(model::<f64>).unwrap().single().unwrap();
+        // (u/x)² = 1e-6 is what the third derivative leaves in a central difference.
+        assert!((stepped.standard_uncertainty() / exact.standard_uncertainty() - 1.0).abs() < 1e-6);
+        let [first, second] = [exact, stepped].map(|budget| budget.second_order().unwrap());
+        assert!((first.correction / second.correction - 1.0).abs() < 1e-5, "{first:?} {second:?}");
+        assert!((first.standard_uncertainty / second.standard_uncertainty - 1.0).abs() < 1e-8, "{first:?} {second:?}");
+    }
+
+    #[test]
+    fn a_constant_has_a_sensitivity_too() {
+        let stepped = Gum::new(&one(3.0, 0.0)).propagate_by_differences(|x| x[0] * x[0]).unwrap();
+        let sensitivity = stepped.outputs()[0].contributions().next().unwrap().sensitivity;
+        assert!((sensitivity - 6.0).abs() < 1e-9, "{sensitivity}");
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::Budget;
+use crate::{Budget, Linearisation};
 
 /// Significant digits of uncertainties and shares, and of a value down to its uncertainty.
 const DIGITS: i32 = 3;
@@ -28,10 +28,27 @@ impl fmt::Display for Budget {
             let coefficient = rounded(self.inputs().correlation_at(i, j), DIGITS);
             writeln!(f, "r({}, {}) = {coefficient}", inputs[i].name(), inputs[j].name())?;
         }
-        if self.linearisation_suspect() {
-            writeln!(f, "warning: u is zero although inputs are uncertain; the linear approximation cannot see them")?;
+        let digits = |value| rounded(value, DIGITS);
+        match self.linearisation() {
+            Linearisation::Adequate | Linearisation::Unchecked => Ok(()),
+            Linearisation::ZeroUncertainty => writeln!(
+                f,
+                "warning: u is zero although inputs are uncertain; the linear approximation cannot see them"
+            ),
+            Linearisation::UncertaintyDiffers(terms) => {
+                writeln!(
+                    f,
+                    "warning: the model is curved; to second order u = {}{unit}",
+                    digits(terms.standard_uncertainty)
+                )
+            }
+            Linearisation::EstimateShifts(terms) => {
+                writeln!(f, "warning: the model is curved and moves the estimate by {}{unit}", digits(terms.correction))
+            }
+            Linearisation::NotExpandable => {
+                writeln!(f, "warning: the model is curved beyond the reach of second-order terms")
+            }
         }
-        Ok(())
     }
 }
 

@@ -1,0 +1,201 @@
+//! How many trials are enough.
+
+use crate::block::BLOCK_TRIALS;
+use crate::coverage::{coverage_factor, valid_level};
+use crate::output_sample::{shortest, symmetric};
+use crate::tolerance::{numerical_tolerance, valid_digits};
+use crate::{Moments, UncertaintyError};
+
+/// Sequences of trials before the first decision: with fewer, chance may make them agree.
+const FEWEST_SEQUENCES: usize = 10;
+/// Share of δ that a Monte Carlo may be wrong by if it is to validate another result (JCGM 101:2008, 8.2).
+const VALIDATION: f64 = 0.2;
+
+/// Which of the intervals of a given coverage probability.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum IntervalKind {
+    /// Equal probabilities on both sides.
+    #[default]
+    Symmetric,
+    /// The shortest one.
+    Shortest,
+}
+
+/// The adaptive procedure of JCGM 101:2008, 7.9: sequences of M = max(10⁴, 100/(1 − p)) trials until estimate, standard
+/// uncertainty and both ends of the coverage interval are stable, for every output.
+///
+/// ```text
+/// s_z² = Σ (z_h − z̄)²/(h (h − 1)),   stop when 2 s_z ≤ δ for all four z      (JCGM 101:2008, 7.9.4)
+/// ```
+///
+/// At least ten sequences are made: two may agree by chance. The stop succeeds in about nine of ten runs, since it waits
+/// for a favourable estimate of s_z; [`Adaptive::two_stage`] takes s_z from the first sequences alone and
+/// succeeds more often, for some more trials.
+///
+/// # References
+/// G. Wübbeler, P. M. Harris, M. G. Cox, C. Elster, "A two-stage procedure for determining the number of trials in
+/// the application of a Monte Carlo method for uncertainty evaluation", Metrologia 47 (2010) 317,
+/// doi:10.1088/0026-1394/47/3/023.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Adaptive {
+    target: Target,
+    share: f64,
+    level: f64,
+    kind: IntervalKind,
+    first_stage: Option<usize>,
+    most_trials: u64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Target {
+    Digits(u32),
+    Tolerance(f64),
+}
+
+impl Adaptive {
+    /// Results stable to `digits` significant digits of u(y), with a symmetric interval of 95 % and at most 10⁸
+    /// trials.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::OptionOutOfRange`] unless there are 1 to 15 digits.
+    pub fn to_digits(digits: u32) -> Result<Self, UncertaintyError> {
+        Ok(Self::new(Target::Digits(valid_digits(digits)?)))
+    }
+
+    /// Results stable to `tolerance` δ (unit of the outputs, which share it).
+    ///
+    /// # Errors
+    /// [`UncertaintyError::OptionOutOfRange`] unless it is positive and finite.
+    pub fn to_tolerance(tolerance: f64) -> Result<Self, UncertaintyError> {
+        if tolerance > 0.0 && tolerance.is_finite() {
+            Ok(Self::new(Target::Tolerance(tolerance)))
+        } else {
+            let (option, must_be) = ("numerical tolerance", "positive and finite");
+            Err(UncertaintyError::OptionOutOfRange { option, value: tolerance, must_be })
+        }
+    }
+
+    const fn new(target: Target) -> Self {
+        let (kind, first_stage, most_trials) = (IntervalKind::Symmetric, None, 100_000_000);
+        Self { target, share: 1.0, level: 0.95, kind, first_stage, most_trials }
+    }
+
+    /// The same with an interval of the given kind and coverage probability.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::LevelOutOfRange`] unless 0 < level < 1.
+    pub fn with_interval(mut self, kind: IntervalKind, level: f64) -> Result<Self, UncertaintyError> {
+        (self.kind, self.level) = (kind, valid_level(level)?);
+        Ok(self)
+    }
+
+    /// The same to a fifth of the tolerance, as the validation of another result needs it (JCGM 101:2008, 8.2).
+    #[must_use]
+    pub const fn for_validation(mut self) -> Self {
+        self.share = VALIDATION;
+        self
+    }
+
+    /// The same in two stages: s_z from the first `sequences`, at least ten, then as many as Student's t asks for.
+    #[must_use]
+    pub fn two_stage(mut self, sequences: usize) -> Self {
+        self.first_stage = Some(sequences.max(FEWEST_SEQUENCES));
+        self
+    }
+
+    /// The same with another largest number of trials.
+    #[must_use]
+    pub const fn with_most_trials(mut self, trials: u64) -> Self {
+        self.most_trials = trials;
+        self
+    }
+
+    pub(crate) const fn most_trials(&self) -> u64 {
+        self.most_trials
+    }
+
+    /// Blocks of a sequence.
+    pub(crate) fn blocks_of_sequence(&self) -> u64 {
+        let trials = (100.0 / (1.0 - self.level)).ceil().max(1e4);
+        (trials / BLOCK_TRIALS as f64).ceil() as u64
+    }
+}
+
+/// What the sequences so far have shown.
+#[derive(Debug, Clone)]
+pub(crate) struct Stability {
+    rule: Adaptive,
+    /// Estimate, uncertainty and both ends by sequence, for every output.
+    figures: Vec<[Vec<f64>; 4]>,
+    /// Number, mean and sum of squares of all trials so far, for every output.
+    pooled: Vec<(f64, f64, f64)>,
+    /// Sequences to be made in all, once the first of two stages has shown it.
+    planned: Option<usize>,
+}
+
+impl Stability {
+    pub(crate) const fn new(rule: Adaptive) -> Self {
+        Self { rule, figures: Vec::new(), pooled: Vec::new(), planned: None }
+    }
+
+    /// Takes in the next sequence, by output, and says whether it is the last one.
+    pub(crate) fn add(&mut self, sequence: &[Vec<f64>]) -> Result<bool, UncertaintyError> {
+        self.figures.resize(sequence.len(), Default::default());
+        self.pooled.resize(sequence.len(), (0.0, 0.0, 0.0));
+        for (column, (figures, pooled)) in sequence.iter().zip(self.figures.iter_mut().zip(&mut self.pooled)) {
+            let interval = match self.rule.kind {
+                IntervalKind::Symmetric => symmetric(column, self.rule.level)?,
+                IntervalKind::Shortest => shortest(column, self.rule.level)?,
+            };
+            let moments = Moments::of_values(column);
+            let u = moments.standard_deviation().unwrap_or(0.0);
+            for (figure, value) in figures.iter_mut().zip([moments.mean(), u, interval.low, interval.high]) {
+                figure.push(value);
+            }
+            let (n, mean, squares) = *pooled;
+            let (more, difference) = (moments.count() as f64, moments.mean() - mean);
+            let all = n + more;
+            *pooled = (
+                all,
+                mean + difference * (more / all),
+                squares + moments.sum_of_squares() + difference * difference * (n * (more / all)),
+            );
+        }
+        self.decide()
+    }
+
+    fn decide(&mut self) -> Result<bool, UncertaintyError> {
+        let count = self.figures.first().map_or(0, |figures| figures[0].len());
+        let Some(first) = self.rule.first_stage else {
+            return Ok(count >= FEWEST_SEQUENCES && self.needed(2.0)? <= count as f64);
+        };
+        if count == first {
+            let factor = coverage_factor(0.95, (first - 1) as f64)?;
+            self.planned = Some(self.needed(factor)?.max(first as f64) as usize);
+        }
+        Ok(self.planned.is_some_and(|planned| count >= planned))
+    }
+
+    /// Sequences after which k s_z ≤ δ, if the spread between sequences stays what it is: whole, and the most for any
+    /// figure of any output.
+    fn needed(&self, factor: f64) -> Result<f64, UncertaintyError> {
+        let mut most = 0.0_f64;
+        for (figures, &(n, _, squares)) in self.figures.iter().zip(&self.pooled) {
+            let u = (squares / (n - 1.0)).sqrt();
+            if u == 0.0 {
+                continue;
+            }
+            let tolerance = match self.rule.target {
+                Target::Digits(digits) => numerical_tolerance(u, digits)?,
+                Target::Tolerance(tolerance) => tolerance,
+            };
+            for figure in figures {
+                let spread = Moments::of_values(figure).standard_deviation().unwrap_or(f64::INFINITY);
+                most = most.max((factor * spread / (self.rule.share * tolerance)).powi(2));
+            }
+        }
+        // A shade more than whole is whole: rounding must not cost a sequence.
+        Ok((most * (1.0 - 1e-12)).ceil())
+    }
+}

@@ -1,0 +1,266 @@
+//! What is known about a quantity, as a probability distribution.
+
+mod values;
+
+use crate::UncertaintyError;
+use crate::arc_sine::ArcSine;
+use crate::curvilinear_trapezoid::CurvilinearTrapezoid;
+use crate::empirical::Empirical;
+use crate::input::valid_degrees_of_freedom;
+use crate::trapezoid::Trapezoid;
+
+/// A probability distribution: those of JCGM 101:2008, Table 1, a constant, and the empirical one.
+///
+/// | constructor | known is |
+/// |---|---|
+/// | [`Distribution::constant`] | the value |
+/// | [`Distribution::rectangular`] | lower and upper limit |
+/// | [`Distribution::curvilinear_trapezoid`] | limits that are themselves inexact |
+/// | [`Distribution::trapezoid`] | a sum of two rectangular quantities |
+/// | [`Distribution::triangular`] | a sum of two rectangular quantities of equal width |
+/// | [`Distribution::arc_sine`] | limits between which a quantity cycles sinusoidally |
+/// | [`Distribution::normal`] | estimate and standard uncertainty |
+/// | [`Distribution::student_t`] | mean and standard deviation of a few observations; an expanded uncertainty with ν |
+/// | [`Distribution::exponential`] | mean of a quantity that cannot be negative |
+/// | [`Distribution::gamma`] | a count of events |
+/// | [`Distribution::empirical`] | values |
+///
+/// ```
+/// use fmm_uq::Distribution;
+///
+/// let limits = Distribution::rectangular(-1.0, 3.0)?;
+/// assert_eq!((limits.mean(), limits.quantile(0.975)?), (1.0, 2.9));
+/// assert!((limits.standard_deviation() - 2.0 / 3f64.sqrt()).abs() < 1e-15);
+/// assert!(Distribution::rectangular(3.0, -1.0).is_err());
+/// # Ok::<(), fmm_uq::UncertaintyError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Distribution {
+    pub(crate) shape: Shape,
+}
+
+/// The valid parameters of a distribution.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Shape {
+    Constant(f64),
+    Rectangular { lower: f64, upper: f64 },
+    CurvilinearTrapezoid(CurvilinearTrapezoid),
+    Trapezoid(Trapezoid),
+    ArcSine(ArcSine),
+    Normal { mean: f64, standard_deviation: f64 },
+    StudentT { mean: f64, scale: f64, degrees_of_freedom: f64, unit: rand_distr::StudentT<f64> },
+    Exponential { mean: f64 },
+    Gamma { shape: f64, scale: f64, sampler: rand_distr::Gamma<f64> },
+    Empirical(Empirical),
+}
+
+impl Distribution {
+    /// A value that is known exactly.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::ParameterOutOfRange`] if it is not finite.
+    pub fn constant(value: f64) -> Result<Self, UncertaintyError> {
+        Ok(Shape::Constant(finite("value of a constant", value)?).into())
+    }
+
+    /// R(a, b): equally probable between two limits (JCGM 101:2008, 6.4.2).
+    ///
+    /// # Errors
+    /// [`UncertaintyError::LimitsOutOfOrder`] unless a < b and b − a is finite.
+    pub fn rectangular(lower: f64, upper: f64) -> Result<Self, UncertaintyError> {
+        let (lower, upper) = limits(lower, upper)?;
+        Ok(Shape::Rectangular { lower, upper }.into())
+    }
+
+    /// CTrap(a, b, d): rectangular between limits that are each known to ±d (JCGM 101:2008, 6.4.3).
+    ///
+    /// # Errors
+    /// [`UncertaintyError::LimitsOutOfOrder`]; [`UncertaintyError::ParameterOutOfRange`] unless 0 < d ≤ (b − a)/2.
+    pub fn curvilinear_trapezoid(lower: f64, upper: f64, inexactness: f64) -> Result<Self, UncertaintyError> {
+        let (lower, upper) = limits(lower, upper)?;
+        let half = 0.5 * (upper - lower);
+        let possible = inexactness > 0.0 && inexactness <= half;
+        let d = require(possible, "inexactness of limits", inexactness, "positive and at most half their distance")?;
+        Ok(Shape::CurvilinearTrapezoid(CurvilinearTrapezoid::new(lower, upper, d)).into())
+    }
+
+    /// Trap(a, b, β): a symmetric trapezoid whose top is β times its base (JCGM 101:2008, 6.4.4).
+    ///
+    /// # Errors
+    /// [`UncertaintyError::LimitsOutOfOrder`]; [`UncertaintyError::ParameterOutOfRange`] unless 0 ≤ β < 1.
+    pub fn trapezoid(lower: f64, upper: f64, ratio: f64) -> Result<Self, UncertaintyError> {
+        let (lower, upper) = limits(lower, upper)?;
+        let ratio = require((0.0..1.0).contains(&ratio), "ratio of top to base of a trapezoid", ratio, "in [0, 1)")?;
+        Ok(Shape::Trapezoid(Trapezoid::new(lower, upper, ratio)).into())
+    }
+
+    /// T(a, b): a symmetric triangle (JCGM 101:2008, 6.4.5).
+    ///
+    /// # Errors
+    /// [`UncertaintyError::LimitsOutOfOrder`].
+    pub fn triangular(lower: f64, upper: f64) -> Result<Self, UncertaintyError> {
+        Self::trapezoid(lower, upper, 0.0)
+    }
+
+    /// U(a, b): a quantity that cycles sinusoidally between two limits, at unknown phase (JCGM 101:2008, 6.4.6).
+    ///
+    /// # Errors
+    /// [`UncertaintyError::LimitsOutOfOrder`].
+    pub fn arc_sine(lower: f64, upper: f64) -> Result<Self, UncertaintyError> {
+        let (lower, upper) = limits(lower, upper)?;
+        Ok(Shape::ArcSine(ArcSine::new(lower, upper)).into())
+    }
+
+    /// N(x, u²) (JCGM 101:2008, 6.4.7).
+    ///
+    /// # Errors
+    /// [`UncertaintyError::ParameterOutOfRange`] unless x is finite and u positive and finite.
+    pub fn normal(mean: f64, standard_deviation: f64) -> Result<Self, UncertaintyError> {
+        let (mean, standard_deviation) = (finite("mean", mean)?, positive("standard deviation", standard_deviation)?);
+        Ok(Shape::Normal { mean, standard_deviation }.into())
+    }
+
+    /// t_ν(x, s²): Student's t, shifted to x and scaled by s (JCGM 101:2008, 6.4.9). ν = ∞ gives the normal.
+    ///
+    /// For n observations x is their mean, s their standard deviation over √n, and ν = n − 1; for an expanded
+    /// uncertainty U with coverage factor k, s is U/k. Below ν = 3 it has no standard deviation.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::ParameterOutOfRange`] unless x is finite and s positive and finite;
+    /// [`UncertaintyError::DegreesOfFreedomOutOfRange`] if ν is below 1 or NaN.
+    pub fn student_t(mean: f64, scale: f64, degrees_of_freedom: f64) -> Result<Self, UncertaintyError> {
+        let (mean, scale) = (finite("mean", mean)?, positive("scale of a t-distribution", scale)?);
+        let nu = valid_degrees_of_freedom("a t-distribution", degrees_of_freedom)?;
+        if nu.is_infinite() {
+            return Self::normal(mean, scale);
+        }
+        let unit = rand_distr::StudentT::new(nu).map_err(|_| refused("degrees of freedom", nu))?;
+        Ok(Shape::StudentT { mean, scale, degrees_of_freedom: nu, unit }.into())
+    }
+
+    /// Ex(1/x): a quantity that cannot be negative and of which no more than an estimate x is known
+    /// (JCGM 101:2008, 6.4.10).
+    ///
+    /// # Errors
+    /// [`UncertaintyError::ParameterOutOfRange`] unless x is positive and finite.
+    pub fn exponential(mean: f64) -> Result<Self, UncertaintyError> {
+        Ok(Shape::Exponential { mean: positive("mean of an exponential distribution", mean)? }.into())
+    }
+
+    /// G(α, β) with density proportional to x^(α−1) e^(−x/β). The mean number of events of which q were counted has
+    /// G(q + 1, 1) (JCGM 101:2008, 6.4.11).
+    ///
+    /// # Errors
+    /// [`UncertaintyError::ParameterOutOfRange`] unless both are positive and finite.
+    pub fn gamma(shape: f64, scale: f64) -> Result<Self, UncertaintyError> {
+        let (shape, scale) = (positive("shape of a gamma distribution", shape)?, positive("scale", scale)?);
+        let sampler =
+            rand_distr::Gamma::new(shape, scale).map_err(|_| refused("shape of a gamma distribution", shape))?;
+        Ok(Shape::Gamma { shape, scale, sampler }.into())
+    }
+
+    /// Equal probability for each of `values`.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::TooFewObservations`] for none; [`UncertaintyError::ParameterOutOfRange`] if one is not
+    /// finite.
+    pub fn empirical(values: &[f64]) -> Result<Self, UncertaintyError> {
+        if values.is_empty() {
+            return Err(UncertaintyError::TooFewObservations { found: 0, needed: 1 });
+        }
+        for &value in values {
+            finite("value of an empirical distribution", value)?;
+        }
+        let empirical = Empirical::new(values.to_vec());
+        finite("standard deviation of an empirical distribution", empirical.standard_deviation())?;
+        Ok(Shape::Empirical(empirical).into())
+    }
+
+    /// Expectation; the centre of Student's t, which for ν = 1 has no expectation.
+    pub fn mean(&self) -> f64 {
+        match &self.shape {
+            Shape::Constant(value) => *value,
+            Shape::Rectangular { lower, upper } => 0.5 * lower + 0.5 * upper,
+            Shape::CurvilinearTrapezoid(shape) => shape.mean(),
+            Shape::Trapezoid(shape) => shape.mean(),
+            Shape::ArcSine(shape) => shape.mean(),
+            Shape::Normal { mean, .. } | Shape::StudentT { mean, .. } | Shape::Exponential { mean } => *mean,
+            Shape::Gamma { shape, scale, .. } => shape * scale,
+            Shape::Empirical(shape) => shape.mean(),
+        }
+    }
+
+    /// Standard deviation; infinite for Student's t with ν ≤ 2. For t it is larger than the scale by √(ν/(ν − 2)).
+    pub fn standard_deviation(&self) -> f64 {
+        match &self.shape {
+            Shape::Constant(_) => 0.0,
+            Shape::Rectangular { lower, upper } => (upper - lower) / 12f64.sqrt(),
+            Shape::CurvilinearTrapezoid(shape) => shape.standard_deviation(),
+            Shape::Trapezoid(shape) => shape.standard_deviation(),
+            Shape::ArcSine(shape) => shape.standard_deviation(),
+            Shape::Normal { standard_deviation, .. } => *standard_deviation,
+            Shape::StudentT { scale, degrees_of_freedom: nu, .. } => {
+                if *nu > 2.0 {
+                    scale * (nu / (nu - 2.0)).sqrt()
+                } else {
+                    f64::INFINITY
+                }
+            }
+            Shape::Exponential { mean } => *mean,
+            Shape::Gamma { shape, scale, .. } => shape.sqrt() * scale,
+            Shape::Empirical(shape) => shape.standard_deviation(),
+        }
+    }
+
+    /// The standard uncertainty that the GUM takes: the standard deviation, but the scale of Student's t, whose
+    /// degrees of freedom the GUM counts apart.
+    pub fn standard_uncertainty(&self) -> f64 {
+        match &self.shape {
+            Shape::StudentT { scale, .. } => *scale,
+            _ => self.standard_deviation(),
+        }
+    }
+
+    /// ν of Student's t (1), infinite for all others.
+    pub fn degrees_of_freedom(&self) -> f64 {
+        match &self.shape {
+            Shape::StudentT { degrees_of_freedom, .. } => *degrees_of_freedom,
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+impl From<Shape> for Distribution {
+    fn from(shape: Shape) -> Self {
+        Self { shape }
+    }
+}
+
+fn limits(lower: f64, upper: f64) -> Result<(f64, f64), UncertaintyError> {
+    if lower < upper && (upper - lower).is_finite() {
+        Ok((lower, upper))
+    } else {
+        Err(UncertaintyError::LimitsOutOfOrder { lower, upper })
+    }
+}
+
+fn require(
+    possible: bool,
+    parameter: &'static str,
+    value: f64,
+    must_be: &'static str,
+) -> Result<f64, UncertaintyError> {
+    if possible { Ok(value) } else { Err(UncertaintyError::ParameterOutOfRange { parameter, value, must_be }) }
+}
+
+fn finite(parameter: &'static str, value: f64) -> Result<f64, UncertaintyError> {
+    require(value.is_finite(), parameter, value, "finite")
+}
+
+fn positive(parameter: &'static str, value: f64) -> Result<f64, UncertaintyError> {
+    require(value > 0.0 && value.is_finite(), parameter, value, "positive and finite")
+}
+
+fn refused(parameter: &'static str, value: f64) -> UncertaintyError {
+    UncertaintyError::ParameterOutOfRange { parameter, value, must_be: "in the range that can be sampled" }
+}

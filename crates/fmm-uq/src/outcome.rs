@@ -1,0 +1,65 @@
+//! What a model may give back.
+
+use std::error::Error;
+
+use crate::Taylor;
+
+/// What a model gives back: a number, an array or a vector of them, or a `Result` of one of these.
+///
+/// `D` is the number type: `f64` for a Monte Carlo and for differences, [`Taylor`] for exact derivatives. Thus the same
+/// formula, generic in `D: Scalar`, serves them all.
+///
+/// ```
+/// use fmm_uq::Outcome;
+///
+/// let mut values = Vec::new();
+/// assert!(Ok::<_, String>([1.0, 2.0]).append_to(&mut values).is_ok());
+/// assert_eq!(values, [1.0, 2.0]);
+/// assert!(Err::<f64, _>("no root").append_to(&mut values).is_err());
+/// ```
+pub trait Outcome<D> {
+    /// Appends the outputs in their order, or gives back why there are none.
+    ///
+    /// # Errors
+    /// The model's own.
+    fn append_to(self, outputs: &mut Vec<D>) -> Result<(), Box<dyn Error + Send + Sync>>;
+}
+
+impl Outcome<Self> for f64 {
+    #[inline]
+    fn append_to(self, outputs: &mut Vec<Self>) -> Result<(), Box<dyn Error + Send + Sync>> {
+        outputs.push(self);
+        Ok(())
+    }
+}
+
+impl Outcome<Self> for Taylor {
+    #[inline]
+    fn append_to(self, outputs: &mut Vec<Self>) -> Result<(), Box<dyn Error + Send + Sync>> {
+        outputs.push(self);
+        Ok(())
+    }
+}
+
+impl<D, const N: usize> Outcome<D> for [D; N] {
+    #[inline]
+    fn append_to(self, outputs: &mut Vec<D>) -> Result<(), Box<dyn Error + Send + Sync>> {
+        outputs.extend(self);
+        Ok(())
+    }
+}
+
+impl<D> Outcome<D> for Vec<D> {
+    #[inline]
+    fn append_to(self, outputs: &mut Vec<D>) -> Result<(), Box<dyn Error + Send + Sync>> {
+        outputs.extend(self);
+        Ok(())
+    }
+}
+
+impl<D, T: Outcome<D>, E: Into<Box<dyn Error + Send + Sync>>> Outcome<D> for Result<T, E> {
+    #[inline]
+    fn append_to(self, outputs: &mut Vec<D>) -> Result<(), Box<dyn Error + Send + Sync>> {
+        self.map_err(Into::into)?.append_to(outputs)
+    }
+}

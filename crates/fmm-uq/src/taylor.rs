@@ -1,0 +1,251 @@
+//! A number that carries its Taylor expansion along.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use fmm_model::Scalar;
+
+/// Powers (i, j) of the two directions, in the order of their coefficients.
+const POWERS: [(usize, usize); 10] = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3)];
+
+/// Where a product of two powers goes, by the positions of its factors.
+const PRODUCTS: [(usize, usize, usize); 35] = products();
+
+/// A value with its Taylor expansion to third order in two directions, exact through every operation.
+///
+/// ```text
+/// f(a + δ) = Σ c_ij ε₁ⁱ ε₂ʲ,   i + j ≤ 3
+/// ```
+///
+/// It is what a model is evaluated in for its sensitivities, its curvature and the second-order terms of the GUM, pair
+/// by pair of inputs. [`Scalar`] holds its functions; the arithmetic is with itself and with `f64` on the
+/// right. Its values are those of `f64` to the last bit.
+///
+/// ```
+/// use fmm_uq::{Scalar, Taylor};
+///
+/// // x² y at (3, 2): slopes 2xy and x², and of the second order y dx² + 2x dx dy.
+/// let (x, y) = (Taylor::variable(3.0, 0), Taylor::variable(2.0, 1));
+/// let f = x * x * y;
+/// assert_eq!((f.value(), f.partial(0), f.partial(1)), (18.0, 12.0, 9.0));
+/// assert_eq!((f.coefficient(2, 0), f.coefficient(1, 1)), (2.0, 6.0));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Taylor {
+    coefficients: [f64; 10],
+}
+
+impl Taylor {
+    /// c_ij, coefficient of the `i`th power of the first direction and the `j`th of the second; 0 beyond the third order.
+    pub fn coefficient(self, i: usize, j: usize) -> f64 {
+        POWERS.iter().position(|&power| power == (i, j)).map_or(0.0, |at| self.coefficients[at])
+    }
+
+    /// The number `value` + `first` ε₁ + `second` ε₂.
+    pub(crate) fn along(value: f64, first: f64, second: f64) -> Self {
+        let mut number = Self::from(value);
+        (number.coefficients[1], number.coefficients[2]) = (first, second);
+        number
+    }
+
+    /// A function of it, by the value of the function and the coefficients of its own expansion there.
+    fn compose(self, value: f64, series: [f64; 3]) -> Self {
+        let mut difference = self;
+        difference.coefficients[0] = 0.0;
+        let square = difference * difference;
+        let cube = square * difference;
+        let mut result = Self::from(value);
+        for (k, sum) in result.coefficients.iter_mut().enumerate().skip(1) {
+            *sum = term(series[0], difference.coefficients[k])
+                + term(series[1], square.coefficients[k])
+                + term(series[2], cube.coefficients[k]);
+        }
+        result
+    }
+
+    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        Self { coefficients: self.coefficients.map(f) }
+    }
+
+    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        let mut coefficients = self.coefficients;
+        for (a, b) in coefficients.iter_mut().zip(other.coefficients) {
+            *a = f(*a, b);
+        }
+        Self { coefficients }
+    }
+}
+
+/// A product in which a factor of 0 keeps it 0: an infinite slope does not concern a number that does not vary.
+fn term(slope: f64, factor: f64) -> f64 {
+    if factor == 0.0 { 0.0 } else { slope * factor }
+}
+
+const fn products() -> [(usize, usize, usize); 35] {
+    let mut table = [(0, 0, 0); 35];
+    let (mut a, mut next) = (0, 0);
+    while a < 10 {
+        let mut b = 0;
+        while b < 10 {
+            let (i, j) = (POWERS[a].0 + POWERS[b].0, POWERS[a].1 + POWERS[b].1);
+            if i + j <= 3 {
+                let order = i + j;
+                table[next] = (a, b, order * (order + 1) / 2 + j);
+                next += 1;
+            }
+            b += 1;
+        }
+        a += 1;
+    }
+    table
+}
+
+impl From<f64> for Taylor {
+    fn from(value: f64) -> Self {
+        let mut coefficients = [0.0; 10];
+        coefficients[0] = value;
+        Self { coefficients }
+    }
+}
+
+impl Neg for Taylor {
+    type Output = Self;
+    fn neg(self) -> Self {
+        self.map(|c| -c)
+    }
+}
+
+impl Add for Taylor {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+}
+
+impl Sub for Taylor {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+}
+
+impl Mul for Taylor {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let mut coefficients = [0.0; 10];
+        for (a, b, to) in PRODUCTS {
+            coefficients[to] += self.coefficients[a] * other.coefficients[b];
+        }
+        Self { coefficients }
+    }
+}
+
+impl Div for Taylor {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        // From q · other = self, order by order: each coefficient of q follows from those before it.
+        let mut quotient = self;
+        for to in 0..10 {
+            let mut rest = self.coefficients[to];
+            for (a, b, at) in PRODUCTS {
+                if at == to && b != 0 {
+                    rest -= quotient.coefficients[a] * other.coefficients[b];
+                }
+            }
+            quotient.coefficients[to] = rest / other.coefficients[0];
+        }
+        quotient
+    }
+}
+
+impl Add<f64> for Taylor {
+    type Output = Self;
+    fn add(mut self, other: f64) -> Self {
+        self.coefficients[0] += other;
+        self
+    }
+}
+
+impl Sub<f64> for Taylor {
+    type Output = Self;
+    fn sub(mut self, other: f64) -> Self {
+        self.coefficients[0] -= other;
+        self
+    }
+}
+
+impl Mul<f64> for Taylor {
+    type Output = Self;
+    fn mul(self, other: f64) -> Self {
+        self.map(|c| c * other)
+    }
+}
+
+impl Div<f64> for Taylor {
+    type Output = Self;
+    fn div(self, other: f64) -> Self {
+        self.map(|c| c / other)
+    }
+}
+
+impl Scalar for Taylor {
+    const DIRECTIONS: usize = 2;
+
+    fn variable(value: f64, direction: usize) -> Self {
+        Self::along(value, f64::from(u8::from(direction == 0)), f64::from(u8::from(direction == 1)))
+    }
+    fn value(self) -> f64 {
+        self.coefficients[0]
+    }
+    fn partial(self, direction: usize) -> f64 {
+        if direction < 2 { self.coefficients[1 + direction] } else { 0.0 }
+    }
+    fn exp(self) -> Self {
+        let exp = self.value().exp();
+        self.compose(exp, [exp, exp / 2.0, exp / 6.0])
+    }
+    fn ln(self) -> Self {
+        let r = self.value().recip();
+        self.compose(self.value().ln(), [r, -r * r / 2.0, r * r * r / 3.0])
+    }
+    fn sqrt(self) -> Self {
+        let (x, root) = (self.value(), self.value().sqrt());
+        self.compose(root, [0.5 / root, -0.125 / (x * root), 0.0625 / (x * x * root)])
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.value().sin_cos();
+        (self.compose(sin, [cos, -sin / 2.0, -cos / 6.0]), self.compose(cos, [-sin, -cos / 2.0, sin / 6.0]))
+    }
+    fn tanh(self) -> Self {
+        let t = self.value().tanh();
+        let cosh = self.value().cosh();
+        let slope = (cosh * cosh).recip();
+        self.compose(t, [slope, -t * slope, slope * (3.0 * t * t - 1.0) / 3.0])
+    }
+    fn powf(self, exponent: Self) -> Self {
+        let (x, p) = (self.value(), exponent.value());
+        let value = x.powf(p);
+        if exponent.coefficients[1..].iter().all(|&c| c == 0.0) {
+            let series = [
+                term(x.powf(p - 1.0), p),
+                term(x.powf(p - 2.0), p * (p - 1.0) / 2.0),
+                term(x.powf(p - 3.0), p * (p - 1.0) * (p - 2.0) / 6.0),
+            ];
+            return self.compose(value, series);
+        }
+        let mut power = (self.ln() * exponent).exp();
+        power.coefficients[0] = value;
+        power
+    }
+    fn atan2(self, x: Self) -> Self {
+        // The expansion of the angle turned to the axis, where the quotient of the turned point is small and its
+        // arc tangent is that quotient less a third of its cube.
+        let radius = self.value().hypot(x.value());
+        let (sin, cos) = (self.value() / radius, x.value() / radius);
+        let mut turned = (self * cos - x * sin) / (x * cos + self * sin);
+        turned.coefficients[0] = 0.0;
+        turned.compose(self.value().atan2(x.value()), [1.0, 0.0, -1.0 / 3.0])
+    }
+}
+
+#[cfg(test)]
+mod tests;
