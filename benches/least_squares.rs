@@ -1,5 +1,5 @@
-//! The factorisation of the solver against those of nalgebra and faer, and the solver against the evaluations that it
-//! asks for, in one run.
+//! The factorisation of the solver against those of nalgebra and faer, the solver against the evaluations that it asks
+//! for, and a fit of the exact motion against one of the thesis' Euler motion, in one run.
 //!
 //! `cargo bench --bench least_squares` prints criterion's estimates and then the ratios of their medians.
 
@@ -12,13 +12,13 @@ use criterion::{BenchmarkId, Criterion, criterion_group};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::qr::no_pivoting::factor::{qr_in_place, qr_in_place_scratch, recommended_block_size};
 use faer::{Mat, Par};
-use fmm_fit::{EvaluationError, Minimizer, Options, Residuals};
+use fmm_fit::{EvaluationError, Minimizer, MultiStart, Options, Outcome, Residuals};
 use fmm_friction::{Coulomb, LawFamily};
 use fmm_model::{Bounds, Damping, Dual, Oscillator, Parameter, Scalar};
-use fmm_sim::{Channels, Engine, Exact, Sampling, Scenario, Trajectory};
+use fmm_sim::{Channels, Engine, Exact, Sampling, Scenario, Thesis, Trajectory};
 
 // The factorisation is no public item; the file needs nothing else of its crate.
-#[path = "../crates/fmm-fit/src/triangle.rs"]
+#[path = "../crates/fmm-fit/src/solver/triangle.rs"]
 #[allow(dead_code, unused_imports, reason = "only the factorisation is measured, and its tests do not run here")]
 mod triangle;
 
@@ -226,6 +226,116 @@ fn solver(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// Workload W3: friction coefficient and position of a noise-free ring-down of 1501 velocities. The exact engine gives its
+/// gradient, the thesis' Euler engine leaves it to differences.
+struct Repeated<E> {
+    engine: E,
+    is_exact: bool,
+    parameters: [Parameter; 2],
+    sampling: Sampling,
+    data: Vec<f64>,
+    plain: RefCell<Trajectory>,
+    carrying: RefCell<Trajectory<Dual<2>>>,
+}
+
+/// What the data of workload W3 were made with: μ (1), x₀ (m).
+const TRUTH: [f64; 2] = [0.15, 0.0];
+/// Where the thesis begins: μ (1), x₀ (m).
+const START: [f64; 2] = [0.15, 1e-4];
+/// The initial velocity (m/s).
+const VELOCITY: f64 = 0.101;
+
+impl<E: Engine<f64, Coulomb>> Repeated<E> {
+    /// The motion that `truth` makes, to be fitted by `engine`.
+    fn new(engine: E, is_exact: bool, truth: &impl Engine<f64, Coulomb>) -> Self {
+        let sampling = Sampling::uniform(1e-3, 1501).expect("valid").keeping(Channels::Velocity);
+        let motion = truth.run(&scenario(&[TRUTH[0], TRUTH[1], VELOCITY]).expect("valid"), &sampling).expect("valid");
+        let data = motion.velocity().values().to_vec();
+        let within = |lower, upper| Bounds::new(lower, upper).expect("valid");
+        let parameters = [
+            Parameter::new("friction_coefficient", "μ", "1").bounded(within(0.1, 1.0)),
+            Parameter::new("position", "x₀", "m").bounded(within(-3e-3, 3e-3)),
+        ];
+        let (plain, carrying) = (RefCell::default(), RefCell::default());
+        Self { engine, is_exact, parameters, sampling, data, plain, carrying }
+    }
+}
+
+impl<E: Engine<f64, Coulomb>> Residuals for Repeated<E> {
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+    fn len(&self) -> usize {
+        self.data.len()
+    }
+    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        let mut trajectory = self.plain.borrow_mut();
+        self.engine.run_into(&scenario(&[p[0], p[1], VELOCITY])?, &self.sampling, &mut trajectory)?;
+        for ((r, model), data) in residuals.iter_mut().zip(trajectory.velocity().values()).zip(&self.data) {
+            *r = model - data;
+        }
+        Ok(())
+    }
+    fn residuals_and_jacobian(
+        &self,
+        p: &[f64],
+        residuals: &mut [f64],
+        jacobian: &mut [f64],
+    ) -> Result<bool, EvaluationError> {
+        if !self.is_exact {
+            self.residuals(p, residuals)?;
+            return Ok(false);
+        }
+        let mut trajectory = self.carrying.borrow_mut();
+        let variables = [Dual::variable(p[0], 0), Dual::variable(p[1], 1), Dual::from(VELOCITY)];
+        Exact.run_into(&scenario(&variables)?, &self.sampling, &mut trajectory)?;
+        let velocity = trajectory.velocity();
+        for ((r, model), data) in residuals.iter_mut().zip(velocity.values()).zip(&self.data) {
+            *r = model - data;
+        }
+        for (j, column) in jacobian.chunks_exact_mut(self.data.len()).enumerate() {
+            column.copy_from_slice(velocity.partial(j).expect("two directions are carried"));
+        }
+        Ok(true)
+    }
+    fn is_cheaper_combined(&self) -> bool {
+        self.is_exact
+    }
+}
+
+/// Prints how far from the truth a fit is.
+fn print_error(name: &str, values: &[f64], outcome: Outcome) {
+    let errors = [values[0] - TRUTH[0], values[1] - TRUTH[1]];
+    println!("{name}: off by {:.1e} in μ and {:.1e} m in x₀; {outcome}", errors[0], errors[1]);
+}
+
+fn thesis_fit(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("thesis_fit");
+    let exact = Repeated::new(Exact, true, &Exact);
+    let mut minimizer = Minimizer::new(Options::default());
+    let outcome = minimizer.minimize(&exact, &START).expect("valid");
+    print_error("exact fit", minimizer.values(), outcome);
+    assert!((minimizer.values()[0] - TRUTH[0]).abs() < 1e-12, "the exact fit misses the minimum");
+    group.bench_function("exact", |bencher| bencher.iter(|| minimizer.minimize(&exact, black_box(&START))));
+
+    group.sample_size(20);
+    let euler = Repeated::new(Thesis::A3, false, &Exact);
+    let outcome = minimizer.minimize(&euler, &START).expect("valid");
+    print_error("Euler fit of the same motion", minimizer.values(), outcome);
+    group.bench_function("euler", |bencher| bencher.iter(|| minimizer.minimize(&euler, black_box(&START))));
+    let search = MultiStart::default().with_starts(1).with_kicks(2, 16).with_reach(vec![1e-3, 1e-3]);
+    let minima = search.solve(&euler, &START).expect("valid");
+    if let Some(best) = minima.best() {
+        print_error(&format!("  the best of {} Euler fits", minima.starts()), best.values(), best.outcome());
+    }
+
+    let own = Repeated::new(Thesis::A3, false, &Thesis::A3);
+    let outcome = minimizer.minimize(&own, &START).expect("valid");
+    print_error("Euler fit of an Euler motion", minimizer.values(), outcome);
+    group.bench_function("euler_of_euler", |bencher| bencher.iter(|| minimizer.minimize(&own, black_box(&START))));
+    group.finish();
+}
+
 /// Criterion's median of a benchmark of this run (ns), if it was measured.
 fn median(benchmark: &str) -> Option<f64> {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| Path::new("target").to_owned(), Into::into);
@@ -253,9 +363,11 @@ fn print_ratios() {
     print_ratio("joint/faer", "joint/own", "");
     print_ratio("joint/faer", "joint/blocks", "");
     print_ratio("solver/fit", "solver/evaluations", "at most 1.2");
+    print_ratio("thesis_fit/euler", "thesis_fit/exact", "at least 50");
+    print_ratio("thesis_fit/euler_of_euler", "thesis_fit/exact", "");
 }
 
-criterion_group!(benches, factorisation, joint, solver);
+criterion_group!(benches, factorisation, joint, solver, thesis_fit);
 
 fn main() {
     benches();

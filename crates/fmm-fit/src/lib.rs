@@ -26,107 +26,35 @@
 //! | Are the residuals noise? | [`ResidualDiagnostics`], [`durbin_watson`], [`effective_count`] |
 //! | And if they are not? | [`CorrelatedCovariance`] |
 
-mod argmin_solver;
-mod automatic;
-mod block;
-mod box_least_squares;
-mod comparing;
-mod contender;
-mod correlated;
-mod diagnostics_summary;
-mod error;
-mod estimate;
-mod evaluation;
-mod fit;
-mod held;
-mod iteration;
-mod joint;
-mod joint_error;
-mod linear_regression;
-mod loss;
-mod m_covariance;
-mod minima;
-mod minimizer;
-mod minimum;
-mod model_comparison;
-mod model_report;
-mod model_table;
-mod model_table_error;
-mod multi_start;
-mod non_finite;
-mod normality;
-mod null_direction;
-mod optimality;
-mod options;
-mod outcome;
-mod polynomial;
-mod power_law;
-mod prediction;
-mod profile;
-mod profile_interval;
-mod propagated;
-mod refined_least_squares;
-mod regression_error;
-mod report;
-mod residual_diagnostics;
-mod residuals;
+mod comparison;
+mod diagnostics;
+mod problem;
+mod regression;
+mod result;
 mod robust;
-mod robust_fit;
-mod runs_test;
-mod sensitivity;
-mod solve;
-mod spectrum;
-mod start_points;
-mod straight_line;
-mod triangle;
-mod trust_region;
-mod twofold;
-mod verdict;
-mod weighted;
-mod weighting;
-mod york;
+mod solver;
+mod starts;
+mod uncertainty;
 
-pub use argmin_solver::BoundedLevenbergMarquardt;
-pub use automatic::{Automatic, Model};
-pub use block::Block;
-pub use comparing::{Comparing, Criterion, ResidualCount};
-pub use contender::Contender;
-pub use correlated::CorrelatedCovariance;
-pub use diagnostics_summary::ResidualDiagnostics;
-pub use error::FitError;
-pub use estimate::{Estimate, EstimateStatus};
-pub use fit::Fit;
-pub use joint::{Joint, JointPart};
-pub use joint_error::JointError;
-pub use linear_regression::LinearRegression;
-pub use loss::Loss;
-pub use minima::{Minima, Minimum, StartFailure};
-pub use minimizer::Minimizer;
-pub use model_comparison::{ComparisonError, FTest, f_test};
-pub use model_table::{ModelRow, ModelTable, NestedComparison};
-pub use model_table_error::ModelTableError;
-pub use multi_start::MultiStart;
-pub use non_finite::NonFinite;
-pub use normality::{NormalityTest, anderson_darling};
-pub use null_direction::NullDirection;
-pub use options::Options;
-pub use outcome::Outcome;
-pub use polynomial::Polynomial;
-pub use power_law::PowerLaw;
-pub use prediction::Prediction;
-pub use profile::profile_interval;
-pub use profile_interval::{ProfileEnd, ProfileError, ProfileInterval, ResidualVariance};
-pub use propagated::{PropagatedCovariance, SensitivityError};
-pub use regression_error::RegressionError;
-pub use residual_diagnostics::{autocorrelation_time, durbin_watson, effective_count};
-pub use residuals::{EvaluationError, Residuals};
-pub use robust::Robust;
-pub use robust_fit::{RobustFit, Scale, median_deviation, solve_robust};
-pub use runs_test::{RunsTest, runs_test};
-pub use sensitivity::Sensitivity;
-pub use solve::{Progress, solve, solve_observed};
-pub use straight_line::StraightLine;
-pub use verdict::{Doubt, Verdict};
-pub use weighted::Weighted;
-pub use weighting::Weighting;
-pub use york::{UncertainPoint, YorkLine};
+pub use comparison::{
+    Comparing, ComparisonError, Contender, Criterion, Doubt, FTest, ModelRow, ModelTable, ModelTableError,
+    NestedComparison, ResidualCount, Verdict, f_test,
+};
+pub use diagnostics::{
+    NormalityTest, ResidualDiagnostics, RunsTest, anderson_darling, autocorrelation_time, durbin_watson,
+    effective_count, runs_test,
+};
+pub use problem::{Automatic, Block, EvaluationError, Joint, JointError, JointPart, Model, Residuals, Weighted};
+pub use regression::{
+    LinearRegression, Polynomial, PowerLaw, RegressionError, StraightLine, UncertainPoint, Weighting, YorkLine,
+};
+pub use result::{Estimate, EstimateStatus, Fit, NullDirection};
+pub use robust::{Loss, Robust, RobustFit, Scale, median_deviation, solve_robust};
+pub use solver::{
+    BoundedLevenbergMarquardt, FitError, Minimizer, NonFinite, Options, Outcome, Progress, solve, solve_observed,
+};
+pub use starts::{Minima, Minimum, MultiStart, StartFailure};
+pub use uncertainty::{
+    CorrelatedCovariance, Prediction, ProfileEnd, ProfileError, ProfileInterval, PropagatedCovariance,
+    ResidualVariance, Sensitivity, SensitivityError, profile_interval,
+};

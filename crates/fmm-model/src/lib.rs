@@ -24,6 +24,7 @@ mod parameter;
 mod restoring;
 mod rounded;
 mod scalar;
+mod widest;
 
 pub use bounds::Bounds;
 pub use damping::Damping;
@@ -34,6 +35,7 @@ pub use parameter::Parameter;
 pub use restoring::Restoring;
 pub use rounded::Rounded;
 pub use scalar::Scalar;
+pub use widest::widest;
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

@@ -59,7 +59,6 @@ mod scenario;
 mod simulated;
 mod thesis;
 mod trajectory;
-mod widest;
 mod work;
 
 pub use bristle::Bristle;

@@ -1,10 +1,9 @@
 //! Samples of one swing from a table of powers, vectorised over time.
 
-use fmm_model::Scalar;
+use fmm_model::{Scalar, widest};
 
 use crate::decay::Decay;
 use crate::recorder::Recorder;
-use crate::widest::widest;
 use crate::{Samples, Sampling, State};
 
 /// zʲ = exp((−a + iω)Δt)ʲ for j from 0 on, real and imaginary parts apart.

@@ -1,0 +1,16 @@
+//! Which of several models.
+
+mod comparing;
+mod contender;
+mod model_comparison;
+mod model_report;
+mod model_table;
+mod model_table_error;
+mod verdict;
+
+pub use comparing::{Comparing, Criterion, ResidualCount};
+pub use contender::Contender;
+pub use model_comparison::{ComparisonError, FTest, f_test};
+pub use model_table::{ModelRow, ModelTable, NestedComparison};
+pub use model_table_error::ModelTableError;
+pub use verdict::{Doubt, Verdict};

@@ -1,0 +1,15 @@
+//! What is fitted: residuals as a function of parameters, and ways to write them.
+
+mod automatic;
+pub(crate) mod block;
+mod joint;
+mod joint_error;
+mod residuals;
+mod weighted;
+
+pub use automatic::{Automatic, Model};
+pub use block::Block;
+pub use joint::{Joint, JointPart};
+pub use joint_error::JointError;
+pub use residuals::{EvaluationError, Residuals};
+pub use weighted::Weighted;

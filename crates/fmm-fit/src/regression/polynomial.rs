@@ -1,0 +1,254 @@
+//! Regression on powers of an abscissa.
+
+use crate::regression::twofold::Twofold;
+use crate::regression::weighting::check_finite;
+use crate::{LinearRegression, Prediction, RegressionError, Weighting};
+
+/// A polynomial through observations.
+///
+/// ```text
+/// ŷ = Σₖ βₖ xᵏ = Σⱼ aⱼ tʲ,     t = (x − centre)/scale
+/// ```
+///
+/// The fit is done in t, of magnitude about 1, in which powers are far less alike; the scale is a power of two and the
+/// centre a short number, so that the change of the variable rounds nothing, and powers are kept in twice the
+/// precision. The coefficients βₖ are then as right as the digits of the abscissae allow, also where powers of x as
+/// columns would leave none.
+///
+/// ```
+/// use fmm_fit::{Polynomial, Weighting};
+///
+/// let x = [1000.0, 1001.0, 1002.0, 1003.0, 1004.0];
+/// let y = x.map(|x| 2.0 + 3.0 * x + 0.5 * x * x);
+/// let parabola = Polynomial::fit(&x, &y, 2, Weighting::Equal)?;
+/// assert!((parabola.coefficients()[0] - 2.0).abs() < 1e-8);
+/// assert_eq!(parabola.value(1002.0), 505_010.0);
+/// # Ok::<(), fmm_fit::RegressionError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Polynomial {
+    /// In powers of x.
+    regression: LinearRegression,
+    /// Coefficients and roots of the covariance in powers of t.
+    local_coefficients: Vec<f64>,
+    local_roots: Vec<Vec<f64>>,
+    centre: f64,
+    scale: f64,
+    lowest: usize,
+}
+
+impl Polynomial {
+    /// Fits a polynomial of the given `order`, which has order + 1 coefficients, to `y` at the abscissae `x`.
+    ///
+    /// # Errors
+    /// [`RegressionError`] if lengths differ, a value is not finite, an uncertainty not positive, or if there are not
+    /// order + 1 different abscissae.
+    pub fn fit(x: &[f64], y: &[f64], order: usize, weighting: Weighting<'_>) -> Result<Self, RegressionError> {
+        Self::of(x, y, 0, order, weighting)
+    }
+
+    /// As [`fit`](Self::fit) without the constant term; the coefficients begin with that of x.
+    ///
+    /// # Errors
+    /// As for [`fit`](Self::fit); the different abscissae must not be zero, and `order` not either.
+    pub fn fit_through_origin(
+        x: &[f64],
+        y: &[f64],
+        order: usize,
+        weighting: Weighting<'_>,
+    ) -> Result<Self, RegressionError> {
+        Self::of(x, y, 1, order, weighting)
+    }
+
+    fn of(
+        x: &[f64],
+        y: &[f64],
+        lowest: usize,
+        order: usize,
+        weighting: Weighting<'_>,
+    ) -> Result<Self, RegressionError> {
+        check_finite("x", x, y.len())?;
+        if order < lowest {
+            return Err(RegressionError::NoColumn);
+        }
+        let coefficients = (order - lowest).saturating_add(1);
+        if x.len() < coefficients {
+            return Err(RegressionError::TooFewObservations { observations: x.len(), coefficients });
+        }
+        let distinct = count_distinct(x, lowest > 0);
+        if distinct < coefficients {
+            return Err(RegressionError::TooFewAbscissae { distinct, coefficients });
+        }
+        let (centre, scale) = if lowest > 0 { (0.0, power_of_two_above(largest(x))) } else { frame(x) };
+        let span = scale.powf(order as f64);
+        // A power of the scale that overflows would turn coefficients into zeros or infinities.
+        if !(span.is_normal() && span.recip().is_normal()) {
+            return Err(RegressionError::Overflow);
+        }
+        let t: Vec<Twofold> = x.iter().map(|x| Twofold::difference(*x, centre).scaled(1.0 / scale)).collect();
+        let mut columns: Vec<Vec<Twofold>> = Vec::with_capacity(coefficients);
+        columns.push(if lowest > 0 { t.clone() } else { vec![Twofold::from(1.0); x.len()] });
+        for k in 1..coefficients {
+            let next = columns[k - 1].iter().zip(&t).map(|(power, t)| *power * *t).collect();
+            columns.push(next);
+        }
+        let names = (lowest..=order).map(|k| format!("x^{k}")).collect();
+        let (mut regression, solution) = LinearRegression::of(names, columns, y, weighting, lowest == 0)?;
+        if regression.rank() < coefficients {
+            return Err(RegressionError::TooFewAbscissae { distinct: regression.rank(), coefficients });
+        }
+        let global = |local: &[Twofold]| -> Vec<f64> { expand(local, lowest, centre, scale) };
+        let local_coefficients = std::mem::replace(&mut regression.coefficients, global(&solution));
+        let roots = regression.roots.iter().map(|root| {
+            let root: Vec<Twofold> = root.iter().map(|value| Twofold::from(*value)).collect();
+            global(&root)
+        });
+        let roots = roots.collect();
+        let local_roots = std::mem::replace(&mut regression.roots, roots);
+        let all = regression.coefficients.iter().chain(regression.roots.iter().flatten());
+        if !all.copied().all(f64::is_finite) {
+            return Err(RegressionError::Overflow);
+        }
+        Ok(Self { regression, local_coefficients, local_roots, centre, scale, lowest })
+    }
+
+    /// The coefficients of the powers of x, from the lowest on.
+    pub fn coefficients(&self) -> &[f64] {
+        self.regression.coefficients()
+    }
+
+    /// Uncertainties, residuals and what else there is to know of the coefficients; columns are the powers from the
+    /// lowest on. Its singular values are those of the powers of t.
+    pub fn regression(&self) -> &LinearRegression {
+        &self.regression
+    }
+
+    /// The value of the polynomial at `x`.
+    pub fn value(&self, x: f64) -> f64 {
+        let t = (x - self.centre) / self.scale;
+        let sum = self.local_coefficients.iter().rev().fold(0.0, |sum, a| sum * t + a);
+        if self.lowest > 0 { sum * t } else { sum }
+    }
+
+    /// The prediction at `x`; none without a degree of freedom to tell s.
+    pub fn predict(&self, x: f64) -> Option<Prediction> {
+        let t = (x - self.centre) / self.scale;
+        let first = if self.lowest > 0 { t } else { 1.0 };
+        let row: Vec<f64> =
+            std::iter::successors(Some(first), |power| Some(power * t)).take(self.local_coefficients.len()).collect();
+        self.regression.predict_by(&self.local_coefficients, &self.local_roots, &row)
+    }
+}
+
+/// Centre and scale that bring all of `x` to magnitudes of about 1 without rounding.
+fn frame(x: &[f64]) -> (f64, f64) {
+    let (low, high) = x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+    let scale = power_of_two_above(0.5 * high - 0.5 * low);
+    let grain = 0.125 * scale;
+    let middle = 0.5 * low + 0.5 * high;
+    let centre = (middle / grain).round() * grain;
+    // A centre that is so far out that rounding to the grain does nothing is as good as it is.
+    (if centre.is_finite() { centre } else { middle }, scale)
+}
+
+fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0f64, |largest, x| largest.max(x.abs()))
+}
+
+/// The least power of two not below a magnitude; 1 for zero.
+fn power_of_two_above(magnitude: f64) -> f64 {
+    if magnitude > 0.0 { magnitude.log2().ceil().clamp(-1000.0, 1000.0).exp2() } else { 1.0 }
+}
+
+/// Number of different values, zero not counted if it tells nothing.
+pub(crate) fn count_distinct(x: &[f64], without_zero: bool) -> usize {
+    let mut sorted: Vec<f64> = x.iter().copied().filter(|x| !without_zero || *x != 0.0).collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup();
+    sorted.len()
+}
+
+/// Coefficients in powers of x from those in powers of t, by Horner's scheme.
+fn expand(local: &[Twofold], lowest: usize, centre: f64, scale: f64) -> Vec<f64> {
+    let mut power = if lowest > 0 { 1.0 / scale } else { 1.0 };
+    let mut values: Vec<Twofold> = Vec::with_capacity(local.len());
+    for value in local {
+        values.push(value.scaled(power));
+        power /= scale;
+    }
+    // Taylor shift: p(x − centre) = Σ βₖ xᵏ.
+    let shift = Twofold::from(-centre);
+    for low in 0..values.len().saturating_sub(1) {
+        for k in (low..values.len() - 1).rev() {
+            let above = values[k + 1];
+            values[k] = values[k] + above * shift;
+        }
+    }
+    values.into_iter().map(Twofold::value).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shift_of_a_cube() {
+        // ((x − 3)/2)³ = x³/8 − 9x²/8 + 27x/8 − 27/8
+        let cube = [0.0, 0.0, 0.0, 1.0].map(Twofold::from);
+        assert_eq!(expand(&cube, 0, 3.0, 2.0), [-3.375, 3.375, -1.125, 0.125]);
+    }
+
+    #[test]
+    fn through_the_origin_there_is_no_constant() {
+        let (x, y) = ([1.0, 2.0, 4.0], [2.0, 5.0, 7.0]);
+        let line = Polynomial::fit_through_origin(&x, &y, 1, Weighting::Equal).unwrap();
+        // Σxy/Σx²
+        assert!((line.coefficients()[0] - 40.0 / 21.0).abs() < 1e-15);
+        let r_squared = 1.0 - (78.0 - 1600.0 / 21.0) / 78.0;
+        assert!((line.regression().r_squared().unwrap() - r_squared).abs() < 1e-14);
+        assert!((line.value(3.0) - 40.0 / 7.0).abs() < 1e-14);
+        assert_eq!(line.predict(0.0).unwrap().standard_uncertainty(), 0.0);
+    }
+
+    #[test]
+    fn both_frames_predict_alike() {
+        let x: Vec<f64> = (0..20).map(|i| 5.0 + 0.3 * f64::from(i)).collect();
+        let y: Vec<f64> = x.iter().map(|x| x.sin()).collect();
+        let cubic = Polynomial::fit(&x, &y, 3, Weighting::Equal).unwrap();
+        let at = 7.3f64;
+        let row: Vec<f64> = (0..4).map(|k| at.powi(k)).collect();
+        let (local, global) = (cubic.predict(at).unwrap(), cubic.regression().predict(&row).unwrap());
+        // Powers of x are alike to about four digits.
+        assert!((local.value() - global.value()).abs() < 1e-11);
+        assert!((local.standard_uncertainty() / global.standard_uncertainty() - 1.0).abs() < 1e-9);
+        assert_eq!(local.value(), cubic.predict(at).unwrap().value());
+        assert!((cubic.value(at) - local.value()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn equal_abscissae_are_too_few() {
+        let error = Polynomial::fit(&[2.0; 4], &[1.0, 2.0, 3.0, 4.0], 1, Weighting::Equal).unwrap_err();
+        assert!(error.to_string().contains("1 different values of x"), "{error}");
+        let error = Polynomial::fit_through_origin(&[0.0; 4], &[1.0; 4], 1, Weighting::Equal).unwrap_err();
+        assert!(error.to_string().contains("0 different values of x"), "{error}");
+        let mean = Polynomial::fit(&[2.0; 4], &[1.0, 2.0, 3.0, 4.0], 0, Weighting::Equal).unwrap();
+        assert_eq!(mean.coefficients(), [2.5]);
+    }
+
+    #[test]
+    fn extreme_abscissae_are_fitted_or_refused() {
+        let y = [1.0, 2.0, 3.0, 5.0];
+        for unit in [1e-150, 1e-20, 1.0, 1e20, 1e150] {
+            let x = [1.0, 2.0, 3.0, 4.0].map(|x| x * unit);
+            let line = Polynomial::fit(&x, &y, 1, Weighting::Equal).unwrap();
+            let slope = line.coefficients()[1] * unit;
+            assert!((slope - 1.3).abs() < 1e-14, "slope {slope} per {unit:e}");
+        }
+        let x = [-1e308, 0.0, 1e308, 1.5e308];
+        let found = Polynomial::fit(&x, &y, 3, Weighting::Equal);
+        assert!(matches!(found, Err(RegressionError::Overflow)), "{found:?}");
+        assert!(Polynomial::fit(&x, &y, usize::MAX, Weighting::Equal).is_err());
+        let narrow = [1.0, 1.0 + 1e-15, 1.0 + 2e-15, 1.0 + 3e-15];
+        assert!(Polynomial::fit(&narrow, &y, 1, Weighting::Equal).is_ok());
+    }
+}

@@ -1,0 +1,190 @@
+//! Covariance of robust estimates.
+
+use crate::problem::block::{ByRow, Scratch};
+use crate::solver::evaluation::{Evaluator, Linearised};
+use crate::solver::spectrum::Spectrum;
+use crate::solver::triangle::Triangle;
+use crate::{Fit, Residuals, Robust};
+
+/// The covariance of the estimates of `fit` to `problem`, as a square matrix over all parameters; none where a
+/// parameter is fixed, at a bound or not determined, or where the residuals cannot tell.
+///
+/// ```text
+/// V = B⁻¹ C B⁻¹,     B = Σ ψ′ᵢ Jᵢ Jᵢᵀ,     C = Σ (ψᵢ/(1 − hᵢ))² Jᵢ Jᵢᵀ,     hᵢ = ψ′ᵢ Jᵢᵀ B⁻¹ Jᵢ
+/// ```
+///
+/// Everything is computed in the coordinates in which `Σ (∂r̃/∂θ)(∂r̃/∂θ)ᵀ` is the identity, so that the conditioning
+/// of the Jacobian is not squared.
+pub(crate) fn m_covariance<P: Residuals>(problem: &Robust<P>, fit: &Fit) -> Vec<Option<f64>> {
+    let count = fit.values().len();
+    let mut covariance = vec![None; count * count];
+    let elements = || {
+        let linearised = Evaluator::linearise(problem.problem(), fit.values())?;
+        Coordinates::of(problem, fit, &linearised).covariance(problem, &linearised, count)
+    };
+    if let Some((columns, matrix)) = elements() {
+        let is_determined = |j: usize| fit.unit_covariance(j, j).is_some();
+        for (a, &i) in columns.iter().enumerate().filter(|(_, i)| is_determined(**i)) {
+            for (b, &j) in columns.iter().enumerate().filter(|(_, j)| is_determined(**j)) {
+                covariance[i * count + j] = Some(matrix[a * columns.len() + b]);
+            }
+        }
+    }
+    covariance
+}
+
+/// Coordinates along the directions that the residuals determine: `θ = T c`.
+struct Coordinates {
+    /// Parameters neither fixed nor at a bound.
+    columns: Vec<usize>,
+    rank: usize,
+    /// T, row after row, one per column.
+    transform: Vec<f64>,
+}
+
+impl Coordinates {
+    fn of<P: Residuals>(problem: &Robust<P>, fit: &Fit, linearised: &Linearised) -> Self {
+        let Linearised { residuals, structure, jacobian, scheme } = linearised;
+        let estimates = fit.estimates().iter().enumerate();
+        let is_inside = |estimate: &crate::Estimate| {
+            !estimate.status().is_at_bound() && estimate.status() != crate::EstimateStatus::Fixed
+        };
+        let columns: Vec<usize> = estimates.filter(|(_, estimate)| is_inside(estimate)).map(|(j, _)| j).collect();
+        let mut replaced = jacobian.clone();
+        problem.replace(&mut residuals.clone(), Some(&mut replaced));
+        let mut triangle = Triangle::default();
+        structure.factor(&replaced, &columns, residuals, &mut triangle, &mut Scratch::default());
+        let spectrum = Spectrum::of(&triangle);
+        let rank = spectrum.rank(scheme.rank_threshold(residuals.len()));
+        let along = |j: usize, k: usize| spectrum.right[k][j] / (spectrum.singular[k] * spectrum.scales[j]);
+        let transform = (0..columns.len()).flat_map(|j| (0..rank).map(move |k| (j, k))).map(|(j, k)| along(j, k));
+        Self { rank, transform: transform.collect(), columns }
+    }
+
+    /// One row of the Jacobian in these coordinates.
+    fn row(&self, derivatives: &ByRow, jacobian: &[f64], i: usize, row: &mut [f64]) {
+        row.fill(0.0);
+        for (column, transform) in self.columns.iter().zip(self.transform.chunks_exact(self.rank)) {
+            let derivative = derivatives.element(jacobian, i, *column);
+            for (element, t) in row.iter_mut().zip(transform) {
+                *element += derivative * t;
+            }
+        }
+    }
+
+    /// The covariance over the columns; none if the point is not a minimum or a residual has no freedom.
+    fn covariance<P: Residuals>(
+        self,
+        problem: &Robust<P>,
+        linearised: &Linearised,
+        count: usize,
+    ) -> Option<(Vec<usize>, Vec<f64>)> {
+        let Linearised { residuals, structure, jacobian, .. } = linearised;
+        let (rank, loss, derivatives) = (self.rank, problem.loss(), structure.by_row(count));
+        if rank == 0 || residuals.len() <= rank {
+            return None;
+        }
+        let mut row = vec![0.0; rank];
+        let mut bread = vec![0.0; rank * rank];
+        for (i, r) in residuals.iter().enumerate() {
+            self.row(&derivatives, jacobian, i, &mut row);
+            add_square(&mut bread, &row, loss.slope(problem.square(*r)));
+        }
+        let inverse = inverse_of_definite(&bread, rank)?;
+        let mut meat = vec![0.0; rank * rank];
+        for (i, r) in residuals.iter().enumerate() {
+            self.row(&derivatives, jacobian, i, &mut row);
+            let z = problem.square(*r);
+            let leverage = loss.slope(z) * quadratic_form(&inverse, &row, &row);
+            let (score, freedom) = (r * loss.weight(z), 1.0 - leverage);
+            // A residual that its own parameter makes zero says nothing about its scatter.
+            if freedom < 1e-9 {
+                return None;
+            }
+            add_square(&mut meat, &row, (score / freedom).powi(2));
+        }
+        // Rows of T B⁻¹.
+        let half: Vec<f64> = self
+            .transform
+            .chunks_exact(rank)
+            .flat_map(|t| {
+                inverse.chunks_exact(rank).map(|column| t.iter().zip(column).map(|(a, b)| a * b).sum::<f64>())
+            })
+            .collect();
+        let width = self.columns.len();
+        let mut covariance = vec![0.0; width * width];
+        for (a, left) in half.chunks_exact(rank).enumerate() {
+            for (b, right) in half.chunks_exact(rank).enumerate() {
+                covariance[a * width + b] = quadratic_form(&meat, left, right);
+            }
+        }
+        Some((self.columns, covariance))
+    }
+}
+
+/// Adds `weight · row rowᵀ`.
+fn add_square(matrix: &mut [f64], row: &[f64], weight: f64) {
+    for (line, a) in matrix.chunks_exact_mut(row.len()).zip(row) {
+        for (element, b) in line.iter_mut().zip(row) {
+            *element += weight * a * b;
+        }
+    }
+}
+
+/// `leftᵀ M right`.
+fn quadratic_form(matrix: &[f64], left: &[f64], right: &[f64]) -> f64 {
+    let lines = matrix.chunks_exact(right.len());
+    lines.zip(left).map(|(line, a)| a * line.iter().zip(right).map(|(m, b)| m * b).sum::<f64>()).sum()
+}
+
+/// The inverse of a symmetric matrix of order of magnitude one by Cholesky; none unless it is positive definite.
+fn inverse_of_definite(matrix: &[f64], order: usize) -> Option<Vec<f64>> {
+    let mut factor = matrix.to_vec();
+    for j in 0..order {
+        for i in j..order {
+            let sum: f64 = (0..j).map(|k| factor[i * order + k] * factor[j * order + k]).sum();
+            let rest = matrix[i * order + j] - sum;
+            if i == j {
+                if !(rest > 1e-12 * matrix[j * order + j].abs()) {
+                    return None;
+                }
+                factor[j * order + j] = rest.sqrt();
+            } else {
+                factor[i * order + j] = rest / factor[j * order + j];
+            }
+        }
+    }
+    let mut inverse = vec![0.0; order * order];
+    for column in inverse.chunks_exact_mut(order).enumerate() {
+        let (c, x) = column;
+        for i in 0..order {
+            let sum: f64 = (0..i).map(|k| factor[i * order + k] * x[k]).sum();
+            x[i] = (f64::from(i == c) - sum) / factor[i * order + i];
+        }
+        for i in (0..order).rev() {
+            let sum: f64 = (i + 1..order).map(|k| factor[k * order + i] * x[k]).sum();
+            x[i] = (x[i] - sum) / factor[i * order + i];
+        }
+    }
+    Some(inverse)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverses_are_inverses_and_indefinite_matrices_have_none() {
+        let matrix = [2.0, 0.5, -0.3, 0.5, 1.0, 0.2, -0.3, 0.2, 0.7];
+        let inverse = inverse_of_definite(&matrix, 3).unwrap();
+        for i in 0..3 {
+            for j in 0..3 {
+                let product: f64 = (0..3).map(|k| matrix[3 * i + k] * inverse[3 * k + j]).sum();
+                // A few operations on numbers of order one.
+                assert!((product - f64::from(i == j)).abs() < 1e-15 * 16.0, "element ({i}, {j}): {product}");
+            }
+        }
+        assert_eq!(inverse_of_definite(&[1.0, 2.0, 2.0, 1.0], 2), None);
+        assert_eq!(inverse_of_definite(&[0.0], 1), None);
+    }
+}

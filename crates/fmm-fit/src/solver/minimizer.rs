@@ -1,0 +1,258 @@
+//! The iteration: a trust-region search, then steps that sharpen the minimum.
+
+use std::time::Instant;
+
+use fmm_model::Parameter;
+
+use crate::solver::evaluation::{Evaluator, Point, Scheme};
+use crate::solver::non_finite::worst;
+use crate::solver::triangle::Triangle;
+use crate::solver::trust_region::TrustRegion;
+use crate::{Fit, FitError, NonFinite, Options, Outcome, Residuals};
+
+/// The solver without its trimmings: what a Monte Carlo calculation with many small fits calls, as it keeps its
+/// buffers from one fit to the next. [`solve`](crate::solve) is the short way to one fit.
+///
+/// A Levenberg–Marquardt method in a box. Each step minimises the linear model of the residuals within the trust
+/// region *and* the bounds, so that active bounds are met exactly; a search that ends where the gradient does not
+/// vanish begins again with another radius; a search that ends well is followed by Gauss–Newton steps that are
+/// accepted for lowering the gradient, as the sum of squares can no longer tell them apart.
+///
+/// ```
+/// use fmm_fit::{EvaluationError, Minimizer, Options, Residuals};
+/// use fmm_model::Parameter;
+///
+/// struct Line<'a>(&'a [f64], [Parameter; 2]);
+/// impl Residuals for Line<'_> {
+///     fn parameters(&self) -> &[Parameter] {
+///         &self.1
+///     }
+///     fn len(&self) -> usize {
+///         self.0.len()
+///     }
+///     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+///         for (i, r) in residuals.iter_mut().enumerate() {
+///             *r = p[0] + p[1] * i as f64 - self.0[i];
+///         }
+///         Ok(())
+///     }
+/// }
+///
+/// let mut minimizer = Minimizer::new(Options::default());
+/// for shift in [0.0, 1.0, 2.0] {
+///     let data = [1.0 + shift, 3.0 + shift, 5.0 + shift];
+///     let line = Line(&data, [Parameter::new("offset", "a", "1"), Parameter::new("slope", "b", "1")]);
+///     assert!(minimizer.minimize(&line, &[0.0, 0.0])?.is_success());
+///     assert!((minimizer.values()[0] - 1.0 - shift).abs() < 1e-9);
+/// }
+/// # Ok::<(), fmm_fit::FitError>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct Minimizer {
+    pub(crate) options: Options,
+    parameters: Vec<Parameter>,
+    pub(crate) start: Vec<f64>,
+    pub(crate) current: Point,
+    pub(crate) trial: Point,
+    pub(crate) evaluator: Evaluator,
+    pub(crate) region: TrustRegion,
+    pub(crate) gaps: (Vec<f64>, Vec<f64>),
+    pub(crate) phase: Phase,
+    pub(crate) attempt: usize,
+    pub(crate) best: Option<Attempt>,
+    pub(crate) iterations: usize,
+    pub(crate) began: Option<Instant>,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) enum Phase {
+    #[default]
+    Idle,
+    Search,
+    /// Sharpening after a search that ended with `reason`; `level` is the norm to lower.
+    Polish {
+        reason: Outcome,
+        level: f64,
+        left: usize,
+    },
+    Done(Outcome),
+}
+
+/// Where a search ended that is not to be trusted, and how.
+#[derive(Debug, Clone)]
+pub(crate) struct Attempt {
+    pub(crate) sum_of_squares: f64,
+    pub(crate) values: Vec<f64>,
+    pub(crate) reason: Outcome,
+}
+
+impl Minimizer {
+    /// A solver with the given options.
+    pub fn new(options: Options) -> Self {
+        Self { options, ..Self::default() }
+    }
+
+    /// Fits `problem` from `start`, one value per parameter within its bounds.
+    ///
+    /// # Errors
+    /// [`FitError`] if the start, the problem or the options do not allow a fit to begin.
+    pub fn minimize<P: Residuals + ?Sized>(&mut self, problem: &P, start: &[f64]) -> Result<Outcome, FitError> {
+        self.begin(problem, start)?;
+        loop {
+            if let Some(outcome) = self.iterate(problem) {
+                return Ok(outcome);
+            }
+        }
+    }
+
+    /// The best values so far, one per parameter.
+    pub fn values(&self) -> &[f64] {
+        &self.current.values
+    }
+
+    /// The residuals at [`values`](Self::values).
+    pub fn residuals(&self) -> &[f64] {
+        &self.current.residuals
+    }
+
+    /// Σᵢ rᵢ² at [`values`](Self::values).
+    pub fn sum_of_squares(&self) -> f64 {
+        self.current.sum_of_squares
+    }
+
+    /// Trial steps taken, accepted or not.
+    pub fn iterations(&self) -> usize {
+        self.iterations
+    }
+
+    /// Evaluations of the residuals, those for differences included.
+    pub fn residual_evaluations(&self) -> usize {
+        self.evaluator.residual_evaluations
+    }
+
+    /// Evaluations of the Jacobian by the problem itself.
+    pub fn jacobian_evaluations(&self) -> usize {
+        self.evaluator.jacobian_evaluations
+    }
+
+    /// How the fit ended; none before it has.
+    pub fn outcome(&self) -> Option<Outcome> {
+        if let Phase::Done(outcome) = self.phase { Some(outcome) } else { None }
+    }
+
+    /// The result with uncertainties and rank; a fit that was interrupted counts as cancelled.
+    ///
+    /// # Errors
+    /// [`FitError::NotStarted`] before the first fit.
+    pub fn fit(&self) -> Result<Fit, FitError> {
+        if matches!(self.phase, Phase::Idle) {
+            return Err(FitError::NotStarted);
+        }
+        Ok(Fit::new(self, self.current.residuals.clone()))
+    }
+
+    pub(crate) fn into_fit(mut self) -> Fit {
+        let residuals = std::mem::take(&mut self.current.residuals);
+        Fit::new(&self, residuals)
+    }
+
+    pub(crate) fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    pub(crate) fn start(&self) -> &[f64] {
+        &self.start
+    }
+
+    pub(crate) fn scheme(&self) -> Scheme {
+        self.evaluator.scheme
+    }
+
+    pub(crate) fn free(&self) -> &[usize] {
+        &self.evaluator.free
+    }
+
+    pub(crate) fn triangle(&self) -> &Triangle {
+        &self.current.triangle
+    }
+
+    pub(crate) fn model_error(&self) -> Option<&str> {
+        self.evaluator.model_error.as_deref()
+    }
+
+    pub(crate) fn non_finite(&self) -> Option<&NonFinite> {
+        self.evaluator.non_finite.as_ref()
+    }
+
+    pub(crate) fn radius(&self) -> f64 {
+        self.region.radius
+    }
+
+    /// Checks the start and evaluates it.
+    pub(crate) fn begin<P: Residuals + ?Sized>(&mut self, problem: &P, start: &[f64]) -> Result<(), FitError> {
+        self.phase = Phase::Idle;
+        self.options.validate()?;
+        let parameters = problem.parameters();
+        if self.parameters != parameters {
+            self.parameters = parameters.to_vec();
+        }
+        check_start(parameters, start)?;
+        self.began = self.options.time_limit.map(|_| Instant::now());
+        (self.iterations, self.attempt, self.best) = (0, 0, None);
+        self.start.clear();
+        self.start.extend_from_slice(start);
+        let bounds = parameters.iter().map(|parameter| (parameter.bounds().lower(), parameter.bounds().upper()));
+        self.evaluator.begin(problem, bounds, start)?;
+        let free = self.evaluator.free.len();
+        if problem.len() < free {
+            return Err(FitError::TooFewResiduals { residuals: problem.len(), free });
+        }
+        self.current.values.clone_from(&self.start);
+        if !self.evaluator.residuals(problem, &mut self.current) {
+            return Err(self.bad_start(problem));
+        }
+        if free == 0 {
+            self.current.triangle.reset(0);
+            self.phase = Phase::Done(Outcome::NoFreeParameters);
+            return Ok(());
+        }
+        if !self.evaluator.factor(problem, &mut self.current) {
+            return Err(self.bad_start(problem));
+        }
+        self.begin_search(problem);
+        Ok(())
+    }
+
+    fn bad_start<P: Residuals + ?Sized>(&self, problem: &P) -> FitError {
+        if self.evaluator.model_error.is_some() {
+            // Ask again for the error itself: a pure function fails in the same way.
+            let mut residuals = vec![0.0; problem.len()];
+            let mut jacobian = vec![0.0; self.evaluator.structure.len()];
+            if let Err(error) = problem.residuals_and_jacobian(&self.start, &mut residuals, &mut jacobian) {
+                return FitError::ModelFailed(error.into_boxed());
+            }
+        }
+        if let Some(NonFinite::Derivative { parameter }) = &self.evaluator.non_finite {
+            return FitError::DerivativeNotFinite { parameter: parameter.clone() };
+        }
+        let (index, value) = worst(&self.current.residuals);
+        FitError::ResidualNotFinite { index, value }
+    }
+}
+
+fn check_start(parameters: &[Parameter], start: &[f64]) -> Result<(), FitError> {
+    if start.len() != parameters.len() {
+        return Err(FitError::StartLength { values: start.len(), parameters: parameters.len() });
+    }
+    for (parameter, &value) in parameters.iter().zip(start) {
+        let bounds = parameter.bounds();
+        if !value.is_finite() {
+            return Err(FitError::StartNotFinite { parameter: parameter.name().to_owned(), value });
+        }
+        if !bounds.contains(value) {
+            let (lower, upper) = (bounds.lower(), bounds.upper());
+            return Err(FitError::StartOutsideBounds { parameter: parameter.name().to_owned(), value, lower, upper });
+        }
+    }
+    Ok(())
+}

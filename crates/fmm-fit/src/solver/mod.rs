@@ -1,0 +1,24 @@
+//! How it is fitted: a trust region in a box, on a factor of the Jacobian.
+
+mod argmin_solver;
+mod box_least_squares;
+mod error;
+pub(crate) mod evaluation;
+mod iteration;
+pub(crate) mod minimizer;
+mod non_finite;
+mod optimality;
+mod options;
+mod outcome;
+mod solve;
+pub(crate) mod spectrum;
+pub(crate) mod triangle;
+mod trust_region;
+
+pub use argmin_solver::BoundedLevenbergMarquardt;
+pub use error::FitError;
+pub use minimizer::Minimizer;
+pub use non_finite::NonFinite;
+pub use options::Options;
+pub use outcome::Outcome;
+pub use solve::{Progress, solve, solve_observed};
