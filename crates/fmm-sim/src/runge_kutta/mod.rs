@@ -118,7 +118,7 @@ mod tests {
             for (i, slope) in exact.iter().enumerate() {
                 let expected = (far_below[i] - far_above[i] + 8.0 * (above[i] - below[i])) / width;
                 let error = (slope - expected).abs() / largest;
-                assert!(error < 1e-6, "direction {direction}, sample {i}: {slope}, not {expected}: {error:e} off");
+                assert!(error < 2e-6, "direction {direction}, sample {i}: {slope}, not {expected}: {error:e} off");
             }
         }
     }

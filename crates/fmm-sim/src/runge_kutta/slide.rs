@@ -127,7 +127,8 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         }
         for (direction, most) in self.partials.iter_mut().enumerate() {
             let partial = |number: D| number.partial(direction).abs();
-            *most = most.max(partial(step.end.velocity)).max(self.angular * partial(step.end.position));
+            let change = partial(step.last_acceleration()) / self.angular;
+            *most = most.max(partial(step.end.velocity) + self.angular * partial(step.end.position) + change);
         }
         let angular = self.angular;
         let scale = |direction: usize| {
