@@ -3,8 +3,10 @@
 //! `cargo bench --bench simulator` prints criterion's estimates and then the ratios of their medians. The package `peers` beside
 //! this file compares with a general solver.
 
+#[path = "common/ratio.rs"]
+mod ratio;
+
 use std::hint::black_box;
-use std::path::Path;
 
 use criterion::{Criterion, criterion_group};
 use fmm_friction::{Berger, Coulomb, Dahl, LawFamily, MaxwellSlip, SlidingLaw};
@@ -12,6 +14,7 @@ use fmm_model::{Damping, Dual, Oscillator, Scalar};
 use fmm_sim::{
     Bristle, Channels, Engine, Exact, Excitation, Moreau, RungeKutta, Sampling, Scenario, Thesis, Trajectory,
 };
+use ratio::print_ratio;
 
 /// Workload W1: the Monte Carlo case of the thesis, 1501 velocity samples at 1 kHz.
 fn thesis_case<D: Scalar>(coefficient: D, position: D) -> (Scenario<D, Coulomb<D>>, Sampling) {
@@ -145,35 +148,19 @@ fn ring_down(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Criterion's median of a benchmark of this run (ns), if it was measured.
-fn median(group: &str, benchmark: &str) -> Option<f64> {
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| Path::new("target").to_owned(), Into::into);
-    let path = target.join("criterion").join(group).join(benchmark).join("new").join("estimates.json");
-    let estimates: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()?;
-    estimates["median"]["point_estimate"].as_f64()
-}
-
-/// Prints how many times as long one benchmark takes as another, beside what is wanted.
-fn print_ratio(group: &str, slow: &str, fast: &str, wanted: &str) {
-    if let (Some(slow_time), Some(fast_time)) = (median(group, slow), median(group, fast)) {
-        let wanted = if wanted.is_empty() { String::new() } else { format!(" (wanted: {wanted})") };
-        println!("{group}: {slow} / {fast} = {:.2}{wanted}", slow_time / fast_time);
-    }
-}
-
 fn print_ratios() {
-    print_ratio("ring_down", "thesis", "exact", "at least 13");
-    print_ratio("ring_down", "exact_gradient", "exact", "at most 2.5, two columns");
-    print_ratio("ring_down", "thesis", "moreau", "");
-    print_ratio("ring_down", "thesis", "runge_kutta", "");
-    print_ratio("ring_down", "thesis", "exact_elements", "");
-    print_ratio("ring_down", "bristle", "thesis", "");
-    print_ratio("berger", "thesis", "runge_kutta_1e-10", "at least 1");
-    print_ratio("berger", "thesis", "runge_kutta", "");
-    print_ratio("berger", "own_law", "runge_kutta", "at most 2");
-    print_ratio("berger", "runge_kutta_gradient", "runge_kutta", "at most 2.5, two columns");
-    print_ratio("impact", "thesis", "exact", "at least 10");
-    print_ratio("impact", "thesis_sampled", "exact_sampled", "at least 1");
+    print_ratio("ring_down/thesis", "ring_down/exact", "at least 13");
+    print_ratio("ring_down/exact_gradient", "ring_down/exact", "at most 2.5, two columns");
+    print_ratio("ring_down/thesis", "ring_down/moreau", "");
+    print_ratio("ring_down/thesis", "ring_down/runge_kutta", "");
+    print_ratio("ring_down/thesis", "ring_down/exact_elements", "");
+    print_ratio("ring_down/bristle", "ring_down/thesis", "");
+    print_ratio("berger/thesis", "berger/runge_kutta_1e-10", "at least 1");
+    print_ratio("berger/thesis", "berger/runge_kutta", "");
+    print_ratio("berger/own_law", "berger/runge_kutta", "at most 2");
+    print_ratio("berger/runge_kutta_gradient", "berger/runge_kutta", "at most 2.5, two columns");
+    print_ratio("impact/thesis", "impact/exact", "at least 10");
+    print_ratio("impact/thesis_sampled", "impact/exact_sampled", "at least 1");
 }
 
 criterion_group!(benches, ring_down, velocity_laws, impact);

@@ -3,12 +3,16 @@
 //! `cargo bench --manifest-path benches/peers/Cargo.toml` prints criterion's estimates, then error and ratio of each. At matched
 //! accuracy means: of the tolerances tried, the fastest whose greatest error is at most 1e-10 m/s.
 
+#[path = "../../common/ratio.rs"]
+#[expect(dead_code, reason = "other benches print plain ratios")]
+mod ratio;
+
 use std::hint::black_box;
-use std::path::Path;
 
 use criterion::Criterion;
 use fmm_peers::{berger, by_diffsol};
 use fmm_sim::{Engine, RungeKutta, Thesis, Trajectory};
+use ratio::median;
 
 /// Tolerances tried (1).
 const TOLERANCES: [f64; 5] = [1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
@@ -19,15 +23,6 @@ const WANTED: f64 = 1e-10;
 fn greatest_error(velocity: &[f64], reference: &[f64]) -> f64 {
     assert_eq!(velocity.len(), reference.len());
     velocity.iter().zip(reference).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-}
-
-/// Criterion's median of a benchmark of this run (µs).
-fn median(name: &str) -> Option<f64> {
-    let target = std::env::var_os("CARGO_TARGET_DIR")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("target"), Into::into);
-    let path = target.join("criterion").join("berger").join(name).join("new").join("estimates.json");
-    let estimates: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()?;
-    estimates["median"]["point_estimate"].as_f64().map(|nanoseconds| nanoseconds * 1e-3)
 }
 
 fn main() {
@@ -63,15 +58,15 @@ fn main() {
 
     let mut best: [Option<f64>; 2] = [None; 2];
     for (name, error) in &errors {
-        let Some(time) = median(name) else { continue };
-        println!("{name}: {time:.1} µs, error {error:.1e} m/s");
+        let Some(time) = median(&format!("berger/{name}")) else { continue };
+        println!("{name}: {:.1} µs, error {error:.1e} m/s", 1e-3 * time);
         for (best, peer) in best.iter_mut().zip(["fmm", "diffsol"]) {
             if name.starts_with(peer) && *error <= WANTED {
                 *best = Some(best.map_or(time, |best| best.min(time)));
             }
         }
     }
-    if let (Some(thesis), [Some(ours), Some(theirs)]) = (median("thesis"), best) {
+    if let (Some(thesis), [Some(ours), Some(theirs)]) = (median("berger/thesis"), best) {
         println!("diffsol / fmm at {WANTED:e} m/s: {:.1} (wanted: at least 5)", theirs / ours);
         println!("thesis / fmm at {WANTED:e} m/s: {:.2} (wanted: at least 1)", thesis / ours);
     }

@@ -146,7 +146,7 @@ impl Windows {
         let uncertainty = problem.uncertainties(&fit)?;
         let estimated = |j: usize| Estimated { value: fit.values()[j], uncertainty: uncertainty[j] };
 
-        let vibration = problem.vibration(fit.values()).map_err(failure)?;
+        let vibration = problem.vibration(fit.values()).map_err(|error| failure(&error))?;
         let displacement = record.quantity() == Quantity::Displacement;
         let to_velocity = if displacement { 2.0 * std::f64::consts::PI * fit.values()[FREQUENCY] } else { 1.0 };
         let measured = |value: f64| to_velocity * (value - fit.values()[OFFSET]).abs();
@@ -169,8 +169,7 @@ fn centre(peaks: &[(f64, f64)]) -> f64 {
     centres.sum::<f64>() / (peaks.len() - 2) as f64
 }
 
-#[allow(clippy::needless_pass_by_value)] // It is given to `map_err`.
-fn failure(error: EvaluationError) -> IdentifyError {
+fn failure(error: &EvaluationError) -> IdentifyError {
     IdentifyError::Simulation { law: LAW, message: error.to_string() }
 }
 
@@ -274,7 +273,8 @@ impl<'a> WindowProblem<'a> {
         let time = autocorrelation_time(fit.residuals()).unwrap_or(1.0);
         let span = ((CORRELATION_TIMES * time) as usize).min(self.kept.len() / FEWEST_WINDOWS).max(1);
         let correlated = if time > INDEPENDENT {
-            CorrelatedCovariance::of(self, fit, span, std::slice::from_ref(&(0..self.kept.len()))).map_err(failure)?
+            CorrelatedCovariance::of(self, fit, span, std::slice::from_ref(&(0..self.kept.len())))
+                .map_err(|error| failure(&error))?
         } else {
             None
         };

@@ -23,9 +23,9 @@ const LANES: usize = 8;
 /// # Why not a library
 /// Built for any x86-64, from 1500 × 3 to 45 000 × 6 this takes a third to two thirds of the time of nalgebra's
 /// factorisation and less than a fifth of that of faer's, which is sequential here and meant for larger matrices; at
-/// 225 000 × 12 less than a fifth of either. It needs two blocks of memory beside the Jacobian where they need a copy of
+/// 225 000 × 12 about a fifth of either. It needs two blocks of memory beside the Jacobian where they need a copy of
 /// it, and the blocks of a joint fit are reduced without their zeros, five records of 45 000 × 4 six times faster than as
-/// one matrix. `benches/least_squares.rs` of the workspace measures it.
+/// one matrix. `benches/peers` of the workspace measures it.
 ///
 /// # References
 /// J. Demmel, L. Grigori, M. Hoemmen, J. Langou, "Communication-optimal parallel and sequential QR and LU

@@ -19,9 +19,6 @@ const WEAK: f64 = 1e-2;
 /// Attempts at landing on an event; Newton's method needs two or three.
 const LANDINGS: usize = 12;
 
-/// ω₀ times the length of a step that partial derivatives no longer shorten.
-const SHORTEST_FOR_PARTIALS: f64 = 1e-12;
-
 /// What counts as the error of a step that has found an event and not landed on it: the next will be half as long.
 const NOT_LANDED: f64 = 256.0;
 
@@ -42,8 +39,6 @@ pub(super) struct Integrator<'a, D, L> {
     held: f64,
     /// Length of the step to try next (s).
     length: f64,
-    /// For each direction the largest partial derivative of the velocity so far.
-    partials: Vec<f64>,
     budget: usize,
 }
 
@@ -76,7 +71,6 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
             angular,
             held,
             length: 0.1 / angular,
-            partials: vec![0.0; D::DIRECTIONS],
             budget: STEP_BUDGET,
         }
     }
@@ -114,28 +108,6 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
             + acceleration.value().abs() / self.angular;
         let velocity = velocity.max(f64::MIN_POSITIVE);
         State { position: velocity / self.angular, velocity }
-    }
-
-    /// The error of `step` as a multiple of what is allowed. Its partial derivatives are allowed the square root
-    /// of the tolerance, relative to the largest so far, so that they shorten steps only where the law is much more curved
-    /// than the motion.
-    fn error(&mut self, step: &Step<D>, scale: State<f64>) -> f64 {
-        let error = step.error(scale) / self.tolerance;
-        // Where a law has an infinite slope its derivatives would shorten steps without end.
-        if D::DIRECTIONS == 0 || error > 1.0 || step.length * self.angular < SHORTEST_FOR_PARTIALS {
-            return error;
-        }
-        for (direction, most) in self.partials.iter_mut().enumerate() {
-            let partial = |number: D| number.partial(direction).abs();
-            let change = partial(step.last_acceleration()) / self.angular;
-            *most = most.max(partial(step.end.velocity) + self.angular * partial(step.end.position) + change);
-        }
-        let angular = self.angular;
-        let scale = |direction: usize| {
-            let velocity = self.partials[direction].max(f64::MIN_POSITIVE);
-            State { position: velocity / angular, velocity }
-        };
-        error.max(step.error_of_partials(scale) / self.tolerance.sqrt())
     }
 
     /// The speed less that at which the contact is caught.
@@ -369,7 +341,7 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
                 scale.velocity += rise;
                 scale.position += rise / self.angular;
             }
-            let mut error = self.error(&step, scale);
+            let mut error = step.error(scale) / self.tolerance;
             let crossed =
                 Self::endings(phase).iter().any(|&ending| !(self.guard(phase, &step, ending, at.armed).value() > 0.0));
             if (crossed || error <= 1.0)
@@ -377,7 +349,7 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
             {
                 // What lies behind the event does not belong to the stretch; the step that ends there must be good.
                 let mut step = self.land(phase, &at, ending, theta * length, length);
-                error = self.error(&step, scale);
+                error = step.error(scale) / self.tolerance;
                 if error <= 1.0 && self.has_landed(phase, &at, &step, ending) {
                     self.adapt(length, 1.0, error);
                     let ended = self.ended(phase, &at, &step, ending);

@@ -86,30 +86,11 @@ impl<D: Scalar> Step<D> {
     /// err = h |e₅|² / √(|e₅|² + 0.01 |e₃|²)                    (Hairer, Nørsett, Wanner, eq. II.10.17)
     /// ```
     pub(super) fn error(&self, scale: State<f64>) -> f64 {
-        let parts = [sum(&ERROR_5, &self.rates), sum(&ERROR_3, &self.rates)]
-            .map(|error| State { position: error.position.value(), velocity: error.velocity.value() });
-        self.relative(parts, scale)
-    }
-
-    /// As [`error`](Self::error) for the partial derivatives in each direction, relative to those of `scale`; the largest.
-    pub(super) fn error_of_partials(&self, scale: impl Fn(usize) -> State<f64>) -> f64 {
-        let parts = [sum(&ERROR_5, &self.rates), sum(&ERROR_3, &self.rates)];
-        let of = |direction: usize| {
-            let parts = parts.map(|error| State {
-                position: error.position.partial(direction),
-                velocity: error.velocity.partial(direction),
-            });
-            self.relative(parts, scale(direction))
-        };
-        (0..D::DIRECTIONS).map(of).fold(0.0, f64::max)
-    }
-
-    fn relative(&self, [fifth, third]: [Rate<f64>; 2], scale: State<f64>) -> f64 {
-        let norm = |error: Rate<f64>| {
-            let (x, v) = (error.position / scale.position, error.velocity / scale.velocity);
+        let norm = |error: Rate<D>| {
+            let (x, v) = (error.position.value() / scale.position, error.velocity.value() / scale.velocity);
             0.5 * (x * x + v * v)
         };
-        let (fifth, third) = (norm(fifth), norm(third));
+        let (fifth, third) = (norm(sum(&ERROR_5, &self.rates)), norm(sum(&ERROR_3, &self.rates)));
         if fifth == 0.0 { 0.0 } else { self.length * fifth / (fifth + 0.01 * third).sqrt() }
     }
 
