@@ -44,7 +44,7 @@ pub use diagnostics::{
     NormalityTest, ResidualDiagnostics, RunsTest, anderson_darling, autocorrelation_time, durbin_watson,
     effective_count, runs_test,
 };
-pub use problem::{Automatic, Block, EvaluationError, Joint, JointError, JointPart, Model, Residuals, Weighted};
+pub use problem::{Automatic, Block, EvaluationError, Held, Joint, JointError, JointPart, Model, Residuals, Weighted};
 pub use regression::{
     LinearRegression, Polynomial, PowerLaw, RegressionError, StraightLine, UncertainPoint, Weighting, YorkLine,
 };
@@ -55,6 +55,6 @@ pub use solver::{
 };
 pub use starts::{Minima, Minimum, MultiStart, StartFailure};
 pub use uncertainty::{
-    CorrelatedCovariance, Prediction, ProfileEnd, ProfileError, ProfileInterval, PropagatedCovariance,
-    ResidualVariance, Sensitivity, SensitivityError, profile_interval,
+    CorrelatedCovariance, Prediction, ProfileEnd, ProfileError, ProfileInterval, PropagatedCovariance, Refit,
+    RefitError, ResidualVariance, Sensitivity, SensitivityError, profile_interval,
 };

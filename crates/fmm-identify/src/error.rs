@@ -129,6 +129,20 @@ pub enum IdentifyError {
         /// The names there are.
         known: String,
     },
+    /// There is no parameter of this name.
+    #[error("there is no parameter called {name:?}; the parameters are: {known}")]
+    UnknownParameter {
+        /// The name given.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// A parameter that has no value of its own was given none.
+    #[error("{parameter} must be given a value")]
+    MissingValue {
+        /// Name of the parameter.
+        parameter: String,
+    },
     /// A parameter was to be held outside its bounds.
     #[error("{name} cannot be held at {value}: it must lie within {lower} and {upper}")]
     HeldOutOfBounds {

@@ -87,7 +87,7 @@ fn initial_positive_sum(series: &[f64]) -> (f64, bool) {
 /// `Σ rᵢ rᵢ₊ₗ / n`.
 fn mean_product(series: &[f64], lag: usize) -> f64 {
     let late = series.get(lag..).unwrap_or(&[]);
-    crate::solver::triangle::dot(&series[..late.len()], late) / series.len() as f64
+    crate::solver::sums::dot(&series[..late.len()], late) / series.len() as f64
 }
 
 #[cfg(test)]

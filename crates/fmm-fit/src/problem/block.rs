@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use crate::solver::triangle::{Triangle, dot};
+use crate::solver::sums::{dot, sum_of_squares};
+use crate::solver::triangle::Triangle;
 use crate::{FitError, Residuals};
 
 /// Neighbouring residuals that depend on some of the parameters only, such as those of one record in a joint fit.
@@ -183,7 +184,7 @@ impl Structure {
         self.columns_of(parameter)
             .map(|column| {
                 let elements = &jacobian[column.elements];
-                dot(elements, elements)
+                sum_of_squares(elements)
             })
             .sum()
     }

@@ -2,6 +2,7 @@
 
 mod automatic;
 pub(crate) mod block;
+mod held;
 mod joint;
 mod joint_error;
 mod residuals;
@@ -9,6 +10,7 @@ mod weighted;
 
 pub use automatic::{Automatic, Model};
 pub use block::Block;
+pub use held::Held;
 pub use joint::{Joint, JointPart};
 pub use joint_error::JointError;
 pub use residuals::{EvaluationError, Residuals};

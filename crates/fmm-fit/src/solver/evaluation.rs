@@ -2,7 +2,8 @@
 
 use crate::problem::block::{Scratch, Structure};
 use crate::solver::non_finite::worst;
-use crate::solver::triangle::{Triangle, dot};
+use crate::solver::sums::sum_of_squares;
+use crate::solver::triangle::Triangle;
 use crate::{EvaluationError, FitError, NonFinite, Residuals};
 
 /// Where the derivatives come from.
@@ -150,7 +151,7 @@ impl Evaluator {
                 return false;
             }
         }
-        point.sum_of_squares = dot(&point.residuals, &point.residuals);
+        point.sum_of_squares = sum_of_squares(&point.residuals);
         let is_finite = point.sum_of_squares.is_finite();
         if !is_finite {
             let (index, value) = worst(&point.residuals);
@@ -312,7 +313,7 @@ impl Evaluator {
                     *c = weight_a * (*c - r) + weight_b * (s - r);
                 }
             }
-            square += dot(elements, elements);
+            square += sum_of_squares(elements);
         }
         square.is_finite()
     }

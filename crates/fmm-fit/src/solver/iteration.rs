@@ -6,7 +6,7 @@ use crate::solver::box_least_squares::{BoxLeastSquares, Side};
 use crate::solver::evaluation::{Evaluator, Scheme};
 use crate::solver::minimizer::{Attempt, Minimizer, Phase};
 use crate::solver::optimality::{is_at_noise_floor, largest_cosine, projected_residual};
-use crate::solver::triangle::half_difference_of_squares;
+use crate::solver::sums::half_difference_of_squares;
 use crate::{Outcome, Residuals};
 
 /// Radius of the first search and of those after a stall, as multiples of [`Options::with_initial_radius`].

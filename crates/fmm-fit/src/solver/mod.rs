@@ -12,6 +12,7 @@ mod options;
 mod outcome;
 mod solve;
 pub(crate) mod spectrum;
+pub(crate) mod sums;
 pub(crate) mod triangle;
 mod trust_region;
 

@@ -1,6 +1,7 @@
 //! Singular values of a triangle whose columns are scaled to unit length: what the data can tell apart.
 
-use crate::solver::triangle::{Triangle, dot};
+use crate::solver::sums::{dot, sum_of_squares};
+use crate::solver::triangle::Triangle;
 
 /// Singular value decomposition `R S⁻¹ = U Σ Vᵀ` with `S` the column norms of `R`, by one-sided Jacobi rotations,
 /// which find small singular values to high relative accuracy.
@@ -39,7 +40,7 @@ impl Spectrum {
             .into_iter()
             .map(|column| {
                 let (left, right) = column.split_at(order);
-                let value = dot(left, left).sqrt();
+                let value = sum_of_squares(left).sqrt();
                 let along: f64 = left.iter().enumerate().map(|(row, l)| l * triangle.q(row)).sum();
                 (value, if value > 0.0 { along / value } else { 0.0 }, right.to_vec())
             })
@@ -100,8 +101,8 @@ fn orthogonalise(columns: &mut [Vec<f64>], order: usize) {
             let (head, tail) = columns.split_at_mut(j);
             let second = &mut tail[0];
             for first in head {
-                let alpha = dot(&first[..order], &first[..order]);
-                let beta = dot(&second[..order], &second[..order]);
+                let alpha = sum_of_squares(&first[..order]);
+                let beta = sum_of_squares(&second[..order]);
                 let gamma = dot(&first[..order], &second[..order]);
                 if alpha.min(beta) < NOTHING || gamma.abs() <= f64::EPSILON * (alpha * beta).sqrt() {
                     continue;

@@ -1,8 +1,10 @@
-//! QR factorisation of tall matrices, a block of rows at a time.
+//! Factorisation of tall matrices.
 
 use std::array;
 
 use fmm_model::widest;
+
+use crate::solver::sums::products;
 
 /// Numbers per block at most: the block and its copy share the first-level cache.
 const BLOCK: usize = 1536;
@@ -10,10 +12,20 @@ const BLOCK: usize = 1536;
 /// Sums that are kept side by side: two of the vectors of four that are in each of two pipes.
 const LANES: usize = 8;
 
+/// The least square of the sine between a column and those before it for which scalar products are exact enough: what is
+/// left of a column after they are taken off has lost two digits at most.
+const WELL_CONDITIONED: f64 = 1e-2;
+
+/// Squares below have lost digits to underflow.
+const UNDERFLOW: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+
 /// The triangle `R`, `q = Qᵀ r` and `‖r − Q q‖` of a matrix `J = Q R` and a vector `r`.
 ///
-/// Rows are folded in by Householder reflections of the stack of triangle and block, so `J` is read once, never
-/// copied whole and need not be there at once. The order of operations is fixed: results are reproducible.
+/// Columns at wide angles to each other, as those of most fits of a few parameters, are factored by way of their scalar
+/// products (Cholesky), which is several times as fast and then as good: with sines of 0.1 or more it costs two digits
+/// of sixteen. The rows of all others are folded in by Householder reflections of the stack of triangle and block, so `J`
+/// is read once, never copied whole and need not be there at once. The order of operations is fixed: results are
+/// reproducible.
 ///
 /// ```text
 /// ⎡ R  q ⎤     order p, row by row, p + 1 numbers each
@@ -109,10 +121,12 @@ impl Triangle {
     /// The factor of the given columns of `jacobian` (column after column, as long as `residuals`) and of
     /// `residuals`; `scratch` may have any length.
     pub(crate) fn factor(&mut self, jacobian: &[f64], columns: &[usize], residuals: &[f64], scratch: &mut Vec<f64>) {
-        widest(
-            #[inline(always)]
-            || self.factor_here(jacobian, columns, residuals, scratch),
-        );
+        if !self.factor_few(jacobian, columns, residuals) {
+            widest(
+                #[inline(always)]
+                || self.factor_here(jacobian, columns, residuals, scratch),
+            );
+        }
     }
 
     #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
@@ -132,6 +146,41 @@ impl Triangle {
             };
             self.fold_columns(column, rows.len(), scratch);
         }
+    }
+
+    /// The factor by way of scalar products, for a few columns only; false if that is not good enough.
+    fn factor_few(&mut self, jacobian: &[f64], columns: &[usize], residuals: &[f64]) -> bool {
+        let column = |j: usize| &jacobian[j * residuals.len()..][..residuals.len()];
+        match *columns {
+            [a] => self.factor_products(products([column(a), residuals])),
+            [a, b] => self.factor_products(products([column(a), column(b), residuals])),
+            [a, b, c] => self.factor_products(products([column(a), column(b), column(c), residuals])),
+            _ => false,
+        }
+    }
+
+    /// Cholesky's factor of the scalar products of the columns and the residual; false if a column is nearly a
+    /// combination of those before it.
+    fn factor_products<const W: usize>(&mut self, products: [[f64; W]; W]) -> bool {
+        self.order = W - 1;
+        self.entries.clear();
+        self.entries.extend_from_slice(products.as_flattened());
+        for column in 0..W {
+            let square = self.r(column, column);
+            let mut left = square;
+            for row in 0..column {
+                let known: f64 = (0..row).map(|above| self.r(above, row) * self.r(above, column)).sum();
+                let entry = (self.r(row, column) - known) / self.r(row, row);
+                self.entries[row * W + column] = entry;
+                left -= entry * entry;
+            }
+            if column < self.order && !(square > UNDERFLOW && left >= WELL_CONDITIONED * square) {
+                return false;
+            }
+            // Of the residual nothing at all may be left.
+            self.entries[column * W + column] = left.max(0.0).sqrt();
+        }
+        self.is_finite()
     }
 
     /// The factor of some columns of `other` with `q` replaced by `right(row)`; `block` is scratch.
@@ -314,45 +363,6 @@ fn sweep<'a, const N: usize>(
     }
 }
 
-/// Scalar product.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    sum_of(a, b, |x, y| x * y)
-}
-
-/// `½ (‖a‖² − ‖b‖²)` without the cancellation of two large sums.
-pub(crate) fn half_difference_of_squares(a: &[f64], b: &[f64]) -> f64 {
-    0.5 * sum_of(a, b, |x, y| (x - y) * (x + y))
-}
-
-/// Sum of `term` over both slices in interleaved sums, which vectorises and always adds in the same order.
-fn sum_of(a: &[f64], b: &[f64], term: impl Fn(f64, f64) -> f64) -> f64 {
-    // Short sums are over before vectors are chosen.
-    if a.len() < 16 * LANES {
-        sum_here(a, b, term)
-    } else {
-        widest(
-            #[inline(always)]
-            || sum_here(a, b, term),
-        )
-    }
-}
-
-#[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
-#[inline(always)]
-fn sum_here(a: &[f64], b: &[f64], term: impl Fn(f64, f64) -> f64) -> f64 {
-    let (a_lanes, a_rest) = a.as_chunks::<{ 2 * LANES }>();
-    let (b_lanes, b_rest) = b.as_chunks::<{ 2 * LANES }>();
-    let mut sums = [[0.0; LANES]; 2];
-    for (x, y) in a_lanes.iter().zip(b_lanes) {
-        for lane in 0..LANES {
-            sums[0][lane] += term(x[lane], y[lane]);
-            sums[1][lane] += term(x[LANES + lane], y[LANES + lane]);
-        }
-    }
-    let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| term(*x, *y)).sum();
-    total(&sums[0]) + total(&sums[1]) + rest
-}
-
 /// The sum of interleaved sums. Inlined, it would make the compiler keep them as eight single numbers.
 #[inline(never)]
 fn total(sums: &[f64; LANES]) -> f64 {
@@ -400,6 +410,36 @@ mod tests {
     }
 
     #[test]
+    fn products_are_as_good_for_columns_at_wide_angles_and_refused_for_others() {
+        let (n, columns) = (1501, [0, 1, 2]);
+        let size = [1.0, 1e3, 1e6];
+        let wave = |j: usize, i: usize| (0.01 * (j + 1) as f64 * i as f64 + j as f64).sin() * size[j];
+        let mut jacobian: Vec<f64> = (0..3).flat_map(|j| (0..n).map(move |i| wave(j, i))).collect();
+        let residuals: Vec<f64> = (0..n).map(|i| ((i * 7919) % 1009) as f64 / 1009.0 - 0.5).collect();
+        // Turns the last column towards the first, to sines on either side of the limit.
+        for (sine, is_product) in [(1.0, true), (0.12, true), (0.08, false), (0.01, false)] {
+            for i in 0..n {
+                jacobian[2 * n + i] = 1e6 * (sine * wave(2, i) * 1e-6 + (1.0 - sine * sine).sqrt() * wave(0, i));
+            }
+            let mut triangle = Triangle::default();
+            triangle.factor(&jacobian, &columns, &residuals, &mut Vec::new());
+            let mut reflected = Triangle::default();
+            reflected.reset(3);
+            reflected.fold(&mut [&jacobian[..], &residuals].concat());
+            // Reflections leave negative numbers on the diagonal, roots do not.
+            assert_eq!((0..3).all(|k| triangle.r(k, k) > 0.0), is_product, "sine {sine}");
+            let (size, rest) = (triangle.column_norm(2), triangle.residual_norm());
+            for row in 0..3 {
+                let sign = (reflected.r(row, row) * triangle.r(row, row)).signum();
+                let (r, q) = (triangle.r(row, 2), triangle.q(row));
+                // Two digits of sixteen, and the rounding of 1501 sums.
+                assert!((r - sign * reflected.r(row, 2)).abs() < 1e-13 * size, "sine {sine}: R[{row}] = {r}");
+                assert!((q - sign * reflected.q(row)).abs() < 1e-12 * rest, "sine {sine}: q[{row}] = {q}");
+            }
+        }
+    }
+
+    #[test]
     fn splitting_into_blocks_changes_rounding_only() {
         let (jacobian, residuals) = tall();
         let mut blockwise = Triangle::default();
@@ -421,13 +461,12 @@ mod tests {
         for columns in 0..=6 {
             let columns: Vec<usize> = (0..columns).collect();
             let (mut wide, mut narrow) = (Triangle::default(), Triangle::default());
-            wide.factor(&jacobian, &columns, &residuals, &mut Vec::new());
+            widest(
+                #[inline(always)]
+                || wide.factor_here(&jacobian, &columns, &residuals, &mut Vec::new()),
+            );
             narrow.factor_here(&jacobian, &columns, &residuals, &mut Vec::new());
             assert_eq!(wide.entries, narrow.entries);
-        }
-        for length in [0, 7, 500, 2500] {
-            let (a, b) = (&jacobian[2500..][..length], &residuals[..length]);
-            assert_eq!(dot(a, b).to_bits(), sum_here(a, b, |x, y| x * y).to_bits(), "{length} terms");
         }
     }
 

@@ -4,7 +4,8 @@ use fmm_model::Parameter;
 
 use crate::solver::evaluation::{Evaluator, Point, Scheme, parabola};
 use crate::solver::spectrum::Spectrum;
-use crate::solver::triangle::{Triangle, dot};
+use crate::solver::sums::{dot, sum_of_squares};
+use crate::solver::triangle::Triangle;
 use crate::{Estimate, EstimateStatus, Fit, Residuals, Sensitivity, SensitivityError};
 
 /// A minimum with its derivatives, from which the response follows.
@@ -238,7 +239,7 @@ fn factor_cholesky(matrix: &mut [Vec<f64>]) -> bool {
         for (j, other) in above.iter().enumerate() {
             row[j] = (row[j] - dot(&row[..j], &other[..j])) / other[j];
         }
-        let square = row[i] - dot(&row[..i], &row[..i]);
+        let square = row[i] - sum_of_squares(&row[..i]);
         if !(square > 0.0) {
             return false;
         }

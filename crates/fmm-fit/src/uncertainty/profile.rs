@@ -4,9 +4,8 @@ use std::time::Instant;
 
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-use crate::uncertainty::held::Held;
 use crate::{
-    EstimateStatus, Fit, FitError, Minimizer, Options, Outcome, ProfileEnd, ProfileError, ProfileInterval,
+    EstimateStatus, Fit, FitError, Held, Minimizer, Options, Outcome, ProfileEnd, ProfileError, ProfileInterval,
     ResidualVariance, Residuals, solve,
 };
 
@@ -239,7 +238,7 @@ impl<P: Residuals + ?Sized> Profile<'_, P> {
 
     /// The best fit with the parameter held at `value`, from the points of `trace`; none if the model has no value.
     fn point(&mut self, value: f64, trace: &[Trace]) -> Result<Option<Trace>, ProfileError> {
-        let Some(held) = Held::new(self.problem, self.index, value) else { return Ok(None) };
+        let Ok(held) = Held::new(self.problem, [(self.index, value)]) else { return Ok(None) };
         let last = &trace[trace.len() - 1];
         let mut failure = None;
         for mut start in [self.ahead(value, trace), last.values.clone(), self.fit.values().to_vec()] {

@@ -1,0 +1,225 @@
+//! A fit repeated many times, each time with other values of what it held fixed.
+
+use std::sync::{Mutex, PoisonError};
+
+use fmm_model::{Bounds, Parameter};
+
+use crate::problem::block::{Scratch, Structure};
+use crate::solver::spectrum::is_surely_of_full_rank;
+use crate::solver::triangle::Triangle;
+use crate::{EstimateStatus, Fit, Held, Minimizer, Options, RefitError, Residuals, Sensitivity, SensitivityError};
+
+/// A step that moves the residuals by less than this share of what the parameters themselves make of them is no step.
+const NEGLIGIBLE: f64 = 1e-10;
+
+/// Gauss–Newton steps that have to get there; they do in two if the sensitivities foresee the new minimum.
+const STEPS: usize = 8;
+
+/// A fit prepared to be repeated with other values of the parameters that it held fixed, its inputs: the model of a Monte
+/// Carlo calculation.
+///
+/// Where the minimum goes is foreseen by the [`Sensitivity`] of the fit; Gauss–Newton steps take it there, until the next
+/// one, by their rate of convergence, would change nothing. Two evaluations are enough as a rule. A problem without
+/// derivatives, or a minimum that this does not reach within a few steps and the bounds, is handed to the [`Minimizer`].
+///
+/// The estimates depend on the inputs alone: not on the order of the calls, nor on the thread.
+///
+/// ```
+/// # use fmm_fit::EvaluationError;
+/// use fmm_fit::{Automatic, Model, Options, Refit, solve};
+/// use fmm_model::{Bounds, Parameter, Scalar};
+///
+/// /// A cooling cup, T = T₀ + a exp(−b t), in a room whose temperature T₀ was measured.
+/// struct Cooling {
+///     parameters: [Parameter; 3],
+/// }
+/// # impl Model for Cooling {
+/// #     fn parameters(&self) -> &[Parameter] { &self.parameters }
+/// #     fn len(&self) -> usize { 4 }
+/// #     fn residuals<S: Scalar>(&self, p: &[S], residuals: &mut [S]) -> Result<(), EvaluationError> {
+/// #         for (r, (t, data)) in residuals.iter_mut().zip([(0.0, 80.1), (10.0, 55.9), (20.0, 41.3), (30.0, 32.8)]) {
+/// #             *r = p[0] + p[1] * (-p[2] * t).exp() - data;
+/// #         }
+/// #         Ok(())
+/// #     }
+/// # }
+/// let room = Parameter::new("room", "T₀", "°C").bounded(Bounds::new(20.0, 20.0)?);
+/// let parameters = [room, Parameter::new("amplitude", "a", "K"), Parameter::new("rate", "b", "1/s")];
+/// let problem = Automatic::<_, 3>::new(Cooling { parameters });
+/// let fit = solve(&problem, &[20.0, 50.0, 0.01], &Options::default())?;
+///
+/// let refit = Refit::prepare(&problem, &fit)?;
+/// let rate = |room: f64| refit.estimates(&[room]).map(|estimates| estimates[1]);
+/// assert!((rate(20.0)? - fit.values()[2]).abs() < 1e-10);
+/// // A warmer room: what is left cools away faster.
+/// assert!(rate(21.0)? > rate(20.0)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Refit<'a, P: ?Sized> {
+    problem: &'a P,
+    values: Vec<f64>,
+    inputs: Vec<usize>,
+    free: Vec<usize>,
+    /// ∂θ/∂α for each free parameter and input, row by row.
+    coefficients: Vec<f64>,
+    structure: Structure,
+    is_direct: bool,
+    options: Options,
+    idle: Mutex<Vec<Workspace>>,
+}
+
+/// Buffers of one refit at a time.
+#[derive(Debug, Default)]
+struct Workspace {
+    values: Vec<f64>,
+    residuals: Vec<f64>,
+    jacobian: Vec<f64>,
+    triangle: Triangle,
+    scratch: Scratch,
+    step: Vec<f64>,
+}
+
+impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
+    /// Prepares to repeat `fit`, which must be a converged one of `problem`.
+    ///
+    /// # Errors
+    /// [`SensitivityError`] if it is not.
+    pub fn prepare(problem: &'a P, fit: &Fit) -> Result<Self, SensitivityError> {
+        // Without derivatives of its own, differences of differences cost more than they foresee.
+        let sensitivity = if fit.has_exact_jacobian() {
+            Sensitivity::of(problem, fit)
+        } else {
+            Sensitivity::first_order(problem, fit)
+        }?;
+        let inputs = sensitivity.inputs().to_vec();
+        let free: Vec<usize> = (0..problem.parameters().len()).filter(|j| !inputs.contains(j)).collect();
+        let coefficient = |&j: &usize, &input: &usize| sensitivity.coefficient(j, input).unwrap_or(0.0);
+        let coefficients = free.iter().flat_map(|j| inputs.iter().map(move |input| coefficient(j, input))).collect();
+        let is_determined = |&j: &usize| fit.estimates()[j].status() == EstimateStatus::Determined;
+        let is_direct = fit.has_exact_jacobian() && free.iter().all(is_determined);
+        Ok(Self {
+            problem,
+            values: fit.values().to_vec(),
+            inputs,
+            free,
+            coefficients,
+            structure: Structure::of(problem)?,
+            is_direct,
+            options: Options::default(),
+            idle: Mutex::default(),
+        })
+    }
+
+    /// The same with other options for the fits that the short way does not reach.
+    #[must_use]
+    pub fn with_options(mut self, options: Options) -> Self {
+        self.options = options;
+        self
+    }
+
+    /// What was held fixed, in the order in which values are given.
+    pub fn inputs(&self) -> impl ExactSizeIterator<Item = &Parameter> {
+        self.inputs.iter().map(|&j| &self.problem.parameters()[j])
+    }
+
+    /// What is estimated, in the order in which estimates come.
+    pub fn estimated(&self) -> impl ExactSizeIterator<Item = &Parameter> {
+        self.free.iter().map(|&j| &self.problem.parameters()[j])
+    }
+
+    /// The estimates with these values of the inputs.
+    ///
+    /// # Errors
+    /// [`RefitError`] if the inputs are not one finite number each, or if the fit fails.
+    pub fn estimates(&self, inputs: &[f64]) -> Result<Vec<f64>, RefitError> {
+        if inputs.len() != self.inputs.len() {
+            return Err(RefitError::InputCount { given: inputs.len(), inputs: self.inputs.len() });
+        }
+        let taken = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut workspace = taken.unwrap_or_default();
+        let estimates = self.estimates_in(&mut workspace, inputs);
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(workspace);
+        estimates
+    }
+
+    fn estimates_in(&self, workspace: &mut Workspace, inputs: &[f64]) -> Result<Vec<f64>, RefitError> {
+        self.foresee(&mut workspace.values, inputs);
+        if !(self.is_direct && self.follow(workspace).is_some()) {
+            self.foresee(&mut workspace.values, inputs);
+            self.search(&mut workspace.values)?;
+        }
+        Ok(self.free.iter().map(|&j| workspace.values[j]).collect())
+    }
+
+    /// Writes the inputs and where the sensitivities expect the minimum.
+    fn foresee(&self, values: &mut Vec<f64>, inputs: &[f64]) {
+        values.clone_from(&self.values);
+        for (&j, input) in self.inputs.iter().zip(inputs) {
+            values[j] = *input;
+        }
+        for (&j, coefficients) in self.free.iter().zip(self.coefficients.chunks_exact(inputs.len().max(1))) {
+            let changes = self.inputs.iter().zip(inputs).map(|(&input, value)| value - self.values[input]);
+            let moved = self.values[j] + coefficients.iter().zip(changes).map(|(c, change)| c * change).sum::<f64>();
+            values[j] = self.problem.parameters()[j].bounds().clamp(moved);
+        }
+    }
+
+    /// Gauss–Newton steps to the minimum; none if they do not get there.
+    fn follow(&self, workspace: &mut Workspace) -> Option<()> {
+        let Workspace { values, residuals, jacobian, triangle, scratch, step, .. } = workspace;
+        residuals.resize(self.problem.len(), 0.0);
+        jacobian.resize(self.structure.len(), 0.0);
+        step.resize(self.free.len(), 0.0);
+        let mut previous = None;
+        for _ in 0..STEPS {
+            if !self.problem.residuals_and_jacobian(values, residuals, jacobian).ok()? {
+                return None;
+            }
+            self.structure.factor(jacobian, &self.free, residuals, triangle, scratch);
+            if !(triangle.is_finite() && is_surely_of_full_rank(triangle, residuals.len() as f64 * f64::EPSILON)) {
+                return None;
+            }
+            triangle.solve(step);
+            for (&j, step) in self.free.iter().zip(step.iter()) {
+                values[j] += step;
+                if !self.problem.parameters()[j].bounds().contains(values[j]) {
+                    return None;
+                }
+            }
+            // ‖R p‖ = ‖q‖: what the step does to the residuals.
+            let length = (0..self.free.len()).map(|row| triangle.q(row).powi(2)).sum::<f64>().sqrt();
+            let reach = |(column, &j): (usize, &usize)| values[j].abs() * triangle.column_norm(column);
+            let negligible = NEGLIGIBLE * self.free.iter().enumerate().map(reach).sum::<f64>();
+            // Steps fall at a constant rate at worst, so that all to come are at most this far together.
+            let to_come = match previous.map(|previous: f64| length / previous) {
+                None => length,
+                Some(rate) if rate < 0.5 => length * rate / (1.0 - rate),
+                Some(_) if length <= negligible => 0.0,
+                Some(_) => return None,
+            };
+            if to_come <= negligible {
+                return Some(());
+            }
+            previous = Some(length);
+        }
+        None
+    }
+
+    /// A fit from the values foreseen.
+    fn search(&self, values: &mut [f64]) -> Result<(), RefitError> {
+        let mut parameters = self.problem.parameters().to_vec();
+        for &j in &self.inputs {
+            let held = Bounds::new(values[j], values[j])
+                .map_err(|source| RefitError::Input { input: parameters[j].name().to_owned(), source })?;
+            parameters[j] = parameters[j].clone().bounded(held);
+        }
+        let mut minimizer = Minimizer::new(self.options.clone());
+        let outcome = minimizer.minimize(&Held::within(self.problem, parameters), values)?;
+        if !outcome.is_success() {
+            return Err(RefitError::NotConverged { outcome });
+        }
+        values.copy_from_slice(minimizer.values());
+        Ok(())
+    }
+}

@@ -1,0 +1,36 @@
+//! Why a prepared fit could not be repeated.
+
+use fmm_model::ModelError;
+
+use crate::{FitError, Outcome};
+
+/// Why a [`Refit`](crate::Refit) has no estimates for some inputs.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RefitError {
+    /// There is not one value for each input.
+    #[error("{given} values were given for {inputs} inputs")]
+    InputCount {
+        /// How many were given.
+        given: usize,
+        /// How many inputs there are.
+        inputs: usize,
+    },
+    /// An input is not finite.
+    #[error("the input {input} has no valid value")]
+    Input {
+        /// Name of the input.
+        input: String,
+        /// What is wrong with its value.
+        source: ModelError,
+    },
+    /// The fit cannot begin with these inputs.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+    /// The fit begins and does not reach a minimum.
+    #[error("the fit ended without a minimum: {outcome}")]
+    NotConverged {
+        /// How it ended.
+        outcome: Outcome,
+    },
+}
