@@ -1,6 +1,6 @@
 //! Friction out of a ring-down record: `cargo run --release --example identify -- FILE`.
 //!
-//! Reads a velocity or displacement record (CSV, TSV or MATLAB v5 to v7), prepares it, fits it by one law or by
+//! Reads a velocity or displacement record (CSV, TSV, MATLAB v5 to v7 or UFF58), prepares it, fits it by one law or by
 //! several, and prints what was found, how sure it is, and what the record could not tell. Without FILE it runs
 //! on the bundled record of a bicycle fork swinging as a pendulum. `--help` lists the options.
 
@@ -26,7 +26,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 #[derive(Debug, Parser)]
 #[command(name = "identify", allow_negative_numbers = true)]
 struct Arguments {
-    /// The record: .csv, .tsv, .txt or .mat; without it, the bundled record of a bicycle fork
+    /// The record: .csv, .tsv, .txt, .mat, .uff or .unv; without it, the bundled record of a bicycle fork
     file: Option<PathBuf>,
     /// The channel with the motion, by name or by number counted from 0
     #[arg(long, value_name = "NAME|INDEX")]
@@ -125,8 +125,31 @@ fn bundled() -> PathBuf {
 fn read(arguments: &Arguments) -> Result<Input, Box<dyn Error>> {
     let quantity = Quantity::from(arguments.quantity);
     let path = arguments.file.clone().unwrap_or_else(bundled);
-    let is_mat = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mat"));
-    let reading = if is_mat {
+    let is_one_of = |known: &[&str]| {
+        path.extension().is_some_and(|extension| known.iter().any(|known| extension.eq_ignore_ascii_case(known)))
+    };
+    let reading = if is_one_of(&["uff", "unv"]) {
+        if arguments.time.is_some() || arguments.rate.is_some() {
+            return Err("a Universal File has its own time; leave out --time and --rate".into());
+        }
+        let file = fmm_record::uff::UffFile::read(&path)?;
+        for warning in file.warnings() {
+            eprintln!("warning: {warning}");
+        }
+        let mut reading = match &arguments.channel {
+            Some(channel) => file.channel(channel.clone())?,
+            None => file.reading()?,
+        };
+        let (measured, unit) = (reading.record.quantity(), reading.record.unit());
+        if measured != Quantity::Other && measured != quantity {
+            return Err(format!("the file says that \"{}\" is a record of {measured}", reading.channel).into());
+        }
+        if !unit.is_empty() && unit_in(&format!("[{unit}]")).is_none() && arguments.scale.is_none() {
+            return Err(format!("the unit \"{unit}\" of the file is not known; give --scale and --unit").into());
+        }
+        reading.record = reading.record.with_quantity(quantity);
+        reading
+    } else if is_one_of(&["mat"]) {
         let file = fmm_record::mat::MatFile::read(&path)?;
         let mut reader = fmm_record::mat::MatReader::default().quantity(quantity);
         if let Some(channel) = &arguments.channel {
@@ -154,7 +177,7 @@ fn read(arguments: &Arguments) -> Result<Input, Box<dyn Error>> {
     };
     let name = path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
     let origin = format!("{name}, channel {}; the sampling rate was {}", reading.channel, reading.sampling);
-    let stated = unit_in(&reading.channel);
+    let stated = unit_in(&reading.channel).or_else(|| unit_in(&format!("[{}]", reading.record.unit())));
     let (factor, unit) = match (&arguments.unit, arguments.scale, stated, &arguments.file) {
         (Some(unit), factor, ..) => (factor, unit.as_str()),
         (None, None, Some((factor, unit)), _) => (Some(factor), unit),

@@ -44,15 +44,15 @@ use crate::IdentifyError;
 /// let record = Record::new(0.0, 1e-3, velocity, Quantity::Velocity, "m/s")?;
 ///
 /// let machine = [("mass", 10.391), ("stiffness", 1982.0), ("damping", 0.275), ("normal_load", 7.2)];
-/// let start = [("friction_coefficient", 0.16), ("initial_position", 1e-4), ("initial_velocity", 0.101)];
+/// let start = [("coefficient", 0.16), ("initial_position", 1e-4), ("initial_velocity", 0.101)];
 /// let problem = MachineProblem::<Coulomb>::new(&record, &[machine.as_slice(), &start].concat())?
-///     .free("friction_coefficient")?
+///     .free("coefficient")?
 ///     .free("initial_position")?;
 /// let fit = solve(&problem, problem.values(), &Options::default())?;
-/// assert!((fit.estimate("friction_coefficient").unwrap().value() - 0.15).abs() < 1e-12);
+/// assert!((fit.estimate("coefficient").unwrap().value() - 0.15).abs() < 1e-12);
 ///
 /// // Only k/m, c/m and μ N/m show: scaling m, k and c together scales μ.
-/// let by = |input| Sensitivity::of(&problem, &fit).map(|s| s.coefficient_of("friction_coefficient", input).unwrap());
+/// let by = |input| Sensitivity::of(&problem, &fit).map(|s| s.coefficient_of("coefficient", input).unwrap());
 /// let scaled = 10.391 * by("mass")? + 1982.0 * by("stiffness")? + 0.275 * by("damping")?;
 /// assert!((scaled - 0.15).abs() < 1e-8);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

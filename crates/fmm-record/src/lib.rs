@@ -3,7 +3,7 @@
 //!
 //! | question | answer |
 //! |---|---|
-//! | what is in this file? | modules `csv`, `mat`: a `Reading`, the record with the choices that led to it |
+//! | what is in this file? | modules `csv`, `mat`, `npy`, `uff`: a `Reading`, the record with the choices that led to it |
 //! | when does motion begin, and what is the offset? | [`Release`] |
 //! | how does it swing? | [`Swings`]: peaks, crossings, frequency |
 //! | how good is it? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`] |
@@ -37,13 +37,18 @@
 //!
 //! # Features
 //!
-//! `csv` and `mat`, both on by default, are the readers of text and of MATLAB files. Without them the crate has no
-//! dependency but `thiserror`.
+//! `csv`, `mat` and `uff`, all on by default, are the readers of text, of MATLAB files of versions 5 to 7 and of
+//! Universal Files, which are also written; `hdf5` adds version 7.3 to `mat`, and `npy` reads files of NumPy. Without
+//! `csv`, `mat`, `hdf5` and `npy` the crate has no dependency but `thiserror`.
 
 #[cfg(feature = "csv")]
 pub mod csv;
 #[cfg(feature = "mat")]
 pub mod mat;
+#[cfg(feature = "npy")]
+pub mod npy;
+#[cfg(feature = "uff")]
+pub mod uff;
 
 mod calculus;
 mod error;
@@ -53,7 +58,7 @@ mod offset_step;
 mod order;
 mod quantisation;
 mod quantity;
-#[cfg(any(feature = "csv", feature = "mat"))]
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 mod reading;
 mod record;
 mod release;
@@ -63,6 +68,8 @@ mod savitzky_golay;
 mod smooth;
 mod smoothing;
 mod spikes;
+#[cfg(any(feature = "mat", feature = "npy"))]
+mod stated;
 mod swings;
 #[cfg(test)]
 mod synthetic;
@@ -73,7 +80,7 @@ pub use noise::noise;
 pub use offset_step::OffsetStep;
 pub use quantisation::quantisation_step;
 pub use quantity::Quantity;
-#[cfg(any(feature = "csv", feature = "mat"))]
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 pub use reading::{Column, Reading};
 pub use record::Record;
 pub use release::Release;

@@ -23,7 +23,7 @@ pub struct Reading {
 
 /// The choices that all readers offer, as methods of a builder with fields of these names; `$column` is how a format
 /// names a column.
-#[cfg(any(feature = "csv", feature = "mat"))]
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
 macro_rules! builder_of_choices {
     ($column:ty) => {
         /// The column to read.
@@ -62,8 +62,13 @@ macro_rules! builder_of_choices {
         }
     };
 }
-#[cfg(any(feature = "csv", feature = "mat"))]
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
 pub(crate) use builder_of_choices;
+
+/// How many bytes the compressed data of one file may expand to, all together: 33 million numbers. A small file can
+/// be made to expand a thousandfold; one that exceeds this limit is refused.
+#[cfg(any(feature = "mat", feature = "npy"))]
+pub const MOST_INFLATED: usize = 1 << 28;
 
 /// A column of a table, by name or by position.
 ///
@@ -116,8 +121,19 @@ impl std::fmt::Display for Column {
 
 /// Whether `name` calls a column or variable of time stamps, and if so how many seconds its unit has: `t`,
 /// `time`, `Zeit`, alone or followed by a unit as in `t_s`, `time (ms)`, `Time [s]` or `t/s`.
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
 pub(crate) fn seconds_per_unit_of_time(name: &str) -> Option<f64> {
     const WORDS: [&str; 3] = ["time", "zeit", "t"];
+    let lower = name.trim().to_lowercase();
+    let rest = WORDS.iter().find_map(|word| {
+        let rest = lower.strip_prefix(word)?;
+        rest.chars().next().is_none_or(|next| !next.is_alphanumeric()).then_some(rest)
+    })?;
+    seconds_in(rest.trim_matches(|c: char| !c.is_alphanumeric()))
+}
+
+/// How many seconds a unit of time has, in lower case; no unit means seconds.
+pub(crate) fn seconds_in(unit: &str) -> Option<f64> {
     const UNITS: [(&str, f64); 10] = [
         ("", 1.0),
         ("s", 1.0),
@@ -130,16 +146,17 @@ pub(crate) fn seconds_per_unit_of_time(name: &str) -> Option<f64> {
         ("μs", 1e-6),
         ("ns", 1e-9),
     ];
-    let lower = name.trim().to_lowercase();
-    let rest = WORDS.iter().find_map(|word| {
-        let rest = lower.strip_prefix(word)?;
-        rest.chars().next().is_none_or(|next| !next.is_alphanumeric()).then_some(rest)
-    })?;
-    let unit = rest.trim_matches(|c: char| !c.is_alphanumeric());
     UNITS.iter().find(|(known, _)| *known == unit).map(|(_, seconds)| *seconds)
 }
 
+/// Names for an error that lists them.
+#[cfg(any(feature = "csv", feature = "uff"))]
+pub(crate) fn quoted(names: &[String]) -> String {
+    names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
+}
+
 /// Brings time stamps to seconds from the unit that the `name` of their column tells, if it tells one.
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
 pub(crate) fn to_seconds(name: &str, times: &mut [f64]) {
     let scale = seconds_per_unit_of_time(name).unwrap_or(1.0);
     if scale != 1.0 {
@@ -149,7 +166,7 @@ pub(crate) fn to_seconds(name: &str, times: &mut [f64]) {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, any(feature = "csv", feature = "mat", feature = "npy")))]
 mod tests {
     use super::*;
 

@@ -82,7 +82,7 @@ impl UniformTimes {
 }
 
 /// `interval` (s), or that of the nearest whole number of hertz if it is the same within [`RATE_ROUNDING`].
-fn whole_hertz(interval: f64) -> f64 {
+pub(crate) fn whole_hertz(interval: f64) -> f64 {
     let whole = interval.recip().round();
     if whole >= 1.0 && (whole * interval - 1.0).abs() <= RATE_ROUNDING { whole.recip() } else { interval }
 }
@@ -141,6 +141,13 @@ pub enum Sampling {
         /// The interval it holds (s).
         interval: f64,
     },
+    /// From the header of the data.
+    Header {
+        /// The interval it states (s).
+        interval: f64,
+        /// The rate that this was taken for (Hz).
+        rate: f64,
+    },
 }
 
 /// Reads as the end of the sentence "the sampling rate was …".
@@ -152,6 +159,9 @@ impl std::fmt::Display for Sampling {
             Self::RateVariable { name, rate } => write!(f, "read as {rate} Hz from the variable \"{name}\""),
             Self::IntervalVariable { name, interval } => {
                 write!(f, "found from the interval of {interval} s in the variable \"{name}\"")
+            }
+            Self::Header { interval, rate } => {
+                write!(f, "taken as {rate} Hz from the interval of {interval} s in the header of the data")
             }
         }
     }

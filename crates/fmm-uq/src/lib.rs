@@ -46,6 +46,7 @@
 //! * `serde`: [`Partial`] results, failures, intervals and histograms as text.
 
 mod adaptive;
+mod allowed_failures;
 mod arc_sine;
 #[cfg(feature = "serde")]
 mod bits;
@@ -74,6 +75,7 @@ mod order_statistics;
 mod outcome;
 mod output_sample;
 mod partial;
+mod pool;
 mod propagate;
 mod propagation;
 mod quasi_monte_carlo;
@@ -91,6 +93,7 @@ mod taylor;
 mod tolerance;
 mod trapezoid;
 mod validation;
+mod ziggurat;
 
 pub use adaptive::{Adaptive, IntervalKind};
 pub use budget::{Budget, Contribution};

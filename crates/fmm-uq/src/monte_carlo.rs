@@ -3,6 +3,7 @@
 use std::ops::{ControlFlow, Range};
 
 use crate::adaptive::Adaptive;
+use crate::allowed_failures::AllowedFailures;
 use crate::block::{BLOCK_TRIALS, Block};
 use crate::run::Plan;
 use crate::sampler::Sampler;
@@ -40,7 +41,7 @@ pub struct MonteCarlo<'a> {
     pub(crate) fingerprint: u64,
     pub(crate) seed: u64,
     pub(crate) plan: Plan,
-    pub(crate) allowed_failures: f64,
+    pub(crate) allowed_failures: AllowedFailures,
     pub(crate) watch: Option<&'a Watch<'a>>,
 }
 
@@ -86,7 +87,7 @@ impl<'a> MonteCarlo<'a> {
 
     fn with_plan(inputs: &Inputs, plan: Plan) -> Self {
         let (sampler, fingerprint) = (Sampler::new(inputs), inputs.fingerprint());
-        Self { sampler, fingerprint, seed: 0, plan, allowed_failures: 0.0, watch: None }
+        Self { sampler, fingerprint, seed: 0, plan, allowed_failures: AllowedFailures::default(), watch: None }
     }
 
     /// The same run of other inputs.
@@ -106,13 +107,8 @@ impl<'a> MonteCarlo<'a> {
     /// # Errors
     /// [`UncertaintyError::OptionOutOfRange`] unless it lies in [0, 1).
     pub fn with_allowed_failures(mut self, share: f64) -> Result<Self, UncertaintyError> {
-        if (0.0..1.0).contains(&share) {
-            self.allowed_failures = share;
-            Ok(self)
-        } else {
-            let (option, must_be) = ("allowed share of failed trials", "in [0, 1)");
-            Err(UncertaintyError::OptionOutOfRange { option, value: share, must_be })
-        }
+        self.allowed_failures = AllowedFailures::new(share)?;
+        Ok(self)
     }
 
     /// The same with a function that is told of the progress every 100 trials of a thread, and ends the run by

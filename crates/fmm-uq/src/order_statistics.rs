@@ -35,17 +35,32 @@ fn tail(values: &[f64], count: usize, key: impl Fn(f64) -> f64) -> Vec<f64> {
     if count == 0 {
         return Vec::new();
     }
-    let mut tail: Vec<f64> = match threshold(values, count, &key) {
-        Some(limit) => values.iter().map(|&value| key(value)).filter(|&value| value <= limit).collect(),
-        None => Vec::new(),
-    };
-    // The guess may have been too low, or there was none.
+    // Room for the margin of the guess, twice over.
+    let most = 2 * count + values.len() / 128;
+    let mut tail = threshold(values, count, &key).map_or_else(Vec::new, |limit| below(values, limit, most, &key));
+    // The guess may have been too low or too high, or there was none.
     if tail.len() < count {
         tail = values.iter().map(|&value| key(value)).collect();
     }
     tail.select_nth_unstable_by(count - 1, f64::total_cmp);
     tail.truncate(count);
     tail
+}
+
+/// The values under a `key` that do not exceed a limit; none if there are more than `most`.
+fn below(values: &[f64], limit: f64, most: usize, key: impl Fn(f64) -> f64) -> Vec<f64> {
+    let (mut found, mut count) = (vec![0.0; most + 1], 0);
+    for &value in values {
+        // Written always and counted if wanted: which of them are cannot be guessed, and a branch would be.
+        let value = key(value);
+        found[count] = value;
+        count += usize::from(value <= limit);
+        if count > most {
+            return Vec::new();
+        }
+    }
+    found.truncate(count);
+    found
 }
 
 /// A value that very likely exceeds the `count` smallest but not many more: from every nth value, with a margin of

@@ -1,6 +1,5 @@
 //! What the trials of a Monte Carlo gave.
 
-use crate::block::Block;
 use crate::order_statistics::{largest, ranked, smallest};
 use crate::{Failures, Interval, Moments, UncertaintyError};
 
@@ -26,26 +25,6 @@ pub struct OutputSample {
 }
 
 impl OutputSample {
-    /// Pools blocks in their order.
-    pub(crate) fn pool(blocks: Vec<Block>) -> Result<Self, UncertaintyError> {
-        let (mut trials, mut failures) = (0, Failures::default());
-        let outputs = blocks.iter().map(|block| block.outputs).find(|&n| n != 0).ok_or(UncertaintyError::NoSuccess)?;
-        let rows = blocks.iter().map(|block| block.values.len()).sum::<usize>() / outputs;
-        let mut columns: Vec<Vec<f64>> = (0..outputs).map(|_| Vec::with_capacity(rows)).collect();
-        for block in blocks {
-            trials += block.trials as u64;
-            failures.append(&block.failures);
-            if let [column] = columns.as_mut_slice() {
-                column.extend_from_slice(&block.values);
-                continue;
-            }
-            for (output, column) in columns.iter_mut().enumerate() {
-                column.extend(block.values.iter().skip(output).step_by(outputs));
-            }
-        }
-        Self::new(columns, trials, failures)
-    }
-
     /// The sample of given columns of equal lengths.
     pub(crate) fn new(columns: Vec<Vec<f64>>, trials: u64, failures: Failures) -> Result<Self, UncertaintyError> {
         let mut moments = Vec::with_capacity(columns.len());

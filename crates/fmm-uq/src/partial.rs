@@ -9,6 +9,28 @@ use crate::block::{BLOCK_TRIALS, Block};
 /// [merged](Partial::merge) until [`MonteCarlo::finish`](crate::MonteCarlo::finish) has them all. The result has the bits
 /// of a single run. With the feature `serde` a part can be written to a file; its values travel as bits.
 ///
+/// ```
+/// # #[cfg(feature = "serde")]
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// use fmm_uq::{Input, Inputs, MonteCarlo, Partial};
+///
+/// let inputs = Inputs::new([Input::new("x", 1.0, 0.1, "m")?])?;
+/// let run = MonteCarlo::new(&inputs, 5000)?.with_seed(7);
+/// // One job for each part, anywhere: the text is what goes into its file.
+/// let job = |part| -> Result<String, Box<dyn std::error::Error>> {
+///     Ok(serde_json::to_string(&run.run_blocks(run.shard(part, 2), |x| x[0] * x[0])?)?)
+/// };
+/// let files = [job(1)?, job(0)?];
+///
+/// let mut parts = files.iter().map(|text| serde_json::from_str::<Partial>(text));
+/// let merged = parts.next().unwrap()?.merge(parts.next().unwrap()?)?;
+/// assert_eq!(run.finish(merged)?, run.run(|x| x[0] * x[0])?);
+/// # Ok(())
+/// # }
+/// # #[cfg(not(feature = "serde"))]
+/// # fn main() {}
+/// ```
+///
 /// Bits are the same for the same build on the same kind of machine: functions such as the logarithm differ in the last
 /// bit between platforms.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,10 +117,6 @@ impl Partial {
 
     pub(crate) const fn inputs(&self) -> u64 {
         self.inputs
-    }
-
-    pub(crate) fn as_blocks(&self) -> &[Block] {
-        &self.blocks
     }
 
     pub(crate) fn into_blocks(self) -> Vec<Block> {

@@ -3,6 +3,7 @@
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
+use crate::allowed_failures::AllowedFailures;
 use crate::failure::Failure;
 use crate::order_statistics::ranked;
 use crate::sampler::Sampler;
@@ -34,7 +35,7 @@ pub struct QuasiMonteCarlo {
     points: u32,
     scramblings: usize,
     seed: u64,
-    allowed_failures: f64,
+    allowed_failures: AllowedFailures,
 }
 
 /// The pooled values of all scramblings, with errors from their scatter.
@@ -61,7 +62,7 @@ impl QuasiMonteCarlo {
         if !(8..=65_536).contains(&scramblings) {
             return refuse("number of scramblings", scramblings as f64, "between 8 and 65536");
         }
-        Ok(Self { sampler, points, scramblings, seed: 0, allowed_failures: 0.0 })
+        Ok(Self { sampler, points, scramblings, seed: 0, allowed_failures: AllowedFailures::default() })
     }
 
     /// The same with another seed, and so with other scramblings.
@@ -76,13 +77,8 @@ impl QuasiMonteCarlo {
     /// # Errors
     /// [`UncertaintyError::OptionOutOfRange`] unless it lies in [0, 1).
     pub fn with_allowed_failures(mut self, share: f64) -> Result<Self, UncertaintyError> {
-        if (0.0..1.0).contains(&share) {
-            self.allowed_failures = share;
-            Ok(self)
-        } else {
-            let (option, must_be) = ("allowed share of failed trials", "in [0, 1)");
-            Err(UncertaintyError::OptionOutOfRange { option, value: share, must_be })
-        }
+        self.allowed_failures = AllowedFailures::new(share)?;
+        Ok(self)
     }
 
     /// Evaluates the model at all points.
@@ -104,12 +100,7 @@ impl QuasiMonteCarlo {
             parts.push(columns);
         }
         let trials = u64::from(self.points) * self.scramblings as u64;
-        if let Some(first) = failures.first().first()
-            && failures.count() as f64 > self.allowed_failures * trials as f64
-        {
-            let (failed, allowed, first) = (failures.count(), self.allowed_failures, Box::new(first.clone()));
-            return Err(UncertaintyError::TooManyFailures { failed, trials, allowed, first });
-        }
+        self.allowed_failures.check(&failures, trials)?;
         let outputs = parts.iter().map(Vec::len).max().unwrap_or(0);
         if parts.iter().any(|part| part.len() != outputs || part.is_empty()) {
             return Err(UncertaintyError::NoSuccess);

@@ -8,13 +8,49 @@ use rayon::prelude::*;
 
 use crate::adaptive::{Adaptive, Stability};
 use crate::block::{BLOCK_TRIALS, Block};
-use crate::{MonteCarlo, Outcome, OutputSample, Partial, Progress, UncertaintyError};
+use crate::pool::Pool;
+use crate::{Failures, MonteCarlo, Outcome, OutputSample, Partial, Progress, UncertaintyError};
 
 /// How many trials there are to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Plan {
     Fixed(u64),
     Adaptive(Adaptive),
+}
+
+/// Blocks that each thread runs before they are pooled: enough that no thread waits long for the last of the others.
+#[cfg(feature = "rayon")]
+const BLOCKS_OF_THREAD: u64 = 32;
+
+/// What the threads of a run tell each other.
+struct State {
+    done: AtomicU64,
+    cancelled: AtomicBool,
+    /// Index of the first block known to have failed where none may.
+    failed_block: AtomicU64,
+}
+
+/// The sequences of an adaptive run, pooled until they are stable.
+struct Sequences {
+    rule: Adaptive,
+    stability: Stability,
+    pool: Pool,
+}
+
+impl Sequences {
+    fn new(rule: Adaptive) -> Self {
+        Self { rule, stability: Stability::new(rule), pool: Pool::new(0) }
+    }
+
+    /// Takes in the blocks of the next sequence and says whether it is the last one.
+    fn add(&mut self, blocks: &[Block]) -> Result<bool, UncertaintyError> {
+        self.pool.add(blocks)?;
+        if self.stability.add(&columns(blocks)?)? {
+            return Ok(true);
+        }
+        let trials = self.pool.trials();
+        if trials >= self.rule.most_trials() { Err(UncertaintyError::NotStable { trials }) } else { Ok(false) }
+    }
 }
 
 impl MonteCarlo<'_> {
@@ -24,28 +60,24 @@ impl MonteCarlo<'_> {
     ) -> Result<OutputSample, UncertaintyError> {
         let rule = match self.plan {
             Plan::Fixed(trials) => {
-                let blocks = self.run_range(0..trials.div_ceil(BLOCK_TRIALS as u64), model)?;
-                return self.pool(blocks.into_blocks());
+                let mut pool = Pool::new(trials);
+                self.run_groups(0..blocks_of(trials), model, |blocks| pool.add(&blocks))?;
+                return self.close(pool);
             }
             Plan::Adaptive(rule) => rule,
         };
-        let (mut stability, mut blocks) = (Stability::new(rule), Vec::new());
-        let sequence = rule.blocks_of_sequence();
+        let (state, mut sequences) = (State::new(), Sequences::new(rule));
+        let length = rule.blocks_of_sequence();
         // Several sequences at a time where one would leave threads idle; those after the stop are dropped.
-        let at_once = sequence * (4 * threads()).div_ceil(sequence);
+        let at_once = length * (4 * threads()).div_ceil(length);
+        let mut start = 0;
         loop {
-            let (start, first) = (blocks.len(), blocks.len() as u64);
-            blocks.extend(self.run_range(first..first + at_once, model)?.into_blocks());
-            for end in (start..blocks.len()).step_by(sequence as usize).map(|at| at + sequence as usize) {
-                if stability.add(&columns(&blocks[end - sequence as usize..end])?)? {
-                    blocks.truncate(end);
-                    return self.pool(blocks);
-                }
-                let trials = (end * BLOCK_TRIALS) as u64;
-                if trials >= rule.most_trials() {
-                    return Err(UncertaintyError::NotStable { trials });
+            for sequence in self.run_group(&state, start..start + at_once, model)?.chunks(length as usize) {
+                if sequences.add(sequence)? {
+                    return self.close(sequences.pool);
                 }
             }
+            start += at_once;
         }
     }
 
@@ -58,32 +90,26 @@ impl MonteCarlo<'_> {
             }
         }
         let complete = |block: &Block| block.trials == self.trials_of(block.index);
-        let mut numbered = partial.as_blocks().iter().zip(0..);
-        let present = numbered.position(|(block, index)| block.index != index || !complete(block));
-        let present = present.unwrap_or(partial.as_blocks().len());
-        let missing = Err(UncertaintyError::MissingBlock { block: present as u64 });
         let mut blocks = partial.into_blocks();
+        let present = blocks.iter().zip(0..).position(|(block, index)| block.index != index || !complete(block));
+        blocks.truncate(present.unwrap_or(blocks.len()));
+        let present = blocks.as_slice();
+        let missing = Err(UncertaintyError::MissingBlock { block: present.len() as u64 });
         match self.plan {
             Plan::Fixed(trials) => {
-                let needed = trials.div_ceil(BLOCK_TRIALS as u64);
-                if (present as u64) < needed {
+                let Some(needed) = usize::try_from(blocks_of(trials)).ok().and_then(|count| present.get(..count))
+                else {
                     return missing;
-                }
-                blocks.truncate(needed as usize);
-                self.pool(blocks)
+                };
+                let mut pool = Pool::new(trials);
+                pool.add(needed)?;
+                self.close(pool)
             }
             Plan::Adaptive(rule) => {
-                let mut stability = Stability::new(rule);
-                blocks.truncate(present);
-                let sequence = rule.blocks_of_sequence() as usize;
-                for (end, part) in (1..).map(|h| h * sequence).zip(blocks.chunks_exact(sequence)) {
-                    if stability.add(&columns(part)?)? {
-                        blocks.truncate(end);
-                        return self.pool(blocks);
-                    }
-                    let trials = (end * BLOCK_TRIALS) as u64;
-                    if trials >= rule.most_trials() {
-                        return Err(UncertaintyError::NotStable { trials });
+                let mut sequences = Sequences::new(rule);
+                for sequence in present.chunks_exact(rule.blocks_of_sequence() as usize) {
+                    if sequences.add(sequence)? {
+                        return self.close(sequences.pool);
                     }
                 }
                 missing
@@ -96,50 +122,82 @@ impl MonteCarlo<'_> {
         range: Range<u64>,
         model: &(impl Fn(&[f64]) -> R + Sync),
     ) -> Result<Partial, UncertaintyError> {
-        let (done, cancelled, failed_block) = (AtomicU64::new(0), AtomicBool::new(false), AtomicU64::new(u64::MAX));
+        let end = match self.plan {
+            Plan::Fixed(trials) => range.end.min(blocks_of(trials)),
+            Plan::Adaptive(_) => range.end,
+        };
+        let mut all = Vec::new();
+        self.run_groups(range.start..end, model, |blocks| {
+            all.extend(blocks);
+            Ok(())
+        })?;
+        Partial::assemble(self.seed, self.fingerprint, all)
+    }
+
+    /// Runs blocks in groups that are taken in by `take`, in their order.
+    ///
+    /// A group is no more than keeps all threads busy, so that its memory is used again for the next one.
+    fn run_groups<R: Outcome<f64>>(
+        &self,
+        range: Range<u64>,
+        model: &(impl Fn(&[f64]) -> R + Sync),
+        mut take: impl FnMut(Vec<Block>) -> Result<(), UncertaintyError>,
+    ) -> Result<(), UncertaintyError> {
+        let state = State::new();
+        let mut start = range.start;
+        while start < range.end {
+            let end = range.end.min(start.saturating_add(blocks_at_once()));
+            take(self.run_group(&state, start..end, model)?)?;
+            start = end;
+        }
+        Ok(())
+    }
+
+    fn run_group<R: Outcome<f64>>(
+        &self,
+        state: &State,
+        range: Range<u64>,
+        model: &(impl Fn(&[f64]) -> R + Sync),
+    ) -> Result<Vec<Block>, UncertaintyError> {
         let planned = match self.plan {
             Plan::Fixed(trials) => Some(trials),
             Plan::Adaptive(_) => None,
         };
-        let start = range.start;
-        let one = |offset: usize| {
-            let index = start + offset as u64;
+        let one = |index: u64| {
             // Where none may fail, blocks after a failed one are not worth running. Those before it are: the first
             // failure in order is the one that is told, whoever met it first.
-            let wanted = || index <= failed_block.load(Ordering::Relaxed) && !cancelled.load(Ordering::Relaxed);
+            let wanted =
+                || index <= state.failed_block.load(Ordering::Relaxed) && !state.cancelled.load(Ordering::Relaxed);
             if !wanted() {
                 return None;
             }
             let watch = |trials: usize, failures: u64| {
-                if failures > 0 && self.allowed_failures == 0.0 {
-                    failed_block.fetch_min(index, Ordering::Relaxed);
+                if failures > 0 && self.allowed_failures.is_none() {
+                    state.failed_block.fetch_min(index, Ordering::Relaxed);
                     return false;
                 }
                 if let Some(watch) = self.watch {
-                    let done = done.fetch_add(trials as u64, Ordering::Relaxed) + trials as u64;
+                    let done = state.done.fetch_add(trials as u64, Ordering::Relaxed) + trials as u64;
                     if watch(Progress { done, planned }).is_break() {
-                        cancelled.store(true, Ordering::Relaxed);
+                        state.cancelled.store(true, Ordering::Relaxed);
                     }
                 }
                 wanted()
             };
             Some(Block::run((self.seed, index, self.trials_of(index)), &self.sampler, model, &watch))
         };
-        let end = planned.map_or(range.end, |trials| range.end.min(trials.div_ceil(BLOCK_TRIALS as u64)));
-        let count = usize::try_from(end.saturating_sub(start)).unwrap_or(usize::MAX);
         #[cfg(feature = "rayon")]
-        let blocks: Vec<Option<Block>> = (0..count).into_par_iter().map(one).collect();
+        let blocks: Vec<Option<Block>> = range.into_par_iter().map(one).collect();
         #[cfg(not(feature = "rayon"))]
-        let blocks: Vec<Option<Block>> = (0..count).map(one).collect();
-        let blocks: Vec<Block> = blocks.into_iter().flatten().collect();
-        if self.allowed_failures == 0.0 {
-            self.refuse_failures(&blocks)?;
+        let blocks: Vec<Option<Block>> = range.map(one).collect();
+        let blocks: Vec<Block> = blocks.into_iter().flatten().filter(|block| block.trials > 0).collect();
+        if self.allowed_failures.is_none() {
+            blocks.iter().try_for_each(|block| self.refuse_failures(&block.failures, block.trials as u64))?;
         }
-        if cancelled.into_inner() {
-            return Err(UncertaintyError::Cancelled { trials: blocks.iter().map(|b| b.trials as u64).sum() });
+        if state.cancelled.load(Ordering::Relaxed) {
+            return Err(UncertaintyError::Cancelled { trials: state.done.load(Ordering::Relaxed) });
         }
-        let blocks = blocks.into_iter().filter(|block| block.trials > 0).collect();
-        Partial::assemble(self.seed, self.fingerprint, blocks)
+        Ok(blocks)
     }
 
     fn trials_of(&self, block: u64) -> usize {
@@ -150,26 +208,42 @@ impl MonteCarlo<'_> {
         }
     }
 
-    fn pool(&self, blocks: Vec<Block>) -> Result<OutputSample, UncertaintyError> {
-        self.refuse_failures(&blocks)?;
-        OutputSample::pool(blocks)
+    fn close(&self, pool: Pool) -> Result<OutputSample, UncertaintyError> {
+        self.refuse_failures(pool.failures(), pool.trials())?;
+        pool.close()
     }
 
-    fn refuse_failures(&self, blocks: &[Block]) -> Result<(), UncertaintyError> {
-        let failed: u64 = blocks.iter().map(|block| block.failures.count()).sum();
-        let trials: u64 = blocks.iter().map(|block| block.trials as u64).sum();
-        let Some(first) = blocks.iter().find_map(|block| block.failures.first().first()) else { return Ok(()) };
-        if failed as f64 <= self.allowed_failures * trials as f64 {
-            return Ok(());
+    fn refuse_failures(&self, failures: &Failures, trials: u64) -> Result<(), UncertaintyError> {
+        let checked = self.allowed_failures.check(failures, trials);
+        match checked {
+            // Where the first failure ends the run, its neighbours' counts depend on the threads; its own does not.
+            Err(UncertaintyError::TooManyFailures { allowed, first, .. }) if self.allowed_failures.is_none() => {
+                let trials = first.block * BLOCK_TRIALS as u64 + first.trial as u64 + 1;
+                Err(UncertaintyError::TooManyFailures { failed: 1, trials, allowed, first })
+            }
+            checked => checked,
         }
-        // Where the first failure ends the run, its neighbours' counts depend on the threads; its own does not.
-        let (failed, trials) = match self.allowed_failures {
-            0.0 => (1, first.block * BLOCK_TRIALS as u64 + first.trial as u64 + 1),
-            _ => (failed, trials),
-        };
-        let (first, allowed) = (Box::new(first.clone()), self.allowed_failures);
-        Err(UncertaintyError::TooManyFailures { failed, trials, allowed, first })
     }
+}
+
+impl State {
+    const fn new() -> Self {
+        let (done, failed_block) = (AtomicU64::new(0), AtomicU64::new(u64::MAX));
+        Self { done, cancelled: AtomicBool::new(false), failed_block }
+    }
+}
+
+/// Blocks of a number of trials.
+const fn blocks_of(trials: u64) -> u64 {
+    trials.div_ceil(BLOCK_TRIALS as u64)
+}
+
+/// Blocks of a group; a single thread needs no others to wait for.
+fn blocks_at_once() -> u64 {
+    #[cfg(feature = "rayon")]
+    return if threads() == 1 { 1 } else { BLOCKS_OF_THREAD * threads() };
+    #[cfg(not(feature = "rayon"))]
+    1
 }
 
 /// The values of some blocks by output.

@@ -1,21 +1,33 @@
 //! Values of all inputs at once, correlated as they are.
 
+use std::sync::Arc;
+
 use rand::Rng;
 use rand_distr::{ChiSquared, Distribution as _, StandardNormal};
 use statrs::distribution::{ChiSquared as ChiSquaredLaw, ContinuousCDF, Normal};
 
 use crate::distribution::Shape;
 use crate::factor::correlation_root;
+use crate::ziggurat::Ziggurat;
 use crate::{Distribution, Inputs};
 
 /// What a trial draws from: independent inputs one by one, the others through a common set of normal scores.
 #[derive(Debug, Clone)]
 pub(crate) struct Sampler {
     width: usize,
-    independent: Vec<(usize, Distribution)>,
+    independent: Vec<Independent>,
     dependent: Vec<Margin>,
     root: Vec<Vec<f64>>,
     ensembles: Vec<(f64, ChiSquared<f64>)>,
+}
+
+/// One of the independent inputs.
+#[derive(Debug, Clone)]
+struct Independent {
+    input: usize,
+    distribution: Distribution,
+    /// For a normal or t-distributed input: its standardised distribution, its mean and its scale.
+    bell: Option<(Arc<Ziggurat>, (f64, f64))>,
 }
 
 /// One of the dependent inputs.
@@ -30,6 +42,19 @@ enum MarginKind {
     Normal { mean: f64, standard_deviation: f64 },
     Ensemble { mean: f64, scale: f64, ensemble: usize },
     Copula(Distribution),
+}
+
+impl Independent {
+    fn new(input: usize, distribution: &Distribution) -> Self {
+        let bell = match distribution.shape {
+            Shape::Normal { mean, standard_deviation } => Some((Ziggurat::normal(), (mean, standard_deviation))),
+            Shape::StudentT { mean, scale, degrees_of_freedom, .. } => {
+                Ziggurat::student_t(degrees_of_freedom).map(|unit| (unit, (mean, scale)))
+            }
+            _ => None,
+        };
+        Self { input, distribution: distribution.clone(), bell }
+    }
 }
 
 impl Sampler {
@@ -54,7 +79,7 @@ impl Sampler {
             if varies && (correlated(input) || ensemble_of(input).is_some()) {
                 dependent.push(Margin { input, kind });
             } else {
-                independent.push((input, distribution.clone()));
+                independent.push(Independent::new(input, distribution));
             }
         }
         let members: Vec<usize> = dependent.iter().map(|margin| margin.input).collect();
@@ -72,8 +97,11 @@ impl Sampler {
     /// The order of draws belongs to the results: independent inputs one after the other, each for all rows, then the
     /// dependent ones row by row.
     pub(crate) fn fill<R: Rng + ?Sized>(&self, rng: &mut R, rows: &mut [f64]) {
-        for (input, distribution) in &self.independent {
-            distribution.fill(rng, &mut rows[*input..], self.width);
+        for Independent { input, distribution, bell } in &self.independent {
+            match bell {
+                Some((unit, place)) => unit.fill(rng, *place, &mut rows[*input..], self.width),
+                None => distribution.fill(rng, &mut rows[*input..], self.width),
+            }
         }
         if self.dependent.is_empty() {
             return;
@@ -99,7 +127,7 @@ impl Sampler {
     /// One row from uniform numbers in (0, 1), by quantiles.
     pub(crate) fn map(&self, uniform: &[f64], row: &mut [f64]) {
         let (alone, rest) = uniform.split_at(self.independent.len());
-        for ((input, distribution), &u) in self.independent.iter().zip(alone) {
+        for (Independent { input, distribution, .. }, &u) in self.independent.iter().zip(alone) {
             row[*input] = distribution.quantile_at(u);
         }
         if self.dependent.is_empty() {

@@ -3,6 +3,7 @@
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
+use crate::allowed_failures::AllowedFailures;
 use crate::block::BLOCK_TRIALS;
 use crate::sampler::Sampler;
 use crate::stream::Stream;
@@ -65,9 +66,7 @@ pub fn variance_shares<R: Outcome<f64>>(
     if blocks < 10 {
         return refuse("number of trials for variance shares", trials as f64, "at least 10000");
     }
-    if !(0.0..1.0).contains(&allowed_failures) {
-        return refuse("allowed share of failed rows", allowed_failures, "in [0, 1)");
-    }
+    let allowed_failures = AllowedFailures::new(allowed_failures)?;
     let most = 1 << 40;
     let count = usize::try_from(blocks).ok().filter(|_| trials <= most);
     let count = count.ok_or(UncertaintyError::TooManyTrials { trials, most })?;
@@ -78,8 +77,8 @@ pub fn variance_shares<R: Outcome<f64>>(
     #[cfg(not(feature = "rayon"))]
     let rows: Vec<Rows> = (0..count).map(one).collect();
     let (failed, all) = (rows.iter().map(|r| r.failed).sum::<u64>(), blocks * BLOCK_TRIALS as u64);
-    if failed as f64 > allowed_failures * all as f64 {
-        return Err(UncertaintyError::RowsFailed { failed, rows: all, allowed: allowed_failures });
+    if !allowed_failures.allow(failed, all) {
+        return Err(UncertaintyError::RowsFailed { failed, rows: all, allowed: allowed_failures.share() });
     }
     let base: Vec<f64> = rows.iter().flat_map(|r| r.a.iter().chain(&r.b)).copied().collect();
     let moments = Moments::of(&base).filter(|moments| moments.sum_of_squares() > 0.0);

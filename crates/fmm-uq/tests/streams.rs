@@ -97,6 +97,42 @@ fn parts_travel_as_text() {
     }
 }
 
+/// Every bit of every value survives the way through text, also of values that decimal digits are hard on, and parts give
+/// the bits of one run whatever the order they are merged in.
+#[cfg(feature = "serde")]
+#[test]
+fn parts_travel_as_text_to_the_last_bit_and_merge_in_any_order() {
+    let run = MonteCarlo::new(&inputs(), 5500).unwrap().with_seed(9);
+    let awkward = |x: &[f64]| {
+        let tiny = if x[2] < 0.1 { -0.0 } else { f64::from_bits(x[2].to_bits() >> 12) };
+        [x[0] / 3.0, tiny, x[1].powi(40) * 1e100]
+    };
+    let whole = run.run(awkward).unwrap();
+    let parts: Vec<Partial> = (0..4).map(|k| run.run_blocks(run.shard(k, 4), awkward).unwrap()).collect();
+    let texts: Vec<String> = parts.iter().map(|part| serde_json::to_string(part).unwrap()).collect();
+    let read: Vec<Partial> = texts.iter().map(|text| serde_json::from_str(text).unwrap()).collect();
+    assert_eq!(read, parts);
+    assert_eq!(read.iter().map(|part| serde_json::to_string(part).unwrap()).collect::<Vec<_>>(), texts);
+    for a in 0..4 {
+        for b in (0..4).filter(|&b| b != a) {
+            for c in (0..4).filter(|&c| c != a && c != b) {
+                let d = 6 - a - b - c;
+                let merge = |i: usize, j: usize| read[i].clone().merge(read[j].clone()).unwrap();
+                // One by one, and pair by pair.
+                let chain = merge(a, b).merge(read[c].clone()).unwrap().merge(read[d].clone()).unwrap();
+                for merged in [chain, merge(a, b).merge(merge(c, d)).unwrap()] {
+                    assert!(bits(&run.finish(merged).unwrap()) == bits(&whole), "order {a} {b} {c} {d}");
+                }
+            }
+        }
+    }
+    let mut twice: serde_json::Value = serde_json::from_str(&texts[0]).unwrap();
+    let blocks = twice["blocks"].as_array_mut().unwrap();
+    blocks.push(blocks[0].clone());
+    let error = serde_json::from_value::<Partial>(twice).unwrap_err().to_string();
+    assert!(error.contains("block 0 is in both partial results"), "{error}");
+}
+
 #[test]
 fn parts_must_belong_together() {
     let inputs = inputs();

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use crate::reading::quoted;
 use crate::{Column, RecordError};
 
 /// A text file that does not hold the record asked for. Lines count from 1, as in an editor.
@@ -85,7 +86,7 @@ pub enum CsvError {
         comma: bool,
     },
     /// No column of that name or position.
-    #[error("there is no column {column}; the file has: {}", list(available))]
+    #[error("there is no column {column}; the file has: {}", quoted(available))]
     NoSuchColumn {
         /// The column asked for.
         column: Column,
@@ -116,7 +117,7 @@ pub enum CsvError {
     #[error("both a time column and a rate were given; give one of them")]
     TimeAndRate,
     /// Neither a time column nor a rate.
-    #[error("the sampling rate is not known: give a time column or a rate; the file has: {}", list(available))]
+    #[error("the sampling rate is not known: give a time column or a rate; the file has: {}", quoted(available))]
     NoRate {
         /// The names of all columns.
         available: Vec<String>,
@@ -133,8 +134,4 @@ fn remedy(separator: u8) -> &'static str {
     } else {
         ""
     }
-}
-
-fn list(names: &[String]) -> String {
-    names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
 }

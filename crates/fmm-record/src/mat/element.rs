@@ -5,11 +5,7 @@ use std::io::Read;
 
 use libflate::zlib::Decoder;
 
-use super::MatError;
-
-/// How many bytes the compressed variables of one file may expand to, all together: 33 million numbers. A small
-/// file can be made to expand a thousandfold; one that exceeds this limit is refused.
-pub const MOST_INFLATED: usize = 1 << 28;
+use super::{MOST_INFLATED, MatError};
 
 const HEADER: usize = 128;
 const MATRIX: u32 = 14;

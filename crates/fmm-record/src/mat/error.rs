@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use super::Kind;
 use crate::RecordError;
+use crate::stated::Conflict;
 
 /// A MATLAB file that cannot be read, or that does not hold the record asked for.
 ///
@@ -29,7 +30,7 @@ pub enum MatError {
     /// MATLAB version 4.
     #[error("a MATLAB version 4 file; load it in MATLAB and save it with -v7")]
     Version4,
-    /// MATLAB version 7.3, which is HDF5.
+    /// MATLAB version 7.3, which is HDF5, without the feature `hdf5`.
     #[error("a MATLAB version 7.3 file (HDF5); load it in MATLAB and save it with -v7")]
     Version73,
     /// A MATLAB file of a version that does not exist yet.
@@ -71,6 +72,20 @@ pub enum MatError {
     TooLarge {
         /// The limit (bytes), [`MOST_INFLATED`](super::MOST_INFLATED).
         limit: usize,
+    },
+    /// An HDF5 file that is damaged, or of a kind that cannot be read.
+    #[error("the version 7.3 file (HDF5) cannot be read: {reason}")]
+    Hdf5File {
+        /// What the decoder says.
+        reason: String,
+    },
+    /// A variable of an HDF5 file that is damaged, or stored in a way that cannot be read.
+    #[error("the variable \"{name}\" cannot be read: {reason}")]
+    Hdf5Variable {
+        /// Its name.
+        name: String,
+        /// What is wrong with it.
+        reason: String,
     },
     /// A variable that contradicts itself.
     #[error("the variable at byte {offset} is damaged: {what}")]
@@ -159,6 +174,12 @@ pub enum MatError {
     /// The numbers do not make a record.
     #[error(transparent)]
     Record(#[from] RecordError),
+}
+
+impl From<Conflict> for MatError {
+    fn from(Conflict { first, first_rate, second, second_rate }: Conflict) -> Self {
+        Self::ConflictingRates { first, first_rate, second, second_rate }
+    }
 }
 
 fn list(available: &[String]) -> String {

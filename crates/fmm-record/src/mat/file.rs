@@ -52,11 +52,11 @@ impl std::fmt::Display for Kind {
     }
 }
 
-/// All real numeric arrays of a MATLAB file of version 5 to 7, and the names of its other variables.
+/// All real numeric arrays of a MATLAB file, and the names of its other variables.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MatFile {
-    arrays: Vec<Array>,
-    others: Vec<(String, Kind)>,
+    pub(super) arrays: Vec<Array>,
+    pub(super) others: Vec<(String, Kind)>,
 }
 
 impl MatFile {
@@ -75,10 +75,15 @@ impl MatFile {
     /// # Errors
     /// [`MatError::NotMat`], the errors of versions ([`MatError::Version4`], [`MatError::Version73`],
     /// [`MatError::UnknownVersion`]) or those of damage ([`MatError::Truncated`], [`MatError::UnknownElement`],
-    /// [`MatError::Compression`], [`MatError::Malformed`]), and [`MatError::TooLarge`]. A file cut off exactly
-    /// between two variables is a valid file with fewer variables.
+    /// [`MatError::Compression`], [`MatError::Malformed`], in version 7.3 [`MatError::Hdf5File`] and
+    /// [`MatError::Hdf5Variable`]), and [`MatError::TooLarge`]. A file of version 5 to 7 that is cut off exactly between
+    /// two variables is a valid file with fewer variables.
     pub fn parse(bytes: &[u8]) -> Result<Self, MatError> {
-        let endian = endian(bytes)?;
+        let endian = match endian(bytes) {
+            #[cfg(feature = "hdf5")]
+            Err(MatError::Version73) => return super::hdf5::parse(bytes),
+            endian => endian?,
+        };
         let mut variables = Variables::new(bytes, endian);
         let mut file = Self { arrays: Vec::new(), others: Vec::new() };
         while let Some(variable) = variables.next()? {

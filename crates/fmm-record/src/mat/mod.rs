@@ -1,8 +1,9 @@
-//! Records from MATLAB files, versions 5 to 7.
+//! Records from MATLAB files, versions 5 to 7.3.
 //!
 //! [`MatFile`] holds every real numeric array of a file; [`MatReader`] makes a record of one of them. Arrays of
 //! other kinds (text, structures, cells, complex or sparse arrays) are not read, but they are listed, and asking for
-//! one says what it is. Version 7.3, which is HDF5, and version 4 are told apart and refused.
+//! one says what it is. Version 7.3, which is HDF5, needs the feature `hdf5`; without it, it is told apart and refused,
+//! as version 4 is. HDF5 files of other programs are read as MATLAB shows them, with the order of dimensions reversed.
 //!
 //! ```no_run
 //! let reading = fmm_record::mat::read("fork.mat")?.channel("data")?;
@@ -12,27 +13,31 @@
 //!
 //! Numbers are decoded by the crate matfile. It is handed one array at a time, whose structure has been checked
 //! here: by itself it stops at damage without a word, drops what it does not know, and refuses a whole file for one
-//! array of 32-bit integers.
+//! array of 32-bit integers. HDF5 is read by the crate hdf5-pure, behind checks that the file can hold what it promises.
 
 mod array;
 mod channel;
 mod element;
 mod error;
 mod file;
+#[cfg(feature = "hdf5")]
+mod hdf5;
 mod numbers;
 mod reader;
-mod sampling;
 #[cfg(test)]
 mod tests;
+#[cfg(all(test, feature = "hdf5"))]
+mod tests_hdf5;
 
 use std::path::Path;
 
 pub use array::Array;
 pub use channel::Channel;
-pub use element::MOST_INFLATED;
 pub use error::MatError;
 pub use file::{Kind, MatFile};
 pub use reader::MatReader;
+
+pub use crate::reading::MOST_INFLATED;
 
 /// Reads all real numeric arrays of a file: [`MatFile::read`].
 ///

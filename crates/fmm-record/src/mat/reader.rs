@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use super::{Array, Channel, MatError, MatFile, sampling};
+use super::{Array, Channel, MatError, MatFile};
 use crate::reading::builder_of_choices;
 use crate::reading::{seconds_per_unit_of_time, to_seconds};
+use crate::stated::stated;
 use crate::{Quantity, Reading, Record, Sampling, UniformTimes};
 
 /// Reads one channel of a MATLAB file.
@@ -63,7 +64,7 @@ impl MatReader {
             to_seconds(&time.variable, &mut times);
             let sampling = Sampling::Times { name: time.to_string() };
             (Record::from_times(&times, values, self.quantity, unit)?, sampling)
-        } else if let Some((rate, sampling)) = sampling::stated(file)? {
+        } else if let Some((rate, sampling)) = stated(scalars(file))? {
             (Record::sampled(rate, values, self.quantity, unit)?, sampling)
         } else {
             return Err(MatError::NoRate { available: file.listing() });
@@ -85,6 +86,11 @@ impl MatReader {
         }
         Err(MatError::ChooseColumn { name: array.name().into(), rows: array.rows(), columns: array.columns() })
     }
+}
+
+/// The scalars of a file and their names.
+fn scalars(file: &MatFile) -> impl Iterator<Item = (&str, f64)> {
+    file.arrays().iter().filter_map(|array| array.scalar().map(|value| (array.name(), value)))
 }
 
 /// The only array that can be a channel: a vector that is not called time, or a matrix.

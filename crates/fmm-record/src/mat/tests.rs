@@ -191,7 +191,14 @@ fn other_files_are_told_apart() {
     let mut version = LITTLE.file(&[]);
     version[125] = 2;
     for file in [&hdf5[..], b"\x89HDF\r\n\x1a\n", &newest, &version] {
-        assert!(matches!(MatFile::parse(file), Err(MatError::Version73)));
+        let error = MatFile::parse(file).unwrap_err();
+        // Nothing but a header is no HDF5 file either.
+        let expected = if cfg!(feature = "hdf5") {
+            matches!(error, MatError::Hdf5File { .. })
+        } else {
+            matches!(error, MatError::Version73)
+        };
+        assert!(expected, "{error}");
     }
     version[125] = 7;
     assert!(matches!(MatFile::parse(&version), Err(MatError::UnknownVersion { version: 0x0700 })));

@@ -1,9 +1,8 @@
-//! The sampling rate, where a variable of the file tells it.
+//! The sampling rate, where a scalar beside the data tells it.
 
-use super::{MatError, MatFile};
 use crate::Sampling;
 
-/// Names of variables that hold a rate (Hz), in lower case and without underscores.
+/// Names of scalars that hold a rate (Hz), in lower case and without underscores.
 const RATES: [&str; 9] = [
     "fs",
     "rate",
@@ -16,21 +15,30 @@ const RATES: [&str; 9] = [
     "fsampling",
 ];
 
-/// Names of variables that hold an interval (s), in lower case and without underscores.
+/// Names of scalars that hold an interval (s), in lower case and without underscores.
 const INTERVALS: [&str; 8] =
     ["dt", "ts", "deltat", "tsample", "sampletime", "samplingtime", "sampleinterval", "samplinginterval"];
 
 /// How far two statements of the rate may differ, relative.
 const AGREEMENT: f64 = 1e-3;
 
-/// What the scalars of the file say about the rate; none if they say nothing.
-pub(super) fn stated(file: &MatFile) -> Result<Option<(f64, Sampling)>, MatError> {
+/// Two scalars that tell different rates (Hz).
+pub(crate) struct Conflict {
+    pub(crate) first: String,
+    pub(crate) first_rate: f64,
+    pub(crate) second: String,
+    pub(crate) second_rate: f64,
+}
+
+/// What scalars with their names say about the rate (Hz); none if they say nothing.
+pub(crate) fn stated<'a>(scalars: impl Iterator<Item = (&'a str, f64)>) -> Result<Option<(f64, Sampling)>, Conflict> {
     let mut found: Option<(f64, Sampling, &str)> = None;
-    for array in file.arrays() {
-        let name = array.name();
+    for (name, value) in scalars {
         let plain = name.replace('_', "").to_lowercase();
         let is_interval = INTERVALS.contains(&&plain[..]);
-        let Some(value) = array.scalar().filter(|_| is_interval || RATES.contains(&&plain[..])) else { continue };
+        if !is_interval && !RATES.contains(&&plain[..]) {
+            continue;
+        }
         let (rate, sampling) = if is_interval {
             (value.recip(), Sampling::IntervalVariable { name: name.into(), interval: value })
         } else {
@@ -38,12 +46,8 @@ pub(super) fn stated(file: &MatFile) -> Result<Option<(f64, Sampling)>, MatError
         };
         match &found {
             Some((first_rate, _, first)) if (rate - first_rate).abs() > AGREEMENT * first_rate.abs() => {
-                return Err(MatError::ConflictingRates {
-                    first: (*first).into(),
-                    first_rate: *first_rate,
-                    second: name.into(),
-                    second_rate: rate,
-                });
+                let (first, second) = ((*first).into(), name.into());
+                return Err(Conflict { first, first_rate: *first_rate, second, second_rate: rate });
             }
             Some(_) => {}
             None => found = Some((rate, sampling, name)),

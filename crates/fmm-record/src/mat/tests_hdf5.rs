@@ -1,0 +1,89 @@
+use super::*;
+use crate::Sampling;
+use crate::synthetic::Noise;
+
+fn file() -> Vec<u8> {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/matlab_v73.mat");
+    std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+#[test]
+fn variables_of_all_classes() {
+    let file = MatFile::parse(&file()).unwrap();
+    let arrays: Vec<String> = file.arrays().iter().map(ToString::to_string).collect();
+    assert_eq!(arrays, ["Fs (1×1)", "NF20mm1 (400×2)", "counts (2×3)", "empty (0×0)", "flag (1×1)", "s (5×1)"]);
+    let mut others = file.others().to_vec();
+    others.sort_by(|a, b| a.0.cmp(&b.0));
+    let expected = [("c", Kind::Cell), ("info", Kind::Structure), ("note", Kind::Text), ("z", Kind::Complex)];
+    assert_eq!(others, expected.map(|(name, kind)| (name.to_owned(), kind)));
+    // Rows of HDF5 are columns of MATLAB.
+    assert_eq!(file.array("counts").unwrap().values(), [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+    assert_eq!(file.array("s").unwrap().values(), [0.0, 0.25, 0.5, 0.75, 1.0]);
+    assert!(file.channel("z").unwrap_err().to_string().starts_with("the variable \"z\" is complex"));
+}
+
+#[test]
+fn a_matrix_in_deflated_chunks() {
+    let file = MatFile::parse(&file()).unwrap();
+    let reading = file.channel("NF20mm1").unwrap();
+    assert_eq!((reading.record.rate(), reading.record.len(), &reading.channel[..]), (1000.0, 400, "NF20mm1(:,2)"));
+    for (time, value) in reading.record.times().zip(reading.record.values()) {
+        let exact = (-3.0 * time).exp() * (std::f64::consts::TAU * 6.0 * time).cos();
+        // Rounded to 12 bits when it was written.
+        assert!((value - exact).abs() <= 0.5 / 4096.0 + 1e-12, "{value} for {exact} at {time} s");
+    }
+    let by_rate = file.channel("s").unwrap();
+    assert_eq!(by_rate.sampling, Sampling::RateVariable { name: "Fs".into(), rate: 1000.0 });
+}
+
+#[test]
+fn a_file_cut_off_anywhere_is_an_error() {
+    let bytes = file();
+    for length in (0..bytes.len()).step_by(64) {
+        let error = MatFile::parse(&bytes[..length]).unwrap_err();
+        let typed =
+            matches!(error, MatError::NotMat { .. } | MatError::Hdf5File { .. } | MatError::Hdf5Variable { .. });
+        assert!(typed, "{length} bytes: {error}");
+    }
+}
+
+#[test]
+fn damaged_files_never_panic() {
+    let bytes = file();
+    let mut random = Noise::new(73);
+    let (mut read, mut refused) = (0, 0);
+    for _ in 0..1000 {
+        let mut damaged = bytes.clone();
+        for _ in 0..=random.next() % 3 {
+            let at = 512 + (random.next() % (bytes.len() as u64 - 512)) as usize;
+            damaged[at] = if random.next().is_multiple_of(2) {
+                random.next() as u8
+            } else {
+                damaged[at] ^ (1 << (random.next() % 8))
+            };
+        }
+        match MatFile::parse(&damaged) {
+            Ok(file) => {
+                read += 1;
+                let _ = file.channel("NF20mm1");
+            }
+            Err(_) => refused += 1,
+        }
+    }
+    assert!(read > 0 && refused > 0, "{read} files were read, {refused} refused");
+}
+
+#[test]
+fn promises_beyond_the_file_are_refused() {
+    let bytes = file();
+    // The dimensions of the chunked matrix, 2 and 400, as they stand in the file, made far larger.
+    let dimensions: Vec<u8> = [2u64, 400].iter().flat_map(|size| size.to_le_bytes()).collect();
+    let at = bytes.windows(16).position(|window| window == dimensions).unwrap();
+    for (rows, columns) in [(2, 2_508_876), (1 << 24, 400), (u64::MAX, u64::MAX), (1 << 13, 1 << 12)] {
+        let mut damaged = bytes.clone();
+        damaged[at..at + 8].copy_from_slice(&u64::to_le_bytes(rows));
+        damaged[at + 8..at + 16].copy_from_slice(&u64::to_le_bytes(columns));
+        let error = MatFile::parse(&damaged).unwrap_err();
+        assert!(matches!(error, MatError::Hdf5Variable { .. } | MatError::TooLarge { .. }), "{error}");
+    }
+}

@@ -1,0 +1,227 @@
+//! The header of an array: what its numbers are, and how many.
+
+use std::io::Read;
+
+use super::NpyError;
+
+pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
+
+/// What an array holds.
+pub(super) struct Header {
+    pub(super) number: Number,
+    pub(super) fortran: bool,
+    pub(super) shape: Vec<usize>,
+    /// How many numbers that makes.
+    pub(super) count: usize,
+}
+
+/// How a number is stored.
+#[derive(Clone, Copy)]
+pub(super) struct Number {
+    kind: Kind,
+    pub(super) width: usize,
+    big: bool,
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Float,
+    Signed,
+    Unsigned,
+}
+
+impl Number {
+    /// The number that a type of NumPy is, as `<f8`; none if it is none that is real.
+    fn of(descr: &str) -> Option<Self> {
+        let mut letters = descr.chars();
+        let order = letters.next()?;
+        let kind = match letters.next()? {
+            'f' => Kind::Float,
+            'i' => Kind::Signed,
+            'u' | 'b' => Kind::Unsigned,
+            _ => return None,
+        };
+        let width = letters.as_str().parse().ok()?;
+        let known = match kind {
+            Kind::Float => matches!(width, 4 | 8),
+            Kind::Signed | Kind::Unsigned => matches!(width, 1 | 2 | 4 | 8),
+        };
+        let big = match order {
+            '<' => false,
+            '>' => true,
+            '|' if width == 1 => false,
+            _ => return None,
+        };
+        known.then_some(Self { kind, width, big })
+    }
+
+    /// The number in `bytes`, which are as many as its width.
+    pub(super) fn value(self, bytes: &[u8]) -> f64 {
+        // In the low bytes of a word, the least significant first.
+        let mut word = [0; 8];
+        word[..self.width].copy_from_slice(bytes);
+        if self.big {
+            word[..self.width].reverse();
+        }
+        let unsigned = u64::from_le_bytes(word);
+        match self.kind {
+            Kind::Float if self.width == 4 => f64::from(f32::from_bits(unsigned as u32)),
+            Kind::Float => f64::from_bits(unsigned),
+            Kind::Unsigned => unsigned as f64,
+            Kind::Signed => {
+                let unused = 64 - 8 * self.width as u32;
+                ((unsigned << unused).cast_signed() >> unused) as f64
+            }
+        }
+    }
+}
+
+/// Reads a header; `name` is that of the array, for errors.
+pub(super) fn read(input: &mut impl Read, name: &str) -> Result<Header, NpyError> {
+    let truncated =
+        |promised: u64, present: usize| NpyError::Truncated { name: name.into(), promised, present: present as u64 };
+    let mut take = |length: u64| -> Result<Vec<u8>, NpyError> {
+        let mut bytes = Vec::new();
+        input.by_ref().take(length).read_to_end(&mut bytes).map_err(|error| NpyError::damaged(&error))?;
+        if (bytes.len() as u64) < length { Err(truncated(length, bytes.len())) } else { Ok(bytes) }
+    };
+    let start = take(8)?;
+    if !start.starts_with(MAGIC) {
+        return Err(NpyError::Header { name: name.into(), what: "it does not begin as an array does" });
+    }
+    let length = match start[6] {
+        1 => take(2)?.iter().rev().fold(0, |length, byte| length << 8 | u64::from(*byte)),
+        2 | 3 => take(4)?.iter().rev().fold(0, |length, byte| length << 8 | u64::from(*byte)),
+        version => return Err(NpyError::Version { name: name.into(), version }),
+    };
+    let text = take(length)?;
+    let text = match String::from_utf8(text) {
+        Ok(text) => text,
+        Err(error) => error.as_bytes().iter().copied().map(char::from).collect(),
+    };
+    Literal { rest: &text }.header(name)
+}
+
+/// Goes through the Python literal of a header, a dictionary.
+struct Literal<'a> {
+    rest: &'a str,
+}
+
+impl<'a> Literal<'a> {
+    /// Takes `token` if it comes next.
+    fn take(&mut self, token: &str) -> Option<()> {
+        self.rest = self.rest.trim_start().strip_prefix(token)?;
+        Some(())
+    }
+
+    fn comes(&mut self, token: &str) -> bool {
+        self.rest.trim_start().starts_with(token)
+    }
+
+    fn string(&mut self) -> Option<&'a str> {
+        let text = self.rest.trim_start();
+        let quote = text.chars().next().filter(|letter| matches!(letter, '\'' | '"'))?;
+        let (string, rest) = text[1..].split_once(quote)?;
+        self.rest = rest;
+        Some(string)
+    }
+
+    /// Whole numbers in parentheses.
+    fn tuple(&mut self) -> Option<Vec<usize>> {
+        let mut numbers = Vec::new();
+        self.take("(")?;
+        while !self.comes(")") {
+            let text = self.rest.trim_start();
+            let digits = text.find(|letter: char| !letter.is_ascii_digit())?;
+            numbers.push(text[..digits].parse().ok()?);
+            // Python 2 writes long numbers with an L.
+            self.rest = text[digits..].strip_prefix('L').unwrap_or(&text[digits..]);
+            if !self.comes(")") {
+                self.take(",")?;
+            }
+        }
+        self.take(")")?;
+        Some(numbers)
+    }
+
+    fn header(mut self, name: &str) -> Result<Header, NpyError> {
+        let error = |what| NpyError::Header { name: name.into(), what };
+        let (mut descr, mut fortran, mut shape) = (None, None, None);
+        self.take("{").ok_or(error("it is no dictionary"))?;
+        while !self.comes("}") {
+            let key = self.string().ok_or(error("a key is not text"))?;
+            self.take(":").ok_or(error("a key has no value"))?;
+            match key {
+                "descr" if self.comes("[") => return Err(NpyError::structure(name)),
+                "descr" => descr = Some(self.string().ok_or(error("its type is not text"))?),
+                "fortran_order" if self.take("True").is_some() => fortran = Some(true),
+                "fortran_order" if self.take("False").is_some() => fortran = Some(false),
+                "fortran_order" => return Err(error("its order is neither True nor False")),
+                "shape" => shape = Some(self.tuple().ok_or(error("its shape is no tuple of whole numbers"))?),
+                _ => return Err(error("it has a key that is none of descr, fortran_order, shape")),
+            }
+            if !self.comes("}") {
+                self.take(",").ok_or(error("a comma is missing"))?;
+            }
+        }
+        let (Some(descr), Some(fortran), Some(shape)) = (descr, fortran, shape) else {
+            return Err(error("it needs descr, fortran_order and shape"));
+        };
+        let number = Number::of(descr)
+            .ok_or_else(|| NpyError::Unsupported { name: name.into(), descr: descr.chars().take(20).collect() })?;
+        let count = shape.iter().try_fold(1usize, |count, length| count.checked_mul(*length));
+        let count = count
+            .filter(|count| count.checked_mul(number.width).is_some())
+            .ok_or(error("its shape is beyond all memory"))?;
+        Ok(Header { number, fortran, shape, count })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn header(text: &str) -> Result<Header, NpyError> {
+        Literal { rest: text }.header("")
+    }
+
+    #[test]
+    fn literals_as_python_writes_them() {
+        for (text, shape, count) in [
+            ("{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }  \n", &[2, 3][..], 6),
+            ("{\"shape\":(4,),\"descr\":\">f8\",\"fortran_order\":True}", &[4], 4),
+            ("{'descr': '|u1', 'fortran_order': False, 'shape': (), }", &[], 1),
+            ("{'descr': '<i4', 'fortran_order': False, 'shape': (3L, 0L), }", &[3, 0], 0),
+        ] {
+            let header = header(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+            assert_eq!((&header.shape[..], header.count), (shape, count), "{text}");
+        }
+    }
+
+    #[test]
+    fn other_literals_are_refused() {
+        for text in [
+            "",
+            "{",
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3)",
+            "{'descr': '<f8', 'fortran_order': 0, 'shape': (2, 3)}",
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (2 3)}",
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (-2, 3)}",
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (2,,3)}",
+            "{'descr': '<f8', 'fortran_order': False}",
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (1,), 'x': 1}",
+            "{'descr': '<f8' 'fortran_order': False, 'shape': (1,)}",
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (18446744073709551615, 2)}",
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999999999999,)}",
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (4611686018427387904,)}",
+        ] {
+            assert!(matches!(header(text), Err(NpyError::Header { .. })), "{text}");
+        }
+        for descr in
+            ["'<c16'", "'<U5'", "'|O'", "'<f2'", "'<f16'", "'|f8'", "'=f8'", "'<M8[us]'", "''", "'ä'", "[('t', '<f8')]"]
+        {
+            let text = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': (1,)}}");
+            assert!(matches!(header(&text), Err(NpyError::Unsupported { .. })), "{text}");
+        }
+    }
+}

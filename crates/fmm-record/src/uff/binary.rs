@@ -1,0 +1,143 @@
+//! Points as bytes.
+
+use super::lines::{Line, Lines, delimiter_at, find_delimiter};
+use super::points::Points;
+use super::records::{Form, shown};
+use super::{ByteOrder, Precision, UffError, Warning};
+
+/// What the first line of a binary data set says of its bytes.
+pub(super) struct Encoding {
+    order: ByteOrder,
+    /// Number of bytes that the line states; 0 if it states none.
+    stated: u64,
+}
+
+impl Encoding {
+    /// Reads the line: `58b`, order of bytes, format of numbers, number of lines in the header, number of bytes.
+    pub(super) fn of(line: &Line) -> Result<Self, UffError> {
+        let text = shown(line.text);
+        let mut words = text.split_whitespace().skip(1).map(str::parse::<u64>);
+        let mut next = || words.next().and_then(Result::ok);
+        let order = match next() {
+            Some(1) => ByteOrder::Little,
+            Some(2) => ByteOrder::Big,
+            _ => {
+                let what = "the order of bytes must be 1 (little end first) or 2 (big end first)";
+                return Err(UffError::Header { line: line.number, what, text });
+            }
+        };
+        let format = next().unwrap_or_default();
+        if !matches!(format, 0 | 2) {
+            return Err(UffError::FloatFormat { line: line.number, format });
+        }
+        let stated = words.nth(1).and_then(Result::ok).unwrap_or_default();
+        Ok(Self { order, stated })
+    }
+}
+
+/// How many bytes the numbers of a point have.
+#[derive(Clone, Copy)]
+struct Layout {
+    abscissa: usize,
+    ordinate: usize,
+    parts: usize,
+}
+
+impl Layout {
+    /// The layouts in use. By the format an uneven abscissa is single; some programs write it as double beside double
+    /// ordinates.
+    fn all(form: &Form) -> Vec<Self> {
+        let parts = 1 + usize::from(form.complex);
+        let layout = |abscissa, ordinate| Self { abscissa, ordinate, parts };
+        match (form.even.is_some(), form.precision) {
+            (true, Precision::Single) => vec![layout(0, 4)],
+            (true, Precision::Double) => vec![layout(0, 8)],
+            (false, Precision::Single) => vec![layout(4, 4)],
+            (false, Precision::Double) => vec![layout(4, 8), layout(8, 8)],
+        }
+    }
+
+    fn point(self) -> usize {
+        self.abscissa + self.ordinate * self.parts
+    }
+
+    /// How many bytes `count` points have; none if no memory has as many.
+    fn bytes(self, count: u64) -> Option<usize> {
+        usize::try_from(count).ok()?.checked_mul(self.point())
+    }
+
+    /// The numbers of all points that are complete in `bytes`.
+    fn numbers(self, bytes: &[u8], order: ByteOrder) -> impl Iterator<Item = f64> {
+        bytes.chunks_exact(self.point()).flat_map(move |point| {
+            let (abscissa, ordinate) = point.split_at(self.abscissa);
+            let abscissa = (!abscissa.is_empty()).then(|| number(abscissa, order));
+            abscissa.into_iter().chain(ordinate.chunks_exact(self.ordinate).map(move |part| number(part, order)))
+        })
+    }
+
+    /// Whether the abscissae in `bytes` increase.
+    fn increases(self, bytes: &[u8], order: ByteOrder) -> bool {
+        let mut abscissae = bytes.chunks_exact(self.point()).map(|point| number(&point[..self.abscissa], order));
+        abscissae.try_fold(f64::NEG_INFINITY, |last, next| (next > last).then_some(next)).is_some()
+    }
+}
+
+/// The number in four or eight bytes.
+fn number(bytes: &[u8], order: ByteOrder) -> f64 {
+    let mut eight = [0; 8];
+    if let Some(four) = bytes.first_chunk::<4>().filter(|four| four.len() == bytes.len()) {
+        let single = match order {
+            ByteOrder::Little => f32::from_le_bytes(*four),
+            ByteOrder::Big => f32::from_be_bytes(*four),
+        };
+        return f64::from(single);
+    }
+    eight.copy_from_slice(bytes);
+    match order {
+        ByteOrder::Little => f64::from_le_bytes(eight),
+        ByteOrder::Big => f64::from_be_bytes(eight),
+    }
+}
+
+/// Reads points up to the delimiter or the end of the file; `begin` is the line at which the data set begins.
+///
+/// A delimiter within the points cannot be told from one behind them, so that the number of points and their type
+/// say where they end. Only where no delimiter follows there is one looked for.
+pub(super) fn read(
+    lines: &mut Lines,
+    form: &Form,
+    encoding: &Encoding,
+    begin: u64,
+    warnings: &mut Vec<Warning>,
+) -> Result<Points, UffError> {
+    let bytes = lines.rest();
+    let order = encoding.order;
+    let layouts = Layout::all(form);
+    let closed = layouts.iter().find_map(|layout| {
+        let end = layout.bytes(form.count)?;
+        Some((*layout, end, end + delimiter_at(bytes.get(end..)?)?))
+    });
+    let (layout, end, next) = if let Some(found) = closed {
+        found
+    } else {
+        let delimiter = find_delimiter(bytes);
+        let block = &bytes[..delimiter.unwrap_or(bytes.len())];
+        let kept = |layout: &Layout| layout.bytes(form.count).map_or(block.len(), |end| end.min(block.len()));
+        let plausible = |layout: &&Layout| layouts.len() == 1 || layout.increases(&block[..kept(layout)], order);
+        let layout = layouts.iter().find(plausible).ok_or(UffError::AbscissaWidth { line: begin })?;
+        if delimiter.is_none() {
+            warnings.push(Warning::NotClosed { line: begin });
+        } else if kept(layout) < block.len() {
+            warnings.push(Warning::MorePoints { line: begin, promised: form.count });
+        }
+        (*layout, kept(layout), block.len())
+    };
+    let mut points = Points::new(form);
+    layout.numbers(&bytes[..end], order).for_each(|number| points.push(number));
+    let actual = (points.len() * layout.point()) as u64;
+    if points.len() as u64 == form.count && !matches!(encoding.stated, 0) && encoding.stated != actual {
+        warnings.push(Warning::ByteCount { line: begin, stated: encoding.stated, actual });
+    }
+    lines.skip(next);
+    Ok(points)
+}

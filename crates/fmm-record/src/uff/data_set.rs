@@ -1,0 +1,148 @@
+//! A data set 58: a function of an abscissa.
+
+use super::{Axis, DataType, FunctionType, Header, UffError};
+use crate::Record;
+
+/// A function as a data set 58 holds it. It has at least one point, and as many abscissae as ordinates.
+///
+/// Numbers are as in the file: they may be infinite or not a number, as the ratio of two spectra is where both
+/// vanish. [`DataSet::record`] refuses those.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DataSet {
+    /// Labels, place and axes.
+    pub header: Header,
+    abscissa: Abscissa,
+    ordinate: Ordinate,
+    precision: Precision,
+}
+
+/// Where the points of a function lie.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Abscissa {
+    /// At equal distances.
+    Even {
+        /// The first point.
+        start: f64,
+        /// Distance from point to point.
+        step: f64,
+    },
+    /// Anywhere.
+    Uneven(Vec<f64>),
+}
+
+/// The values of a function.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ordinate {
+    /// Real numbers.
+    Real(Vec<f64>),
+    /// Complex numbers: real and imaginary part.
+    Complex(Vec<[f64; 2]>),
+}
+
+impl Ordinate {
+    /// How many values there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Real(values) => values.len(),
+            Self::Complex(values) => values.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// The precision in which values stand in the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Precision {
+    /// 32 bits; six digits in text.
+    Single,
+    /// 64 bits; 13 digits in text.
+    #[default]
+    Double,
+}
+
+impl DataSet {
+    /// A function in double precision.
+    ///
+    /// # Errors
+    /// [`UffError::NoPoints`], [`UffError::LengthMismatch`], or [`UffError::Even`] if start or step are not finite.
+    pub fn new(header: Header, abscissa: Abscissa, ordinate: Ordinate) -> Result<Self, UffError> {
+        if ordinate.is_empty() {
+            return Err(UffError::NoPoints);
+        }
+        match &abscissa {
+            Abscissa::Even { start, step } if !(start.is_finite() && step.is_finite()) => {
+                Err(UffError::Even { start: *start, step: *step })
+            }
+            Abscissa::Uneven(values) if values.len() != ordinate.len() => {
+                Err(UffError::LengthMismatch { abscissa: values.len(), ordinate: ordinate.len() })
+            }
+            _ => Ok(Self { header, abscissa, ordinate, precision: Precision::Double }),
+        }
+    }
+
+    /// A record over time, in double precision, without a description or a place.
+    pub fn of_record(record: &Record) -> Self {
+        let header = Header {
+            function: FunctionType::TIME_RESPONSE,
+            abscissa: Axis::new(DataType::TIME, "Time", "s"),
+            ordinate: Axis::new(record.quantity().into(), "", record.unit()),
+            ..Header::default()
+        };
+        Self {
+            header,
+            abscissa: Abscissa::Even { start: record.start(), step: record.interval() },
+            ordinate: Ordinate::Real(record.values().to_vec()),
+            precision: Precision::Double,
+        }
+    }
+
+    /// The same function, to be written in another precision.
+    #[must_use]
+    pub fn with_precision(mut self, precision: Precision) -> Self {
+        self.precision = precision;
+        self
+    }
+
+    /// Where its points lie, as the file says it.
+    pub fn abscissa(&self) -> &Abscissa {
+        &self.abscissa
+    }
+
+    /// Its values.
+    pub fn ordinate(&self) -> &Ordinate {
+        &self.ordinate
+    }
+
+    /// The precision in which its values stand in the file.
+    pub fn precision(&self) -> Precision {
+        self.precision
+    }
+
+    /// How many points it has; at least one.
+    pub fn len(&self) -> usize {
+        self.ordinate.len()
+    }
+
+    /// Always false: a data set has at least one point. It stands here because `len` does.
+    pub fn is_empty(&self) -> bool {
+        self.ordinate.is_empty()
+    }
+
+    /// The abscissae of all points, as the file says them.
+    pub fn abscissae(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
+        (0..self.len()).map(|index| match &self.abscissa {
+            Abscissa::Even { start, step } => start + step * index as f64,
+            Abscissa::Uneven(values) => values[index],
+        })
+    }
+
+    /// What to call it: its description, or else the place of its response, as `3+Z`.
+    pub fn name(&self) -> String {
+        let description = &self.header.lines[0];
+        if description.is_empty() { self.header.response.to_string() } else { description.clone() }
+    }
+}

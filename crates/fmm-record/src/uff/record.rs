@@ -1,0 +1,107 @@
+//! Between data sets and records.
+
+use super::{Abscissa, DataSet, DataType, FunctionType, Ordinate, UffError, UffFile};
+use crate::reading::seconds_in;
+use crate::sampling::whole_hertz;
+use crate::{Column, Reading, Record, Sampling};
+
+impl DataSet {
+    /// The record over time that this is, with the quantity and the unit of its ordinate.
+    ///
+    /// The format has six digits for the interval. If the file has no more, and a whole number of hertz agrees with
+    /// them within [`RATE_ROUNDING`](crate::RATE_ROUNDING), that is the sampling rate.
+    ///
+    /// # Errors
+    /// [`UffError::NotTime`], [`UffError::Complex`], [`UffError::TimeUnit`], or [`UffError::Record`].
+    pub fn record(&self) -> Result<Record, UffError> {
+        self.sampled_record().map(|(record, _)| record)
+    }
+
+    /// Whether it is a record over time.
+    fn is_over_time(&self) -> bool {
+        match (self.header.function, self.header.abscissa.data_type) {
+            (FunctionType::TIME_RESPONSE | FunctionType::GENERAL, DataType::TIME) => true,
+            (FunctionType::TIME_RESPONSE, data_type) => matches!(data_type, DataType::UNKNOWN | DataType::GENERAL),
+            _ => false,
+        }
+    }
+
+    fn sampled_record(&self) -> Result<(Record, Sampling), UffError> {
+        let header = &self.header;
+        if !self.is_over_time() {
+            return Err(UffError::NotTime { name: self.name(), function: header.function });
+        }
+        let Ordinate::Real(values) = self.ordinate() else { return Err(UffError::Complex { name: self.name() }) };
+        let unit = &header.abscissa.unit;
+        let second = seconds_in(&unit.to_lowercase())
+            .ok_or_else(|| UffError::TimeUnit { name: self.name(), unit: unit.clone() })?;
+        let (values, quantity) = (values.clone(), header.ordinate.data_type.quantity());
+        let unit = header.ordinate.unit.clone();
+        Ok(match self.abscissa() {
+            Abscissa::Even { start, step } => {
+                let interval = if has_six_digits(*step) { whole_hertz(step * second) } else { step * second };
+                let record = Record::new(start * second, interval, values, quantity, unit)?;
+                (record, Sampling::Header { interval: step * second, rate: interval.recip() })
+            }
+            Abscissa::Uneven(times) => {
+                let times: Vec<f64> = times.iter().map(|time| time * second).collect();
+                let record = Record::from_times(&times, values, quantity, unit)?;
+                (record, Sampling::Times { name: header.abscissa.label.clone() })
+            }
+        })
+    }
+}
+
+/// Whether six digits are enough to write a number.
+fn has_six_digits(number: f64) -> bool {
+    format!("{number:.5e}").parse() == Ok(number)
+}
+
+impl UffFile {
+    /// The record in the data set called `channel`, as [`DataSet::name`] calls it, or at that position.
+    ///
+    /// # Errors
+    /// [`UffError::NoSuchChannel`], [`UffError::AmbiguousChannel`], otherwise as [`DataSet::record`].
+    pub fn channel(&self, channel: impl Into<Column>) -> Result<Reading, UffError> {
+        let channel = channel.into();
+        let found: Vec<usize> = match &channel {
+            Column::Index(index) => (0..self.sets().len()).filter(|other| other == index).collect(),
+            Column::Name(name) => {
+                let lower = name.trim().to_lowercase();
+                let called = |same: &dyn Fn(&str) -> bool| -> Vec<usize> {
+                    (0..self.sets().len()).filter(|index| same(&self.sets()[*index].name())).collect()
+                };
+                let exact = called(&|other| other == name.trim());
+                if exact.is_empty() { called(&|other| other.to_lowercase() == lower) } else { exact }
+            }
+        };
+        match found[..] {
+            [index] => self.reading_of(index),
+            [] => Err(UffError::NoSuchChannel { channel, available: self.names() }),
+            _ => Err(UffError::AmbiguousChannel { channel, count: found.len() }),
+        }
+    }
+
+    /// The only record over time in the file.
+    ///
+    /// # Errors
+    /// [`UffError::ChooseChannel`] if there are none or several, otherwise as [`DataSet::record`].
+    pub fn reading(&self) -> Result<Reading, UffError> {
+        let over_time: Vec<usize> = (0..self.sets().len()).filter(|index| self.sets()[*index].is_over_time()).collect();
+        match over_time[..] {
+            [index] => self.reading_of(index),
+            _ => Err(UffError::ChooseChannel { times: over_time.len(), available: self.names() }),
+        }
+    }
+
+    /// The names of all data sets 58, as [`DataSet::name`] calls them.
+    pub fn names(&self) -> Vec<String> {
+        self.sets().iter().map(DataSet::name).collect()
+    }
+
+    fn reading_of(&self, index: usize) -> Result<Reading, UffError> {
+        let set = &self.sets()[index];
+        let (record, sampling) = set.sampled_record()?;
+        Ok(Reading { record, channel: set.name(), time: None, columns: self.names(), sampling })
+    }
+}
