@@ -321,7 +321,7 @@ fn draw(folder: &Path, decay: &RingDown, comparison: &Comparison) -> Result<(), 
         .with(Layer::new(Role::Fitted, format!("envelope of {}", preferred.law()), fitted));
     figure::stacked(&folder.join("amplitude.svg"), &[amplitudes])?;
 
-    figure::histogram(&folder.join("residuals.svg"), &figure::label("residual", unit), &residuals)?;
+    figure::histogram(&folder.join("residuals.svg"), &figure::label("residual", unit), "residuals", &residuals)?;
     Ok(())
 }
 

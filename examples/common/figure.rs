@@ -140,7 +140,7 @@ pub(crate) fn stacked(path: &Path, panels: &[Panel]) -> std::io::Result<()> {
 ///
 /// # Errors
 /// If the file cannot be written.
-pub(crate) fn histogram(path: &Path, x_label: &str, values: &[f64]) -> std::io::Result<()> {
+pub(crate) fn histogram(path: &Path, x_label: &str, name: &str, values: &[f64]) -> std::io::Result<()> {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     let deviation = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt();
@@ -165,7 +165,7 @@ pub(crate) fn histogram(path: &Path, x_label: &str, values: &[f64]) -> std::io::
         .collect();
     let top = normal.iter().map(|point| point.1).chain(density.iter().copied()).fold(0.0, f64::max);
     let plots = vec![
-        Plot::Histogram(Histogram::from_bins(edges, density).with_color(MEASURED).with_legend("residuals")),
+        Plot::Histogram(Histogram::from_bins(edges, density).with_color(MEASURED).with_legend(name)),
         Layer::new(Role::Fitted, "normal density", normal).plot(),
     ];
     let layout = styled(Layout::auto_from_plots(&plots))

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod document;
+mod hammer;
 mod identifiability;
 mod measurement;
 mod own_law;

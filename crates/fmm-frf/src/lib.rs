@@ -1,6 +1,14 @@
-//! Impact tests in the frequency domain: the [`impulse`] of a blow, the three forms of a [`FrequencyResponse`], the
-//! closed form of a linear [`SingleDegreeOfFreedom`], and the friction force behind a receptance that grows with
-//! the impulse.
+//! Impact tests in the frequency domain, for machines with friction.
+//!
+//! | question | answer |
+//! |---|---|
+//! | how hard was the blow, and was it one? | [`impulse`], [`Pulse`] |
+//! | what is the response? | [`TrialAverage`] with an [`Estimator`], [`Coherence`], uncertainties from the trials |
+//! | noise between blows, responses longer than the record? | [`ForceWindow`], [`ExponentialWindow`] |
+//! | in which form? | [`FrequencyResponse`]: receptance, mobility, accelerance; delays; bands |
+//! | which modes? | [`resonances`], [`PeakFit`], [`CircleFit`], [`RationalFit`] |
+//! | how much friction? | [`friction_force_of_coulomb_impact`], [`friction_force_of_viscous_coulomb_impact`], [`CoulombLine`] |
+//! | is it friction at all? | [`FrictionSpectrum`]: odd harmonics, against the linear response of [`SingleDegreeOfFreedom`] |
 //!
 //! Everything is in SI units, frequencies are in Hz, and the time dependence is e^{+iωt}: a passive machine has a
 //! receptance of negative imaginary part.
@@ -20,20 +28,56 @@
 //! # Ok::<(), fmm_frf::FrfError>(())
 //! ```
 
+mod average;
+mod baseline;
+mod channel;
+mod coherence;
 mod coulomb_impact;
+mod coulomb_line;
+mod describing_function;
 mod error;
+mod estimator;
+mod form;
+mod friction_spectrum;
+mod gauss_newton;
 mod impulse;
+mod measured;
+mod modal;
+mod options;
 mod oscillator;
+mod pulse;
+mod resonances;
 mod response;
+mod sums;
+mod transform;
+mod triangle;
+mod viscous_coulomb_impact;
+mod window;
 
+pub use average::TrialAverage;
+pub use baseline::Baseline;
+pub use channel::Channel;
+pub use coherence::Coherence;
 pub use coulomb_impact::{
     coulomb_impact_duration, friction_force_of_coulomb_impact, peak_receptance_of_coulomb_impact,
 };
+pub use coulomb_line::{CoulombLine, friction_force_of_slope};
+pub use describing_function::equivalent_damping_of_friction;
 pub use error::FrfError;
-pub use impulse::{Baseline, impulse, impulse_of_record};
+pub use estimator::Estimator;
+pub use form::ResponseForm;
+pub use friction_spectrum::{FrictionSpectrum, Harmonic};
+pub use impulse::{Quadrature, impulse, impulse_by, impulse_of_record};
+pub use measured::Measured;
+pub use modal::{Background, CircleFit, Mode, PeakFit, RationalFit};
 pub use num_complex::Complex64;
+pub use options::{AverageOptions, Averaging};
 pub use oscillator::SingleDegreeOfFreedom;
-pub use response::{FrequencyResponse, ResponseForm};
+pub use pulse::{Hit, Pulse};
+pub use resonances::{Resonance, resonances};
+pub use response::FrequencyResponse;
+pub use viscous_coulomb_impact::{friction_force_of_viscous_coulomb_impact, peak_receptance_of_viscous_coulomb_impact};
+pub use window::{ExponentialWindow, ForceWindow, Taper};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

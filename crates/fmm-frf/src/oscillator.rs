@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
-use crate::{FrfError, ResponseForm};
+use crate::{FrequencyResponse, FrfError, ResponseForm};
 
 /// A linear oscillator with viscous damping, as a response to compare a measured one with.
 ///
@@ -46,6 +46,21 @@ impl SingleDegreeOfFreedom {
         Ok(Self { mass, damping, stiffness })
     }
 
+    /// m (kg).
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
+
+    /// c (N s/m).
+    pub fn damping(&self) -> f64 {
+        self.damping
+    }
+
+    /// k (N/m).
+    pub fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
     /// ω₀ = √(k/m), undamped natural angular frequency (rad/s).
     pub fn natural_angular_frequency(&self) -> f64 {
         (self.stiffness / self.mass).sqrt()
@@ -72,6 +87,15 @@ impl SingleDegreeOfFreedom {
     /// As [`SingleDegreeOfFreedom::receptance`].
     pub fn response(&self, form: ResponseForm, frequency: f64) -> Result<Complex64, FrfError> {
         ResponseForm::Receptance.convert(form, self.receptance(frequency)?, frequency)
+    }
+
+    /// The response at all `frequencies` (Hz) in any `form`.
+    ///
+    /// # Errors
+    /// As [`SingleDegreeOfFreedom::receptance`] and [`FrequencyResponse::new`].
+    pub fn frequency_response(&self, form: ResponseForm, frequencies: &[f64]) -> Result<FrequencyResponse, FrfError> {
+        let values = frequencies.iter().map(|&frequency| self.response(form, frequency));
+        FrequencyResponse::new(form, frequencies.to_vec(), values.collect::<Result<_, _>>()?)
     }
 }
 

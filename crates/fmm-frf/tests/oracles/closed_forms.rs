@@ -1,28 +1,28 @@
-//! Values that others computed: see `data/SOURCE.md`.
+//! Closed forms: impulses, linear responses, peaks and durations of impacts with friction.
 
 use std::f64::consts::{PI, TAU};
 
 use fmm_frf::{
-    Baseline, Complex64, ResponseForm, SingleDegreeOfFreedom, coulomb_impact_duration,
-    friction_force_of_coulomb_impact, impulse, peak_receptance_of_coulomb_impact,
+    Baseline, Complex64, CoulombLine, Quadrature, ResponseForm, SingleDegreeOfFreedom, coulomb_impact_duration,
+    friction_force_of_coulomb_impact, friction_force_of_viscous_coulomb_impact, impulse, impulse_by,
+    peak_receptance_of_coulomb_impact, peak_receptance_of_viscous_coulomb_impact,
 };
 
-/// The numbers of a table, row by row, without comments, without the header and from column `first` on.
-fn rows(table: &str, first: usize) -> Vec<Vec<f64>> {
-    let lines = table.lines().filter(|line| !line.starts_with('#')).skip(1);
-    lines.map(|line| line.split(',').skip(first).map(|cell| cell.parse().unwrap()).collect()).collect()
-}
+use crate::table::rows;
 
 #[test]
 fn half_sine_impulses() {
-    let rows = rows(include_str!("data/impulse_halfsine.csv"), 0);
+    let rows = rows(include_str!("../data/impulse_halfsine.csv"), 0);
     assert_eq!(rows.len(), 5);
     for row in rows {
-        let [peak, duration, rate, n, exact, trapezoid, _simpson] = row[..] else { panic!("{row:?}") };
+        let [peak, duration, rate, n, exact, trapezoid, simpson] = row[..] else { panic!("{row:?}") };
         let force: Vec<f64> = (0..=n as usize).map(|i| peak * (PI * i as f64 / n).sin()).collect();
         let found = impulse(&force, 1.0 / rate, Baseline::Keep).unwrap();
         // The table asks for 1e-15: about five roundings.
         assert!((found / trapezoid - 1.0).abs() < 1e-15, "{duration} s: {found} N s, not {trapezoid} N s");
+        let found = impulse_by(Quadrature::Simpson, &force, 1.0 / rate, Baseline::Keep).unwrap();
+        // 18 digits in the table, but weights of 1, 2 and 4 and a division by 3: ten roundings.
+        assert!((found / simpson - 1.0).abs() < 2e-15, "{duration} s: {found} N s, not {simpson} N s");
         let angle = PI / (2.0 * n);
         assert!((trapezoid / exact - angle / angle.tan()).abs() < 1e-15, "documented error, n = {n}");
     }
@@ -30,7 +30,7 @@ fn half_sine_impulses() {
 
 #[test]
 fn oscillator_responses() {
-    let rows = rows(include_str!("data/sdof_analytic.csv"), 1);
+    let rows = rows(include_str!("../data/sdof_analytic.csv"), 1);
     assert_eq!(rows.len(), 39);
     let mut well_conditioned = 0;
     for row in rows {
@@ -104,4 +104,32 @@ fn coulomb_impacts_end_when_they_should() {
         let duration = coulomb_impact_duration(impulse, FRICTION).unwrap();
         assert!((rest - 0.01 - duration).abs() < half_period, "{impulse} N s: {duration} s, rest at {rest} s");
     }
+}
+
+#[test]
+fn receptance_peaks_with_viscous_damping_beside_friction() {
+    let machine = SingleDegreeOfFreedom::new(MASS, 0.275, 1982.0).unwrap();
+    for (impulse, _, _, damped) in COULOMB_IMPACTS {
+        // What is left is that the amplitude falls in 9 to 16 steps, as without viscous damping.
+        let peak = peak_receptance_of_viscous_coulomb_impact(impulse, &machine, FRICTION).unwrap();
+        assert!((damped / peak - 1.0).abs() < 0.005, "{impulse} N s: {peak} m/N, not {damped} m/N");
+        let force = friction_force_of_viscous_coulomb_impact(impulse, &machine, damped).unwrap();
+        assert!((force / FRICTION - 1.0).abs() < 0.005, "{impulse} N s: {force} N, not {FRICTION} N");
+    }
+}
+
+/// Slopes, intercepts and R² as numpy's polyfit gives them for the same points.
+#[test]
+fn friction_from_the_slope() {
+    let impulses = COULOMB_IMPACTS.map(|(impulse, ..)| impulse);
+    let undamped = COULOMB_IMPACTS.map(|(_, peak, _, _)| peak);
+    let line = CoulombLine::fit(&impulses, &undamped, MASS, natural_angular_frequency()).unwrap();
+    assert!((line.slope.value / 3.623_979_562_36e-3 - 1.0).abs() < 1e-11, "{line}");
+    assert!((line.intercept.value / 1.773_970_451_45e-5 - 1.0).abs() < 1e-8, "{line}");
+    assert!((line.r_squared - 0.999_999_561_831_6).abs() < 1e-12, "{line}");
+    assert!((line.friction_force.value / FRICTION - 1.0).abs() < 0.01, "{line}, not {FRICTION} N");
+    let damped = COULOMB_IMPACTS.map(|(_, _, _, peak)| peak);
+    let line = CoulombLine::fit(&impulses, &damped, MASS, natural_angular_frequency()).unwrap();
+    assert!((line.slope.value / 3.458_896_448_494e-3 - 1.0).abs() < 1e-10, "{line}");
+    assert!((line.r_squared - 0.999_994_787_610_7).abs() < 1e-11, "{line}");
 }

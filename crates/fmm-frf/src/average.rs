@@ -1,0 +1,338 @@
+//! The average over trials, from which every estimate follows.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use fmm_record::Record;
+
+use crate::estimator::Spectra;
+use crate::sums::{RatioSums, SpectralSums, Weighed};
+use crate::transform::{SLOTS, TrialTransform};
+use crate::{AverageOptions, Averaging, Channel, Coherence, Estimator, FrequencyResponse, FrfError, ResponseForm};
+
+/// Spectra of a test, averaged over its trials.
+///
+/// ```text
+/// S_ff = ⟨F* F⟩,   S_vv = ⟨V* V⟩,   S_fv = ⟨F* V⟩                                                     (1)
+/// ```
+///
+/// F and V are the discrete transforms, with e^{−iωt}, of force and response. A trial can be added at any time, also after
+/// estimates have been read; it is either added as a whole or, with an error, not at all. After the construction nothing
+/// is allocated by adding; [`TrialAverage::clear`] begins a new test in the same memory, and a clone shares the plan of the
+/// transform.
+///
+/// ```
+/// use fmm_frf::{AverageOptions, Estimator, ResponseForm, TrialAverage};
+///
+/// // A blow on a machine that answers half as much, one sample later.
+/// let mut average = TrialAverage::new(ResponseForm::Mobility, 8.0, 8, &AverageOptions::default())?;
+/// average.add(&[0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], &[0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0])?;
+/// average.add(&[0.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], &[0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0])?;
+/// let mobility = average.estimate(Estimator::H1)?.without_delay(1.0 / 8.0)?;
+/// assert_eq!(mobility.frequencies(), [0.0, 1.0, 2.0, 3.0, 4.0]);
+/// assert!(mobility.values().iter().all(|value| (value - 0.5).norm() < 1e-15));
+/// assert_eq!(average.coherence()?.averages(), 2.0);
+/// # Ok::<(), fmm_frf::FrfError>(())
+/// ```
+///
+/// # References
+/// J. S. Bendat, A. G. Piersol, *Random Data*, 4th ed., Wiley 2010, chapters 6, 7 and 9.
+#[derive(Debug, Clone)]
+pub struct TrialAverage {
+    form: ResponseForm,
+    rate: f64,
+    length: usize,
+    lines: Range<usize>,
+    frequencies: Arc<[f64]>,
+    decay_rate: f64,
+    averaging: Averaging,
+    transform: TrialTransform,
+    spectra: SpectralSums,
+    /// How many of the last trials are not in the sums yet, and the factors of each.
+    waiting: usize,
+    factors: [(f64, f64); SLOTS],
+    ratios: Option<RatioSums>,
+    trials: usize,
+    /// Sum of the weights of the trials, and of their squares.
+    weights: (f64, f64),
+}
+
+impl TrialAverage {
+    /// An average of no trials yet, for trials of `length` samples at `rate` (Hz), whose response divided by force has
+    /// the `form`.
+    ///
+    /// Any length will do, as the transforms are for all lengths; those with small prime factors are fastest.
+    ///
+    /// # Errors
+    /// [`FrfError::NotPositive`] for the rate, [`FrfError::TooFewSamples`] for a length below 2,
+    /// [`FrfError::EmptyBand`] if no line lies in the band of the options, and [`FrfError::WindowOutside`] for a force
+    /// window that covers no sample.
+    pub fn new(form: ResponseForm, rate: f64, length: usize, options: &AverageOptions) -> Result<Self, FrfError> {
+        FrfError::require_positive("the sampling rate", rate, "Hz")?;
+        let interval = FrfError::require_positive("the sampling interval", rate.recip(), "s")?;
+        if length < 2 {
+            return Err(FrfError::TooFewSamples { found: length });
+        }
+        let mut lines = 0..length / 2 + 1;
+        if let Some((low, high)) = options.band {
+            // Rounding must not drop a line that is asked for by name.
+            let position = |frequency: f64| frequency * length as f64 / rate;
+            let first = (position(low) - 1e-9 * position(low).abs()).ceil().max(0.0) as usize;
+            let last = (position(high) + 1e-9 * position(high)).floor() as usize;
+            lines = first..lines.end.min(last.saturating_add(1));
+            if lines.is_empty() {
+                return Err(FrfError::EmptyBand { low, high });
+            }
+        }
+        Ok(Self {
+            form,
+            rate,
+            length,
+            decay_rate: options.windows.exponential.map_or(0.0, |window| window.decay_rate()),
+            averaging: options.averaging,
+            transform: TrialTransform::new(
+                length,
+                interval,
+                &options.windows,
+                options.force_baseline.clone(),
+                options.response_baseline.clone(),
+            )?,
+            frequencies: lines.clone().map(|line| line as f64 * rate / length as f64).collect(),
+            spectra: SpectralSums::new(lines.len()),
+            waiting: 0,
+            factors: [(0.0, 0.0); SLOTS],
+            ratios: options.keeps_ratios.then(|| RatioSums::new(lines.len())),
+            lines,
+            trials: 0,
+            weights: (0.0, 0.0),
+        })
+    }
+
+    /// Adds a trial: its `force` (N) and its `response` (SI unit), sample by sample at the same times.
+    ///
+    /// # Errors
+    /// [`FrfError::SampleCount`], [`FrfError::SampleNotFinite`], [`FrfError::TooLarge`], [`FrfError::NoForce`],
+    /// [`FrfError::BaselineRange`], and [`FrfError::NoForceAt`] if ratios are kept and a line has none. The average is
+    /// then what it was before.
+    pub fn add(&mut self, force: &[f64], response: &[f64]) -> Result<(), FrfError> {
+        let slot = self.waiting;
+        self.transform.run(slot, force, response)?;
+        let (force, response) = self.transform.spectra(slot, &self.lines);
+        if let (Some(_), Some(line)) = (&self.ratios, force.iter().position(|force| force.norm_sqr() == 0.0)) {
+            return Err(FrfError::NoForceAt { frequency: self.frequencies[line] });
+        }
+        let (keep, gain) = self.averaging.factors(self.trials == 0);
+        if let Some(ratios) = &mut self.ratios {
+            ratios.add(keep, gain, force, response);
+        }
+        self.factors[slot] = (keep, gain);
+        self.waiting += 1;
+        if self.waiting == SLOTS {
+            let [first, second] = [0, 1].map(|slot| weighed(&self.transform, &self.lines, slot, self.factors[slot]));
+            self.spectra.add(first, second);
+            self.waiting = 0;
+        }
+        self.trials += 1;
+        self.weights = (keep * self.weights.0 + gain, keep * keep * self.weights.1 + gain * gain);
+        Ok(())
+    }
+
+    /// Adds a trial of two records, whose quantities, rates and begins must fit. Units are not converted: the force must be
+    /// in N and the response in its SI unit.
+    ///
+    /// # Errors
+    /// As [`TrialAverage::add`], and [`FrfError::WrongQuantity`], [`FrfError::Rate`] for rates that differ by more than
+    /// 1e-6 of theirs, or [`FrfError::Begin`] for records that do not begin within 1e-3 of an interval of each other.
+    pub fn add_records(&mut self, force: &Record, response: &Record) -> Result<(), FrfError> {
+        for (channel, record, expected) in
+            [(Channel::Force, force, fmm_record::Quantity::Force), (Channel::Response, response, self.form.quantity())]
+        {
+            let (found, rate) = (record.quantity(), record.rate());
+            if found != expected {
+                return Err(FrfError::WrongQuantity { channel, expected, found });
+            }
+            // Rates are often read from time stamps of six digits.
+            if !((rate / self.rate - 1.0).abs() <= 1e-6) {
+                return Err(FrfError::Rate { channel, expected: self.rate, found: rate });
+            }
+        }
+        if !((force.start() - response.start()).abs() * self.rate <= 1e-3) {
+            return Err(FrfError::Begin { force: force.start(), response: response.start() });
+        }
+        self.add(force.values(), response.values())
+    }
+
+    /// Adds a long record in segments that `overlap` by so many samples, each as one trial (Welch's method), and gives
+    /// their number. What is left over at the end is not used. Trials that overlap are not independent: uncertainties and
+    /// the number of averages count them as if they were.
+    ///
+    /// # Errors
+    /// As [`TrialAverage::add`] at the first segment that it refuses, with the segments before it added;
+    /// [`FrfError::Overlap`] for an overlap of a whole segment, and [`FrfError::SampleCount`] for a record shorter than
+    /// one, or channels of different length.
+    pub fn add_segments(&mut self, force: &[f64], response: &[f64], overlap: usize) -> Result<usize, FrfError> {
+        if overlap >= self.length {
+            return Err(FrfError::Overlap { length: self.length, overlap });
+        }
+        if force.len() < self.length {
+            let (expected, found) = (self.length, force.len());
+            return Err(FrfError::SampleCount { channel: Channel::Force, expected, found });
+        }
+        if response.len() != force.len() {
+            let (expected, found) = (force.len(), response.len());
+            return Err(FrfError::SampleCount { channel: Channel::Response, expected, found });
+        }
+        let step = self.length - overlap;
+        let segments = (force.len() - self.length) / step + 1;
+        for segment in 0..segments {
+            let samples = segment * step..segment * step + self.length;
+            self.add(&force[samples.clone()], &response[samples])?;
+        }
+        Ok(segments)
+    }
+
+    /// Forgets all trials but keeps plan and memory, for the next test of the same kind.
+    pub fn clear(&mut self) {
+        (self.trials, self.weights) = (0, (0.0, 0.0));
+        self.spectra.clear();
+        self.waiting = 0;
+        if let Some(ratios) = &mut self.ratios {
+            ratios.clear();
+        }
+    }
+
+    /// How many trials have been added.
+    pub fn trials(&self) -> usize {
+        self.trials
+    }
+
+    /// (Σw)²/Σw², how many trials of equal weight the average is worth: their number if the averaging is linear, 0 without
+    /// trials.
+    pub fn averages(&self) -> f64 {
+        if self.trials == 0 { 0.0 } else { self.weights.0 * self.weights.0 / self.weights.1 }
+    }
+
+    /// Form of the estimates.
+    pub fn form(&self) -> ResponseForm {
+        self.form
+    }
+
+    /// Frequencies (Hz) of the lines: whole multiples of rate/length up to half the rate, as far as they lie in the band.
+    pub fn frequencies(&self) -> &[f64] {
+        &self.frequencies
+    }
+
+    /// The response by `estimator`.
+    ///
+    /// # Errors
+    /// [`FrfError::NoTrials`]; [`FrfError::NoForceAt`] or [`FrfError::NoCrossSpectrumAt`] at a line where the estimator
+    /// would divide by zero; [`FrfError::RatiosNotKept`] for the mean of ratios; [`FrfError::ValueNotFinite`] if it
+    /// overflows.
+    pub fn estimate(&self, estimator: Estimator) -> Result<FrequencyResponse, FrfError> {
+        let values = self.lines(|line| match estimator {
+            Estimator::MeanOfRatios => Ok(self.ratios()?.mean(line, self.weights.0)),
+            other => other.of(&self.line(line)).map_err(|undefined| undefined.at(self.frequencies[line])),
+        })?;
+        FrequencyResponse::at_shared(self.form, &self.frequencies, values, self.decay_rate)
+    }
+
+    /// Standard uncertainty of real and imaginary part of the response by `estimator`, each, at each line, from the
+    /// scatter of the trials.
+    ///
+    /// ```text
+    /// H1, H2, Hv:      u² = |H|² (1/γ² − 1)/(2(n − 1))                                                  (2)
+    /// mean of ratios:  u² = (⟨|V/F|²⟩ − |⟨V/F⟩|²)/(2(n − 1))                                            (3)
+    /// ```
+    ///
+    /// n is [`TrialAverage::averages`]. For H1, (2) is the residual scatter of the regression of V on F through the origin;
+    /// for H2 that of F on V, which is relatively the same. It contains what differs between trials and nothing that they
+    /// share: gains, delays, leakage, or the bias of H1 by noise of the force. With friction, trials of different impulse
+    /// differ because the machine does. The phase has u/|H| (rad). With two or three trials, u itself is hardly known.
+    ///
+    /// # Errors
+    /// As [`TrialAverage::estimate`], and [`FrfError::TooFewTrials`] for less than two averages.
+    pub fn uncertainty(&self, estimator: Estimator) -> Result<Vec<f64>, FrfError> {
+        let freedom = self.averages() - 1.0;
+        if self.trials == 0 {
+            return Err(FrfError::NoTrials);
+        }
+        if !(freedom > 0.0 && self.trials > 1) {
+            return Err(FrfError::TooFewTrials { found: self.averages() });
+        }
+        self.lines(|line| {
+            let scatter = match estimator {
+                Estimator::MeanOfRatios => self.ratios()?.variance(line, self.weights.0),
+                other => {
+                    let at = |undefined: crate::estimator::Undefined| undefined.at(self.frequencies[line]);
+                    other.scatter(&self.line(line)).map_err(at)?
+                }
+            };
+            Ok((scatter / (2.0 * freedom)).sqrt())
+        })
+    }
+
+    /// γ² = |S_fv|²/(S_ff S_vv), the share of the response that is a multiple of the force.
+    ///
+    /// # Errors
+    /// [`FrfError::NoTrials`], and [`FrfError::NoForceAt`] or [`FrfError::NoCrossSpectrumAt`] at a line where one channel
+    /// is zero in all trials.
+    pub fn coherence(&self) -> Result<Coherence, FrfError> {
+        let values =
+            self.lines(|line| self.line(line).coherence().map_err(|undefined| undefined.at(self.frequencies[line])))?;
+        Ok(Coherence::new(Arc::clone(&self.frequencies), values, self.averages()))
+    }
+
+    /// One-sided power spectral density of the force (N²/Hz) at each line; it integrates to the mean square of the force.
+    ///
+    /// # Errors
+    /// [`FrfError::NoTrials`].
+    pub fn force_density(&self) -> Result<Vec<f64>, FrfError> {
+        let energy = self.transform.weight_energies().0;
+        self.lines(|line| Ok(self.line(line).force * self.density_factor(line, energy)))
+    }
+
+    /// One-sided power spectral density of the response (its unit squared by Hz) at each line.
+    ///
+    /// # Errors
+    /// [`FrfError::NoTrials`].
+    pub fn response_density(&self) -> Result<Vec<f64>, FrfError> {
+        let energy = self.transform.weight_energies().1;
+        self.lines(|line| Ok(self.line(line).response * self.density_factor(line, energy)))
+    }
+
+    /// The sums at `line`, with those of the trials that wait.
+    fn line(&self, line: usize) -> Spectra {
+        let waiting = self.factors.iter().take(self.waiting).enumerate();
+        self.spectra.line(line, waiting.map(|(slot, factors)| weighed(&self.transform, &self.lines, slot, *factors)))
+    }
+
+    /// From a sum of squared transforms to a density: 1/(f_s Σw²) per trial, twice that where a line stands for two.
+    fn density_factor(&self, line: usize, weight_energy: f64) -> f64 {
+        let line = self.lines.start + line;
+        let sides = if line == 0 || 2 * line == self.length { 1.0 } else { 2.0 };
+        sides / (self.rate * weight_energy * self.weights.0)
+    }
+
+    fn ratios(&self) -> Result<&RatioSums, FrfError> {
+        self.ratios.as_ref().ok_or(FrfError::RatiosNotKept)
+    }
+
+    /// What `rule` gives for each line.
+    fn lines<T>(&self, rule: impl Fn(usize) -> Result<T, FrfError>) -> Result<Vec<T>, FrfError> {
+        if self.trials == 0 {
+            return Err(FrfError::NoTrials);
+        }
+        // Collecting results would not know how many there are.
+        let mut values = Vec::with_capacity(self.lines.len());
+        for line in 0..self.lines.len() {
+            values.push(rule(line)?);
+        }
+        Ok(values)
+    }
+}
+
+/// The spectra of a slot with their `factors`.
+fn weighed<'a>(transform: &'a TrialTransform, lines: &Range<usize>, slot: usize, factors: (f64, f64)) -> Weighed<'a> {
+    let (force, response) = transform.spectra(slot, lines);
+    Weighed { factors, force, response }
+}

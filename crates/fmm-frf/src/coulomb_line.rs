@@ -1,0 +1,150 @@
+//! Friction out of how receptance peaks grow with the impulse.
+
+use std::f64::consts::PI;
+use std::fmt;
+
+use crate::triangle::Triangle;
+use crate::{FrfError, Measured};
+
+/// The straight line of receptance peaks over impulses, and the friction force of its slope.
+///
+/// ```text
+/// |H|_peak = b + s J,   F = π/(8 m ω₀ s)                                                               (1)
+/// ```
+///
+/// By [`peak_receptance_of_coulomb_impact`](crate::peak_receptance_of_coulomb_impact) dry friction alone makes b zero. An
+/// intercept that is not, or points that are not on a line, tell of something else: viscous damping bends the line down
+/// ([`friction_force_of_viscous_coulomb_impact`](crate::friction_force_of_viscous_coulomb_impact) takes it out blow by
+/// blow), friction that depends on velocity bends it either way.
+///
+/// The points are weighed equally and the impulses taken as exact. Where either is not good enough, fit the line elsewhere and
+/// use [`friction_force_of_slope`].
+///
+/// ```
+/// use fmm_frf::CoulombLine;
+///
+/// // The three levels of the thesis' chapter 8 without viscous damping, simulated with F = 0.7537 N.
+/// let line = CoulombLine::fit(&[0.98, 1.42, 1.64], &[3.5695e-3, 5.1629e-3, 5.9617e-3], 10.391, 13.810_94)?;
+/// assert!((line.friction_force.value / 0.7537 - 1.0).abs() < 0.003);
+/// assert!(line.r_squared > 0.999_999);
+/// # Ok::<(), fmm_frf::FrfError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct CoulombLine {
+    /// s, slope (m/N per N s).
+    pub slope: Measured,
+    /// b, peak (m/N) at zero impulse.
+    pub intercept: Measured,
+    /// F, kinetic friction force (N). Its uncertainty is that of the slope alone.
+    pub friction_force: Measured,
+    /// R², share of the variance of the peaks that the line explains.
+    pub r_squared: f64,
+}
+
+impl CoulombLine {
+    /// The line through the `peaks` (m/N) of blows with these `impulses` (N s); at least three, not all of one impulse.
+    ///
+    /// # Errors
+    /// [`FrfError::PointCount`], [`FrfError::TooFewPoints`], [`FrfError::NotPositive`] for any value that is not, and
+    /// for a slope that is not: peaks that do not grow are not those of friction. [`FrfError::Undetermined`] for impulses that
+    /// are all the same.
+    pub fn fit(impulses: &[f64], peaks: &[f64], mass: f64, natural_angular_frequency: f64) -> Result<Self, FrfError> {
+        if impulses.len() != peaks.len() {
+            return Err(FrfError::PointCount { impulses: impulses.len(), peaks: peaks.len() });
+        }
+        if impulses.len() < 3 {
+            return Err(FrfError::TooFewPoints { needed: 3, found: impulses.len() });
+        }
+        let count = impulses.len() as f64;
+        let mut means = [0.0; 2];
+        for (&impulse, &peak) in impulses.iter().zip(peaks) {
+            means[0] += FrfError::require_positive("impulse", impulse, "N s")? / count;
+            means[1] += FrfError::require_positive("peak receptance", peak, "m/N")? / count;
+        }
+        // Both relative to their means, so that any unit will do.
+        let mut triangle = Triangle::new();
+        let mut spread = 0.0;
+        for (impulse, peak) in impulses.iter().zip(peaks) {
+            let height = peak / means[1] - 1.0;
+            spread += height * height;
+            triangle.add([1.0, impulse / means[0] - 1.0], height);
+        }
+        let undetermined = FrfError::Undetermined { fit: "line of peaks over impulses", points: impulses.len() };
+        let ([level, steepness], Some(covariance)) =
+            (triangle.solve().ok_or(undetermined.clone())?, triangle.covariance())
+        else {
+            return Err(undetermined);
+        };
+        let slope = steepness * means[1] / means[0];
+        FrfError::require_positive("slope of the peaks over the impulses", slope, "m/(N² s)")?;
+        let relative = covariance[1][1].sqrt() / steepness;
+        let intercept_variance = covariance[0][0] - 2.0 * covariance[0][1] + covariance[1][1];
+        let friction_force = friction_force_of_slope(slope, mass, natural_angular_frequency)?;
+        Ok(Self {
+            slope: Measured::new(slope, slope * relative),
+            intercept: Measured::new(
+                means[1] * (1.0 + level - steepness),
+                means[1] * intercept_variance.max(0.0).sqrt(),
+            ),
+            friction_force: Measured::new(friction_force, friction_force * relative),
+            r_squared: 1.0 - triangle.rest / spread,
+        })
+    }
+}
+
+impl fmt::Display for CoulombLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "|H| = {} m/N + {} m/(N² s) · J, R² = {:.6}; F = {} N",
+            self.intercept, self.slope, self.r_squared, self.friction_force
+        )
+    }
+}
+
+/// F = π/(8 m ω₀ s), kinetic friction force (N) out of the `slope` s (m/N per N s) of receptance peaks over impulses. Its
+/// relative uncertainty is the root of the sum of the squares of those of the three arguments.
+///
+/// # Errors
+/// [`FrfError::NotPositive`] for any argument, or for a result out of range.
+pub fn friction_force_of_slope(slope: f64, mass: f64, natural_angular_frequency: f64) -> Result<f64, FrfError> {
+    FrfError::require_positive("slope of the peaks over the impulses", slope, "m/(N² s)")?;
+    FrfError::require_positive("mass", mass, "kg")?;
+    FrfError::require_positive("natural angular frequency", natural_angular_frequency, "rad/s")?;
+    FrfError::require_positive("friction force", PI / (8.0 * mass * natural_angular_frequency * slope), "N")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Peaks 2, 4, 5 over impulses 1, 2, 3: slope 3/2, intercept 2/3, residual sum 1/6, R² = 1 − (1/6)/(14/3) = 27/28.
+    #[test]
+    fn a_line_by_hand() {
+        let line = CoulombLine::fit(&[1.0, 2.0, 3.0], &[2.0, 4.0, 5.0], 1.0, 1.0).unwrap();
+        let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-14, "{found}, not {expected}");
+        near(line.slope.value, 1.5);
+        near(line.intercept.value, 2.0 / 3.0);
+        near(line.r_squared, 27.0 / 28.0);
+        // s² = 1/6 with one degree of freedom; var(slope) = s²/2, var(intercept) = s² Σx²/(n 2) = 7/18.
+        near(line.slope.uncertainty, (1.0f64 / 12.0).sqrt());
+        near(line.intercept.uncertainty, (7.0f64 / 18.0).sqrt());
+        near(line.friction_force.value, PI / 12.0);
+        near(line.friction_force.uncertainty, PI / 12.0 * (1.0f64 / 12.0).sqrt() / 1.5);
+    }
+
+    #[test]
+    fn impossible_lines_are_refused() {
+        assert!(matches!(CoulombLine::fit(&[1.0], &[], 1.0, 1.0), Err(FrfError::PointCount { impulses: 1, peaks: 0 })));
+        assert!(matches!(CoulombLine::fit(&[1.0; 2], &[1.0; 2], 1.0, 1.0), Err(FrfError::TooFewPoints { .. })));
+        assert!(matches!(CoulombLine::fit(&[2.0; 3], &[1.0; 3], 1.0, 1.0), Err(FrfError::Undetermined { .. })));
+        let falling = CoulombLine::fit(&[1.0, 2.0, 3.0], &[3.0, 2.0, 1.0], 1.0, 1.0);
+        assert!(matches!(falling, Err(FrfError::NotPositive { .. })), "{falling:?}");
+        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(CoulombLine::fit(&[1.0, 2.0, bad], &[1.0, 2.0, 3.0], 1.0, 1.0).is_err());
+            assert!(CoulombLine::fit(&[1.0, 2.0, 3.0], &[1.0, 2.0, bad], 1.0, 1.0).is_err());
+            assert!(friction_force_of_slope(1.0, bad, 1.0).is_err() && friction_force_of_slope(1.0, 1.0, bad).is_err());
+        }
+    }
+}

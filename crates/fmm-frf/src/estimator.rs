@@ -1,0 +1,105 @@
+//! Which quotient of averaged spectra is the response.
+
+use num_complex::Complex64;
+
+use crate::FrfError;
+
+/// Which quotient of averaged spectra is the response.
+///
+/// | estimator | formula | noise of the force | noise of the response |
+/// |---|---|---|---|
+/// | H1 | S_fv/S_ff | makes it too small | averages out |
+/// | H2 | S_vv/S_vf | averages out | makes it too large |
+/// | Hv | (S_fv/∣S_fv∣) √(S_vv/S_ff) | half of H1's bias | half of H2's bias |
+/// | mean of ratios | ⟨V/F⟩ | wild where a trial has little force | averages out |
+///
+/// All have the phase of S_fv but the mean of ratios, and |H1| ≤ |Hv| ≤ |H2| with |H1| = γ² |H2|. The geometric Hv is the
+/// one that does not depend on the units of the channels; a total least squares in mixed units is H1 or H2 in disguise.
+/// The mean of ratios is that of the thesis' chapter 8.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Estimator {
+    /// S_fv/S_ff, for noise on the response.
+    H1,
+    /// S_vv/S_vf, for noise on the force.
+    H2,
+    /// (S_fv/|S_fv|) √(S_vv/S_ff), the geometric mean of H1 and H2.
+    Hv,
+    /// ⟨V/F⟩, the mean of the responses of the single trials.
+    MeanOfRatios,
+}
+
+/// Averaged spectra at one line, all in one arbitrary unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Spectra {
+    pub(crate) force: f64,
+    pub(crate) response: f64,
+    pub(crate) cross: Complex64,
+}
+
+/// Why an estimate does not exist at a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Undefined {
+    Force,
+    Cross,
+}
+
+impl Undefined {
+    pub(crate) fn at(self, frequency: f64) -> FrfError {
+        match self {
+            Self::Force => FrfError::NoForceAt { frequency },
+            Self::Cross => FrfError::NoCrossSpectrumAt { frequency },
+        }
+    }
+}
+
+impl Spectra {
+    /// γ², at most 1.
+    pub(crate) fn coherence(&self) -> Result<f64, Undefined> {
+        if self.force == 0.0 {
+            return Err(Undefined::Force);
+        }
+        if self.response == 0.0 {
+            return Err(Undefined::Cross);
+        }
+        let (squared, product) = (self.cross.norm_sqr(), self.force * self.response);
+        if squared.is_normal() && product.is_normal() {
+            return Ok((squared / product).min(1.0));
+        }
+        // Rooted first, so that products of squares neither underflow nor overflow.
+        let coherence = self.cross.norm() / self.force.sqrt() / self.response.sqrt();
+        Ok((coherence * coherence).min(1.0))
+    }
+}
+
+impl Estimator {
+    /// The estimate at one line; that of the mean of ratios does not follow from averaged spectra and is H1 here.
+    pub(crate) fn of(self, spectra: &Spectra) -> Result<Complex64, Undefined> {
+        let Spectra { force, response, cross } = *spectra;
+        if force == 0.0 {
+            return Err(Undefined::Force);
+        }
+        if matches!(self, Self::H2 | Self::Hv) && cross == Complex64::ZERO {
+            return Err(Undefined::Cross);
+        }
+        Ok(match self {
+            Self::H1 | Self::MeanOfRatios => cross / force,
+            Self::H2 => response / cross.conj(),
+            Self::Hv => cross / cross.norm() * (response / force).sqrt(),
+        })
+    }
+
+    /// |H|²(1/γ² − 1) of the estimate at one line.
+    pub(crate) fn scatter(self, spectra: &Spectra) -> Result<f64, Undefined> {
+        let estimate = self.of(spectra)?;
+        if spectra.response == 0.0 {
+            return Ok(0.0);
+        }
+        let coherence = spectra.coherence()?;
+        // For H1 written without a division by γ², which may be zero.
+        Ok(match self {
+            Self::H1 | Self::MeanOfRatios => spectra.response / spectra.force * (1.0 - coherence),
+            Self::H2 | Self::Hv => estimate.norm_sqr() * (1.0 - coherence) / coherence,
+        })
+    }
+}

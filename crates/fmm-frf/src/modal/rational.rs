@@ -1,0 +1,209 @@
+//! Rational fraction fit of order 2.
+
+use std::f64::consts::TAU;
+
+use num_complex::Complex64;
+
+use crate::gauss_newton::{Minimum, gauss_newton};
+use crate::modal::band::Band;
+use crate::triangle::{Triangle, variance_of};
+use crate::{FrequencyResponse, FrfError, Measured, Mode};
+
+const NAME: &str = "rational fraction fit";
+
+/// What the numerator of a [`RationalFit`] makes room for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Background {
+    /// Nothing: one degree of freedom, n₁ = n₂ = 0.
+    #[default]
+    None,
+    /// Other modes, as long as they are far: n₂ is their flexibility, and n₁ makes the modal constant complex.
+    OtherModes,
+}
+
+/// A mode as the quotient of two polynomials, fitted to the complex values.
+///
+/// ```text
+/// H(s) = sᵖ (n₀ + n₁ s + n₂ s²)/(s² + q₁ s + q₀)                                                       (1)
+/// ```
+///
+/// p is 0, 1 or 2 for receptance, mobility and accelerance, so that no conversion weighs the lines; s is iω, or σ + iω
+/// behind an exponential window, whose damping is thus never in the result. The sum of |H_measured − H|² over the lines is
+/// least (an output error with equal weights), found by Gauss-Newton steps from the linear fit of H·denominator = numerator
+/// with iterated weights.
+///
+/// ```
+/// use fmm_frf::{Background, RationalFit, ResponseForm, SingleDegreeOfFreedom};
+///
+/// let lines: Vec<f64> = (1..100).map(|i| f64::from(i) / 16.0).collect();
+/// let machine = SingleDegreeOfFreedom::new(10.391, 8.0, 1982.0)?;
+/// let response = machine.frequency_response(ResponseForm::Mobility, &lines)?;
+/// let fit = RationalFit::of(&response, 1.0, 4.0, Background::None)?;
+/// assert!((fit.mode.damping_ratio.value - 0.027_872_73).abs() < 1e-8);
+/// let [mass, damping, stiffness] = fit.machine.expect("there is no background");
+/// assert!((mass.value - 10.391).abs() < 1e-9 && (damping.value - 8.0).abs() < 1e-9);
+/// assert!((stiffness.value - 1982.0).abs() < 1e-7);
+/// assert!((fit.value(2.5) - machine.response(ResponseForm::Mobility, 2.5)?).norm() < 1e-12);
+/// # Ok::<(), fmm_frf::FrfError>(())
+/// ```
+///
+/// # References
+/// C. K. Sanathanan, J. Koerner, "Transfer function synthesis as a ratio of two complex polynomials", IEEE Transactions on
+/// Automatic Control 8 (1963) 56 (the iterated weights).
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct RationalFit {
+    /// Natural frequency and damping.
+    pub mode: Mode,
+    /// Mass (kg), viscous coefficient (N s/m) and stiffness (N/m) of the machine with this mode alone, if there is no
+    /// background; of the driving point if it is a mode of many.
+    pub machine: Option<[Measured; 3]>,
+    /// Root mean square (unit of the response given) of what the fit leaves over at a line.
+    pub residual: f64,
+    curve: Curve,
+}
+
+/// A fitted quotient: q₀, q₁ and the coefficients of the numerator, for s in units of `unit` (rad/s) and H in those of `size`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Curve {
+    denominator: [f64; 2],
+    numerator: [f64; 3],
+    form: i32,
+    unit: f64,
+    size: f64,
+    decay_rate: f64,
+}
+
+impl RationalFit {
+    /// Fits the lines of `response` from `low` to `high` (Hz); at least three, or with a background four.
+    ///
+    /// # Errors
+    /// [`FrfError::EmptyBand`], [`FrfError::TooFewPoints`], [`FrfError::Undetermined`], [`FrfError::NotConverged`],
+    /// [`FrfError::NoMode`].
+    pub fn of(response: &FrequencyResponse, low: f64, high: f64, background: Background) -> Result<Self, FrfError> {
+        let band = Band::of(response, low, high, if background == Background::None { 3 } else { 4 })?;
+        let form = i32::from(response.form().derivatives());
+        match background {
+            Background::None => Fitting::<3>::new(band, form).fit(),
+            Background::OtherModes => Fitting::<5>::new(band, form).fit(),
+        }
+    }
+
+    /// The fitted response at `frequency` (Hz), in the form and with the window of the response given.
+    pub fn value(&self, frequency: f64) -> Complex64 {
+        let Curve { denominator: [q0, q1], numerator: [n0, n1, n2], form, unit, size, decay_rate } = self.curve;
+        let s = Complex64::new(decay_rate, TAU * frequency) / unit;
+        s.powi(form) * (n0 + s * (n1 + s * n2)) / (q0 + s * (q1 + s)) * size
+    }
+}
+
+/// A fit of P unknowns: q₀, q₁ and P − 2 coefficients of the numerator; s is in units of the band's, H in that of its
+/// highest line.
+struct Fitting<const P: usize> {
+    band: Band,
+    form: i32,
+    size: f64,
+}
+
+impl<const P: usize> Fitting<P> {
+    fn new(band: Band, form: i32) -> Self {
+        let size = band.values[band.highest].norm();
+        Self { band, form, size }
+    }
+
+    fn fit(&self) -> Result<RationalFit, FrfError> {
+        let Band { unit, low, high, .. } = self.band;
+        let undetermined = FrfError::Undetermined { fit: NAME, points: self.band.values.len() };
+        let none = FrfError::NoMode { fit: NAME, low, high };
+        let start = self.start().ok_or(undetermined.clone())?;
+        let minimum = gauss_newton(start, |parameters| self.linearise(parameters));
+        let Minimum { parameters, triangle } = minimum.ok_or(FrfError::NotConverged { fit: NAME })?;
+        let covariance = triangle.covariance().ok_or(undetermined)?;
+        let (q0, q1) = (parameters[0], parameters[1]);
+        let of_mode = [[covariance[0][0], covariance[0][1]], [covariance[1][0], covariance[1][1]]];
+        // The lines were taken at their true s, so that there is no window to take out.
+        let mode = Mode::new([q0, q1], &of_mode, unit, 0.0, none.clone())?;
+        let machine = if P == 3 {
+            let n0 = parameters[2];
+            // H = (s/unit)ᵖ size n₀/(…) = sᵖ (1/m)/(…), so that m = unit^(p − 2)/(n₀ size).
+            let mass = unit.powi(self.form - 2) / (n0 * self.size);
+            if !(mass.is_finite() && mass > 0.0) {
+                return Err(none);
+            }
+            let measured = |value: f64, gradient: [(usize, f64); 2]| {
+                let mut full = [0.0; P];
+                for (at, slope) in gradient {
+                    full[at] += slope;
+                }
+                Measured::new(value, variance_of(full, &covariance).sqrt())
+            };
+            let (damping, stiffness) = (mass * unit, mass * unit * unit);
+            Some([
+                measured(mass, [(2, -mass / n0), (0, 0.0)]),
+                measured(damping * q1, [(2, -damping * q1 / n0), (1, damping)]),
+                measured(stiffness * q0, [(2, -stiffness * q0 / n0), (0, stiffness)]),
+            ])
+        } else {
+            None
+        };
+        let mut numerator = [0.0; 3];
+        numerator.iter_mut().zip(&parameters[2..]).for_each(|(to, from)| *to = *from);
+        let (form, size, decay_rate) = (self.form, self.size, self.band.decay_rate);
+        let curve = Curve { denominator: [q0, q1], numerator, form, unit, size, decay_rate };
+        let residual = self.size * (triangle.total / self.band.values.len() as f64).sqrt();
+        Ok(RationalFit { mode, machine, residual, curve })
+    }
+
+    /// s, sᵖ and the measured value of each line.
+    fn lines(&self) -> impl Iterator<Item = (Complex64, Complex64, Complex64)> + '_ {
+        let sigma = self.band.decay_rate / self.band.unit;
+        self.band.ratios.iter().zip(&self.band.values).map(move |(&ratio, value)| {
+            let s = Complex64::new(sigma, ratio);
+            (s, s.powi(self.form), value / self.size)
+        })
+    }
+
+    /// The linear fit with weights of its own denominator, iterated.
+    fn start(&self) -> Option<[f64; P]> {
+        const ITERATIONS: usize = 10;
+        let mut parameters = [0.0; P];
+        for iteration in 0..ITERATIONS {
+            let mut triangle = Triangle::new();
+            for (s, form, value) in self.lines() {
+                let denominator = s * s + s * parameters[1] + parameters[0];
+                let weight = if iteration == 0 { 1.0 } else { denominator.norm().recip() };
+                if weight.is_finite() {
+                    let powers = [Complex64::ONE, s, s * s];
+                    let column = |i: usize| if i < 2 { value * powers[i] } else { -form * powers[i - 2] };
+                    add(&mut triangle, std::array::from_fn(|i| column(i) * weight), -value * s * s * weight);
+                }
+            }
+            parameters = triangle.solve()?;
+        }
+        Some(parameters)
+    }
+
+    /// Residuals H_measured − H with their derivatives.
+    fn linearise(&self, parameters: &[f64; P]) -> Option<Triangle<P>> {
+        let mut triangle = Triangle::new();
+        for (s, form, value) in self.lines() {
+            let denominator = s * s + s * parameters[1] + parameters[0];
+            let numerator = parameters[2..].iter().rev().fold(Complex64::ZERO, |sum, n| sum * s + n);
+            let model = form * numerator / denominator;
+            if !model.is_finite() {
+                return None;
+            }
+            let powers = [Complex64::ONE, s, s * s];
+            let slope = |i: usize| if i < 2 { -model * powers[i] } else { form * powers[i - 2] };
+            add(&mut triangle, std::array::from_fn(|i| slope(i) / denominator), value - model);
+        }
+        Some(triangle)
+    }
+}
+
+/// Adds a complex equation as two real ones.
+fn add<const P: usize>(triangle: &mut Triangle<P>, row: [Complex64; P], right: Complex64) {
+    triangle.add(row.map(|entry| entry.re), right.re);
+    triangle.add(row.map(|entry| entry.im), right.im);
+}

@@ -1,0 +1,125 @@
+//! Sums over trials, line by line.
+
+use std::iter::Zip;
+use std::slice::Iter;
+
+use fmm_model::widest;
+use num_complex::Complex64;
+
+use crate::estimator::Spectra;
+
+/// Sums of F*F, V*V and F*V.
+#[derive(Debug, Clone)]
+pub(crate) struct SpectralSums {
+    force: Vec<f64>,
+    response: Vec<f64>,
+    /// Real and imaginary parts apart, as vectors of the processor want them.
+    cross: [Vec<f64>; 2],
+}
+
+impl SpectralSums {
+    pub(crate) fn new(lines: usize) -> Self {
+        let zeros = || vec![0.0; lines];
+        Self { force: zeros(), response: zeros(), cross: [zeros(), zeros()] }
+    }
+
+    /// Adds two trials, one after the other.
+    pub(crate) fn add(&mut self, first: Weighed<'_>, second: Weighed<'_>) {
+        let [real, imaginary] = &mut self.cross;
+        let powers = self.force.iter_mut().zip(&mut self.response);
+        let sums = powers.zip(real.iter_mut().zip(imaginary));
+        let lines = sums.zip(first.lines().zip(second.lines()));
+        let (first, second) = (first.factors, second.factors);
+        widest(
+            #[inline(always)]
+            || {
+                lines.for_each(|(((ff, vv), (re, im)), (one, two))| {
+                    let sums = added([*ff, *vv, *re, *im], first, one);
+                    [*ff, *vv, *re, *im] = added(sums, second, two);
+                });
+            },
+        );
+    }
+
+    pub(crate) fn clear(&mut self) {
+        let [real, imaginary] = &mut self.cross;
+        for sums in [&mut self.force, &mut self.response, real, imaginary] {
+            sums.fill(0.0);
+        }
+    }
+
+    /// The sums at `line` after those trials that `waiting` has.
+    pub(crate) fn line<'a>(&self, line: usize, waiting: impl Iterator<Item = Weighed<'a>>) -> Spectra {
+        let [real, imaginary] = &self.cross;
+        let sums = [self.force[line], self.response[line], real[line], imaginary[line]];
+        let [force, response, re, im] =
+            waiting.fold(sums, |sums, trial| added(sums, trial.factors, (&trial.force[line], &trial.response[line])));
+        Spectra { force, response, cross: Complex64::new(re, im) }
+    }
+}
+
+/// The spectra of a trial with the factors of what has been added up before it and of itself.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Weighed<'a> {
+    pub(crate) factors: (f64, f64),
+    pub(crate) force: &'a [Complex64],
+    pub(crate) response: &'a [Complex64],
+}
+
+impl<'a> Weighed<'a> {
+    /// Force and response, line by line.
+    fn lines(self) -> Zip<Iter<'a, Complex64>, Iter<'a, Complex64>> {
+        self.force.iter().zip(self.response)
+    }
+}
+
+/// Sums of F*F, V*V and the two parts of F*V at one line, after a trial more.
+#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the wide vectors")]
+#[inline(always)]
+fn added([ff, vv, re, im]: [f64; 4], (keep, gain): (f64, f64), (f, v): (&Complex64, &Complex64)) -> [f64; 4] {
+    [
+        keep * ff + gain * (f.re * f.re + f.im * f.im),
+        keep * vv + gain * (v.re * v.re + v.im * v.im),
+        keep * re + gain * (f.re * v.re + f.im * v.im),
+        keep * im + gain * (f.re * v.im - f.im * v.re),
+    ]
+}
+
+/// Sums of V/F and of |V/F|².
+#[derive(Debug, Clone)]
+pub(crate) struct RatioSums {
+    ratio: Vec<Complex64>,
+    square: Vec<f64>,
+}
+
+impl RatioSums {
+    pub(crate) fn new(lines: usize) -> Self {
+        Self { ratio: vec![Complex64::ZERO; lines], square: vec![0.0; lines] }
+    }
+
+    /// Multiplies the sums by `keep` and adds `gain` times a trial, whose force is nowhere zero.
+    pub(crate) fn add(&mut self, keep: f64, gain: f64, force: &[Complex64], response: &[Complex64]) {
+        for ((sum, square), (force, response)) in
+            self.ratio.iter_mut().zip(&mut self.square).zip(force.iter().zip(response))
+        {
+            let ratio = response / force;
+            *sum = *sum * keep + ratio * gain;
+            *square = *square * keep + ratio.norm_sqr() * gain;
+        }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.ratio.fill(Complex64::ZERO);
+        self.square.fill(0.0);
+    }
+
+    /// The mean ratio at `line`, for weights of this sum.
+    pub(crate) fn mean(&self, line: usize, weights: f64) -> Complex64 {
+        self.ratio[line] / weights
+    }
+
+    /// The mean squared distance of the ratios at `line` from their mean.
+    pub(crate) fn variance(&self, line: usize, weights: f64) -> f64 {
+        (self.square[line] / weights - self.mean(line, weights).norm_sqr()).max(0.0)
+    }
+}

@@ -1,0 +1,175 @@
+//! The two spectra of a trial, in buffers that are used again.
+
+use std::fmt;
+use std::ops::Range;
+use std::sync::Arc;
+
+use fmm_model::widest;
+use num_complex::Complex64;
+use realfft::{RealFftPlanner, RealToComplex};
+
+use crate::window::Windows;
+use crate::{Baseline, Channel, FrfError};
+
+/// How many trials' spectra are kept. Adding up two at a time saves a third of the way to and from memory, which is what it costs.
+pub(crate) const SLOTS: usize = 2;
+
+/// How one channel is treated before its transform, and the transform.
+#[derive(Debug, Clone)]
+struct Side {
+    channel: Channel,
+    unit: &'static str,
+    baseline: Baseline,
+    weights: Option<Vec<f64>>,
+    spectra: [Vec<Complex64>; SLOTS],
+}
+
+/// The plan of a transform of one length, with all memory that it needs.
+#[derive(Clone)]
+pub(crate) struct TrialTransform {
+    plan: Arc<dyn RealToComplex<f64>>,
+    samples: Vec<f64>,
+    scratch: Vec<Complex64>,
+    force: Side,
+    response: Side,
+}
+
+impl fmt::Debug for TrialTransform {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("TrialTransform").field("length", &self.samples.len()).finish_non_exhaustive()
+    }
+}
+
+impl TrialTransform {
+    /// A transform of `length` samples, `interval` (s) apart.
+    pub(crate) fn new(
+        length: usize,
+        interval: f64,
+        windows: &Windows,
+        force_baseline: Baseline,
+        response_baseline: Baseline,
+    ) -> Result<Self, FrfError> {
+        let plan = RealFftPlanner::new().plan_fft_forward(length);
+        let side = |channel, unit, baseline, weights| Side {
+            channel,
+            unit,
+            baseline,
+            weights,
+            spectra: [plan.make_output_vec(), plan.make_output_vec()],
+        };
+        Ok(Self {
+            samples: plan.make_input_vec(),
+            scratch: plan.make_scratch_vec(),
+            force: side(Channel::Force, "N", force_baseline, windows.force_weights(length, interval)?),
+            response: side(
+                Channel::Response,
+                "(unit of the response)",
+                response_baseline,
+                windows.response_weights(length, interval),
+            ),
+            plan,
+        })
+    }
+
+    /// Transforms a trial into one of the slots; without an error, [`TrialTransform::spectra`] of that are its.
+    pub(crate) fn run(&mut self, slot: usize, force: &[f64], response: &[f64]) -> Result<(), FrfError> {
+        let Self { plan, samples, scratch, force: force_side, response: response_side } = self;
+        for (side, given) in [(&*force_side, force), (&*response_side, response)] {
+            if given.len() != samples.len() {
+                let (channel, expected, found) = (side.channel, samples.len(), given.len());
+                return Err(FrfError::SampleCount { channel, expected, found });
+            }
+        }
+        let mut force_energy = 0.0;
+        for (side, given) in [(force_side, force), (response_side, response)] {
+            let energy = side.weigh(given, samples)?;
+            if side.channel == Channel::Force {
+                force_energy = energy;
+            }
+            let wrong_length =
+                |_| FrfError::SampleCount { channel: side.channel, expected: plan.len(), found: given.len() };
+            plan.process_with_scratch(samples, &mut side.spectra[slot], scratch).map_err(wrong_length)?;
+        }
+        if force_energy > 0.0 { Ok(()) } else { Err(FrfError::NoForce) }
+    }
+
+    /// Spectra of force and response at some `lines` of those from zero frequency to half the rate; their unit is that of a sum
+    /// of samples.
+    pub(crate) fn spectra(&self, slot: usize, lines: &Range<usize>) -> (&[Complex64], &[Complex64]) {
+        (&self.force.spectra[slot][lines.clone()], &self.response.spectra[slot][lines.clone()])
+    }
+
+    /// Sums of the squared weights of force and response.
+    pub(crate) fn weight_energies(&self) -> (f64, f64) {
+        let energy = |side: &Side| match &side.weights {
+            Some(weights) => weights.iter().map(|weight| weight * weight).sum(),
+            None => self.samples.len() as f64,
+        };
+        (energy(&self.force), energy(&self.response))
+    }
+}
+
+impl Side {
+    /// Writes the weighed samples and gives the sum of their squares.
+    ///
+    /// A line of the spectrum is at most the root of N times that sum, so that a finite sum keeps every square finite.
+    fn weigh(&self, given: &[f64], samples: &mut [f64]) -> Result<f64, FrfError> {
+        let energy = match (&self.baseline, &self.weights) {
+            (Baseline::Keep, None) => weigh(given, samples, |x, _| x, &[]),
+            (baseline, weights) => {
+                let offset = baseline.clone().offset_of(given, self.unit);
+                // A mean that is not finite has a sample to blame.
+                let offset = offset.map_err(|error| match FrfError::require_samples(self.channel, given) {
+                    Err(sample) => sample,
+                    Ok(()) => error,
+                })?;
+                match weights {
+                    None => weigh(given, samples, |x, _| x - offset, &[]),
+                    Some(weights) => weigh(given, samples, |x, w| (x - offset) * w, weights),
+                }
+            }
+        };
+        if (energy * given.len() as f64).is_finite() {
+            return Ok(energy);
+        }
+        FrfError::require_samples(self.channel, given)?;
+        Err(FrfError::TooLarge { channel: self.channel })
+    }
+}
+
+/// Writes `rule` of each sample and its weight, and gives the sum of the squares; without `weights` the weight is one.
+fn weigh(given: &[f64], samples: &mut [f64], rule: impl Fn(f64, f64) -> f64, weights: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    // A block small enough to be still in the cache when its squares are summed.
+    const BLOCK: usize = 1024;
+    #[expect(clippy::inline_always, reason = "only what is inlined is compiled for the wide vectors")]
+    #[inline(always)]
+    fn squares(block: &[f64]) -> f64 {
+        let mut sums = [0.0; LANES];
+        let (chunks, rest) = block.as_chunks::<LANES>();
+        for chunk in chunks {
+            for (sum, x) in sums.iter_mut().zip(chunk) {
+                *sum += x * x;
+            }
+        }
+        sums.iter().sum::<f64>() + rest.iter().map(|x| x * x).sum::<f64>()
+    }
+    widest(
+        #[inline(always)]
+        || {
+            let mut energy = 0.0;
+            let blocks = given.chunks(BLOCK).zip(samples.chunks_mut(BLOCK)).enumerate();
+            for (block, (given, samples)) in blocks {
+                if weights.is_empty() {
+                    samples.iter_mut().zip(given).for_each(|(sample, &x)| *sample = rule(x, 1.0));
+                } else {
+                    let weights = &weights[block * BLOCK..];
+                    let weighed = samples.iter_mut().zip(given).zip(weights);
+                    weighed.for_each(|((sample, &x), &w)| *sample = rule(x, w));
+                }
+                energy += squares(samples);
+            }
+            energy
+        },
+    )
+}
