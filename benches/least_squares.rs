@@ -10,12 +10,18 @@ mod ratio;
 use std::cell::RefCell;
 use std::hint::black_box;
 
-use criterion::{Criterion, criterion_group};
-use fmm_fit::{EvaluationError, Minimizer, MultiStart, Options, Outcome, Residuals};
-use fmm_friction::{Coulomb, LawFamily};
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, Criterion, criterion_group};
+use fmm_fit::{EvaluationError, Minimizer, MultiStart, Options, Outcome, Refit, Residuals, solve};
+use fmm_friction::{Berger, Coulomb, LawFamily};
+use fmm_identify::MachineProblem;
 use fmm_model::{Bounds, Damping, Dual, Oscillator, Parameter, Scalar};
-use fmm_sim::{Channels, Engine, Exact, Sampling, Scenario, Thesis, Trajectory};
-use ratio::print_ratio;
+use fmm_record::{Quantity, Record};
+use fmm_sim::{Channels, Engine, Exact, RungeKutta, Sampling, Scenario, Simulated, Thesis, Trajectory};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use ratio::{median, print_ratio};
 
 /// Friction coefficient, position and velocity of a ring-down of 1501 velocities at 1 kHz, the workload of the thesis.
 struct RingDown {
@@ -232,13 +238,80 @@ fn thesis_fit(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// Fits of `problem` on other machines, as a Monte Carlo calculation repeats them.
+fn repeat<F: Simulated>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, problem: &MachineProblem<F>) {
+    let fit = solve(problem, problem.values(), &Options::default()).expect("valid");
+    let refit = Refit::prepare(problem, &fit).expect("a minimum");
+    let value = |input: &Parameter| {
+        let place = problem.parameters().iter().position(|parameter| parameter == input);
+        problem.values()[place.expect("one of the problem")]
+    };
+    let nominal: Vec<f64> = refit.inputs().map(value).collect();
+    let mut generator = ChaCha8Rng::seed_from_u64(4);
+    let mut machine = || {
+        let mut inputs = nominal.clone();
+        for (input, u) in inputs.iter_mut().zip([0.0049, 1.3, 0.0341]) {
+            *input += u * Distribution::<f64>::sample(&StandardNormal, &mut generator);
+        }
+        inputs
+    };
+    let machines: Vec<Vec<f64>> = (0..256).map(|_| machine()).collect();
+    let mut next = machines.iter().cycle();
+    group.bench_function(name, |bencher| {
+        bencher.iter(|| refit.estimates(black_box(next.next().expect("endless"))).expect("near the prepared fit"));
+    });
+}
+
+/// Workload W4: the fit of workload W3 on other machines; and one of the Berger law's three parameters and a position.
+fn refits(criterion: &mut Criterion) {
+    let sampling = Sampling::uniform(1e-3, 1501).expect("valid").keeping(Channels::Velocity);
+    let start = scenario(&[TRUTH[0], TRUTH[1], VELOCITY]).expect("valid");
+    let mut trajectory = Trajectory::default();
+    let mut group = criterion.benchmark_group("refit");
+    group.bench_function("simulation", |bencher| {
+        bencher.iter(|| Exact.run_into(black_box(&start), &sampling, &mut trajectory));
+    });
+    let record = |motion: &Trajectory| {
+        Record::new(0.0, 1e-3, motion.velocity().values().to_vec(), Quantity::Velocity, "m/s").expect("valid")
+    };
+    let motion = Exact.run(&start, &sampling).expect("valid");
+    let machine = [("mass", 10.391), ("stiffness", 1982.0), ("damping", 0.275), ("normal_load", 7.2)];
+    let unknown = [("coefficient", START[0]), ("initial_position", START[1]), ("initial_velocity", VELOCITY)];
+    let problem =
+        MachineProblem::<Coulomb>::new(&record(&motion), &[machine.as_slice(), &unknown].concat()).expect("valid");
+    let problem = problem.free("coefficient").and_then(|problem| problem.free("initial_position")).expect("valid");
+    repeat(&mut group, "exact", &problem);
+
+    let law = [0.228, 0.261, 2.852];
+    let oscillator = Oscillator::new(10.391, 1982.0).expect("valid");
+    let oscillator = oscillator.with_damping(Damping::linear(0.275).expect("valid"));
+    let released = Scenario::new(oscillator, Berger::at(&law).expect("valid"), 14.0).expect("valid");
+    let released = released.starting_at(0.016, 0.0).expect("valid");
+    let motion = RungeKutta::default().run(&released, &sampling).expect("valid");
+    let machine = [("mass", 10.391), ("stiffness", 1982.0), ("damping", 0.275), ("normal_load", 14.0)];
+    let names = Berger::<f64>::PARAMETERS.iter().map(|parameter| parameter.parameter().name());
+    let mut values: Vec<(&str, f64)> = names.clone().zip(law).collect();
+    values.extend(machine);
+    values.push(("initial_position", 0.016));
+    let mut problem = MachineProblem::<Berger>::new(&record(&motion), &values).expect("valid");
+    for name in names.chain(["initial_position"]) {
+        problem = problem.free(name).expect("a parameter");
+    }
+    repeat(&mut group, "berger", &problem);
+    group.finish();
+}
+
 fn print_ratios() {
     print_ratio("solver/fit", "solver/evaluations", "at most 1.2");
     print_ratio("thesis_fit/euler", "thesis_fit/exact", "at least 50");
     print_ratio("thesis_fit/euler_of_euler", "thesis_fit/exact", "");
+    print_ratio("refit/exact", "refit/simulation", "at most 7");
+    if let Some(nanoseconds) = median("refit/berger") {
+        println!("{:.0} fits of the Berger law a second (wanted: at least 5000)", 1e9 / nanoseconds);
+    }
 }
 
-criterion_group!(benches, solver, thesis_fit);
+criterion_group!(benches, solver, thesis_fit, refits);
 
 fn main() {
     benches();

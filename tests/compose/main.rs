@@ -10,3 +10,4 @@ mod pendulum;
 mod real_records;
 mod simulate;
 mod synthetic;
+mod table_3;

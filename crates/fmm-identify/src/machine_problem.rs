@@ -78,7 +78,7 @@ type Euler<F> =
 
 /// Directions of derivative that one simulation carries, if no more are wanted and if so.
 const FEW: usize = 2;
-const MANY: usize = 6;
+const MANY: usize = 4;
 
 #[derive(Debug, Default)]
 struct Buffers {
@@ -312,7 +312,7 @@ impl<F: Simulated> Residuals for MachineProblem<F> {
     }
 
     fn is_cheaper_combined(&self) -> bool {
-        // Two directions cost two thirds more than none, six several times as much.
+        // Two directions cost about as much as none, four several times as much.
         self.euler.is_none() && self.free.len() <= FEW
     }
 }

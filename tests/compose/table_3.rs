@@ -1,0 +1,135 @@
+//! The thesis' Table 3: what mass, stiffness and damping do to a fitted coefficient of friction.
+
+use fmm_fit::{Held, Minimizer, Options, Refit, Residuals, Sensitivity, solve};
+use fmm_friction::Coulomb;
+use fmm_identify::MachineProblem;
+use fmm_model::{Bounds, Damping, Oscillator};
+use fmm_record::{Quantity, Record};
+use fmm_sim::{Engine, Exact, Sampling, Scenario, Thesis};
+use fmm_uq::{Input, Inputs, MonteCarlo};
+
+const LOAD: f64 = 7.2;
+/// Value and printed standard uncertainty of mass (kg), stiffness (N/m) and damping (N s/m).
+const MACHINE: [(&str, f64, f64); 3] =
+    [("mass", 10.391, 0.0049), ("stiffness", 1982.0, 1.3), ("damping", 0.275, 0.0341)];
+/// u(μ) of each row, from 256-bit derivatives of the fit and the printed uncertainties; the last row is all three.
+const EXACT: [f64; 4] = [6.752e-5, 5.732e-6, 2.3764e-4, 2.4712e-4];
+
+fn problem(engine: &impl Engine<f64, Coulomb>) -> MachineProblem<Coulomb> {
+    let [mass, stiffness, damping] = MACHINE.map(|(_, value, _)| value);
+    let machine = Oscillator::new(mass, stiffness).unwrap().with_damping(Damping::linear(damping).unwrap());
+    let scenario = Scenario::new(machine, Coulomb::new(0.15).unwrap(), LOAD).unwrap().starting_at(0.0, 0.101).unwrap();
+    let motion = engine.run(&scenario, &Sampling::uniform(1e-3, 1501).unwrap()).unwrap();
+    let record = Record::new(0.0, 1e-3, motion.velocity().values().to_vec(), Quantity::Velocity, "m/s").unwrap();
+    let mut values = MACHINE.map(|(name, value, _)| (name, value)).to_vec();
+    values.extend([("normal_load", LOAD), ("coefficient", 0.15)]);
+    values.extend([("initial_position", 1e-4), ("initial_velocity", 0.101)]);
+    let problem = MachineProblem::new(&record, &values).unwrap();
+    let problem = problem.free_within("coefficient", Bounds::new(0.1, 1.0).unwrap()).unwrap();
+    problem.free_within("initial_position", Bounds::new(-3e-3, 3e-3).unwrap()).unwrap()
+}
+
+/// All inputs of a refit, the first three of which are those of the machine.
+fn machine(x: &[f64]) -> Vec<f64> {
+    // Quadratic damping, load, initial velocity and offset stay.
+    [x, &[0.0, LOAD, 0.101, 0.0]].concat()
+}
+
+fn inputs(row: usize) -> Inputs {
+    let input = |(index, (name, value, u)): (usize, (&str, f64, f64))| {
+        Input::new(name, value, if row == 3 || row == index { u } else { 0.0 }, "SI").unwrap()
+    };
+    Inputs::new(MACHINE.into_iter().enumerate().map(input)).unwrap()
+}
+
+#[test]
+fn sensitivities_are_the_corrected_ones_and_obey_the_scale_identity() {
+    let problem = problem(&Exact);
+    let fit = solve(&problem, problem.values(), &Options::default()).unwrap();
+    let sensitivity = Sensitivity::of(&problem, &fit).unwrap();
+    let by = |input| sensitivity.coefficient_of("coefficient", input).unwrap();
+    // Printed in the reference with four or five digits, so within half of the last one: 1.14e-4 of 4.409.
+    for (input, expected) in [("mass", 0.013_779), ("stiffness", 4.409e-6), ("damping", -6.969e-3)] {
+        assert!((by(input) / expected - 1.0).abs() < 1.14e-4, "{input}: {}", by(input));
+    }
+    let identity: f64 = MACHINE.iter().map(|(name, value, _)| value * by(name)).sum();
+    // Derivatives by the implicit function theorem hold eight digits.
+    assert!((identity - 0.15).abs() < 2e-9, "{identity}");
+    assert!((LOAD * by("normal_load") + 0.15).abs() < 2e-9);
+}
+
+#[test]
+fn refits_have_the_uncertainties_of_the_reference() {
+    let problem = problem(&Exact);
+    let fit = solve(&problem, problem.values(), &Options::default()).unwrap();
+    let refit = Refit::prepare(&problem, &fit).unwrap();
+    assert_eq!(
+        refit.inputs().map(fmm_model::Parameter::name).collect::<Vec<_>>()[..3],
+        ["mass", "stiffness", "damping"]
+    );
+    let trials = 20_000;
+    for (row, exact) in EXACT.into_iter().enumerate() {
+        let run = MonteCarlo::new(&inputs(row), trials).unwrap().with_seed(1);
+        let sample = run.run(|x| refit.estimates(&machine(x))).unwrap();
+        let u = sample.standard_uncertainty(0).unwrap();
+        // The standard error of a standard deviation is u/√(2 M); five of them, and half a percent for what is not linear.
+        let tolerance = exact * (5.0 / (2.0 * trials as f64).sqrt() + 0.005);
+        assert!((u - exact).abs() < tolerance, "row {row}: {u:e} instead of {exact:e}");
+        assert!((sample.estimate(0).unwrap() - 0.15).abs() < 5.0 * exact / (trials as f64).sqrt() + 1e-6);
+    }
+}
+
+#[test]
+fn a_refit_ends_where_a_fit_does_whoever_asked_before() {
+    let problem = problem(&Exact);
+    let fit = solve(&problem, problem.values(), &Options::default()).unwrap();
+    let refit = Refit::prepare(&problem, &fit).unwrap();
+    // Up to ten standard uncertainties away.
+    let away =
+        |i: usize| MACHINE.map(|(_, value, u)| value + u * 10.0 * ((i as f64 * 0.618_034 * value).fract() - 0.5));
+    let first: Vec<Vec<f64>> = (0..40).map(|i| refit.estimates(&machine(&away(i))).unwrap()).collect();
+    for (i, estimates) in first.iter().enumerate().rev() {
+        assert_eq!(&refit.estimates(&machine(&away(i))).unwrap(), estimates, "refit {i} depends on the others");
+        let held = Held::new(&problem, away(i).into_iter().enumerate()).unwrap();
+        let mut start = problem.values().to_vec();
+        start[..3].copy_from_slice(&away(i));
+        let mut minimizer = Minimizer::new(Options::default());
+        assert!(minimizer.minimize(&held, &start).unwrap().is_success());
+        let places = ["coefficient", "initial_position"]
+            .map(|name| problem.parameters().iter().position(|parameter| parameter.name() == name).unwrap());
+        // Of a coefficient of 0.15 and a position of some 0.1 mm.
+        for ((value, place), tolerance) in estimates.iter().zip(places).zip([1e-9, 1e-11]) {
+            let expected = minimizer.values()[place];
+            assert!((value - expected).abs() < tolerance, "refit {i}: {value} instead of {expected}");
+        }
+    }
+    assert!(refit.estimates(&[1.0]).is_err());
+    assert!(refit.estimates(&machine(&[f64::NAN, 1982.0, 0.275])).is_err());
+    assert!(refit.estimates(&machine(&[-10.0, 1982.0, 0.275])).is_err());
+}
+
+#[test]
+fn the_thesis_motion_is_refitted_without_derivatives() {
+    let problem = problem(&Thesis::A3).by_thesis();
+    let fit = solve(&problem, problem.values(), &Options::default()).unwrap();
+    assert!(!fit.has_exact_jacobian());
+    // From its start the thesis ends within 1e-4 of the truth: the sum of squares jumps.
+    assert!((fit.estimate("coefficient").unwrap().value() - 0.15).abs() < 1e-4);
+}
+
+#[test]
+fn what_a_problem_cannot_have_is_said() {
+    let record = Record::new(0.0, 1e-3, vec![0.0; 100], Quantity::Velocity, "m/s").unwrap();
+    let problem = |values: &[(&str, f64)]| MachineProblem::<Coulomb>::new(&record, values).map_err(|e| e.to_string());
+    let complete = [("mass", 1.0), ("stiffness", 100.0), ("coefficient", 0.1)];
+    assert!(problem(&complete).is_ok());
+    assert_eq!(problem(&complete[..2]).unwrap_err(), "coefficient must be given a value");
+    let wrong = |name, value| problem(&[complete.as_slice(), &[(name, value)]].concat()).unwrap_err();
+    assert!(wrong("weight", 1.0).contains("no parameter called \"weight\""));
+    assert!(wrong("mass", -1.0).contains("mass cannot be held at -1"));
+    assert!(wrong("damping", f64::NAN).contains("damping"));
+    assert!(problem(&complete).unwrap().free("friction").is_err());
+    assert!(problem(&complete).unwrap().free_within("mass", Bounds::new(2.0, 3.0).unwrap()).is_err());
+    let force = Record::new(0.0, 1e-3, vec![0.0; 100], Quantity::Force, "N").unwrap();
+    assert!(MachineProblem::<Coulomb>::new(&force, &complete).is_err());
+}
