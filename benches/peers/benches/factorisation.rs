@@ -15,12 +15,15 @@ use faer::linalg::qr::no_pivoting::factor::{qr_in_place, qr_in_place_scratch, re
 use faer::{Mat, Par};
 use ratio::print_ratio;
 
-// The factorisation is no public item; the file needs nothing else of its crate.
-#[path = "../../../crates/fmm-fit/src/solver/triangle.rs"]
+// The factorisation is no public item; its files need nothing else of their crate.
+#[path = "../../../crates/fmm-fit/src/solver"]
 #[allow(dead_code, unused_imports, reason = "only the factorisation is measured, and its tests do not run here")]
-mod triangle;
+mod solver {
+    pub(crate) mod sums;
+    pub(crate) mod triangle;
+}
 
-use triangle::Triangle;
+use solver::triangle::Triangle;
 
 /// Columns of derivatives and one of residuals, as a decaying oscillation has them.
 fn columns(rows: usize, parameters: usize) -> Vec<f64> {
