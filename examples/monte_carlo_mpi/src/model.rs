@@ -1,36 +1,62 @@
 //! The measurement whose uncertainty is wanted; all that another one has to replace.
 
 use std::error::Error;
+use std::sync::LazyLock;
 
+use fmm_fit::{Options, Refit, Residuals, solve};
 use fmm_friction::Coulomb;
+use fmm_identify::MachineProblem;
 use fmm_model::{Damping, Oscillator};
-use fmm_sim::{Channels, Engine, Exact, Sampling, Scenario};
+use fmm_record::{Quantity, Record};
+use fmm_sim::{Engine, Exact, Sampling, Scenario};
 use fmm_uq::{Input, Inputs, UncertaintyError};
 
 /// Names and units of the outputs.
-pub(crate) const OUTPUTS: [(&str, &str); 2] = [("stop_time", "s"), ("rest_position", "m")];
+pub(crate) const OUTPUTS: [(&str, &str); 2] = [("coefficient", "1"), ("position", "m")];
 
-/// Mass, stiffness and damping of the machine, as nine records at different amplitudes have them together.
+/// Mass, stiffness and damping with the uncertainties of the thesis' Table 2.
 pub(crate) fn inputs() -> Result<Inputs, UncertaintyError> {
     Inputs::new([
         Input::new("mass", 10.391, 0.0049, "kg")?,
         Input::new("stiffness", 1982.0, 1.3, "N/m")?,
         Input::new("damping", 0.275, 0.0341, "N s/m")?,
-    ])?
-    .with_correlations(&[
-        ("mass", "stiffness", -0.84),
-        ("mass", "damping", -0.89),
-        ("stiffness", "damping", 0.95),
     ])
 }
 
-/// When and where Coulomb friction of μ = 0.15 at 7.2 N stops the machine that passes its middle at 0.101 m/s.
-pub(crate) fn evaluate(x: &[f64]) -> Result<[f64; 2], Box<dyn Error + Send + Sync>> {
-    let &[mass, stiffness, damping] = x else { return Err("the model takes mass, stiffness and damping".into()) };
-    let machine = Oscillator::new(mass, stiffness)?.with_damping(Damping::linear(damping)?);
+/// The fit of a simulated ring-down: coefficient of friction 0.15 at 7.2 N, and initial position.
+static PROBLEM: LazyLock<Result<MachineProblem<Coulomb>, String>> =
+    LazyLock::new(|| problem().map_err(|error| error.to_string()));
+
+/// The same, prepared to be repeated with other machines.
+static REFIT: LazyLock<Result<Refit<'static, MachineProblem<Coulomb>>, String>> = LazyLock::new(|| {
+    let problem = PROBLEM.as_ref().map_err(String::clone)?;
+    let fit = solve(problem, problem.values(), &Options::default()).map_err(|error| error.to_string())?;
+    Refit::prepare(problem, &fit).map_err(|error| error.to_string())
+});
+
+fn problem() -> Result<MachineProblem<Coulomb>, Box<dyn Error>> {
+    let machine = Oscillator::new(10.391, 1982.0)?.with_damping(Damping::linear(0.275)?);
     let scenario = Scenario::new(machine, Coulomb::new(0.15)?, 7.2)?.starting_at(0.0, 0.101)?;
-    let sampling = Sampling::uniform(1e-3, 2501)?.keeping(Channels::Velocity);
-    let motion = Exact.run(&scenario, &sampling)?;
-    let rest = motion.rest().ok_or("the machine is still moving after 2.5 s")?;
-    Ok([rest.time, rest.position])
+    let velocity = Exact.run(&scenario, &Sampling::uniform(1e-3, 1501)?)?.velocity().values().to_vec();
+    let record = Record::new(0.0, 1e-3, velocity, Quantity::Velocity, "m/s")?;
+    let values = [
+        ("mass", 10.391),
+        ("stiffness", 1982.0),
+        ("damping", 0.275),
+        ("normal_load", 7.2),
+        ("coefficient", 0.15),
+        ("initial_velocity", 0.101),
+    ];
+    Ok(MachineProblem::new(&record, &values)?.free("coefficient")?.free("initial_position")?)
+}
+
+/// Coefficient and position that the record gives on a machine of this mass, stiffness and damping.
+pub(crate) fn evaluate(x: &[f64]) -> Result<Vec<f64>, Box<dyn Error + Send + Sync>> {
+    let refit = REFIT.as_ref().map_err(String::as_str)?;
+    let problem = PROBLEM.as_ref().map_err(String::as_str)?;
+    // The machine's three come first; what else was held stays.
+    let mut inputs = x.to_vec();
+    let held = problem.parameters().iter().zip(problem.values()).filter(|(parameter, _)| parameter.bounds().is_fixed());
+    inputs.extend(held.skip(x.len()).map(|(_, value)| value));
+    Ok(refit.estimates(&inputs)?)
 }
