@@ -241,20 +241,12 @@ fn thesis_fit(criterion: &mut Criterion) {
 /// Fits of `problem` on other machines, as a Monte Carlo calculation repeats them.
 fn repeat<F: Simulated>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, problem: &MachineProblem<F>) {
     let fit = solve(problem, problem.values(), &Options::default()).expect("valid");
+    let varying = [("mass", 10.391, 0.0049), ("stiffness", 1982.0, 1.3), ("damping", 0.275, 0.0341)];
     let refit = Refit::prepare(problem, &fit).expect("a minimum");
-    let value = |input: &Parameter| {
-        let place = problem.parameters().iter().position(|parameter| parameter == input);
-        problem.values()[place.expect("one of the problem")]
-    };
-    let nominal: Vec<f64> = refit.inputs().map(value).collect();
+    let refit = refit.varying(&varying.map(|(name, ..)| name)).expect("held in the fit");
     let mut generator = ChaCha8Rng::seed_from_u64(4);
-    let mut machine = || {
-        let mut inputs = nominal.clone();
-        for (input, u) in inputs.iter_mut().zip([0.0049, 1.3, 0.0341]) {
-            *input += u * Distribution::<f64>::sample(&StandardNormal, &mut generator);
-        }
-        inputs
-    };
+    let mut drawn = |value: f64, u: f64| value + u * Distribution::<f64>::sample(&StandardNormal, &mut generator);
+    let mut machine = || varying.map(|(_, value, u)| drawn(value, u)).to_vec();
     let machines: Vec<Vec<f64>> = (0..256).map(|_| machine()).collect();
     let mut next = machines.iter().cycle();
     group.bench_function(name, |bencher| {

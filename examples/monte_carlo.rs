@@ -121,7 +121,7 @@ fn rows(
     title: &str,
     trials: u64,
     seed: u64,
-    model: impl Fn(&[f64]) -> Result<[f64; 2], Failure> + Sync,
+    model: impl Fn(&[f64]) -> Result<Vec<f64>, Failure> + Sync,
 ) -> Found<Vec<Row>> {
     let bar = ProgressBar::new(4 * trials);
     bar.set_style(ProgressStyle::with_template("{prefix} {wide_bar} {pos}/{len} fits, {eta} left")?);
@@ -143,25 +143,24 @@ fn rows(
 
 /// Coefficient and initial position by the thesis' Euler motion. Its sum of squares jumps wherever a stop moves to
 /// another sample, so that one start alone, the thesis' own, ends beside the minimum; `kicks` more find it.
-fn parity_model(problem: &MachineProblem<Coulomb>, kicks: usize, values: &[f64]) -> Result<[f64; 2], Failure> {
+fn parity_model(problem: &MachineProblem<Coulomb>, kicks: usize, values: &[f64]) -> Result<Vec<f64>, Failure> {
     let held = Held::new(problem, values.iter().copied().enumerate())?;
     let mut start = problem.values().to_vec();
     start[..values.len()].copy_from_slice(values);
-    let mut reach = vec![0.0; start.len()];
-    let (coefficient, position) = (index(problem, "coefficient"), index(problem, "initial_position"));
-    (reach[coefficient], reach[position]) = (5e-4, 5e-5);
+    let reach = problem.parameters().iter().map(|parameter| match parameter.name() {
+        "coefficient" => 5e-4,
+        "initial_position" => 5e-5,
+        _ => 0.0,
+    });
     // A search that ends at a jump does not get further with another radius, but from another start.
     let options =
         Options::default().with_restarts(0).with_polish_steps(0).with_cost_tolerance(1e-9).with_step_tolerance(1e-8);
-    let search = MultiStart::default().with_starts(1).with_kicks(1, kicks).with_reach(reach).with_options(options);
+    let search =
+        MultiStart::default().with_starts(1).with_kicks(1, kicks).with_reach(reach.collect()).with_options(options);
     let minima = search.solve(&held, &start)?;
     let best = minima.best().or(minima.unfinished()).ok_or("no fit came to an end")?;
-    Ok([best.values()[coefficient], best.values()[position]])
-}
-
-/// The place of a parameter; the names are this file's own.
-fn index(problem: &impl Residuals, name: &str) -> usize {
-    problem.parameters().iter().position(|parameter| parameter.name() == name).unwrap_or(0)
+    let found = |name| best.estimate(name).map(fmm_fit::Estimate::value).ok_or("no such parameter");
+    Ok(vec![found("coefficient")?, found("initial_position")?])
 }
 
 /// Everything that is shown.
@@ -181,20 +180,10 @@ fn table_3(arguments: &Arguments) -> Found<Table3> {
     let sensitivity = Sensitivity::of(&exact, &fit)?;
     let by = |input: &str| sensitivity.coefficient_of("coefficient", input).ok_or("the coefficient is not determined");
     let coefficients = [by("mass")?, by("stiffness")?, by("damping")?, by("normal_load")?];
-    let refit = Refit::prepare(&exact, &fit)?;
-    let names: Vec<&str> = refit.inputs().map(fmm_model::Parameter::name).collect();
-    let places = MACHINE.map(|(name, ..)| names.iter().position(|other| *other == name).unwrap_or(0));
-    let nominal: Vec<f64> = refit.inputs().map(|input| exact.values()[index(&exact, input.name())]).collect();
+    let refit = Refit::prepare(&exact, &fit)?.varying(&MACHINE.map(|(name, ..)| name))?;
     let (trials, parity_trials) =
         if arguments.quick { (2000, 200) } else { (arguments.trials, arguments.parity_trials) };
-    let found = rows("exact motion ", trials, arguments.seed, |x| {
-        let mut inputs = nominal.clone();
-        for (&place, value) in places.iter().zip(x) {
-            inputs[place] = *value;
-        }
-        let estimates = refit.estimates(&inputs)?;
-        Ok([estimates[0], estimates[1]])
-    })?;
+    let found = rows("exact motion ", trials, arguments.seed, |x| Ok(refit.estimates(x)?))?;
     let euler = problem(&Thesis::A3)?.by_thesis();
     let parity = rows("thesis' motion", parity_trials, arguments.seed, |x| parity_model(&euler, 0, x))?;
     let restarted =

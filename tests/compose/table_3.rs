@@ -29,10 +29,10 @@ fn problem(engine: &impl Engine<f64, Coulomb>) -> MachineProblem<Coulomb> {
     problem.free_within("initial_position", Bounds::new(-3e-3, 3e-3).unwrap()).unwrap()
 }
 
-/// All inputs of a refit, the first three of which are those of the machine.
-fn machine(x: &[f64]) -> Vec<f64> {
-    // Quadratic damping, load, initial velocity and offset stay.
-    [x, &[0.0, LOAD, 0.101, 0.0]].concat()
+/// The fit prepared for other masses, stiffnesses and dampings.
+fn refit(problem: &MachineProblem<Coulomb>) -> Refit<'_, MachineProblem<Coulomb>> {
+    let fit = solve(problem, problem.values(), &Options::default()).unwrap();
+    Refit::prepare(problem, &fit).unwrap().varying(&MACHINE.map(|(name, ..)| name)).unwrap()
 }
 
 fn inputs(row: usize) -> Inputs {
@@ -61,16 +61,11 @@ fn sensitivities_are_the_corrected_ones_and_obey_the_scale_identity() {
 #[test]
 fn refits_have_the_uncertainties_of_the_reference() {
     let problem = problem(&Exact);
-    let fit = solve(&problem, problem.values(), &Options::default()).unwrap();
-    let refit = Refit::prepare(&problem, &fit).unwrap();
-    assert_eq!(
-        refit.inputs().map(fmm_model::Parameter::name).collect::<Vec<_>>()[..3],
-        ["mass", "stiffness", "damping"]
-    );
+    let refit = refit(&problem);
     let trials = 20_000;
     for (row, exact) in EXACT.into_iter().enumerate() {
         let run = MonteCarlo::new(&inputs(row), trials).unwrap().with_seed(1);
-        let sample = run.run(|x| refit.estimates(&machine(x))).unwrap();
+        let sample = run.run(|x| refit.estimates(x)).unwrap();
         let u = sample.standard_uncertainty(0).unwrap();
         // The standard error of a standard deviation is u/√(2 M); five of them, and half a percent for what is not linear.
         let tolerance = exact * (5.0 / (2.0 * trials as f64).sqrt() + 0.005);
@@ -82,14 +77,13 @@ fn refits_have_the_uncertainties_of_the_reference() {
 #[test]
 fn a_refit_ends_where_a_fit_does_whoever_asked_before() {
     let problem = problem(&Exact);
-    let fit = solve(&problem, problem.values(), &Options::default()).unwrap();
-    let refit = Refit::prepare(&problem, &fit).unwrap();
+    let refit = refit(&problem);
     // Up to ten standard uncertainties away.
     let away =
         |i: usize| MACHINE.map(|(_, value, u)| value + u * 10.0 * ((i as f64 * 0.618_034 * value).fract() - 0.5));
-    let first: Vec<Vec<f64>> = (0..40).map(|i| refit.estimates(&machine(&away(i))).unwrap()).collect();
+    let first: Vec<Vec<f64>> = (0..40).map(|i| refit.estimates(&away(i)).unwrap()).collect();
     for (i, estimates) in first.iter().enumerate().rev() {
-        assert_eq!(&refit.estimates(&machine(&away(i))).unwrap(), estimates, "refit {i} depends on the others");
+        assert_eq!(&refit.estimates(&away(i)).unwrap(), estimates, "refit {i} depends on the others");
         let held = Held::new(&problem, away(i).into_iter().enumerate()).unwrap();
         let mut start = problem.values().to_vec();
         start[..3].copy_from_slice(&away(i));
@@ -103,9 +97,12 @@ fn a_refit_ends_where_a_fit_does_whoever_asked_before() {
             assert!((value - expected).abs() < tolerance, "refit {i}: {value} instead of {expected}");
         }
     }
+    let unknown = Refit::prepare(&problem, &solve(&problem, problem.values(), &Options::default()).unwrap()).unwrap();
+    let error = unknown.varying(&["mass", "coefficient"]).unwrap_err().to_string();
+    assert!(error.starts_with("\"coefficient\" was not held in the fit; what was held: mass, stiffness,"), "{error}");
     assert!(refit.estimates(&[1.0]).is_err());
-    assert!(refit.estimates(&machine(&[f64::NAN, 1982.0, 0.275])).is_err());
-    assert!(refit.estimates(&machine(&[-10.0, 1982.0, 0.275])).is_err());
+    assert!(refit.estimates(&[f64::NAN, 1982.0, 0.275]).is_err());
+    assert!(refit.estimates(&[-10.0, 1982.0, 0.275]).is_err());
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::sync::LazyLock;
 
-use fmm_fit::{Options, Refit, Residuals, solve};
+use fmm_fit::{Options, Refit, solve};
 use fmm_friction::Coulomb;
 use fmm_identify::MachineProblem;
 use fmm_model::{Damping, Oscillator};
@@ -31,7 +31,8 @@ static PROBLEM: LazyLock<Result<MachineProblem<Coulomb>, String>> =
 static REFIT: LazyLock<Result<Refit<'static, MachineProblem<Coulomb>>, String>> = LazyLock::new(|| {
     let problem = PROBLEM.as_ref().map_err(String::clone)?;
     let fit = solve(problem, problem.values(), &Options::default()).map_err(|error| error.to_string())?;
-    Refit::prepare(problem, &fit).map_err(|error| error.to_string())
+    let refit = Refit::prepare(problem, &fit).map_err(|error| error.to_string())?;
+    refit.varying(&["mass", "stiffness", "damping"]).map_err(|error| error.to_string())
 });
 
 fn problem() -> Result<MachineProblem<Coulomb>, Box<dyn Error>> {
@@ -52,11 +53,5 @@ fn problem() -> Result<MachineProblem<Coulomb>, Box<dyn Error>> {
 
 /// Coefficient and position that the record gives on a machine of this mass, stiffness and damping.
 pub(crate) fn evaluate(x: &[f64]) -> Result<Vec<f64>, Box<dyn Error + Send + Sync>> {
-    let refit = REFIT.as_ref().map_err(String::as_str)?;
-    let problem = PROBLEM.as_ref().map_err(String::as_str)?;
-    // The machine's three come first; what else was held stays.
-    let mut inputs = x.to_vec();
-    let held = problem.parameters().iter().zip(problem.values()).filter(|(parameter, _)| parameter.bounds().is_fixed());
-    inputs.extend(held.skip(x.len()).map(|(_, value)| value));
-    Ok(refit.estimates(&inputs)?)
+    Ok(REFIT.as_ref().map_err(String::as_str)?.estimates(x)?)
 }

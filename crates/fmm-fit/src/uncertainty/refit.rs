@@ -111,6 +111,25 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
         })
     }
 
+    /// The same with these inputs only, in this order and each once; the others keep the values that they had in the fit.
+    ///
+    /// # Errors
+    /// [`RefitError::NoInput`] for a name that was not held in the fit.
+    pub fn varying(mut self, names: &[&str]) -> Result<Self, RefitError> {
+        let mut places = Vec::with_capacity(names.len());
+        for name in names {
+            let place = self.inputs().position(|input| input.name() == *name);
+            places.push(place.ok_or_else(|| RefitError::NoInput {
+                name: (*name).to_owned(),
+                inputs: self.inputs().map(Parameter::name).collect::<Vec<_>>().join(", "),
+            })?);
+        }
+        let rows = self.coefficients.chunks_exact(self.inputs.len().max(1));
+        self.coefficients = rows.flat_map(|row| places.iter().map(|&place| row[place])).collect();
+        self.inputs = places.iter().map(|&place| self.inputs[place]).collect();
+        Ok(self)
+    }
+
     /// The same with other options for the fits that the short way does not reach.
     #[must_use]
     pub fn with_options(mut self, options: Options) -> Self {

@@ -8,6 +8,14 @@ use crate::{FitError, Outcome};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RefitError {
+    /// There is no input of this name.
+    #[error("{name:?} was not held in the fit; what was held: {inputs}")]
+    NoInput {
+        /// The name given.
+        name: String,
+        /// The names there are.
+        inputs: String,
+    },
     /// There is not one value for each input.
     #[error("{given} values were given for {inputs} inputs")]
     InputCount {
