@@ -2,7 +2,8 @@
 
 use fmm_model::{Bounds, ModelError, Parameter};
 
-use crate::{Block, EvaluationError, Residuals};
+use crate::Residuals;
+use crate::problem::forward::{forward_shape, forward_values};
 
 /// A problem with some parameters held at values, whatever their bounds.
 ///
@@ -59,36 +60,9 @@ impl<'a, P: Residuals + ?Sized> Held<'a, P> {
 }
 
 impl<P: Residuals + ?Sized> Residuals for Held<'_, P> {
+    forward_shape!(self => self.problem);
+    forward_values!(self => self.problem);
     fn parameters(&self) -> &[Parameter] {
         &self.parameters
-    }
-    fn len(&self) -> usize {
-        self.problem.len()
-    }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        self.problem.residuals(p, residuals)
-    }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        self.problem.jacobian(p, jacobian)
-    }
-    fn residuals_and_jacobian(
-        &self,
-        p: &[f64],
-        residuals: &mut [f64],
-        jacobian: &mut [f64],
-    ) -> Result<bool, EvaluationError> {
-        self.problem.residuals_and_jacobian(p, residuals, jacobian)
-    }
-    fn is_cheaper_combined(&self) -> bool {
-        self.problem.is_cheaper_combined()
-    }
-    fn blocks(&self) -> &[Block] {
-        self.problem.blocks()
-    }
-    fn block_residuals(&self, block: usize, p: &[f64], residuals: &mut [f64]) -> Result<bool, EvaluationError> {
-        self.problem.block_residuals(block, p, residuals)
-    }
-    fn fills_fixed_columns(&self) -> bool {
-        self.problem.fills_fixed_columns()
     }
 }

@@ -2,6 +2,7 @@
 
 mod automatic;
 pub(crate) mod block;
+pub(crate) mod forward;
 mod held;
 mod joint;
 mod joint_error;

@@ -6,6 +6,7 @@ use std::fmt;
 use fmm_model::Parameter;
 
 use crate::Block;
+use crate::problem::forward::{forward_shape, forward_values};
 
 /// A least-squares problem: residuals as a function of parameters, and their derivatives if they are known.
 ///
@@ -151,37 +152,10 @@ pub trait Residuals {
 }
 
 impl<T: Residuals + ?Sized> Residuals for &T {
+    forward_shape!(self => (**self));
+    forward_values!(self => (**self));
     fn parameters(&self) -> &[Parameter] {
         (**self).parameters()
-    }
-    fn len(&self) -> usize {
-        (**self).len()
-    }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        (**self).residuals(p, residuals)
-    }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        (**self).jacobian(p, jacobian)
-    }
-    fn residuals_and_jacobian(
-        &self,
-        p: &[f64],
-        residuals: &mut [f64],
-        jacobian: &mut [f64],
-    ) -> Result<bool, EvaluationError> {
-        (**self).residuals_and_jacobian(p, residuals, jacobian)
-    }
-    fn is_cheaper_combined(&self) -> bool {
-        (**self).is_cheaper_combined()
-    }
-    fn blocks(&self) -> &[Block] {
-        (**self).blocks()
-    }
-    fn block_residuals(&self, block: usize, p: &[f64], residuals: &mut [f64]) -> Result<bool, EvaluationError> {
-        (**self).block_residuals(block, p, residuals)
-    }
-    fn fills_fixed_columns(&self) -> bool {
-        (**self).fills_fixed_columns()
     }
 }
 

@@ -3,6 +3,7 @@
 use fmm_model::Parameter;
 
 use crate::problem::block::scale_rows;
+use crate::problem::forward::forward_shape;
 use crate::{Block, EvaluationError, FitError, Residuals};
 
 /// A problem whose residuals are divided by their standard uncertainties.
@@ -89,11 +90,9 @@ impl<P: Residuals> Weighted<P> {
 }
 
 impl<P: Residuals> Residuals for Weighted<P> {
+    forward_shape!(self => self.problem);
     fn parameters(&self) -> &[Parameter] {
         self.problem.parameters()
-    }
-    fn len(&self) -> usize {
-        self.problem.len()
     }
     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
         self.problem.residuals(p, residuals)?;
@@ -120,20 +119,11 @@ impl<P: Residuals> Residuals for Weighted<P> {
         }
         Ok(is_exact)
     }
-    fn is_cheaper_combined(&self) -> bool {
-        self.problem.is_cheaper_combined()
-    }
-    fn blocks(&self) -> &[Block] {
-        self.problem.blocks()
-    }
     fn block_residuals(&self, block: usize, p: &[f64], residuals: &mut [f64]) -> Result<bool, EvaluationError> {
         let has_blocks = self.problem.block_residuals(block, p, residuals)?;
         if has_blocks {
             self.divide(self.blocks()[..block].iter().map(Block::rows).sum(), residuals);
         }
         Ok(has_blocks)
-    }
-    fn fills_fixed_columns(&self) -> bool {
-        self.problem.fills_fixed_columns()
     }
 }

@@ -3,7 +3,8 @@
 use fmm_model::Parameter;
 
 use crate::problem::block::scale_rows;
-use crate::{Block, EvaluationError, FitError, Loss, Residuals};
+use crate::problem::forward::forward_shape;
+use crate::{EvaluationError, FitError, Loss, Residuals};
 
 /// Residuals this many scales away and more count alike, so that their squares stay finite.
 const FAR: f64 = 1e150;
@@ -112,11 +113,9 @@ impl<P: Residuals> Robust<P> {
 }
 
 impl<P: Residuals> Residuals for Robust<P> {
+    forward_shape!(self => self.problem);
     fn parameters(&self) -> &[Parameter] {
         self.problem.parameters()
-    }
-    fn len(&self) -> usize {
-        self.problem.len()
     }
     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
         self.problem.residuals(p, residuals)?;
@@ -136,20 +135,11 @@ impl<P: Residuals> Residuals for Robust<P> {
         self.replace(residuals, is_exact.then_some(jacobian));
         Ok(is_exact)
     }
-    fn is_cheaper_combined(&self) -> bool {
-        self.problem.is_cheaper_combined()
-    }
-    fn blocks(&self) -> &[Block] {
-        self.problem.blocks()
-    }
     fn block_residuals(&self, block: usize, p: &[f64], residuals: &mut [f64]) -> Result<bool, EvaluationError> {
         let has_blocks = self.problem.block_residuals(block, p, residuals)?;
         if has_blocks {
             self.replace(residuals, None);
         }
         Ok(has_blocks)
-    }
-    fn fills_fixed_columns(&self) -> bool {
-        self.problem.fills_fixed_columns()
     }
 }

@@ -1,0 +1,49 @@
+//! What a wrapper of a problem hands on unchanged, so that no wrapper forgets a part of it.
+
+/// Hands on the shape of a problem, for a wrapper that changes values only: `forward_shape!(self => self.problem)`.
+macro_rules! forward_shape {
+    ($self:ident => $inner:expr) => {
+        fn len(&$self) -> usize {
+            $inner.len()
+        }
+        fn is_cheaper_combined(&$self) -> bool {
+            $inner.is_cheaper_combined()
+        }
+        fn blocks(&$self) -> &[$crate::Block] {
+            $inner.blocks()
+        }
+        fn fills_fixed_columns(&$self) -> bool {
+            $inner.fills_fixed_columns()
+        }
+    };
+}
+
+/// Hands on the values of a problem and their derivatives.
+macro_rules! forward_values {
+    ($self:ident => $inner:expr) => {
+        fn residuals(&$self, p: &[f64], residuals: &mut [f64]) -> Result<(), $crate::EvaluationError> {
+            $inner.residuals(p, residuals)
+        }
+        fn jacobian(&$self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, $crate::EvaluationError> {
+            $inner.jacobian(p, jacobian)
+        }
+        fn residuals_and_jacobian(
+            &$self,
+            p: &[f64],
+            residuals: &mut [f64],
+            jacobian: &mut [f64],
+        ) -> Result<bool, $crate::EvaluationError> {
+            $inner.residuals_and_jacobian(p, residuals, jacobian)
+        }
+        fn block_residuals(
+            &$self,
+            block: usize,
+            p: &[f64],
+            residuals: &mut [f64],
+        ) -> Result<bool, $crate::EvaluationError> {
+            $inner.block_residuals(block, p, residuals)
+        }
+    };
+}
+
+pub(crate) use {forward_shape, forward_values};
