@@ -49,6 +49,13 @@ fn leading(word: &[u8]) -> Option<(f64, usize)> {
     let digits = |from: usize| word[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
     let sign = |at: usize| usize::from(matches!(word.get(at), Some(b'+' | b'-')));
     let mut end = sign(0);
+    // What is no number fills little of its field, so that a number that fills the whole of the next one touches it.
+    for (name, value) in [(b"NaN", f64::NAN), (b"inf", f64::INFINITY)] {
+        let after = end + name.len();
+        if word.get(end..after).is_some_and(|text| text.eq_ignore_ascii_case(name)) && sign(after) == 1 {
+            return Some((if word[0] == b'-' { -value } else { value }, after));
+        }
+    }
     let whole = digits(end);
     end += whole;
     let mut fraction = 0;
@@ -96,8 +103,11 @@ mod tests {
         assert_eq!(all("2.99110e-02-10.00000e-05-1.0E-003-2.0").unwrap(), [0.029_911, -1e-4, -1e-3, -2.0]);
         assert_eq!(all("-1.5-2.5").unwrap(), [-1.5, -2.5]);
         assert!(all("NaN").unwrap()[0].is_nan());
+        let touching = all("NaN-1.757388200993E+159").unwrap();
+        assert!(touching[0].is_nan() && touching[1..] == [-1.757_388_200_993e159], "{touching:?}");
+        assert_eq!(all("-inf-1.0E+100 inf+1.0").unwrap(), [f64::NEG_INFINITY, -1e100, f64::INFINITY, 1.0]);
         assert_eq!(all("").unwrap(), [0.0; 0]);
-        for line in ["abc", "1.5x", "*************", "1.5E", "1,5", "-", ".", "--1", "1.5E+-2"] {
+        for line in ["abc", "1.5x", "*************", "1.5E", "1,5", "-", ".", "--1", "1.5E+-2", "NaN1.5", "in-1.5"] {
             assert_eq!(all(line), Err(line.to_owned()), "{line}");
         }
     }
