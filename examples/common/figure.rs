@@ -124,6 +124,11 @@ impl Panel {
 /// # Errors
 /// If the file cannot be written.
 pub(crate) fn stacked(path: &Path, panels: &[Panel]) -> std::io::Result<()> {
+    std::fs::write(path, drawn(panels))
+}
+
+/// Panels one below the other, as SVG.
+pub(crate) fn drawn(panels: &[Panel]) -> String {
     let heights: Vec<f64> = panels.iter().map(|panel| panel.height).collect();
     let mut grid = Grid::new(panels.len(), 1)
         .with_plots(panels.iter().map(Panel::plots).collect())
@@ -133,7 +138,7 @@ pub(crate) fn stacked(path: &Path, panels: &[Panel]) -> std::io::Result<()> {
     for (row, height) in heights.into_iter().enumerate() {
         grid = grid.with_row_height(row, height);
     }
-    std::fs::write(path, SvgBackend.render_scene(&grid.render()))
+    SvgBackend.render_scene(&grid.render())
 }
 
 /// Draws the histogram of `values` with the normal density of the same mean and standard deviation.
@@ -141,6 +146,11 @@ pub(crate) fn stacked(path: &Path, panels: &[Panel]) -> std::io::Result<()> {
 /// # Errors
 /// If the file cannot be written.
 pub(crate) fn histogram(path: &Path, x_label: &str, name: &str, values: &[f64]) -> std::io::Result<()> {
+    std::fs::write(path, drawn_histogram(x_label, name, values))
+}
+
+/// The histogram of `values` with the normal density of the same mean and standard deviation, as SVG.
+pub(crate) fn drawn_histogram(x_label: &str, name: &str, values: &[f64]) -> String {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     let deviation = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt();
@@ -180,7 +190,7 @@ pub(crate) fn histogram(path: &Path, x_label: &str, name: &str, values: &[f64]) 
         .with_force_margins(MARGINS.0, MARGINS.1)
         .with_y_tick_format(ticks(top));
     let grid = Grid::new(1, 1).with_plots(vec![plots]).with_layouts(vec![layout]).with_keep_panel_legends();
-    std::fs::write(path, SvgBackend.render_scene(&grid.with_cell_size(0.7 * WIDTH, 380.0).render()))
+    SvgBackend.render_scene(&grid.with_cell_size(0.7 * WIDTH, 380.0).render())
 }
 
 /// Fonts, frame and legend that all figures share.

@@ -1,0 +1,22 @@
+//! The thesis, chapter by chapter: what it prints, what we find, and where the two differ.
+//!
+//! One module per chapter, each a function from [`Settings`] to a [`Chapter`]: targets with their criteria, tables of
+//! printed values beside ours, figures, and findings. The examples print chapters, the report collects them, the
+//! tests assert their targets. No raw data of the thesis are published: what is simulated is called so ([`Kind`]).
+
+mod chapter;
+#[path = "../../common/figure.rs"]
+#[expect(dead_code, reason = "other examples write files directly")]
+mod figure;
+pub mod printed;
+mod program;
+mod settings;
+mod target;
+
+pub use chapter::{Chapter, Drawing, Finding, Table};
+pub use program::program;
+pub use settings::Settings;
+pub use target::{Criterion, Kind, Target};
+
+/// What a chapter gives: it fails only if a computation cannot be done at all, not if a target is missed.
+pub type Found<T> = Result<T, Box<dyn std::error::Error + Send + Sync>>;
