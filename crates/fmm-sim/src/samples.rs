@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use fmm_model::Scalar;
+use fmm_model::{Scalar, widest};
 
 /// The samples of one quantity: one value each, and one column of partial derivatives per direction of the
 /// number type `D`.
@@ -59,18 +59,23 @@ impl<D: Scalar> Samples<D> {
         coefficients: &[D; N],
         theta: impl Fn(u32) -> f64,
     ) {
-        let fill = |out: &mut [f64], coefficients: [f64; N]| {
-            // Steps hold far fewer samples than a u32 counts, and its conversion is one that vectors have.
-            for (index, out) in (0u32..).zip(out) {
-                let theta = theta(index);
-                *out = coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * theta + coefficient);
-            }
-        };
-        fill(&mut self.values[range.clone()], coefficients.map(D::value));
-        for direction in 0..D::DIRECTIONS {
-            let column = &mut self.partial_mut(direction)[range.clone()];
-            fill(column, coefficients.map(|coefficient| coefficient.partial(direction)));
-        }
+        widest(
+            #[inline(always)]
+            || {
+                let fill = |out: &mut [f64], coefficients: [f64; N]| {
+                    // Steps hold far fewer samples than a u32 counts, and its conversion is one that vectors have.
+                    for (index, out) in (0u32..).zip(out) {
+                        let theta = theta(index);
+                        *out = coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * theta + coefficient);
+                    }
+                };
+                fill(&mut self.values[range.clone()], coefficients.map(D::value));
+                for direction in 0..D::DIRECTIONS {
+                    let column = &mut self.partial_mut(direction)[range.clone()];
+                    fill(column, coefficients.map(|coefficient| coefficient.partial(direction)));
+                }
+            },
+        );
     }
 
     /// Writes the same number at every index of `range`.

@@ -1,6 +1,7 @@
 //! How sure it is, beyond the covariance of independent residuals about a linear model.
 
 mod correlated;
+mod forecast;
 mod minimum;
 pub(crate) mod prediction;
 mod profile;

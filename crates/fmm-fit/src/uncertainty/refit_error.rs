@@ -24,6 +24,14 @@ pub enum RefitError {
         /// How many inputs there are.
         inputs: usize,
     },
+    /// An input cannot be expected to change by this.
+    #[error("{input} is expected to change by {spread}; a finite number of at least zero is needed")]
+    Spread {
+        /// Name of the input.
+        input: String,
+        /// The amount given.
+        spread: f64,
+    },
     /// An input is not finite.
     #[error("the input {input} has no valid value")]
     Input {

@@ -30,6 +30,8 @@ pub(super) struct Integrator<'a, D, L> {
     belt: D,
     /// 1/m.
     per_mass: D,
+    /// The damping coefficient, if damping is linear.
+    linear_damping: Option<D>,
     /// Whether any force acts from outside.
     is_driven: bool,
     tolerance: f64,
@@ -66,6 +68,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
             normal_load: scenario.normal_load(),
             belt: drive.belt(),
             per_mass: D::from(1.0) / oscillator.mass(),
+            linear_damping: oscillator.damping().is_linear().then(|| oscillator.damping().linear_coefficient()),
             is_driven: !scenario.excitations().is_empty(),
             tolerance,
             angular,
@@ -92,9 +95,13 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
 
     #[inline]
     fn acceleration(&self, phase: &Phase<D>, time: f64, state: State<D>) -> D {
-        let mut force = -self.friction(phase, state.velocity)
-            - self.oscillator.damping().force(state.velocity)
-            - self.oscillator.restoring_force(state.position);
+        // The other forms cost as much as everything else here together.
+        let damping = match self.linear_damping {
+            Some(coefficient) => state.velocity * coefficient,
+            None => self.oscillator.damping().force(state.velocity),
+        };
+        let mut force =
+            -self.friction(phase, state.velocity) - damping - self.oscillator.restoring_force(state.position);
         if self.is_driven {
             force = force + phase.piece.force(time);
         }
@@ -166,7 +173,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
             if !(crossed || turning && ending == Ending::RelativeRest) {
                 continue;
             }
-            let velocity = self.within(phase, at.time, step).velocity.map(|coefficient| coefficient.value() * sign);
+            let velocity = self.within(phase, at.time, step).velocity().map(|coefficient| coefficient.value() * sign);
             let mut guard = velocity;
             if ending == Ending::SteadySpeed {
                 let sign = Self::gain(phase) * sign;

@@ -22,11 +22,12 @@ pub(super) struct Step<D> {
     rates: [Rate<D>; 16],
 }
 
-/// x and v as polynomials in the part θ ∈ [0, 1] of a step: Σ cᵢ θⁱ.
+/// x and v as polynomials in the part θ ∈ [0, 1] of a step: y + θ (F₀ + (1−θ) (F₁ + θ (F₂ + (1−θ) (F₃ + …)))).
 #[derive(Clone, Copy)]
 pub(crate) struct Within<D> {
-    pub(crate) position: [D; COEFFICIENTS],
-    pub(crate) velocity: [D; COEFFICIENTS],
+    begin: State<D>,
+    /// F₀ to F₆.
+    nested: [State<D>; 7],
 }
 
 #[inline]
@@ -105,28 +106,25 @@ impl<D: Scalar> Step<D> {
             )+};
         }
         stages!(13: STAGE_13, 14: STAGE_14, 15: STAGE_15);
-        let higher = [
-            sum(&DENSE_0, &self.rates),
-            sum(&DENSE_1, &self.rates),
-            sum(&DENSE_2, &self.rates),
-            sum(&DENSE_3, &self.rates),
-        ];
-        let polynomial = |of: fn(State<D>) -> D| {
-            let (begin, end) = (of(self.begin), of(self.end));
-            let (first, last) = (of(self.rates[0]) * self.length, of(self.rates[12]) * self.length);
-            let rise = end - begin;
-            let nested = [
-                rise,
-                first - rise,
-                rise * 2.0 - (last + first),
-                of(higher[0]) * self.length,
-                of(higher[1]) * self.length,
-                of(higher[2]) * self.length,
-                of(higher[3]) * self.length,
-            ];
-            expand(begin, nested)
+        let length = self.length;
+        let (begin, end) = (self.begin, self.end);
+        let (first, last) = (self.rates[0], self.rates[12]);
+        let scaled = |rate: Rate<D>| State { position: rate.position * length, velocity: rate.velocity * length };
+        let lower = |of: fn(State<D>) -> D| {
+            let (rise, first, last) = (of(end) - of(begin), of(first) * length, of(last) * length);
+            [rise, first - rise, rise * 2.0 - (last + first)]
         };
-        Within { position: polynomial(|state| state.position), velocity: polynomial(|state| state.velocity) }
+        let (position, velocity) = (lower(|state| state.position), lower(|state| state.velocity));
+        let nested = [
+            State { position: position[0], velocity: velocity[0] },
+            State { position: position[1], velocity: velocity[1] },
+            State { position: position[2], velocity: velocity[2] },
+            scaled(sum(&DENSE_0, &self.rates)),
+            scaled(sum(&DENSE_1, &self.rates)),
+            scaled(sum(&DENSE_2, &self.rates)),
+            scaled(sum(&DENSE_3, &self.rates)),
+        ];
+        Within { begin, nested }
     }
 }
 
@@ -147,15 +145,30 @@ fn expand<D: Scalar>(start: D, nested: [D; 7]) -> [D; COEFFICIENTS] {
 }
 
 impl<D: Scalar> Within<D> {
+    /// Σ cᵢ θⁱ for the position.
+    pub(crate) fn position(&self) -> [D; COEFFICIENTS] {
+        expand(self.begin.position, self.nested.map(|term| term.position))
+    }
+
+    /// Σ cᵢ θⁱ for the velocity.
+    pub(crate) fn velocity(&self) -> [D; COEFFICIENTS] {
+        expand(self.begin.velocity, self.nested.map(|term| term.velocity))
+    }
+
     /// The state at the part `theta` of the step.
     pub(crate) fn at(&self, theta: f64) -> State<D> {
-        State { position: horner(&self.position, theta), velocity: horner(&self.velocity, theta) }
+        let zero = State { position: D::from(0.0), velocity: D::from(0.0) };
+        let sum = (0..self.nested.len()).rev().fold(zero, |sum, index| {
+            // Times θ for even, times 1 − θ for odd terms.
+            let weight = if index % 2 == 0 { theta } else { 1.0 - theta };
+            let term = self.nested[index];
+            State {
+                position: (sum.position + term.position) * weight,
+                velocity: (sum.velocity + term.velocity) * weight,
+            }
+        });
+        State { position: self.begin.position + sum.position, velocity: self.begin.velocity + sum.velocity }
     }
-}
-
-/// Σ cᵢ θⁱ.
-fn horner<D: Scalar>(coefficients: &[D; COEFFICIENTS], theta: f64) -> D {
-    coefficients.iter().rev().fold(D::from(0.0), |sum, coefficient| sum * theta + *coefficient)
 }
 
 /// The first θ in (0, 1] at which the polynomial, positive before it, reaches zero; none if it stays positive.
