@@ -1,8 +1,9 @@
 //! The frequency response of an impact test: `cargo run --release --example frf -- FILES...`.
 //!
-//! Each file is one trial with a channel of force and one of the response (CSV, TSV or MATLAB v5 to v7). Prints the
-//! impulses, the resonances with frequency, damping and coherence, and what is doubtful; with `--json` one document
-//! with all lines of H1, H2 and coherence. Without files it runs on three bundled hammer records. `--help` lists the options.
+//! Each file is one trial with a channel of force and one of the response: CSV, TSV, MATLAB, Universal File (data sets 58)
+//! or NumPy. Prints the impulses, the resonances with frequency, damping and coherence, and what is doubtful; with `--json`
+//! one document with all lines of H1, H2 and coherence. Without files it runs on three bundled hammer records. `--help`
+//! lists the options.
 
 #[path = "frf/analysis.rs"]
 mod analysis;
@@ -11,6 +12,8 @@ mod analysis;
 mod figure;
 #[path = "frf/figures.rs"]
 mod figures;
+#[path = "frf/source.rs"]
+mod source;
 #[path = "frf/trials.rs"]
 mod trials;
 
@@ -30,9 +33,11 @@ use trials::{Choice, Trial};
 #[derive(Debug, Parser)]
 #[command(name = "frf", allow_negative_numbers = true)]
 struct Arguments {
-    /// The trials: .csv, .tsv, .txt or .mat, all of one rate and length; without any, three bundled hammer records
+    /// The trials: .csv, .tsv, .txt, .mat, .uff, .unv, .58, .npy or .npz, all of one rate and length; without any, three
+    /// bundled hammer records
     files: Vec<PathBuf>,
-    /// The channel with the force, by name or by number counted from 0 without time; as in data(:,2) for a MATLAB matrix
+    /// The channel with the force, by name or by number counted from 0 without time; as in data(:,2) for a matrix of
+    /// MATLAB, data[1] or data[:,1] for one of NumPy
     #[arg(long, value_name = "NAME|INDEX")]
     force: Option<String>,
     /// The channel with the response
@@ -41,12 +46,12 @@ struct Arguments {
     /// What the response is; velocity for files, and acceleration for the bundled records
     #[arg(long, value_enum)]
     quantity: Option<Measured>,
-    /// Factor that turns the force into N
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
-    force_scale: f64,
-    /// Factor that turns the response into SI units
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
-    response_scale: f64,
+    /// Factor that turns the force into N; needed if the file states another unit
+    #[arg(long, value_name = "FACTOR")]
+    force_scale: Option<f64>,
+    /// Factor that turns the response into SI units; needed if the file states others
+    #[arg(long, value_name = "FACTOR")]
+    response_scale: Option<f64>,
     /// The sampling rate, if there is no time channel
     #[arg(long, value_name = "HZ")]
     rate: Option<f64>,

@@ -10,7 +10,7 @@ use fmm_frf::{
 };
 use fmm_record::{Record, saturation};
 
-use crate::trials::Trial;
+use super::trials::Trial;
 
 /// Samples before and after the highest one over which the force is integrated, if the pulse itself is not longer.
 const AROUND: (usize, usize) = (40, 60);
@@ -127,6 +127,7 @@ fn quiet(peak: usize, length: usize) -> Range<usize> {
 /// What makes a trial doubtful.
 fn doubts(trial: &Trial, pulse: &Pulse, window: Window, warnings: &mut Vec<String>) {
     let name = &trial.name;
+    warnings.extend(trial.warnings.iter().map(|warning| format!("{name}: {warning}")));
     for hit in &pulse.further_hits {
         warnings.push(format!("{name}: the hammer hit again at {:.5} s with {:.3} N", hit.time, hit.level));
     }

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use fmm_frf::{Complex64, FrequencyResponse};
 
-use crate::analysis::Analysis;
-use crate::figure::{self, Layer, Panel, Role};
-use crate::trials::Trial;
+use super::analysis::Analysis;
+use super::figure::{self, Layer, Panel, Role};
+use super::trials::Trial;
 
 /// Draws force and response, real and imaginary part, and magnitude with phase and coherence, into `folder`.
 ///

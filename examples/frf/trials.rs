@@ -3,9 +3,9 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use fmm_record::csv::CsvReader;
-use fmm_record::mat::{Array, Channel, MatFile, MatReader};
-use fmm_record::{Column, Quantity, Reading, Record};
+use fmm_record::{Quantity, Reading, Record};
+
+use super::source::{Offer, Source};
 
 /// One blow.
 pub(crate) struct Trial {
@@ -14,6 +14,8 @@ pub(crate) struct Trial {
     pub(crate) response: Record,
     /// Which channels they are and how the rate was found.
     pub(crate) origin: String,
+    /// What was not as it should be in the file.
+    pub(crate) warnings: Vec<String>,
 }
 
 /// Which channels to read, and in which unit.
@@ -21,8 +23,9 @@ pub(crate) struct Choice<'a> {
     pub(crate) force: Option<&'a str>,
     pub(crate) response: Option<&'a str>,
     pub(crate) quantity: Quantity,
-    pub(crate) force_scale: f64,
-    pub(crate) response_scale: f64,
+    /// From what the file holds to SI units; without a factor it must be in these.
+    pub(crate) force_scale: Option<f64>,
+    pub(crate) response_scale: Option<f64>,
     pub(crate) rate: Option<f64>,
 }
 
@@ -33,87 +36,92 @@ pub(crate) fn bundled() -> Vec<PathBuf> {
 }
 
 impl Choice<'_> {
-    /// Reads a file of comma, semicolon or tab separated text, or of MATLAB v5 to v7.
+    /// Reads the two channels of a file.
     pub(crate) fn read(&self, path: &Path) -> Result<Trial, Box<dyn Error>> {
-        let is_mat = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mat"));
-        let (force, response) = if is_mat { self.read_mat(path)? } else { self.read_text(path)? };
-        let name = path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into());
+        let source = Source::open(path, self.rate)?;
+        let (force, response) = self.channels(&source.offers()?)?;
+        let (force, response) = (source.read(&force, Quantity::Force)?, source.read(&response, self.quantity)?);
         let origin = format!("{} and {}; the sampling rate was {}", force.channel, response.channel, force.sampling);
+        let name = path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into());
         Ok(Trial {
             name,
             origin,
-            force: force.record.scaled(self.force_scale, "N")?,
-            response: response.record.scaled(self.response_scale, unit(self.quantity))?,
+            force: in_si(&force, Quantity::Force, self.force_scale, "--force-scale")?,
+            response: in_si(&response, self.quantity, self.response_scale, "--response-scale")?,
+            warnings: source.warnings(),
         })
     }
 
-    fn read_text(&self, path: &Path) -> Result<(Reading, Reading), Box<dyn Error>> {
-        let reader = || match self.rate {
-            Some(rate) => CsvReader::default().rate(rate),
-            None => CsvReader::default(),
-        };
-        let first = reader().read(path)?;
-        let time = first.time.as_deref();
-        let names: Vec<&str> = first.columns.iter().map(String::as_str).filter(|name| Some(*name) != time).collect();
-        let (force, response) = self.channels(&names)?;
-        let channel = |name: &str, quantity| reader().channel(Column::from(name)).quantity(quantity).read(path);
-        Ok((channel(&force, Quantity::Force)?, channel(&response, self.quantity)?))
-    }
-
-    fn read_mat(&self, path: &Path) -> Result<(Reading, Reading), Box<dyn Error>> {
-        let file = MatFile::read(path)?;
-        // Vectors by name, matrices column by column as MATLAB writes it; scalars are no channels.
-        let columns = |array: &Array| match array.dimensions() {
-            [rows, columns] if *rows > 1 && *columns > 1 => {
-                (1..=*columns).map(|column| Channel::column(array.name(), column).to_string()).collect()
+    /// The keys of the two channels: as given by name or number, else the first that is said to measure it, else the first
+    /// that is called so, else the first free one of which it is not known.
+    fn channels(&self, offers: &[Offer]) -> Result<(String, String), Box<dyn Error>> {
+        let all = || offers.iter().map(|offer| &offer.name[..]).collect::<Vec<_>>().join(", ");
+        let given = |choice: &str| {
+            if let Ok(index) = choice.parse::<usize>() {
+                let offer = offers.get(index).map(|offer| offer.key.clone());
+                return offer
+                    .ok_or_else(|| format!("there is no channel {index}; there are, counted from 0: {}", all()));
             }
-            _ => vec![array.name().to_owned()],
+            let called: Vec<&Offer> = offers.iter().filter(|offer| offer.name == choice).collect();
+            // What is not on offer may still be another way to write it; if not, the reader says what there is.
+            Ok(if let [offer] = called[..] { offer.key.clone() } else { choice.to_owned() })
         };
-        let names: Vec<String> =
-            file.arrays().iter().filter(|array| array.values().len() > 1).flat_map(columns).collect();
-        let (force, response) = self.channels(&names.iter().map(String::as_str).collect::<Vec<_>>())?;
-        let channel = |name: &str, quantity| {
-            let reader = MatReader::default().channel(name).quantity(quantity);
-            let reader = if let Some(rate) = self.rate { reader.rate(rate) } else { reader };
-            reader.read_from(&file)
+        let found = |quantity: Quantity, taken: Option<&str>| {
+            let word = quantity.to_string();
+            let free = || offers.iter().filter(|offer| Some(&offer.key[..]) != taken);
+            let measured = free().find(|offer| offer.quantity == Some(quantity));
+            let mut unknown = free().filter(|offer| offer.quantity.is_none());
+            let called = || unknown.clone().find(|offer| offer.name.to_lowercase().contains(&word));
+            let found = measured.or_else(called).or_else(|| unknown.next()).map(|offer| offer.key.clone());
+            found.ok_or_else(|| {
+                format!(
+                    "which channel is the {word}? Name it, or say with --quantity what the response is; there are: {}",
+                    all()
+                )
+            })
         };
-        Ok((channel(&force, Quantity::Force)?, channel(&response, self.quantity)?))
-    }
-
-    /// The names of the two channels: as given by name or number, else the one that is called so, else the first free one.
-    fn channels(&self, names: &[&str]) -> Result<(String, String), Box<dyn Error>> {
-        let called = |word: &str| names.iter().find(|name| name.to_lowercase().contains(word));
-        let given = |choice: &str| match choice.parse::<usize>() {
-            Ok(index) => names
-                .get(index)
-                .map(|name| (*name).to_owned())
-                .ok_or_else(|| format!("there is no channel {index}; there are, counted from 0: {}", names.join(", "))),
-            Err(_) => Ok(choice.to_owned()),
-        };
-        let missing = |what: &str| format!("which channel is the {what}? There are: {}", names.join(", "));
-        let force = match self.force {
-            Some(choice) => given(choice)?,
-            None => (*called("force").or(names.first()).ok_or_else(|| missing("force"))?).to_owned(),
-        };
-        let response = if let Some(choice) = self.response {
-            given(choice)?
-        } else {
-            let word = self.quantity.to_string();
-            let free = || names.iter().find(|name| **name != force);
-            (*called(&word).or_else(free).ok_or_else(|| missing(&word))?).to_owned()
-        };
+        let force = self.force.map_or_else(|| found(Quantity::Force, None), given)?;
+        let response = self.response.map_or_else(|| found(self.quantity, Some(&force)), given)?;
         if force == response {
-            return Err(format!("channel {force} cannot be both force and response").into());
+            let name = offers.iter().find(|offer| offer.key == force).map_or(&force, |offer| &offer.name);
+            return Err(format!("channel {name} cannot be both force and response").into());
         }
         Ok((force, response))
     }
 }
 
-/// SI unit of a response.
+/// The record of a reading in SI units, by the `scale` that its `option` gave.
+fn in_si(reading: &Reading, quantity: Quantity, scale: Option<f64>, option: &str) -> Result<Record, Box<dyn Error>> {
+    let (channel, found) = (&reading.channel, reading.record.quantity());
+    if found != quantity {
+        return Err(format!("the file says that {channel} is a {found}, and no {quantity}").into());
+    }
+    let (unit, stated) = (unit(quantity), reading.record.unit());
+    let is_si = spellings(quantity).iter().any(|known| stated.trim().eq_ignore_ascii_case(known));
+    if scale.is_none() && !is_si {
+        return Err(
+            format!("{channel} is in \"{stated}\"; give the factor that turns it into {unit} as {option}").into()
+        );
+    }
+    Ok(reading.record.scaled(scale.unwrap_or(1.0), unit)?)
+}
+
+/// SI unit of a force or a response.
 fn unit(quantity: Quantity) -> &'static str {
     match quantity {
+        Quantity::Force => "N",
         Quantity::Displacement => "m",
         Quantity::Acceleration => "m/s²",
         _ => "m/s",
+    }
+}
+
+/// How files write the SI unit of a quantity, if they write any.
+fn spellings(quantity: Quantity) -> &'static [&'static str] {
+    match quantity {
+        Quantity::Force => &["", "N", "newton", "newtons"],
+        Quantity::Displacement => &["", "m", "meter", "metre", "meters", "metres"],
+        Quantity::Acceleration => &["", "m/s²", "m/s^2", "m/s2", "m/s**2", "m/s/s"],
+        _ => &["", "m/s"],
     }
 }

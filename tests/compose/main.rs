@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod document;
+mod frf_files;
 mod hammer;
 mod identifiability;
 mod measurement;

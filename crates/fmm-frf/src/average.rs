@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use fmm_record::Record;
 
-use crate::estimator::Spectra;
+use crate::estimator::{Spectra, Undefined};
 use crate::sums::{RatioSums, SpectralSums, Weighed};
 use crate::transform::{SLOTS, TrialTransform};
 use crate::{AverageOptions, Averaging, Channel, Coherence, Estimator, FrequencyResponse, FrfError, ResponseForm};
@@ -229,11 +229,18 @@ impl TrialAverage {
     /// would divide by zero; [`FrfError::RatiosNotKept`] for the mean of ratios; [`FrfError::ValueNotFinite`] if it
     /// overflows.
     pub fn estimate(&self, estimator: Estimator) -> Result<FrequencyResponse, FrfError> {
-        let values = self.lines(|line| match estimator {
-            Estimator::MeanOfRatios => Ok(self.ratios()?.mean(line, self.weights.0)),
-            other => other.of(&self.line(line)).map_err(|undefined| undefined.at(self.frequencies[line])),
-        })?;
+        if self.trials == 0 {
+            return Err(FrfError::NoTrials);
+        }
+        // The estimator is chosen outside the loop over the lines.
+        let values = match estimator {
+            Estimator::H1 => self.spectra.map(&self.waiting(), |spectra| Estimator::H1.quotient(&spectra)),
+            Estimator::H2 => self.spectra.map(&self.waiting(), |spectra| Estimator::H2.quotient(&spectra)),
+            Estimator::Hv => self.spectra.map(&self.waiting(), |spectra| Estimator::Hv.quotient(&spectra)),
+            Estimator::MeanOfRatios => self.ratios()?.means(self.weights.0),
+        };
         FrequencyResponse::at_shared(self.form, &self.frequencies, values, self.decay_rate)
+            .map_err(|not_finite| self.undefined(|spectra| estimator.of(spectra)).unwrap_or(not_finite))
     }
 
     /// Standard uncertainty of real and imaginary part of the response by `estimator`, each, at each line, from the
@@ -263,7 +270,7 @@ impl TrialAverage {
             let scatter = match estimator {
                 Estimator::MeanOfRatios => self.ratios()?.variance(line, self.weights.0),
                 other => {
-                    let at = |undefined: crate::estimator::Undefined| undefined.at(self.frequencies[line]);
+                    let at = |undefined: Undefined| undefined.at(self.frequencies[line]);
                     other.scatter(&self.line(line)).map_err(at)?
                 }
             };
@@ -277,8 +284,16 @@ impl TrialAverage {
     /// [`FrfError::NoTrials`], and [`FrfError::NoForceAt`] or [`FrfError::NoCrossSpectrumAt`] at a line where one channel
     /// is zero in all trials.
     pub fn coherence(&self) -> Result<Coherence, FrfError> {
-        let values =
-            self.lines(|line| self.line(line).coherence().map_err(|undefined| undefined.at(self.frequencies[line])))?;
+        if self.trials == 0 {
+            return Err(FrfError::NoTrials);
+        }
+        let values = self.spectra.map(&self.waiting(), |spectra| spectra.coherence().unwrap_or(f64::NAN));
+        // The line to blame is looked for only if there is one.
+        if values.iter().any(|value| value.is_nan())
+            && let Some(undefined) = self.undefined(Spectra::coherence)
+        {
+            return Err(undefined);
+        }
         Ok(Coherence::new(Arc::clone(&self.frequencies), values, self.averages()))
     }
 
@@ -300,10 +315,21 @@ impl TrialAverage {
         self.lines(|line| Ok(self.line(line).response * self.density_factor(line, energy)))
     }
 
+    /// The trials that are not in the sums yet.
+    fn waiting(&self) -> impl Iterator<Item = Weighed<'_>> + Clone {
+        let waiting = self.factors.iter().take(self.waiting).enumerate();
+        waiting.map(|(slot, factors)| weighed(&self.transform, &self.lines, slot, *factors))
+    }
+
     /// The sums at `line`, with those of the trials that wait.
     fn line(&self, line: usize) -> Spectra {
-        let waiting = self.factors.iter().take(self.waiting).enumerate();
-        self.spectra.line(line, waiting.map(|(slot, factors)| weighed(&self.transform, &self.lines, slot, *factors)))
+        self.spectra.line(line, self.waiting())
+    }
+
+    /// Why and where `rule` has no value first, if there is a line without one.
+    fn undefined<T>(&self, rule: impl Fn(&Spectra) -> Result<T, Undefined>) -> Option<FrfError> {
+        let mut lines = self.frequencies.iter().enumerate();
+        lines.find_map(|(line, frequency)| Some(rule(&self.line(line)).err()?.at(*frequency)))
     }
 
     /// From a sum of squared transforms to a density: 1/(f_s Σw²) per trial, twice that where a line stands for two.

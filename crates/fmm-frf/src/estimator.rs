@@ -75,18 +75,24 @@ impl Spectra {
 impl Estimator {
     /// The estimate at one line; that of the mean of ratios does not follow from averaged spectra and is H1 here.
     pub(crate) fn of(self, spectra: &Spectra) -> Result<Complex64, Undefined> {
-        let Spectra { force, response, cross } = *spectra;
+        let Spectra { force, cross, .. } = *spectra;
         if force == 0.0 {
             return Err(Undefined::Force);
         }
         if matches!(self, Self::H2 | Self::Hv) && cross == Complex64::ZERO {
             return Err(Undefined::Cross);
         }
-        Ok(match self {
+        Ok(self.quotient(spectra))
+    }
+
+    /// The estimate at one line, not finite where there is none.
+    pub(crate) fn quotient(self, spectra: &Spectra) -> Complex64 {
+        let Spectra { force, response, cross } = *spectra;
+        match self {
             Self::H1 | Self::MeanOfRatios => cross / force,
             Self::H2 => response / cross.conj(),
             Self::Hv => cross / cross.norm() * (response / force).sqrt(),
-        })
+        }
     }
 
     /// |H|²(1/γ² − 1) of the estimate at one line.

@@ -48,6 +48,30 @@ impl SpectralSums {
         }
     }
 
+    /// What `rule` gives for the sums at each line after those trials that `waiting` has.
+    pub(crate) fn map<'a, T>(
+        &self,
+        waiting: &(impl Iterator<Item = Weighed<'a>> + Clone),
+        rule: impl Fn(Spectra) -> T,
+    ) -> Vec<T> {
+        if waiting.clone().next().is_some() {
+            return (0..self.force.len()).map(|line| rule(self.line(line, waiting.clone()))).collect();
+        }
+        let [real, imaginary] = &self.cross;
+        let sums = self.force.iter().zip(&self.response).zip(real.iter().zip(imaginary));
+        widest(
+            #[inline(always)]
+            || {
+                let spectra = sums.map(|((&force, &response), (&re, &im))| Spectra {
+                    force,
+                    response,
+                    cross: Complex64::new(re, im),
+                });
+                spectra.map(rule).collect()
+            },
+        )
+    }
+
     /// The sums at `line` after those trials that `waiting` has.
     pub(crate) fn line<'a>(&self, line: usize, waiting: impl Iterator<Item = Weighed<'a>>) -> Spectra {
         let [real, imaginary] = &self.cross;
@@ -113,13 +137,13 @@ impl RatioSums {
         self.square.fill(0.0);
     }
 
-    /// The mean ratio at `line`, for weights of this sum.
-    pub(crate) fn mean(&self, line: usize, weights: f64) -> Complex64 {
-        self.ratio[line] / weights
+    /// The mean ratio at each line, for weights of this sum.
+    pub(crate) fn means(&self, weights: f64) -> Vec<Complex64> {
+        self.ratio.iter().map(|ratio| ratio / weights).collect()
     }
 
     /// The mean squared distance of the ratios at `line` from their mean.
     pub(crate) fn variance(&self, line: usize, weights: f64) -> f64 {
-        (self.square[line] / weights - self.mean(line, weights).norm_sqr()).max(0.0)
+        (self.square[line] / weights - (self.ratio[line] / weights).norm_sqr()).max(0.0)
     }
 }

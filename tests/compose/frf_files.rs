@@ -1,0 +1,261 @@
+//! The example `frf`: the same blows from files of every format, and files that should be refused.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use fmm_frf::ResponseForm;
+use fmm_record::mat::MatFile;
+use fmm_record::uff::{ByteOrder, DataSet, Form, UffFile, write};
+use fmm_record::{Quantity, Record};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+#[path = "../../examples/frf/analysis.rs"]
+#[expect(dead_code, reason = "the example reports more than is compared here")]
+mod analysis;
+#[path = "../../examples/frf/source.rs"]
+mod source;
+#[path = "../../examples/frf/trials.rs"]
+mod trials;
+
+use analysis::{Analysis, Window};
+use trials::{Choice, Trial};
+
+const ACCELERATION: Choice<'_> = Choice {
+    force: None,
+    response: None,
+    quantity: Quantity::Acceleration,
+    force_scale: None,
+    response_scale: None,
+    rate: None,
+};
+
+const VELOCITY: Choice<'_> = Choice { quantity: Quantity::Velocity, ..ACCELERATION };
+
+/// A new folder for the files of a test.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn workspace(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+fn read(choice: &Choice<'_>, path: &Path) -> Trial {
+    choice.read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+fn refusal(choice: &Choice<'_>, path: &Path) -> String {
+    choice.read(path).err().map_or_else(|| panic!("{} was read", path.display()), |error| error.to_string())
+}
+
+fn bundled() -> Vec<Trial> {
+    trials::bundled().iter().map(|path| read(&ACCELERATION, path)).collect()
+}
+
+/// The bytes of an npy file.
+fn npy(shape: &str, values: &[f64]) -> Vec<u8> {
+    let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}");
+    let mut file = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    file.extend(format!("{header:<117}\n").bytes());
+    file.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+    file
+}
+
+fn write_npz(path: &Path, arrays: &[(&str, &str, &[f64])]) {
+    let mut archive = ZipWriter::new(std::fs::File::create(path).unwrap());
+    for (name, shape, values) in arrays {
+        let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+        archive.start_file(format!("{name}.npy"), options).unwrap();
+        archive.write_all(&npy(shape, values)).unwrap();
+    }
+    archive.finish().unwrap();
+}
+
+/// What a format does to a blow: a file of it.
+type Writer = fn(&Path, &Trial);
+
+fn sets(trial: &Trial) -> [DataSet; 2] {
+    let mut sets = [DataSet::of_record(&trial.response), DataSet::of_record(&trial.force)];
+    for set in &mut sets {
+        set.header.lines[0] = "channel".into();
+    }
+    sets
+}
+
+#[test]
+fn the_same_blows_from_every_format() {
+    let folder = folder("formats");
+    let blows = bundled();
+    let expected = Analysis::of(&blows, ResponseForm::Accelerance, Window::None, 0.01).unwrap();
+    let formats: [(&str, Writer); 4] = [
+        // Both data sets have one name, so that their quantities must tell them apart.
+        ("bytes.uff", |path, trial| write(path, &sets(trial), Form::Binary(ByteOrder::default())).unwrap()),
+        ("text.58", |path, trial| write(path, &sets(trial), Form::Ascii).unwrap()),
+        ("archive.npz", |path, trial| {
+            let rate = [trial.force.rate()];
+            let (force, response) = (trial.force.values(), trial.response.values());
+            let shape = format!("({},)", force.len());
+            write_npz(path, &[("fs", "()", &rate), ("acceleration", &shape, response), ("force", &shape, force)]);
+        }),
+        ("matrix.npy", |path, trial| {
+            let (times, count) = (trial.force.times(), trial.force.len());
+            let rows = times.chain(trial.force.values().iter().copied()).chain(trial.response.values().iter().copied());
+            std::fs::write(path, npy(&format!("(3, {count})"), &rows.collect::<Vec<_>>())).unwrap();
+        }),
+    ];
+    for (name, write) in formats {
+        let from_files = blows.iter().enumerate().map(|(hit, trial)| {
+            let path = folder.join(format!("{hit}_{name}"));
+            write(&path, trial);
+            read(&ACCELERATION, &path)
+        });
+        let trials: Vec<Trial> = from_files.collect();
+        let found = Analysis::of(&trials, ResponseForm::Accelerance, Window::None, 0.01).unwrap();
+        // Text has 13 digits, half a unit of which is 5e-13 of every sample; summed over a pulse and its noise they stay
+        // below 1e-11 of the best lines of the force, and at the last usable line it is a tenth of that. Time stamps give
+        // the rate to 1e-11 or so.
+        let relative = 1e-9;
+        for (found, expected) in found.impulses.iter().zip(&expected.impulses) {
+            assert!((found / expected - 1.0).abs() < relative, "{name}: {found} N s, not {expected} N s");
+        }
+        let lines = expected.h1.frequencies().iter().take_while(|frequency| **frequency <= expected.usable).count();
+        assert!(lines > 1000, "{lines} lines");
+        let scale = expected.h1.values()[..lines].iter().map(|value| value.norm()).fold(0.0, f64::max);
+        for line in 0..lines {
+            let (found, expected) = (found.h1.values()[line], expected.h1.values()[line]);
+            let off = (found - expected).norm();
+            assert!(off <= relative * scale, "{name}, line {line}: {found}, not {expected} (largest {scale}) 1/kg");
+        }
+        let peaks = |analysis: &Analysis| analysis.peaks.iter().map(|peak| peak.line.frequency).collect::<Vec<_>>();
+        let (found, expected) = (peaks(&found), peaks(&expected));
+        assert_eq!(found.len(), expected.len(), "{name}");
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!((found / expected - 1.0).abs() < relative, "{name}: a peak at {found} Hz, not {expected} Hz");
+        }
+    }
+}
+
+/// Two programs wrote one measurement: as whole numbers of 1e-4 N and 1e-8 m/s, and its second trial in Universal Files.
+#[test]
+fn a_measurement_in_universal_files() {
+    let measured = MatFile::read(workspace("crates/fmm-frf/tests/data/impact4.mat")).unwrap();
+    let numbers = |name: &str, unit: f64| -> Vec<f64> {
+        measured.array(name).unwrap().values()[..1024].iter().map(|value| value / unit).collect()
+    };
+    // Doubles in bytes are exact, and text has 13 digits.
+    for (file, relative) in [("impact_time_binary.uff", 0.0), ("impact_time_ascii.uff", 5e-13)] {
+        let path = workspace("crates/fmm-record/tests/data").join(file);
+        for choice in [VELOCITY, Choice { force: Some("0"), response: Some("velocity trial 2"), ..VELOCITY }] {
+            let trial = read(&choice, &path);
+            assert_eq!((trial.force.rate(), trial.response.rate(), trial.warnings), (512.0, 512.0, vec![]), "{file}");
+            assert!(trial.origin.starts_with("force trial 2 and velocity trial 2;"), "{}", trial.origin);
+            for (record, expected) in
+                [(trial.force, numbers("force2", 1e4)), (trial.response, numbers("velocity2", 1e8))]
+            {
+                assert_eq!(record.len(), expected.len(), "{file}");
+                for (found, expected) in record.values().iter().zip(expected) {
+                    // One more rounding from decimals.
+                    let limit = if relative > 0.0 { (relative + f64::EPSILON) * expected.abs() } else { 0.0 };
+                    assert!((found - expected).abs() <= limit, "{file}: {found}, not {expected}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn channels_that_are_not_there_or_not_what_they_should_be() {
+    let data = workspace("crates/fmm-record/tests/data");
+    let (times, responses) = (data.join("impact_time_binary.uff"), data.join("impact_frf_binary.uff"));
+    for (choice, path, expected) in [
+        (
+            Choice { response: Some("2"), ..VELOCITY },
+            &times,
+            "there is no channel 2; there are, counted from 0: force trial 2, velocity trial 2",
+        ),
+        (
+            Choice { response: Some("microphone"), ..VELOCITY },
+            &times,
+            "there is no data set \"microphone\"; the file has: \"force trial 2\", \"velocity trial 2\"",
+        ),
+        (
+            ACCELERATION,
+            &times,
+            "which channel is the acceleration? Name it, or say with --quantity what the response is; there are: force \
+             trial 2, velocity trial 2",
+        ),
+        (
+            Choice { response: Some("1"), ..ACCELERATION },
+            &times,
+            "the file says that velocity trial 2 is a velocity, and no acceleration",
+        ),
+        (
+            Choice { response: Some("force trial 2"), ..VELOCITY },
+            &times,
+            "channel force trial 2 cannot be both force and response",
+        ),
+        (
+            Choice { rate: Some(512.0), ..VELOCITY },
+            &times,
+            "a Universal File states its own sampling; leave --rate out",
+        ),
+        (
+            Choice { force: Some("0"), response: Some("mobility H1"), ..VELOCITY },
+            &responses,
+            "channel mobility H1 cannot be both force and response",
+        ),
+        (
+            Choice { force: Some("mobility H1"), response: Some("none"), ..VELOCITY },
+            &responses,
+            "\"mobility H1\" is no record over time, but a frequency response",
+        ),
+    ] {
+        assert_eq!(refusal(&choice, path), expected);
+    }
+}
+
+#[test]
+fn units_are_not_taken_for_others() {
+    let path = folder("units").join("millimetres.uff");
+    let record = |quantity, unit: &str| {
+        let values = [0.0, 1.0, 2.0, 1.0, 0.0].into();
+        Record::sampled(512.0, values, quantity, unit).unwrap()
+    };
+    let sets =
+        [record(Quantity::Force, "N"), record(Quantity::Velocity, "mm/s")].map(|record| DataSet::of_record(&record));
+    write(&path, &sets, Form::Ascii).unwrap();
+    let refused = refusal(&VELOCITY, &path);
+    assert!(
+        refused.ends_with(" is in \"mm/s\"; give the factor that turns it into m/s as --response-scale"),
+        "{refused}"
+    );
+    let trial = read(&Choice { response_scale: Some(1e-3), ..VELOCITY }, &path);
+    assert_eq!((trial.response.values()[2], trial.response.unit()), (2e-3, "m/s"));
+    assert_eq!((trial.force.values()[2], trial.force.unit()), (2.0, "N"));
+}
+
+/// Each reader is told by the name of the file, and says what is wrong with it.
+#[test]
+fn files_that_are_something_else() {
+    let folder = folder("something_else");
+    for name in ["a.uff", "a.unv", "a.58", "a.UF", "a.npy", "a.npz", "a.mat", "a.csv"] {
+        for bytes in
+            [&b""[..], b"<!DOCTYPE html>", b"PK\x03\x04", b"\x93NUMPY", b"    -1\n    58\n", b"\x89HDF\r\n\x1a\n"]
+        {
+            let path = folder.join(name);
+            std::fs::write(&path, bytes).unwrap();
+            assert!(!refusal(&ACCELERATION, &path).is_empty(), "{name}");
+        }
+        assert!(refusal(&ACCELERATION, &folder.join(format!("missing_{name}"))).contains("missing_"), "{name}");
+    }
+    // A data set that ends early is read as far as it goes, with a warning.
+    let path = folder.join("short.uff");
+    write(&path, &sets(&bundled()[0]), Form::Ascii).unwrap();
+    let text = std::fs::read(&path).unwrap();
+    std::fs::write(&path, &text[..text.len() - 100]).unwrap();
+    assert!(!UffFile::read(&path).unwrap().warnings().is_empty());
+    assert!(!read(&ACCELERATION, &path).warnings.is_empty());
+}
