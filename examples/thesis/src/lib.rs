@@ -5,11 +5,13 @@
 //! tests assert their targets. No raw data of the thesis are published: what is simulated is called so ([`Kind`]).
 
 mod chapter;
+pub mod chapter_4_flexure;
 #[path = "../../common/figure.rs"]
 #[expect(dead_code, reason = "other examples write files directly")]
 mod figure;
 pub mod printed;
 mod program;
+pub mod report;
 mod settings;
 mod target;
 
@@ -20,3 +22,9 @@ pub use target::{Criterion, Kind, Target};
 
 /// What a chapter gives: it fails only if a computation cannot be done at all, not if a target is missed.
 pub type Found<T> = Result<T, Box<dyn std::error::Error + Send + Sync>>;
+
+/// How a chapter is computed.
+pub type Computation = fn(&Settings<'_>) -> Found<Chapter>;
+
+/// All chapters in the order of the thesis, under the names of their examples.
+pub const CHAPTERS: &[(&str, Computation)] = &[("chapter_4_flexure", chapter_4_flexure::chapter)];

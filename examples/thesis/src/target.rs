@@ -132,6 +132,16 @@ impl Target {
         self.id
     }
 
+    /// How our value was come by.
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Whether something is required of our value, which it can miss.
+    pub fn is_required(&self) -> bool {
+        self.criterion != Criterion::Shown
+    }
+
     /// Whether our value satisfies the criterion; not a number never does.
     pub fn passes(&self) -> bool {
         self.criterion.is_met_by(self.ours)
@@ -145,7 +155,7 @@ impl Target {
             format!("{}{unit}", self.quantity),
             self.thesis.clone().unwrap_or_else(|| "–".to_owned()),
             number(self.ours),
-            self.difference().map_or_else(|| "–".to_owned(), |difference| format!("{:+.1} %", 100.0 * difference)),
+            self.difference().map_or_else(|| "–".to_owned(), percent),
             self.criterion.to_string(),
             self.kind.to_string(),
             if self.passes() { "ok" } else { "MISSED" }.to_owned(),
@@ -188,6 +198,12 @@ impl Target {
 /// Six significant digits, without an exponent where that stays readable.
 pub(crate) fn number(value: f64) -> String {
     significant(value, 6)
+}
+
+/// A share (1) in per cent with a sign, which zero has not.
+fn percent(share: f64) -> String {
+    let text = format!("{:+.1} %", 100.0 * share).replace('-', "−");
+    if text.ends_with("0.0 %") && text.chars().count() == 6 { "0.0 %".to_owned() } else { text }
 }
 
 fn short(value: f64) -> String {
@@ -236,6 +252,9 @@ mod tests {
     fn differences_need_one_printed_number() {
         let target = Target::new("A2", "y", "µm", 526.0, Criterion::Shown);
         assert_eq!(target.clone().printed("500").cells()[4], "+5.2 %");
+        assert_eq!(target.clone().printed("526.1").cells()[4], "0.0 %");
+        assert_eq!(target.clone().printed("478.1").cells()[4], "+10.0 %");
+        assert_eq!(target.clone().printed("584.5").cells()[4], "−10.0 %");
         assert_eq!(target.printed("0.86, 0.97").cells()[4], "–");
     }
 }
