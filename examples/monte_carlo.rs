@@ -8,22 +8,18 @@
 #[expect(dead_code, reason = "other examples draw curves")]
 mod figure;
 
-use std::error::Error;
 use std::fmt::Write as _;
 use std::io::Write as _;
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Instant;
 
 use clap::Parser;
-use fmm_fit::{Held, MultiStart, Options, Refit, Residuals, Sensitivity, solve};
-use fmm_friction::Coulomb;
-use fmm_identify::MachineProblem;
-use fmm_model::{Bounds, Damping, Oscillator};
-use fmm_record::{Quantity, Record};
-use fmm_sim::{Engine, Exact, Sampling, Scenario, Thesis};
-use fmm_uq::{Budget, Input, Inputs, MonteCarlo, Observations, OutputSample, propagate, validate};
+use fmm_fit::{Options, solve};
+use fmm_sim::Exact;
+use fmm_thesis::Found;
+use fmm_thesis::printed::{MACHINE_DEVIATIONS, TABLE_3};
+use fmm_thesis::table_3::{ROWS, Row, Sensitivities, TRUTH, VARIED, euler_rows, exact_rows, problem};
+use fmm_uq::{Budget, validate};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 
@@ -57,115 +53,22 @@ struct Arguments {
     figures: Option<PathBuf>,
 }
 
-/// The fixed values of the fit with their standard uncertainties, as the thesis' Table 2 prints them.
-const MACHINE: [(&str, f64, f64, &str); 3] =
-    [("mass", 10.391, 0.0049, "kg"), ("stiffness", 1982.0, 1.3, "N/m"), ("damping", 0.275, 0.0341, "N s/m")];
-/// Normal load of the thesis' Monte Carlo program (N).
-const LOAD: f64 = 7.2;
-/// The coefficient of friction that the record is made with.
-const TRUTH: f64 = 0.15;
-/// Initial velocity, which the thesis does not fit (m/s).
-const VELOCITY: f64 = 0.101;
 /// More starts about the best values so far, for the thesis' Euler motion.
 const KICKS: usize = 3;
-/// What the thesis prints: standard uncertainty, and "sensitivity" in the product of its own two columns before.
-const PRINTED: [(&str, f64, Option<f64>); 4] = [
-    ("mass", 6.39e-5, Some(3.12e-7)),
-    ("stiffness", 2.09e-5, Some(2.64e-5)),
-    ("damping", 2.36e-4, Some(8.04e-6)),
-    ("all", 2.48e-4, None),
-];
-/// Mass (kg), stiffness (N/m) and damping (N s/m) at nine amplitudes: the thesis' Table 1.
-const TABLE_1: [[f64; 9]; 3] = [
-    [10.394, 10.395, 10.393, 10.397, 10.392, 10.389, 10.389, 10.385, 10.382],
-    [1981.0, 1981.0, 1981.0, 1982.0, 1982.0, 1983.0, 1984.0, 1984.0, 1984.0],
-    [0.222, 0.235, 0.245, 0.256, 0.278, 0.288, 0.299, 0.313, 0.327],
-];
 
-type Found<T> = Result<T, Box<dyn Error>>;
-/// Why one fit of many failed.
-type Failure = Box<dyn Error + Send + Sync>;
-
-/// The fit of coefficient and initial position, to a record that `engine` makes.
-fn problem(engine: &impl Engine<f64, Coulomb>) -> Found<MachineProblem<Coulomb>> {
-    let [mass, stiffness, damping] = MACHINE.map(|(_, value, ..)| value);
-    let machine = Oscillator::new(mass, stiffness)?.with_damping(Damping::linear(damping)?);
-    let scenario = Scenario::new(machine, Coulomb::new(TRUTH)?, LOAD)?.starting_at(0.0, VELOCITY)?;
-    let motion = engine.run(&scenario, &Sampling::uniform(1e-3, 1501)?)?;
-    let record = Record::new(0.0, 1e-3, motion.velocity().values().to_vec(), Quantity::Velocity, "m/s")?;
-    let mut values = MACHINE.map(|(name, value, ..)| (name, value)).to_vec();
-    values.extend([("normal_load", LOAD), ("coefficient", TRUTH)]);
-    values.extend([("initial_position", 1e-4), ("initial_velocity", VELOCITY)]);
-    Ok(MachineProblem::new(&record, &values)?
-        .free_within("coefficient", Bounds::new(0.1, 1.0)?)?
-        .free_within("initial_position", Bounds::new(-3e-3, 3e-3)?)?)
-}
-
-/// The inputs of one row of Table 3: one of them uncertain, or all.
-fn inputs(row: &str) -> Found<Inputs> {
-    let input = |(name, value, u, unit): (&str, f64, f64, &str)| {
-        if row == name || row == "all" { Input::new(name, value, u, unit) } else { Input::new(name, value, 0.0, unit) }
-    };
-    Ok(Inputs::new(MACHINE.map(input).into_iter().collect::<Result<Vec<_>, _>>()?)?)
-}
-
-/// One row by Monte Carlo, and how long it took (s).
-struct Row {
-    name: &'static str,
-    sample: OutputSample,
-    seconds: f64,
-}
-
-/// All rows with `model`, which gives coefficient and initial position.
-fn rows(
-    title: &str,
-    trials: u64,
-    seed: u64,
-    model: impl Fn(&[f64]) -> Result<Vec<f64>, Failure> + Sync,
-) -> Found<Vec<Row>> {
+/// Rows of `trials` fits each by `run`, which tells a bar how many fits are done.
+fn watched(title: &str, trials: u64, run: impl FnOnce(&(dyn Fn(u64) + Sync)) -> Found<Vec<Row>>) -> Found<Vec<Row>> {
     let bar = ProgressBar::new(4 * trials);
     bar.set_style(ProgressStyle::with_template("{prefix} {wide_bar} {pos}/{len} fits, {eta} left")?);
     bar.set_prefix(title.to_owned());
-    let mut rows = Vec::new();
-    for (index, (name, ..)) in PRINTED.into_iter().enumerate() {
-        let watch = |progress: fmm_uq::Progress| {
-            bar.set_position(index as u64 * trials + progress.done);
-            ControlFlow::Continue(())
-        };
-        let began = Instant::now();
-        let run = MonteCarlo::new(&inputs(name)?, trials)?.with_seed(seed).with_progress(&watch);
-        let sample = run.run(&model)?;
-        rows.push(Row { name, sample, seconds: began.elapsed().as_secs_f64() });
-    }
+    let rows = run(&|done| bar.set_position(done))?;
     bar.finish_and_clear();
     Ok(rows)
 }
 
-/// Coefficient and initial position by the thesis' Euler motion. Its sum of squares jumps wherever a stop moves to
-/// another sample, so that one start alone, the thesis' own, ends beside the minimum; `kicks` more find it.
-fn parity_model(problem: &MachineProblem<Coulomb>, kicks: usize, values: &[f64]) -> Result<Vec<f64>, Failure> {
-    let held = Held::new(problem, values.iter().copied().enumerate())?;
-    let mut start = problem.values().to_vec();
-    start[..values.len()].copy_from_slice(values);
-    let reach = problem.parameters().iter().map(|parameter| match parameter.name() {
-        "coefficient" => 5e-4,
-        "initial_position" => 5e-5,
-        _ => 0.0,
-    });
-    // A search that ends at a jump does not get further with another radius, but from another start.
-    let options =
-        Options::default().with_restarts(0).with_polish_steps(0).with_cost_tolerance(1e-9).with_step_tolerance(1e-8);
-    let search =
-        MultiStart::default().with_starts(1).with_kicks(1, kicks).with_reach(reach.collect()).with_options(options);
-    let minima = search.solve(&held, &start)?;
-    let best = minima.best().or(minima.unfinished()).ok_or("no fit came to an end")?;
-    let found = |name| best.estimate(name).map(fmm_fit::Estimate::value).ok_or("no such parameter");
-    Ok(vec![found("coefficient")?, found("initial_position")?])
-}
-
 /// Everything that is shown.
-struct Table3 {
-    coefficients: [f64; 4],
+struct Shown {
+    sensitivities: Sensitivities,
     exact: Vec<Row>,
     parity: Vec<Row>,
     restarted: Vec<Row>,
@@ -174,53 +77,28 @@ struct Table3 {
     correlated: f64,
 }
 
-fn table_3(arguments: &Arguments) -> Found<Table3> {
-    let exact = problem(&Exact)?;
-    let fit = solve(&exact, exact.values(), &Options::default())?;
-    let sensitivity = Sensitivity::of(&exact, &fit)?;
-    let by = |input: &str| sensitivity.coefficient_of("coefficient", input).ok_or("the coefficient is not determined");
-    let coefficients = [by("mass")?, by("stiffness")?, by("damping")?, by("normal_load")?];
-    let refit = Refit::prepare(&exact, &fit)?.varying(&MACHINE.map(|(name, ..)| name))?;
+fn computed(arguments: &Arguments) -> Found<Shown> {
+    let problem = problem(&Exact)?;
+    let fit = solve(&problem, problem.values(), &Options::default())?;
+    let sensitivities = Sensitivities::of(&problem, &fit)?;
     let (trials, parity_trials) =
         if arguments.quick { (2000, 200) } else { (arguments.trials, arguments.parity_trials) };
-    let found = rows("exact motion ", trials, arguments.seed, |x| Ok(refit.estimates(x)?))?;
-    let euler = problem(&Thesis::A3)?.by_thesis();
-    let parity = rows("thesis' motion", parity_trials, arguments.seed, |x| parity_model(&euler, 0, x))?;
-    let restarted =
-        rows("and restarts  ", parity_trials.div_ceil(10), arguments.seed, |x| parity_model(&euler, KICKS, x))?;
-
-    let linear = |x: &[fmm_uq::Taylor]| {
-        let moved = x.iter().zip(MACHINE).map(|(x, (_, value, ..))| *x - value);
-        moved.zip(coefficients).fold(fmm_uq::Taylor::from(TRUTH), |sum, (change, c)| sum + change * c)
-    };
-    let gum = propagate(&inputs("all")?, linear)?.named("μ", "1");
-    let [mass, stiffness, damping] = TABLE_1.map(|column| Observations::new(&column));
-    let (mass, stiffness, damping) = (mass?, stiffness?, damping?);
-    let correlations = [
-        ("mass", "stiffness", mass.correlation(&stiffness)?),
-        ("mass", "damping", mass.correlation(&damping)?),
-        ("stiffness", "damping", stiffness.correlation(&damping)?),
-    ];
-    let correlated = inputs("all")?.with_correlations(&correlations)?;
-    let correlated = propagate(&correlated, linear)?.standard_uncertainty();
-    // What no record shows moves μ in proportion.
-    let quantities = MACHINE.map(|(name, value, u, unit)| Input::new(name, value, u, unit));
-    let scales = [("normal load", arguments.load_uncertainty), ("common scale", arguments.scale_uncertainty)];
-    let scales = scales.map(|(name, u)| Input::new(name, 1.0, u, "1"));
-    let all = Inputs::new(quantities.into_iter().chain(scales).collect::<Result<Vec<_>, _>>()?)?;
-    let extended =
-        propagate(&all.with_correlations(&correlations)?, |x| linear(&x[..3]) * x[4] / x[3])?.named("μ", "1");
-    Ok(Table3 { coefficients, exact: found, parity, restarted, gum, extended, correlated })
+    let (seed, few) = (arguments.seed, parity_trials.div_ceil(10));
+    let exact = watched("exact motion ", trials, |watch| exact_rows(&problem, &fit, trials, seed, watch))?;
+    let parity = watched("thesis' motion", parity_trials, |watch| euler_rows([parity_trials; 4], seed, 0, watch))?;
+    let restarted = watched("and restarts  ", few, |watch| euler_rows([few; 4], seed, KICKS, watch))?;
+    Ok(Shown {
+        sensitivities,
+        exact,
+        parity,
+        restarted,
+        gum: sensitivities.budget()?,
+        extended: sensitivities.extended_budget(arguments.load_uncertainty, arguments.scale_uncertainty)?,
+        correlated: sensitivities.correlated_budget()?.standard_uncertainty(),
+    })
 }
 
-impl Table3 {
-    /// Standard uncertainty by the sensitivities, row by row.
-    fn linear(&self) -> Vec<f64> {
-        let mut parts: Vec<f64> = self.gum.contributions().map(|part| part.uncertainty).collect();
-        parts.push(self.gum.standard_uncertainty());
-        parts
-    }
-
+impl Shown {
     fn text(&self, arguments: &Arguments) -> Found<String> {
         let mut text = String::new();
         writeln!(text, "Standard uncertainty of μ = {TRUTH} (1), thesis' Table 3 beside ours\n")?;
@@ -230,14 +108,15 @@ impl Table3 {
             "row", "thesis", "GUM", "Monte Carlo", "parity", "restarted", "mean", "parity mean"
         )?;
         let sampled = self.exact.iter().zip(&self.parity).zip(&self.restarted);
-        for ((printed, linear), ((exact, parity), restarted)) in PRINTED.iter().zip(self.linear()).zip(sampled) {
+        let rows = TABLE_3.iter().zip(self.sensitivities.uncertainties()?).zip(sampled);
+        for ((printed, linear), ((exact, parity), restarted)) in rows {
             let (u, euler) = (exact.sample.standard_uncertainty(0)?, parity.sample.standard_uncertainty(0)?);
             let restarted = restarted.sample.standard_uncertainty(0)?;
             let (mean, euler_mean) = (exact.sample.estimate(0)?, parity.sample.estimate(0)?);
             writeln!(
                 text,
                 "{:<10} {:>10.2e} {linear:>12.4e} {u:>12.4e} {euler:>12.4e} {restarted:>12.4e} {mean:>13.8} {euler_mean:>13.8}",
-                exact.name, printed.1
+                exact.name, printed.deviation
             )?;
         }
         writeln!(
@@ -252,17 +131,19 @@ impl Table3 {
         )?;
         writeln!(text, "Sensitivity of μ\n")?;
         writeln!(text, "{:<12} {:>12} {:>14} {:>16}  unit of ours", "by", "thesis", "ours", "u(thesis)/u(x)")?;
-        for (((name, _, u, unit), printed), ours) in MACHINE.iter().zip(PRINTED).zip(self.coefficients) {
-            let printed_value = printed.2.unwrap_or(f64::NAN);
-            writeln!(text, "{name:<12} {printed_value:>12.2e} {ours:>14.6e} {:>16.3e}  1/({unit})", printed.1 / u)?;
+        let known = VARIED.iter().zip(MACHINE_DEVIATIONS).zip(&TABLE_3);
+        for ((((name, unit), u), printed), ours) in known.zip(self.sensitivities.machine) {
+            let printed_value = printed.sensitivity_and_product.map_or(f64::NAN, |columns| columns[0]);
+            let ratio = printed.deviation / u;
+            writeln!(text, "{name:<12} {printed_value:>12.2e} {ours:>14.6e} {ratio:>16.3e}  1/({unit})")?;
         }
-        writeln!(text, "{:<12} {:>12} {:>14.6e} {:>16}  1/N", "normal load", "-", self.coefficients[3], "-")?;
+        writeln!(text, "{:<12} {:>12} {:>14.6e} {:>16}  1/N", "normal load", "-", self.sensitivities.load, "-")?;
         writeln!(
             text,
             "\nThe printed column is u(μ) times u(x), not a derivative. Only k/m, c/m and μ N/m show in a record: the\n\
              identity m ∂μ/∂m + k ∂μ/∂k + c ∂μ/∂c = μ gives {:.9}, and N ∂μ/∂N = {:.9}.\n",
-            self.identity(),
-            LOAD * self.coefficients[3]
+            self.sensitivities.scale_identity(),
+            self.sensitivities.load_identity()
         )?;
         let validation = self.validation()?;
         writeln!(text, "{}", self.gum)?;
@@ -293,10 +174,6 @@ impl Table3 {
         Ok(text)
     }
 
-    fn identity(&self) -> f64 {
-        MACHINE.iter().zip(self.coefficients).map(|((_, value, ..), c)| value * c).sum()
-    }
-
     /// JCGM 101:2008, clause 8, in words.
     fn validation(&self) -> Found<String> {
         let all = &self.exact[3].sample;
@@ -310,14 +187,15 @@ impl Table3 {
     }
 
     fn document(&self) -> Found<Value> {
+        let uncertainties = self.sensitivities.uncertainties()?;
         let row = |index: usize| {
-            let (printed, linear) = (PRINTED[index], self.linear()[index]);
+            let (printed, linear) = (TABLE_3[index], uncertainties[index]);
             let (exact, parity, restarted) = (&self.exact[index], &self.parity[index], &self.restarted[index]);
             let sample = &exact.sample;
             let interval = sample.symmetric_interval(0, 0.95)?;
             Ok(json!({
                 "row": exact.name,
-                "thesis": printed.1,
+                "thesis": printed.deviation,
                 "gum": linear,
                 "monte_carlo": sample.standard_uncertainty(0)?,
                 "mean": sample.estimate(0)?,
@@ -332,18 +210,17 @@ impl Table3 {
                 "restarted_trials": restarted.sample.values(0)?.len(),
             }))
         };
-        let rows = (0..PRINTED.len()).map(row);
-        let sensitivities: serde_json::Map<String, Value> = MACHINE
-            .iter()
-            .map(|machine| machine.0)
-            .chain(["normal_load"])
-            .map(str::to_owned)
-            .zip(self.coefficients.map(Value::from))
-            .collect();
+        let rows = (0..ROWS.len()).map(row);
+        let [mass, stiffness, damping] = self.sensitivities.machine;
         Ok(json!({
             "rows": rows.collect::<Found<Vec<Value>>>()?,
-            "sensitivities": sensitivities,
-            "scale_identity": self.identity(),
+            "sensitivities": {
+                "mass": mass,
+                "stiffness": stiffness,
+                "damping": damping,
+                "normal_load": self.sensitivities.load,
+            },
+            "scale_identity": self.sensitivities.scale_identity(),
             "with_correlation": self.correlated,
             "extended": self.extended.standard_uncertainty(),
         }))
@@ -351,7 +228,7 @@ impl Table3 {
 }
 
 fn run(arguments: &Arguments) -> Found<()> {
-    let table = table_3(arguments)?;
+    let table = computed(arguments)?;
     let mut out = std::io::stdout().lock();
     if arguments.json {
         writeln!(out, "{}", serde_json::to_string_pretty(&table.document()?)?)?;

@@ -6,6 +6,8 @@
 
 mod chapter;
 pub mod chapter_4_flexure;
+pub mod chapter_5_modal;
+pub mod chapter_5_monte_carlo;
 #[path = "../../common/figure.rs"]
 #[expect(dead_code, reason = "other examples write files directly")]
 mod figure;
@@ -13,6 +15,7 @@ pub mod printed;
 mod program;
 pub mod report;
 mod settings;
+pub mod table_3;
 mod target;
 
 pub use chapter::{Chapter, Drawing, Finding, Table};
@@ -27,4 +30,8 @@ pub type Found<T> = Result<T, Box<dyn std::error::Error + Send + Sync>>;
 pub type Computation = fn(&Settings<'_>) -> Found<Chapter>;
 
 /// All chapters in the order of the thesis, under the names of their examples.
-pub const CHAPTERS: &[(&str, Computation)] = &[("chapter_4_flexure", chapter_4_flexure::chapter)];
+pub const CHAPTERS: &[(&str, Computation)] = &[
+    ("chapter_4_flexure", chapter_4_flexure::chapter),
+    ("chapter_5_modal", chapter_5_modal::chapter),
+    ("chapter_5_monte_carlo", chapter_5_monte_carlo::chapter),
+];
