@@ -5,6 +5,7 @@
 //! on the bundled record of a bicycle fork swinging as a pendulum. `--help` lists the options.
 
 #[path = "common/figure.rs"]
+#[expect(dead_code, reason = "other examples draw curves of other roles")]
 mod figure;
 
 use std::error::Error;

@@ -19,8 +19,11 @@ const RESIDUAL: &str = "#1d2a44";
 const WIDTH: f64 = 900.0;
 /// Points drawn per horizontal pixel at most; more cannot be seen.
 const COLUMNS: usize = 1200;
-/// Share of an axis left free above the data, where the legend goes.
+/// Share of an axis left free above the data at least, where the legend goes.
 const HEADROOM: f64 = 0.28;
+/// Height of a line of the legend, and of a panel without its axis (px).
+const LINE: f64 = 20.0;
+const AROUND: f64 = 75.0;
 
 /// Left and right of the axes (px): equal for all panels, so that their time axes agree.
 const MARGINS: (f64, f64) = (90.0, 24.0);
@@ -35,14 +38,36 @@ pub(crate) fn label(quantity: impl std::fmt::Display, unit: &str) -> String {
 pub(crate) enum Role {
     /// A measured curve.
     Measured,
+    /// More of the same, without a legend entry of its own.
+    MeasuredAgain,
     /// A fitted curve.
     Fitted,
     /// A fitted curve, mirrored or repeated: drawn without a legend entry of its own.
     FittedAgain,
     /// What the fit leaves over.
     Residual,
+    /// More of the same, without a legend entry of its own.
+    ResidualAgain,
+    /// A second model or a truth to compare with.
+    Reference,
+    /// More of the same, without a legend entry of its own.
+    ReferenceAgain,
     /// Single measured points.
     Points,
+    /// Single fitted points.
+    FittedPoints,
+    /// Single points of what is left over, or of a second fit.
+    ResidualPoints,
+}
+
+impl Role {
+    fn is_points(self) -> bool {
+        matches!(self, Self::Points | Self::FittedPoints | Self::ResidualPoints)
+    }
+
+    fn is_repeated(self) -> bool {
+        matches!(self, Self::FittedAgain | Self::MeasuredAgain | Self::ResidualAgain | Self::ReferenceAgain)
+    }
 }
 
 /// One curve or set of points.
@@ -56,21 +81,26 @@ pub(crate) struct Layer {
 impl Layer {
     /// A layer with its legend text.
     pub(crate) fn new(role: Role, label: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self { role, label: label.into(), points: if role == Role::Points { points } else { thinned(points) } }
+        Self { role, label: label.into(), points: if role.is_points() { points } else { thinned(points) } }
     }
 
     fn plot(&self) -> Plot {
         let (color, width) = match self.role {
-            Role::Measured => (MEASURED, 2.4),
+            Role::Measured | Role::MeasuredAgain => (MEASURED, 2.4),
             Role::Fitted | Role::FittedAgain => (FITTED, 1.1),
-            Role::Residual => (RESIDUAL, 0.8),
-            Role::Points => {
-                let points = ScatterPlot::new().with_data(self.points.clone()).with_color(MEASURED).with_size(3.5);
-                return Plot::Scatter(points.with_legend(self.label.as_str()));
-            }
+            Role::Residual | Role::ResidualAgain => (RESIDUAL, 0.8),
+            Role::Reference | Role::ReferenceAgain => (RESIDUAL, 1.4),
+            Role::Points => return self.dots(MEASURED),
+            Role::FittedPoints => return self.dots(FITTED),
+            Role::ResidualPoints => return self.dots(RESIDUAL),
         };
         let line = LinePlot::new().with_data(self.points.clone()).with_color(color).with_stroke_width(width);
-        Plot::Line(if self.role == Role::FittedAgain { line } else { line.with_legend(self.label.as_str()) })
+        Plot::Line(if self.role.is_repeated() { line } else { line.with_legend(self.label.as_str()) })
+    }
+
+    fn dots(&self, color: &str) -> Plot {
+        let points = ScatterPlot::new().with_data(self.points.clone()).with_color(color).with_size(3.5);
+        Plot::Scatter(points.with_legend(self.label.as_str()))
     }
 }
 
@@ -100,6 +130,13 @@ impl Panel {
         self.layers.iter().map(Layer::plot).collect()
     }
 
+    /// Share of the data's range that the legend needs above it.
+    fn headroom(&self) -> f64 {
+        let entries = self.layers.iter().filter(|layer| !layer.role.is_repeated()).count();
+        let share = (LINE * (entries as f64 + 0.8) / (self.height - AROUND).max(LINE)).min(0.6);
+        HEADROOM.max(1.05 * share / (1.0 - share))
+    }
+
     fn layout(&self) -> Layout {
         let all = || self.layers.iter().flat_map(|layer| layer.points.iter());
         let (x_low, x_high) = range(all().map(|point| point.0));
@@ -113,9 +150,9 @@ impl Panel {
             .with_x_tick_step(step(x_high - x_low))
             .with_force_margins(MARGINS.0, MARGINS.1)
             .with_y_axis_min(y_low - 0.05 * span)
-            .with_y_axis_max(y_high + HEADROOM * span)
+            .with_y_axis_max(y_high + self.headroom() * span)
             .with_x_tick_format(ticks(x_high - x_low))
-            .with_y_tick_format(ticks((1.05 + HEADROOM) * span))
+            .with_y_tick_format(ticks((1.05 + self.headroom()) * span))
     }
 }
 

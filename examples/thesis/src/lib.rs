@@ -8,12 +8,15 @@ mod chapter;
 pub mod chapter_4_flexure;
 pub mod chapter_5_modal;
 pub mod chapter_5_monte_carlo;
+pub mod chapter_6_energy;
+pub mod chapter_7_friction;
 #[path = "../../common/figure.rs"]
 #[expect(dead_code, reason = "other examples write files directly")]
 mod figure;
 pub mod printed;
 mod program;
 pub mod report;
+mod ring_down;
 mod settings;
 pub mod table_3;
 mod target;
@@ -34,4 +37,6 @@ pub const CHAPTERS: &[(&str, Computation)] = &[
     ("chapter_4_flexure", chapter_4_flexure::chapter),
     ("chapter_5_modal", chapter_5_modal::chapter),
     ("chapter_5_monte_carlo", chapter_5_monte_carlo::chapter),
+    ("chapter_6_energy", chapter_6_energy::chapter),
+    ("chapter_7_friction", chapter_7_friction::chapter),
 ];

@@ -95,5 +95,7 @@ pub const TABLE_5: [[f64; 5]; 6] = [
 pub const EQUATION_5_5: [f64; 3] = [0.437, 0.2005, 0.997];
 /// The instantaneous quadratic damping (N s²/m²) whose equivalent over a cycle is the slope of Eq. 5.5: 3π/8 of it (E23).
 pub const INSTANTANEOUS_SLOPE: f64 = EQUATION_5_5[0] * 3.0 * std::f64::consts::PI / 8.0;
+/// μ = a vᵇ + c (Eq. 7.2, v in m/s): a, b, c.
+pub const EQUATION_7_2: [f64; 3] = [0.311, 0.2116, 0.03148];
 /// Normal loads (N): Table 4 by the text, Table 5 by the scripts, Table 3's script, chapter 6, chapter 8.
 pub const LOADS: [f64; 5] = [14.0, 0.8771 * 9.81, 7.2, 7.0, 6.67];

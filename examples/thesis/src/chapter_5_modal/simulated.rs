@@ -4,23 +4,16 @@ use fmm_fit::Residuals as _;
 use fmm_friction::Coulomb;
 use fmm_identify::MachineProblem;
 use fmm_model::{Bounds, Damping, Oscillator};
-use fmm_record::{Quantity, Record};
-use fmm_sim::{Sampling, Scenario, Simulated as _, Trajectory};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng as _;
-use rand_distr::{Distribution as _, Normal};
+use fmm_record::Record;
+use fmm_sim::{Sampling, Trajectory};
 
+use crate::ring_down::{self, INTERVAL};
 use crate::{Found, printed};
-
-/// Time between samples (s).
-pub(super) const INTERVAL: f64 = 1e-3;
 
 /// The free vibration of `machine` from an initial position (m) and velocity (m/s).
 pub(super) fn motion(machine: Oscillator, start: (f64, f64), seconds: f64) -> Found<Trajectory> {
-    let scenario = Scenario::new(machine, Coulomb::new(0.0)?, 1.0)?.starting_at(start.0, start.1)?;
-    let mut motion = Trajectory::new();
-    Coulomb::simulate_into(&scenario, &Sampling::uniform(INTERVAL, samples(seconds))?, &mut motion)?;
-    Ok(motion)
+    let scenario = ring_down::scenario::<Coulomb>(machine, &[0.0], 1.0, start)?;
+    ring_down::motion::<Coulomb>(&scenario, &Sampling::uniform(INTERVAL, samples(seconds))?)
 }
 
 /// Samples of a record that lasts `seconds`, both ends included.
@@ -36,9 +29,7 @@ pub(super) fn machine(quadratic: f64) -> Found<Oscillator> {
 
 /// A velocity record of `values` (m/s) with white noise of standard deviation `noise` (m/s).
 pub(super) fn record(values: &[f64], noise: f64, seed: u64) -> Found<Record> {
-    let normal = Normal::new(0.0, noise)?.sample_iter(ChaCha8Rng::seed_from_u64(seed));
-    let values = values.iter().zip(normal).map(|(value, noise)| value + noise).collect();
-    Ok(Record::new(0.0, INTERVAL, values, Quantity::Velocity, "m/s")?)
+    ring_down::velocity_record(ring_down::with_noise(values, noise, seed)?)
 }
 
 /// The fit of A1 to `record`: mass, stiffness, damping and initial position free in its bounds, the initial velocity
