@@ -5,6 +5,7 @@ mod document;
 mod frf_files;
 mod hammer;
 mod identifiability;
+mod impact;
 mod measurement;
 mod own_law;
 mod pendulum;

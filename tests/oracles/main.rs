@@ -3,6 +3,7 @@
 mod bristle;
 mod free_decay;
 mod identities;
+mod impact;
 mod laws;
 mod oracle;
 mod sensitivities;

@@ -1,6 +1,7 @@
 //! Why an identification could not be done.
 
 use fmm_fit::FitError;
+use fmm_frf::{Channel, FrfError};
 use fmm_record::{Quantity, RecordError};
 
 /// Why a record could not be prepared or identified.
@@ -154,6 +155,57 @@ pub enum IdentifyError {
         lower: f64,
         /// Its upper bound.
         upper: f64,
+    },
+    /// Force and response of a blow do not go together, or nothing was hit.
+    #[error(transparent)]
+    Impact(#[from] FrfError),
+    /// A channel of a blow is not in its SI unit.
+    #[error("the {channel} of a blow must be in {expected}, but is in {found}; scale the record")]
+    Unit {
+        /// Which channel.
+        channel: Channel,
+        /// The unit it needs.
+        expected: &'static str,
+        /// The unit it has.
+        found: String,
+    },
+    /// Nothing in a force is a pulse.
+    #[error("there is no blow in the force: its largest value is {level} N in a noise of {noise} N")]
+    NoPulse {
+        /// Largest force (N).
+        level: f64,
+        /// Standard deviation of its noise (N).
+        noise: f64,
+    },
+    /// A channel of a blow is never quiet.
+    #[error("the offset of the {channel} is not known: {samples} samples are quiet, at least {needed} are needed")]
+    NoQuiet {
+        /// Which channel.
+        channel: Channel,
+        /// How many samples are quiet.
+        samples: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// The machine moves against the force.
+    #[error(
+        "the force pushes one way ({impulse} N s) and the machine moves the other ({velocity} m/s); turn the sign of one channel"
+    )]
+    OppositeDirections {
+        /// Impulse of the blow (N s).
+        impulse: f64,
+        /// Velocity that follows (m/s).
+        velocity: f64,
+    },
+    /// No line of the spectrum lies in the band.
+    #[error("no line of the spectrum lies between {low} Hz and {high} Hz; lines are {spacing} Hz apart")]
+    NoLine {
+        /// Low end of the band (Hz).
+        low: f64,
+        /// High end of the band (Hz).
+        high: f64,
+        /// Distance between lines (Hz).
+        spacing: f64,
     },
     /// A number given for the preparation cannot be.
     #[error(transparent)]

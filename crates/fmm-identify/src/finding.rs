@@ -31,6 +31,16 @@ pub struct Finding {
 }
 
 impl Finding {
+    pub(crate) fn new(
+        parameter: Parameter,
+        value: f64,
+        uncertainty: Option<f64>,
+        origin: Origin,
+        is_of_record: bool,
+    ) -> Self {
+        Self { parameter, value, uncertainty, origin, is_of_record }
+    }
+
     /// Name, symbol and unit.
     pub fn parameter(&self) -> &Parameter {
         &self.parameter

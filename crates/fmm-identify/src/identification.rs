@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use fmm_fit::{EvaluationError, Fit, Options, Outcome, Progress, solve_observed};
+use fmm_fit::{EvaluationError, Fit, Options, Outcome, Progress, Residuals, solve_observed};
 use fmm_friction::{CoulombViscous, Role};
 use fmm_model::Restoring;
 use fmm_sim::{Event, EventKind, Simulated, Trajectory};
@@ -22,11 +22,11 @@ pub struct FittedMotion {
 }
 
 impl FittedMotion {
-    fn of(decay: &RingDown, trajectory: &Trajectory) -> Self {
-        let start = decay.record().start();
+    /// The motion behind `trajectory`, which begins at `start` (s) on the time axis of a record sampled every `interval` (s).
+    pub(crate) fn of_events(start: f64, interval: f64, trajectory: &Trajectory) -> Self {
         // A velocity of nearly zero at the first sample reverses at once, or does not: that is no swing of the record.
         let turns = |event: &&Event| matches!(event.kind, EventKind::Reversal | EventKind::Stop);
-        let begun = |event: &&Event| event.time > decay.record().interval();
+        let begun = |event: &&Event| event.time > interval;
         let decided = trajectory.events().iter().filter(turns).filter(begun);
         let margins = decided.clone().map(|event| (event.margin(), start + event.time));
         Self {
@@ -34,6 +34,12 @@ impl FittedMotion {
             half_swings: decided.count(),
             narrowest: margins.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs())),
         }
+    }
+
+    /// Margin and time (s) of the most narrowly decided turning point of `motions`.
+    pub(crate) fn narrowest_decision(motions: &[Self]) -> Option<(f64, f64)> {
+        let decided = motions.iter().filter_map(|motion| motion.narrowest);
+        decided.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
     }
 
     /// When the contact stops for good, on the time axis of the record (s); none if it does not before the end.
@@ -153,7 +159,7 @@ pub fn identify_observed<F: Simulated>(
     let mut motions = Vec::with_capacity(decays.len());
     for (record, decay) in decays.iter().enumerate() {
         let trajectory = problem.events(record, fit.values()).map_err(failure)?;
-        motions.push(FittedMotion::of(decay, &trajectory));
+        motions.push(FittedMotion::of_events(decay.record().start(), decay.record().interval(), &trajectory));
     }
     let mut identification = Identification {
         law: terms.name(F::NAME),
@@ -201,7 +207,7 @@ fn fit_in_stages<F: Simulated>(
         // One fit of all samples, begun where a search with few of them has ended.
         let search = problem.with_records(&thinned);
         let found = fit_in_search(&search, options, observer)?;
-        return best_fit(problem, vec![found.values().to_vec()], options, observer);
+        return best_fit(problem, F::NAME, vec![found.values().to_vec()], options, observer);
     }
     fit_in_search(problem, options, observer)
 }
@@ -219,7 +225,7 @@ fn fit_in_search<F: Simulated>(
     let known = fit_simple(&simple, options, observer)?;
     let mut starts = problem.continued(&simple, known.values());
     starts.extend(problem.starts().into_iter().next());
-    best_fit(problem, starts, options, observer)
+    best_fit(problem, F::NAME, starts, options, observer)
 }
 
 /// The best end of the fits from start values that the records show.
@@ -231,7 +237,7 @@ fn fit_simple<F: Simulated>(
     let mut starts = problem.starts();
     if let Some(swinging) = problem.up_to_last_peaks() {
         let problem = problem.with_records(&swinging);
-        if let Ok(fit) = best_fit(&problem, problem.starts(), options, observer) {
+        if let Ok(fit) = best_fit(&problem, F::NAME, problem.starts(), options, observer) {
             starts.push(fit.values().to_vec());
         }
     }
@@ -240,18 +246,19 @@ fn fit_simple<F: Simulated>(
         for share in BEGINNINGS {
             let beginning = problem.beginnings(share);
             let problem = problem.with_records(&beginning);
-            if let Ok(fit) = best_fit(&problem, std::mem::take(&mut begun), options, observer) {
+            if let Ok(fit) = best_fit(&problem, F::NAME, std::mem::take(&mut begun), options, observer) {
                 begun.push(fit.values().to_vec());
             }
         }
         starts.extend(begun);
     }
-    best_fit(problem, starts, options, observer)
+    best_fit(problem, F::NAME, starts, options, observer)
 }
 
 /// The best end of the fits from `starts`. No other end is better than one that leaves rounding only.
-fn best_fit<F: Simulated>(
-    problem: &RingDownProblem<'_, F>,
+pub(crate) fn best_fit(
+    problem: &impl Residuals,
+    law: &'static str,
     starts: Vec<Vec<f64>>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
@@ -265,7 +272,7 @@ fn best_fit<F: Simulated>(
                 best = Some(fit);
             }
             Ok(_) => {}
-            Err(source) => failure = Some(IdentifyError::Fit { law: F::NAME, source }),
+            Err(source) => failure = Some(IdentifyError::Fit { law, source }),
         }
     }
     best.ok_or_else(|| failure.unwrap_or(IdentifyError::TooFewHalfSwings { found: 0, needed: 2 }))
@@ -360,10 +367,5 @@ impl Identification {
     /// Sum of squares below which a fit reproduces its records to rounding, and none is better than another.
     pub(crate) fn floor(&self) -> f64 {
         (1e-12 * self.amplitude).powi(2) * self.fit.residuals().len() as f64
-    }
-
-    pub(crate) fn narrowest_decision(&self) -> Option<(f64, f64)> {
-        let decided = self.motions.iter().filter_map(|motion| motion.narrowest);
-        decided.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
     }
 }

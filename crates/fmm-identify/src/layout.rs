@@ -111,20 +111,6 @@ impl Layout {
         }
     }
 
-    /// Values for all parameters of the law, static levels included.
-    pub(crate) fn law_values<F: LawFamily, D: Scalar>(&self, motion: &[D]) -> Vec<D> {
-        let fitted = || fitted::<F>().zip(&motion[self.law..self.shared]);
-        let first = fitted().find(|(parameter, _)| parameter.role() == Role::Level);
-        let level = first.map_or(D::from(0.0), |(_, level)| *level);
-        let mut values = fitted();
-        let value = |parameter: &LawParameter| match parameter.role() {
-            Role::Breakaway => Some(level),
-            Role::LevelAbove => values.next().map(|(_, excess)| level + *excess),
-            _ => values.next().map(|(_, value)| *value),
-        };
-        F::PARAMETERS.iter().filter_map(value).collect()
-    }
-
     /// The scenario of one record; `motion` holds the shared values and then its initial position and velocity.
     pub(crate) fn scenario<F: LawFamily, D: Scalar>(
         &self,
@@ -150,10 +136,25 @@ impl Layout {
             _ => Restoring::Linear,
         };
         let oscillator = oscillator.with_damping(Damping::of_any_sign(damping, quadratic)?).with_restoring(restoring);
-        let law = F::at(&self.law_values::<F, D>(motion))?;
+        let law = F::at(&law_values::<F, D>(&motion[self.law..self.shared]))?;
         let scenario = Scenario::new(oscillator, law, D::from(1.0))?;
         Ok(scenario.starting_at(motion[self.shared], motion[self.shared + 1])?)
     }
+}
+
+/// Values for all parameters of the law from those of the [`fitted`] ones: static levels are put in, and a level that may not lie
+/// below another is that with what it is above it.
+pub(crate) fn law_values<F: LawFamily, D: Scalar>(values: &[D]) -> Vec<D> {
+    let fitted = || fitted::<F>().zip(values);
+    let first = fitted().find(|(parameter, _)| parameter.role() == Role::Level);
+    let level = first.map_or(D::from(0.0), |(_, level)| *level);
+    let mut values = fitted();
+    let value = |parameter: &LawParameter| match parameter.role() {
+        Role::Breakaway => Some(level),
+        Role::LevelAbove => values.next().map(|(_, excess)| level + *excess),
+        _ => values.next().map(|(_, value)| *value),
+    };
+    F::PARAMETERS.iter().filter_map(value).collect()
 }
 
 /// The mass (kg) that the known scale and the natural frequency (Hz) give, if a scale is known.

@@ -12,6 +12,7 @@
 //! | Which law? | [`compare`] tells, and says when the data do not decide |
 //! | How does damping depend on velocity? | [`decrements`] cycle by cycle, [`Windows`] a few cycles at a time |
 //! | Friction without a simulation? | [`WeakForm`]; [`EnergyMethod`] for its curve, [`half_swing_losses`] per half swing |
+//! | Friction out of hammer blows? | [`ImpactTrial`], [`identify_impact`], to the mobility, the time record or both |
 //! | Are the uncertainties to be trusted? | read the [`warnings`](Identification::warnings): they name what breaks them |
 //!
 //! ```
@@ -51,6 +52,7 @@ mod first_guess;
 mod free_vibration;
 mod half_swings;
 mod identification;
+mod impact;
 mod known;
 mod layout;
 mod machine;
@@ -79,6 +81,10 @@ pub use error::IdentifyError;
 pub use estimated::Estimated;
 pub use finding::{Finding, Origin};
 pub use identification::{FittedMotion, Identification, identify, identify_observed, identify_with};
+pub use impact::{
+    ImpactDomain, ImpactIdentification, ImpactMachine, ImpactOptions, ImpactProblem, ImpactSummary, ImpactTrial,
+    identify_impact,
+};
 pub use known::Known;
 pub use machine::{Machine, Scale};
 pub use machine_problem::MachineProblem;

@@ -8,7 +8,7 @@ use crate::finding::Origin;
 use crate::{Comparison, Finding, Identification, Warning};
 
 /// Width of the column that holds the names of parameters.
-fn name_width(findings: &[Finding]) -> usize {
+pub(crate) fn name_width(findings: &[Finding]) -> usize {
     findings.iter().map(|finding| finding.parameter().name().chars().count()).max().unwrap_or(0)
 }
 
@@ -43,7 +43,7 @@ impl Identification {
     }
 }
 
-fn write_warnings(f: &mut fmt::Formatter<'_>, warnings: &[Warning]) -> fmt::Result {
+pub(crate) fn write_warnings(f: &mut fmt::Formatter<'_>, warnings: &[Warning]) -> fmt::Result {
     if !warnings.is_empty() {
         writeln!(f, "\nWarnings")?;
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use fmm_fit::EstimateStatus;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-use crate::{Comparison, Finding, Identification, Origin, RecordSummary};
+use crate::{Comparison, Finding, Identification, ImpactIdentification, ImpactSummary, Origin, RecordSummary};
 
 impl Serialize for Finding {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -43,6 +43,53 @@ impl Serialize for Identification {
         document.serialize_field("outcome", &self.fit().outcome().to_string())?;
         document.serialize_field("autocorrelation_time", &self.autocorrelation_time())?;
         document.serialize_field("warnings", &warnings)?;
+        document.end()
+    }
+}
+
+/// `law`, `fitted_to`, `parameters` (by name), `rms_residual` (m/s), `chi`, `rank`, `outcome`, `trials`, `stop_times_s`,
+/// `closed_form_forces_n`, `warnings`.
+impl Serialize for ImpactIdentification {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let parameters: BTreeMap<_, _> =
+            self.findings().iter().map(|finding| (finding.parameter().name(), finding)).collect();
+        let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();
+        let stop_times: Vec<Option<f64>> = self.motions().iter().map(crate::FittedMotion::stop_time).collect();
+        let mut document = serializer.serialize_struct("ImpactIdentification", 11)?;
+        document.serialize_field("law", self.law())?;
+        document.serialize_field("fitted_to", &self.options().domain().to_string())?;
+        document.serialize_field("parameters", &parameters)?;
+        document.serialize_field("rms_residual", &self.rms_residual())?;
+        document.serialize_field("chi", &self.chi())?;
+        document.serialize_field("rank", &self.fit().rank())?;
+        document.serialize_field("outcome", &self.fit().outcome().to_string())?;
+        document.serialize_field("trials", self.trials())?;
+        document.serialize_field("stop_times_s", &stop_times)?;
+        document.serialize_field("closed_form_forces_n", self.closed_forms())?;
+        document.serialize_field("warnings", &warnings)?;
+        document.end()
+    }
+}
+
+/// What a blow is, in SI units; pairs are a value and its standard uncertainty.
+impl Serialize for ImpactSummary {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let pair = |estimated: crate::Estimated| [estimated.value, estimated.uncertainty];
+        let mut document = serializer.serialize_struct("ImpactSummary", 14)?;
+        document.serialize_field("samples", &self.samples)?;
+        document.serialize_field("rate_hz", &self.rate)?;
+        document.serialize_field("begin_s", &self.begin)?;
+        document.serialize_field("impulse", &pair(self.impulse))?;
+        document.serialize_field("level", &self.level)?;
+        document.serialize_field("duration_s", &self.duration)?;
+        document.serialize_field("further_hits", &self.further_hits.len())?;
+        document.serialize_field("overloads", &[self.overloads.0, self.overloads.1])?;
+        document.serialize_field("force_offset", &pair(self.force_offset))?;
+        document.serialize_field("force_noise", &self.force_noise)?;
+        document.serialize_field("velocity_offset", &pair(self.velocity_offset))?;
+        document.serialize_field("velocity_noise", &self.velocity_noise)?;
+        document.serialize_field("spikes", &self.spikes)?;
+        document.serialize_field("rest_s", &self.rest)?;
         document.end()
     }
 }

@@ -3,11 +3,12 @@
 use std::fmt;
 
 use fmm_fit::Fit;
+use fmm_frf::Channel;
 use fmm_model::Restoring;
 
 use crate::machine::Scale;
 use crate::terms::{LINEAR, QUADRATIC};
-use crate::{Identification, Machine, RecordSummary, RingDown};
+use crate::{FittedMotion, Identification, Machine, RecordSummary, RingDown};
 
 /// Something that limits what the record can tell, or that was done to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -137,6 +138,54 @@ pub enum Warning {
     },
     /// The models are too close to prefer one.
     Undecided,
+    /// The hammer hit again.
+    FurtherHit {
+        /// Number of the trial, from 1.
+        trial: usize,
+        /// When (s).
+        time: f64,
+        /// How high, by the pulse (1).
+        share: f64,
+    },
+    /// Samples of a trial lie on the end of the range of the instrument.
+    Overload {
+        /// Number of the trial, from 1.
+        trial: usize,
+        /// Of which channel.
+        channel: Channel,
+        /// How many.
+        samples: usize,
+    },
+    /// A pulse has few samples.
+    CoarsePulse {
+        /// Number of the trial, from 1.
+        trial: usize,
+        /// Intervals between samples in it.
+        intervals: usize,
+        /// Relative error (1) that straight lines between the samples make of the impulse of a half sine.
+        error: f64,
+    },
+    /// Isolated samples of the velocity of a trial were bridged by straight lines.
+    SpikesBridged {
+        /// Number of the trial, from 1.
+        trial: usize,
+        /// How many.
+        samples: usize,
+    },
+    /// The record of a trial ends before the motion.
+    NotAtRest {
+        /// Number of the trial, from 1.
+        trial: usize,
+        /// How long the motion was recorded (s).
+        recorded: f64,
+        /// By what share a peak of the receptance is too low for that (1).
+        lost: f64,
+    },
+    /// What the uncertainty of what was held does to the findings could not be found out.
+    InputsNotPropagated {
+        /// Why, as a sentence.
+        reason: String,
+    },
 }
 
 /// Fewer half swings than this are few.
@@ -157,13 +206,17 @@ impl Warning {
         for decay in decays {
             Self::of_record(decay.summary(), machine, &mut warnings);
         }
-        Self::of_fit(identification, &mut warnings);
+        Self::of_fit(identification.fit(), &mut warnings);
         Self::of_damping(identification, &mut warnings);
         Self::of_residuals(identification, decays, &mut warnings);
-        if let Some((margin, time)) = identification.narrowest_decision().filter(|(margin, _)| margin.abs() < NARROW) {
-            warnings.push(Self::NarrowStop { margin, time });
-        }
+        warnings.extend(Self::of_narrow_stop(identification.motions()));
         warnings
+    }
+
+    /// That a turning point of `motions` was decided narrowly.
+    pub(crate) fn of_narrow_stop(motions: &[FittedMotion]) -> Option<Self> {
+        let narrowest = FittedMotion::narrowest_decision(motions).filter(|(margin, _)| margin.abs() < NARROW);
+        narrowest.map(|(margin, time)| Self::NarrowStop { margin, time })
     }
 
     fn of_record(summary: &RecordSummary, machine: &Machine, warnings: &mut Vec<Self>) {
@@ -189,8 +242,8 @@ impl Warning {
         }
     }
 
-    fn of_fit(identification: &Identification, warnings: &mut Vec<Self>) {
-        let fit = identification.fit();
+    /// What limits any `fit`.
+    pub(crate) fn of_fit(fit: &Fit, warnings: &mut Vec<Self>) {
         if !fit.outcome().is_success() {
             warnings.push(Self::NotConverged { sentence: format!("the fit {}", fit.outcome()) });
         }
@@ -330,6 +383,12 @@ impl fmt::Display for Warning {
                  swings and miss those of small ones (its residuals are {residuals:.1} times larger)",
                 preferred / friction
             ),
+            Self::FurtherHit { .. }
+            | Self::Overload { .. }
+            | Self::CoarsePulse { .. }
+            | Self::SpikesBridged { .. }
+            | Self::NotAtRest { .. }
+            | Self::InputsNotPropagated { .. } => self.write_of_blows(f),
             Self::Undecided => write!(
                 f,
                 "the data do not decide between the models; the simplest of the close ones is shown as preferred"

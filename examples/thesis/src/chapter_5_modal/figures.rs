@@ -5,10 +5,11 @@ use fmm_fit::{Options, solve};
 use super::drag::COMPLETE;
 use super::identifiability::NOISE;
 use super::regressions::table_1_line;
-use super::simulated::{INTERVAL, a1_of_stiffness, machine, motion, record, rms, samples};
+use super::simulated::{a1_of_stiffness, machine, motion, record, rms, samples};
 use super::windows::Column;
 use crate::figure::{Layer, Panel, Role, label};
 use crate::printed::{INSTANTANEOUS_SLOPE, MACHINE, TABLE_1};
+use crate::ring_down::INTERVAL;
 use crate::{Chapter, Found, Settings};
 
 /// Release of the record of Figs 8 and 9 (m), that of program A1.

@@ -3,8 +3,9 @@
 use fmm_fit::{Estimate, Fit, Options, Residuals as _, solve};
 use fmm_model::{Damping, Oscillator};
 
-use super::simulated::{INTERVAL, a1, a1_of_stiffness, motion, record};
+use super::simulated::{a1, a1_of_stiffness, motion, record};
 use crate::printed::{MACHINE, TABLE_1};
+use crate::ring_down::INTERVAL;
 use crate::{Chapter, Criterion, Found, Settings, Target};
 
 /// What A1 fits (s).

@@ -1,0 +1,284 @@
+//! Friction parameters of one law out of blows.
+
+use std::ops::ControlFlow;
+
+use fmm_fit::{EvaluationError, Fit};
+use fmm_friction::{Coulomb, Role};
+use fmm_model::Parameter;
+use fmm_sim::Simulated;
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+
+use crate::finding::{Finding, Origin};
+use crate::identification::{FittedMotion, best_fit};
+use crate::impact::covariance::ImpactCovariance;
+use crate::impact::parameters::{DAMPING, LAW, LOAD, MASS, RESPONSE_GAIN, STIFFNESS};
+use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactProblem, ImpactSummary, ImpactTrial, warnings};
+use crate::layout::{fitted, named};
+use crate::{IdentifyError, Warning};
+
+/// From so many degrees of freedom on, Student's t is a normal distribution.
+const MANY_DEGREES: f64 = 1e4;
+
+/// What the model says for the velocity of one trial, given its machine, all trials and the fitted values.
+type ModelOf = fn(&ImpactMachine, &[ImpactTrial], &ImpactOptions, usize, &[f64]) -> Option<Vec<f64>>;
+
+/// Friction parameters of one law out of blows, with their uncertainty and what limits them.
+///
+/// `Display` gives the report.
+#[derive(Debug, Clone)]
+pub struct ImpactIdentification {
+    law: String,
+    machine: ImpactMachine,
+    options: ImpactOptions,
+    fit: Fit,
+    findings: Vec<Finding>,
+    /// Degrees of freedom of the uncertainty of each finding.
+    degrees_of_freedom: Vec<f64>,
+    trials: Vec<ImpactSummary>,
+    motions: Vec<FittedMotion>,
+    closed_forms: Vec<Option<f64>>,
+    warnings: Vec<Warning>,
+    residual: f64,
+    expected: f64,
+    model: ModelOf,
+}
+
+/// Identifies the parameters of law family `F` from blows on one machine.
+///
+/// No start values are needed: they come from the height of the receptance peaks ([`ImpactProblem::closed_form`]). Laws with more
+/// than one level continue a fit of dry friction; a fit to the time record continues one to the mobility, which is quick.
+///
+/// Standard uncertainties hold the noise of the velocity, as the residuals show it, and the uncertainty of everything held: mass,
+/// stiffness, damping and load of the machine, the calibration of both channels, and for each trial the noise in its pulse and the
+/// offset taken from its velocity (JCGM 100:2008, 5.1.2).
+///
+/// # Errors
+/// As for [`ImpactProblem::new`], and [`IdentifyError::Fit`] if the fit cannot begin. How it *ends* is in the result.
+///
+/// ```
+/// use fmm_friction::Coulomb;
+/// use fmm_identify::{ImpactMachine, ImpactOptions, ImpactTrial, Known, identify_impact};
+/// use fmm_record::{Quantity, Record};
+/// # use fmm_model::{Damping, Oscillator};
+/// # use fmm_sim::{Engine, Exact, Excitation, Sampling, Scenario};
+///
+/// // A blow of 450 N and 3.4 ms on the machine of the thesis, μ = 0.113 under 6.67 N; 3 s at 10 kHz. Here it is simulated.
+/// # let pulse = |i: i32| (f64::from(i - 100) / 34.0 * std::f64::consts::PI).sin() * 453.0;
+/// # let force: Vec<f64> = (0..30_000).map(|i| if (100..=134).contains(&i) { pulse(i) } else { 0.0 }).collect();
+/// # let machine = Oscillator::new(10.391, 1982.0)?.with_damping(Damping::linear(0.275)?);
+/// # let scenario = Scenario::new(machine, Coulomb::new(0.113)?, 6.67)?;
+/// # let scenario = scenario.driven_by(Excitation::sampled_force(1e-4, force.clone())?);
+/// # let velocity = Exact.run(&scenario, &Sampling::uniform(1e-4, 30_000)?)?.velocity().values().to_vec();
+/// let force = Record::new(0.0, 1e-4, force, Quantity::Force, "N")?;
+/// let velocity = Record::new(0.0, 1e-4, velocity, Quantity::Velocity, "m/s")?;
+/// let trial = ImpactTrial::prepare(&force, &velocity)?;
+///
+/// let machine = ImpactMachine::new(Known::exact(10.391)?, Known::exact(1982.0)?)?
+///     .with_damping(Known::exact(0.275)?)?
+///     .with_normal_load(Known::new(6.67, 0.01)?)?;
+/// let found = identify_impact::<Coulomb>(&machine, &[trial], &ImpactOptions::default())?;
+/// let mu = found.finding("coefficient").unwrap();
+/// assert!((mu.value() - 0.113).abs() < 1e-8);
+/// // Only μ N shows in the motion, so that u(μ)/μ = u(N)/N.
+/// assert!((mu.uncertainty().unwrap() - 0.113 * 0.01 / 6.67).abs() < 1e-6);
+/// assert!(found.finding("friction_force").unwrap().uncertainty().unwrap() < 1e-6);
+/// println!("{found}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn identify_impact<F: Simulated>(
+    machine: &ImpactMachine,
+    trials: &[ImpactTrial],
+    options: &ImpactOptions,
+) -> Result<ImpactIdentification, IdentifyError> {
+    let problem = ImpactProblem::<F>::new(machine, trials, options)?;
+    let fit = fit_in_stages(&problem, options)?;
+    let failure = |error: EvaluationError| IdentifyError::Simulation { law: F::NAME, message: error.to_string() };
+    let motion = |trial: usize| {
+        let trajectory = problem.motion(trial, fit.values())?;
+        Ok(FittedMotion::of_events(trials[trial].summary().begin, trials[trial].interval(), &trajectory))
+    };
+    let motions = (0..trials.len()).map(motion).collect::<Result<Vec<_>, _>>().map_err(failure)?;
+    let closed_forms = (0..trials.len()).map(|trial| problem.closed_form(trial)).collect();
+    let covariance =
+        ImpactCovariance::of(problem.fitting(options.domain), &fit, options.force_gain_uncertainty).map_err(failure)?;
+    let (findings, degrees_of_freedom) = findings(&problem, &fit, &covariance);
+    let level = fitted::<F>().position(|parameter| parameter.role() == Role::Level);
+    let friction = level.map(|level| fit.values()[LOAD] * fit.values()[LAW + level]);
+    let warnings = warnings::of(&fit, &covariance, trials, &motions, friction);
+    Ok(ImpactIdentification {
+        law: F::NAME.to_owned(),
+        machine: *machine,
+        options: options.clone(),
+        fit,
+        findings,
+        degrees_of_freedom,
+        trials: trials.iter().map(|trial| trial.summary().clone()).collect(),
+        motions,
+        closed_forms,
+        warnings,
+        residual: covariance.residual,
+        expected: covariance.expected,
+        model: |machine, trials, options, trial, p| {
+            ImpactProblem::<F>::new(machine, trials, options).ok()?.model(trial, p).ok()
+        },
+    })
+}
+
+/// Searches in the band, where residuals are few, and ends in the domain asked for.
+fn fit_in_stages<F: Simulated>(problem: &ImpactProblem<'_, F>, options: &ImpactOptions) -> Result<Fit, IdentifyError> {
+    let mut observe = |_: &fmm_fit::Progress<'_>| ControlFlow::Continue(());
+    let mut coefficient = problem.coefficient_without_fit();
+    let band = problem.fitting(ImpactDomain::Mobility);
+    if fitted::<F>().count() > 1 {
+        // The best dry friction is a better begin for other laws than the closed form, which has errors of its own.
+        let dry = ImpactOptions { band: options.band, ..ImpactOptions::default() };
+        let dry = ImpactProblem::<Coulomb>::new(problem.machine(), problem.trials(), &dry)?;
+        if let Ok(fit) = best_fit(
+            &dry,
+            <Coulomb as fmm_friction::LawFamily>::NAME,
+            dry.starts(coefficient),
+            &options.solver,
+            &mut observe,
+        ) {
+            coefficient = fit.values()[LAW];
+        }
+    }
+    let starts = problem.starts(coefficient);
+    let found = best_fit(&band, F::NAME, starts.clone(), &options.solver, &mut observe);
+    match (problem.domain(), found) {
+        (ImpactDomain::Mobility, found) => found,
+        (_, Ok(found)) => best_fit(problem, F::NAME, vec![found.values().to_vec()], &options.solver, &mut observe),
+        // A band of few lines may not determine what the time record does.
+        (_, Err(_)) => best_fit(problem, F::NAME, starts, &options.solver, &mut observe),
+    }
+}
+
+/// What was found and what was held of the machine, then what follows; with the degrees of freedom of each uncertainty.
+fn findings<F: Simulated>(
+    problem: &ImpactProblem<'_, F>,
+    fit: &Fit,
+    covariance: &ImpactCovariance,
+) -> (Vec<Finding>, Vec<f64>) {
+    let layout = problem.layout();
+    let mut findings = Vec::new();
+    let mut degrees = Vec::new();
+    let law = LAW..layout.shared;
+    let machine = [DAMPING, MASS, STIFFNESS, LOAD];
+    let others = std::iter::once(RESPONSE_GAIN).chain(layout.shared..layout.all.len());
+    let others = others.filter(|&index| !layout.is_held(index));
+    for index in law.clone().chain(machine).chain(others) {
+        let estimate = &fit.estimates()[index];
+        let uncertainty = if layout.is_held(index) {
+            problem.known(index).map(|known| known.uncertainty())
+        } else {
+            covariance.uncertainty(index)
+        };
+        let (parameter, origin) = (estimate.parameter().clone(), Origin::Fitted(estimate.status()));
+        findings.push(Finding::new(parameter, estimate.value(), uncertainty, origin, index >= layout.shared));
+        degrees.push(covariance.degrees_of_freedom(index));
+    }
+    let is_one = |index: usize| layout.values[index] == 1.0 && layout.uncertainties[index] == 0.0;
+    if layout.is_held(LOAD) && !is_one(LOAD) {
+        for (index, parameter) in law.zip(fitted::<F>()) {
+            if matches!(parameter.role(), Role::Level | Role::Excess) && parameter.parameter().unit() == "1" {
+                let value = fit.values()[LOAD] * fit.values()[index];
+                let uncertainty = covariance.uncertainty_times_load(index, fit.values());
+                let force: Parameter = named(parameter.parameter(), "friction_force", "N");
+                findings.push(Finding::new(force, value, uncertainty, Origin::Derived, false));
+                degrees.push(covariance.degrees_of_freedom(index));
+            }
+        }
+    }
+    (findings, degrees)
+}
+
+impl ImpactIdentification {
+    /// Name of the law.
+    pub fn law(&self) -> &str {
+        &self.law
+    }
+
+    /// What was known of the machine.
+    pub fn machine(&self) -> &ImpactMachine {
+        &self.machine
+    }
+
+    /// How it was fitted.
+    pub fn options(&self) -> &ImpactOptions {
+        &self.options
+    }
+
+    /// The fit behind the findings. Its own uncertainties are those of independent residuals, and all else known exactly.
+    pub fn fit(&self) -> &Fit {
+        &self.fit
+    }
+
+    /// What was found: parameters of the law, the machine, whatever else was set free, and what follows from them.
+    pub fn findings(&self) -> &[Finding] {
+        &self.findings
+    }
+
+    /// The finding of this name, such as `"coefficient"` or `"friction_force"`.
+    pub fn finding(&self, name: &str) -> Option<&Finding> {
+        self.findings.iter().find(|finding| finding.parameter().name() == name)
+    }
+
+    /// The interval that covers the finding of this name with probability `level`, by Student's t with the effective degrees of
+    /// freedom of its uncertainty (JCGM 100:2008, G.4); none for what has no uncertainty, was held, or a level outside (0, 1).
+    pub fn interval(&self, name: &str, level: f64) -> Option<(f64, f64)> {
+        let index = self.findings.iter().position(|finding| finding.parameter().name() == name)?;
+        let (value, u) = (self.findings[index].value(), self.findings[index].uncertainty()?);
+        let is_held = self.findings[index].origin() == Origin::Fitted(fmm_fit::EstimateStatus::Fixed);
+        if is_held || !(level > 0.0 && level < 1.0) {
+            return None;
+        }
+        let (degrees, probability) = (self.degrees_of_freedom[index], 0.5 * (1.0 + level));
+        // The inverse of Student's t does not converge for very many degrees of freedom, where it is the normal one.
+        let factor = if degrees < MANY_DEGREES {
+            StudentsT::new(0.0, 1.0, degrees).ok()?.inverse_cdf(probability)
+        } else {
+            Normal::new(0.0, 1.0).ok()?.inverse_cdf(probability)
+        };
+        let reach = u * factor;
+        Some((value - reach, value + reach))
+    }
+
+    /// What each trial is and what was done to it.
+    pub fn trials(&self) -> &[ImpactSummary] {
+        &self.trials
+    }
+
+    /// The fitted motion of each trial, on the time axis of its record.
+    pub fn motions(&self) -> &[FittedMotion] {
+        &self.motions
+    }
+
+    /// For each trial the friction force (N) that its receptance peak gives without a fit, [`ImpactProblem::closed_form`].
+    pub fn closed_forms(&self) -> &[Option<f64>] {
+        &self.closed_forms
+    }
+
+    /// What limits the findings.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// Root mean square of the residuals (m/s), of samples or of scaled lines.
+    pub fn rms_residual(&self) -> f64 {
+        self.residual
+    }
+
+    /// χ, the residuals by what the noise of the velocity and the uncertainty of the impulses explain (1): about 1 if the law
+    /// describes the blows.
+    pub fn chi(&self) -> f64 {
+        self.residual / self.expected
+    }
+
+    /// Velocity (m/s) that the law gives for every sample of `trial`, which must be one of the `trials` of the identification;
+    /// none for another number.
+    pub fn model(&self, trials: &[ImpactTrial], trial: usize) -> Option<Vec<f64>> {
+        (trial < trials.len() && trials.len() == self.trials.len())
+            .then(|| (self.model)(&self.machine, trials, &self.options, trial, self.fit.values()))
+            .flatten()
+    }
+}

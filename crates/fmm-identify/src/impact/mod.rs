@@ -1,0 +1,21 @@
+//! Friction out of hammer blows: the motion after a measured force, simulated and fitted.
+
+mod covariance;
+#[cfg(test)]
+mod derivatives;
+mod identification;
+mod lines;
+mod machine;
+mod options;
+mod parameters;
+mod problem;
+mod report;
+mod start;
+mod trial;
+mod warnings;
+
+pub use identification::{ImpactIdentification, identify_impact};
+pub use machine::ImpactMachine;
+pub use options::{ImpactDomain, ImpactOptions};
+pub use problem::ImpactProblem;
+pub use trial::{ImpactSummary, ImpactTrial};
