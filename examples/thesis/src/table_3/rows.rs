@@ -9,6 +9,7 @@ use fmm_uq::{MonteCarlo, OutputSample};
 
 use super::{Problem, ROWS, VARIED, inputs, problem};
 use crate::Found;
+use crate::printed::MACHINE_DEVIATIONS;
 
 /// One row by Monte Carlo.
 #[derive(Debug)]
@@ -32,7 +33,7 @@ pub fn exact_rows(
     seed: u64,
     watch: &(dyn Fn(u64) + Sync),
 ) -> Found<Vec<Row>> {
-    let refit = Refit::prepare(problem, fit)?.varying(&VARIED.map(|(name, _)| name))?;
+    let refit = Refit::prepare(problem, fit)?.varying(&VARIED.map(|(name, _)| name))?.expecting(&MACHINE_DEVIATIONS)?;
     rows([trials; 4], seed, watch, |x| Ok(refit.estimates(x)?))
 }
 
