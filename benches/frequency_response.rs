@@ -1,9 +1,8 @@
 //! H1, H2 and coherence of an impact test against the bare transforms of its channels, in one run.
 //!
-//! `cargo bench --bench frequency_response` prints criterion's estimates and then the ratios of their medians. Two runs on two
-//! cores of a Xeon at 2.8 GHz, shared with builds, gave 1.08 and 1.16 for H1, H2 and coherence, and 0.90 for the band. What
-//! is beyond the transforms waits for memory, so that others who use it move the ratio by 0.1 either way; H1, H2 and
-//! coherence themselves, after all trials, are 1 % of the time.
+//! `cargo bench --bench frequency_response` prints criterion's estimates and then the ratios of their medians: 1.10 on two
+//! quiet cores of a Xeon at 2.8 GHz, 1.08 and 1.16 while others built there. What is beyond the transforms waits for
+//! memory, so that single runs scatter up to 1.4; H1, H2 and coherence themselves, after all trials, are 1 % of the time.
 
 #[path = "common/ratio.rs"]
 mod ratio;
