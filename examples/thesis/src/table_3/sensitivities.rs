@@ -56,7 +56,7 @@ impl Sensitivities {
         Ok(propagate(&inputs("all")?, |x| self.coefficient(x))?.named("μ", "1"))
     }
 
-    /// Eq. 5.4 with the [`correlations`] of Table 1.
+    /// Eq. 5.4 with the correlations of Table 1.
     ///
     /// # Errors
     /// As [`budget`](Self::budget).
