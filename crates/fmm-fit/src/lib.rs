@@ -56,5 +56,5 @@ pub use solver::{
 pub use starts::{Minima, Minimum, MultiStart, StartFailure};
 pub use uncertainty::{
     CorrelatedCovariance, Prediction, ProfileEnd, ProfileError, ProfileInterval, PropagatedCovariance, Refit,
-    RefitError, ResidualVariance, Sensitivity, SensitivityError, profile_interval,
+    RefitError, ResidualVariance, Sensitivity, SensitivityError, coverage_factor, profile_interval,
 };

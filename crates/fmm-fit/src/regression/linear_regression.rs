@@ -8,8 +8,7 @@ use crate::regression::refined_least_squares::refined_least_squares;
 use crate::regression::twofold::Twofold;
 use crate::regression::weighting::check_finite;
 use crate::result::null_direction::null_directions;
-use crate::uncertainty::prediction::student_quantile;
-use crate::{NullDirection, Prediction, RegressionError, Weighting};
+use crate::{NullDirection, Prediction, RegressionError, Weighting, coverage_factor};
 
 /// Regression of observations on given columns.
 ///
@@ -158,7 +157,7 @@ impl LinearRegression {
     /// The interval that holds the coefficient of column `j` with probability `level`, by Student's t or, with absolute
     /// uncertainties, the normal distribution.
     pub fn interval_of(&self, j: usize, level: f64) -> Option<(f64, f64)> {
-        let reach = student_quantile(level, self.effective_freedom())? * self.standard_uncertainty(j)?;
+        let reach = coverage_factor(level, self.effective_freedom())? * self.standard_uncertainty(j)?;
         Some((self.coefficients[j] - reach, self.coefficients[j] + reach))
     }
 
@@ -348,7 +347,7 @@ mod tests {
         // u² = s² (1/n + (x − x̄)²/Σ(x − x̄)²)
         let u = s * (0.2 + 9.0 / 10.0f64).sqrt();
         assert!((at.standard_uncertainty() / u - 1.0).abs() < 1e-13);
-        let t = student_quantile(0.95, 3.0).unwrap();
+        let t = coverage_factor(0.95, 3.0).unwrap();
         let (lower, upper) = at.observation(0.95, 1.0).unwrap();
         assert!(((upper - lower) / (2.0 * t * u.hypot(s)) - 1.0).abs() < 1e-13);
     }

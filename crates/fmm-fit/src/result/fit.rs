@@ -1,7 +1,6 @@
 //! The result of a fit.
 
 use fmm_model::Parameter;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::result::estimate::{Estimate, EstimateStatus};
 use crate::result::null_direction::{NullDirection, null_directions};
@@ -9,7 +8,7 @@ use crate::solver::evaluation::Scheme;
 use crate::solver::minimizer::Minimizer;
 use crate::solver::spectrum::Spectrum;
 use crate::solver::triangle::Triangle;
-use crate::{NonFinite, Outcome};
+use crate::{NonFinite, Outcome, coverage_factor};
 
 /// The result of a fit: estimates, their uncertainty, and what the residuals could not tell.
 ///
@@ -234,11 +233,7 @@ impl Fit {
     pub fn interval_of(&self, index: usize, level: f64) -> Option<(f64, f64)> {
         let estimate = self.estimates.get(index)?;
         let uncertainty = estimate.standard_uncertainty?;
-        if !(level > 0.0 && level < 1.0) {
-            return None;
-        }
-        let student = StudentsT::new(0.0, 1.0, self.degrees_of_freedom() as f64).ok()?;
-        let reach = student.inverse_cdf(0.5 * (1.0 + level)) * uncertainty;
+        let reach = coverage_factor(level, self.degrees_of_freedom() as f64)? * uncertainty;
         Some((estimate.value - reach, estimate.value + reach))
     }
 

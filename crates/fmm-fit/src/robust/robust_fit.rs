@@ -2,10 +2,8 @@
 
 use std::time::Instant;
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
-
 use crate::robust::m_covariance::m_covariance;
-use crate::{Fit, FitError, Loss, Options, Residuals, Robust, solve};
+use crate::{Fit, FitError, Loss, Options, Residuals, Robust, coverage_factor, solve};
 
 /// The median of |r| of normal residuals of unit variance is 1/1.4826.
 const NORMAL: f64 = 1.482_602_218_505_602;
@@ -262,11 +260,7 @@ impl RobustFit {
     pub fn interval(&self, name: &str, level: f64) -> Option<(f64, f64)> {
         let index = self.fit.estimates().iter().position(|estimate| estimate.name() == name)?;
         let uncertainty = self.standard_uncertainty(index)?;
-        if !(level > 0.0 && level < 1.0) {
-            return None;
-        }
-        let student = StudentsT::new(0.0, 1.0, self.fit.degrees_of_freedom() as f64).ok()?;
-        let reach = student.inverse_cdf(0.5 * (1.0 + level)) * uncertainty;
+        let reach = coverage_factor(level, self.fit.degrees_of_freedom() as f64)? * uncertainty;
         let value = self.fit.values()[index];
         Some((value - reach, value + reach))
     }

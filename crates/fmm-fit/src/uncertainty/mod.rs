@@ -1,6 +1,7 @@
 //! How sure it is, beyond the covariance of independent residuals about a linear model.
 
 mod correlated;
+pub(crate) mod coverage;
 mod forecast;
 mod minimum;
 pub(crate) mod prediction;
@@ -12,6 +13,7 @@ mod refit_error;
 mod sensitivity;
 
 pub use correlated::CorrelatedCovariance;
+pub use coverage::coverage_factor;
 pub use prediction::Prediction;
 pub use profile::profile_interval;
 pub use profile_interval::{ProfileEnd, ProfileError, ProfileInterval, ResidualVariance};

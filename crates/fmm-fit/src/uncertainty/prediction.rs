@@ -1,7 +1,6 @@
 //! What a fitted model says of a new observation, and how well it says it.
 
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
-
+use crate::uncertainty::coverage::{coverage_factor, simultaneous_coverage_factor};
 use crate::{Estimate, EstimateStatus, Fit};
 
 /// The value of a fitted model at a new point with its uncertainty, by the law of propagation.
@@ -59,22 +58,14 @@ impl Prediction {
     /// The interval that holds the value of the model at this one point with probability `level`; none for a level
     /// outside (0, 1).
     pub fn confidence(&self, level: f64) -> Option<(f64, f64)> {
-        Some(self.around(student_quantile(level, self.freedom)? * self.standard_uncertainty))
+        Some(self.around(coverage_factor(level, self.freedom)? * self.standard_uncertainty))
     }
 
     /// The interval of Working, Hotelling and Scheffé: the intervals at *all* points hold the model with probability
     /// `level`, as does a band drawn through them. None for a level outside (0, 1).
     pub fn simultaneous(&self, level: f64) -> Option<(f64, f64)> {
-        if !is_probability(level) || self.rank == 0 {
-            return None;
-        }
-        let order = self.rank as f64;
-        let square = if self.freedom.is_finite() {
-            order * FisherSnedecor::new(order, self.freedom).ok()?.inverse_cdf(level)
-        } else {
-            ChiSquared::new(order).ok()?.inverse_cdf(level)
-        };
-        Some(self.around(square.sqrt() * self.standard_uncertainty))
+        let factor = simultaneous_coverage_factor(level, self.rank, self.freedom)?;
+        Some(self.around(factor * self.standard_uncertainty))
     }
 
     /// The interval that holds a new observation at this point with probability `level`; none for a level outside
@@ -88,28 +79,11 @@ impl Prediction {
             return None;
         }
         let deviation = self.standard_uncertainty.hypot(self.residual_deviation * uncertainty);
-        Some(self.around(student_quantile(level, self.freedom)? * deviation))
+        Some(self.around(coverage_factor(level, self.freedom)? * deviation))
     }
 
     fn around(&self, reach: f64) -> (f64, f64) {
         (self.value - reach, self.value + reach)
-    }
-}
-
-fn is_probability(level: f64) -> bool {
-    level > 0.0 && level < 1.0
-}
-
-/// The reach, in standard uncertainties, of an interval of probability `level`.
-pub(crate) fn student_quantile(level: f64, degrees_of_freedom: f64) -> Option<f64> {
-    if !is_probability(level) {
-        return None;
-    }
-    let upper = 0.5 * (1.0 + level);
-    if degrees_of_freedom.is_finite() {
-        StudentsT::new(0.0, 1.0, degrees_of_freedom).ok().map(|student| student.inverse_cdf(upper))
-    } else {
-        Normal::new(0.0, 1.0).ok().map(|normal| normal.inverse_cdf(upper))
     }
 }
 

@@ -2,11 +2,9 @@
 
 use std::time::Instant;
 
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
-
 use crate::{
     EstimateStatus, Fit, FitError, Held, Minimizer, Options, Outcome, ProfileEnd, ProfileError, ProfileInterval,
-    ResidualVariance, Residuals, solve,
+    ResidualVariance, Residuals, coverage_factor, solve,
 };
 
 /// How far out a search for an end goes, in first guesses of its distance.
@@ -85,19 +83,16 @@ pub fn profile_interval<P: Residuals + ?Sized>(
     if !fit.outcome().is_success() {
         return Err(ProfileError::NotConverged(fit.outcome()));
     }
-    let probability = 0.5 * (1.0 + level);
     let deviation = match variance {
         ResidualVariance::Estimated => fit.residual_standard_deviation().filter(|s| *s > 0.0),
         ResidualVariance::Unit => Some(1.0),
     };
     let deviation = deviation.ok_or(ProfileError::NoVariance)?;
     let quantile = match variance {
-        ResidualVariance::Estimated => {
-            let student = StudentsT::new(0.0, 1.0, fit.degrees_of_freedom() as f64);
-            student.map_err(|_| ProfileError::NoVariance)?.inverse_cdf(probability)
-        }
-        ResidualVariance::Unit => Normal::standard().inverse_cdf(probability),
+        ResidualVariance::Estimated => coverage_factor(level, fit.degrees_of_freedom() as f64),
+        ResidualVariance::Unit => coverage_factor(level, f64::INFINITY),
     };
+    let quantile = quantile.ok_or(ProfileError::NoVariance)?;
     let mut profile = Profile {
         problem,
         fit,

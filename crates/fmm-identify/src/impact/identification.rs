@@ -2,11 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use fmm_fit::{EvaluationError, Fit};
+use fmm_fit::{EvaluationError, Fit, coverage_factor};
 use fmm_friction::{Coulomb, Role};
 use fmm_model::Parameter;
 use fmm_sim::Simulated;
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use crate::finding::{Finding, Origin};
 use crate::identification::{FittedMotion, best_fit};
@@ -15,9 +14,6 @@ use crate::impact::parameters::{DAMPING, LAW, LOAD, MASS, RESPONSE_GAIN, STIFFNE
 use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactProblem, ImpactSummary, ImpactTrial, warnings};
 use crate::layout::{fitted, named};
 use crate::{IdentifyError, Warning};
-
-/// From so many degrees of freedom on, Student's t is a normal distribution.
-const MANY_DEGREES: f64 = 1e4;
 
 /// What the model says for the velocity of one trial, given its machine, all trials and the fitted values.
 type ModelOf = fn(&ImpactMachine, &[ImpactTrial], &ImpactOptions, usize, &[f64]) -> Option<Vec<f64>>;
@@ -229,17 +225,10 @@ impl ImpactIdentification {
         let index = self.findings.iter().position(|finding| finding.parameter().name() == name)?;
         let (value, u) = (self.findings[index].value(), self.findings[index].uncertainty()?);
         let is_held = self.findings[index].origin() == Origin::Fitted(fmm_fit::EstimateStatus::Fixed);
-        if is_held || !(level > 0.0 && level < 1.0) {
+        if is_held {
             return None;
         }
-        let (degrees, probability) = (self.degrees_of_freedom[index], 0.5 * (1.0 + level));
-        // The inverse of Student's t does not converge for very many degrees of freedom, where it is the normal one.
-        let factor = if degrees < MANY_DEGREES {
-            StudentsT::new(0.0, 1.0, degrees).ok()?.inverse_cdf(probability)
-        } else {
-            Normal::new(0.0, 1.0).ok()?.inverse_cdf(probability)
-        };
-        let reach = u * factor;
+        let reach = u * coverage_factor(level, self.degrees_of_freedom[index])?;
         Some((value - reach, value + reach))
     }
 
