@@ -1,11 +1,11 @@
 //! The thesis' Table 3: what mass, stiffness and damping do to a fitted coefficient of friction.
 
 use fmm_fit::{Held, Minimizer, Options, Refit, Residuals, Sensitivity, solve};
-use fmm_friction::Coulomb;
+use fmm_friction::{Berger, Coulomb, LawFamily};
 use fmm_identify::MachineProblem;
 use fmm_model::{Bounds, Damping, Oscillator};
 use fmm_record::{Quantity, Record};
-use fmm_sim::{Engine, Exact, Sampling, Scenario, Thesis};
+use fmm_sim::{Engine, Exact, RungeKutta, Sampling, Scenario, Thesis};
 use fmm_uq::{Input, Inputs, MonteCarlo};
 
 const LOAD: f64 = 7.2;
@@ -129,4 +129,45 @@ fn what_a_problem_cannot_have_is_said() {
     assert!(problem(&complete).unwrap().free_within("mass", Bounds::new(2.0, 3.0).unwrap()).is_err());
     let force = Record::new(0.0, 1e-3, vec![0.0; 100], Quantity::Force, "N").unwrap();
     assert!(MachineProblem::<Coulomb>::new(&force, &complete).is_err());
+}
+
+/// Refits of the Berger law: foreseen or not they end at the same place, and a coarser motion moves them by far less than
+/// the machine's uncertainty does.
+#[test]
+fn berger_refits_are_the_same_foreseen_and_coarser() {
+    let law = [("coefficient", 0.228), ("excess_coefficient", 0.261), ("decay", 2.852)];
+    let machine = [("mass", 10.391), ("stiffness", 1982.0), ("damping", 0.275), ("normal_load", 14.0)];
+    let values = [law.as_slice(), &machine, &[("initial_position", 0.016)]].concat();
+    let sampling = Sampling::uniform(1e-3, 1501).unwrap();
+    let oscillator = Oscillator::new(10.391, 1982.0).unwrap().with_damping(Damping::linear(0.275).unwrap());
+    let scenario = Scenario::new(oscillator, Berger::at(&law.map(|(_, value)| value)).unwrap(), 14.0).unwrap();
+    let motion = RungeKutta::default().run(&scenario.starting_at(0.016, 0.0).unwrap(), &sampling).unwrap();
+    let record = Record::new(0.0, 1e-3, motion.velocity().values().to_vec(), Quantity::Velocity, "m/s").unwrap();
+    let problem = || {
+        let free = ["coefficient", "excess_coefficient", "decay", "initial_position"];
+        let problem = MachineProblem::<Berger>::new(&record, &values).unwrap();
+        free.iter().fold(problem, |problem, name| problem.free(name).unwrap())
+    };
+    let estimates = |problem: MachineProblem<Berger>, expecting: bool| {
+        let fit = solve(&problem, problem.values(), &Options::default()).unwrap();
+        let refit = Refit::prepare(&problem, &fit).unwrap().varying(&["mass", "damping"]).unwrap();
+        let refit = if expecting { refit.expecting(&[0.0049, 0.0341]).unwrap() } else { refit };
+        [[10.395, 0.30], [10.380, 0.24]].map(|machine| refit.estimates(&machine).unwrap())
+    };
+    let plain = estimates(problem(), false);
+    // What mass and damping make of each estimate.
+    let uncertainties = [0.042, 0.040, 0.54, 1.3e-5];
+    for (name, others, most) in [
+        ("foreseen", estimates(problem(), true), 1e-5),
+        ("coarser", estimates(problem().with_tolerance(1e-9).unwrap(), true), 3e-5),
+    ] {
+        for (other, plain) in others.iter().zip(&plain) {
+            for ((other, plain), u) in other.iter().zip(plain).zip(uncertainties) {
+                assert!((other - plain).abs() < most * u, "{name}: {other}, not {plain}");
+            }
+        }
+    }
+    for tolerance in [0.0, 0.1, f64::NAN] {
+        assert!(problem().with_tolerance(tolerance).is_err(), "{tolerance}");
+    }
 }

@@ -2,21 +2,13 @@
 
 use std::sync::LazyLock;
 
-use fmm_thesis::{Chapter, Settings, Target, chapter_5_modal, chapter_5_monte_carlo};
+use fmm_thesis::{Chapter, Settings, chapter_5_modal, chapter_5_monte_carlo};
+
+use super::ours;
 
 static MODAL: LazyLock<Chapter> = LazyLock::new(|| chapter_5_modal::chapter(&Settings::new().quick(true)).unwrap());
 static MONTE_CARLO: LazyLock<Chapter> =
     LazyLock::new(|| chapter_5_monte_carlo::chapter(&Settings::new().quick(true)).unwrap());
-
-/// Our value of the target with this `id` and `quantity`.
-fn ours(chapter: &Chapter, id: &str, quantity: &str) -> f64 {
-    let found = chapter
-        .targets
-        .iter()
-        .map(Target::document)
-        .find(|target| target["id"] == id && target["quantity"].as_str().is_some_and(|text| text == quantity));
-    found.and_then(|target| target["ours"].as_f64()).unwrap_or_else(|| panic!("no target {id}: {quantity}"))
-}
 
 fn near(chapter: &Chapter, id: &str, quantity: &str, reference: f64, tolerance: f64) {
     let value = ours(chapter, id, quantity);

@@ -1,14 +1,8 @@
 //! Chapter 6: the force of the example from energy rates, clean and noisy.
 
-use fmm_thesis::{Chapter, Settings, chapter_6_energy};
+use fmm_thesis::{Settings, chapter_6_energy};
 
-/// Our value of the target with this `id` whose quantity begins with `quantity`.
-fn ours(chapter: &Chapter, id: &str, quantity: &str) -> f64 {
-    let found = chapter.targets.iter().map(fmm_thesis::Target::document).find(|target| {
-        target["id"] == id && target["quantity"].as_str().is_some_and(|text| text.starts_with(quantity))
-    });
-    found.and_then(|target| target["ours"].as_f64()).unwrap_or_else(|| panic!("no target {id}: {quantity}"))
-}
+use super::ours;
 
 #[test]
 fn targets() {

@@ -1,14 +1,8 @@
 //! Chapter 7: Tables 4 and 5, Eq. 7.2 to 7.5.
 
-use fmm_thesis::{Chapter, Settings, chapter_7_friction};
+use fmm_thesis::{Settings, chapter_7_friction};
 
-/// Our value of the target with this `id` whose quantity begins with `quantity`.
-fn ours(chapter: &Chapter, id: &str, quantity: &str) -> f64 {
-    let found = chapter.targets.iter().map(fmm_thesis::Target::document).find(|target| {
-        target["id"] == id && target["quantity"].as_str().is_some_and(|text| text.starts_with(quantity))
-    });
-    found.and_then(|target| target["ours"].as_f64()).unwrap_or_else(|| panic!("no target {id}: {quantity}"))
-}
+use super::ours;
 
 #[test]
 fn targets() {

@@ -57,6 +57,7 @@ mod known;
 mod layout;
 mod machine;
 mod machine_problem;
+mod pool;
 mod preparation;
 mod problem;
 mod report;

@@ -1,7 +1,6 @@
 //! The least-squares problem of one record in which every number of machine, law and initial state is a parameter.
 
 use std::marker::PhantomData;
-use std::sync::{Mutex, PoisonError};
 
 use fmm_fit::{EvaluationError, Residuals};
 use fmm_friction::{LawFamily, SlidingLaw};
@@ -10,6 +9,7 @@ use fmm_record::{Quantity, Record};
 use fmm_sim::{Channels, Engine, RungeKutta, Sampling, Scenario, Simulated, SimulationError, Thesis, Trajectory};
 
 use crate::IdentifyError;
+use crate::pool::Pool;
 
 /// The residuals "model less record" of one record, as a function of the machine, the law and the initial state.
 ///
@@ -69,7 +69,7 @@ pub struct MachineProblem<F: LawFamily> {
     free: Vec<usize>,
     euler: Option<Euler<F>>,
     tolerance: Option<f64>,
-    idle: Mutex<Vec<Buffers>>,
+    idle: Pool<Buffers>,
     family: PhantomData<F>,
 }
 
@@ -156,7 +156,7 @@ impl<F: Simulated> MachineProblem<F> {
             free: Vec::new(),
             euler: None,
             tolerance: None,
-            idle: Mutex::default(),
+            idle: Pool::default(),
             family: PhantomData,
         })
     }
@@ -269,15 +269,6 @@ impl<F: Simulated> MachineProblem<F> {
         }
         Ok(())
     }
-
-    /// Works with buffers of an earlier run, if there are any idle.
-    fn with_buffers<R>(&self, work: impl FnOnce(&mut Buffers) -> R) -> R {
-        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut buffers = idle.unwrap_or_default();
-        let result = work(&mut buffers);
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(buffers);
-        result
-    }
 }
 
 /// The place of the parameter of this name.
@@ -299,7 +290,7 @@ impl<F: Simulated> Residuals for MachineProblem<F> {
 
     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
         let scenario = Self::scenario(p)?;
-        self.with_buffers(|buffers| {
+        self.idle.lend(|buffers| {
             match self.euler {
                 Some(run) => run(&scenario, &self.sampling, &mut buffers.plain)?,
                 None => self.simulate(&scenario, &mut buffers.plain)?,
@@ -323,7 +314,7 @@ impl<F: Simulated> Residuals for MachineProblem<F> {
             self.residuals(p, residuals)?;
             return Ok(self.euler.is_none());
         }
-        self.with_buffers(|buffers| {
+        self.idle.lend(|buffers| {
             if self.free.len() <= FEW {
                 self.differentiate(p, &self.free, &mut buffers.few, jacobian)?;
                 self.write_residuals(p, &buffers.few, residuals);

@@ -81,7 +81,8 @@ pub trait Simulated: LawFamily {
     /// takes half as long. Unless a family says otherwise its engine has none.
     ///
     /// # Errors
-    /// As [`simulate_into`](Self::simulate_into), and [`SimulationError::Tolerance`] for one that the engine cannot meet.
+    /// As [`simulate_into`](Self::simulate_into), and [`SimulationError::Tolerance`] for one outside
+    /// 1e-15 to 1e-2, whether the engine has a tolerance or not.
     fn simulate_within<D: Scalar>(
         scenario: &Scenario<D, Self::At<D>>,
         sampling: &Sampling,
@@ -155,6 +156,7 @@ macro_rules! simulated {
                 tolerance: f64,
                 trajectory: &mut Trajectory<D>,
             ) -> Result<(), SimulationError> {
+                SimulationError::require_tolerance(tolerance)?;
                 $run(scenario, sampling, Some(tolerance), trajectory)
             }
         }
@@ -165,3 +167,41 @@ simulated!(exact_where_possible: Viscous, Coulomb, CoulombStatic, CoulombViscous
 simulated!(integrated: Stribeck, StribeckLorentzian, Hyperbolic, Berger, PowerLaw, ExponentialPair, Karnopp);
 simulated!(integrated: MakkarDixon, Shifted<MakkarDixon>, RegularisedStribeck);
 simulated!(with_bristles: Dahl, LuGre, BoucWen);
+
+#[cfg(test)]
+mod tests {
+    use fmm_model::Oscillator;
+
+    use super::*;
+
+    fn velocity<F: Simulated>(values: &[f64], tolerance: Option<f64>) -> Result<Vec<f64>, SimulationError> {
+        let law = F::at(values).expect("a law");
+        let scenario = Scenario::new(Oscillator::new(10.0, 2000.0)?, law, 10.0)?.starting_at(0.01, 0.0)?;
+        let (sampling, mut trajectory) = (Sampling::uniform(1e-3, 800)?, Trajectory::<f64>::new());
+        match tolerance {
+            Some(tolerance) => F::simulate_within(&scenario, &sampling, tolerance, &mut trajectory)?,
+            None => F::simulate_into(&scenario, &sampling, &mut trajectory)?,
+        }
+        Ok(trajectory.velocity().values().to_vec())
+    }
+
+    /// The tolerance reaches the engines that have one, and no other.
+    #[test]
+    fn tolerances_reach_the_engines_that_have_one() {
+        let largest = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let berger = velocity::<Berger>(&[0.1, 0.1, 5.0], None).unwrap();
+        for (tolerance, bounds) in [(1e-6, 1e-10..1e-5), (1e-9, 1e-13..1e-8)] {
+            let off = largest(&velocity::<Berger>(&[0.1, 0.1, 5.0], Some(tolerance)).unwrap(), &berger);
+            assert!(bounds.contains(&off), "{off} m/s at {tolerance}");
+        }
+        let coulomb = velocity::<Coulomb>(&[0.1], None).unwrap();
+        assert_eq!(velocity::<Coulomb>(&[0.1], Some(1e-3)).unwrap(), coulomb);
+        for tolerance in [0.0, -1e-9, 0.1, f64::NAN] {
+            for refused in
+                [velocity::<Berger>(&[0.1, 0.1, 5.0], Some(tolerance)), velocity::<Coulomb>(&[0.1], Some(tolerance))]
+            {
+                assert!(matches!(refused, Err(SimulationError::Tolerance { .. })), "{tolerance}");
+            }
+        }
+    }
+}

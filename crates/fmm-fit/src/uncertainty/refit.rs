@@ -66,6 +66,10 @@ enum Arrival {
 /// assert!((rate(20.0)? - fit.values()[2]).abs() < 1e-10);
 /// // A warmer room: what is left cools away faster.
 /// assert!(rate(21.0)? > rate(20.0)?);
+///
+/// // For many repetitions, with a temperature known to 0.5 °C: the same estimates, with less work each.
+/// let foreseeing = Refit::prepare(&problem, &fit)?.expecting(&[0.5])?;
+/// assert!((foreseeing.estimates(&[21.0])?[1] / rate(21.0)? - 1.0).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]

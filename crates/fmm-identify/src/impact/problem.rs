@@ -1,7 +1,7 @@
 //! The least-squares problem of blows: these trials by that law.
 
 use std::marker::PhantomData;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use fmm_fit::{Block, EvaluationError, Residuals};
 use fmm_model::{Damping, Dual, Oscillator, Parameter, Scalar};
@@ -12,6 +12,7 @@ use crate::impact::lines::{Lines, Scratch};
 use crate::impact::parameters::{LAW, Parameters, RESPONSE_GAIN};
 use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactTrial};
 use crate::layout::law_values;
+use crate::pool::Pool;
 use crate::{IdentifyError, Known};
 
 /// The residuals "model less measurement" of one or several blows by a law of family `F`, with exact derivatives.
@@ -37,7 +38,7 @@ pub struct ImpactProblem<'a, F> {
     spectra: Arc<[Vec<f64>]>,
     blocks: Vec<Block>,
     is_complete: bool,
-    idle: Mutex<Vec<Memory>>,
+    idle: Pool<Memory>,
     family: PhantomData<F>,
 }
 
@@ -103,7 +104,7 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
             spectra: spectra.into(),
             blocks: Vec::new(),
             is_complete: false,
-            idle: Mutex::default(),
+            idle: Pool::default(),
             family: PhantomData,
         };
         problem.blocks = problem.blocks_of_trials();
@@ -121,7 +122,7 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
             spectra: Arc::clone(&self.spectra),
             blocks: Vec::new(),
             is_complete: self.is_complete,
-            idle: Mutex::default(),
+            idle: Pool::default(),
             family: PhantomData,
         };
         other.blocks = other.blocks_of_trials();
@@ -312,15 +313,6 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
         Ok(trajectory)
     }
 
-    /// Works with memory of an earlier run, if there is any idle.
-    fn with_memory<R>(&self, work: impl FnOnce(&mut Memory) -> R) -> R {
-        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut memory = idle.unwrap_or_default();
-        let result = work(&mut memory);
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(memory);
-        result
-    }
-
     /// Standard uncertainty of what is known of the parameter at `index`.
     pub(crate) fn known(&self, index: usize) -> Option<Known> {
         Known::new(self.parameters.values[index], self.parameters.uncertainties[index]).ok()
@@ -337,7 +329,7 @@ impl<F: Simulated> Residuals for ImpactProblem<'_, F> {
     }
 
     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        self.with_memory(|Memory { plain, scratch, rows, .. }| {
+        self.idle.lend(|Memory { plain, scratch, rows, .. }| {
             let mut rest = residuals;
             for (trial, block) in self.blocks.iter().enumerate() {
                 let (own, others) = rest.split_at_mut(block.rows());
@@ -361,7 +353,7 @@ impl<F: Simulated> Residuals for ImpactProblem<'_, F> {
         jacobian: &mut [f64],
     ) -> Result<bool, EvaluationError> {
         jacobian.fill(0.0);
-        self.with_memory(|Memory { few, many, scratch, rows, .. }| {
+        self.idle.lend(|Memory { few, many, scratch, rows, .. }| {
             let (mut rest, mut elements) = (residuals, jacobian);
             for (trial, block) in self.blocks.iter().enumerate() {
                 let (own, others) = rest.split_at_mut(block.rows());
