@@ -1,27 +1,21 @@
 //! Chapter 4: what the thesis computes about its flexure.
 
-use fmm_thesis::{Settings, Target, chapter_4_flexure};
+use super::{assert_complete, chapter};
 
 /// Nothing in the chapter is random; the criteria are the digits that are printed or, for the two stresses and deflections
 /// that do not agree with each other, the disagreement.
 #[test]
 fn all_targets_pass() {
-    let chapter = chapter_4_flexure::chapter(&Settings::new().quick(true)).unwrap();
-    for target in &chapter.targets {
-        assert!(target.passes(), "{target:?}");
-    }
-    let ids: Vec<&str> = chapter.targets.iter().map(Target::id).collect();
-    for id in ["A1", "A2", "A3", "A4", "A5", "A6", "A7"] {
-        assert!(ids.contains(&id), "{id} is missing");
-    }
+    let ids = ["A1", "A2", "A3", "A4", "A5", "A6", "A7"];
+    assert_complete(chapter("chapter_4_flexure"), &ids, &[], &["figure_3", "figure_5", "figure_6"]);
 }
 
 /// Our values themselves, to the digits of an independent computation from the same inputs.
 #[test]
 fn values_are_those_of_the_reference() {
-    let chapter = chapter_4_flexure::chapter(&Settings::new()).unwrap();
+    let targets = &chapter("chapter_4_flexure").targets;
     let ours = |quantity: &str| {
-        let target = chapter.targets.iter().find(|target| target.document()["quantity"] == quantity);
+        let target = targets.iter().find(|target| target.document()["quantity"] == quantity);
         target.unwrap_or_else(|| panic!("no {quantity}")).document()["ours"].as_f64().unwrap()
     };
     for (quantity, reference, digit) in [

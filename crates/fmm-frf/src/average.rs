@@ -8,7 +8,9 @@ use fmm_record::Record;
 use crate::estimator::{Spectra, Undefined};
 use crate::sums::{RatioSums, SpectralSums, Weighed};
 use crate::transform::{SLOTS, TrialTransform};
-use crate::{AverageOptions, Averaging, Channel, Coherence, Estimator, FrequencyResponse, FrfError, ResponseForm};
+use crate::{
+    AverageOptions, Averaging, Channel, Coherence, Estimator, FrequencyResponse, FrfError, ModelError, ResponseForm,
+};
 
 /// Spectra of a test, averaged over its trials.
 ///
@@ -64,12 +66,12 @@ impl TrialAverage {
     /// Any length will do, as the transforms are for all lengths; those with small prime factors are fastest.
     ///
     /// # Errors
-    /// [`FrfError::NotPositive`] for the rate, [`FrfError::TooFewSamples`] for a length below 2,
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the rate, [`FrfError::TooFewSamples`] for a length below 2,
     /// [`FrfError::EmptyBand`] if no line lies in the band of the options, and [`FrfError::WindowOutside`] for a force
     /// window that covers no sample.
     pub fn new(form: ResponseForm, rate: f64, length: usize, options: &AverageOptions) -> Result<Self, FrfError> {
-        FrfError::require_positive("the sampling rate", rate, "Hz")?;
-        let interval = FrfError::require_positive("the sampling interval", rate.recip(), "s")?;
+        ModelError::require_positive("the sampling rate", rate, "Hz")?;
+        let interval = ModelError::require_positive("the sampling interval", rate.recip(), "s")?;
         if length < 2 {
             return Err(FrfError::TooFewSamples { found: length });
         }

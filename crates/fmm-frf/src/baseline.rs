@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::FrfError;
+use crate::{FrfError, ModelError};
 
 /// What a sensor shows when nothing acts on it, and what is to be done about it.
 ///
@@ -36,6 +36,6 @@ impl Baseline {
             }
             Self::Mean => mean(samples),
         };
-        FrfError::require_finite("the offset of a channel", offset, unit)
+        Ok(ModelError::require_finite("the offset of a channel", offset, unit)?)
     }
 }

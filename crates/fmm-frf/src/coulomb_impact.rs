@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::FrfError;
+use crate::{FrfError, ModelError};
 
 /// Peak of the receptance (m/N) of an oscillator with dry friction after an impulse.
 ///
@@ -53,16 +53,16 @@ use crate::FrfError;
 /// ```
 ///
 /// # Errors
-/// [`FrfError::NotPositive`] for any argument, or for a result out of range.
+/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any argument, or for a result out of range.
 pub fn peak_receptance_of_coulomb_impact(
     impulse: f64,
     mass: f64,
     natural_angular_frequency: f64,
     friction_force: f64,
 ) -> Result<f64, FrfError> {
-    FrfError::require_positive("friction force", friction_force, "N")?;
+    ModelError::require_positive("friction force", friction_force, "N")?;
     let product = peak_times_friction(impulse, mass, natural_angular_frequency)?;
-    FrfError::require_positive("peak receptance", product / friction_force, "m/N")
+    Ok(ModelError::require_positive("peak receptance", product / friction_force, "m/N")?)
 }
 
 /// Kinetic friction force (N) out of a measured peak of the receptance (m/N): the inverse of
@@ -81,16 +81,16 @@ pub fn peak_receptance_of_coulomb_impact(
 /// ```
 ///
 /// # Errors
-/// [`FrfError::NotPositive`] for any argument, or for a result out of range.
+/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any argument, or for a result out of range.
 pub fn friction_force_of_coulomb_impact(
     impulse: f64,
     mass: f64,
     natural_angular_frequency: f64,
     peak_receptance: f64,
 ) -> Result<f64, FrfError> {
-    FrfError::require_positive("peak receptance", peak_receptance, "m/N")?;
+    ModelError::require_positive("peak receptance", peak_receptance, "m/N")?;
     let product = peak_times_friction(impulse, mass, natural_angular_frequency)?;
-    FrfError::require_positive("friction force", product / peak_receptance, "N")
+    Ok(ModelError::require_positive("friction force", product / peak_receptance, "N")?)
 }
 
 /// Time (s) until dry friction alone has stopped the motion after an impulse, and so the
@@ -103,18 +103,18 @@ pub fn friction_force_of_coulomb_impact(
 /// The motion sticks up to half a period before or after.
 ///
 /// # Errors
-/// [`FrfError::NotPositive`] for any argument, or for a result out of range.
+/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any argument, or for a result out of range.
 pub fn coulomb_impact_duration(impulse: f64, friction_force: f64) -> Result<f64, FrfError> {
-    FrfError::require_positive("impulse", impulse, "N s")?;
-    FrfError::require_positive("friction force", friction_force, "N")?;
-    FrfError::require_positive("duration", 0.5 * PI * impulse / friction_force, "s")
+    ModelError::require_positive("impulse", impulse, "N s")?;
+    ModelError::require_positive("friction force", friction_force, "N")?;
+    Ok(ModelError::require_positive("duration", 0.5 * PI * impulse / friction_force, "s")?)
 }
 
 /// |H| F = π J/(8 m ω₀), a length (m).
 fn peak_times_friction(impulse: f64, mass: f64, natural_angular_frequency: f64) -> Result<f64, FrfError> {
-    FrfError::require_positive("impulse", impulse, "N s")?;
-    FrfError::require_positive("mass", mass, "kg")?;
-    FrfError::require_positive("natural angular frequency", natural_angular_frequency, "rad/s")?;
+    ModelError::require_positive("impulse", impulse, "N s")?;
+    ModelError::require_positive("mass", mass, "kg")?;
+    ModelError::require_positive("natural angular frequency", natural_angular_frequency, "rad/s")?;
     Ok(PI * impulse / (8.0 * mass * natural_angular_frequency))
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::fmt;
 
 use crate::triangle::Triangle;
-use crate::{FrfError, Measured};
+use crate::{FrfError, Measured, ModelError};
 
 /// The straight line of receptance peaks over impulses, and the friction force of its slope.
 ///
@@ -46,7 +46,7 @@ impl CoulombLine {
     /// The line through the `peaks` (m/N) of blows with these `impulses` (N s); at least three, not all of one impulse.
     ///
     /// # Errors
-    /// [`FrfError::PointCount`], [`FrfError::TooFewPoints`], [`FrfError::NotPositive`] for any value that is not, and
+    /// [`FrfError::PointCount`], [`FrfError::TooFewPoints`], [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any value that is not, and
     /// for a slope that is not: peaks that do not grow are not those of friction. [`FrfError::Undetermined`] for impulses that
     /// are all the same.
     pub fn fit(impulses: &[f64], peaks: &[f64], mass: f64, natural_angular_frequency: f64) -> Result<Self, FrfError> {
@@ -59,8 +59,8 @@ impl CoulombLine {
         let count = impulses.len() as f64;
         let mut means = [0.0; 2];
         for (&impulse, &peak) in impulses.iter().zip(peaks) {
-            means[0] += FrfError::require_positive("impulse", impulse, "N s")? / count;
-            means[1] += FrfError::require_positive("peak receptance", peak, "m/N")? / count;
+            means[0] += ModelError::require_positive("impulse", impulse, "N s")? / count;
+            means[1] += ModelError::require_positive("peak receptance", peak, "m/N")? / count;
         }
         // Both relative to their means, so that any unit will do.
         let mut triangle = Triangle::new();
@@ -77,7 +77,7 @@ impl CoulombLine {
             return Err(undetermined);
         };
         let slope = steepness * means[1] / means[0];
-        FrfError::require_positive("slope of the peaks over the impulses", slope, "m/(N² s)")?;
+        ModelError::require_positive("slope of the peaks over the impulses", slope, "m/(N² s)")?;
         let relative = covariance[1][1].sqrt() / steepness;
         let intercept_variance = covariance[0][0] - 2.0 * covariance[0][1] + covariance[1][1];
         let friction_force = friction_force_of_slope(slope, mass, natural_angular_frequency)?;
@@ -107,12 +107,12 @@ impl fmt::Display for CoulombLine {
 /// relative uncertainty is the root of the sum of the squares of those of the three arguments.
 ///
 /// # Errors
-/// [`FrfError::NotPositive`] for any argument, or for a result out of range.
+/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any argument, or for a result out of range.
 pub fn friction_force_of_slope(slope: f64, mass: f64, natural_angular_frequency: f64) -> Result<f64, FrfError> {
-    FrfError::require_positive("slope of the peaks over the impulses", slope, "m/(N² s)")?;
-    FrfError::require_positive("mass", mass, "kg")?;
-    FrfError::require_positive("natural angular frequency", natural_angular_frequency, "rad/s")?;
-    FrfError::require_positive("friction force", PI / (8.0 * mass * natural_angular_frequency * slope), "N")
+    ModelError::require_positive("slope of the peaks over the impulses", slope, "m/(N² s)")?;
+    ModelError::require_positive("mass", mass, "kg")?;
+    ModelError::require_positive("natural angular frequency", natural_angular_frequency, "rad/s")?;
+    Ok(ModelError::require_positive("friction force", PI / (8.0 * mass * natural_angular_frequency * slope), "N")?)
 }
 
 #[cfg(test)]
@@ -140,7 +140,7 @@ mod tests {
         assert!(matches!(CoulombLine::fit(&[1.0; 2], &[1.0; 2], 1.0, 1.0), Err(FrfError::TooFewPoints { .. })));
         assert!(matches!(CoulombLine::fit(&[2.0; 3], &[1.0; 3], 1.0, 1.0), Err(FrfError::Undetermined { .. })));
         let falling = CoulombLine::fit(&[1.0, 2.0, 3.0], &[3.0, 2.0, 1.0], 1.0, 1.0);
-        assert!(matches!(falling, Err(FrfError::NotPositive { .. })), "{falling:?}");
+        assert!(matches!(falling, Err(FrfError::OutOfRange(ModelError::NotPositive { .. }))), "{falling:?}");
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(CoulombLine::fit(&[1.0, 2.0, bad], &[1.0, 2.0, 3.0], 1.0, 1.0).is_err());
             assert!(CoulombLine::fit(&[1.0, 2.0, 3.0], &[1.0, 2.0, bad], 1.0, 1.0).is_err());

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::FrfError;
+use crate::{FrfError, ModelError};
 
 /// c_eq, the viscous coefficient (N s/m) that dissipates as much per cycle as a `friction_force` F (N), for a harmonic motion
 /// of velocity amplitude V (m/s).
@@ -23,13 +23,13 @@ use crate::FrfError;
 /// ```
 ///
 /// # Errors
-/// [`FrfError::Negative`] for the friction force, [`FrfError::NotPositive`] for the amplitude,
-/// [`FrfError::NotFinite`] for a result out of range.
+/// [`ModelError::Negative`](crate::ModelError::Negative) for the friction force, [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the amplitude,
+/// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for a result out of range.
 pub fn equivalent_damping_of_friction(friction_force: f64, velocity_amplitude: f64) -> Result<f64, FrfError> {
-    FrfError::require_not_negative("friction force", friction_force, "N")?;
-    FrfError::require_positive("velocity amplitude", velocity_amplitude, "m/s")?;
+    ModelError::require_not_negative("friction force", friction_force, "N")?;
+    ModelError::require_positive("velocity amplitude", velocity_amplitude, "m/s")?;
     let damping = 4.0 * friction_force / (PI * velocity_amplitude);
-    FrfError::require_finite("equivalent damping", damping, "N s/m")
+    Ok(ModelError::require_finite("equivalent damping", damping, "N s/m")?)
 }
 
 #[cfg(test)]

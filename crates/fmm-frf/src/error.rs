@@ -1,5 +1,6 @@
 //! What can be wrong with a record, a response and an oscillator.
 
+use fmm_model::ModelError;
 use fmm_record::Quantity;
 
 use crate::{Channel, ResponseForm};
@@ -8,36 +9,9 @@ use crate::{Channel, ResponseForm};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FrfError {
-    /// A quantity that must be positive is zero, negative or not finite.
-    #[error("{quantity} must be positive and finite, but is {value} {unit}")]
-    NotPositive {
-        /// Which quantity.
-        quantity: &'static str,
-        /// The value given.
-        value: f64,
-        /// Its SI unit.
-        unit: &'static str,
-    },
-    /// A quantity that must not be negative is negative or not finite.
-    #[error("{quantity} must be zero or positive and finite, but is {value} {unit}")]
-    Negative {
-        /// Which quantity.
-        quantity: &'static str,
-        /// The value given.
-        value: f64,
-        /// Its SI unit.
-        unit: &'static str,
-    },
-    /// A quantity that may have either sign is infinite or not a number.
-    #[error("{quantity} must be finite, but is {value} {unit}")]
-    NotFinite {
-        /// Which quantity.
-        quantity: &'static str,
-        /// The value given or found.
-        value: f64,
-        /// Its SI unit.
-        unit: &'static str,
-    },
+    /// A quantity that cannot be what it is.
+    #[error(transparent)]
+    OutOfRange(#[from] ModelError),
     /// A sample that is infinite or not a number.
     #[error("sample {index} of the {channel} must be finite, but is {value}")]
     SampleNotFinite {
@@ -272,21 +246,6 @@ pub enum FrfError {
 }
 
 impl FrfError {
-    /// Passes `value` through if it is positive and finite.
-    pub(crate) fn require_positive(quantity: &'static str, value: f64, unit: &'static str) -> Result<f64, Self> {
-        if value > 0.0 && value.is_finite() { Ok(value) } else { Err(Self::NotPositive { quantity, value, unit }) }
-    }
-
-    /// Passes `value` through if it is zero or positive and finite.
-    pub(crate) fn require_not_negative(quantity: &'static str, value: f64, unit: &'static str) -> Result<f64, Self> {
-        if value >= 0.0 && value.is_finite() { Ok(value) } else { Err(Self::Negative { quantity, value, unit }) }
-    }
-
-    /// Passes `value` through if it is finite.
-    pub(crate) fn require_finite(quantity: &'static str, value: f64, unit: &'static str) -> Result<f64, Self> {
-        if value.is_finite() { Ok(value) } else { Err(Self::NotFinite { quantity, value, unit }) }
-    }
-
     /// Refuses samples that are infinite or not numbers.
     pub(crate) fn require_samples(channel: Channel, samples: &[f64]) -> Result<(), Self> {
         match samples.iter().enumerate().find(|(_, sample)| !sample.is_finite()) {

@@ -6,7 +6,7 @@ use std::fmt;
 use fmm_record::Quantity;
 use num_complex::Complex64;
 
-use crate::FrfError;
+use crate::{FrfError, ModelError};
 
 /// What the response to a force is counted in.
 ///
@@ -46,10 +46,10 @@ impl ResponseForm {
     /// ```
     ///
     /// # Errors
-    /// [`FrfError::NotFinite`] for the frequency, [`FrfError::ValueNotFinite`] for the value, and
+    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the frequency, [`FrfError::ValueNotFinite`] for the value, and
     /// [`FrfError::NoFiniteForm`] for a division at zero frequency or any overflow.
     pub fn convert(self, to: Self, value: Complex64, frequency: f64) -> Result<Complex64, FrfError> {
-        let omega = TAU * FrfError::require_finite("frequency", frequency, "Hz")?;
+        let omega = TAU * ModelError::require_finite("frequency", frequency, "Hz")?;
         if !value.is_finite() {
             return Err(FrfError::ValueNotFinite { form: self, frequency });
         }

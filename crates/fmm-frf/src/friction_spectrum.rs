@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use crate::{FrequencyResponse, FrfError};
+use crate::{FrequencyResponse, FrfError, ModelError};
 
 /// The friction force by the applied force at each line.
 ///
@@ -83,10 +83,10 @@ impl FrictionSpectrum {
     /// is good enough.
     ///
     /// # Errors
-    /// [`FrfError::NotPositive`] for the fundamental, and [`FrfError::HarmonicsOutside`] if no line is within an eighth of the
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the fundamental, and [`FrfError::HarmonicsOutside`] if no line is within an eighth of the
     /// fundamental of each multiple, or if nothing is left over at the fundamental.
     pub fn harmonics(&self, fundamental: f64, highest: u32) -> Result<Vec<Harmonic>, FrfError> {
-        FrfError::require_positive("the fundamental frequency", fundamental, "Hz")?;
+        ModelError::require_positive("the fundamental frequency", fundamental, "Hz")?;
         let (spacing, reach) = (0.25 * fundamental, fundamental * f64::from(highest));
         let outside = FrfError::HarmonicsOutside { fundamental, order: highest, reach, spacing };
         let nearest = |frequency: f64| {
@@ -122,7 +122,7 @@ impl FrictionSpectrum {
     /// quite known, has about 1; with orders up to 9, noise alone exceeds 2.4 in one of a hundred spectra.
     ///
     /// # Errors
-    /// As [`FrictionSpectrum::harmonics`], with a highest order of 3 at least, and [`FrfError::NotPositive`] if there is nothing
+    /// As [`FrictionSpectrum::harmonics`], with a highest order of 3 at least, and [`ModelError::NotPositive`](crate::ModelError::NotPositive) if there is nothing
     /// at all at the odd or at the even ones.
     pub fn odd_by_even(&self, fundamental: f64, highest: u32) -> Result<f64, FrfError> {
         let harmonics = self.harmonics(fundamental, highest.max(3))?;
@@ -132,10 +132,10 @@ impl FrictionSpectrum {
                 .fold((0.0, 0.0), |(sum, count), harmonic| (sum + 10f64.powf(harmonic.level / 10.0), count + 1.0));
             sum / count
         };
-        FrfError::require_positive(
+        Ok(ModelError::require_positive(
             "ratio of odd to even harmonics",
             (mean_square(true) / mean_square(false)).sqrt(),
             "",
-        )
+        )?)
     }
 }

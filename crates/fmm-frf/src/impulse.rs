@@ -2,7 +2,7 @@
 
 use fmm_record::Record;
 
-use crate::{Baseline, Channel, FrfError};
+use crate::{Baseline, Channel, FrfError, ModelError};
 
 /// How the samples of a force are joined before their area is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -49,8 +49,8 @@ pub enum Quadrature {
 /// ```
 ///
 /// # Errors
-/// [`FrfError::NotPositive`] for the interval, [`FrfError::TooFewSamples`], [`FrfError::SampleNotFinite`],
-/// [`FrfError::BaselineRange`] if the range is empty or leaves the record, and [`FrfError::NotFinite`] for the
+/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFewSamples`], [`FrfError::SampleNotFinite`],
+/// [`FrfError::BaselineRange`] if the range is empty or leaves the record, and [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the
 /// offset or for a sum that overflows.
 pub fn impulse(force: &[f64], interval: f64, baseline: Baseline) -> Result<f64, FrfError> {
     impulse_by(Quadrature::Trapezoid, force, interval, baseline)
@@ -74,7 +74,7 @@ pub fn impulse(force: &[f64], interval: f64, baseline: Baseline) -> Result<f64, 
 /// # Errors
 /// As [`impulse`].
 pub fn impulse_by(rule: Quadrature, force: &[f64], interval: f64, baseline: Baseline) -> Result<f64, FrfError> {
-    FrfError::require_positive("the sampling interval", interval, "s")?;
+    ModelError::require_positive("the sampling interval", interval, "s")?;
     if force.len() < 2 {
         return Err(FrfError::TooFewSamples { found: force.len() });
     }
@@ -84,7 +84,7 @@ pub fn impulse_by(rule: Quadrature, force: &[f64], interval: f64, baseline: Base
         Quadrature::Trapezoid => trapezoid(force, offset),
         Quadrature::Simpson => simpson(force, offset),
     };
-    FrfError::require_finite("the impulse", interval * area, "N s")
+    Ok(ModelError::require_finite("the impulse", interval * area, "N s")?)
 }
 
 /// Area under at least two `samples` less their `offset`, in units of the interval, by the trapezoid rule.
@@ -172,7 +172,7 @@ mod tests {
         let error = impulse(&[0.0, f64::INFINITY, 1.0], 0.1, Baseline::Keep);
         assert_eq!(error, Err(FrfError::SampleNotFinite { channel: Channel::Force, index: 1, value: f64::INFINITY }));
         let overflow = impulse(&[f64::MAX, f64::MAX, f64::MAX], 0.1, Baseline::Keep);
-        assert!(matches!(overflow, Err(FrfError::NotFinite { .. })), "{overflow:?}");
+        assert!(matches!(overflow, Err(FrfError::OutOfRange(ModelError::NotFinite { .. }))), "{overflow:?}");
     }
 
     #[test]

@@ -65,6 +65,7 @@ pub use coulomb_line::{CoulombLine, friction_force_of_slope};
 pub use describing_function::equivalent_damping_of_friction;
 pub use error::FrfError;
 pub use estimator::Estimator;
+pub use fmm_model::ModelError;
 pub use form::ResponseForm;
 pub use friction_spectrum::{FrictionSpectrum, Harmonic};
 pub use impulse::{Quadrature, impulse, impulse_by, impulse_of_record};

@@ -1,7 +1,7 @@
 //! How trials are treated and averaged.
 
 use crate::window::Windows;
-use crate::{Baseline, ExponentialWindow, ForceWindow, FrfError, Taper};
+use crate::{Baseline, ExponentialWindow, ForceWindow, FrfError, ModelError, Taper};
 
 /// How much each trial counts.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -94,12 +94,12 @@ impl AverageOptions {
     /// How much each trial counts.
     ///
     /// # Errors
-    /// [`FrfError::NotPositive`] for an exponential weight outside 0 to 1, both ends excluded; the error is about the
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for an exponential weight outside 0 to 1, both ends excluded; the error is about the
     /// weight or what it leaves.
     pub fn averaging(mut self, averaging: Averaging) -> Result<Self, FrfError> {
         if let Averaging::Exponential { newest } = averaging {
-            FrfError::require_positive("the weight of the newest trial", newest, "(dimensionless)")?;
-            FrfError::require_positive("the weight of all trials but the newest", 1.0 - newest, "(dimensionless)")?;
+            ModelError::require_positive("the weight of the newest trial", newest, "(dimensionless)")?;
+            ModelError::require_positive("the weight of all trials but the newest", 1.0 - newest, "(dimensionless)")?;
         }
         self.averaging = averaging;
         Ok(self)

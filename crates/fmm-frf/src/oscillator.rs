@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
-use crate::{FrequencyResponse, FrfError, ResponseForm};
+use crate::{FrequencyResponse, FrfError, ModelError, ResponseForm};
 
 /// A linear oscillator with viscous damping, as a response to compare a measured one with.
 ///
@@ -38,11 +38,11 @@ impl SingleDegreeOfFreedom {
     /// An oscillator of `mass` m (kg), `damping` c (N s/m) and `stiffness` k (N/m).
     ///
     /// # Errors
-    /// [`FrfError::NotPositive`] for mass or stiffness, [`FrfError::Negative`] for the damping.
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for mass or stiffness, [`ModelError::Negative`](crate::ModelError::Negative) for the damping.
     pub fn new(mass: f64, damping: f64, stiffness: f64) -> Result<Self, FrfError> {
-        FrfError::require_positive("mass", mass, "kg")?;
-        FrfError::require_not_negative("damping", damping, "N s/m")?;
-        FrfError::require_positive("stiffness", stiffness, "N/m")?;
+        ModelError::require_positive("mass", mass, "kg")?;
+        ModelError::require_not_negative("damping", damping, "N s/m")?;
+        ModelError::require_positive("stiffness", stiffness, "N/m")?;
         Ok(Self { mass, damping, stiffness })
     }
 
@@ -72,9 +72,9 @@ impl SingleDegreeOfFreedom {
     /// that of the frequency itself.
     ///
     /// # Errors
-    /// [`FrfError::NotFinite`] for the frequency, [`FrfError::UndampedResonance`] for c = 0 at ω₀.
+    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the frequency, [`FrfError::UndampedResonance`] for c = 0 at ω₀.
     pub fn receptance(&self, frequency: f64) -> Result<Complex64, FrfError> {
-        let omega = TAU * FrfError::require_finite("frequency", frequency, "Hz")?;
+        let omega = TAU * ModelError::require_finite("frequency", frequency, "Hz")?;
         let dynamic_stiffness = Complex64::new(self.stiffness - self.mass * omega * omega, self.damping * omega);
         // `finv` divides by the magnitude twice, which neither overflows nor underflows where the result does not.
         let receptance = dynamic_stiffness.finv();

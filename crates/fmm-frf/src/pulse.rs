@@ -5,7 +5,7 @@ use std::ops::Range;
 use fmm_record::{Saturation, noise, saturation};
 
 use crate::impulse::trapezoid;
-use crate::{Baseline, Channel, FrfError};
+use crate::{Baseline, Channel, FrfError, ModelError};
 
 /// The pulse of an impact.
 ///
@@ -61,11 +61,11 @@ impl Pulse {
     /// The pulse in a `force` (N) sampled every `interval` (s).
     ///
     /// # Errors
-    /// [`FrfError::NotPositive`] for the interval, [`FrfError::TooFewSamples`], [`FrfError::SampleNotFinite`],
-    /// [`FrfError::BaselineRange`], [`FrfError::NotFinite`] for the baseline, and [`FrfError::NoForce`] if nothing rises
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFewSamples`], [`FrfError::SampleNotFinite`],
+    /// [`FrfError::BaselineRange`], [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the baseline, and [`FrfError::NoForce`] if nothing rises
     /// above the baseline.
     pub fn of(force: &[f64], interval: f64, baseline: Baseline) -> Result<Self, FrfError> {
-        FrfError::require_positive("the sampling interval", interval, "s")?;
+        ModelError::require_positive("the sampling interval", interval, "s")?;
         if force.len() < 2 {
             return Err(FrfError::TooFewSamples { found: force.len() });
         }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use num_complex::Complex64;
 
-use crate::{FrfError, ResponseForm};
+use crate::{FrfError, ModelError, ResponseForm};
 
 /// A response at increasing frequencies, all of it finite and in one form.
 ///
@@ -83,9 +83,9 @@ impl FrequencyResponse {
     /// see [`ExponentialWindow`](crate::ExponentialWindow). Conversions and modal estimates then take its damping out.
     ///
     /// # Errors
-    /// [`FrfError::Negative`] for the rate.
+    /// [`ModelError::Negative`](crate::ModelError::Negative) for the rate.
     pub fn with_decay_rate(mut self, decay_rate: f64) -> Result<Self, FrfError> {
-        self.decay_rate = FrfError::require_not_negative("the decay rate of a window", decay_rate, "1/s")?;
+        self.decay_rate = ModelError::require_not_negative("the decay rate of a window", decay_rate, "1/s")?;
         Ok(self)
     }
 
@@ -114,9 +114,9 @@ impl FrequencyResponse {
     /// A delay of 1 ms is 0.8° at 2.2 Hz and 36° at 100 Hz; it looks like damping where there is none.
     ///
     /// # Errors
-    /// [`FrfError::NotFinite`] for the delay, [`FrfError::ValueNotFinite`] if a window and a long delay overflow.
+    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the delay, [`FrfError::ValueNotFinite`] if a window and a long delay overflow.
     pub fn without_delay(mut self, delay: f64) -> Result<Self, FrfError> {
-        FrfError::require_finite("the delay of a channel", delay, "s")?;
+        ModelError::require_finite("the delay of a channel", delay, "s")?;
         for (value, &frequency) in self.values.iter_mut().zip(&*self.frequencies) {
             *value *= (Complex64::new(self.decay_rate, TAU * frequency) * delay).exp();
             if !value.is_finite() {

@@ -1,6 +1,8 @@
 //! The height of a receptance peak with dry friction and viscous damping together.
 
-use crate::{FrfError, SingleDegreeOfFreedom, friction_force_of_coulomb_impact, peak_receptance_of_coulomb_impact};
+use crate::{
+    FrfError, ModelError, SingleDegreeOfFreedom, friction_force_of_coulomb_impact, peak_receptance_of_coulomb_impact,
+};
 
 /// Peak of the receptance (m/N) of a `machine` with viscous damping and a `friction_force` F (N) after an `impulse` J (N s).
 ///
@@ -32,7 +34,7 @@ use crate::{FrfError, SingleDegreeOfFreedom, friction_force_of_coulomb_impact, p
 /// ```
 ///
 /// # Errors
-/// [`FrfError::NotPositive`] for any argument, or for a result out of range.
+/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any argument, or for a result out of range.
 pub fn peak_receptance_of_viscous_coulomb_impact(
     impulse: f64,
     machine: &SingleDegreeOfFreedom,
@@ -42,7 +44,7 @@ pub fn peak_receptance_of_viscous_coulomb_impact(
     let undamped = peak_receptance_of_coulomb_impact(impulse, mass, omega, friction_force)?;
     // q/2 is the peak without viscous damping, by that without friction.
     let q = 2.0 * undamped * machine.damping() * omega;
-    FrfError::require_positive("peak receptance", undamped * share(q), "m/N")
+    Ok(ModelError::require_positive("peak receptance", undamped * share(q), "m/N")?)
 }
 
 /// Kinetic friction force (N) out of a measured peak of the receptance (m/N) of a `machine` whose viscous damping is known,
@@ -58,7 +60,7 @@ pub fn peak_receptance_of_viscous_coulomb_impact(
 /// ```
 ///
 /// # Errors
-/// [`FrfError::NotPositive`] for any argument, and for the friction force if the peak is as high as the machine's own
+/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any argument, and for the friction force if the peak is as high as the machine's own
 /// damping allows without friction, or higher.
 pub fn friction_force_of_viscous_coulomb_impact(
     impulse: f64,
@@ -69,7 +71,7 @@ pub fn friction_force_of_viscous_coulomb_impact(
     let undamped = friction_force_of_coulomb_impact(impulse, mass, omega, peak_receptance)?;
     let height = peak_receptance * machine.damping() * omega;
     if height >= 1.0 {
-        return Err(FrfError::NotPositive { quantity: "friction force", value: 0.0, unit: "N" });
+        return Err(ModelError::NotPositive { quantity: "friction force", value: 0.0, unit: "N" }.into());
     }
     // h rises and bends down, so that Newton's steps from the left never pass the root; h(q) < q/2 puts 2h there.
     let mut q = 2.0 * height;
@@ -81,7 +83,7 @@ pub fn friction_force_of_viscous_coulomb_impact(
         q += step;
     }
     // |H| of the formula without damping is q/2 where the measured one is h(q).
-    FrfError::require_positive("friction force", undamped * share(q), "N")
+    Ok(ModelError::require_positive("friction force", undamped * share(q), "N")?)
 }
 
 /// h(q)/(q/2) = 2 (q − ln(1 + q))/q², from 1 at q = 0 downwards.

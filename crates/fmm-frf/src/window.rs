@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::FrfError;
+use crate::{FrfError, ModelError};
 
 /// Weights that fade both channels of a trial in and out alike, for excitation that goes on all the time.
 ///
@@ -48,19 +48,19 @@ impl ForceWindow {
     /// A window that keeps the force from `from` (s) until before `to` (s), counted from the first sample.
     ///
     /// # Errors
-    /// [`FrfError::NotFinite`] for `from`, and [`FrfError::NotPositive`] for a duration that is not positive and finite.
+    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for `from`, and [`ModelError::NotPositive`](crate::ModelError::NotPositive) for a duration that is not positive and finite.
     pub fn new(from: f64, to: f64) -> Result<Self, FrfError> {
-        FrfError::require_finite("the begin of the force window", from, "s")?;
-        FrfError::require_positive("the duration of the force window", to - from, "s")?;
+        ModelError::require_finite("the begin of the force window", from, "s")?;
+        ModelError::require_positive("the duration of the force window", to - from, "s")?;
         Ok(Self { from, to, flank: 0.0 })
     }
 
     /// The same window with half-cosine flanks of `duration` (s) added before and after it.
     ///
     /// # Errors
-    /// [`FrfError::Negative`] for the duration.
+    /// [`ModelError::Negative`](crate::ModelError::Negative) for the duration.
     pub fn with_flanks(mut self, duration: f64) -> Result<Self, FrfError> {
-        self.flank = FrfError::require_not_negative("the duration of a flank", duration, "s")?;
+        self.flank = ModelError::require_not_negative("the duration of a flank", duration, "s")?;
         Ok(self)
     }
 
@@ -108,18 +108,18 @@ impl ExponentialWindow {
     /// The window of `decay_rate` σ (1/s).
     ///
     /// # Errors
-    /// [`FrfError::NotPositive`].
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive).
     pub fn new(decay_rate: f64) -> Result<Self, FrfError> {
-        FrfError::require_positive("the decay rate of a window", decay_rate, "1/s")?;
+        ModelError::require_positive("the decay rate of a window", decay_rate, "1/s")?;
         Ok(Self { decay_rate })
     }
 
     /// The window that has fallen to `fraction` (between 0 and 1) after `duration` (s): σ = −ln(fraction)/duration.
     ///
     /// # Errors
-    /// [`FrfError::NotPositive`] for the duration or the decay rate that follows.
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the duration or the decay rate that follows.
     pub fn reaching(fraction: f64, duration: f64) -> Result<Self, FrfError> {
-        FrfError::require_positive("the duration of a window", duration, "s")?;
+        ModelError::require_positive("the duration of a window", duration, "s")?;
         Self::new(-fraction.ln() / duration)
     }
 

@@ -10,6 +10,8 @@ pub mod chapter_5_modal;
 pub mod chapter_5_monte_carlo;
 pub mod chapter_6_energy;
 pub mod chapter_7_friction;
+pub mod chapter_8_impact;
+pub mod chapter_9_future;
 #[path = "../../common/figure.rs"]
 #[expect(dead_code, reason = "other examples write files directly")]
 mod figure;
@@ -39,4 +41,6 @@ pub const CHAPTERS: &[(&str, Computation)] = &[
     ("chapter_5_monte_carlo", chapter_5_monte_carlo::chapter),
     ("chapter_6_energy", chapter_6_energy::chapter),
     ("chapter_7_friction", chapter_7_friction::chapter),
+    ("chapter_8_impact", chapter_8_impact::chapter),
+    ("chapter_9_future", chapter_9_future::chapter),
 ];

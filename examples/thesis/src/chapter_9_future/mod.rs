@@ -1,0 +1,41 @@
+//! Section 9.2: what the thesis leaves to the future, on simulated records of known truth and on real ones.
+//!
+//! Laws with a state, of Dahl, `LuGre` and Maxwell, that the thesis would use if there were tests at low constant velocity:
+//! what a ring-down says of them. And a monolithic machine beside an assembled one: what a ring-down says of the clamps.
+
+mod clamps;
+mod maxwell_pair;
+mod measured;
+mod presliding;
+
+use fmm_friction::{Coulomb, Dahl, LuGre};
+use fmm_identify::{Candidate, Terms};
+
+use crate::{Chapter, Found, Settings};
+use maxwell_pair::MaxwellPair;
+
+/// The questions of section 9.2.
+///
+/// # Errors
+/// If a simulation or a fit cannot be done.
+pub fn chapter(settings: &Settings<'_>) -> Found<Chapter> {
+    let mut chapter = Chapter::new("9.2 Future work");
+    presliding::add(&mut chapter, settings)?;
+    settings.done(0.6);
+    measured::add(&mut chapter, settings)?;
+    settings.done(0.9);
+    clamps::add(&mut chapter, settings)?;
+    settings.done(1.0);
+    Ok(chapter)
+}
+
+/// Dry friction, and the three laws that have it as their limit: Dahl's with exponent 1, `LuGre`'s with a simple exponential, and
+/// two Maxwell elements; beside those without a viscous part of their own with `terms`.
+fn candidates(terms: &Terms) -> Found<[Candidate; 4]> {
+    Ok([
+        Candidate::of::<Coulomb>().with(terms.clone()),
+        Candidate::of::<Dahl>().with(terms.clone()).holding("exponent", 1.0)?,
+        Candidate::of::<LuGre>().holding("exponent", 1.0)?,
+        Candidate::of::<MaxwellPair>().with(terms.clone()),
+    ])
+}
