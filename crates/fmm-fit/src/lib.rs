@@ -25,6 +25,12 @@
 //! | Is a further parameter worth having? | [`f_test`], [`Fit::corrected_akaike`] |
 //! | Are the residuals noise? | [`ResidualDiagnostics`], [`durbin_watson`], [`effective_count`] |
 //! | And if they are not? | [`CorrelatedCovariance`] |
+//!
+//! # Features
+//!
+//! None is on by default. `rayon` adds [`MultiStart`]'s `solve_parallel`, on all threads and with the same result.
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod comparison;
 mod diagnostics;

@@ -38,6 +38,13 @@
 //! assert!((mu.uncertainty().unwrap() - 2.774e-4).abs() < 1e-6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Features
+//!
+//! None is on by default. With `serde`, [`Identification`], [`Comparison`] and [`ImpactIdentification`] serialise as documents
+//! for other programs.
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod banded;
 mod candidate;

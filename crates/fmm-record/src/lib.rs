@@ -41,6 +41,8 @@
 //! Universal Files, which are also written; `hdf5` adds version 7.3 to `mat`, and `npy` reads files of NumPy. Without
 //! `csv`, `mat`, `hdf5` and `npy` the crate has no dependency but `thiserror`.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 #[cfg(feature = "csv")]
 pub mod csv;
 #[cfg(feature = "mat")]

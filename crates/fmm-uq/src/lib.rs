@@ -45,6 +45,8 @@
 //! * `rayon`: blocks of trials on all threads of the current pool, with the same bits.
 //! * `serde`: [`Partial`] results, failures, intervals and histograms as text.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod adaptive;
 mod allowed_failures;
 mod arc_sine;

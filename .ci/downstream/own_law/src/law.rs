@@ -1,0 +1,62 @@
+//! A law of one's own: friction that grows with the logarithm of the speed, as between rough surfaces that creep.
+
+use fmm_friction::{LawError, LawFamily, LawParameter, Role, SlidingLaw};
+use fmm_model::{Bounds, Parameter, Scalar};
+use fmm_sim::{Engine, RungeKutta, Sampling, Scenario, Simulated, SimulationError, Trajectory};
+
+/// Speed (m/s) from which on the logarithm counts.
+const REFERENCE_SPEED: f64 = 0.01;
+
+/// Friction that strengthens with speed.
+///
+/// ```text
+/// μ(v) = μ₀ + a ln(1 + v/v₀),   v₀ = 10 mm/s
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct Logarithmic<D = f64> {
+    /// μ₀, coefficient at rest (1).
+    pub at_rest: D,
+    /// a, increase of the coefficient per factor e of speed (1).
+    pub increase: D,
+}
+
+/// What it does: enough to simulate it, at plain numbers and with derivatives.
+impl<D: Scalar> SlidingLaw<D> for Logarithmic<D> {
+    fn coefficient(&self, speed: D) -> D {
+        self.at_rest + self.increase * (speed / REFERENCE_SPEED + 1.0).ln()
+    }
+    fn breakaway(&self) -> D {
+        self.at_rest
+    }
+}
+
+/// What its parameters are called and where they may lie: enough to fit it and to report it.
+impl LawFamily for Logarithmic {
+    const NAME: &'static str = "logarithmic";
+    const PARAMETERS: &'static [LawParameter] = &[
+        LawParameter::new(Parameter::new("at_rest", "μ₀", "1").bounded(Bounds::NOT_NEGATIVE), Role::Level),
+        LawParameter::new(Parameter::new("increase", "a", "1").bounded(Bounds::NOT_NEGATIVE), Role::Level)
+            .typically(0.1),
+    ];
+    type At<D: Scalar> = Logarithmic<D>;
+
+    fn at<D: Scalar>(values: &[D]) -> Result<Logarithmic<D>, LawError> {
+        match (values, Self::PARAMETERS) {
+            (&[at_rest, increase], [first, second]) => {
+                Ok(Logarithmic { at_rest: first.check(at_rest)?, increase: second.check(increase)? })
+            }
+            _ => Err(LawError::WrongCount { law: Self::NAME, expected: 2, got: values.len() }),
+        }
+    }
+}
+
+/// Which engine follows it.
+impl Simulated for Logarithmic {
+    fn simulate_into<D: Scalar>(
+        scenario: &Scenario<D, Logarithmic<D>>,
+        sampling: &Sampling,
+        trajectory: &mut Trajectory<D>,
+    ) -> Result<(), SimulationError> {
+        RungeKutta::default().run_into(scenario, sampling, trajectory)
+    }
+}
