@@ -29,6 +29,17 @@ pub fn chapter(settings: &Settings<'_>) -> Found<Chapter> {
     Ok(chapter)
 }
 
+/// What `of` gives for 0 up to `count`, each on a thread of its own, in this order.
+fn side_by_side<T: Send>(count: usize, of: &(impl Fn(usize) -> Found<T> + Sync)) -> Vec<Found<T>> {
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..count).map(|index| scope.spawn(move || of(index))).collect();
+        threads
+            .into_iter()
+            .map(|thread| thread.join().unwrap_or_else(|_| Err("a comparison panicked".into())))
+            .collect()
+    })
+}
+
 /// Dry friction, and the three laws that have it as their limit: Dahl's with exponent 1, `LuGre`'s with a simple exponential, and
 /// two Maxwell elements; beside those without a viscous part of their own with `terms`.
 fn candidates(terms: &Terms) -> Found<[Candidate; 4]> {

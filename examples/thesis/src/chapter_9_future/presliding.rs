@@ -7,8 +7,8 @@ use fmm_identify::{
 use fmm_record::Record;
 use fmm_sim::{Sampling, Simulated};
 
-use super::candidates;
 use super::maxwell_pair::MaxwellPair;
+use super::{candidates, side_by_side};
 use crate::figure::{Layer, Panel, Role};
 use crate::printed::{LOADS, MACHINE};
 use crate::ring_down::{self, INTERVAL, Viscous, over_time, velocity_record, with_noise};
@@ -96,13 +96,18 @@ pub(super) fn add(chapter: &mut Chapter, settings: &Settings<'_>) -> Found<()> {
     // The viscous part of LuGre is the machine's own, which is known.
     let [coulomb, dahl, lugre, maxwell] = candidates(&Terms::default())?;
     let candidates = [coulomb, dahl, lugre.holding("damping_per_mass", 0.0)?, maxwell];
-    let (mut rows, mut leads, mut shifts) = (Vec::new(), Vec::new(), Vec::new());
-    for (index, truth) in Truth::all(settings.seed().wrapping_mul(1_000_003).wrapping_add(91_000))?.iter().enumerate() {
+    let truths = Truth::all(settings.seed().wrapping_mul(1_000_003).wrapping_add(91_000))?;
+    let compared = |index: usize| -> Found<(Comparison, Vec<Candidate>, usize)> {
         // The first candidate has no state; the others come in the order of the truths.
-        let dry_and_own = [candidates[0].clone(), candidates[index + 1].clone()];
-        let (fitted, own) = if settings.is_quick() { (&dry_and_own[..], 1) } else { (&candidates[..], index + 1) };
-        let comparison = compare(&machine, &[truth.decay()?], fitted)?;
-        rows.extend(rows_of(truth, &comparison, fitted));
+        let own = index + 1;
+        let dry_and_own = || vec![candidates[0].clone(), candidates[own].clone()];
+        let (fitted, own) = if settings.is_quick() { (dry_and_own(), 1) } else { (candidates.to_vec(), own) };
+        Ok((compare(&machine, &[truths[index].decay()?], &fitted)?, fitted, own))
+    };
+    let (mut rows, mut leads, mut shifts) = (Vec::new(), Vec::new(), Vec::new());
+    for ((index, truth), compared) in truths.iter().enumerate().zip(side_by_side(truths.len(), &compared)) {
+        let (comparison, fitted, own) = compared?;
+        rows.extend(rows_of(truth, &comparison, &fitted));
         targets(chapter, truth, &comparison.identifications()[own])?;
         leads.push(format!("{:.0} ({})", lead(&comparison, own), truth.name));
         shifts.push(format!("{:+.2} % ({})", 100.0 * shift(&comparison, own)?, truth.name));
