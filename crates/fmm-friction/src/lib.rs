@@ -1,15 +1,4 @@
-//! What a sliding contact *does*: friction laws, each its formula written once.
-//!
-//! A law is generic in its number type [`Scalar`](fmm_model::Scalar): at `f64` it gives the friction
-//! coefficient, at a dual number also the exact derivative in every parameter. Its parameters are named fields
-//! with symbol and unit, and [`LawFamily`] lists them, so that a fit, a budget or a report can speak of them.
-//!
-//! Two small traits say what a law is: [`SlidingLaw`] for laws of the sliding speed alone, which need a stick
-//! phase, and [`BristleLaw`] for laws with an internal state, which do not. [`PiecewiseLinearLaw`] marks
-//! the laws that can be simulated in closed form. [`Shifted`] and [`Smoothed`] make a law of another law.
-//!
-//! All laws give a *coefficient*, the friction force divided by the normal load. With a normal load of 1 the
-//! coefficient is the force itself.
+//! What a sliding contact *does*: friction laws, each its formula written once, with named and bounded parameters.
 //!
 //! ```
 //! use fmm_friction::{CoulombViscous, LawFamily, SlidingLaw};
@@ -25,6 +14,56 @@
 //! assert_eq!((coefficient.partial(0), coefficient.partial(1)), (1.0, 0.5));
 //! # Ok::<(), fmm_friction::LawError>(())
 //! ```
+//!
+//! # Which law
+//!
+//! | what the contact does | law | what it is not for |
+//! |---|---|---|
+//! | one level | [`Coulomb`] | a static level of its own: [`CoulombStatic`], which a free decay hardly shows |
+//! | a level and a part proportional to the speed | [`CoulombViscous`] | telling that part from the damping of the machine |
+//! | no dry friction | [`Viscous`], the hypothesis to be refuted | contacts that stop |
+//! | falls with speed | [`Berger`] (exponential, to a floor), [`Hyperbolic`] (two parameters, to zero) | records of one amplitude: floor and excess are correlated by −0.999 |
+//! | falls, then rises | [`Stribeck`], [`StribeckLorentzian`] | records that do not cover both sides of the minimum |
+//! | rises with a power of the speed | [`PowerLaw`] | stick-slip: it creeps above its floor |
+//! | differs between growing and falling speed | [`AccelerationCoulomb`] (two levels), [`ExponentialPair`] (two curves) | smoothing |
+//! | a peak over a smooth curve | [`MakkarDixon`], [`RegularisedStribeck`]; [`Shifted`] makes the first stick | holding a load: without the shift they creep |
+//! | gives before it slides, path only | [`Dahl`], [`BoucWen`] (one state), [`MaxwellSlip`] (elements) | records that do not resolve some micrometres |
+//! | gives, lags and falls | [`LuGre`], [`Gms`] | fits without constants held: seven parameters and more |
+//! | has to agree with another simulator | [`Karnopp`] (dead zone), [`Smoothed`] (any law times tanh) | anything else: their error grows with the zone |
+//!
+//! # The traits
+//!
+//! [`SlidingLaw`] is for laws of the sliding speed alone, which need a stick phase, and [`BristleLaw`] for laws with an
+//! internal state, which do not; their pages say what an implementor promises and why they are as they are.
+//! [`PiecewiseLinearLaw`] marks the laws that move a linear machine in closed form. [`LawFamily`] names the parameters and
+//! builds a law at any number type, so that a fit, a budget or a report can speak of them; a law of one's own that
+//! implements it is fitted like these.
+//!
+//! # Units and conventions
+//!
+//! All laws give a *coefficient*, the friction force divided by the normal load. With a normal load of 1 the coefficient is
+//! the force itself (N); per unit mass it is F/m (m/s²). Speeds are in m/s and never negative: the sign of the force is the
+//! business of whoever simulates, so that a law cannot push.
+//!
+//! # Guarantees
+//!
+//! * Constructors refuse parameters out of bounds and those that contradict each other: a static level below the sliding
+//!   one, a loop that makes energy. The error names parameter, value, unit and bounds.
+//! * The coefficient of a law that exists is nowhere negative, and its limit at rest is not above the static level; states
+//!   of bristle laws stay within their [`bound`](BristleLaw::bound).
+//! * Special cases agree: [`Berger`] without excess is [`Coulomb`], bit for bit.
+//!
+//! # Cost
+//!
+//! A coefficient is a handful of operations: arithmetic alone for laws that are a level plus a slope, one exponential for
+//! [`Berger`], five functions for [`MakkarDixon`]. Only [`MaxwellSlip`] and [`Gms`] allocate, when they are made.
+//! [`Shifted`] searches its inflection once, when it is made, and so once for each evaluation of a fit.
+//!
+//! # Neighbours
+//!
+//! [`fmm-sim`](https://docs.rs/fmm-sim) moves a machine under a law, [`fmm-identify`](https://docs.rs/fmm-identify) finds
+//! its parameters in a record, but for those of [`MaxwellSlip`] and [`Gms`], which are lists and no [`LawFamily`];
+//! [`fmm-model`](https://docs.rs/fmm-model) has the number types. There are no features.
 
 mod acceleration_coulomb;
 mod affine;

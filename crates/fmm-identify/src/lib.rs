@@ -1,19 +1,9 @@
-//! Friction parameters out of measured ring-downs, with their uncertainty and what the record could not tell.
+//! Friction parameters out of measured ring-downs and hammer blows, with their uncertainty and what the record could not
+//! tell.
 //!
-//! A [`Record`](fmm_record::Record) of a freely vibrating machine is prepared ([`RingDown`]), what is known of the
-//! machine is stated ([`Machine`]), and one law ([`identify`]) or several ([`compare`]) are fitted to it by
-//! simulating the motion exactly, through every reversal and stop.
-//!
-//! | question | answer |
-//! |---|---|
-//! | Which start values do I give? | none; they come from the peaks and crossings of the record |
-//! | What can a free vibration show? | frequency, damping per mass and friction per mass; not the mass |
-//! | How do I get μ? | give a mass or a stiffness, and the normal load, with their uncertainties |
-//! | Which law? | [`compare`] tells, and says when the data do not decide |
-//! | How does damping depend on velocity? | [`decrements`] cycle by cycle, [`Windows`] a few cycles at a time |
-//! | Friction without a simulation? | [`WeakForm`]; [`EnergyMethod`] for its curve, [`half_swing_losses`] per half swing |
-//! | Friction out of hammer blows? | [`ImpactTrial`], [`identify_impact`], to the mobility, the time record or both |
-//! | Are the uncertainties to be trusted? | read the [`warnings`](Identification::warnings): they name what breaks them |
+//! A [`Record`](fmm_record::Record) of a freely vibrating machine is prepared ([`RingDown`]), what is known of the machine
+//! is stated ([`Machine`]), and one law ([`identify`]) or several ([`compare`]) are fitted to it by simulating the motion
+//! exactly, through every reversal and stop.
 //!
 //! ```
 //! use fmm_friction::CoulombViscous;
@@ -39,10 +29,52 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Which item
+//!
+//! | question | answer |
+//! |---|---|
+//! | Which start values do I give? | none; they come from the peaks and crossings of the record |
+//! | What can a free vibration show? | frequency, damping per mass and friction per mass; not the mass |
+//! | How do I get μ? | give a mass or a stiffness, and the normal load, with their uncertainties |
+//! | Which law? | [`compare`] tells, and says when the data do not decide; [`Candidate`] chooses one by its name |
+//! | Damping of the machine beside the law? | known: [`Machine::with_damping`]; to be found: [`identify_with`] and [`Terms`] |
+//! | Several records? | give them together: the law and the frequency are shared, initial states and offsets are not |
+//! | How does damping depend on velocity? | [`decrements`] cycle by cycle, [`Windows`] a few cycles at a time |
+//! | Friction without a simulation? | [`WeakForm`]; [`EnergyMethod`] for its curve, [`half_swing_losses`] per half swing |
+//! | Friction out of hammer blows? | [`ImpactTrial`], [`identify_impact`], to the mobility, the time record or both |
+//! | What if mass, stiffness or damping were others? | [`MachineProblem`] with [`Sensitivity`](fmm_fit::Sensitivity) or [`Refit`](fmm_fit::Refit) |
+//! | Are the uncertainties to be trusted? | read the [`warnings`](Identification::warnings): they name what breaks them |
+//!
+//! # Units and conventions
+//!
+//! Findings are in the units that follow from the record's: of a velocity in m/s, friction per mass in m/s²; of one in V,
+//! in V/s. A gyroscope whose gain is not known gives a friction all the same, in its own unit. A load makes coefficients of
+//! forces, and nothing else does. Times are on the time axis of the record.
+//!
+//! # Guarantees
+//!
+//! * Nothing is smoothed, and what was left out (rest before the release, spikes) is in the [summary](RingDown::summary)
+//!   and in the warnings.
+//! * Parameters that the record does not tell apart have no uncertainty, but a warning that names them. A static level of
+//!   its own is held, and a warning says so.
+//! * How a fit ends is in the result. Errors are for what does not let it begin.
+//! * The same records and options give the same bits.
+//!
+//! # Cost
+//!
+//! In proportion to samples and records. Of 1500 samples, on a Xeon at 2.8 GHz: 1 ms to prepare, 0.2 ms for Coulomb's law,
+//! 0.7 ms with a viscous part, 15 ms for Berger's; laws of more parameters are fitted from many starts, Stribeck's with a
+//! free exponent in 2 s. Hold what is known: it is quicker, and better determined. [`compare`] costs the sum of its candidates.
+//!
 //! # Features
 //!
-//! None is on by default. With `serde`, [`Identification`], [`Comparison`] and [`ImpactIdentification`] serialise as documents
-//! for other programs.
+//! `serde`, off by default: findings, comparisons and reports serialise.
+//!
+//! # Neighbours
+//!
+//! [`fmm-record`](https://docs.rs/fmm-record) reads the files, [`fmm-sim`](https://docs.rs/fmm-sim) simulates,
+//! [`fmm-fit`](https://docs.rs/fmm-fit) fits, [`fmm-frf`](https://docs.rs/fmm-frf) looks at blows without a law;
+//! [`fmm-uq`](https://docs.rs/fmm-uq) propagates uncertainties through anything.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

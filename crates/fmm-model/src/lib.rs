@@ -1,28 +1,59 @@
-//! What a friction measuring machine *is*: a single-degree-of-freedom oscillator with its damping, and the two
-//! words that all FMM crates share, [`Parameter`] (name, symbol, unit, bounds) and [`Scalar`] (the number type
-//! that a formula is generic in).
-//!
-//! | what | for |
-//! |---|---|
-//! | [`Oscillator`], [`Restoring`] | mass and spring: frequencies, damping ratio, logarithmic decrement, energies |
-//! | [`Damping`] | damping in powers of the velocity, and the viscous damping it amounts to over a cycle |
-//! | [`Flexure`], [`LeafSpring`] | leaf springs that guide a platform: stiffness, stress, allowed deflection, parasitic motion |
-//! | [`Tilt`] | the lean of a shaft from two displacements |
-//! | [`Parameter`], [`Bounds`], [`Rounded`] | names, symbols, units, limits, and values as they are written |
-//! | [`Scalar`], [`Dual`] | formulas written once, with exact derivatives on request |
-//!
-//! Everything is in SI units. A machine whose mass is not known is described *per unit mass*: stiffness in
-//! 1/s², damping in 1/s, force in m/s²; all formulas hold unchanged.
+//! What a friction measuring machine *is*: a single-degree-of-freedom oscillator with its damping, and the two words that
+//! all FMM crates share, [`Parameter`] (name, symbol, unit, bounds) and [`Scalar`] (the number type that a formula is
+//! generic in).
 //!
 //! ```
-//! use fmm_model::{Damping, Oscillator};
+//! use fmm_model::{Damping, Dual, Oscillator, Scalar};
 //!
 //! // The flexure machine of the thesis, Table 2.
 //! let machine = Oscillator::new(10.391, 1982.0)?.with_damping(Damping::linear(0.275)?);
 //! assert!((machine.natural_frequency() - 2.198_08).abs() < 5e-6);
 //! assert!((machine.damping_ratio() - 9.581_25e-4).abs() < 1e-9);
+//!
+//! // The same formula with its derivative in the mass: ∂f₀/∂m = −f₀/2m.
+//! let machine = Oscillator::new(Dual::<1>::variable(10.391, 0), Dual::from(1982.0))?;
+//! let frequency = machine.natural_frequency();
+//! assert!((frequency.partial(0) + frequency.value() / (2.0 * 10.391)).abs() < 1e-15);
 //! # Ok::<(), fmm_model::ModelError>(())
 //! ```
+//!
+//! # Which item
+//!
+//! | question | item |
+//! |---|---|
+//! | frequencies, damping ratio, decrement, energy of mass and spring | [`Oscillator`]; of a record whose mass is not known, [`Oscillator::per_unit_mass`] |
+//! | a pendulum instead of a spring | [`Restoring::Sine`] |
+//! | damping in powers of the velocity | [`Damping`] |
+//! | a line fitted to damping over *peak* velocities | [`Damping::from_peak_velocity_line`]; taken as a law of the velocity its drag would be 15 % too low |
+//! | stiffness, stress, allowed deflection, parasitic motion of a guide | [`Flexure`], [`LeafSpring`] |
+//! | the lean of a shaft from two displacements | [`Tilt`] |
+//! | name, symbol, unit and limits of what is to be found | [`Parameter`], [`Bounds`] |
+//! | a formula with exact derivatives | write it over [`Scalar`], evaluate it at [`Dual`] |
+//! | a value as a report writes it | [`Rounded`] |
+//!
+//! # Units and conventions
+//!
+//! Everything is in SI units. A machine whose mass is not known is described *per unit mass*: stiffness in 1/s², damping in
+//! 1/s, force in m/s²; all formulas hold unchanged. Types of a number type `D` are those of `f64` unless another is named.
+//!
+//! # Guarantees
+//!
+//! * Constructors check what they are given; a value that exists is valid, and what is asked of it cannot fail. What cannot
+//!   be, such as the damped frequency of an overdamped machine, is none.
+//! * [`Dual`] gives the bits of `f64` as its value, so that branches do not depend on the number type.
+//! * [`widest`] gives the same bits on every x86-64 processor: operations are neither reordered nor fused.
+//!
+//! # Cost
+//!
+//! Nothing allocates but the texts of a [`Parameter`] made at run time. A [`Dual`] of N directions costs one `f64`
+//! operation and up to two products for each of the N; [`Damping::cycle_equivalent`] of a free power is a sum over a cycle,
+//! all else a few operations.
+//!
+//! # Neighbours
+//!
+//! [`fmm-friction`](https://docs.rs/fmm-friction) has the laws of the contact, [`fmm-sim`](https://docs.rs/fmm-sim) moves
+//! the machine, [`fmm-fit`](https://docs.rs/fmm-fit) finds parameters, [`fmm-identify`](https://docs.rs/fmm-identify) finds
+//! them in measured records. There are no features.
 
 mod bounds;
 mod damping;

@@ -1,16 +1,5 @@
-//! What was *measured*: a uniformly sampled [`Record`] with its quantity and unit, readers that find it in a file,
-//! and what must be known of it before a model is fitted.
-//!
-//! | question | answer |
-//! |---|---|
-//! | what is in this file? | modules `csv`, `mat`, `npy`, `uff`: a `Reading`, the record with the choices that led to it |
-//! | when does motion begin, and what is the offset? | [`Release`] |
-//! | how does it swing? | [`Swings`]: peaks, crossings, frequency |
-//! | how good is it? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`] |
-//! | another form of it? | [`Record::crop`], [`Record::scaled`], [`Record::shifted`], [`Record::smoothed`], [`Record::smoothed_by`], [`Record::integrate`], [`Record::differentiate`] |
-//!
-//! Nothing is repaired in silence: a file that contradicts itself is an error that says where, and what conditioning
-//! finds is reported, not removed.
+//! What was *measured*: a uniformly sampled [`Record`] with its quantity and unit, readers that find it in a file, and what
+//! must be known of it before a model is fitted.
 //!
 //! ```
 //! use fmm_record::{Quantity, Record, Release, Swings, noise};
@@ -35,11 +24,47 @@
 //! # Ok::<(), fmm_record::RecordError>(())
 //! ```
 //!
+//! # Which item
+//!
+//! | question | answer |
+//! |---|---|
+//! | what is in this file? | modules `csv`, `mat`, `npy`, `uff`: a `Reading`, the record with the choices that led to it |
+//! | when does motion begin, and what is the offset? | [`Release`] |
+//! | how does it swing? | [`Swings`]: peaks, crossings, frequency |
+//! | how good is it? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`] |
+//! | another form of it? | [`Record::crop`], [`Record::scaled`], [`Record::shifted`], [`Record::smoothed_by`], [`Record::integrate`], [`Record::differentiate`] |
+//! | which smoothing? | for a fit none, as it correlates the noise; for a derivative [`savitzky_golay_derivative`]; [`moving_average`] to repeat what MATLAB's `smooth` or `movmean` did |
+//!
+//! # Units and conventions
+//!
+//! Times are in s, rates in Hz, values in the unit that the record states: a unit is a label, only [`Record::scaled`]
+//! changes the numbers with it. A file seldom tells what a channel measured, so a reader says [`Quantity::Other`] unless
+//! the file does, and [`Record::with_quantity`] states it.
+//!
+//! # Guarantees
+//!
+//! * A record has at least one sample, all finite, at equal intervals. Time stamps that are not uniform are an error that
+//!   says where.
+//! * Nothing is repaired in silence: what conditioning finds is reported, not removed, and a file that contradicts itself
+//!   is an error or, where its points can still be had, a warning.
+//! * No reader allocates on the word of a header, none panics on damaged bytes, and compressed data expand to 256 MB at
+//!   most.
+//!
+//! # Cost
+//!
+//! In proportion to the samples, whatever the span of a moving average; quantisation sorts at most 131 072 values. The CSV
+//! reader keeps the columns in use only, the others read a file whole.
+//!
 //! # Features
 //!
-//! `csv`, `mat` and `uff`, all on by default, are the readers of text, of MATLAB files of versions 5 to 7 and of
-//! Universal Files, which are also written; `hdf5` adds version 7.3 to `mat`, and `npy` reads files of NumPy. Without
-//! `csv`, `mat`, `hdf5` and `npy` the crate has no dependency but `thiserror`.
+//! `csv`, `mat` and `uff`, all on by default, are the readers of text, of MATLAB files of versions 5 to 7 and of Universal
+//! Files, which are also written; `hdf5` adds version 7.3 to `mat`, and `npy` reads files of NumPy. Without `csv`, `mat`,
+//! `hdf5` and `npy` the crate has no dependency but `thiserror`.
+//!
+//! # Neighbours
+//!
+//! [`fmm-identify`](https://docs.rs/fmm-identify) makes friction of a record, [`fmm-frf`](https://docs.rs/fmm-frf) a
+//! frequency response of two.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -95,6 +120,6 @@ pub use spikes::{Spike, spikes};
 pub use swings::{Crossing, Peak, Swings};
 
 /// Runs the example of the README.
-#[cfg(all(doctest, feature = "mat"))]
+#[cfg(all(doctest, feature = "csv"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

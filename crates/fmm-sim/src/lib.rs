@@ -1,23 +1,5 @@
-//! What would *happen*: the motion of an oscillator with a sliding contact, exact through every stop and
-//! reversal, with its exact gradient.
-//!
-//! Stick and slip form a hybrid automaton. While the contact slips in one direction the equation of motion is
-//! smooth; when the relative velocity reaches zero the load on the contact decides whether it sticks or slips
-//! back. There is no velocity dead zone and no smoothed signum; the set of loads that stick is closed,
-//! |load| ≤ static level. The automaton is the same for all laws of the sliding speed; engines differ in how they follow
-//! one stretch of sliding.
-//!
-//! | engine | for | how |
-//! |---|---|---|
-//! | [`Exact`] | piecewise linear laws on a linear machine | closed form between events; event times in closed form or by steps that provably miss none |
-//! | [`RungeKutta`] | any law of the sliding speed, any machine | order 8 from event to event, landing on each, to a tolerance |
-//! | [`Bristle`] | laws with internal state | an L-stable collocation method, landing on every zero of the velocity and every yield |
-//! | [`Thesis`] | reproduction of the thesis only | the appendix' semi-implicit Euler, branch for branch |
-//! | [`Moreau`] | cross-check | time stepping of the set-valued law, of first order |
-//!
-//! The first three give exact gradients in every input, through every event. Which engine suits a family of laws when nobody
-//! chooses is said by [`Simulated`]. What acts from outside is an [`Excitation`], several of which add up; the [`Work`] done
-//! by friction, damping and excitation comes along on request.
+//! What would *happen*: the motion of an oscillator with a sliding contact, exact through every stop and reversal, with its
+//! exact gradient.
 //!
 //! ```
 //! use fmm_friction::Coulomb;
@@ -35,6 +17,63 @@
 //! assert_eq!(motion.half_swings(), 7);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Which engine
+//!
+//! Stick and slip form a hybrid automaton. While the contact slips in one direction the equation of motion is smooth; when
+//! the relative velocity reaches zero the load on the contact decides whether it sticks or slips back. There is no velocity
+//! dead zone and no smoothed signum; the set of loads that stick is closed,
+//! |load| ≤ static level. The automaton is the same for all laws of the sliding speed; engines differ in how they follow
+//! one stretch of sliding.
+//!
+//! | engine | for | how | not for |
+//! |---|---|---|---|
+//! | [`Exact`] | piecewise linear laws on a linear machine | closed form between events; event times in closed form or by steps that provably miss none | nonlinear damping, a pendulum, resonance without damping |
+//! | [`RungeKutta`] | any law of the sliding speed, any machine | order 8 from event to event, landing on each, to a tolerance | what [`Exact`] can do |
+//! | [`Bristle`] | laws with internal state | an L-stable collocation method, landing on every zero of the velocity and every yield | [`MaxwellSlip`](fmm_friction::MaxwellSlip) on a linear machine, which [`Exact`] can do |
+//! | [`Moreau`] | cross-check | time stepping of the set-valued law, of first order | fits: no derivatives |
+//! | [`Thesis`] | reproduction of the thesis only | the appendix' semi-implicit Euler, branch for branch | fits: its sum of squares jumps |
+//!
+//! The first three give exact gradients in every input, through every event. Which engine suits a family of laws when
+//! nobody chooses is said by [`Simulated`]; [`Trajectory::engine`] says which one ran. What acts from outside is an
+//! [`Excitation`], several of which add up; a release or a push is an initial state. The [`Work`] done by friction, damping
+//! and excitation comes along on request. A contact whose motion is given has no need of an engine: [`friction_along`].
+//!
+//! # Units and conventions
+//!
+//! SI units; x = 0 is where the spring is free of force, t = 0 the initial state. Per unit mass, stiffness, damping and
+//! force are those by the mass. A sample at the time of an event holds the state after it.
+//!
+//! # Guarantees
+//!
+//! * *Events* are in order and carry their [`margin`](Event::margin), how narrowly they were decided. [`Exact`] misses none
+//!   and decides ties by comparing the numbers as they are; [`RungeKutta`] and [`Bristle`] land on each zero of their
+//!   polynomials, which Bernstein coefficients prove to be all.
+//! * *Derivatives* include those of the event times. They do not see that the number of half swings may change, which a
+//!   margin near zero announces.
+//! * *Errors* are typed: a motion with more events or steps than any record can show, or one that leaves the range of
+//!   numbers, is an error, not an endless run, a panic or a NaN.
+//! * *The same arguments give the same bits*, in any order of calls and on any thread.
+//!
+//! # Cost
+//!
+//! On a Xeon at 2.8 GHz, by half swings and samples, least of several runs:
+//!
+//! | engine | a half swing | a sample | two derivatives beside the values |
+//! |---|---|---|---|
+//! | [`Exact`] | 0.09 µs | 0.5 ns | 1.6 times as long |
+//! | [`RungeKutta`] | 12 µs; to 1e-10 half of it | 1 to 6 ns | 1.6 times |
+//! | [`Bristle`] | 95 µs for one state | 30 ns | 2 times |
+//! | [`Thesis`], [`Moreau`] | - | 18 ns, 28 ns | none |
+//!
+//! While a measured force acts, [`Exact`] goes from sample to sample of the force, 0.3 µs each.
+//! [`run_into`](Engine::run_into) uses the memory of a [`Trajectory`] again; [`Sampling::keeping`] leaves out the channel
+//! that is not wanted.
+//!
+//! # Neighbours
+//!
+//! [`fmm-friction`](https://docs.rs/fmm-friction) has the laws, [`fmm-model`](https://docs.rs/fmm-model) the machine;
+//! [`fmm-identify`](https://docs.rs/fmm-identify) fits motions to records. There are no features.
 
 mod automaton;
 mod bristle;
@@ -59,6 +98,7 @@ mod scenario;
 mod simulated;
 mod thesis;
 mod trajectory;
+mod within;
 mod work;
 
 pub use bristle::Bristle;

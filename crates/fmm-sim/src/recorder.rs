@@ -2,7 +2,7 @@
 
 use fmm_model::Scalar;
 
-use crate::runge_kutta::Within;
+use crate::within::Within;
 use crate::work::{PIECE_BUDGET, Power, Work};
 use crate::{Channels, Event, Sampling, SimulationError, State, Trajectory};
 

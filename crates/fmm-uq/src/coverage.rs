@@ -1,6 +1,5 @@
 //! From a standard uncertainty to an interval: the coverage factor of Student's t.
 
-use crate::input::valid_degrees_of_freedom;
 use crate::{UncertaintyError, student};
 
 /// The factor k that makes y ± k u a symmetric interval of coverage probability `level`, for a standard
@@ -29,7 +28,7 @@ use crate::{UncertaintyError, student};
 /// # References
 /// M. Abramowitz, I. A. Stegun, *Handbook of Mathematical Functions*, 26.7.5.
 pub fn coverage_factor(level: f64, degrees_of_freedom: f64) -> Result<f64, UncertaintyError> {
-    let nu = valid_degrees_of_freedom("the result", degrees_of_freedom)?;
+    let nu = UncertaintyError::require_degrees_of_freedom("the result", degrees_of_freedom)?;
     let level = valid_level(level)?;
     Ok(student::upper_quantile(0.5 * (1.0 - level), nu))
 }

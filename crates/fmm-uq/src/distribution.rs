@@ -6,7 +6,6 @@ use crate::UncertaintyError;
 use crate::arc_sine::ArcSine;
 use crate::curvilinear_trapezoid::CurvilinearTrapezoid;
 use crate::empirical::Empirical;
-use crate::input::valid_degrees_of_freedom;
 use crate::trapezoid::Trapezoid;
 
 /// A probability distribution: those of JCGM 101:2008, Table 1, a constant, and the empirical one.
@@ -130,7 +129,7 @@ impl Distribution {
     /// [`UncertaintyError::DegreesOfFreedomOutOfRange`] if ν is below 1 or NaN.
     pub fn student_t(mean: f64, scale: f64, degrees_of_freedom: f64) -> Result<Self, UncertaintyError> {
         let (mean, scale) = (finite("mean", mean)?, positive("scale of a t-distribution", scale)?);
-        let nu = valid_degrees_of_freedom("a t-distribution", degrees_of_freedom)?;
+        let nu = UncertaintyError::require_degrees_of_freedom("a t-distribution", degrees_of_freedom)?;
         if nu.is_infinite() {
             return Self::normal(mean, scale);
         }

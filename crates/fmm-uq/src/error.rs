@@ -342,3 +342,10 @@ pub enum UncertaintyError {
         allowed: f64,
     },
 }
+
+impl UncertaintyError {
+    /// Passes degrees of freedom through if they are at least 1; `of` says whose they are.
+    pub(crate) fn require_degrees_of_freedom(of: &str, value: f64) -> Result<f64, Self> {
+        if value >= 1.0 { Ok(value) } else { Err(Self::DegreesOfFreedomOutOfRange { of: of.to_owned(), value }) }
+    }
+}

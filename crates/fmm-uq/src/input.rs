@@ -107,7 +107,7 @@ impl Input {
     /// # Errors
     /// [`UncertaintyError::DegreesOfFreedomOutOfRange`] if they are below 1 or NaN.
     pub fn with_degrees_of_freedom(mut self, degrees_of_freedom: f64) -> Result<Self, UncertaintyError> {
-        self.degrees_of_freedom = valid_degrees_of_freedom(&self.name, degrees_of_freedom)?;
+        self.degrees_of_freedom = UncertaintyError::require_degrees_of_freedom(&self.name, degrees_of_freedom)?;
         if self.is_normal_or_t() {
             self.distribution = Distribution::student_t(self.value, self.standard_uncertainty, degrees_of_freedom)?;
         }
@@ -154,15 +154,6 @@ impl Input {
     /// What a Monte Carlo draws from.
     pub const fn distribution(&self) -> &Distribution {
         &self.distribution
-    }
-}
-
-/// Passes degrees of freedom through if they are at least 1; `of` says whose they are.
-pub(crate) fn valid_degrees_of_freedom(of: &str, value: f64) -> Result<f64, UncertaintyError> {
-    if value >= 1.0 {
-        Ok(value)
-    } else {
-        Err(UncertaintyError::DegreesOfFreedomOutOfRange { of: of.to_owned(), value })
     }
 }
 

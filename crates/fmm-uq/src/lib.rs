@@ -1,18 +1,6 @@
 //! Measurement uncertainty after the *Guide to the expression of uncertainty in measurement* (GUM, JCGM 100:2008) and its
 //! supplements (JCGM 101:2008, JCGM 102:2011): a measurement is a set of [`Inputs`] and a function of them.
 //!
-//! | question | answer |
-//! |---|---|
-//! | what is known of an input? | [`Distribution`], [`Input`], [`Observations`] (type A), [`Inputs`] (correlated) |
-//! | what follows for the result, if the model is nearly linear? | [`propagate`], [`Gum`]: a [`Budget`] |
-//! | is it nearly linear? | [`Linearisation`], from exact second-order terms |
-//! | what follows if it is not? | [`MonteCarlo`], with as many trials as it takes ([`Adaptive`]): an [`OutputSample`] |
-//! | was the GUM good enough? | [`validate`] |
-//! | which input matters? | [`Budget::contributions`], [`variance_shares`], [`MonteCarlo::run_one_at_a_time`] |
-//! | what if a trial takes a second? | [`QuasiMonteCarlo`]; or many machines and [`Partial`] results |
-//!
-//! Write a model once, generic in its number: `f64` for trials, [`Taylor`] for exact derivatives.
-//!
 //! ```
 //! use fmm_uq::{Input, Inputs, MonteCarlo, Scalar, propagate};
 //!
@@ -38,12 +26,57 @@
 //! # Ok::<(), fmm_uq::UncertaintyError>(())
 //! ```
 //!
-//! Nothing is reported in silence that does not hold: impossible correlations, results that are no numbers, degrees of
-//! freedom outside the Welch–Satterthwaite formula, a first-order uncertainty of zero, and failed trials are told apart.
+//! # Which item
+//!
+//! | question | answer | not for |
+//! |---|---|---|
+//! | what is known of an input? | [`Distribution`], [`Input`], [`Observations`] (type A), [`Inputs`] (correlated) | |
+//! | what follows for the result, if the model is nearly linear? | [`propagate`], [`Gum`]: a [`Budget`] | models that jump; [`Linearisation`] says where they bend too much |
+//! | the same for a model that takes plain numbers, such as a fit? | [`Gum::propagate_by_differences`] | |
+//! | what follows if it is not? | [`MonteCarlo`]: an [`OutputSample`] | models of a second a trial, unless many machines share it |
+//! | how many trials? | [`Adaptive`], until the digits stand | a cost that must be known before |
+//! | was the GUM good enough? | [`validate`], with [`Adaptive::for_validation`] | |
+//! | which input matters? | [`Budget::contributions`]; with interactions [`variance_shares`] (Sobol'); [`MonteCarlo::run_one_at_a_time`] | [`variance_shares`]: correlated inputs |
+//! | what if a trial takes a second? | [`QuasiMonteCarlo`]; or many machines and [`Partial`] results | [`QuasiMonteCarlo`]: more than 64 dimensions, models with kinks |
+//! | several results together? | [`Propagation`], [`OutputSample::ellipsoid`], [`OutputSample::rectangle`] | |
+//!
+//! Write a model once, generic in its number: `f64` for trials, [`Taylor`] for exact derivatives.
+//!
+//! # Units and conventions
+//!
+//! The unit of an input is a label and is not converted: all must belong to one coherent system. Uncertainties are standard
+//! ones. A number of degrees of freedom makes Student's t of a normal input. Levels are probabilities (0.95), outputs are
+//! counted from 0.
+//!
+//! # Guarantees
+//!
+//! * The bits of a run depend on seed, inputs, model and number of trials: not on the number of threads, nor on how blocks
+//!   are spread over machines of one kind.
+//! * Nothing is reported in silence that does not hold: impossible correlations, results that are no numbers, degrees of
+//!   freedom outside the Welch–Satterthwaite formula, a first-order uncertainty of zero, and failed trials are told apart.
+//! * One trial that fails is an error, unless [a share](MonteCarlo::with_allowed_failures) is allowed; then all are
+//!   counted.
+//!
+//! # Cost
+//!
+//! | | for n inputs, M trials | on a Xeon at 2.8 GHz |
+//! |---|---|---|
+//! | [`propagate`] | n²/2 evaluations of [`Taylor`] numbers, n/2 for the first order alone | 4.5 µs for four inputs |
+//! | [`MonteCarlo`] | M evaluations and n M draws; 8 bytes a value | 29 ns a trial of four normal inputs |
+//! | intervals | M values put in order | 2 ns a trial; the shortest 4 to 8 ns |
+//! | [`variance_shares`] | M (n + 2) evaluations | 21 ns each |
 //!
 //! # Features
+//!
+//! Both are off by default.
+//!
 //! * `rayon`: blocks of trials on all threads of the current pool, with the same bits.
 //! * `serde`: [`Partial`] results, failures, intervals and histograms as text.
+//!
+//! # Neighbours
+//!
+//! [`fmm-fit`](https://docs.rs/fmm-fit) repeats a fit with other values of what it held (`Refit`), which is the model of a
+//! Monte Carlo over a fit; [`fmm-model`](https://docs.rs/fmm-model) has the number types.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

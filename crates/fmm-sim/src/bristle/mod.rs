@@ -4,6 +4,7 @@ mod collocation;
 mod field;
 mod first_root;
 mod guard;
+mod guards_of_step;
 mod lu;
 mod modes;
 mod passage;
@@ -47,7 +48,7 @@ pub(crate) use path::follow;
 /// derivatives include the change of event times. At rest the derivatives are held as well; a start at rest that the
 /// inputs would disturb is marked as [`grazing`](crate::Event::grazing).
 ///
-/// Guaranteed is a typed error instead of an endless run: at most a million steps, and a million events.
+/// Guaranteed is a typed error instead of an endless run: at most a hundred thousand steps, and a million events.
 ///
 /// ```
 /// use fmm_friction::LuGre;

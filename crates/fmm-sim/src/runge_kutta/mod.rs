@@ -12,7 +12,6 @@ use crate::drive::Drive;
 use crate::recorder::Recorder;
 use crate::{Engine, Sampling, Scenario, SimulationError, Trajectory};
 use slide::Integrator;
-pub(crate) use step::Within;
 
 /// Integrates each stretch of sliding with the Dormand-Prince method of order 8, stops included to full accuracy.
 ///

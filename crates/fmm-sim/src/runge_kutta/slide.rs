@@ -3,10 +3,11 @@
 use fmm_friction::SlidingLaw;
 use fmm_model::{Oscillator, Scalar};
 
-use super::step::{COEFFICIENTS, Step, Within, first_zero_within};
+use super::step::{Step, first_zero_within};
 use crate::automaton::{Branch, Ended, Ending, Phase, Slide, load};
 use crate::drive::Drive;
 use crate::recorder::Recorder;
+use crate::within::{COEFFICIENTS, Within};
 use crate::work::Power;
 use crate::{Scenario, SimulationError, State};
 

@@ -1,0 +1,86 @@
+//! Where within a step of a run its guards reach zero.
+
+use fmm_friction::BristleLaw;
+use fmm_model::Scalar;
+
+use super::first_root::{end_slope, first_root, last_coefficient, next_root};
+use super::guard::{Guard, Landing};
+use super::radau::STAGES;
+use super::run::Run;
+
+/// How large the last Legendre coefficient of a guard on a step may be, relative to the guard.
+const SMOOTH: f64 = 1e-4;
+
+impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
+    /// The first guard that is reached within the step, and where. A step that begins `at_zero` velocity does not find that
+    /// zero.
+    pub(super) fn first_guard(&mut self, at_zero: bool) -> Option<(f64, Guard)> {
+        let mut first: Option<(f64, Guard)> = None;
+        let mut look = |coefficients, guard| {
+            let root =
+                if at_zero && guard == Guard::Speed { next_root(coefficients) } else { first_root(coefficients) };
+            if let Some(tau) = root
+                && first.is_none_or(|(earliest, _)| tau < earliest)
+            {
+                first = Some((tau, guard));
+            }
+        };
+        look(self.guard_polynomial(Guard::Speed), Guard::Speed);
+        for index in 0..self.field.size() - 2 {
+            if self.field.reserve(index, self.branch, &self.step.begin).is_some() {
+                look(self.guard_polynomial(Guard::Reserve(index)), Guard::Reserve(index));
+            }
+        }
+        let drag = !self.field.oscillator.damping().is_linear() && self.field.belt.value() != 0.0;
+        for component in 1..self.field.size() {
+            let may_bend = if component == 1 { drag } else { self.field.is_below(component - 2) };
+            if may_bend && self.step.begin[component].value() != 0.0 {
+                look(self.guard_polynomial(Guard::Corner(component)), Guard::Corner(component));
+            }
+        }
+        first
+    }
+
+    /// Whether the reserves of all elements are polynomials on the step as good as those of the motion, so that their
+    /// zeros can be sought on these: a reserve may depend on the velocity in a way that the motion does not.
+    pub(super) fn guards_are_smooth(&mut self) -> bool {
+        (0..self.field.size() - 2).all(|index| {
+            self.field.reserve(index, self.branch, &self.step.begin).is_none()
+                || last_coefficient(self.guard_polynomial(Guard::Reserve(index))) <= SMOOTH
+        })
+    }
+
+    /// Bernstein coefficients of a guard, positive before it is reached.
+    fn guard_polynomial(&mut self, guard: Guard) -> [f64; STAGES + 1] {
+        let Self { step, field, branch, .. } = self;
+        match guard {
+            Guard::Speed => {
+                let (belt, sign) = (field.belt.value(), branch.direction.sign());
+                step.bernstein(|state| (state[1].value() - belt) * sign)
+            }
+            Guard::Reserve(index) => {
+                step.bernstein(|state| field.reserve(index, *branch, state).map_or(f64::INFINITY, Scalar::value))
+            }
+            Guard::Corner(component) => {
+                let sign = step.begin[component].value().signum();
+                step.bernstein(|state| state[component].value() * sign)
+            }
+        }
+    }
+
+    /// How far, in units of the step, its end is from the zero of `guard`.
+    pub(super) fn landing(&mut self, guard: Guard) -> Landing {
+        let coefficients = self.guard_polynomial(guard);
+        let slope = match guard {
+            Guard::Speed => self.step.end_slope(1) * self.branch.direction.sign(),
+            Guard::Reserve(_) | Guard::Corner(_) => end_slope(coefficients),
+        };
+        let [.., before, last, end] = coefficients;
+        let curvature = (STAGES * (STAGES - 1)) as f64 * (end - 2.0 * last + before);
+        let size = coefficients.iter().fold(0.0f64, |size, coefficient| size.max(coefficient.abs()));
+        // Where the slope is that small, rounding moves the zero further than it is from the turning point.
+        let grazing = slope >= 0.0 || slope * slope <= 4.0 * f64::EPSILON * size * curvature.abs();
+        let correction = if grazing { 0.0 } else { -end / slope };
+        Landing { correction, grazing }
+    }
+}
