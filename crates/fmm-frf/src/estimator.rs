@@ -109,3 +109,33 @@ impl Estimator {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scatter_of_each_estimator_is_that_of_its_noise() {
+        // γ² = |2 + 2i|²/(4 · 8) = 0.25: of S_xx/S_ff = 2 three quarters are noise; H2 and Hv scatter by 3 |H|².
+        let spectra = Spectra { force: 4.0, response: 8.0, cross: Complex64::new(2.0, 2.0) };
+        assert_eq!(spectra.coherence(), Ok(0.25));
+        for (estimator, square, scatter) in
+            [(Estimator::H1, 0.5, 1.5), (Estimator::H2, 8.0, 24.0), (Estimator::Hv, 2.0, 6.0)]
+        {
+            let found = estimator.of(&spectra).unwrap().norm_sqr();
+            assert!((found - square).abs() < 1e-14 * square, "{estimator:?}: |H|² = {found}");
+            let found = estimator.scatter(&spectra).unwrap();
+            assert!((found - scatter).abs() < 1e-14 * scatter, "{estimator:?}: a scatter of {found}");
+        }
+    }
+
+    #[test]
+    fn coherence_of_tiny_and_of_huge_spectra() {
+        for size in [1e-200, 1e200] {
+            let spectra = Spectra { force: 4.0 * size, response: size, cross: Complex64::new(size, 0.0) };
+            // Two roots and two quotients, each right to half an ε.
+            let coherence = spectra.coherence().unwrap();
+            assert!((coherence - 0.25).abs() < 4.0 * f64::EPSILON, "spectra of {size}: γ² = {coherence}");
+        }
+    }
+}

@@ -139,3 +139,26 @@ impl FrictionSpectrum {
         )?)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ResponseForm;
+
+    fn spectrum(spacing: f64) -> FrictionSpectrum {
+        let frequencies: Vec<f64> = (1..=40).map(|line| f64::from(line) * spacing).collect();
+        let response = |size| {
+            let values = vec![Complex64::new(size, 0.0); 40];
+            FrequencyResponse::new(ResponseForm::Mobility, frequencies.clone(), values).unwrap()
+        };
+        FrictionSpectrum::of(&response(0.5), &response(1.0)).unwrap()
+    }
+
+    #[test]
+    fn lines_too_far_apart_are_refused() {
+        // The third harmonic of 1 Hz lies on a line when these are 0.25 Hz apart, and 0.15 Hz from one of 0.35 Hz.
+        assert_eq!(spectrum(0.25).harmonics(1.0, 3).unwrap()[2].frequency, 3.0);
+        let refused = spectrum(0.35).harmonics(1.0, 3);
+        assert!(matches!(refused, Err(FrfError::HarmonicsOutside { order: 3, .. })), "{refused:?}");
+    }
+}

@@ -107,12 +107,14 @@ impl<'a, D: Scalar> Swing<'a, D> {
     /// The time of the next zero velocity of a free decay about `centre`, and the position there.
     fn next_rest(&mut self, phase: &Phase<D>, centre: D, decay: &Decay<D>, free: State<D>) -> Option<(D, D)> {
         let duration = decay.time_to_zero_velocity(free)?;
-        let (zero, swings) = match self.rhythm {
-            None => (phase.time + duration, 0),
-            Some((zero, swings)) => (zero, swings + 1),
+        let rest = |(zero, swings): (D, u32)| if swings == 0 { zero } else { zero + duration * f64::from(swings) };
+        let rhythm = match self.rhythm {
+            Some((zero, swings)) if rest((zero, swings)).value() == phase.time.value() => (zero, swings + 1),
+            // A contact that has held since then begins anew.
+            _ => (phase.time + duration, 0),
         };
-        self.rhythm = Some((zero, swings));
-        let time = if swings == 0 { zero } else { zero + duration * f64::from(swings) };
+        self.rhythm = Some(rhythm);
+        let time = rest(rhythm);
         Some((time, centre + decay.position_at_zero_velocity(free, duration)))
     }
 

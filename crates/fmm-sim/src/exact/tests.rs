@@ -178,3 +178,30 @@ fn starts_and_stops_end_when_the_load_has_fallen() {
     assert_eq!(first.kind, EventKind::Breakaway);
     assert!(last.time > 1e7 + 400.0 && motion.events().len() < 2000, "{} events, {last:?}", motion.events().len());
 }
+
+#[test]
+fn a_push_after_a_rest_starts_its_own_rhythm() {
+    // A free decay has come to rest long before a constant force steps in at 20 s, and moves it for half a period.
+    let push = Excitation::sampled_force(1.0, vec![4.0; 12]).unwrap().delayed(20.0).unwrap();
+    let scenario = Scenario::new(machine(0.0), Coulomb::new(0.25).unwrap(), 1.0).unwrap();
+    let scenario = scenario.starting_at(1.0, 0.0).unwrap().driven_by(push);
+    let motion = Exact.run(&scenario, &Sampling::uniform(0.01, 3001).unwrap()).unwrap();
+    let after: Vec<&Event> = motion.events().iter().filter(|event| event.time >= 20.0).collect();
+    assert_eq!((after[0].kind, after[0].time), (EventKind::Breakaway, 20.0));
+    // Two roundings of a time of 22 s.
+    let half_swing = after[1].time - 20.0;
+    assert!((half_swing - PI / 2f64.sqrt()).abs() < 1e-14 * 22.0, "a half swing of {half_swing} s");
+}
+
+#[test]
+fn viscous_friction_on_a_fast_belt_pulls_with_the_relative_velocity() {
+    // While the belt is faster the spring is in balance at N (μ + β v_b) / k = 2 (0.25 + 0.5 · 3)/2 m.
+    let balance = 1.75;
+    let belt = Excitation::belt(3.0).unwrap();
+    let scenario = Scenario::new(machine(0.0), CoulombViscous::new(0.25, 0.5).unwrap(), 2.0).unwrap();
+    let scenario = scenario.starting_at(balance, 0.0).unwrap().driven_by(belt);
+    let motion = Exact.run(&scenario, &Sampling::uniform(0.01, 301).unwrap()).unwrap();
+    // All numbers are sums of powers of two; a cosine and a sine of it may be one rounding off.
+    let off = motion.position().values().iter().map(|x| (x - balance).abs()).fold(0.0, f64::max);
+    assert!(off < 4.0 * f64::EPSILON * balance, "{off} m off the balance");
+}
