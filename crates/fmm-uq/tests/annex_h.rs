@@ -220,3 +220,13 @@ fn thermometer_calibration() {
     close("u (°C)", budget.standard_uncertainty(), 0.004_138_595_752_85, 1e-10);
     close("ν_eff", budget.effective_degrees_of_freedom().unwrap(), 9.0, 1e-12);
 }
+
+/// An ensemble that is not all of the uncertainty: its share of the variance counts squared (JCGM 100:2008, G.4.1).
+#[test]
+fn an_ensemble_counts_by_the_square_of_its_share() {
+    let normal = |name: &str| Input::new(name, 1.0, 0.1, "m").unwrap();
+    let inputs = Inputs::new([normal("a"), normal("b"), normal("c")]).unwrap().with_ensemble(&["a", "b"], 9.0).unwrap();
+    let budget = propagate(&inputs, |x| x[0] + x[1] + x[2]).unwrap();
+    // Two thirds of the variance: 9/(2/3)².
+    close("ν_eff", budget.effective_degrees_of_freedom().unwrap(), 20.25, 1e-12);
+}

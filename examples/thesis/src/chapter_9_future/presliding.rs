@@ -122,10 +122,11 @@ pub(super) fn add(chapter: &mut Chapter, settings: &Settings<'_>) -> Found<()> {
         rows,
     );
     chapter.finding(
-        "A ring-down alone tells the laws with a state apart, and fits all their parameters; tests at low constant velocity are not needed.",
+        "Of a machine whose mass and damping are known, a simulated ring-down tells the laws with a state apart and gives their parameters.",
         format!(
-            "The law that made the record is preferred; the next best of those that were fitted has an Akaike criterion higher by {}. Dry \
-             friction in its place puts the natural frequency off by {}, because the contact is a spring wherever the motion turns.",
+            "Exponents are held. The law that made the record is preferred; the next best of those that were fitted has an Akaike criterion \
+             higher by {} (LuGre's law has that of Dahl as a case). Dry friction in its place puts the natural frequency off by {}, because the \
+             contact is a spring wherever the motion turns. Whether a contact obeys one of these laws, such a record does not prove.",
             leads.join(", "),
             shifts.join(", ")
         ),
