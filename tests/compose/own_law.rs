@@ -22,10 +22,8 @@ impl LawFamily for Rising {
     type At<D: Scalar> = Rising<D>;
 
     fn at<D: Scalar>(values: &[D]) -> Result<Rising<D>, LawError> {
-        match values {
-            [coefficient] => Ok(Rising(Self::PARAMETERS[0].check(*coefficient)?)),
-            _ => Err(LawError::WrongCount { law: Self::NAME, expected: 1, got: values.len() }),
-        }
+        let [coefficient] = Self::checked(values)?;
+        Ok(Rising(coefficient))
     }
 }
 

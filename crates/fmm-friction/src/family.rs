@@ -135,6 +135,25 @@ pub trait LawFamily: 'static {
     /// [`LawError`] if the number of values is not that of [`PARAMETERS`](Self::PARAMETERS), or if a value is
     /// not finite, out of bounds, or contradicts another.
     fn at<D: Scalar>(values: &[D]) -> Result<Self::At<D>, LawError>;
+
+    /// The `values` one by one, exactly as many as the law has parameters and each within its bounds: how
+    /// [`at`](Self::at) of a law of one's own begins.
+    ///
+    /// ```
+    /// use fmm_friction::{Coulomb, LawError, LawFamily};
+    ///
+    /// let [coefficient] = Coulomb::checked(&[0.2])?;
+    /// assert_eq!(coefficient, 0.2);
+    /// assert!(matches!(Coulomb::checked::<1, f64>(&[0.2, 0.1]), Err(LawError::WrongCount { got: 2, .. })));
+    /// assert!(matches!(Coulomb::checked::<1, f64>(&[-0.2]), Err(LawError::OutOfBounds { .. })));
+    /// # Ok::<(), LawError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`LawError::WrongCount`] and [`LawError::OutOfBounds`].
+    fn checked<const N: usize, D: Scalar>(values: &[D]) -> Result<[D; N], LawError> {
+        checked(Self::PARAMETERS, exactly(Self::NAME, values)?)
+    }
 }
 
 /// Takes exactly as many values as the law has parameters.

@@ -264,6 +264,21 @@ mod tests {
         }
     }
 
+    /// What starts a little in the direction of the motion to come is at its next rest a little earlier.
+    #[test]
+    fn a_push_from_rest_moves_the_next_rest() {
+        let (rate, square, position) = (0.4, 13.8 * 13.8, 0.01);
+        let decay: Decay<Dual<1>> = Decay::new(rate.into(), square.into());
+        let at_rest = State { position: position.into(), velocity: Dual::variable(0.0, 0) };
+        let slope = decay.time_to_zero_velocity(at_rest).unwrap().partial(0);
+        assert!((slope - 1.0 / (square * position)).abs() < 1e-15, "{slope} s²/m");
+        let plain: Decay<f64> = Decay::new(rate, square);
+        let time = |velocity| plain.time_to_zero_velocity(state(position, velocity)).unwrap();
+        // The bend of the arc tangent over 1e-6 m/s is some 1e-6 of its slope.
+        let quotient = (time(0.0) - time(-1e-6)) / 1e-6;
+        assert!((quotient / slope - 1.0).abs() < 1e-5, "{quotient} instead of {slope} s²/m");
+    }
+
     /// A sum of exponentials and the recurrence of the equation of motion are two ways to the same derivatives; the first
     /// keeps those of a slow motion whose fast part, a million times faster, is gone.
     #[test]

@@ -37,10 +37,8 @@ use crate::{Bristle, Engine, Exact, RungeKutta, Sampling, Scenario, SimulationEr
 ///         &[LawParameter::new(Parameter::new("coefficient", "μ", "1").bounded(Bounds::NOT_NEGATIVE), Role::Level)];
 ///     type At<D: Scalar> = Sticky<D>;
 ///     fn at<D: Scalar>(values: &[D]) -> Result<Sticky<D>, LawError> {
-///         match values {
-///             [coefficient] => Ok(Sticky(Self::PARAMETERS[0].check(*coefficient)?)),
-///             _ => Err(LawError::WrongCount { law: Self::NAME, expected: 1, got: values.len() }),
-///         }
+///         let [coefficient] = Self::checked(values)?;
+///         Ok(Sticky(coefficient))
 ///     }
 /// }
 /// impl<D: Scalar> SlidingLaw<D> for Sticky<D> {

@@ -41,12 +41,8 @@ impl LawFamily for Logarithmic {
     type At<D: Scalar> = Logarithmic<D>;
 
     fn at<D: Scalar>(values: &[D]) -> Result<Logarithmic<D>, LawError> {
-        match (values, Self::PARAMETERS) {
-            (&[at_rest, increase], [first, second]) => {
-                Ok(Logarithmic { at_rest: first.check(at_rest)?, increase: second.check(increase)? })
-            }
-            _ => Err(LawError::WrongCount { law: Self::NAME, expected: 2, got: values.len() }),
-        }
+        let [at_rest, increase] = Self::checked(values)?;
+        Ok(Logarithmic { at_rest, increase })
     }
 }
 

@@ -21,8 +21,8 @@ pub(super) struct Swing<'a, D> {
     belt: D,
     has_belt: bool,
     flows: &'a Flows<D>,
-    /// First zero velocity of an uninterrupted free decay, and half swings since. Counting half periods from there keeps
-    /// the rounding of a sum out of later event times.
+    /// First zero velocity of the last uninterrupted free decay, and half swings since. Counting half periods from there
+    /// keeps the rounding of a sum out of later event times.
     rhythm: Option<(D, u32)>,
     budget: usize,
 }
@@ -110,7 +110,7 @@ impl<'a, D: Scalar> Swing<'a, D> {
         let rest = |(zero, swings): (D, u32)| if swings == 0 { zero } else { zero + duration * f64::from(swings) };
         let rhythm = match self.rhythm {
             Some((zero, swings)) if rest((zero, swings)).value() == phase.time.value() => (zero, swings + 1),
-            // A contact that has held since then begins anew.
+            // What was held, pushed or cut short since then begins anew.
             _ => (phase.time + duration, 0),
         };
         self.rhythm = Some(rhythm);
@@ -178,12 +178,8 @@ impl<D: Scalar> Slide<D> for Swing<'_, D> {
         write(&path, flow.powers.as_ref(), phase.time, end, recorder)?;
         self.write_work(&path, flow, phase, end.min(phase.limit), recorder)?;
         if let Some((ending, time, state, grazing)) = found {
-            if !undisturbed {
-                self.rhythm = None;
-            }
             return Ok(Ended { ending, time, state, grazing });
         }
-        self.rhythm = None;
         let time = D::from(phase.limit);
         let state = if phase.last { phase.state } else { path.state(time - phase.time) };
         Ok(Ended { ending: Ending::Limit, time, state, grazing: false })

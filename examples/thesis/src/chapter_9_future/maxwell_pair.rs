@@ -29,10 +29,8 @@ impl LawFamily for MaxwellPair {
     type At<D: Scalar> = MaxwellSlip<D>;
 
     fn at<D: Scalar>(values: &[D]) -> Result<MaxwellSlip<D>, LawError> {
-        match values {
-            [first, stiff, second, soft] => MaxwellSlip::new(&[(*stiff, *first), (*soft, *second)]),
-            _ => Err(LawError::WrongCount { law: Self::NAME, expected: Self::PARAMETERS.len(), got: values.len() }),
-        }
+        let [first, stiff, second, soft] = Self::checked(values)?;
+        MaxwellSlip::new(&[(stiff, first), (soft, second)])
     }
 }
 
