@@ -9,7 +9,7 @@ use serde_json::Value;
 const TRIALS: u64 = 1_000_000;
 
 fn case(id: &str) -> Value {
-    let all: Value = serde_json::from_str(include_str!("data/jcgm101_clause9.json")).unwrap();
+    let all: Value = serde_json::from_str(include_str!("../data/jcgm101_clause9.json")).unwrap();
     all["cases"].as_array().unwrap().iter().find(|case| case["id"] == id).unwrap().clone()
 }
 
@@ -181,7 +181,7 @@ fn gauge_block() {
 /// Numbers of trials within four standard deviations of those of other implementations of 7.9.
 #[test]
 fn adaptive_trials() {
-    let oracle: Value = serde_json::from_str(include_str!("data/jcgm101_adaptive.json")).unwrap();
+    let oracle: Value = serde_json::from_str(include_str!("../data/jcgm101_adaptive.json")).unwrap();
     let run = |key: &str, id: &str, model: fn(&[f64]) -> f64| {
         let expected = &oracle["procedure_runs"][key];
         let [p, delta, mean, sd] = ["p", "delta", "M_mean", "M_sd"].map(|key| expected[key].as_f64().unwrap());

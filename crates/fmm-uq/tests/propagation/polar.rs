@@ -9,7 +9,7 @@ fn polar<D: Scalar>(x: &[D]) -> [D; 2] {
 
 #[test]
 fn polar_coordinates() {
-    let oracle: Value = serde_json::from_str(include_str!("data/jcgm102_polar.json")).unwrap();
+    let oracle: Value = serde_json::from_str(include_str!("../data/jcgm102_polar.json")).unwrap();
     let trials = 1_000_000;
     for row in oracle["rows"].as_array().unwrap() {
         let [x1, r] = ["x1", "r"].map(|key| row[key].as_f64().unwrap());

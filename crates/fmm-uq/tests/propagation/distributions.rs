@@ -4,7 +4,7 @@ use fmm_uq::{Distribution, Input, Inputs, MonteCarlo, coverage_factor};
 use serde_json::Value;
 
 fn oracle() -> Value {
-    serde_json::from_str(include_str!("data/jcgm101_distributions.json")).unwrap()
+    serde_json::from_str(include_str!("../data/jcgm101_distributions.json")).unwrap()
 }
 
 fn distribution(case: &Value) -> Distribution {

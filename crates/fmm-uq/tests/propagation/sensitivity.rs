@@ -84,7 +84,7 @@ fn mass(x: &[f64]) -> f64 {
 /// JCGM 101:2008, 9.3 on 16 384 points against the errors of another implementation of scrambled Sobol points.
 #[test]
 fn sobol_points_need_fewer_trials() {
-    let oracle: Value = serde_json::from_str(include_str!("data/qmc_efficiency.json")).unwrap();
+    let oracle: Value = serde_json::from_str(include_str!("../data/qmc_efficiency.json")).unwrap();
     let rmse = &oracle["results"]["mass 9.3 Sobol (Owen scrambled)"]["rmse"];
     let [y, u] = [0, 1].map(|k| rmse[k].as_f64().unwrap());
     let of = |name: &str, distribution: Result<Distribution, UncertaintyError>| {

@@ -4,7 +4,7 @@ use fmm_uq::{Gum, Input, Inputs, Observations, propagate};
 use serde_json::Value;
 
 fn oracle() -> Value {
-    serde_json::from_str(include_str!("data/thesis_chapter5_uncertainty.json")).unwrap()
+    serde_json::from_str(include_str!("../data/thesis_chapter5_uncertainty.json")).unwrap()
 }
 
 fn numbers(value: &Value) -> Vec<f64> {

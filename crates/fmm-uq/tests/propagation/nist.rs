@@ -21,7 +21,7 @@ fn data(set: &Value) -> Vec<f64> {
 
 #[test]
 fn certified_values() {
-    let oracle: Value = serde_json::from_str(include_str!("data/nist_strd_univariate.json")).unwrap();
+    let oracle: Value = serde_json::from_str(include_str!("../data/nist_strd_univariate.json")).unwrap();
     for set in oracle["datasets"].as_array().unwrap() {
         let (name, values) = (set["name"].as_str().unwrap(), data(set));
         assert_eq!(values.len() as u64, set["n"].as_u64().unwrap(), "{name}");

@@ -378,3 +378,70 @@ fn many_residuals_need_one_jacobian_and_a_few_vectors() {
         assert!((ratio - 1.0).abs() < 1e-6, "ratio {ratio}");
     }
 }
+
+/// A fit that had converged stays so, however early it is told to stop sharpening.
+#[test]
+fn a_limit_within_the_sharpening_is_no_failure() {
+    let decay = problem(&[FREE; 2], 50, decay);
+    let start = [0.2, 1.4];
+    let whole = solve(&decay, &start, &Options::default()).unwrap();
+    let limited = |steps| solve(&decay, &start, &Options::default().with_max_iterations(steps)).unwrap();
+    let outcomes: Vec<Outcome> = (1..=whole.iterations()).map(|steps| limited(steps).outcome()).collect();
+    let converged = outcomes.iter().position(|outcome| outcome.is_success()).unwrap();
+    assert!(outcomes[..converged].iter().all(|outcome| *outcome == Outcome::MaxIterations), "{outcomes:?}");
+    assert!(outcomes[converged..].iter().all(|outcome| outcome.is_success()), "{outcomes:?}");
+    assert!(converged + 1 < outcomes.len(), "nothing was sharpened: {outcomes:?}");
+}
+
+/// Derivatives that know nothing of the ripples let every search end in another of them.
+struct Rippled([Parameter; 2]);
+
+impl Residuals for Rippled {
+    fn parameters(&self) -> &[Parameter] {
+        &self.0
+    }
+    fn len(&self) -> usize {
+        3
+    }
+    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        let ripple = |x: f64| 0.4 * (40.0 * x).sin();
+        residuals.copy_from_slice(&[p[0] - 3.0 + ripple(p[1]), p[1] + 2.0 + ripple(p[0]), 0.1 * p[0] * p[1] + 2.0]);
+        Ok(())
+    }
+    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
+        jacobian.copy_from_slice(&[1.0, 0.0, 0.1 * p[1], 0.0, 1.0, 0.1 * p[0]]);
+        Ok(true)
+    }
+}
+
+/// Whichever search was the best, values, residuals and their squares belong together.
+#[test]
+fn the_best_of_several_searches_is_given_whole() {
+    let problem = Rippled([Parameter::new("x", "x", "1"), Parameter::new("y", "y", "1")]);
+    let mut stalled = 0;
+    for start in (0..60).map(|i| [f64::from(i % 10) - 4.3, f64::from(i / 10) - 2.7]) {
+        let fit = solve(&problem, &start, &Options::default()).unwrap();
+        stalled += usize::from(fit.outcome() == Outcome::Stalled);
+        let mut residuals = [0.0; 3];
+        problem.residuals(fit.values(), &mut residuals).unwrap();
+        assert_eq!(fit.residuals(), residuals, "from {start:?}");
+        let sum: f64 = residuals.iter().map(|r| r * r).sum();
+        assert!((fit.sum_of_squares() / sum - 1.0).abs() < 1e-15, "{} and {sum}", fit.sum_of_squares());
+    }
+    assert!(stalled > 30, "{stalled} of 60 stalled");
+}
+
+/// A minimum that a domain cuts off by less than can be told is one.
+#[test]
+fn a_minimum_at_the_edge_of_the_domain_is_found() {
+    let cut = problem(&[FREE], 2, |p, i| match i {
+        0 if p[0] > 1.0 => f64::NAN,
+        0 => p[0] - 1.000_01,
+        _ => 1.0,
+    });
+    for start in [0.5, 1.0] {
+        let fit = solve(&cut, &[start], &Options::default()).unwrap();
+        assert!(fit.outcome().is_success(), "from {start}: {}", fit.outcome());
+        assert!((fit.values()[0] - 1.0).abs() < 1e-4, "{:?}", fit.values());
+    }
+}

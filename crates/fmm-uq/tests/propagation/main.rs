@@ -1,0 +1,12 @@
+//! Budgets and Monte Carlo against the guides' own examples, certified data and exact figures, and what they refuse.
+
+mod annex_h;
+mod clause9;
+mod dependence;
+mod distributions;
+mod nist;
+mod polar;
+mod sensitivity;
+mod streams;
+mod thesis;
+mod wrong_input;
