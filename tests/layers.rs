@@ -33,15 +33,21 @@ const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     ("fmm-sim", &[THISERROR]),
-    ("fmm-frf", &[("num-complex", "the number type of a response, part of the public interface"), REALFFT, THISERROR]),
-    ("fmm-identify", &[REALFFT, THISERROR]),
+    (
+        "fmm-frf",
+        &[
+            ("num-complex", "the number type of a response, part of the public interface"),
+            ("realfft", "Fourier transforms of any length"),
+            THISERROR,
+        ],
+    ),
+    ("fmm-identify", &[THISERROR]),
 ];
 
 const CSV: (&str, &str) = ("csv", "rows of text, quotes and separators");
 const MATFILE: (&str, &str) = ("matfile", "decodes the arrays of MATLAB files");
 const PULP: (&str, &str) = ("pulp", "vectors as wide as the processor has, without unsafe code here");
 const RAND_CHACHA: (&str, &str) = ("rand_chacha", "streams of the same bits on every machine");
-const REALFFT: (&str, &str) = ("realfft", "Fourier transforms of any length");
 const STATRS: (&str, &str) = ("statrs", "quantiles of normal, t, F and chi-square distributions");
 const THISERROR: (&str, &str) = ("thiserror", "writes Display and Error of the error types");
 

@@ -1,11 +1,10 @@
 //! Ratios of criterion's medians: of one run, they are worth more than times on a machine that others use too.
 
-use std::path::Path;
-
 /// Criterion's median of the benchmark `group/name` of this run (ns), if it was measured.
 pub(crate) fn median(benchmark: &str) -> Option<f64> {
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| Path::new("target").to_owned(), Into::into);
-    let path = target.join("criterion").join(benchmark).join("new").join("estimates.json");
+    // A bench lies in target/release/deps.
+    let bench = std::env::current_exe().ok()?;
+    let path = bench.ancestors().nth(3)?.join("criterion").join(benchmark).join("new").join("estimates.json");
     let estimates: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()?;
     estimates["median"]["point_estimate"].as_f64()
 }

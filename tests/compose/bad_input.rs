@@ -162,7 +162,7 @@ fn machines_that_cannot_be() {
 #[test]
 fn a_start_outside_the_bounds() {
     let decay = prepare(vibration(4000)).unwrap();
-    let problem = RingDownProblem::<Viscous>::new(Machine::per_unit_mass(), std::slice::from_ref(&decay)).unwrap();
+    let problem = RingDownProblem::new::<Viscous>(Machine::per_unit_mass(), std::slice::from_ref(&decay)).unwrap();
     let start = [2.0, -0.5, 0.0, 0.1, 0.0];
     assert_eq!(problem.parameters().len(), start.len());
     let error = solve(&problem, &start, &Options::default()).unwrap_err();

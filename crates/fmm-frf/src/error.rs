@@ -96,6 +96,14 @@ pub enum FrfError {
         /// How many it has.
         found: usize,
     },
+    /// A transform of records of another length.
+    #[error("a transform of {expected} samples was given {found}")]
+    TransformLength {
+        /// How many samples it takes.
+        expected: usize,
+        /// How many it was given.
+        found: usize,
+    },
     /// A record of another rate than the average.
     #[error("the {channel} was sampled at {found} Hz, but the average is of records at {expected} Hz")]
     Rate {

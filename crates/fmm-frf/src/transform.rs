@@ -1,15 +1,12 @@
 //! The two spectra of a trial, in buffers that are used again.
 
-use std::fmt;
 use std::ops::Range;
-use std::sync::Arc;
 
 use fmm_model::widest;
 use num_complex::Complex64;
-use realfft::{RealFftPlanner, RealToComplex};
 
 use crate::window::Windows;
-use crate::{Baseline, Channel, FrfError};
+use crate::{Baseline, Channel, FrfError, RealTransform};
 
 /// How many trials' spectra are kept. Adding up two at a time saves a third of the way to and from memory, which is what it costs.
 pub(crate) const SLOTS: usize = 2;
@@ -25,19 +22,13 @@ struct Side {
 }
 
 /// The plan of a transform of one length, with all memory that it needs.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub(crate) struct TrialTransform {
-    plan: Arc<dyn RealToComplex<f64>>,
+    plan: RealTransform,
     samples: Vec<f64>,
     scratch: Vec<Complex64>,
     force: Side,
     response: Side,
-}
-
-impl fmt::Debug for TrialTransform {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("TrialTransform").field("length", &self.samples.len()).finish_non_exhaustive()
-    }
 }
 
 impl TrialTransform {
@@ -49,17 +40,17 @@ impl TrialTransform {
         force_baseline: Baseline,
         response_baseline: Baseline,
     ) -> Result<Self, FrfError> {
-        let plan = RealFftPlanner::new().plan_fft_forward(length);
+        let plan = RealTransform::new(length);
         let side = |channel, unit, baseline, weights| Side {
             channel,
             unit,
             baseline,
             weights,
-            spectra: [plan.make_output_vec(), plan.make_output_vec()],
+            spectra: [vec![Complex64::default(); plan.lines()], vec![Complex64::default(); plan.lines()]],
         };
         Ok(Self {
-            samples: plan.make_input_vec(),
-            scratch: plan.make_scratch_vec(),
+            samples: vec![0.0; length],
+            scratch: plan.scratch(),
             force: side(Channel::Force, "N", force_baseline, windows.force_weights(length, interval)?),
             response: side(
                 Channel::Response,
@@ -86,9 +77,7 @@ impl TrialTransform {
             if side.channel == Channel::Force {
                 force_energy = energy;
             }
-            let wrong_length =
-                |_| FrfError::SampleCount { channel: side.channel, expected: plan.len(), found: given.len() };
-            plan.process_with_scratch(samples, &mut side.spectra[slot], scratch).map_err(wrong_length)?;
+            plan.run(samples, &mut side.spectra[slot], scratch)?;
         }
         if force_energy > 0.0 { Ok(()) } else { Err(FrfError::NoForce) }
     }

@@ -10,7 +10,8 @@ use fmm_friction::{
 };
 use fmm_sim::Simulated;
 
-use crate::identification::identify_observed;
+use crate::identification::identify_by;
+use crate::law::Law;
 use crate::terms::{LINEAR, QUADRATIC};
 use crate::{Identification, IdentifyError, Machine, RingDown, Terms};
 
@@ -20,14 +21,9 @@ pub(crate) type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
 /// A law family as a value, with terms beside it, so that laws can be chosen at run time and compared in one list.
 #[derive(Debug, Clone)]
 pub struct Candidate {
-    law: &'static str,
-    parameters: &'static [LawParameter],
+    law: Law,
     terms: Terms,
-    identify: IdentifyBy,
 }
-
-type IdentifyBy =
-    fn(&Machine, &Terms, &[RingDown], &Options, &mut Observer<'_>) -> Result<Identification, IdentifyError>;
 
 macro_rules! catalogue {
     ($($law:ty),+ $(,)?) => {
@@ -41,12 +37,7 @@ macro_rules! catalogue {
 impl Candidate {
     /// The candidate of family `F`, which may be a law of one's own.
     pub const fn of<F: Simulated>() -> Self {
-        Self {
-            law: F::NAME,
-            parameters: F::PARAMETERS,
-            terms: Terms::NONE,
-            identify: |m, t, d, o, f| identify_observed::<F>(m, t, d, o, f),
-        }
+        Self { law: Law::of::<F>(), terms: Terms::NONE }
     }
 
     /// The same law with `terms` beside it.
@@ -107,8 +98,8 @@ impl Candidate {
         let catalogue = Self::catalogue();
         let mut parts = name.split('+').map(str::trim);
         let law = parts.next().unwrap_or_default();
-        let known = || catalogue.iter().map(|candidate| candidate.law).collect::<Vec<_>>().join(", ");
-        let found = catalogue.iter().find(|candidate| candidate.law == law).cloned();
+        let known = || catalogue.iter().map(|candidate| candidate.law.name).collect::<Vec<_>>().join(", ");
+        let found = catalogue.iter().find(|candidate| candidate.law.name == law).cloned();
         let found = found.ok_or_else(|| IdentifyError::UnknownLaw { name: law.to_owned(), known: known() })?;
         let mut terms = Terms::NONE;
         for term in parts {
@@ -124,7 +115,7 @@ impl Candidate {
 
     /// Name of the law, with the terms beside it.
     pub fn name(&self) -> String {
-        self.terms.name(self.law)
+        self.terms.name(self.law.name)
     }
 
     /// Names and roles of all parameters, of the law and beside it.
@@ -136,7 +127,7 @@ impl Candidate {
         };
         let linear = self.terms.has_linear_damping().then_some((LINEAR, Role::Slope));
         let quadratic = self.terms.has_quadratic_damping().then_some((QUADRATIC, Role::Shape));
-        self.parameters.iter().map(name).chain(linear).chain(quadratic).collect()
+        self.law.parameters.iter().map(name).chain(linear).chain(quadratic).collect()
     }
 
     /// Whether this law is a special case of `other`: every parameter of it is one of the other's, in the same role.
@@ -156,6 +147,6 @@ impl Candidate {
         options: &Options,
         observer: &mut Observer<'_>,
     ) -> Result<Identification, IdentifyError> {
-        (self.identify)(machine, &self.terms, decays, options, observer)
+        identify_by(self.law, machine, &self.terms, decays, options, observer)
     }
 }

@@ -173,7 +173,7 @@ fn widen_for_other_laws(
             let Some(own) = identifications[preferred].finding_mut(finding.parameter().name()) else { continue };
             let (Some(u), Some(wider_u)) = (own.uncertainty, finding.uncertainty()) else { continue };
             let widened = wider_u.hypot(own.value - finding.value());
-            own.uncertainty = Some(u.max(widened));
+            own.widen(widened);
             if widened > NOTABLE * u && !finding.is_of_record() {
                 warnings.push(Warning::DependsOnLaw {
                     parameter: finding.parameter().name().to_owned(),

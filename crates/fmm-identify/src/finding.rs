@@ -1,12 +1,13 @@
 //! One number of a report: a quantity with its uncertainty and where it comes from.
 
-use fmm_fit::{EstimateStatus, Fit};
-use fmm_friction::{LawFamily, Role};
+use fmm_fit::{EstimateStatus, Fit, coverage_factor};
+use fmm_friction::Role;
 use fmm_model::{Dual, Parameter, Rounded, Scalar};
 
 use crate::Machine;
 use crate::dimension::is_force;
-use crate::layout::{Layout, fitted, mass_of_stiffness, named};
+use crate::law::{DIRECTIONS, Law};
+use crate::layout::{Layout, mass_of_stiffness, named};
 use crate::machine::Scale;
 use crate::residual_structure::Covariance;
 
@@ -26,19 +27,43 @@ pub struct Finding {
     pub(crate) parameter: Parameter,
     pub(crate) value: f64,
     pub(crate) uncertainty: Option<f64>,
+    /// ν, by which `uncertainty` is known; infinite for a finding without.
+    degrees_of_freedom: f64,
     pub(crate) origin: Origin,
     is_of_record: bool,
 }
 
 impl Finding {
+    /// A finding whose variance, if it has any, is given as that by the residuals of a fit with `degrees_of_freedom`, and in all.
+    /// What else contributes is known; the degrees of freedom of all follow by Welch and Satterthwaite (JCGM 100:2008, G.4.1).
     pub(crate) fn new(
         parameter: Parameter,
         value: f64,
-        uncertainty: Option<f64>,
+        variances: Option<(f64, f64)>,
+        degrees_of_freedom: f64,
         origin: Origin,
         is_of_record: bool,
     ) -> Self {
-        Self { parameter, value, uncertainty, origin, is_of_record }
+        let effective = |(random, all): (f64, f64)| {
+            let ratio = if random > 0.0 { all / random } else { f64::INFINITY };
+            degrees_of_freedom * ratio * ratio
+        };
+        Self {
+            parameter,
+            value,
+            uncertainty: variances.map(|(_, all)| all.sqrt()),
+            degrees_of_freedom: variances.map_or(f64::INFINITY, effective),
+            origin,
+            is_of_record,
+        }
+    }
+
+    /// Widens the uncertainty, if there is one, to `uncertainty` by something known.
+    pub(crate) fn widen(&mut self, uncertainty: f64) {
+        if let Some(narrow) = self.uncertainty.filter(|narrow| *narrow < uncertainty) {
+            self.uncertainty = Some(uncertainty);
+            self.degrees_of_freedom *= (uncertainty / narrow).powi(4);
+        }
     }
 
     /// Name, symbol and unit.
@@ -54,6 +79,22 @@ impl Finding {
     /// u, its standard uncertainty, in the unit of the parameter; none if the record does not determine it.
     pub fn uncertainty(&self) -> Option<f64> {
         self.uncertainty
+    }
+
+    /// ν, the effective degrees of freedom of the uncertainty (1), infinite if nothing of it was estimated from residuals.
+    pub fn degrees_of_freedom(&self) -> f64 {
+        self.degrees_of_freedom
+    }
+
+    /// The interval that covers the quantity with probability `level`, in the unit of the parameter: value ± k u by Student's t
+    /// with the [degrees of freedom](Self::degrees_of_freedom) (JCGM 100:2008, G.4); none without an uncertainty, for what was
+    /// held, or for a level outside (0, 1).
+    pub fn interval(&self, level: f64) -> Option<(f64, f64)> {
+        if self.origin == Origin::Fitted(EstimateStatus::Fixed) {
+            return None;
+        }
+        let reach = self.uncertainty? * coverage_factor(level, self.degrees_of_freedom)?;
+        Some((self.value - reach, self.value + reach))
     }
 
     /// Value, uncertainty and unit as text.
@@ -80,6 +121,7 @@ impl Finding {
 struct Inputs<'a> {
     machine: &'a Machine,
     shared: &'a [f64],
+    family: Law,
     /// Index of the first parameter of the law.
     law: usize,
     /// Unit of a force per mass.
@@ -89,9 +131,6 @@ struct Inputs<'a> {
 
 /// Inputs that were not fitted: scale of the machine, normal load, gain of the instrument.
 const KNOWN: usize = 3;
-
-/// Directions of derivative evaluated at a time.
-const DIRECTIONS: usize = 6;
 
 impl Inputs<'_> {
     /// Standard uncertainties of the inputs that were not fitted.
@@ -104,7 +143,7 @@ impl Inputs<'_> {
     }
 
     /// The derived quantities, as numbers whose directions from `first` on are the shared values, then the inputs.
-    fn derived<F: LawFamily, D: Scalar>(&self, first: usize) -> Vec<(Parameter, D)> {
+    fn derived<D: Scalar>(&self, first: usize) -> Vec<(Parameter, D)> {
         let variable = |value: f64, direction: usize| D::variable(value, direction.wrapping_sub(first));
         let natural_frequency = variable(self.shared[0], 0);
         let mut derived = Vec::new();
@@ -130,8 +169,8 @@ impl Inputs<'_> {
         let load = self.machine.normal_load().map(|load| variable(load.value(), self.shared.len() + 1));
         let gain = variable(1.0, self.shared.len() + 2);
         let law_value = |index: usize| variable(self.shared[self.law + index], self.law + index);
-        let level = fitted::<F>().position(|parameter| parameter.role() == Role::Level).map(law_value);
-        for (i, law_parameter) in fitted::<F>().enumerate() {
+        let level = self.family.level().map(law_value);
+        for (i, law_parameter) in self.family.fitted().enumerate() {
             let (parameter, role) = (law_parameter.parameter(), law_parameter.role());
             let mut value = law_value(i);
             if let (Role::LevelAbove, Some(level)) = (role, level) {
@@ -165,7 +204,7 @@ impl Inputs<'_> {
 ///
 /// Uncertainties of derived quantities are first order, u² = gᵀ V g + Σ (∂y/∂xᵢ)² u²(xᵢ), with exact derivatives
 /// (JCGM 100:2008, 5.1.2 and 5.2.2).
-pub(crate) fn findings<F: LawFamily>(
+pub(crate) fn findings(
     machine: &Machine,
     layout: &Layout,
     fit: &Fit,
@@ -174,45 +213,54 @@ pub(crate) fn findings<F: LawFamily>(
 ) -> Vec<Finding> {
     let estimated = fit.estimates().iter().enumerate().map(|(index, estimate)| {
         // What is proportional to a power of the record is uncertain with its gain.
-        let gain = gain_uncertainty * layout.power_of_gain::<F>(index) * estimate.value();
-        Finding {
-            parameter: estimate.parameter().clone(),
-            value: estimate.value(),
-            uncertainty: covariance.get(index, index).map(|variance| variance.sqrt().hypot(gain)),
-            origin: Origin::Fitted(estimate.status()),
-            is_of_record: index >= layout.shared,
-        }
+        let gain = gain_uncertainty * layout.power_of_gain(index) * estimate.value();
+        Finding::new(
+            estimate.parameter().clone(),
+            estimate.value(),
+            covariance.get(index, index).map(|variance| (variance, variance + gain * gain)),
+            covariance.degrees_of_freedom(),
+            Origin::Fitted(estimate.status()),
+            index >= layout.shared,
+        )
     });
     let mut findings: Vec<Finding> = estimated.collect();
     let shared = &fit.values()[..layout.shared];
-    let force = fitted::<F>().position(|parameter| is_force(parameter.role()));
+    let force = layout.family.fitted().position(|parameter| is_force(parameter.role()));
     let acceleration = force.map_or("", |index| fit.estimates()[layout.law + index].parameter().unit());
-    let inputs = Inputs { machine, shared, law: layout.law, acceleration, gain_uncertainty };
+    let inputs = Inputs { machine, shared, family: layout.family, law: layout.law, acceleration, gain_uncertainty };
     let directions = layout.shared + KNOWN;
-    let values = inputs.derived::<F, f64>(0);
+    let values = inputs.derived::<f64>(0);
     let mut gradients = vec![vec![0.0; directions]; values.len()];
     for first in (0..directions).step_by(DIRECTIONS) {
-        for (gradient, (_, number)) in gradients.iter_mut().zip(inputs.derived::<F, Dual<DIRECTIONS>>(first)) {
+        for (gradient, (_, number)) in gradients.iter_mut().zip(inputs.derived::<Dual<DIRECTIONS>>(first)) {
             for (direction, slope) in gradient[first..].iter_mut().enumerate().take(DIRECTIONS) {
                 *slope = number.partial(direction);
             }
         }
     }
     for ((parameter, value), gradient) in values.into_iter().zip(gradients) {
-        let uncertainty = variance(covariance, &gradient, inputs.uncertainties()).map(f64::sqrt);
-        findings.push(Finding { parameter, value, uncertainty, origin: Origin::Derived, is_of_record: false });
+        let variances = variances(covariance, &gradient, inputs.uncertainties());
+        findings.push(Finding::new(
+            parameter,
+            value,
+            variances,
+            covariance.degrees_of_freedom(),
+            Origin::Derived,
+            false,
+        ));
     }
     findings
 }
 
-/// gᵀ V g over the fitted values plus the variances of the inputs; none if a value that matters has none.
-fn variance(covariance: &Covariance<'_>, gradient: &[f64], inputs: [f64; KNOWN]) -> Option<f64> {
+/// gᵀ V g over the fitted values, and that with the variances of the inputs; none if a value that matters has none.
+fn variances(covariance: &Covariance<'_>, gradient: &[f64], inputs: [f64; KNOWN]) -> Option<(f64, f64)> {
     let (shared, known) = gradient.split_at(gradient.len() - inputs.len());
-    let mut variance: f64 = known.iter().zip(inputs).map(|(slope, u)| (slope * u).powi(2)).sum();
+    let mut random = 0.0;
     for (i, row) in shared.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
         for (j, column) in shared.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
-            variance += row * column * covariance.get(i, j)?;
+            random += row * column * covariance.get(i, j)?;
         }
     }
-    Some(variance)
+    let known: f64 = known.iter().zip(inputs).map(|(slope, u)| (slope * u).powi(2)).sum();
+    Some((random, random + known))
 }

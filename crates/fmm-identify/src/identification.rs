@@ -8,7 +8,8 @@ use fmm_model::Restoring;
 use fmm_sim::{Event, EventKind, Simulated, Trajectory};
 
 use crate::finding::{Finding, findings};
-use crate::layout::{Layout, fitted};
+use crate::law::Law;
+use crate::layout::Layout;
 use crate::problem::RingDownProblem;
 use crate::residual_structure::{Covariance, ResidualStructure};
 use crate::{IdentifyError, Machine, RingDown, Terms, Warning};
@@ -53,15 +54,13 @@ impl FittedMotion {
     }
 }
 
-/// What the law of an identification says for one record, given the machine, all records and the fitted values.
-type ModelOf = fn(Machine, Terms, &[RingDown], usize, &[f64]) -> Option<Vec<f64>>;
-
 /// Friction parameters of one law, with their uncertainty and what limits them.
 ///
 /// `Display` gives the report.
 #[derive(Debug, Clone)]
 pub struct Identification {
     law: String,
+    family: Law,
     friction_at_rest: Option<f64>,
     terms: Terms,
     machine: Machine,
@@ -72,7 +71,6 @@ pub struct Identification {
     structure: ResidualStructure,
     inflation: f64,
     amplitude: f64,
-    model: ModelOf,
 }
 
 /// Identifies the parameters of law family `F` from ring-downs of one machine.
@@ -135,23 +133,35 @@ pub fn identify_observed<F: Simulated>(
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Identification, IdentifyError> {
-    let problem = RingDownProblem::<F>::with_terms(*machine, terms.clone(), decays)?;
+    identify_by(Law::of::<F>(), machine, terms, decays, options, observer)
+}
+
+/// As [`identify_observed`], by a law that is known at run time.
+pub(crate) fn identify_by(
+    law: Law,
+    machine: &Machine,
+    terms: &Terms,
+    decays: &[RingDown],
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Identification, IdentifyError> {
+    let problem = RingDownProblem::of(law, *machine, terms.clone(), decays)?;
     let fit = fit_in_stages(&problem, options, observer)?;
     // One instrument for all records; the worst statement counts.
     let gain = decays.iter().map(|decay| decay.summary().gain_uncertainty).fold(0.0, f64::max);
-    let failure = |error: EvaluationError| IdentifyError::Simulation { law: F::NAME, message: error.to_string() };
+    let failure = |error: EvaluationError| IdentifyError::Simulation { law: law.name, message: error.to_string() };
     let structure = ResidualStructure::of(&fit, decays);
     let covariance = Covariance::of(&problem, &fit, &structure, decays).map_err(failure)?;
-    let mut found = findings::<F>(machine, problem.layout(), &fit, &covariance, gain);
+    let mut found = findings(machine, problem.layout(), &fit, &covariance, gain);
     let inflation = covariance.inflation();
     if let Some(moved) = machine.with_damping_moved() {
         let mut ends = Vec::new();
         for machine in moved {
-            let problem = RingDownProblem::<F>::with_terms(machine, terms.clone(), decays)?;
+            let problem = RingDownProblem::of(law, machine, terms.clone(), decays)?;
             let fit = solve_observed(&problem, fit.values(), options, |progress| observer(progress))
-                .map_err(|source| IdentifyError::Fit { law: F::NAME, source })?;
+                .map_err(|source| IdentifyError::Fit { law: law.name, source })?;
             let covariance = Covariance::of(&problem, &fit, &structure, decays).map_err(failure)?;
-            ends.push(findings::<F>(&machine, problem.layout(), &fit, &covariance, gain));
+            ends.push(findings(&machine, problem.layout(), &fit, &covariance, gain));
         }
         add_in_quadrature(&mut found, &ends[0], &ends[1]);
     }
@@ -162,8 +172,9 @@ pub fn identify_observed<F: Simulated>(
         motions.push(FittedMotion::of_events(decay.record().start(), decay.record().interval(), &trajectory));
     }
     let mut identification = Identification {
-        law: terms.name(F::NAME),
-        friction_at_rest: friction_at_rest::<F>(problem.layout(), fit.values()),
+        law: terms.name(law.name),
+        family: law,
+        friction_at_rest: friction_at_rest(problem.layout(), fit.values()),
         terms: terms.clone(),
         machine: *machine,
         structure,
@@ -173,12 +184,9 @@ pub fn identify_observed<F: Simulated>(
         findings: found,
         motions,
         warnings: Vec::new(),
-        model: |machine, terms, decays, record, p| {
-            RingDownProblem::<F>::with_terms(machine, terms, decays).ok()?.model(record, p).ok()
-        },
     };
     identification.warnings = Warning::of(&identification, decays);
-    let held = F::PARAMETERS.iter().filter(|parameter| parameter.role() == Role::Breakaway);
+    let held = law.parameters.iter().filter(|parameter| parameter.role() == Role::Breakaway);
     identification
         .warnings
         .extend(held.map(|held| Warning::StaticLevelHeld { parameter: held.parameter().name().to_owned() }));
@@ -186,8 +194,8 @@ pub fn identify_observed<F: Simulated>(
 }
 
 /// F/m at rest that fitted `values` stand for: the first level of the law with what lies above it; none for laws without.
-fn friction_at_rest<F: Simulated>(layout: &Layout, values: &[f64]) -> Option<f64> {
-    let parameters = || fitted::<F>().zip(&values[layout.law..]);
+fn friction_at_rest(layout: &Layout, values: &[f64]) -> Option<f64> {
+    let parameters = || layout.family.fitted().zip(&values[layout.law..]);
     let (_, level) = parameters().find(|(parameter, _)| parameter.role() == Role::Level)?;
     let above = parameters().filter(|(parameter, _)| matches!(parameter.role(), Role::Excess | Role::LevelAbove));
     Some(level + above.map(|(_, excess)| excess).sum::<f64>())
@@ -198,8 +206,8 @@ const BEGINNINGS: [f64; 2] = [0.125, 0.4];
 
 /// The best end of the fits from all start values. Displacements are first fitted up to their last peak, and from
 /// there as a whole. Laws with more than a level and a viscous part continue the fit of one that has just these.
-fn fit_in_stages<F: Simulated>(
-    problem: &RingDownProblem<'_, F>,
+fn fit_in_stages(
+    problem: &RingDownProblem<'_>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
@@ -207,37 +215,37 @@ fn fit_in_stages<F: Simulated>(
         // One fit of all samples, begun where a search with few of them has ended.
         let search = problem.with_records(&thinned);
         let found = fit_in_search(&search, options, observer)?;
-        return best_fit(problem, F::NAME, vec![found.values().to_vec()], options, observer);
+        return best_fit(problem, problem.name(), vec![found.values().to_vec()], options, observer);
     }
     fit_in_search(problem, options, observer)
 }
 
 /// The best end of the fits from everything that may be a start.
-fn fit_in_search<F: Simulated>(
-    problem: &RingDownProblem<'_, F>,
+fn fit_in_search(
+    problem: &RingDownProblem<'_>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
     if !problem.is_elaborate() {
         return fit_simple(problem, options, observer);
     }
-    let simple = RingDownProblem::<CoulombViscous>::new(*problem.machine(), problem.decays())?;
+    let simple = RingDownProblem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
     let known = fit_simple(&simple, options, observer)?;
     let mut starts = problem.continued(&simple, known.values());
     starts.extend(problem.starts().into_iter().next());
-    best_fit(problem, F::NAME, starts, options, observer)
+    best_fit(problem, problem.name(), starts, options, observer)
 }
 
 /// The best end of the fits from start values that the records show.
-fn fit_simple<F: Simulated>(
-    problem: &RingDownProblem<'_, F>,
+fn fit_simple(
+    problem: &RingDownProblem<'_>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
     let mut starts = problem.starts();
     if let Some(swinging) = problem.up_to_last_peaks() {
         let problem = problem.with_records(&swinging);
-        if let Ok(fit) = best_fit(&problem, F::NAME, problem.starts(), options, observer) {
+        if let Ok(fit) = best_fit(&problem, problem.name(), problem.starts(), options, observer) {
             starts.push(fit.values().to_vec());
         }
     }
@@ -246,13 +254,13 @@ fn fit_simple<F: Simulated>(
         for share in BEGINNINGS {
             let beginning = problem.beginnings(share);
             let problem = problem.with_records(&beginning);
-            if let Ok(fit) = best_fit(&problem, F::NAME, std::mem::take(&mut begun), options, observer) {
+            if let Ok(fit) = best_fit(&problem, problem.name(), std::mem::take(&mut begun), options, observer) {
                 begun.push(fit.values().to_vec());
             }
         }
         starts.extend(begun);
     }
-    best_fit(problem, F::NAME, starts, options, observer)
+    best_fit(problem, problem.name(), starts, options, observer)
 }
 
 /// The best end of the fits from `starts`. No other end is better than one that leaves rounding only.
@@ -282,7 +290,9 @@ pub(crate) fn best_fit(
 fn add_in_quadrature(findings: &mut [Finding], below: &[Finding], above: &[Finding]) {
     for ((finding, below), above) in findings.iter_mut().zip(below).zip(above) {
         let change = 0.5 * (above.value - below.value);
-        finding.uncertainty = finding.uncertainty.map(|u| u.hypot(change));
+        if let Some(u) = finding.uncertainty() {
+            finding.widen(u.hypot(change));
+        }
     }
 }
 
@@ -323,6 +333,19 @@ impl Identification {
         self.findings.iter().find(|finding| finding.parameter().name() == name)
     }
 
+    /// The interval that covers the finding of this name with probability `level`, [`Finding::interval`].
+    ///
+    /// ```no_run
+    /// # fn of(found: &fmm_identify::Identification) {
+    /// if let Some((low, high)) = found.interval("mu", 0.95) {
+    ///     println!("μ lies between {low:.4} and {high:.4} with 95 %");
+    /// }
+    /// # }
+    /// ```
+    pub fn interval(&self, name: &str, level: f64) -> Option<(f64, f64)> {
+        self.finding(name)?.interval(level)
+    }
+
     pub(crate) fn finding_mut(&mut self, name: &str) -> Option<&mut Finding> {
         self.findings.iter_mut().find(|finding| finding.parameter().name() == name)
     }
@@ -350,9 +373,11 @@ impl Identification {
     /// What the law says for every sample of record number `record` of `decays`, which must be those of the
     /// identification; none for another number.
     pub fn model(&self, decays: &[RingDown], record: usize) -> Option<Vec<f64>> {
-        (record < decays.len() && decays.len() == self.motions.len())
-            .then(|| (self.model)(self.machine, self.terms.clone(), decays, record, self.fit.values()))
-            .flatten()
+        if record >= decays.len() || decays.len() != self.motions.len() {
+            return None;
+        }
+        let problem = RingDownProblem::of(self.family, self.machine, self.terms.clone(), decays).ok()?;
+        problem.model(record, self.fit.values()).ok()
     }
 
     pub(crate) fn structure(&self) -> ResidualStructure {

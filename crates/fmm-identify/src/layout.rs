@@ -4,26 +4,21 @@ use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use fmm_fit::EvaluationError;
-use fmm_friction::{LawFamily, LawParameter, Role};
+use fmm_friction::{LawParameter, Role};
 use fmm_model::{Bounds, Damping, Oscillator, Parameter, Restoring, Scalar};
 use fmm_record::Quantity;
-use fmm_sim::Scenario;
 
 use crate::dimension::{is_force, power_of_gain};
+use crate::law::{Law, Motion};
 use crate::machine::Scale;
 use crate::terms::LINEAR;
 use crate::{IdentifyError, Machine, RingDown, Terms};
-
-/// The parameters of a law that a ring-down is fitted by: all but static levels, on which a free decay depends only in
-/// where it stops. They are held at the sliding level that precedes them.
-pub(crate) fn fitted<F: LawFamily>() -> impl Iterator<Item = &'static LawParameter> {
-    F::PARAMETERS.iter().filter(|parameter| parameter.role() != Role::Breakaway)
-}
 
 /// Order of the parameters: oscillator, damping beside the law, law, then for each record its initial state and, unless it
 /// is fixed, its offset.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
+    pub(crate) family: Law,
     /// Parameters of the oscillator.
     pub(crate) oscillator: usize,
     /// Index of the first parameter of the law.
@@ -35,14 +30,15 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// Layout and parameters of law family `F` with `terms` for these records.
-    pub(crate) fn of<F: LawFamily>(
+    /// Layout and parameters of `family` with `terms` for these records.
+    pub(crate) fn of(
+        family: Law,
         machine: &Machine,
         terms: &Terms,
         decays: &[RingDown],
     ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
-        if terms.has_linear_damping() && F::PARAMETERS.iter().any(|parameter| parameter.role() == Role::Slope) {
-            return Err(IdentifyError::TwoDampings { law: F::NAME });
+        if terms.has_linear_damping() && family.has_slope() {
+            return Err(IdentifyError::TwoDampings { law: family.name });
         }
         let units = Units::of(&decays[0]);
         let unknown_scale = machine.scale() == Scale::Unknown;
@@ -58,7 +54,7 @@ impl Layout {
         let oscillator = parameters.len();
         parameters.extend(terms.parameters(&units.position));
         let law = parameters.len();
-        parameters.extend(fitted::<F>().map(|parameter| units.fitted(parameter, unknown_scale)));
+        parameters.extend(family.fitted().map(|parameter| units.fitted(parameter, unknown_scale)));
         let shared = parameters.len();
         let mut own = Vec::with_capacity(decays.len());
         for (index, decay) in decays.iter().enumerate() {
@@ -76,7 +72,7 @@ impl Layout {
         for (name, value) in terms.held() {
             let known = || parameters.iter().map(Parameter::name).collect::<Vec<_>>().join(", ");
             let Some(index) = parameters.iter().position(|parameter| parameter.name() == name) else {
-                return Err(IdentifyError::NothingToHold { law: F::NAME, name: name.to_owned(), known: known() });
+                return Err(IdentifyError::NothingToHold { law: family.name, name: name.to_owned(), known: known() });
             };
             let bounds = parameters[index].bounds();
             if !bounds.contains(value) {
@@ -85,7 +81,7 @@ impl Layout {
             }
             parameters[index] = parameters[index].clone().bounded(Bounds::new(value, value)?);
         }
-        Ok((Self { oscillator, law, shared, own }, parameters))
+        Ok((Self { family, oscillator, law, shared, own }, parameters))
     }
 
     /// How many parameters the motion of one record depends on: the shared ones and its initial state.
@@ -99,35 +95,35 @@ impl Layout {
     }
 
     /// The power of the gain of the record to which the parameter at `index` is proportional.
-    pub(crate) fn power_of_gain<F: LawFamily>(&self, index: usize) -> f64 {
+    pub(crate) fn power_of_gain(&self, index: usize) -> f64 {
         if index >= self.shared {
             return 1.0;
         }
         // Linear damping does not depend on it, quadratic damping is per length.
         match index.checked_sub(self.law) {
-            Some(index) => fitted::<F>().nth(index).map_or(0.0, power_of_gain),
+            Some(index) => self.family.fitted().nth(index).map_or(0.0, power_of_gain),
             None if index + 1 == self.law && index >= self.oscillator => -1.0,
             None => 0.0,
         }
     }
 
-    /// The scenario of one record; `motion` holds the shared values and then its initial position and velocity.
-    pub(crate) fn scenario<F: LawFamily, D: Scalar>(
+    /// The motion of one record, of the shared `values` with its initial position and velocity behind them.
+    pub(crate) fn motion<D: Scalar>(
         &self,
         machine: &Machine,
         terms: &Terms,
-        motion: &[D],
-    ) -> Result<Scenario<D, F::At<D>>, EvaluationError> {
+        values: &[D],
+    ) -> Result<Motion<D>, EvaluationError> {
         let known_damping = D::from(machine.damping().map_or(0.0, |damping| damping.value()));
         let (oscillator, damping) = match machine.scale() {
-            Scale::Unknown => (Oscillator::new(motion[0], motion[1])?, known_damping),
-            Scale::PerUnitMass => (Oscillator::per_unit_mass(motion[0])?, known_damping),
+            Scale::Unknown => (Oscillator::new(values[0], values[1])?, known_damping),
+            Scale::PerUnitMass => (Oscillator::per_unit_mass(values[0])?, known_damping),
             Scale::Mass(_) | Scale::Stiffness(_) => {
-                let mass = mass(machine.scale(), motion[0]).unwrap_or_else(|| D::from(1.0));
-                (Oscillator::per_unit_mass(motion[0])?, known_damping / mass)
+                let mass = mass(machine.scale(), values[0]).unwrap_or_else(|| D::from(1.0));
+                (Oscillator::per_unit_mass(values[0])?, known_damping / mass)
             }
         };
-        let mut beside = motion[self.oscillator..self.law].iter().copied();
+        let mut beside = values[self.oscillator..self.law].iter().copied();
         let linear = if terms.has_linear_damping() { beside.next() } else { None };
         let quadratic = beside.next().unwrap_or(D::from(0.0));
         let damping = linear.map_or(damping, |linear| damping + linear);
@@ -135,26 +131,14 @@ impl Layout {
             Restoring::Sine { length } => Restoring::sine(D::from(length))?,
             _ => Restoring::Linear,
         };
-        let oscillator = oscillator.with_damping(Damping::of_any_sign(damping, quadratic)?).with_restoring(restoring);
-        let law = F::at(&law_values::<F, D>(&motion[self.law..self.shared]))?;
-        let scenario = Scenario::new(oscillator, law, D::from(1.0))?;
-        Ok(scenario.starting_at(motion[self.shared], motion[self.shared + 1])?)
+        Ok(Motion {
+            oscillator: oscillator.with_damping(Damping::of_any_sign(damping, quadratic)?).with_restoring(restoring),
+            law: self.family.values(&values[self.law..self.shared]),
+            normal_load: D::from(1.0),
+            initial: [values[self.shared], values[self.shared + 1]],
+            force: None,
+        })
     }
-}
-
-/// Values for all parameters of the law from those of the [`fitted`] ones: static levels are put in, and a level that may not lie
-/// below another is that with what it is above it.
-pub(crate) fn law_values<F: LawFamily, D: Scalar>(values: &[D]) -> Vec<D> {
-    let fitted = || fitted::<F>().zip(values);
-    let first = fitted().find(|(parameter, _)| parameter.role() == Role::Level);
-    let level = first.map_or(D::from(0.0), |(_, level)| *level);
-    let mut values = fitted();
-    let value = |parameter: &LawParameter| match parameter.role() {
-        Role::Breakaway => Some(level),
-        Role::LevelAbove => values.next().map(|(_, excess)| level + *excess),
-        _ => values.next().map(|(_, value)| *value),
-    };
-    F::PARAMETERS.iter().filter_map(value).collect()
 }
 
 /// The mass (kg) that the known scale and the natural frequency (Hz) give, if a scale is known.

@@ -26,6 +26,8 @@
 //! assert!((mu.value() - 0.25).abs() < 1e-9);
 //! // Without noise only mass and load are uncertain: 0.25 · √((0.005/10.391)² + 0.001²).
 //! assert!((mu.uncertainty().unwrap() - 2.774e-4).abs() < 1e-6);
+//! let (low, high) = mu.interval(0.95).unwrap();
+//! println!("μ lies between {low:.4} and {high:.4} with 95 %");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -43,6 +45,7 @@
 //! | Friction without a simulation? | [`WeakForm`]; [`EnergyMethod`] for its curve, [`half_swing_losses`] per half swing |
 //! | Friction out of hammer blows? | [`ImpactTrial`], [`identify_impact`], to the mobility, the time record or both |
 //! | What if mass, stiffness or damping were others? | [`MachineProblem`] with [`Sensitivity`](fmm_fit::Sensitivity) or [`Refit`](fmm_fit::Refit) |
+//! | Between which values does it lie? | [`Finding::interval`], by Student's t with the degrees of freedom of all that is uncertain |
 //! | Are the uncertainties to be trusted? | read the [`warnings`](Identification::warnings): they name what breaks them |
 //!
 //! # Units and conventions
@@ -81,6 +84,7 @@
 mod banded;
 mod candidate;
 mod comparison;
+mod correlation;
 mod decrement;
 mod dimension;
 mod energy_rates;
@@ -93,6 +97,7 @@ mod half_swings;
 mod identification;
 mod impact;
 mod known;
+mod law;
 mod layout;
 mod machine;
 mod machine_problem;

@@ -1,21 +1,20 @@
 //! The least-squares problem of an identification: these records by that law.
 
 use std::f64::consts::PI;
-use std::marker::PhantomData;
 use std::ops::Range;
 
 use fmm_fit::{Block, EvaluationError, Residuals};
-use fmm_friction::Role;
-use fmm_model::{Dual, Parameter, Scalar};
+use fmm_model::{Parameter, Scalar};
 use fmm_record::Quantity;
 use fmm_sim::{Channels, Samples, Sampling, Simulated, Trajectory};
 
 use crate::dimension::{Scales, bends, is_force};
 use crate::first_guess::Dissipation;
-use crate::layout::{Layout, fitted, mass_of_stiffness};
+use crate::law::{DIRECTIONS, Law, Simulate};
+use crate::layout::{Layout, mass_of_stiffness};
 use crate::{IdentifyError, Machine, RingDown, Terms};
 
-/// The residuals "model less record" of one or several ring-downs by a law of family `F`, with exact derivatives.
+/// The residuals "model less record" of one or several ring-downs by a law, with exact derivatives.
 ///
 /// Oscillator and law are shared by all records; initial position, initial velocity and offset are each
 /// record's own. The initial velocity is never taken from the data: fixing it at a noisy maximum biases the
@@ -23,18 +22,14 @@ use crate::{IdentifyError, Machine, RingDown, Terms};
 ///
 /// Anything that takes [`Residuals`] can be applied to it; [`identify`](crate::identify) is what most want.
 #[derive(Debug, Clone)]
-pub struct RingDownProblem<'a, F> {
+pub struct RingDownProblem<'a> {
     machine: Machine,
     terms: Terms,
     decays: &'a [RingDown],
     parameters: Vec<Parameter>,
     layout: Layout,
     blocks: Vec<Block>,
-    family: PhantomData<F>,
 }
-
-/// Directions of derivative that one simulation carries; a law with more parameters takes several.
-const DIRECTIONS: usize = 6;
 
 /// Samples of a record, and of each of its periods, that are enough to search with.
 const ENOUGH_SAMPLES: usize = 1500;
@@ -43,13 +38,13 @@ const SAMPLES_PER_SWING: f64 = 24.0;
 /// Samples simulated at a time: memory beyond the solver's own stays below 4 MB however long the record.
 const WINDOW: usize = 1 << 16;
 
-impl<'a, F: Simulated> RingDownProblem<'a, F> {
-    /// The problem of `decays` on `machine`.
+impl<'a> RingDownProblem<'a> {
+    /// The problem of `decays` on `machine` by a law of family `F`.
     ///
     /// # Errors
     /// [`IdentifyError::NoRecord`] and [`IdentifyError::MixedRecords`].
-    pub fn new(machine: Machine, decays: &'a [RingDown]) -> Result<Self, IdentifyError> {
-        Self::with_terms(machine, Terms::NONE, decays)
+    pub fn new<F: Simulated>(machine: Machine, decays: &'a [RingDown]) -> Result<Self, IdentifyError> {
+        Self::with_terms::<F>(machine, Terms::NONE, decays)
     }
 
     /// The problem of `decays` on `machine`, with `terms` beside the law.
@@ -57,15 +52,23 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
     /// # Errors
     /// As for [`new`](Self::new), and [`IdentifyError::TwoDampings`], [`IdentifyError::NothingToHold`] and
     /// [`IdentifyError::HeldOutOfBounds`].
-    pub fn with_terms(machine: Machine, terms: Terms, decays: &'a [RingDown]) -> Result<Self, IdentifyError> {
+    pub fn with_terms<F: Simulated>(
+        machine: Machine,
+        terms: Terms,
+        decays: &'a [RingDown],
+    ) -> Result<Self, IdentifyError> {
+        Self::of(Law::of::<F>(), machine, terms, decays)
+    }
+
+    pub(crate) fn of(law: Law, machine: Machine, terms: Terms, decays: &'a [RingDown]) -> Result<Self, IdentifyError> {
         let describe = |decay: &RingDown| format!("{} in {}", decay.record().quantity(), decay.record().unit());
         let first = decays.first().ok_or(IdentifyError::NoRecord)?;
         if let Some(other) = decays.iter().find(|decay| describe(decay) != describe(first)) {
             return Err(IdentifyError::MixedRecords { first: describe(first), other: describe(other) });
         }
-        let (layout, parameters) = Layout::of::<F>(&machine, &terms, decays)?;
+        let (layout, parameters) = Layout::of(law, &machine, &terms, decays)?;
         let blocks = blocks(&layout, decays);
-        Ok(Self { machine, terms, decays, parameters, layout, blocks, family: PhantomData })
+        Ok(Self { machine, terms, decays, parameters, layout, blocks })
     }
 
     /// The ring-downs up to a `share` of their duration (1), for a fit in which a small error of the period does not yet add up.
@@ -83,6 +86,15 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
         };
         let stride = self.decays.iter().map(stride).min().filter(|stride| *stride > 1)?;
         self.decays.iter().map(|decay| decay.thinned(stride)).collect()
+    }
+
+    fn law(&self) -> &Law {
+        &self.layout.family
+    }
+
+    /// Name of the law.
+    pub(crate) fn name(&self) -> &'static str {
+        self.law().name
     }
 
     pub(crate) fn machine(&self) -> &Machine {
@@ -106,7 +118,7 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
     }
 
     /// The same problem with other records of the same kind and number.
-    pub(crate) fn with_records<'b>(&self, decays: &'b [RingDown]) -> RingDownProblem<'b, F> {
+    pub(crate) fn with_records<'b>(&self, decays: &'b [RingDown]) -> RingDownProblem<'b> {
         RingDownProblem {
             machine: self.machine,
             terms: self.terms.clone(),
@@ -114,7 +126,6 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
             parameters: self.parameters.clone(),
             layout: self.layout.clone(),
             blocks: blocks(&self.layout, decays),
-            family: PhantomData,
         }
     }
 
@@ -123,7 +134,7 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
     }
 
     /// Shared values and initial state of `record` as numbers of type `D`, direction `first` being direction 0.
-    fn motion<D: Scalar>(&self, record: usize, p: &[f64], first: usize) -> Vec<D> {
+    fn values<D: Scalar>(&self, record: usize, p: &[f64], first: usize) -> Vec<D> {
         (0..self.layout.directions())
             .map(|direction| {
                 let value = p[self.layout.index(record, direction)];
@@ -133,10 +144,11 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
             .collect()
     }
 
-    /// Simulates `record` at the samples of `ranges`, window by window; `visit` gets the number of samples before
+    /// Simulates `record` by `simulate` at the samples of `ranges`, window by window; `visit` gets the number of samples before
     /// the window, its samples' indices in the record, and the simulated samples.
     fn simulate<D: Scalar>(
         &self,
+        simulate: Simulate<D>,
         record: usize,
         p: &[f64],
         first: usize,
@@ -144,8 +156,7 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
         mut visit: impl FnMut(usize, Range<usize>, &Samples<D>),
     ) -> Result<(), EvaluationError> {
         let decay = &self.decays[record];
-        let motion = self.motion::<D>(record, p, first);
-        let scenario = self.layout.scenario::<F, D>(&self.machine, &self.terms, &motion)?;
+        let motion = self.layout.motion(&self.machine, &self.terms, &self.values::<D>(record, p, first))?;
         let displacement = decay.record().quantity() == Quantity::Displacement;
         let channels = if displacement { Channels::Position } else { Channels::Velocity };
         let sampling = Sampling::uniform(decay.record().interval(), decay.record().len())?.keeping(channels);
@@ -155,7 +166,7 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
             for start in range.clone().step_by(WINDOW) {
                 let samples = start..range.end.min(start + WINDOW);
                 let Some(window) = sampling.window(samples.clone()) else { continue };
-                F::simulate_into(&scenario, &window, &mut trajectory)?;
+                simulate(&motion, &window, &mut trajectory)?;
                 let simulated = if displacement { trajectory.position() } else { trajectory.velocity() };
                 let count = samples.len();
                 visit(before, samples, simulated);
@@ -167,11 +178,10 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
 
     /// The events of `record` up to its end.
     pub(crate) fn events(&self, record: usize, p: &[f64]) -> Result<Trajectory, EvaluationError> {
-        let motion = self.motion::<f64>(record, p, 0);
-        let scenario = self.layout.scenario::<F, f64>(&self.machine, &self.terms, &motion)?;
+        let motion = self.layout.motion(&self.machine, &self.terms, &self.values::<f64>(record, p, 0))?;
         let mut trajectory = Trajectory::new();
         let ends = Sampling::uniform(self.decays[record].record().duration(), 2)?.keeping(Channels::Position);
-        F::simulate_into(&scenario, &ends, &mut trajectory)?;
+        (self.law().plain)(&motion, &ends, &mut trajectory)?;
         Ok(trajectory)
     }
 
@@ -180,7 +190,7 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
         let count = self.decays[record].record().len();
         let offset = self.offset(record, p);
         let mut model = vec![0.0; count];
-        self.simulate::<f64>(record, p, 0, std::slice::from_ref(&(0..count)), |_, samples, simulated| {
+        self.simulate(self.law().plain, record, p, 0, std::slice::from_ref(&(0..count)), |_, samples, simulated| {
             for (out, value) in model[samples].iter_mut().zip(simulated.values()) {
                 *out = value + offset;
             }
@@ -191,13 +201,13 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
     /// Whether the law or the terms beside it have more to find than levels and a viscous part.
     pub(crate) fn is_elaborate(&self) -> bool {
         self.layout.law > self.layout.oscillator
-            || fitted::<F>().filter(|parameter| is_force(parameter.role())).count() > 1
-            || fitted::<F>().any(bends)
+            || self.law().fitted().filter(|parameter| is_force(parameter.role())).count() > 1
+            || self.law().fitted().any(bends)
     }
 
     /// Start values, one set per hypothesis that the law can express, each inside the bounds.
     pub(crate) fn starts(&self) -> Vec<Vec<f64>> {
-        let has_level = fitted::<F>().any(|parameter| is_force(parameter.role()));
+        let has_level = self.law().fitted().any(|parameter| is_force(parameter.role()));
         let has_slope = self.has_linear_damping();
         let hypotheses = self.decays[0].guess().hypotheses();
         let expressible = |dissipation: &&Dissipation| {
@@ -212,7 +222,7 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
     }
 
     fn has_linear_damping(&self) -> bool {
-        self.terms.has_linear_damping() || fitted::<F>().any(|parameter| parameter.role() == Role::Slope)
+        self.terms.has_linear_damping() || self.law().has_slope()
     }
 
     /// Start values under one hypothesis.
@@ -236,7 +246,7 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
 
     /// Start values that continue a fit of `simple`, which has a level and a viscous part: the same losses, put into the law
     /// in as many ways as it offers.
-    pub(crate) fn continued<S: Simulated>(&self, simple: &RingDownProblem<'_, S>, values: &[f64]) -> Vec<Vec<f64>> {
+    pub(crate) fn continued(&self, simple: &RingDownProblem<'_>, values: &[f64]) -> Vec<Vec<f64>> {
         let (oscillator, rest) = values.split_at(simple.layout.oscillator);
         let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
         // A damper and Coulomb friction lose the same in a swing if F = π/4 c V.
@@ -244,7 +254,7 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
         let all_friction = Dissipation { friction: as_friction, damping: 0.0 };
         let half = Dissipation { friction: as_friction, damping: 0.5 * dissipation.damping };
         let mut starts = Vec::new();
-        let sharpnesses: &[f64] = if fitted::<F>().any(bends) { &[1.0, 8.0, 0.125] } else { &[1.0] };
+        let sharpnesses: &[f64] = if self.law().fitted().any(bends) { &[1.0, 8.0, 0.125] } else { &[1.0] };
         for sharpness in sharpnesses {
             let shares = if self.has_linear_damping() { vec![dissipation, half] } else { vec![all_friction] };
             for share in shares {
@@ -268,7 +278,7 @@ impl<'a, F: Simulated> RingDownProblem<'a, F> {
             start.push(0.1 * (damping + friction / speed) / speed);
         }
         let scales = Scales { length, speed, friction, damping, sharpness };
-        start.extend(fitted::<F>().map(|parameter| scales.typical(parameter)));
+        start.extend(self.law().fitted().map(|parameter| scales.typical(parameter)));
     }
 
     fn clamped(&self, start: &[f64]) -> Vec<f64> {
@@ -319,7 +329,7 @@ fn blocks(layout: &Layout, decays: &[RingDown]) -> Vec<Block> {
     decays.iter().enumerate().map(block).collect()
 }
 
-impl<F: Simulated> Residuals for RingDownProblem<'_, F> {
+impl Residuals for RingDownProblem<'_> {
     fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
@@ -330,7 +340,7 @@ impl<F: Simulated> Residuals for RingDownProblem<'_, F> {
 
     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
         for (record, base) in self.bases() {
-            self.simulate::<f64>(record, p, 0, self.decays[record].kept(), |before, samples, simulated| {
+            self.simulate(self.law().plain, record, p, 0, self.decays[record].kept(), |before, samples, simulated| {
                 self.write_residuals(record, base + before, p, samples, simulated, residuals);
             })?;
         }
@@ -354,7 +364,7 @@ impl<F: Simulated> Residuals for RingDownProblem<'_, F> {
             for first in (0..self.layout.directions()).step_by(DIRECTIONS) {
                 let carried = (self.layout.directions() - first).min(DIRECTIONS);
                 let kept = self.decays[record].kept();
-                self.simulate::<Dual<DIRECTIONS>>(record, p, first, kept, |before, samples, simulated| {
+                self.simulate(self.law().with_derivatives, record, p, first, kept, |before, samples, simulated| {
                     if first == 0 && !residuals.is_empty() {
                         self.write_residuals(record, base + before, p, samples, simulated, residuals);
                     }
@@ -408,7 +418,7 @@ mod tests {
     #[test]
     fn derivatives_of_joint_records_are_those_of_differences() {
         let decays = decays();
-        let problem = RingDownProblem::<CoulombViscous>::new(Machine::per_unit_mass(), &decays).unwrap();
+        let problem = RingDownProblem::new::<CoulombViscous>(Machine::per_unit_mass(), &decays).unwrap();
         // Off the bounds, so that differences have room.
         let p: Vec<f64> = problem.starts()[0].iter().map(|value| value + 1e-3).collect();
         let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();

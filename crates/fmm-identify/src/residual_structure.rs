@@ -5,6 +5,7 @@ use std::ops::Range;
 use fmm_fit::{CorrelatedCovariance, EvaluationError, Fit, Residuals, autocorrelation_time};
 
 use crate::RingDown;
+use crate::correlation::{are_correlated, correlated_covariance};
 
 /// What the residuals of a fit look like beside the noise of the records.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,12 +22,6 @@ pub(crate) struct ResidualStructure {
 
 /// Above this ratio of residual to noise, and with neighbours that tell each other's value, a law misses something.
 const EXCESS: f64 = 1.5;
-/// Autocorrelation time (samples) below which residuals pass for independent.
-const INDEPENDENT: f64 = 3.0;
-/// Windows of this many correlation times lose little of the correlation,
-const WINDOW: f64 = 5.0;
-/// and with this many of them the covariance is known to about a third.
-const FEWEST_WINDOWS: usize = 8;
 
 impl ResidualStructure {
     pub(crate) fn of(fit: &Fit, decays: &[RingDown]) -> Self {
@@ -48,7 +43,7 @@ impl ResidualStructure {
     /// Whether neighbouring residuals tell each other's value: the law misses something, or a coarse converter rounds
     /// neighbours alike.
     pub(crate) fn is_correlated(&self) -> bool {
-        self.residual > self.rounding && self.autocorrelation_time > INDEPENDENT
+        self.residual > self.rounding && are_correlated(self.autocorrelation_time)
     }
 
     /// Whether the law misses something that the record shows.
@@ -83,9 +78,7 @@ impl<'a> Covariance<'a> {
                     start..end
                 })
                 .collect();
-            let longest = series.iter().map(Range::len).min().unwrap_or(0) / FEWEST_WINDOWS;
-            let span = ((WINDOW * structure.autocorrelation_time) as usize).min(longest).max(1);
-            correlated = CorrelatedCovariance::of(problem, fit, span, &series)?;
+            correlated = correlated_covariance(problem, fit, structure.autocorrelation_time, &series)?;
         }
         Ok(Self { fit, correlated })
     }
@@ -108,6 +101,12 @@ impl<'a> Covariance<'a> {
             (Some(correlated), Some(white)) if correlated > 0.0 => (white / correlated).max(1.0),
             _ => 1.0,
         }
+    }
+
+    /// Degrees of freedom of the covariance.
+    pub(crate) fn degrees_of_freedom(&self) -> f64 {
+        let independent = self.fit.degrees_of_freedom() as f64;
+        self.correlated.as_ref().map_or(independent, |covariance| covariance.degrees_of_freedom().min(independent))
     }
 
     /// Largest ratio of an uncertainty to that of independent residuals.

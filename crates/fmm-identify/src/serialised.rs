@@ -16,9 +16,12 @@ impl Serialize for Finding {
             Origin::Fitted(status) if status.is_at_bound() => "at_bound",
             Origin::Fitted(_) => "fitted",
         };
-        let mut document = serializer.serialize_struct("Finding", 4)?;
+        // An infinite number of them is null, as JSON has none.
+        let freedom = Some(self.degrees_of_freedom()).filter(|freedom| freedom.is_finite());
+        let mut document = serializer.serialize_struct("Finding", 5)?;
         document.serialize_field("value", &self.value())?;
         document.serialize_field("u", &self.uncertainty())?;
+        document.serialize_field("degrees_of_freedom", &freedom)?;
         document.serialize_field("unit", self.parameter().unit())?;
         document.serialize_field("status", status)?;
         document.end()

@@ -25,6 +25,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     assert!((mu.value() - 0.25).abs() < 1e-9, "μ = {}", mu.value());
     // Without noise only mass and load are uncertain: 0.25 · √((0.005/10.391)² + 0.001²).
     assert!((uncertainty - 2.774e-4).abs() < 1e-6, "u(μ) = {uncertainty}");
+    let (low, high) = mu.interval(0.95).ok_or("what is uncertain has an interval")?;
+    println!("μ lies between {low:.4} and {high:.4} with 95 %");
+    assert!((high - low - 2.0 * 1.96 * uncertainty).abs() < 1e-6, "{low} to {high}");
 
     #[cfg(feature = "serde")]
     {

@@ -8,28 +8,120 @@ use crate::{EvaluationError, Fit, Residuals};
 /// Covariance of the estimates of a fit whose residuals are correlated with their neighbours.
 ///
 /// ```text
-/// V = (JᵀJ)⁺ S (JᵀJ)⁺,     S = 1/b Σ_w g_w g_wᵀ,     g_w = Σ_{i ∈ w} Jᵢ rᵢ     over all windows w of b residuals
+/// V = A S A,     A = (JᵀJ)⁺,     S = n/(b W) Σ_w g_w g_wᵀ
+/// g_w = (1 − M_w A)⁻¹ Σ_{i ∈ w} Jᵢ rᵢ,     M_w = Σ_{i ∈ w} Jᵢ Jᵢᵀ     for W windows w of b of the n residuals
 /// ```
 ///
-/// The sums over overlapping windows are the long-run covariance of the scores Jᵢ rᵢ, with the triangular weights
-/// of Newey and West, in one pass over the residuals. It needs no model of the correlation and holds where the law
-/// misses something, as it takes the residuals as they are. It is too small if correlations last longer
+/// A g_w is how far the estimates move when the window is left out: the jackknife of overlapping windows. Without the factor
+/// before the sum it would be the long-run covariance of the scores Jᵢ rᵢ with the triangular weights of Newey and West, which
+/// is too small, as the parameters have followed the noise where it is slowest. It needs no model of the correlation and
+/// holds where the law misses something, as it takes the residuals as they are. It is too small if correlations last longer
 /// than a window, and uncertain by about √(b/n), so windows should be a few correlation times long and many.
 ///
 /// # References
+/// H. R. Künsch, Ann. Stat. 17 (1989) 1217, <https://doi.org/10.1214/aos/1176347265>;
 /// W. K. Newey, K. D. West, Econometrica 55 (1987) 703, <https://doi.org/10.2307/1913610>;
 /// M. S. Meketon, B. Schmeiser, "Overlapping batch means", Proc. Winter Simulation Conf. 1984, 226.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CorrelatedCovariance {
     count: usize,
+    degrees_of_freedom: f64,
     elements: Vec<Option<f64>>,
+}
+
+/// As many windows begin within the length of one, which is nearly as good as all.
+const OVERLAPPING: usize = 8;
+
+/// The sums over one window.
+struct Window {
+    /// Σ Jᵢ rᵢ.
+    score: Vec<f64>,
+    /// Σ Jᵢ Jᵢᵀ by rows.
+    information: Vec<f64>,
+    matrix: Vec<f64>,
+    moved: Vec<f64>,
+}
+
+impl Window {
+    fn new(order: usize) -> Self {
+        let zeros = |length| vec![0.0; length];
+        Self {
+            score: zeros(order),
+            information: zeros(order * order),
+            matrix: zeros(order * order),
+            moved: zeros(order),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.score.fill(0.0);
+        self.information.fill(0.0);
+    }
+
+    /// Adds a residual with its `row` of derivatives, or takes it out.
+    fn add(&mut self, row: &[f64], residual: f64, sign: f64) {
+        for ((score, information), a) in
+            self.score.iter_mut().zip(self.information.chunks_exact_mut(row.len())).zip(row)
+        {
+            *score += sign * a * residual;
+            information.iter_mut().zip(row).for_each(|(element, b)| *element += sign * a * b);
+        }
+    }
+
+    /// (1 − M A)⁻¹ Σ Jᵢ rᵢ, and the sum alone for a window without which not all of the parameters were determined.
+    fn without(&mut self, unit: &[f64]) -> &[f64] {
+        let order = self.score.len();
+        for (i, row) in self.matrix.chunks_exact_mut(order).enumerate() {
+            for (j, element) in row.iter_mut().enumerate() {
+                let products = (0..order).map(|k| self.information[i * order + k] * unit[k * order + j]);
+                *element = f64::from(i == j) - products.sum::<f64>();
+            }
+        }
+        self.moved.copy_from_slice(&self.score);
+        if !eliminate(&mut self.matrix, &mut self.moved) {
+            self.moved.copy_from_slice(&self.score);
+        }
+        &self.moved
+    }
+}
+
+/// Share of itself that a window may leave of what determines a direction.
+const LEAST_LEFT: f64 = 1e-3;
+
+/// Solves `matrix` x = `right` in place, by Gaussian elimination with the largest element of each column as pivot; false if a
+/// pivot is below [`LEAST_LEFT`].
+fn eliminate(matrix: &mut [f64], right: &mut [f64]) -> bool {
+    let order = right.len();
+    for column in 0..order {
+        let size = |row: &usize| matrix[row * order + column].abs();
+        let pivot = (column..order).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(column);
+        if !(size(&pivot) > LEAST_LEFT) {
+            return false;
+        }
+        if pivot != column {
+            right.swap(pivot, column);
+            (0..order).for_each(|j| matrix.swap(pivot * order + j, column * order + j));
+        }
+        for row in column + 1..order {
+            let factor = matrix[row * order + column] / matrix[column * order + column];
+            right[row] -= factor * right[column];
+            for j in column..order {
+                matrix[row * order + j] -= factor * matrix[column * order + j];
+            }
+        }
+    }
+    for row in (0..order).rev() {
+        let known: f64 = (row + 1..order).map(|j| matrix[row * order + j] * right[j]).sum();
+        right[row] = (right[row] - known) / matrix[row * order + row];
+    }
+    true
 }
 
 impl CorrelatedCovariance {
     /// Takes the residuals of `fit` to `problem` in windows of `span`; windows never reach from one of `series`
     /// into the next. The series are ranges of residuals, such as one per record.
     ///
-    /// None if the problem gives no derivatives of its own, or if no series holds a window.
+    /// None if the problem gives no derivatives of its own, if nothing is determined, or if no series holds a window.
     ///
     /// # Errors
     /// [`EvaluationError`] if the problem has no derivatives at the fitted values.
@@ -46,23 +138,43 @@ impl CorrelatedCovariance {
             return Ok(None);
         }
         let derivatives = structure.by_row(count);
-        let score = |i: usize, j: usize| derivatives.element(&jacobian, i, j) * fit.residuals()[i];
-        let mut middle = vec![0.0; count * count];
+        let inverse = |a: usize, b: usize| fit.unit_covariance(a, b);
+        let determined: Vec<usize> = (0..count).filter(|&j| inverse(j, j).is_some()).collect();
+        let order = determined.len();
+        if order == 0 {
+            return Ok(None);
+        }
+        // In units of the uncertainties, so that a pivot is a share.
+        let scales: Vec<f64> = determined.iter().map(|&j| inverse(j, j).unwrap_or(1.0).sqrt()).collect();
+        let scaled = determined.iter().zip(&scales);
+        let unit: Vec<f64> = scaled
+            .clone()
+            .flat_map(|(&a, u_a)| scaled.clone().map(move |(&b, u_b)| inverse(a, b).unwrap_or(0.0) / (u_a * u_b)))
+            .collect();
+        let mut window = Window::new(order);
+        let mut row = vec![0.0; order];
+        let mut middle = vec![0.0; order * order];
         let mut windows = 0usize;
+        let mut add = |window: &mut Window, i: usize, sign: f64| {
+            for (element, (&j, scale)) in row.iter_mut().zip(determined.iter().zip(&scales)) {
+                *element = scale * derivatives.element(&jacobian, i, j);
+            }
+            window.add(&row, fit.residuals()[i], sign);
+        };
         for range in series.iter().filter(|range| range.len() >= span && range.end <= rows) {
-            let mut window: Vec<f64> =
-                (0..count).map(|j| (range.start..range.start + span).map(|i| score(i, j)).sum()).collect();
+            window.clear();
+            (range.start..range.start + span).for_each(|i| add(&mut window, i, 1.0));
             for end in range.start + span..=range.end {
-                for (a, row) in middle.chunks_exact_mut(count).enumerate() {
-                    for (element, other) in row.iter_mut().zip(&window) {
-                        *element += window[a] * other;
+                if (end - range.start - span).is_multiple_of(span.div_ceil(OVERLAPPING)) {
+                    let moved = window.without(&unit);
+                    for (left, row) in moved.iter().zip(middle.chunks_exact_mut(order)) {
+                        row.iter_mut().zip(moved).for_each(|(element, right)| *element += left * right);
                     }
+                    windows += 1;
                 }
-                windows += 1;
                 if end < range.end {
-                    for (j, sum) in window.iter_mut().enumerate() {
-                        *sum += score(end, j) - score(end - span, j);
-                    }
+                    add(&mut window, end, 1.0);
+                    add(&mut window, end - span, -1.0);
                 }
             }
         }
@@ -70,29 +182,32 @@ impl CorrelatedCovariance {
             return Ok(None);
         }
         // Each window stands for `span` of the residuals, and the windows together for all of them.
-        let weight = fit.residuals().len() as f64 / (windows as f64 * span as f64);
-        let inverse = |a: usize, b: usize| fit.unit_covariance(a, b);
-        let determined: Vec<usize> = (0..count).filter(|&j| inverse(j, j).is_some()).collect();
+        let beside = fit.residuals().len() as f64 / span as f64;
+        let weight = beside / windows as f64;
         let mut elements = vec![None; count * count];
-        for &i in &determined {
-            for &j in &determined {
-                let mut sum = 0.0;
-                for &a in &determined {
-                    for &b in &determined {
-                        let (left, right) = (inverse(i, a).unwrap_or(0.0), inverse(b, j).unwrap_or(0.0));
-                        sum += left * middle[a * count + b] * right;
-                    }
-                }
-                elements[i * count + j] = Some(weight * sum);
+        let sandwich = |left: &[f64], right: &[f64]| -> f64 {
+            let rows = left.iter().zip(middle.chunks_exact(order));
+            rows.map(|(l, row)| l * row.iter().zip(right).map(|(m, r)| m * r).sum::<f64>()).sum()
+        };
+        for ((&i, u_i), left) in scaled.clone().zip(unit.chunks_exact(order)) {
+            for ((&j, u_j), right) in scaled.clone().zip(unit.chunks_exact(order)) {
+                elements[i * count + j] = Some(u_i * u_j * weight * sandwich(left, right));
             }
         }
-        Ok(Some(Self { count, elements }))
+        let degrees_of_freedom = 1.5 * (beside - fit.rank() as f64).max(1.0);
+        Ok(Some(Self { count, degrees_of_freedom, elements }))
     }
 
     /// Covariance of the estimates of parameters `i` and `j`, in the product of their units; none where the fit has
     /// none.
     pub fn covariance(&self, i: usize, j: usize) -> Option<f64> {
         if i < self.count && j < self.count { self.elements[i * self.count + j] } else { None }
+    }
+
+    /// ν, by which the covariance is known (1): that of the variance of a mean from overlapping windows of b of n residuals,
+    /// about 3/2 (n/b - p) after a fit of p parameters (Meketon and Schmeiser have n/b - 1 for a mean), at least 3/2.
+    pub fn degrees_of_freedom(&self) -> f64 {
+        self.degrees_of_freedom
     }
 
     /// Standard uncertainty of the estimate of parameter `i`, in its unit.
@@ -166,6 +281,38 @@ mod tests {
                 assert!((factor / expected - 1.0).abs() < 0.2, "φ = {correlation}: {factor} against {expected}");
             }
         }
+    }
+
+    /// Windows beside each other, each left out of the fit in turn: the estimates move by what the sums say.
+    #[test]
+    fn windows_are_left_out() {
+        let problem = Line { data: line(0.5).data[..12].to_vec(), ..line(0.0) };
+        let fit = solve(&problem, &[0.1, 0.1], &Options::default()).unwrap();
+        let mut jacobian = vec![0.0; 24];
+        assert!(problem.jacobian(fit.values(), &mut jacobian).unwrap());
+        let unit = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(a, b)| fit.unit_covariance(a, b).unwrap());
+        for start in [0, 4, 8] {
+            let mut window = Window::new(2);
+            (start..start + 4).for_each(|i| window.add(&[jacobian[i], jacobian[12 + i]], fit.residuals()[i], 1.0));
+            let moved = window.without(&unit);
+            let moved = [unit[0] * moved[0] + unit[1] * moved[1], unit[2] * moved[0] + unit[3] * moved[1]];
+            // The line through the others, by its normal equations.
+            let (mut sums, mut right) = ([0.0; 4], [0.0; 2]);
+            for i in (0..12).filter(|i| !(start..start + 4).contains(i)) {
+                let (t, y) = (jacobian[12 + i], problem.data[i]);
+                sums.iter_mut().zip([1.0, t, t, t * t]).for_each(|(sum, term)| *sum += term);
+                right.iter_mut().zip([y, t * y]).for_each(|(sum, term)| *sum += term);
+            }
+            assert!(eliminate(&mut sums, &mut right));
+            for ((without, with), moved) in right.iter().zip(fit.values()).zip(moved) {
+                assert!((without - with - moved).abs() < 1e-12, "{without} from {with}, not by {moved}");
+            }
+        }
+        // Without the one window that holds everything nothing is left.
+        let mut all = Window::new(2);
+        (0..12).for_each(|i| all.add(&[jacobian[i], jacobian[12 + i]], fit.residuals()[i] + 1.0, 1.0));
+        let score = all.score.clone();
+        assert_eq!(all.without(&unit), score);
     }
 
     #[test]

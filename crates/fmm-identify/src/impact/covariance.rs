@@ -2,31 +2,21 @@
 
 use std::ops::Range;
 
-use fmm_fit::{
-    Block, CorrelatedCovariance, EvaluationError, Fit, PropagatedCovariance, Residuals, Sensitivity,
-    autocorrelation_time,
-};
-use fmm_sim::Simulated;
+use fmm_fit::{Block, EvaluationError, Fit, PropagatedCovariance, Residuals, Sensitivity, autocorrelation_time};
 
+use crate::correlation::{are_correlated, correlated_covariance};
 use crate::impact::lines::Scratch;
 use crate::impact::parameters::LOAD;
 use crate::impact::{ImpactDomain, ImpactProblem};
 
-/// Neighbouring samples that tell more than this of each other are not independent,
-const INDEPENDENT: f64 = 3.0;
-/// windows of this many correlation times lose little of the correlation,
-const WINDOW: f64 = 5.0;
-/// and with this many of them the covariance is known to about a third.
-const FEWEST_WINDOWS: usize = 8;
 /// What rounding makes of a noise-free velocity, relative to the largest.
 const ROUNDING: f64 = 1e-9;
 
 /// Covariance of the estimates of a fit of blows, by origin.
 pub(crate) struct ImpactCovariance {
     count: usize,
-    degrees_of_freedom: f64,
     /// By the noise of the velocity.
-    random: Vec<Option<f64>>,
+    random: Random,
     /// How the estimates follow what was held, and its covariance.
     sensitivity: Option<Sensitivity>,
     inputs: Vec<f64>,
@@ -36,35 +26,27 @@ pub(crate) struct ImpactCovariance {
     /// Root mean square of the residuals, and what noise and the uncertainty of the impulses make of them (m/s).
     pub(crate) residual: f64,
     pub(crate) expected: f64,
+}
+
+/// Covariance of the estimates by the noise of the velocity.
+struct Random {
+    elements: Vec<Option<f64>>,
+    degrees_of_freedom: f64,
     /// Factor by which correlated residuals widen the largest uncertainty over that of independent ones.
-    pub(crate) inflation: f64,
+    inflation: f64,
 }
 
 impl ImpactCovariance {
     /// Of a `fit` of `problem`, whose forces share a calibration of relative uncertainty `calibration`.
-    pub(crate) fn of<F: Simulated>(
-        problem: ImpactProblem<'_, F>,
-        fit: &Fit,
-        calibration: f64,
-    ) -> Result<Self, EvaluationError> {
+    pub(crate) fn of(problem: ImpactProblem<'_>, fit: &Fit, calibration: f64) -> Result<Self, EvaluationError> {
         let count = fit.values().len();
         let residual = (fit.sum_of_squares() / fit.residuals().len() as f64).sqrt();
-        let (random, inflation) = random(&problem, fit)?;
+        let random = Random::of(&problem, fit)?;
         let problem = problem.with_derivatives_by_inputs();
         let expected = expected_residual(&problem, fit)?;
         let inputs = input_covariance(&problem, calibration);
-        let mut covariance = Self {
-            count,
-            degrees_of_freedom: fit.degrees_of_freedom() as f64,
-            random,
-            sensitivity: None,
-            propagated: None,
-            unpropagated: None,
-            residual,
-            expected,
-            inflation,
-            inputs,
-        };
+        let mut covariance =
+            Self { count, random, sensitivity: None, propagated: None, unpropagated: None, residual, expected, inputs };
         if covariance.inputs.iter().any(|element| *element > 0.0) {
             let sensitivity = Sensitivity::first_order(&problem, fit);
             let propagated = sensitivity.and_then(|sensitivity| {
@@ -86,29 +68,27 @@ impl ImpactCovariance {
     }
 
     /// Variance of the estimate of parameter `index`: by noise, and in all.
-    fn variances(&self, index: usize) -> Option<(f64, f64)> {
-        let random = self.random[index * self.count + index].filter(|_| self.is_known())?;
+    pub(crate) fn variances(&self, index: usize) -> Option<(f64, f64)> {
+        let random = self.random.elements[index * self.count + index].filter(|_| self.is_known())?;
         let inputs = self.propagated.as_ref().and_then(|propagated| propagated.covariance(index, index));
         Some((random, random + inputs.unwrap_or(0.0)))
     }
 
-    /// Standard uncertainty of parameter `index`.
-    pub(crate) fn uncertainty(&self, index: usize) -> Option<f64> {
-        self.variances(index).map(|(_, variance)| variance.sqrt())
+    /// Degrees of freedom of the variances by noise.
+    pub(crate) fn degrees_of_freedom(&self) -> f64 {
+        self.random.degrees_of_freedom
     }
 
-    /// Degrees of freedom of [`uncertainty`](Self::uncertainty) by Welch and Satterthwaite, that of the inputs being known
-    /// (JCGM 100:2008, G.4.1).
-    pub(crate) fn degrees_of_freedom(&self, index: usize) -> f64 {
-        let ratio = self.variances(index).map_or(1.0, |(random, all)| if random > 0.0 { all / random } else { 1.0 });
-        self.degrees_of_freedom * ratio * ratio
+    /// Factor by which correlated residuals widen the largest uncertainty over that of independent ones.
+    pub(crate) fn inflation(&self) -> f64 {
+        self.random.inflation
     }
 
-    /// Standard uncertainty of the product of the normal load and parameter `index`, of `values`, if the load was held.
-    pub(crate) fn uncertainty_times_load(&self, index: usize, values: &[f64]) -> Option<f64> {
-        let (random, _) = self.variances(index)?;
+    /// Variance of the product of the normal load and parameter `index`, of `values`, if the load was held: by noise, and in all.
+    pub(crate) fn variances_times_load(&self, index: usize, values: &[f64]) -> Option<(f64, f64)> {
         let load = values[LOAD];
-        let mut variance = load * load * random;
+        let random = load * load * self.variances(index)?.0;
+        let mut variance = random;
         if let Some(sensitivity) = &self.sensitivity {
             let inputs = sensitivity.inputs();
             let slope = |input: usize| {
@@ -120,37 +100,44 @@ impl ImpactCovariance {
                 variance += row.iter().zip(&slopes).map(|(element, b)| a * element * b).sum::<f64>();
             }
         }
-        Some(variance.max(0.0).sqrt())
+        Some((random, variance.max(random)))
     }
 }
 
-/// The fitted covariance as noise alone makes it, and the widening for correlation.
-fn random<F: Simulated>(problem: &ImpactProblem<'_, F>, fit: &Fit) -> Result<(Vec<Option<f64>>, f64), EvaluationError> {
-    let count = fit.values().len();
-    let independent = |i: usize, j: usize| fit.relaxed_covariance(i, j).or_else(|| fit.covariance(i, j));
-    match problem.domain() {
-        ImpactDomain::Both => return Ok((of_both(problem, fit)?, 1.0)),
-        ImpactDomain::Mobility => (),
-        ImpactDomain::Time => {
-            let speed = problem.trials().iter().map(|trial| trial.summary().speed).fold(0.0, f64::max);
-            let deviation = fit.residual_standard_deviation().unwrap_or(0.0);
-            let time = autocorrelation_time(fit.residuals()).unwrap_or(1.0);
-            if deviation > ROUNDING * speed && time > INDEPENDENT {
-                let series = series(problem.blocks());
-                let longest = series.iter().map(Range::len).min().unwrap_or(0) / FEWEST_WINDOWS;
-                let span = ((WINDOW * time) as usize).min(longest).max(1);
-                if let Some(correlated) = CorrelatedCovariance::of(problem, fit, span, &series)? {
-                    let ratio = |i: usize| Some((correlated.covariance(i, i)? / independent(i, i)?).max(1.0).sqrt());
-                    let ratios: Vec<f64> = (0..count).map(|i| ratio(i).unwrap_or(1.0)).collect();
-                    let widened =
-                        |e: usize| Some(independent(e / count, e % count)? * ratios[e / count] * ratios[e % count]);
-                    let widest = ratios.iter().copied().fold(1.0, f64::max);
-                    return Ok(((0..count * count).map(widened).collect(), widest));
+impl Random {
+    /// The fitted covariance as noise alone makes it, widened where neighbouring samples are alike.
+    fn of(problem: &ImpactProblem<'_>, fit: &Fit) -> Result<Self, EvaluationError> {
+        let count = fit.values().len();
+        let independent = |i: usize, j: usize| fit.relaxed_covariance(i, j).or_else(|| fit.covariance(i, j));
+        let mut random = Self {
+            elements: (0..count * count).map(|element| independent(element / count, element % count)).collect(),
+            degrees_of_freedom: fit.degrees_of_freedom() as f64,
+            inflation: 1.0,
+        };
+        match problem.domain() {
+            ImpactDomain::Both => random.elements = of_both(problem, fit)?,
+            ImpactDomain::Mobility => (),
+            ImpactDomain::Time => {
+                let speed = problem.trials().iter().map(|trial| trial.summary().speed).fold(0.0, f64::max);
+                let deviation = fit.residual_standard_deviation().unwrap_or(0.0);
+                let time = autocorrelation_time(fit.residuals()).unwrap_or(1.0);
+                if !(deviation > ROUNDING * speed && are_correlated(time)) {
+                    return Ok(random);
                 }
+                let Some(correlated) = correlated_covariance(problem, fit, time, &series(problem.blocks()))? else {
+                    return Ok(random);
+                };
+                let ratio = |i: usize| Some((correlated.covariance(i, i)? / independent(i, i)?).max(1.0).sqrt());
+                let ratios: Vec<f64> = (0..count).map(|i| ratio(i).unwrap_or(1.0)).collect();
+                for (index, element) in random.elements.iter_mut().enumerate() {
+                    *element = element.map(|covariance| covariance * ratios[index / count] * ratios[index % count]);
+                }
+                random.degrees_of_freedom = correlated.degrees_of_freedom().min(random.degrees_of_freedom);
+                random.inflation = ratios.iter().copied().fold(1.0, f64::max);
             }
         }
+        Ok(random)
     }
-    Ok(((0..count * count).map(|element| independent(element / count, element % count)).collect(), 1.0))
 }
 
 /// The residuals of each trial.
@@ -171,7 +158,7 @@ fn series(blocks: &[Block]) -> Vec<Range<usize>> {
 /// T and L are the derivatives of samples and lines, and B makes lines of samples; e is white noise. A band
 /// that holds all that a parameter changes has L = BT and LᵀL = TᵀT, and V is that of the samples alone. σ² is the larger of what
 /// samples and lines show, as a misfit shows least diluted in the lines.
-fn of_both<F: Simulated>(problem: &ImpactProblem<'_, F>, fit: &Fit) -> Result<Vec<Option<f64>>, EvaluationError> {
+fn of_both(problem: &ImpactProblem<'_>, fit: &Fit) -> Result<Vec<Option<f64>>, EvaluationError> {
     let count = fit.values().len();
     let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
     let mut jacobian = vec![0.0; elements];
@@ -225,7 +212,7 @@ fn of_both<F: Simulated>(problem: &ImpactProblem<'_, F>, fit: &Fit) -> Result<Ve
 }
 
 /// Root mean square of the residuals (m/s) that the noise of the velocity and the uncertainty of each impulse bring about.
-fn expected_residual<F: Simulated>(problem: &ImpactProblem<'_, F>, fit: &Fit) -> Result<f64, EvaluationError> {
+fn expected_residual(problem: &ImpactProblem<'_>, fit: &Fit) -> Result<f64, EvaluationError> {
     let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
     let mut jacobian = vec![0.0; elements];
     problem.jacobian(fit.values(), &mut jacobian)?;
@@ -245,7 +232,7 @@ fn expected_residual<F: Simulated>(problem: &ImpactProblem<'_, F>, fit: &Fit) ->
 }
 
 /// Covariance of what is held, in the order of the parameters.
-fn input_covariance<F: Simulated>(problem: &ImpactProblem<'_, F>, calibration: f64) -> Vec<f64> {
+fn input_covariance(problem: &ImpactProblem<'_>, calibration: f64) -> Vec<f64> {
     let layout = problem.layout();
     let held: Vec<usize> = (0..layout.all.len()).filter(|index| layout.is_held(*index)).collect();
     let is_gain = |index: usize| index >= layout.shared && (index - layout.shared).is_multiple_of(2);

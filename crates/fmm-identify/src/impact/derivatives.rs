@@ -42,7 +42,7 @@ fn compare_with_differences<F: Simulated>(law: &[f64]) {
     let trials = trials();
     for domain in [ImpactDomain::Mobility, ImpactDomain::Time, ImpactDomain::Both] {
         let options = ImpactOptions::default().within(0.5, 20.0).unwrap().fitting(domain);
-        let problem = ImpactProblem::<F>::new(&machine(), &trials, &options).unwrap().with_derivatives_by_inputs();
+        let problem = ImpactProblem::new::<F>(&machine(), &trials, &options).unwrap().with_derivatives_by_inputs();
         let mut p = problem.layout().values.clone();
         p[LAW..LAW + law.len()].copy_from_slice(law);
         // Gains and an offset that are not the trivial ones.

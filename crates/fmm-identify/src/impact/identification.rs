@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use fmm_fit::{EvaluationError, Fit, coverage_factor};
+use fmm_fit::{EvaluationError, Fit};
 use fmm_friction::{Coulomb, Role};
 use fmm_model::Parameter;
 use fmm_sim::Simulated;
@@ -11,32 +11,27 @@ use crate::finding::{Finding, Origin};
 use crate::identification::{FittedMotion, best_fit};
 use crate::impact::covariance::ImpactCovariance;
 use crate::impact::parameters::{DAMPING, LAW, LOAD, MASS, RESPONSE_GAIN, STIFFNESS};
+use crate::impact::problem::ImpactLaw;
 use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactProblem, ImpactSummary, ImpactTrial, warnings};
-use crate::layout::{fitted, named};
+use crate::layout::named;
 use crate::{IdentifyError, Warning};
-
-/// What the model says for the velocity of one trial, given its machine, all trials and the fitted values.
-type ModelOf = fn(&ImpactMachine, &[ImpactTrial], &ImpactOptions, usize, &[f64]) -> Option<Vec<f64>>;
 
 /// Friction parameters of one law out of blows, with their uncertainty and what limits them.
 ///
 /// `Display` gives the report.
 #[derive(Debug, Clone)]
 pub struct ImpactIdentification {
-    law: String,
+    law: ImpactLaw,
     machine: ImpactMachine,
     options: ImpactOptions,
     fit: Fit,
     findings: Vec<Finding>,
-    /// Degrees of freedom of the uncertainty of each finding.
-    degrees_of_freedom: Vec<f64>,
     trials: Vec<ImpactSummary>,
     motions: Vec<FittedMotion>,
     closed_forms: Vec<Option<f64>>,
     warnings: Vec<Warning>,
     residual: f64,
     expected: f64,
-    model: ModelOf,
 }
 
 /// Identifies the parameters of law family `F` from blows on one machine.
@@ -86,9 +81,19 @@ pub fn identify_impact<F: Simulated>(
     trials: &[ImpactTrial],
     options: &ImpactOptions,
 ) -> Result<ImpactIdentification, IdentifyError> {
-    let problem = ImpactProblem::<F>::new(machine, trials, options)?;
+    identify_by(ImpactLaw::of::<F>(), machine, trials, options)
+}
+
+fn identify_by(
+    law: ImpactLaw,
+    machine: &ImpactMachine,
+    trials: &[ImpactTrial],
+    options: &ImpactOptions,
+) -> Result<ImpactIdentification, IdentifyError> {
+    let problem = ImpactProblem::of(law, machine, trials, options)?;
     let fit = fit_in_stages(&problem, options)?;
-    let failure = |error: EvaluationError| IdentifyError::Simulation { law: F::NAME, message: error.to_string() };
+    let failure =
+        |error: EvaluationError| IdentifyError::Simulation { law: problem.law().name, message: error.to_string() };
     let motion = |trial: usize| {
         let trajectory = problem.motion(trial, fit.values())?;
         Ok(FittedMotion::of_events(trials[trial].summary().begin, trials[trial].interval(), &trajectory))
@@ -97,101 +102,85 @@ pub fn identify_impact<F: Simulated>(
     let closed_forms = (0..trials.len()).map(|trial| problem.closed_form(trial)).collect();
     let covariance =
         ImpactCovariance::of(problem.fitting(options.domain), &fit, options.force_gain_uncertainty).map_err(failure)?;
-    let (findings, degrees_of_freedom) = findings(&problem, &fit, &covariance);
-    let level = fitted::<F>().position(|parameter| parameter.role() == Role::Level);
-    let friction = level.map(|level| fit.values()[LOAD] * fit.values()[LAW + level]);
+    let findings = findings(&problem, &fit, &covariance);
+    let friction = problem.law().level().map(|level| fit.values()[LOAD] * fit.values()[LAW + level]);
     let warnings = warnings::of(&fit, &covariance, trials, &motions, friction);
     Ok(ImpactIdentification {
-        law: F::NAME.to_owned(),
+        law,
         machine: *machine,
         options: options.clone(),
         fit,
         findings,
-        degrees_of_freedom,
         trials: trials.iter().map(|trial| trial.summary().clone()).collect(),
         motions,
         closed_forms,
         warnings,
         residual: covariance.residual,
         expected: covariance.expected,
-        model: |machine, trials, options, trial, p| {
-            ImpactProblem::<F>::new(machine, trials, options).ok()?.model(trial, p).ok()
-        },
     })
 }
 
 /// Searches in the band, where residuals are few, and ends in the domain asked for.
-fn fit_in_stages<F: Simulated>(problem: &ImpactProblem<'_, F>, options: &ImpactOptions) -> Result<Fit, IdentifyError> {
+fn fit_in_stages(problem: &ImpactProblem<'_>, options: &ImpactOptions) -> Result<Fit, IdentifyError> {
     let mut observe = |_: &fmm_fit::Progress<'_>| ControlFlow::Continue(());
     let mut coefficient = problem.coefficient_without_fit();
     let band = problem.fitting(ImpactDomain::Mobility);
-    if fitted::<F>().count() > 1 {
+    let name = problem.law().name;
+    if problem.law().fitted().count() > 1 {
         // The best dry friction is a better begin for other laws than the closed form, which has errors of its own.
         let dry = ImpactOptions { band: options.band, ..ImpactOptions::default() };
-        let dry = ImpactProblem::<Coulomb>::new(problem.machine(), problem.trials(), &dry)?;
-        if let Ok(fit) = best_fit(
-            &dry,
-            <Coulomb as fmm_friction::LawFamily>::NAME,
-            dry.starts(coefficient),
-            &options.solver,
-            &mut observe,
-        ) {
+        let dry = ImpactProblem::new::<Coulomb>(problem.machine(), problem.trials(), &dry)?;
+        if let Ok(fit) = best_fit(&dry, dry.law().name, dry.starts(coefficient), &options.solver, &mut observe) {
             coefficient = fit.values()[LAW];
         }
     }
     let starts = problem.starts(coefficient);
-    let found = best_fit(&band, F::NAME, starts.clone(), &options.solver, &mut observe);
+    let found = best_fit(&band, name, starts.clone(), &options.solver, &mut observe);
     match (problem.domain(), found) {
         (ImpactDomain::Mobility, found) => found,
-        (_, Ok(found)) => best_fit(problem, F::NAME, vec![found.values().to_vec()], &options.solver, &mut observe),
+        (_, Ok(found)) => best_fit(problem, name, vec![found.values().to_vec()], &options.solver, &mut observe),
         // A band of few lines may not determine what the time record does.
-        (_, Err(_)) => best_fit(problem, F::NAME, starts, &options.solver, &mut observe),
+        (_, Err(_)) => best_fit(problem, name, starts, &options.solver, &mut observe),
     }
 }
 
-/// What was found and what was held of the machine, then what follows; with the degrees of freedom of each uncertainty.
-fn findings<F: Simulated>(
-    problem: &ImpactProblem<'_, F>,
-    fit: &Fit,
-    covariance: &ImpactCovariance,
-) -> (Vec<Finding>, Vec<f64>) {
+/// What was found and what was held of the machine, then what follows.
+fn findings(problem: &ImpactProblem<'_>, fit: &Fit, covariance: &ImpactCovariance) -> Vec<Finding> {
     let layout = problem.layout();
     let mut findings = Vec::new();
-    let mut degrees = Vec::new();
+    let freedom = covariance.degrees_of_freedom();
     let law = LAW..layout.shared;
     let machine = [DAMPING, MASS, STIFFNESS, LOAD];
     let others = std::iter::once(RESPONSE_GAIN).chain(layout.shared..layout.all.len());
     let others = others.filter(|&index| !layout.is_held(index));
     for index in law.clone().chain(machine).chain(others) {
         let estimate = &fit.estimates()[index];
-        let uncertainty = if layout.is_held(index) {
-            problem.known(index).map(|known| known.uncertainty())
+        let variances = if layout.is_held(index) {
+            problem.known(index).map(|known| (0.0, known.uncertainty().powi(2)))
         } else {
-            covariance.uncertainty(index)
+            covariance.variances(index)
         };
         let (parameter, origin) = (estimate.parameter().clone(), Origin::Fitted(estimate.status()));
-        findings.push(Finding::new(parameter, estimate.value(), uncertainty, origin, index >= layout.shared));
-        degrees.push(covariance.degrees_of_freedom(index));
+        findings.push(Finding::new(parameter, estimate.value(), variances, freedom, origin, index >= layout.shared));
     }
     let is_one = |index: usize| layout.values[index] == 1.0 && layout.uncertainties[index] == 0.0;
     if layout.is_held(LOAD) && !is_one(LOAD) {
-        for (index, parameter) in law.zip(fitted::<F>()) {
+        for (index, parameter) in law.zip(problem.law().fitted()) {
             if matches!(parameter.role(), Role::Level | Role::Excess) && parameter.parameter().unit() == "1" {
                 let value = fit.values()[LOAD] * fit.values()[index];
-                let uncertainty = covariance.uncertainty_times_load(index, fit.values());
+                let variances = covariance.variances_times_load(index, fit.values());
                 let force: Parameter = named(parameter.parameter(), "friction_force", "N");
-                findings.push(Finding::new(force, value, uncertainty, Origin::Derived, false));
-                degrees.push(covariance.degrees_of_freedom(index));
+                findings.push(Finding::new(force, value, variances, freedom, Origin::Derived, false));
             }
         }
     }
-    (findings, degrees)
+    findings
 }
 
 impl ImpactIdentification {
     /// Name of the law.
-    pub fn law(&self) -> &str {
-        &self.law
+    pub fn law(&self) -> &'static str {
+        self.law.name()
     }
 
     /// What was known of the machine.
@@ -219,17 +208,9 @@ impl ImpactIdentification {
         self.findings.iter().find(|finding| finding.parameter().name() == name)
     }
 
-    /// The interval that covers the finding of this name with probability `level`, by Student's t with the effective degrees of
-    /// freedom of its uncertainty (JCGM 100:2008, G.4); none for what has no uncertainty, was held, or a level outside (0, 1).
+    /// The interval that covers the finding of this name with probability `level`, [`Finding::interval`].
     pub fn interval(&self, name: &str, level: f64) -> Option<(f64, f64)> {
-        let index = self.findings.iter().position(|finding| finding.parameter().name() == name)?;
-        let (value, u) = (self.findings[index].value(), self.findings[index].uncertainty()?);
-        let is_held = self.findings[index].origin() == Origin::Fitted(fmm_fit::EstimateStatus::Fixed);
-        if is_held {
-            return None;
-        }
-        let reach = u * coverage_factor(level, self.degrees_of_freedom[index])?;
-        Some((value - reach, value + reach))
+        self.finding(name)?.interval(level)
     }
 
     /// What each trial is and what was done to it.
@@ -266,8 +247,10 @@ impl ImpactIdentification {
     /// Velocity (m/s) that the law gives for every sample of `trial`, which must be one of the `trials` of the identification;
     /// none for another number.
     pub fn model(&self, trials: &[ImpactTrial], trial: usize) -> Option<Vec<f64>> {
-        (trial < trials.len() && trials.len() == self.trials.len())
-            .then(|| (self.model)(&self.machine, trials, &self.options, trial, self.fit.values()))
-            .flatten()
+        if trial >= trials.len() || trials.len() != self.trials.len() {
+            return None;
+        }
+        let problem = ImpactProblem::of(self.law, &self.machine, trials, &self.options).ok()?;
+        problem.model(trial, self.fit.values()).ok()
     }
 }

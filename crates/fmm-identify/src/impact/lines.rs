@@ -1,13 +1,10 @@
 //! The lines of a discrete transform that lie in a band.
 
 use std::f64::consts::TAU;
-use std::fmt;
 use std::ops::Range;
-use std::sync::Arc;
 
 use fmm_fit::EvaluationError;
-use realfft::num_complex::Complex64;
-use realfft::{RealFftPlanner, RealToComplex};
+use fmm_frf::{Complex64, RealTransform};
 
 use crate::IdentifyError;
 
@@ -16,12 +13,11 @@ use crate::IdentifyError;
 /// ```text
 /// R_k = √(2/n) Σ_j r_j e^{−2πi jk/n},   0 < k < n/2:    var Re R_k = var Im R_k = var r
 /// ```
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub(crate) struct Lines {
-    length: usize,
+    plan: RealTransform,
     rate: f64,
     range: Range<usize>,
-    plan: Arc<dyn RealToComplex<f64>>,
 }
 
 /// Memory for a transform.
@@ -32,21 +28,11 @@ pub(crate) struct Scratch {
     working: Vec<Complex64>,
 }
 
-impl fmt::Debug for Lines {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Lines").field("length", &self.length).field("range", &self.range).finish_non_exhaustive()
-    }
-}
-
 impl Lines {
-    /// The lines of records of `length` samples at `rate` (Hz) within `band` (Hz). The line of zero frequency and that of half the
+    /// The lines of records that `plan` is for, sampled at `rate` (Hz), within `band` (Hz). The line of zero frequency and that of half the
     /// rate, which have no imaginary part, are left out.
-    pub(crate) fn new(
-        planner: &mut RealFftPlanner<f64>,
-        length: usize,
-        rate: f64,
-        band: (f64, f64),
-    ) -> Result<Self, IdentifyError> {
+    pub(crate) fn new(plan: RealTransform, rate: f64, band: (f64, f64)) -> Result<Self, IdentifyError> {
+        let length = plan.length();
         let position = |frequency: f64| frequency * length as f64 / rate;
         // Rounding must not drop a line that is asked for by name.
         let first = (position(band.0) * (1.0 - 1e-9)).ceil().max(1.0) as usize;
@@ -55,7 +41,7 @@ impl Lines {
         if lines.is_empty() {
             return Err(IdentifyError::NoLine { low: band.0, high: band.1, spacing: rate / length as f64 });
         }
-        Ok(Self { length, rate, range: lines, plan: planner.plan_fft_forward(length) })
+        Ok(Self { plan, rate, range: lines })
     }
 
     /// How many residuals the lines make: real and imaginary part of each.
@@ -65,11 +51,11 @@ impl Lines {
 
     /// Frequencies (Hz).
     pub(crate) fn frequencies(&self) -> impl Iterator<Item = f64> + '_ {
-        self.range.clone().map(|line| line as f64 * self.rate / self.length as f64)
+        self.range.clone().map(|line| line as f64 * self.rate / self.plan.length() as f64)
     }
 
     fn scale(&self) -> f64 {
-        (2.0 / self.length as f64).sqrt()
+        (2.0 / self.plan.length() as f64).sqrt()
     }
 
     /// Writes real and imaginary part of each line of `series`, which begins with sample `begin` of a record that is zero
@@ -83,11 +69,9 @@ impl Lines {
     ) -> Result<(), EvaluationError> {
         let Scratch { samples, spectrum, working } = memory;
         samples.clear();
-        samples.resize(self.length, 0.0);
+        samples.resize(self.plan.length(), 0.0);
         samples[begin..begin + series.len()].copy_from_slice(series);
-        spectrum.resize(self.length / 2 + 1, Complex64::default());
-        working.resize(self.plan.get_scratch_len(), Complex64::default());
-        self.plan.process_with_scratch(samples, spectrum, working)?;
+        self.plan.run(samples, spectrum, working)?;
         let scale = self.scale();
         for (pair, line) in rows.chunks_exact_mut(2).zip(&spectrum[self.range.clone()]) {
             pair.copy_from_slice(&[line.re * scale, line.im * scale]);
@@ -97,10 +81,10 @@ impl Lines {
 
     /// The same for a series of few samples, line by line.
     pub(crate) fn transform_short(&self, begin: usize, series: &[f64]) -> Vec<f64> {
-        let scale = self.scale();
+        let (length, scale) = (self.plan.length(), self.scale());
         let value = |line: usize| {
             // The product is reduced by the length first, so that large indices lose nothing.
-            let angle = |index: usize| -TAU * ((line * (begin + index)) % self.length) as f64 / self.length as f64;
+            let angle = |index: usize| -TAU * ((line * (begin + index)) % length) as f64 / length as f64;
             let terms = series.iter().enumerate();
             terms.fold(Complex64::default(), |sum, (i, value)| sum + Complex64::from_polar(*value, angle(i))) * scale
         };
@@ -116,7 +100,7 @@ mod tests {
     fn both_transforms_agree_and_keep_the_energy() {
         // A length with an odd prime factor, and all its lines but those without an imaginary part.
         let length = 2 * 3 * 7 * 11;
-        let lines = Lines::new(&mut RealFftPlanner::new(), length, 1.0, (0.0, 1.0)).unwrap();
+        let lines = Lines::new(RealTransform::new(length), 1.0, (0.0, 1.0)).unwrap();
         assert_eq!(lines.rows(), length - 2);
         let series: Vec<f64> = (0..40).map(|i| f64::from((i * 7919) % 101) / 101.0 - 0.5).collect();
         let mut fast = vec![0.0; lines.rows()];
@@ -135,7 +119,8 @@ mod tests {
 
     #[test]
     fn a_band_without_lines_is_refused() {
-        let lines = |low, high| Lines::new(&mut RealFftPlanner::new(), 330_000, 10_000.0, (low, high));
+        let plan = RealTransform::new(330_000);
+        let lines = |low, high| Lines::new(plan.clone(), 10_000.0, (low, high));
         assert_eq!(lines(1.0, 4.0).unwrap().rows(), 2 * 100);
         assert!((lines(1.0, 4.0).unwrap().frequencies().next().unwrap() - 1.0).abs() < 1e-12);
         for (low, high) in [(0.001, 0.02), (6000.0, 7000.0), (1.001, 1.01)] {

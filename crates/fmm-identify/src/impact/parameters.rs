@@ -2,11 +2,11 @@
 
 use std::borrow::Cow;
 
-use fmm_friction::{LawFamily, Role};
+use fmm_friction::Role;
 use fmm_model::{Bounds, Parameter};
 
 use crate::impact::{ImpactMachine, ImpactOptions};
-use crate::layout::fitted;
+use crate::law::Law;
 use crate::{IdentifyError, Known};
 
 /// Indices of the parameters before those of the law.
@@ -40,7 +40,8 @@ pub(crate) struct Parameters {
 }
 
 impl Parameters {
-    pub(crate) fn of<F: LawFamily>(
+    pub(crate) fn of(
+        law: &Law,
         machine: &ImpactMachine,
         trials: usize,
         options: &ImpactOptions,
@@ -50,7 +51,7 @@ impl Parameters {
         let gain = options.response_gain_uncertainty;
         let mut uncertainties: Vec<f64> = known.iter().map(Known::uncertainty).chain([gain]).collect();
         let mut all = SHARED.to_vec();
-        for law_parameter in fitted::<F>() {
+        for law_parameter in law.fitted() {
             let parameter = law_parameter.parameter();
             let name = match law_parameter.role() {
                 Role::LevelAbove => parameter.name().replace("coefficient", "excess_coefficient"),
@@ -79,17 +80,17 @@ impl Parameters {
             uncertainties.extend([0.0, 0.0]);
         }
         let mut parameters = Self { all, values, uncertainties, shared };
-        parameters.hold::<F>(options)?;
+        parameters.hold(law, options)?;
         Ok(parameters)
     }
 
     /// Narrows the bounds of what is held.
-    fn hold<F: LawFamily>(&mut self, options: &ImpactOptions) -> Result<(), IdentifyError> {
+    fn hold(&mut self, law: &Law, options: &ImpactOptions) -> Result<(), IdentifyError> {
         let mut is_held: Vec<bool> = (0..self.all.len()).map(|index| !(LAW..self.shared).contains(&index)).collect();
         for name in &options.free {
             let indices = self.named(name)?;
-            if indices == [DAMPING] && F::PARAMETERS.iter().any(|parameter| parameter.role() == Role::Slope) {
-                return Err(IdentifyError::TwoDampings { law: F::NAME });
+            if indices == [DAMPING] && law.has_slope() {
+                return Err(IdentifyError::TwoDampings { law: law.name });
             }
             for index in indices {
                 is_held[index] = false;

@@ -1,21 +1,21 @@
 //! The least-squares problem of blows: these trials by that law.
 
-use std::marker::PhantomData;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use fmm_fit::{Block, EvaluationError, Residuals};
+use fmm_frf::RealTransform;
 use fmm_model::{Damping, Dual, Oscillator, Parameter, Scalar};
-use fmm_sim::{Channels, Excitation, Sampling, Scenario, Simulated, Trajectory};
-use realfft::RealFftPlanner;
+use fmm_sim::{Channels, Excitation, Sampling, Simulated, Trajectory};
 
 use crate::impact::lines::{Lines, Scratch};
 use crate::impact::parameters::{LAW, Parameters, RESPONSE_GAIN};
 use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactTrial};
-use crate::layout::law_values;
+use crate::law::{DIRECTIONS as MANY, Law, Motion, Simulate};
 use crate::pool::Pool;
 use crate::{IdentifyError, Known};
 
-/// The residuals "model less measurement" of one or several blows by a law of family `F`, with exact derivatives.
+/// The residuals "model less measurement" of one or several blows by a law, with exact derivatives.
 ///
 /// The machine rests in the force-free position, held by friction, until the measured force, joined by straight lines between its
 /// samples, breaks it loose; the motion is followed through every reversal to where it stops. What is compared is said by
@@ -28,7 +28,8 @@ use crate::{IdentifyError, Known};
 ///
 /// [`identify_impact`](crate::identify_impact) is what most want.
 #[derive(Debug)]
-pub struct ImpactProblem<'a, F> {
+pub struct ImpactProblem<'a> {
+    law: ImpactLaw,
     machine: ImpactMachine,
     trials: &'a [ImpactTrial],
     parameters: Parameters,
@@ -39,12 +40,29 @@ pub struct ImpactProblem<'a, F> {
     blocks: Vec<Block>,
     is_complete: bool,
     idle: Pool<Memory>,
-    family: PhantomData<F>,
 }
 
-/// Directions of derivative that one simulation carries, if no more are wanted and if so.
+/// Directions of derivative that one simulation carries if no more are wanted; [`MANY`] if so.
 const FEW: usize = 2;
-const MANY: usize = 6;
+
+/// A law with its simulation in few directions.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ImpactLaw {
+    law: Law,
+    with_few: Simulate<Dual<FEW>>,
+}
+
+impl ImpactLaw {
+    /// Family `F`.
+    pub(crate) const fn of<F: Simulated>() -> Self {
+        Self { law: Law::of::<F>(), with_few: Motion::simulate::<F> }
+    }
+
+    /// Name of the law.
+    pub(crate) fn name(&self) -> &'static str {
+        self.law.name
+    }
+}
 
 /// The numbers of a simulation before those of the law: mass, stiffness, damping, load.
 const MACHINE: usize = 4;
@@ -61,14 +79,23 @@ struct Memory {
 /// Band unless one is given, in natural frequencies.
 const BAND: (f64, f64) = (0.5, 2.0);
 
-impl<'a, F: Simulated> ImpactProblem<'a, F> {
-    /// The problem of `trials` on `machine`.
+impl<'a> ImpactProblem<'a> {
+    /// The problem of `trials` on `machine` by a law of family `F`.
     ///
     /// # Errors
     /// [`IdentifyError::NoRecord`], [`IdentifyError::NoLine`], [`IdentifyError::UnknownParameter`],
     /// [`IdentifyError::HeldOutOfBounds`], and [`IdentifyError::TwoDampings`] if the damping is to be found beside a law that has
     /// a viscous part.
-    pub fn new(
+    pub fn new<F: Simulated>(
+        machine: &ImpactMachine,
+        trials: &'a [ImpactTrial],
+        options: &ImpactOptions,
+    ) -> Result<Self, IdentifyError> {
+        Self::of(ImpactLaw::of::<F>(), machine, trials, options)
+    }
+
+    pub(crate) fn of(
+        law: ImpactLaw,
         machine: &ImpactMachine,
         trials: &'a [ImpactTrial],
         options: &ImpactOptions,
@@ -76,7 +103,7 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
         if trials.is_empty() {
             return Err(IdentifyError::NoRecord);
         }
-        let mut parameters = Parameters::of::<F>(machine, trials.len(), options)?;
+        let mut parameters = Parameters::of(&law.law, machine, trials.len(), options)?;
         for (trial, of_trial) in trials.iter().enumerate() {
             let (index, summary) = (parameters.gain(trial), of_trial.summary());
             parameters.uncertainties[index] = (summary.impulse.uncertainty / summary.impulse.value).abs();
@@ -84,18 +111,24 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
         }
         let natural = machine.natural_frequency_hz();
         let band = options.band.unwrap_or((BAND.0 * natural, BAND.1 * natural));
-        let mut planner = RealFftPlanner::new();
-        let of_trial =
-            |trial: &ImpactTrial| Lines::new(&mut planner, trial.velocity().len(), trial.summary().rate, band);
+        // Trials are often of one length.
+        let mut plans = BTreeMap::new();
+        let of_trial = |trial: &ImpactTrial| {
+            let length = trial.velocity().len();
+            let plan = plans.entry(length).or_insert_with(|| RealTransform::new(length));
+            Lines::new(plan.clone(), trial.summary().rate, band)
+        };
         let lines = trials.iter().map(of_trial).collect::<Result<Vec<Lines>, _>>()?;
         let mut scratch = Scratch::default();
         let spectrum = |(lines, trial): (&Lines, &ImpactTrial)| {
             let mut rows = vec![0.0; lines.rows()];
             let done = lines.transform(0, trial.velocity(), &mut scratch, &mut rows);
-            done.map(|()| rows).map_err(|error| IdentifyError::Simulation { law: F::NAME, message: error.to_string() })
+            done.map(|()| rows)
+                .map_err(|error| IdentifyError::Simulation { law: law.law.name, message: error.to_string() })
         };
         let spectra = lines.iter().zip(trials).map(spectrum).collect::<Result<Vec<_>, _>>()?;
         let mut problem = Self {
+            law,
             machine: *machine,
             trials,
             parameters,
@@ -105,7 +138,6 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
             blocks: Vec::new(),
             is_complete: false,
             idle: Pool::default(),
-            family: PhantomData,
         };
         problem.blocks = problem.blocks_of_trials();
         Ok(problem)
@@ -114,6 +146,7 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
     /// The same problem in another domain.
     pub(crate) fn fitting(&self, domain: ImpactDomain) -> Self {
         let mut other = Self {
+            law: self.law,
             machine: self.machine,
             trials: self.trials,
             parameters: self.parameters.clone(),
@@ -123,7 +156,6 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
             blocks: Vec::new(),
             is_complete: self.is_complete,
             idle: Pool::default(),
-            family: PhantomData,
         };
         other.blocks = other.blocks_of_trials();
         other
@@ -145,6 +177,10 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
     /// Frequencies (Hz) of the lines of `trial` that lie in the band; none for a trial that is not there.
     pub fn frequencies(&self, trial: usize) -> impl Iterator<Item = f64> + '_ {
         self.lines.get(trial).into_iter().flat_map(Lines::frequencies)
+    }
+
+    pub(crate) fn law(&self) -> &Law {
+        &self.law.law
     }
 
     pub(crate) fn machine(&self) -> &ImpactMachine {
@@ -188,10 +224,11 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
         if number < MACHINE { number } else { LAW + number - MACHINE }
     }
 
-    /// Simulates `trial` from the begin of its blow on, with derivatives by the numbers of a simulation in `directions`, as far as
+    /// Simulates `trial` by `simulate` from the begin of its blow on, with derivatives by the numbers of a simulation in `directions`, as far as
     /// its residuals need it.
     fn simulate<D: Scalar>(
         &self,
+        simulate: Simulate<D>,
         trial: usize,
         p: &[f64],
         directions: &[usize],
@@ -205,14 +242,19 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
         };
         let oscillator = Oscillator::new(number(0), number(1))?.with_damping(Damping::linear(number(2))?);
         let law: Vec<D> = (LAW..self.parameters.shared).map(|index| number(index - LAW + MACHINE)).collect();
-        let scenario = Scenario::new(oscillator, F::at(&law_values::<F, D>(&law))?, number(3))?;
         let trial = &self.trials[trial];
-        let scenario = scenario.driven_by(Excitation::sampled_force(trial.interval(), trial.shared_force())?);
+        let scenario = Motion {
+            oscillator,
+            law: self.law().values(&law),
+            normal_load: number(3),
+            initial: [D::from(0.0); 2],
+            force: Some(Excitation::sampled_force(trial.interval(), trial.shared_force())?),
+        };
         let (motion, all) = (trial.motion().len(), trial.velocity().len() - trial.begin());
         let sampling = Sampling::uniform(trial.interval(), all)?.keeping(Channels::Velocity);
-        F::simulate_into(&scenario, &sampling.window(0..motion).unwrap_or_else(|| sampling.clone()), trajectory)?;
+        simulate(&scenario, &sampling.window(0..motion).unwrap_or_else(|| sampling.clone()), trajectory)?;
         if self.domain != ImpactDomain::Time && motion < all && trajectory.rest().is_none() {
-            F::simulate_into(&scenario, &sampling, trajectory)?;
+            simulate(&scenario, &sampling, trajectory)?;
         }
         Ok(())
     }
@@ -264,14 +306,14 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
     /// Residuals and columns of `trial` from a simulation with derivatives in `directions`.
     fn differentiate<const N: usize>(
         &self,
+        (simulate, trajectory): (Simulate<Dual<N>>, &mut Trajectory<Dual<N>>),
         trial: usize,
         p: &[f64],
         directions: &[usize],
-        trajectory: &mut Trajectory<Dual<N>>,
         (scratch, rows): (&mut Scratch, &mut Vec<f64>),
         (residuals, columns): (&mut [f64], &mut [f64]),
     ) -> Result<(), EvaluationError> {
-        self.simulate(trial, p, directions, trajectory)?;
+        self.simulate(simulate, trial, p, directions, trajectory)?;
         let simulated = trajectory.velocity();
         let count = self.blocks[trial].rows();
         let (gain, response_gain) = (p[self.parameters.gain(trial)], p[RESPONSE_GAIN]);
@@ -297,7 +339,7 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
     /// [`EvaluationError`] if the motion cannot be simulated with values `p`.
     pub(crate) fn model(&self, trial: usize, p: &[f64]) -> Result<Vec<f64>, EvaluationError> {
         let mut trajectory = Trajectory::<f64>::new();
-        self.simulate(trial, p, &[], &mut trajectory)?;
+        self.simulate(self.law().plain, trial, p, &[], &mut trajectory)?;
         let mut model = vec![0.0; self.trials[trial].velocity().len()];
         let simulated = trajectory.velocity().values().iter();
         for (out, value) in model[self.trials[trial].begin()..].iter_mut().zip(simulated) {
@@ -309,7 +351,7 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
     /// The motion of `trial`, with its events counted from the begin of the blow.
     pub(crate) fn motion(&self, trial: usize, p: &[f64]) -> Result<Trajectory, EvaluationError> {
         let mut trajectory = Trajectory::new();
-        self.simulate(trial, p, &[], &mut trajectory)?;
+        self.simulate(self.law().plain, trial, p, &[], &mut trajectory)?;
         Ok(trajectory)
     }
 
@@ -319,7 +361,7 @@ impl<'a, F: Simulated> ImpactProblem<'a, F> {
     }
 }
 
-impl<F: Simulated> Residuals for ImpactProblem<'_, F> {
+impl Residuals for ImpactProblem<'_> {
     fn parameters(&self) -> &[Parameter] {
         &self.parameters.all
     }
@@ -333,7 +375,7 @@ impl<F: Simulated> Residuals for ImpactProblem<'_, F> {
             let mut rest = residuals;
             for (trial, block) in self.blocks.iter().enumerate() {
                 let (own, others) = rest.split_at_mut(block.rows());
-                self.simulate(trial, p, &[], plain)?;
+                self.simulate(self.law().plain, trial, p, &[], plain)?;
                 self.observe(trial, plain.velocity().values(), scratch, rows)?;
                 self.write_residuals(trial, p, rows, own);
                 rest = others;
@@ -360,10 +402,12 @@ impl<F: Simulated> Residuals for ImpactProblem<'_, F> {
                 let (columns, further) = elements.split_at_mut(block.rows() * block.parameters().len());
                 let directions = self.directions(trial);
                 if directions.len() <= FEW {
-                    self.differentiate(trial, p, &directions, few, (scratch, rows), (own, columns))?;
+                    let run = (self.law.with_few, &mut *few);
+                    self.differentiate(run, trial, p, &directions, (scratch, rows), (own, columns))?;
                 } else {
                     for directions in directions.chunks(MANY) {
-                        self.differentiate(trial, p, directions, many, (scratch, rows), (own, columns))?;
+                        let run = (self.law().with_derivatives, &mut *many);
+                        self.differentiate(run, trial, p, directions, (scratch, rows), (own, columns))?;
                     }
                 }
                 let (samples, _) = self.rows(trial);

@@ -3,19 +3,17 @@
 use std::f64::consts::{PI, TAU};
 
 use fmm_frf::{SingleDegreeOfFreedom, friction_force_of_coulomb_impact, friction_force_of_viscous_coulomb_impact};
-use fmm_friction::{LawParameter, Role};
-use fmm_sim::Simulated;
+use fmm_friction::LawParameter;
 
 use crate::dimension::{Scales, bends, is_force};
 use crate::impact::ImpactProblem;
 use crate::impact::parameters::{DAMPING, LAW};
-use crate::layout::fitted;
 
 /// Damping ratio with which an unknown damping begins, and share of the friction that a viscous part begins with.
 const DAMPING_RATIO: f64 = 1e-3;
 const VISCOUS_SHARE: f64 = 0.1;
 
-impl<F: Simulated> ImpactProblem<'_, F> {
+impl ImpactProblem<'_> {
     /// Height (m/N) of the peak of the measured receptance of `trial` in the band; none for a trial that is not there.
     ///
     /// Of a record that ends before the motion it is too low.
@@ -66,8 +64,8 @@ impl<F: Simulated> ImpactProblem<'_, F> {
         let machine = self.machine();
         let angular = TAU * machine.natural_frequency_hz();
         let speed = self.trials().iter().map(|trial| trial.summary().speed).fold(0.0, f64::max);
-        let has_level = fitted::<F>().any(|parameter| is_force(parameter.role()));
-        let has_slope = fitted::<F>().any(|parameter| parameter.role() == Role::Slope);
+        let has_level = self.law().fitted().any(|parameter| is_force(parameter.role()));
+        let has_slope = self.law().has_slope();
         // A damper and Coulomb friction lose the same in a swing if F = π/4 c V, and V falls from the largest to zero.
         let as_damping = coefficient * 4.0 / PI / (0.5 * speed);
         let shares: &[f64] = match (has_level, has_slope) {
@@ -75,7 +73,7 @@ impl<F: Simulated> ImpactProblem<'_, F> {
             (true, false) => &[0.0],
             (false, _) => &[1.0],
         };
-        let sharpnesses: &[f64] = if fitted::<F>().any(bends) { &[1.0, 8.0, 0.125] } else { &[1.0] };
+        let sharpnesses: &[f64] = if self.law().fitted().any(bends) { &[1.0, 8.0, 0.125] } else { &[1.0] };
         let layout = self.layout();
         let mut starts = Vec::new();
         for (share, sharpness) in shares.iter().flat_map(|share| sharpnesses.iter().map(move |s| (*share, *s))) {
@@ -91,7 +89,7 @@ impl<F: Simulated> ImpactProblem<'_, F> {
                 start[DAMPING] = 2.0 * DAMPING_RATIO * machine.mass().value() * angular;
             }
             let typical = |parameter: &LawParameter| scales.typical(parameter);
-            for (index, parameter) in (LAW..).zip(fitted::<F>()) {
+            for (index, parameter) in (LAW..).zip(self.law().fitted()) {
                 start[index] = typical(parameter);
             }
             let clamped = start.iter().zip(&layout.all).map(|(value, parameter)| parameter.bounds().clamp(*value));

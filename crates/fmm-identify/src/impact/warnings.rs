@@ -37,7 +37,7 @@ pub(crate) fn of(
             residual: covariance.residual,
             noise: covariance.expected,
             unit: "m/s".to_owned(),
-            inflation: covariance.inflation,
+            inflation: covariance.inflation(),
         });
     }
     warnings.extend(Warning::of_narrow_stop(motions));

@@ -1,12 +1,15 @@
-//! How often 95 % intervals contain the truth under white noise.
+//! How often 95 % intervals contain the truth.
 
-use fmm_fit::{Fit, Options, solve};
+use fmm_fit::{Fit, Options, coverage_factor, solve};
 use fmm_friction::{AccelerationCoulomb, Berger, Coulomb, Stribeck};
-use fmm_identify::{Candidate, Machine, RingDown, RingDownProblem, Terms, compare};
+use fmm_identify::{Candidate, Identification, Known, Machine, RingDown, RingDownProblem, Terms, compare, identify};
 use fmm_model::{Damping, Oscillator};
 use fmm_sim::Simulated;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
 
-use crate::records::{RELEASES, expected, machine, noisy, velocity};
+use crate::records::{LOAD, NOISE, RELEASES, expected, machine, noisy, prepared, velocity};
 
 /// Of 300 intervals 95 ± 1.3 % contain the truth by chance alone.
 const SEEDS: u64 = 300;
@@ -42,7 +45,7 @@ fn decays(motions: &[Vec<f64>], seed: u64) -> Vec<RingDown> {
 
 /// The fit of law `F` from the true `start`: that it is found from elsewhere is not the question here.
 fn fitted<F: Simulated>(decays: &[RingDown], terms: &Terms, shared: &[f64], releases: &[f64]) -> Fit {
-    let problem = RingDownProblem::<F>::with_terms(Machine::per_unit_mass(), terms.clone(), decays).unwrap();
+    let problem = RingDownProblem::with_terms::<F>(Machine::per_unit_mass(), terms.clone(), decays).unwrap();
     let own = releases.iter().flat_map(|release| [*release, 0.0, 0.0]);
     let start: Vec<f64> = shared.iter().copied().chain(own).collect();
     solve(&problem, &start, &Options::default()).unwrap()
@@ -102,4 +105,65 @@ fn quadratic_damping() {
     covers(&["quadratic_damping_per_mass", "friction_per_mass"], &[QUADRATIC, friction], |seed| {
         fitted::<Coulomb>(&decays(&motions, seed), &terms, &with_frequency([QUADRATIC, friction]), &RELEASES[2..])
     });
+}
+
+/// Share of seeds whose interval of `name` contains `truth`.
+fn share(name: &str, truth: f64, identify: impl Fn(u64) -> Identification) -> f64 {
+    let inside = (0..SEEDS).filter(|seed| {
+        let (low, high) = identify(*seed).interval(name, LEVEL).unwrap();
+        (low..=high).contains(&truth)
+    });
+    inside.count() as f64 / SEEDS as f64
+}
+
+/// A normal load that is measured anew for every record, to as much as the noise of the record leaves.
+#[test]
+fn coefficient_under_an_uncertain_load() {
+    const RELATIVE: f64 = 3e-4;
+    let motions = motions::<Coulomb>(machine(), &[0.2], &RELEASES[1..2]);
+    let identified = |seed: u64| {
+        let error: f64 = StandardNormal.sample(&mut ChaCha8Rng::seed_from_u64(50_000 + seed));
+        let load = Known::new(LOAD * (1.0 + RELATIVE * error), RELATIVE * LOAD).unwrap();
+        let machine = Machine::of_mass(Known::exact(machine().mass()).unwrap()).unwrap();
+        identify::<Coulomb>(&machine.with_normal_load(load).unwrap(), &decays(&motions, seed)).unwrap()
+    };
+    let share = share("mu", 0.2, identified);
+    assert!((0.92..=0.98).contains(&share), "{share} of the intervals of mu contain the truth");
+
+    // The load is known: what it adds to the variance makes the whole better known by the square of that.
+    let found = identified(0);
+    let (mu, force) = (found.finding("mu").unwrap(), found.finding("friction_force").unwrap());
+    let relative = |finding: &fmm_identify::Finding| finding.uncertainty().unwrap() / finding.value();
+    let load = found.machine().normal_load().unwrap();
+    assert!((relative(mu) / relative(force).hypot(load.uncertainty() / load.value()) - 1.0).abs() < 1e-9);
+    assert_eq!(force.degrees_of_freedom(), found.fit().degrees_of_freedom() as f64);
+    let freedom = force.degrees_of_freedom() * (relative(mu) / relative(force)).powi(4);
+    assert!((mu.degrees_of_freedom() / freedom - 1.0).abs() < 1e-9, "{}", mu.degrees_of_freedom());
+    let (low, high) = mu.interval(LEVEL).unwrap();
+    let reach = coverage_factor(LEVEL, freedom).unwrap() * mu.uncertainty().unwrap();
+    assert!((high - mu.value() - reach).abs() < 1e-12 && (mu.value() - low - reach).abs() < 1e-12);
+    assert_eq!(mu.interval(1.0), None);
+    assert_eq!(found.interval("coefficient of rolling", LEVEL), None);
+}
+
+/// Noise of which each sample remembers 0.9 of the one before it, as behind a filter.
+#[test]
+fn friction_under_correlated_noise() {
+    const MEMORY: f64 = 0.9;
+    let values = [0.2];
+    let clean = velocity::<Coulomb>(machine(), &values, RELEASES[1], SAMPLES);
+    let identified = |seed: u64| {
+        let mut noise = 0.0;
+        let steps = StandardNormal.sample_iter(ChaCha8Rng::seed_from_u64(70_000 + seed));
+        let record = clean.iter().zip(steps).map(|(velocity, step): (&f64, f64)| {
+            noise = MEMORY * noise + (1.0 - MEMORY * MEMORY).sqrt() * NOISE * step;
+            velocity + noise
+        });
+        identify::<Coulomb>(&Machine::per_unit_mass(), &[prepared(record.collect())]).unwrap()
+    };
+    let share = share("friction_per_mass", expected::<Coulomb>(&values)[0], identified);
+    assert!((0.92..=0.98).contains(&share), "{share} of the intervals contain the truth");
+    let found = identified(0);
+    let freedom = found.finding("friction_per_mass").unwrap().degrees_of_freedom();
+    assert!(freedom < 0.1 * found.fit().degrees_of_freedom() as f64, "{freedom} degrees of freedom");
 }

@@ -1,0 +1,80 @@
+//! The discrete Fourier transform of real samples.
+
+use std::fmt;
+use std::sync::Arc;
+
+use num_complex::Complex64;
+use realfft::{RealFftPlanner, RealToComplex};
+
+use crate::FrfError;
+
+/// The discrete Fourier transform of real samples of one length.
+///
+/// ```text
+/// X_k = Σ_j x_j e^{−2πi jk/n},   0 ≤ k ≤ n/2
+/// ```
+///
+/// It is planned once for as many records as have that length, and copies share the plan. Any length will do, but primes are slow.
+///
+/// ```
+/// use fmm_frf::RealTransform;
+///
+/// let transform = RealTransform::new(4);
+/// let (mut spectrum, mut scratch) = (Vec::new(), Vec::new());
+/// transform.run(&mut [1.0, 2.0, 3.0, 2.0], &mut spectrum, &mut scratch)?;
+/// let expected = [(8.0, 0.0), (-2.0, 0.0), (0.0, 0.0)];
+/// assert!(spectrum.iter().zip(expected).all(|(line, (re, im))| line.re == re && line.im == im));
+/// # Ok::<(), fmm_frf::FrfError>(())
+/// ```
+#[derive(Clone)]
+pub struct RealTransform {
+    plan: Arc<dyn RealToComplex<f64>>,
+}
+
+impl RealTransform {
+    /// The transform of `length` samples.
+    pub fn new(length: usize) -> Self {
+        Self { plan: RealFftPlanner::new().plan_fft_forward(length) }
+    }
+
+    /// How many samples it takes.
+    pub fn length(&self) -> usize {
+        self.plan.len()
+    }
+
+    /// How many lines it gives: those from zero frequency to half the rate.
+    pub fn lines(&self) -> usize {
+        self.length() / 2 + 1
+    }
+
+    /// Memory in which it works.
+    pub(crate) fn scratch(&self) -> Vec<Complex64> {
+        self.plan.make_scratch_vec()
+    }
+
+    /// Writes the lines of `samples`, which are lost, to `spectrum`, in the unit of the samples; `scratch` is memory, and both
+    /// are used again.
+    ///
+    /// # Errors
+    /// [`FrfError::TransformLength`] for another number of samples.
+    pub fn run(
+        &self,
+        samples: &mut [f64],
+        spectrum: &mut Vec<Complex64>,
+        scratch: &mut Vec<Complex64>,
+    ) -> Result<(), FrfError> {
+        let wrong_length = FrfError::TransformLength { expected: self.length(), found: samples.len() };
+        if samples.len() != self.length() {
+            return Err(wrong_length);
+        }
+        spectrum.resize(self.lines(), Complex64::default());
+        scratch.resize(self.plan.get_scratch_len(), Complex64::default());
+        self.plan.process_with_scratch(samples, spectrum, scratch).map_err(|_| wrong_length)
+    }
+}
+
+impl fmt::Debug for RealTransform {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("RealTransform").field("length", &self.length()).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,90 @@
+//! A law family as a value: what must know its type is the simulation alone, and all else is compiled once for all laws.
+
+use fmm_fit::EvaluationError;
+use fmm_friction::{LawParameter, Role};
+use fmm_model::{Dual, Oscillator, Scalar};
+use fmm_sim::{Excitation, Sampling, Scenario, Simulated, Trajectory};
+
+/// Directions of derivative that one simulation carries; a law with more parameters takes several.
+pub(crate) const DIRECTIONS: usize = 6;
+
+/// A motion of which everything is said but what the values of the law mean.
+#[derive(Debug, Clone)]
+pub(crate) struct Motion<D> {
+    pub(crate) oscillator: Oscillator<D>,
+    /// One value per parameter of the law.
+    pub(crate) law: Vec<D>,
+    pub(crate) normal_load: D,
+    /// Position and velocity at the begin.
+    pub(crate) initial: [D; 2],
+    pub(crate) force: Option<Excitation<D>>,
+}
+
+impl<D: Scalar> Motion<D> {
+    /// Simulates it by family `F`.
+    pub(crate) fn simulate<F: Simulated>(
+        &self,
+        sampling: &Sampling,
+        trajectory: &mut Trajectory<D>,
+    ) -> Result<(), EvaluationError> {
+        let scenario = Scenario::new(self.oscillator, F::at(&self.law)?, self.normal_load)?;
+        let mut scenario = scenario.starting_at(self.initial[0], self.initial[1])?;
+        if let Some(force) = &self.force {
+            scenario = scenario.driven_by(force.clone());
+        }
+        Ok(F::simulate_into(&scenario, sampling, trajectory)?)
+    }
+}
+
+/// The simulation of a motion by one family.
+pub(crate) type Simulate<D> = fn(&Motion<D>, &Sampling, &mut Trajectory<D>) -> Result<(), EvaluationError>;
+
+/// Name, parameters and simulations of a law family.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Law {
+    pub(crate) name: &'static str,
+    pub(crate) parameters: &'static [LawParameter],
+    pub(crate) plain: Simulate<f64>,
+    pub(crate) with_derivatives: Simulate<Dual<DIRECTIONS>>,
+}
+
+impl Law {
+    /// Family `F`.
+    pub(crate) const fn of<F: Simulated>() -> Self {
+        Self {
+            name: F::NAME,
+            parameters: F::PARAMETERS,
+            plain: Motion::simulate::<F>,
+            with_derivatives: Motion::simulate::<F>,
+        }
+    }
+
+    /// The parameters that a record is fitted by: all but static levels, on which the motion depends only in where it stops.
+    /// They are held at the sliding level that precedes them.
+    pub(crate) fn fitted(&self) -> impl Iterator<Item = &'static LawParameter> + use<> {
+        self.parameters.iter().filter(|parameter| parameter.role() != Role::Breakaway)
+    }
+
+    /// The place of its first level among the [`fitted`](Self::fitted) parameters.
+    pub(crate) fn level(&self) -> Option<usize> {
+        self.fitted().position(|parameter| parameter.role() == Role::Level)
+    }
+
+    /// Whether it has a viscous part.
+    pub(crate) fn has_slope(&self) -> bool {
+        self.parameters.iter().any(|parameter| parameter.role() == Role::Slope)
+    }
+
+    /// Values for all parameters from those of the [`fitted`](Self::fitted) ones: static levels are put in, and a level that may
+    /// not lie below another is that with what it is above it.
+    pub(crate) fn values<D: Scalar>(&self, fitted: &[D]) -> Vec<D> {
+        let level = self.level().map_or(D::from(0.0), |level| fitted[level]);
+        let mut values = fitted.iter();
+        let value = |parameter: &LawParameter| match parameter.role() {
+            Role::Breakaway => Some(level),
+            Role::LevelAbove => values.next().map(|excess| level + *excess),
+            _ => values.next().copied(),
+        };
+        self.parameters.iter().filter_map(value).collect()
+    }
+}
