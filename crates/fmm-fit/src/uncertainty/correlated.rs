@@ -280,6 +280,11 @@ mod tests {
                 let expected = ((1.0 + correlation) / (1.0f64 - correlation)).sqrt();
                 assert!((factor / expected - 1.0).abs() < 0.2, "φ = {correlation}: {factor} against {expected}");
             }
+            // The ends of a line move against each other: −√3/2 for its value at one end and its slope, with any noise.
+            let [across, back] = [(0, 1), (1, 0)].map(|(i, j)| found.covariance(i, j).unwrap());
+            let deviations: f64 = (0..2).map(|i| found.standard_uncertainty(i).unwrap()).product();
+            assert!((across / back - 1.0).abs() < 1e-9, "{across} and {back}");
+            assert!((across / deviations + 0.75f64.sqrt()).abs() < 0.06, "correlation {}", across / deviations);
         }
     }
 
