@@ -4,6 +4,7 @@ use crate::problem::block::{ByRow, Scratch};
 use crate::solver::evaluation::{Evaluator, Linearised};
 use crate::solver::spectrum::Spectrum;
 use crate::solver::triangle::Triangle;
+use crate::uncertainty::definite::{add_square, inverse, quadratic_form};
 use crate::{Fit, Residuals, Robust};
 
 /// The covariance of the estimates of `fit` to `problem`, as a square matrix over all parameters; none where a
@@ -90,7 +91,7 @@ impl Coordinates {
             self.row(&derivatives, jacobian, i, &mut row);
             add_square(&mut bread, &row, loss.slope(problem.square(*r)));
         }
-        let inverse = inverse_of_definite(&bread, rank)?;
+        let inverse = inverse(&bread, rank)?;
         let mut meat = vec![0.0; rank * rank];
         for (i, r) in residuals.iter().enumerate() {
             self.row(&derivatives, jacobian, i, &mut row);
@@ -119,72 +120,5 @@ impl Coordinates {
             }
         }
         Some((self.columns, covariance))
-    }
-}
-
-/// Adds `weight · row rowᵀ`.
-fn add_square(matrix: &mut [f64], row: &[f64], weight: f64) {
-    for (line, a) in matrix.chunks_exact_mut(row.len()).zip(row) {
-        for (element, b) in line.iter_mut().zip(row) {
-            *element += weight * a * b;
-        }
-    }
-}
-
-/// `leftᵀ M right`.
-fn quadratic_form(matrix: &[f64], left: &[f64], right: &[f64]) -> f64 {
-    let lines = matrix.chunks_exact(right.len());
-    lines.zip(left).map(|(line, a)| a * line.iter().zip(right).map(|(m, b)| m * b).sum::<f64>()).sum()
-}
-
-/// The inverse of a symmetric matrix of order of magnitude one by Cholesky; none unless it is positive definite.
-fn inverse_of_definite(matrix: &[f64], order: usize) -> Option<Vec<f64>> {
-    let mut factor = matrix.to_vec();
-    for j in 0..order {
-        for i in j..order {
-            let sum: f64 = (0..j).map(|k| factor[i * order + k] * factor[j * order + k]).sum();
-            let rest = matrix[i * order + j] - sum;
-            if i == j {
-                if !(rest > 1e-12 * matrix[j * order + j].abs()) {
-                    return None;
-                }
-                factor[j * order + j] = rest.sqrt();
-            } else {
-                factor[i * order + j] = rest / factor[j * order + j];
-            }
-        }
-    }
-    let mut inverse = vec![0.0; order * order];
-    for column in inverse.chunks_exact_mut(order).enumerate() {
-        let (c, x) = column;
-        for i in 0..order {
-            let sum: f64 = (0..i).map(|k| factor[i * order + k] * x[k]).sum();
-            x[i] = (f64::from(i == c) - sum) / factor[i * order + i];
-        }
-        for i in (0..order).rev() {
-            let sum: f64 = (i + 1..order).map(|k| factor[k * order + i] * x[k]).sum();
-            x[i] = (x[i] - sum) / factor[i * order + i];
-        }
-    }
-    Some(inverse)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn inverses_are_inverses_and_indefinite_matrices_have_none() {
-        let matrix = [2.0, 0.5, -0.3, 0.5, 1.0, 0.2, -0.3, 0.2, 0.7];
-        let inverse = inverse_of_definite(&matrix, 3).unwrap();
-        for i in 0..3 {
-            for j in 0..3 {
-                let product: f64 = (0..3).map(|k| matrix[3 * i + k] * inverse[3 * k + j]).sum();
-                // A few operations on numbers of order one.
-                assert!((product - f64::from(i == j)).abs() < 1e-15 * 16.0, "element ({i}, {j}): {product}");
-            }
-        }
-        assert_eq!(inverse_of_definite(&[1.0, 2.0, 2.0, 1.0], 2), None);
-        assert_eq!(inverse_of_definite(&[0.0], 1), None);
     }
 }

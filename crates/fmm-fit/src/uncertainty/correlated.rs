@@ -3,17 +3,17 @@
 use std::ops::Range;
 
 use crate::problem::block::Structure;
+use crate::uncertainty::definite::{self, add_square, factor, inverse};
 use crate::{EvaluationError, Fit, Residuals};
 
 /// Covariance of the estimates of a fit whose residuals are correlated with their neighbours.
 ///
 /// ```text
-/// V = A S A,     A = (JᵀJ)⁺,     S = n/(b W) Σ_w g_w g_wᵀ
-/// g_w = (1 − M_w A)⁻¹ Σ_{i ∈ w} Jᵢ rᵢ,     M_w = Σ_{i ∈ w} Jᵢ Jᵢᵀ     for W windows w of b of the n residuals
+/// V = n/(b W) Σ_w m_w m_wᵀ,     m_w = (JᵀJ − Σ_{i ∈ w} Jᵢ Jᵢᵀ)⁻¹ Σ_{i ∈ w} Jᵢ rᵢ     for W windows w of b of the n residuals
 /// ```
 ///
-/// A g_w is how far the estimates move when the window is left out: the jackknife of overlapping windows. Without the factor
-/// before the sum it would be the long-run covariance of the scores Jᵢ rᵢ with the triangular weights of Newey and West, which
+/// m_w is how far the estimates move when the window is left out: the jackknife of overlapping windows. With the inverse of
+/// the whole JᵀJ it would be the long-run covariance of the scores Jᵢ rᵢ with the triangular weights of Newey and West, which
 /// is too small, as the parameters have followed the noise where it is slowest. It needs no model of the correlation and
 /// holds where the law misses something, as it takes the residuals as they are. It is too small if correlations last longer
 /// than a window, and uncertain by about √(b/n), so windows should be a few correlation times long and many.
@@ -36,21 +36,13 @@ const OVERLAPPING: usize = 8;
 struct Window {
     /// Σ Jᵢ rᵢ.
     score: Vec<f64>,
-    /// Σ Jᵢ Jᵢᵀ by rows.
+    /// Σ Jᵢ Jᵢᵀ.
     information: Vec<f64>,
-    matrix: Vec<f64>,
-    moved: Vec<f64>,
 }
 
 impl Window {
     fn new(order: usize) -> Self {
-        let zeros = |length| vec![0.0; length];
-        Self {
-            score: zeros(order),
-            information: zeros(order * order),
-            matrix: zeros(order * order),
-            moved: zeros(order),
-        }
+        Self { score: vec![0.0; order], information: vec![0.0; order * order] }
     }
 
     fn clear(&mut self) {
@@ -60,61 +52,52 @@ impl Window {
 
     /// Adds a residual with its `row` of derivatives, or takes it out.
     fn add(&mut self, row: &[f64], residual: f64, sign: f64) {
-        for ((score, information), a) in
-            self.score.iter_mut().zip(self.information.chunks_exact_mut(row.len())).zip(row)
-        {
-            *score += sign * a * residual;
-            information.iter_mut().zip(row).for_each(|(element, b)| *element += sign * a * b);
-        }
-    }
-
-    /// (1 − M A)⁻¹ Σ Jᵢ rᵢ, and the sum alone for a window without which not all of the parameters were determined.
-    fn without(&mut self, unit: &[f64]) -> &[f64] {
-        let order = self.score.len();
-        for (i, row) in self.matrix.chunks_exact_mut(order).enumerate() {
-            for (j, element) in row.iter_mut().enumerate() {
-                let products = (0..order).map(|k| self.information[i * order + k] * unit[k * order + j]);
-                *element = f64::from(i == j) - products.sum::<f64>();
-            }
-        }
-        self.moved.copy_from_slice(&self.score);
-        if !eliminate(&mut self.matrix, &mut self.moved) {
-            self.moved.copy_from_slice(&self.score);
-        }
-        &self.moved
+        self.score.iter_mut().zip(row).for_each(|(score, a)| *score += sign * a * residual);
+        add_square(&mut self.information, row, sign);
     }
 }
 
-/// Share of itself that a window may leave of what determines a direction.
+/// Least share of what determines a direction that must be left without a window.
 const LEAST_LEFT: f64 = 1e-3;
 
-/// Solves `matrix` x = `right` in place, by Gaussian elimination with the largest element of each column as pivot; false if a
-/// pivot is below [`LEAST_LEFT`].
-fn eliminate(matrix: &mut [f64], right: &mut [f64]) -> bool {
-    let order = right.len();
-    for column in 0..order {
-        let size = |row: &usize| matrix[row * order + column].abs();
-        let pivot = (column..order).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(column);
-        if !(size(&pivot) > LEAST_LEFT) {
-            return false;
-        }
-        if pivot != column {
-            right.swap(pivot, column);
-            (0..order).for_each(|j| matrix.swap(pivot * order + j, column * order + j));
-        }
-        for row in column + 1..order {
-            let factor = matrix[row * order + column] / matrix[column * order + column];
-            right[row] -= factor * right[column];
-            for j in column..order {
-                matrix[row * order + j] -= factor * matrix[column * order + j];
+/// A fit, as far as it takes to leave windows out of it.
+struct Whole {
+    /// A = (JᵀJ)⁺ over the parameters that are determined.
+    unit: Vec<f64>,
+    /// Its inverse, with the squares of the diagonal of the factor of that; none if A is singular but for rounding.
+    information: Option<(Vec<f64>, Vec<f64>)>,
+    factored: Vec<f64>,
+    moved: Vec<f64>,
+}
+
+impl Whole {
+    fn new(unit: Vec<f64>, order: usize) -> Self {
+        let information = inverse(&unit, order).and_then(|information| {
+            let mut factored = information.clone();
+            let squares = |factored: &[f64]| (0..order).map(|j| factored[j * order + j].powi(2)).collect();
+            factor(&mut factored, order, |_| 0.0).then(|| (information, squares(&factored)))
+        });
+        Self { unit, information, factored: Vec::new(), moved: Vec::new() }
+    }
+
+    /// (A⁻¹ − M)⁻¹ Σ Jᵢ rᵢ, by which the estimates move if the window is left out; A Σ Jᵢ rᵢ for one without which not all of
+    /// them were determined.
+    fn moved_without(&mut self, window: &Window) -> &[f64] {
+        let order = window.score.len();
+        self.moved.clone_from(&window.score);
+        if let Some((information, squares)) = &self.information {
+            self.factored.clear();
+            self.factored.extend(information.iter().zip(&window.information).map(|(all, part)| all - part));
+            if factor(&mut self.factored, order, |j| LEAST_LEFT * squares[j]) {
+                definite::solve(&self.factored, &mut self.moved);
+                return &self.moved;
             }
         }
+        for (moved, row) in self.moved.iter_mut().zip(self.unit.chunks_exact(order)) {
+            *moved = row.iter().zip(&window.score).map(|(a, score)| a * score).sum();
+        }
+        &self.moved
     }
-    for row in (0..order).rev() {
-        let known: f64 = (row + 1..order).map(|j| matrix[row * order + j] * right[j]).sum();
-        right[row] = (right[row] - known) / matrix[row * order + row];
-    }
-    true
 }
 
 impl CorrelatedCovariance {
@@ -138,22 +121,22 @@ impl CorrelatedCovariance {
             return Ok(None);
         }
         let derivatives = structure.by_row(count);
-        let inverse = |a: usize, b: usize| fit.unit_covariance(a, b);
-        let determined: Vec<usize> = (0..count).filter(|&j| inverse(j, j).is_some()).collect();
+        let covariance = |a: usize, b: usize| fit.unit_covariance(a, b);
+        let determined: Vec<usize> = (0..count).filter(|&j| covariance(j, j).is_some()).collect();
         let order = determined.len();
         if order == 0 {
             return Ok(None);
         }
         // In units of the uncertainties, so that a pivot is a share.
-        let scales: Vec<f64> = determined.iter().map(|&j| inverse(j, j).unwrap_or(1.0).sqrt()).collect();
+        let scales: Vec<f64> = determined.iter().map(|&j| covariance(j, j).unwrap_or(1.0).sqrt()).collect();
         let scaled = determined.iter().zip(&scales);
         let unit: Vec<f64> = scaled
             .clone()
-            .flat_map(|(&a, u_a)| scaled.clone().map(move |(&b, u_b)| inverse(a, b).unwrap_or(0.0) / (u_a * u_b)))
+            .flat_map(|(&a, u_a)| scaled.clone().map(move |(&b, u_b)| covariance(a, b).unwrap_or(0.0) / (u_a * u_b)))
             .collect();
-        let mut window = Window::new(order);
+        let (mut window, mut whole) = (Window::new(order), Whole::new(unit, order));
         let mut row = vec![0.0; order];
-        let mut middle = vec![0.0; order * order];
+        let mut sum = vec![0.0; order * order];
         let mut windows = 0usize;
         let mut add = |window: &mut Window, i: usize, sign: f64| {
             for (element, (&j, scale)) in row.iter_mut().zip(determined.iter().zip(&scales)) {
@@ -166,10 +149,7 @@ impl CorrelatedCovariance {
             (range.start..range.start + span).for_each(|i| add(&mut window, i, 1.0));
             for end in range.start + span..=range.end {
                 if (end - range.start - span).is_multiple_of(span.div_ceil(OVERLAPPING)) {
-                    let moved = window.without(&unit);
-                    for (left, row) in moved.iter().zip(middle.chunks_exact_mut(order)) {
-                        row.iter_mut().zip(moved).for_each(|(element, right)| *element += left * right);
-                    }
+                    add_square(&mut sum, whole.moved_without(&window), 1.0);
                     windows += 1;
                 }
                 if end < range.end {
@@ -185,13 +165,9 @@ impl CorrelatedCovariance {
         let beside = fit.residuals().len() as f64 / span as f64;
         let weight = beside / windows as f64;
         let mut elements = vec![None; count * count];
-        let sandwich = |left: &[f64], right: &[f64]| -> f64 {
-            let rows = left.iter().zip(middle.chunks_exact(order));
-            rows.map(|(l, row)| l * row.iter().zip(right).map(|(m, r)| m * r).sum::<f64>()).sum()
-        };
-        for ((&i, u_i), left) in scaled.clone().zip(unit.chunks_exact(order)) {
-            for ((&j, u_j), right) in scaled.clone().zip(unit.chunks_exact(order)) {
-                elements[i * count + j] = Some(u_i * u_j * weight * sandwich(left, right));
+        for ((&i, u_i), row) in scaled.clone().zip(sum.chunks_exact(order)) {
+            for ((&j, u_j), element) in scaled.clone().zip(row) {
+                elements[i * count + j] = Some(u_i * u_j * weight * element);
             }
         }
         let degrees_of_freedom = 1.5 * (beside - fit.rank() as f64).max(1.0);
@@ -296,11 +272,11 @@ mod tests {
         let mut jacobian = vec![0.0; 24];
         assert!(problem.jacobian(fit.values(), &mut jacobian).unwrap());
         let unit = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(a, b)| fit.unit_covariance(a, b).unwrap());
+        let mut whole = Whole::new(unit.to_vec(), 2);
         for start in [0, 4, 8] {
             let mut window = Window::new(2);
             (start..start + 4).for_each(|i| window.add(&[jacobian[i], jacobian[12 + i]], fit.residuals()[i], 1.0));
-            let moved = window.without(&unit);
-            let moved = [unit[0] * moved[0] + unit[1] * moved[1], unit[2] * moved[0] + unit[3] * moved[1]];
+            let moved = whole.moved_without(&window).to_vec();
             // The line through the others, by its normal equations.
             let (mut sums, mut right) = ([0.0; 4], [0.0; 2]);
             for i in (0..12).filter(|i| !(start..start + 4).contains(i)) {
@@ -308,7 +284,8 @@ mod tests {
                 sums.iter_mut().zip([1.0, t, t, t * t]).for_each(|(sum, term)| *sum += term);
                 right.iter_mut().zip([y, t * y]).for_each(|(sum, term)| *sum += term);
             }
-            assert!(eliminate(&mut sums, &mut right));
+            assert!(factor(&mut sums, 2, |_| 0.0));
+            definite::solve(&sums, &mut right);
             for ((without, with), moved) in right.iter().zip(fit.values()).zip(moved) {
                 assert!((without - with - moved).abs() < 1e-12, "{without} from {with}, not by {moved}");
             }
@@ -316,8 +293,8 @@ mod tests {
         // Without the one window that holds everything nothing is left.
         let mut all = Window::new(2);
         (0..12).for_each(|i| all.add(&[jacobian[i], jacobian[12 + i]], fit.residuals()[i] + 1.0, 1.0));
-        let score = all.score.clone();
-        assert_eq!(all.without(&unit), score);
+        let moved = [0, 2].map(|row| unit[row] * all.score[0] + unit[row + 1] * all.score[1]);
+        assert_eq!(whole.moved_without(&all), moved);
     }
 
     #[test]

@@ -4,8 +4,9 @@ use fmm_model::Parameter;
 
 use crate::solver::evaluation::{Evaluator, Point, Scheme, parabola};
 use crate::solver::spectrum::Spectrum;
-use crate::solver::sums::{dot, sum_of_squares};
+use crate::solver::sums::dot;
 use crate::solver::triangle::Triangle;
+use crate::uncertainty::definite;
 use crate::{Estimate, EstimateStatus, Fit, Residuals, Sensitivity, SensitivityError};
 
 /// A minimum with its derivatives, from which the response follows.
@@ -146,11 +147,12 @@ impl<'a, P: Residuals + ?Sized> Minimum<'a, P> {
                 }
             }
         }
-        if !factor_cholesky(&mut matrix) {
+        let mut factored = matrix.concat();
+        if !definite::factor(&mut factored, matrix.len(), |_| 0.0) {
             return Err(SensitivityError::NotAMinimum);
         }
         for side in &mut right {
-            solve_cholesky(&matrix, side);
+            definite::solve(&factored, side);
         }
         Ok(self.assemble(&basis, &right))
     }
@@ -229,32 +231,4 @@ impl<'a, P: Residuals + ?Sized> Minimum<'a, P> {
 /// `aᵀ M b`, with `M` column by column.
 fn bilinear(columns: &[Vec<f64>], a: &[f64], b: &[f64]) -> f64 {
     columns.iter().zip(b).map(|(column, b)| dot(column, a) * b).sum()
-}
-
-/// Overwrites the lower half of a symmetric matrix by its Cholesky factor; false if it is not positive definite.
-fn factor_cholesky(matrix: &mut [Vec<f64>]) -> bool {
-    for i in 0..matrix.len() {
-        let (above, rest) = matrix.split_at_mut(i);
-        let row = &mut rest[0];
-        for (j, other) in above.iter().enumerate() {
-            row[j] = (row[j] - dot(&row[..j], &other[..j])) / other[j];
-        }
-        let square = row[i] - sum_of_squares(&row[..i]);
-        if !(square > 0.0) {
-            return false;
-        }
-        row[i] = square.sqrt();
-    }
-    true
-}
-
-/// Overwrites `right` with the solution, given the Cholesky factor in the lower half of `factor`.
-fn solve_cholesky(factor: &[Vec<f64>], right: &mut [f64]) {
-    for i in 0..right.len() {
-        right[i] = (right[i] - dot(&factor[i][..i], &right[..i])) / factor[i][i];
-    }
-    for i in (0..right.len()).rev() {
-        let below: f64 = (i + 1..right.len()).map(|k| factor[k][i] * right[k]).sum();
-        right[i] = (right[i] - below) / factor[i][i];
-    }
 }

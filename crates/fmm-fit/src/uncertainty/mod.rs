@@ -2,6 +2,7 @@
 
 mod correlated;
 pub(crate) mod coverage;
+pub(crate) mod definite;
 mod forecast;
 mod minimum;
 pub(crate) mod prediction;
