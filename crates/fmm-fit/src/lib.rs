@@ -124,7 +124,7 @@ mod uncertainty;
 
 pub use comparison::{
     Comparing, ComparisonError, Contender, Criterion, Doubt, FTest, ModelRow, ModelTable, ModelTableError,
-    NestedComparison, ResidualCount, Verdict, f_test,
+    NestedComparison, ResidualCount, Verdict, f_tail, f_test,
 };
 pub use diagnostics::{
     NormalityTest, ResidualDiagnostics, RunsTest, anderson_darling, autocorrelation_time, durbin_watson,

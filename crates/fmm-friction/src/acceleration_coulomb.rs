@@ -35,6 +35,7 @@ law_family! {
     /// # Errors
     /// [`LawError::OutOfBounds`] if either is negative or not finite.
     pub fn new {}
+    special cases [crate::SpecialCase::of("coulomb")]
 }
 
 impl<D: Scalar> PiecewiseLinearLaw<D> for AccelerationCoulomb<D> {

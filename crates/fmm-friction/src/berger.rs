@@ -45,6 +45,7 @@ law_family! {
     /// # Errors
     /// [`LawError::OutOfBounds`] if a parameter is negative or not finite.
     pub fn new {}
+    special cases [crate::SpecialCase::of("coulomb")]
 }
 
 impl<D: Scalar> SlidingLaw<D> for Berger<D> {

@@ -56,6 +56,7 @@ law_family! {
             return Err(LawError::NotDissipative { beta: beta.value(), gamma: gamma.value() });
         }
     }
+    special cases [crate::SpecialCase::of("coulomb")]
 }
 
 impl<D: Scalar> BristleLaw<D> for BoucWen<D> {

@@ -37,6 +37,7 @@ law_family! {
     /// # Errors
     /// [`LawError::OutOfBounds`] if a parameter is not positive or not finite.
     pub fn new {}
+    special cases [crate::SpecialCase::of("coulomb")]
 }
 
 impl<D: Scalar> BristleLaw<D> for Dahl<D> {

@@ -115,6 +115,51 @@ impl LawParameter {
     }
 }
 
+/// Another law that a law becomes at some values of its parameters, without its viscous part.
+///
+/// ```text
+/// Stribeck:  δ = 1 → Berger;  μ_s = μ_c → Coulomb
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpecialCase {
+    law: &'static str,
+    needed: &'static [(&'static str, f64)],
+    restricted: &'static [(&'static str, f64)],
+}
+
+impl SpecialCase {
+    /// The law called `law`, whatever values the other parameters have; limits, such as a stiffness without bound, count too.
+    pub const fn of(law: &'static str) -> Self {
+        Self { law, needed: &[], restricted: &[] }
+    }
+
+    /// The law called `law`, where the parameters named in `needed` have these values. A parameter that can take the value always is
+    /// not listed.
+    pub const fn at(law: &'static str, needed: &'static [(&'static str, f64)]) -> Self {
+        Self { law, needed, restricted: &[] }
+    }
+
+    /// The law called `law`, but only with these values of parameters of its own.
+    pub const fn only(law: &'static str, restricted: &'static [(&'static str, f64)]) -> Self {
+        Self { law, needed: &[], restricted }
+    }
+
+    /// Name of the other law.
+    pub const fn law(&self) -> &'static str {
+        self.law
+    }
+
+    /// Names and values of parameters of the other law to which the case is restricted.
+    pub const fn restricted(&self) -> &'static [(&'static str, f64)] {
+        self.restricted
+    }
+
+    /// Names of parameters and the values that they must have.
+    pub const fn needed(&self) -> &'static [(&'static str, f64)] {
+        self.needed
+    }
+}
+
 /// A law at every number type: maps `Law<f64>` to `Law<D>` and a slice of values to a law.
 ///
 /// This is what lets a fit name a law once, `identify::<Coulomb>`, and build it at plain numbers for residuals
@@ -125,6 +170,10 @@ pub trait LawFamily: 'static {
 
     /// The law's parameters, in the order in which [`at`](Self::at) takes their values.
     const PARAMETERS: &'static [LawParameter];
+
+    /// The laws that this one becomes at some values of its parameters, not counting its viscous part, and not counting what those
+    /// laws become in turn. A comparison of laws reads off it which of two is the more general.
+    const SPECIAL_CASES: &'static [SpecialCase] = &[];
 
     /// The law at number type `D`.
     type At<D: Scalar>: Clone + Debug;
@@ -194,6 +243,7 @@ macro_rules! law_family {
 
         $(#[$new_doc:meta])*
         pub fn $new:ident { $($condition:tt)* }
+        $(special cases $cases:expr)?
     ) => {
         $(#[$law_doc])*
         #[derive(Debug, Clone, Copy, PartialEq)]
@@ -218,6 +268,7 @@ macro_rules! law_family {
         impl LawFamily for $law {
             const NAME: &'static str = $name;
             const PARAMETERS: &'static [LawParameter] = &[$($parameter),+];
+            $(const SPECIAL_CASES: &'static [$crate::SpecialCase] = &$cases;)?
             type At<D: Scalar> = $law<D>;
 
             fn at<D: Scalar>(values: &[D]) -> Result<$law<D>, LawError> {

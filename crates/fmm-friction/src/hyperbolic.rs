@@ -32,6 +32,7 @@ law_family! {
     /// # Errors
     /// [`LawError::OutOfBounds`] if either is negative or not finite.
     pub fn new {}
+    special cases [crate::SpecialCase::of("coulomb")]
 }
 
 impl<D: Scalar> SlidingLaw<D> for Hyperbolic<D> {

@@ -50,6 +50,7 @@ law_family! {
     pub fn new {
         static_not_below(sliding, breakaway)?;
     }
+    special cases [crate::SpecialCase::only("dahl", &[("exponent", 1.0)]), crate::SpecialCase::of("stribeck")]
 }
 
 impl<D: Scalar> LuGre<D> {

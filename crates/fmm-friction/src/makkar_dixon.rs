@@ -67,6 +67,7 @@ law_family! {
             });
         }
     }
+    special cases [crate::SpecialCase::of("coulomb")]
 }
 
 impl<D: Scalar> MakkarDixon<D> {

@@ -39,6 +39,7 @@ law_family! {
     /// # Errors
     /// [`LawError::OutOfBounds`] if a parameter lies outside its bounds or is not finite.
     pub fn new {}
+    special cases [crate::SpecialCase::of("coulomb_viscous")]
 }
 
 impl<D: Scalar> SlidingLaw<D> for PowerLaw<D> {

@@ -42,6 +42,7 @@ law_family! {
     pub fn new {
         static_not_below(sliding, peak)?;
     }
+    special cases [crate::SpecialCase::of("coulomb")]
 }
 
 impl<D: Scalar> SlidingLaw<D> for RegularisedStribeck<D> {

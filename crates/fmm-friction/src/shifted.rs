@@ -75,6 +75,7 @@ impl<D: Scalar, L: Inflected<Number = D> + SlidingLaw<D>> SlidingLaw<D> for Shif
 impl LawFamily for Shifted<MakkarDixon> {
     const NAME: &'static str = "makkar_dixon_shifted";
     const PARAMETERS: &'static [LawParameter] = MakkarDixon::PARAMETERS;
+    const SPECIAL_CASES: &'static [crate::SpecialCase] = MakkarDixon::SPECIAL_CASES;
     type At<D: Scalar> = Shifted<MakkarDixon<D>>;
 
     fn at<D: Scalar>(values: &[D]) -> Result<Shifted<MakkarDixon<D>>, LawError> {

@@ -57,6 +57,7 @@ law_family! {
     pub fn new {
         static_not_below(sliding, breakaway)?;
     }
+    special cases [crate::SpecialCase::at("berger", &[("exponent", 1.0)]), crate::SpecialCase::of("coulomb")]
 }
 
 impl<D: Scalar> Stribeck<D> {

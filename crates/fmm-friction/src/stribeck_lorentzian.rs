@@ -41,6 +41,7 @@ law_family! {
     pub fn new {
         static_not_below(sliding, breakaway)?;
     }
+    special cases [crate::SpecialCase::of("coulomb")]
 }
 
 impl<D: Scalar> SlidingLaw<D> for StribeckLorentzian<D> {

@@ -5,15 +5,14 @@ use std::ops::ControlFlow;
 use fmm_fit::{Options, Progress};
 use fmm_friction::{
     AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, Hyperbolic,
-    Karnopp, LawParameter, LuGre, MakkarDixon, PowerLaw, RegularisedStribeck, Role, Shifted, Stribeck,
-    StribeckLorentzian, Viscous,
+    Karnopp, LuGre, MakkarDixon, PowerLaw, RegularisedStribeck, Shifted, SpecialCase,
+    Stribeck, StribeckLorentzian, Viscous,
 };
 use fmm_sim::Simulated;
 
-use crate::identification::identify_by;
+use crate::identification::{Near, identify_by};
 use crate::law::Law;
-use crate::terms::{LINEAR, QUADRATIC};
-use crate::{Identification, IdentifyError, Machine, RingDown, Terms};
+use crate::{Identification, IdentifyError, Machine, RingDown, Sign, Terms};
 
 /// An observer of trial steps that may end the fit.
 pub(crate) type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
@@ -118,26 +117,50 @@ impl Candidate {
         self.terms.name(self.law.name)
     }
 
-    /// Names and roles of all parameters, of the law and beside it.
-    fn all_parameters(&self) -> Vec<(&str, Role)> {
-        // A linear damping is the viscous part of a law by another name.
-        let name = |parameter: &'static LawParameter| match parameter.role() {
-            Role::Slope => (LINEAR, Role::Slope),
-            role => (parameter.parameter().name(), role),
-        };
-        let linear = self.terms.has_linear_damping().then_some((LINEAR, Role::Slope));
-        let quadratic = self.terms.has_quadratic_damping().then_some((QUADRATIC, Role::Shape));
-        self.law.parameters.iter().map(name).chain(linear).chain(quadratic).collect()
+    /// Whether this law is a special case of `other`: some values of the parameters of `other` make it this one.
+    pub(crate) fn is_nested_in(&self, other: &Self) -> bool {
+        let viscous = |candidate: &Self| candidate.law.has_slope() || candidate.terms.has_linear_damping();
+        let damped = viscous(self) <= viscous(other)
+            && self.terms.has_quadratic_damping() <= other.terms.has_quadratic_damping();
+        damped && self.is_dry_case_of(other) && !(self.holds_as(other) && other.is_dry_case_of(self) && viscous(self) == viscous(other)
+            && self.terms.has_quadratic_damping() == other.terms.has_quadratic_damping())
     }
 
-    /// Whether this law is a special case of `other`: every parameter of it is one of the other's, in the same role.
-    pub(crate) fn is_nested_in(&self, other: &Self) -> bool {
-        let (own, theirs) = (self.all_parameters(), other.all_parameters());
-        own.len() < theirs.len() && own.iter().all(|parameter| theirs.contains(parameter))
+    /// Whether both hold the same parameters at the same values.
+    fn holds_as(&self, other: &Self) -> bool {
+        self.terms.held().count() == other.terms.held().count()
+            && self.terms.held().all(|held| other.terms.held().any(|theirs| theirs == held))
+    }
+
+    /// Whether the part of this law that does not grow with the speed is that of `other` for some values of its parameters.
+    fn is_dry_case_of(&self, other: &Self) -> bool {
+        // What the other holds, this one must hold as well.
+        let held = |name: &str| self.terms.held().find(|(held, _)| *held == name).map(|(_, value)| value);
+        let (own, theirs) = (self.law.dry_name(), other.law.dry_name());
+        if own == theirs {
+            return other.terms.held().all(|(name, value)| held(name) == Some(value));
+        }
+        // No friction but the damping is a case of every law with levels that may vanish.
+        if own.is_none() {
+            return true;
+        }
+        let catalogue = Self::catalogue();
+        let allowed = |case: &SpecialCase| {
+            let free = |(name, value): &(&str, f64)| {
+                other.terms.held().all(|(held, at)| held != *name || at == *value)
+            };
+            case.needed().iter().all(free) && case.restricted().iter().all(|(name, value)| held(name) == Some(*value))
+        };
+        other.law.special_cases.iter().filter(|case| allowed(case)).any(|case| {
+            Some(case.law()) == own
+                || catalogue.iter().any(|between| between.law.name == case.law() && self.is_dry_case_of(between))
+        })
     }
 
     pub(crate) fn parameter_count(&self) -> usize {
-        self.all_parameters().len() - self.terms.held().count()
+        let terms = [self.terms.has_linear_damping(), self.terms.has_quadratic_damping()];
+        let beside = terms.iter().filter(|term| **term).count();
+        (self.law.parameters.len() + beside).saturating_sub(self.terms.held().count())
     }
 
     pub(crate) fn identify(
@@ -147,6 +170,30 @@ impl Candidate {
         options: &Options,
         observer: &mut Observer<'_>,
     ) -> Result<Identification, IdentifyError> {
-        identify_by(self.law, machine, &self.terms, decays, options, observer)
+        identify_by(self.law, machine, &self.terms, decays, None, options, observer)
+    }
+
+    /// As [`identify`](Self::identify), begun near a fit by Coulomb and viscous friction if there is one.
+    pub(crate) fn identify_near(
+        &self,
+        machine: &Machine,
+        decays: &[RingDown],
+        simple: Option<&Identification>,
+        signs: &[Sign],
+        options: &Options,
+        observer: &mut Observer<'_>,
+    ) -> Result<Identification, IdentifyError> {
+        let near = simple.map(|simple| Near { simple, signs });
+        identify_by(self.law, machine, &self.terms, decays, near.as_ref(), options, observer)
+    }
+
+    /// Name of the law alone.
+    pub(crate) fn law_name(&self) -> &'static str {
+        self.law.name
+    }
+
+    /// Whether the law, or the damping beside it, has a parameter of this name, as the law or as a fit calls it.
+    pub(crate) fn has_parameter(&self, name: &str) -> bool {
+        self.law.fitted().any(|parameter| parameter.parameter().name() == name)
     }
 }

@@ -2,43 +2,44 @@
 
 use std::ops::ControlFlow;
 
-use fmm_fit::{FTest, Fit, Options, Progress, f_test};
+use fmm_fit::{Options, Progress, f_tail};
 
-use crate::{Candidate, Finding, Identification, IdentifyError, Machine, RecordSummary, RingDown, Warning};
+use crate::judgement::Judgement;
+use crate::{Candidate, Finding, Identification, IdentifyError, Machine, RecordSummary, RingDown, Sign, Warning};
 
 /// A law and the more general one that it was tested against.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct NestedTest {
     /// Name of the restricted law.
     pub restricted: String,
     /// Name of the law that has it as a special case.
     pub full: String,
-    /// The test, which counts every residual as independent.
-    pub test: FTest,
+    /// Probability of so much less misfit by the full law if the restricted one is true, for the noise that the residuals
+    /// show (1).
+    pub p_value: f64,
 }
 
 /// Identifications of the same records by several laws.
 ///
-/// The preferred law has the smallest corrected Akaike criterion, with the number of residuals replaced by the
-/// number of *independent* ones, n/τ: residuals that a record samples a thousand times a second are no thousand
-/// witnesses. Laws within 2 of the best are too close to call; among them the one with the fewest parameters is
-/// preferred, and [`is_decided`](Self::is_decided) is false. The uncertainties of its parameters then include what the
-/// more general laws would change.
+/// A law is *excluded* if its misfit, beside the law that fits best, has a probability below 0.002 for the noise that the
+/// residuals show; correlated residuals count for as much as they tell, so that the answer is the same however often a record is
+/// sampled. Among the others the simplest with a probability of at least 0.05 is preferred. The preference is *decided* if what is left
+/// beside it are laws that have it as a special case, whose further parameters the record does not ask for. If a law is true, it is
+/// undecided in about one record of ten, and excluded in less than one of a hundred. The uncertainties of the preferred law include
+/// what the laws that are left would change, by how probable they are.
 ///
 /// `Display` gives the report.
 #[derive(Debug, Clone)]
 pub struct Comparison {
-    records: Vec<RecordSummary>,
-    identifications: Vec<Identification>,
-    scores: Vec<f64>,
-    tests: Vec<NestedTest>,
-    preferred: usize,
-    is_decided: bool,
-    warnings: Vec<Warning>,
+    pub(crate) records: Vec<RecordSummary>,
+    pub(crate) identifications: Vec<Identification>,
+    pub(crate) judgement: Judgement,
+    pub(crate) tests: Vec<NestedTest>,
+    pub(crate) signs: Vec<Sign>,
+    pub(crate) is_complete: bool,
+    pub(crate) warnings: Vec<Warning>,
 }
-
-/// Differences of the criterion below this are too small to prefer a law (Burnham and Anderson 2002, section 2.6).
-const CLOSE: f64 = 2.0;
 
 /// Identifies `decays` by each of `candidates` and compares them.
 ///
@@ -65,41 +66,54 @@ pub fn compare_observed(
         let mut observe = |progress: &Progress<'_>| observer(&name, progress);
         identifications.push(candidate.identify(machine, decays, options, &mut observe)?);
     }
-    let scores = scores(&identifications);
-    let Some((preferred, is_decided)) = preferred(candidates, &identifications, &scores) else {
-        return Err(IdentifyError::NoCandidate);
-    };
-    let mut warnings = identifications[preferred].warnings().to_vec();
-    let others = unfinished(candidates, &identifications);
-    let is_decided = is_decided && others.is_empty();
-    warnings.extend(others);
-    warnings.extend(widen_for_other_laws(candidates, &mut identifications, preferred));
-    if !is_decided {
-        warnings.push(Warning::Undecided);
+    Comparison::of(decays, candidates, identifications)
+}
+
+impl Comparison {
+    /// The comparison of `candidates` by their `identifications` from `decays`.
+    pub(crate) fn of(
+        decays: &[RingDown],
+        candidates: &[Candidate],
+        mut identifications: Vec<Identification>,
+    ) -> Result<Self, IdentifyError> {
+        let mut judgement = Judgement::of(candidates, &identifications).ok_or(IdentifyError::NoCandidate)?;
+        let preferred = judgement.preferred;
+        let others = unfinished(candidates, &identifications);
+        judgement.is_decided &= others.is_empty();
+        let widened = widen_for_other_laws(candidates, &mut identifications, &judgement);
+        let mut warnings = identifications[preferred].warnings().to_vec();
+        warnings.extend(others);
+        warnings.extend(widened);
+        if !judgement.is_decided {
+            warnings.push(Warning::Undecided);
+        }
+        let others = identifications.iter().enumerate().filter(|(index, _)| *index != preferred);
+        let negative = |warning: &&Warning| matches!(warning, Warning::NegativeDamping { .. });
+        warnings.extend(others.flat_map(|(_, found)| found.warnings().iter().filter(negative).cloned()));
+        warnings.extend(misled(&identifications, preferred));
+        Ok(Self {
+            records: decays.iter().map(|decay| decay.summary().clone()).collect(),
+            tests: tests(candidates, &identifications),
+            identifications,
+            judgement,
+            signs: Vec::new(),
+            is_complete: true,
+            warnings,
+        })
     }
-    let others = identifications.iter().enumerate().filter(|(index, _)| *index != preferred);
-    let negative = |warning: &&Warning| matches!(warning, Warning::NegativeDamping { .. });
-    warnings.extend(others.flat_map(|(_, found)| found.warnings().iter().filter(negative).cloned()));
-    warnings.extend(misled(&identifications, preferred));
-    Ok(Comparison {
-        records: decays.iter().map(|decay| decay.summary().clone()).collect(),
-        tests: tests(candidates, &identifications),
-        identifications,
-        scores,
-        preferred,
-        is_decided,
-        warnings,
-    })
 }
 
 fn tests(candidates: &[Candidate], identifications: &[Identification]) -> Vec<NestedTest> {
     let mut tests = Vec::new();
     for (restricted, small) in candidates.iter().zip(identifications) {
         for (full, large) in candidates.iter().zip(identifications) {
-            if restricted.is_nested_in(full)
-                && let Ok(test) = f_test(small.fit(), large.fit())
-            {
-                tests.push(NestedTest { restricted: restricted.name(), full: full.name(), test });
+            let further = large.fit().rank().saturating_sub(small.fit().rank());
+            if further == 0 || !restricted.is_nested_in(full) {
+                continue;
+            }
+            let (misfit, freedom) = small.misfit_beside(large);
+            if let Some(p_value) = f_tail(misfit / further as f64, further as f64, freedom) {
+                tests.push(NestedTest { restricted: restricted.name(), full: full.name(), p_value });
             }
         }
     }
@@ -151,65 +165,60 @@ fn unfinished(candidates: &[Candidate], identifications: &[Identification]) -> V
     warnings
 }
 
-/// Widens the uncertainties of the preferred law's parameters for what a more general law, which the record does not
-/// exclude, sees differently; returns a warning for each that matters.
+/// Widens the uncertainties of the preferred law's parameters for what other laws, which the record does not exclude, see
+/// differently; returns a warning for each that matters.
 ///
-/// Preferring a law because the record is too short to show that it is too simple does not make it true. The
-/// standard uncertainty becomes the root sum of squares of that under the general law and the difference between the two.
+/// Preferring a law because the record is too short to show that it is too simple does not make it true. With the weight w of the
+/// other law the variance becomes
+///
+/// ```text
+/// (1 − w) u² + w (u_o² + (θ − θ_o)²)
+/// ```
+///
+/// # References
+/// S. T. Buckland, K. P. Burnham, N. H. Augustin, "Model selection: an integral part of inference", Biometrics 53 (1997) 603,
+/// <https://doi.org/10.2307/2533961>.
 fn widen_for_other_laws(
     candidates: &[Candidate],
     identifications: &mut [Identification],
-    preferred: usize,
+    judgement: &Judgement,
 ) -> Vec<Warning> {
     /// An uncertainty that grows by this factor is worth a line.
     const NOTABLE: f64 = 2.0;
+    let preferred = judgement.preferred;
     let mut warnings = Vec::new();
-    for general in 0..candidates.len() {
-        if !candidates[preferred].is_nested_in(&candidates[general]) {
+    let mut widths: Vec<(String, f64, Option<Warning>)> = Vec::new();
+    for other in 0..candidates.len() {
+        let own_rank = identifications[preferred].fit().rank();
+        let further = identifications[other].fit().rank().saturating_sub(own_rank);
+        if other == preferred || !judgement.is_left(other) || further == 0 && candidates[preferred].is_nested_in(&candidates[other]) {
             continue;
         }
-        let wider: Vec<Finding> = identifications[general].findings().to_vec();
-        for finding in wider {
-            let Some(own) = identifications[preferred].finding_mut(finding.parameter().name()) else { continue };
-            let (Some(u), Some(wider_u)) = (own.uncertainty, finding.uncertainty()) else { continue };
-            let widened = wider_u.hypot(own.value - finding.value());
-            own.widen(widened);
-            if widened > NOTABLE * u && !finding.is_of_record() {
-                warnings.push(Warning::DependsOnLaw {
-                    parameter: finding.parameter().name().to_owned(),
-                    law: candidates[general].name(),
-                    finding: finding.quantity(),
-                });
-            }
+        let is_general = candidates[preferred].is_nested_in(&candidates[other]);
+        let told = identifications[preferred].told();
+        let weight = judgement.weight(other, further, told);
+        // Where the record does not decide, either law is as good as the other.
+        let weight = if judgement.is_decided && is_general { weight } else { weight.max(0.5) };
+        for (own, theirs) in identifications[preferred].common_findings(&identifications[other]) {
+            let (Some(u), Some(their_u)) = (own.uncertainty(), theirs.uncertainty()) else { continue };
+            let difference = own.value() - theirs.value();
+            let widened = ((1.0 - weight) * u * u + weight * (their_u * their_u + difference * difference)).sqrt();
+            let notable = widened > NOTABLE * u && !own.is_of_record();
+            let warning = notable.then(|| Warning::DependsOnLaw {
+                parameter: own.parameter().name().to_owned(),
+                law: candidates[other].name(),
+                finding: theirs.quantity(),
+            });
+            widths.push((own.parameter().name().to_owned(), widened, warning));
         }
     }
+    for (name, widened, warning) in widths {
+        if let Some(own) = identifications[preferred].finding_mut(&name) {
+            own.widen(widened);
+        }
+        warnings.extend(warning);
+    }
     warnings
-}
-
-/// Corrected Akaike criterion of each identification with the number of independent residuals instead of all, so far as
-/// differences of it count; empty without identifications.
-fn scores(identifications: &[Identification]) -> Vec<f64> {
-    let Some(best) = identifications.iter().min_by(|a, b| a.rms_residual().total_cmp(&b.rms_residual())) else {
-        return Vec::new();
-    };
-    let total = best.fit().residuals().len() as f64;
-    let score = |fit: &Fit| {
-        let parameters = fit.rank() as f64 + 1.0;
-        let count = (total / best.autocorrelation_time()).max(parameters + 2.0);
-        let correction = 2.0 * parameters * count / (count - parameters - 1.0);
-        count * (fit.sum_of_squares().max(best.floor()) / total).ln() + correction
-    };
-    identifications.iter().map(|found| score(found.fit())).collect()
-}
-
-/// Index of the preferred law, and whether no other comes close; none without candidates.
-fn preferred(candidates: &[Candidate], identifications: &[Identification], scores: &[f64]) -> Option<(usize, bool)> {
-    let least = scores.iter().copied().fold(f64::INFINITY, f64::min);
-    let close: Vec<usize> = (0..scores.len()).filter(|i| scores[*i] - least <= CLOSE).collect();
-    let simplest = close.iter().copied().min_by_key(|i| candidates[*i].parameter_count())?;
-    // A law whose extra parameter ended at its bound is the simpler law over again, not a rival.
-    let rivals = close.iter().filter(|i| identifications[**i].fit().rank() != identifications[simplest].fit().rank());
-    Some((simplest, rivals.count() == 0))
 }
 
 impl Comparison {
@@ -220,21 +229,43 @@ impl Comparison {
 
     /// The identification by the preferred law.
     pub fn preferred(&self) -> &Identification {
-        &self.identifications[self.preferred]
+        &self.identifications[self.judgement.preferred]
     }
 
     /// Whether the data decide for the preferred law.
     pub fn is_decided(&self) -> bool {
-        self.is_decided
+        self.judgement.is_decided
     }
 
-    /// The criterion by which laws are preferred, one per identification: Akaike's, corrected, with n/τ residuals. Only
-    /// differences mean anything.
-    pub fn scores(&self) -> &[f64] {
-        &self.scores
+    /// The laws that the records do not exclude, the preferred one among them.
+    pub fn not_excluded(&self) -> impl Iterator<Item = &Identification> {
+        let left = |place: &usize| self.judgement.is_left(*place);
+        (0..self.identifications.len()).filter(left).map(|place| &self.identifications[place])
     }
 
-    /// F-tests of every law against the more general ones.
+    /// Probability of a misfit as large as that of each law, beside the law that fits best, if the law were true (1), one per
+    /// identification.
+    pub fn probabilities(&self) -> Vec<f64> {
+        self.judgement.standings.iter().map(|standing| standing.probability).collect()
+    }
+
+    /// The misfit of each law beside the law that fits best in variances of the noise, with 2 for each parameter that is determined
+    /// (1), one per identification. Only differences mean anything.
+    pub fn scores(&self) -> Vec<f64> {
+        self.judgement.standings.iter().map(|standing| standing.score).collect()
+    }
+
+    /// What was looked for beside the simple laws, and how plain it is.
+    pub fn signs(&self) -> &[Sign] {
+        &self.signs
+    }
+
+    /// Whether all laws that the search would have tried were tried; false where a time limit ended it.
+    pub fn is_complete(&self) -> bool {
+        self.is_complete
+    }
+
+    /// Tests of every law against the more general ones.
     pub fn tests(&self) -> &[NestedTest] {
         &self.tests
     }

@@ -208,7 +208,7 @@ pub(crate) fn findings(
     machine: &Machine,
     layout: &Layout,
     fit: &Fit,
-    covariance: &Covariance<'_>,
+    covariance: &Covariance,
     gain_uncertainty: f64,
 ) -> Vec<Finding> {
     let estimated = fit.estimates().iter().enumerate().map(|(index, estimate)| {
@@ -253,7 +253,7 @@ pub(crate) fn findings(
 }
 
 /// gᵀ V g over the fitted values, and that with the variances of the inputs; none if a value that matters has none.
-fn variances(covariance: &Covariance<'_>, gradient: &[f64], inputs: [f64; KNOWN]) -> Option<(f64, f64)> {
+fn variances(covariance: &Covariance, gradient: &[f64], inputs: [f64; KNOWN]) -> Option<(f64, f64)> {
     let (shared, known) = gradient.split_at(gradient.len() - inputs.len());
     let mut random = 0.0;
     for (i, row) in shared.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {

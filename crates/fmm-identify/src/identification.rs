@@ -9,10 +9,12 @@ use fmm_sim::{Event, EventKind, Simulated, Trajectory};
 
 use crate::finding::{Finding, findings};
 use crate::law::Law;
-use crate::layout::Layout;
+use crate::layout::{Layout, named};
 use crate::problem::RingDownProblem;
+use crate::residual_noise::ResidualNoise;
 use crate::residual_structure::{Covariance, ResidualStructure};
-use crate::{IdentifyError, Machine, RingDown, Terms, Warning};
+use crate::terms::LINEAR;
+use crate::{IdentifyError, Machine, RingDown, Sign, Terms, Warning};
 
 /// How the fitted motion of one record ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,7 +71,9 @@ pub struct Identification {
     motions: Vec<FittedMotion>,
     warnings: Vec<Warning>,
     structure: ResidualStructure,
-    inflation: f64,
+    covariance: Covariance,
+    /// By how many standard uncertainties the linear damping would leave its bound, if it is there.
+    pull_at_bound: Option<f64>,
     amplitude: f64,
 }
 
@@ -133,34 +137,43 @@ pub fn identify_observed<F: Simulated>(
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Identification, IdentifyError> {
-    identify_by(Law::of::<F>(), machine, terms, decays, options, observer)
+    identify_by(Law::of::<F>(), machine, terms, decays, None, options, observer)
 }
 
-/// As [`identify_observed`], by a law that is known at run time.
+/// A fit by Coulomb and viscous friction to begin another one near, and what its residuals ask for.
+pub(crate) struct Near<'a> {
+    pub(crate) simple: &'a Identification,
+    pub(crate) signs: &'a [Sign],
+}
+
+/// As [`identify_observed`], by a law that is known at run time, near another fit if there is one.
 pub(crate) fn identify_by(
     law: Law,
     machine: &Machine,
     terms: &Terms,
     decays: &[RingDown],
+    near: Option<&Near<'_>>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Identification, IdentifyError> {
     let problem = RingDownProblem::of(law, *machine, terms.clone(), decays)?;
-    let fit = fit_in_stages(&problem, options, observer)?;
+    let fit = match near {
+        Some(near) => fit_near(&problem, near, options, observer)?,
+        None => fit_in_stages(&problem, options, observer)?,
+    };
     // One instrument for all records; the worst statement counts.
     let gain = decays.iter().map(|decay| decay.summary().gain_uncertainty).fold(0.0, f64::max);
     let failure = |error: EvaluationError| IdentifyError::Simulation { law: law.name, message: error.to_string() };
     let structure = ResidualStructure::of(&fit, decays);
-    let covariance = Covariance::of(&problem, &fit, &structure, decays).map_err(failure)?;
+    let covariance = Covariance::of(&problem, &fit, &structure).map_err(failure)?;
     let mut found = findings(machine, problem.layout(), &fit, &covariance, gain);
-    let inflation = covariance.inflation();
     if let Some(moved) = machine.with_damping_moved() {
         let mut ends = Vec::new();
         for machine in moved {
             let problem = RingDownProblem::of(law, machine, terms.clone(), decays)?;
             let fit = solve_observed(&problem, fit.values(), options, |progress| observer(progress))
                 .map_err(|source| IdentifyError::Fit { law: law.name, source })?;
-            let covariance = Covariance::of(&problem, &fit, &structure, decays).map_err(failure)?;
+            let covariance = Covariance::of(&problem, &fit, &structure).map_err(failure)?;
             ends.push(findings(&machine, problem.layout(), &fit, &covariance, gain));
         }
         add_in_quadrature(&mut found, &ends[0], &ends[1]);
@@ -178,7 +191,8 @@ pub(crate) fn identify_by(
         terms: terms.clone(),
         machine: *machine,
         structure,
-        inflation,
+        pull_at_bound: pull_at_bound(&problem, &fit, &covariance),
+        covariance,
         amplitude: decays.iter().map(|decay| decay.summary().amplitudes.0).fold(0.0, f64::max),
         fit,
         findings: found,
@@ -191,6 +205,22 @@ pub(crate) fn identify_by(
         .warnings
         .extend(held.map(|held| Warning::StaticLevelHeld { parameter: held.parameter().name().to_owned() }));
     Ok(identification)
+}
+
+/// By how many standard uncertainties the linear damping would leave the bound that it lies on; none if it lies on none.
+fn pull_at_bound(problem: &RingDownProblem<'_>, fit: &Fit, covariance: &Covariance) -> Option<f64> {
+    let index = fit.estimates().iter().position(|estimate| estimate.name() == LINEAR)?;
+    fit.estimates()[index].status().is_at_bound().then_some(())?;
+    let count = fit.values().len();
+    let variance = fit.residual_standard_deviation()?.powi(2);
+    let known: Vec<usize> = (0..count).filter(|i| fit.relaxed_covariance(*i, *i).is_some()).collect();
+    let columns = problem.columns(fit.values(), &known).ok()?;
+    let step = |(j, column): (&usize, &Vec<f64>)| {
+        let product: f64 = column.iter().zip(fit.residuals()).map(|(a, r)| a * r).sum();
+        -fit.relaxed_covariance(index, *j).unwrap_or(0.0) / variance * product
+    };
+    let step: f64 = known.iter().zip(&columns).map(step).sum();
+    Some(step / covariance.relaxed(index)?.sqrt())
 }
 
 /// F/m at rest that fitted `values` stand for: the first level of the law with what lies above it; none for laws without.
@@ -218,6 +248,25 @@ fn fit_in_stages(
         return best_fit(problem, problem.name(), vec![found.values().to_vec()], options, observer);
     }
     fit_in_search(problem, options, observer)
+}
+
+/// The best end of the fits from the starts near a simple fit, with few of the samples first.
+fn fit_near(
+    problem: &RingDownProblem<'_>,
+    near: &Near<'_>,
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, IdentifyError> {
+    let simple = RingDownProblem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
+    let starts = problem.near(&simple, near.simple.fit().values(), near.signs);
+    let starts = match problem.thinned() {
+        Some(thinned) if starts.len() > 1 => {
+            let search = problem.with_records(&thinned);
+            vec![best_fit(&search, problem.name(), starts, options, observer)?.values().to_vec()]
+        }
+        _ => starts,
+    };
+    best_fit(problem, problem.name(), starts, options, observer)
 }
 
 /// The best end of the fits from everything that may be a start.
@@ -386,7 +435,79 @@ impl Identification {
 
     /// Largest factor by which an uncertainty exceeds that of independent residuals (1).
     pub(crate) fn inflation(&self) -> f64 {
-        self.inflation
+        self.covariance.inflation()
+    }
+
+    /// The noise that the residuals show.
+    pub(crate) fn noise(&self) -> &ResidualNoise {
+        self.covariance.noise_of_residuals()
+    }
+
+    /// As how many independent residuals those of this fit count (1).
+    pub(crate) fn told(&self) -> f64 {
+        self.covariance.degrees_of_freedom() + self.fit.rank() as f64
+    }
+
+    /// Takes out of `direction`, a change of all residuals, what the parameters of this fit to `problem` can follow, those on a bound
+    /// included; none if the derivatives cannot be had.
+    pub(crate) fn take_out_parameters(&self, problem: &RingDownProblem<'_>, direction: &mut [f64]) -> Option<()> {
+        let count = self.fit.values().len();
+        let variance = self.fit.residual_standard_deviation()?.powi(2);
+        let unit = |i: usize, j: usize| self.fit.relaxed_covariance(i, j).map(|covariance| covariance / variance);
+        let known: Vec<usize> = (0..count).filter(|i| unit(*i, *i).is_some()).collect();
+        let columns = problem.columns(self.fit.values(), &known).ok()?;
+        let products: Vec<f64> =
+            columns.iter().map(|column| column.iter().zip(&*direction).map(|(a, d)| a * d).sum()).collect();
+        for (i, column) in known.iter().zip(&columns) {
+            let share: f64 = known.iter().zip(&products).map(|(j, product)| unit(*i, *j).unwrap_or(0.0) * product).sum();
+            direction.iter_mut().zip(column).for_each(|(d, a)| *d -= share * a);
+        }
+        Some(())
+    }
+
+    /// Whether a viscous part that ended at zero would be significantly negative without its bound, as if friction fell with the
+    /// speed.
+    pub(crate) fn damping_would_be_negative(&self) -> bool {
+        /// Standard uncertainties by which it would be negative.
+        const PLAIN: f64 = 2.33;
+        let Some(index) = self.fit.estimates().iter().position(|estimate| estimate.name() == LINEAR) else { return false };
+        self.fit.estimates()[index].status().is_at_bound()
+            && self.pull_at_bound.is_some_and(|pull| pull < -PLAIN)
+    }
+
+    /// By how much this fit is worse than that by `other`, in variances of the noise that the residuals of the other show in the
+    /// direction in which the laws differ (1), and the degrees of freedom with which that variance is known.
+    pub(crate) fn misfit_beside(&self, other: &Self) -> (f64, f64) {
+        let floor = self.floor().max(other.floor());
+        let excess = self.fit.sum_of_squares().max(floor) - other.fit.sum_of_squares().max(floor);
+        let pairs = self.fit.residuals().iter().zip(other.fit.residuals());
+        let difference: Vec<f64> = pairs.map(|(own, theirs)| own - theirs).collect();
+        let rounding = floor / difference.len().max(1) as f64;
+        let variance = other.noise().variance_along(&difference).max(rounding);
+        let freedom = 2.0 * other.noise().ordinates_along(&difference);
+        let misfit = if excess > 0.0 && variance > 0.0 { excess / variance } else { 0.0 };
+        (misfit, freedom.min(other.fit.degrees_of_freedom() as f64).max(1.0))
+    }
+
+    /// The findings that mean the same in both, each with that of `other`: what has the same name, and the sliding levels, which
+    /// laws name as they like.
+    pub(crate) fn common_findings<'a>(&'a self, other: &'a Self) -> Vec<(&'a Finding, &'a Finding)> {
+        let (own, theirs) = (self.level_names(), other.level_names());
+        let same = |finding: &'a Finding| {
+            let name = finding.parameter().name();
+            let at = own.iter().position(|level| level == name);
+            let counterpart = at.map_or(name, |at| theirs.get(at).map_or(name, String::as_str));
+            other.finding(counterpart).map(|theirs| (finding, theirs))
+        };
+        self.findings.iter().filter_map(same).collect()
+    }
+
+    /// Names of the findings of the first level, as friction per mass, force and coefficient; empty for laws without.
+    fn level_names(&self) -> Vec<String> {
+        let Some(level) = self.family.level() else { return Vec::new() };
+        let Some(parameter) = self.family.fitted().nth(level) else { return Vec::new() };
+        let quantities = ["friction_per_mass", "friction_force", "mu"];
+        quantities.map(|quantity| named(parameter.parameter(), quantity, "").name().to_owned()).to_vec()
     }
 
     /// Sum of squares below which a fit reproduces its records to rounding, and none is better than another.

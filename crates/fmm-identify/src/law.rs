@@ -1,7 +1,7 @@
 //! A law family as a value: what must know its type is the simulation alone, and all else is compiled once for all laws.
 
 use fmm_fit::EvaluationError;
-use fmm_friction::{LawParameter, Role};
+use fmm_friction::{LawParameter, Role, SpecialCase};
 use fmm_model::{Dual, Oscillator, Scalar};
 use fmm_sim::{Excitation, Sampling, Scenario, Simulated, Trajectory};
 
@@ -44,6 +44,7 @@ pub(crate) type Simulate<D> = fn(&Motion<D>, &Sampling, &mut Trajectory<D>) -> R
 pub(crate) struct Law {
     pub(crate) name: &'static str,
     pub(crate) parameters: &'static [LawParameter],
+    pub(crate) special_cases: &'static [SpecialCase],
     pub(crate) plain: Simulate<f64>,
     pub(crate) with_derivatives: Simulate<Dual<DIRECTIONS>>,
 }
@@ -54,6 +55,7 @@ impl Law {
         Self {
             name: F::NAME,
             parameters: F::PARAMETERS,
+            special_cases: F::SPECIAL_CASES,
             plain: Motion::simulate::<F>,
             with_derivatives: Motion::simulate::<F>,
         }
@@ -68,6 +70,29 @@ impl Law {
     /// The place of its first level among the [`fitted`](Self::fitted) parameters.
     pub(crate) fn level(&self) -> Option<usize> {
         self.fitted().position(|parameter| parameter.role() == Role::Level)
+    }
+
+    /// The share of the largest speed at which the law typically bends, of the first parameter that says so; none for laws without.
+    pub(crate) fn bend(&self) -> Option<f64> {
+        self.fitted().filter(|parameter| parameter.role() == Role::Shape).find_map(|parameter| {
+            match parameter.parameter().unit() {
+                "m/s" => Some(parameter.typical()),
+                "s/m" => Some(1.0 / parameter.typical()),
+                _ => None,
+            }
+        })
+    }
+
+    /// Name of what is left of it without its viscous part; none if that is nothing.
+    pub(crate) fn dry_name(&self) -> Option<&'static str> {
+        let is_slope = |parameter: &LawParameter| parameter.role() == Role::Slope;
+        let slopes = self.parameters.iter().filter(|parameter| is_slope(parameter)).count();
+        match (slopes, self.parameters.len() - slopes, self.special_cases) {
+            (1, 0, _) => None,
+            // A level beside the slope is Coulomb's law.
+            (1, 1, [case]) => Some(case.law()),
+            _ => Some(self.name),
+        }
     }
 
     /// Whether it has a viscous part.

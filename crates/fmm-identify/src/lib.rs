@@ -81,6 +81,7 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+mod autoregression;
 mod banded;
 mod candidate;
 mod comparison;
@@ -96,19 +97,24 @@ mod free_vibration;
 mod half_swings;
 mod identification;
 mod impact;
+mod judgement;
 mod known;
 mod law;
 mod layout;
 mod machine;
 mod machine_problem;
 mod pool;
+mod noise_growth;
 mod preparation;
 mod problem;
 mod report;
+mod residual_noise;
 mod residual_structure;
 mod ring_down;
+mod search;
 #[cfg(feature = "serde")]
 mod serialised;
+mod sign;
 mod terms;
 mod test_function;
 mod thesis_decrement;
@@ -136,6 +142,8 @@ pub use machine_problem::MachineProblem;
 pub use preparation::{Offset, Preparation, RecordSummary};
 pub use problem::RingDownProblem;
 pub use ring_down::RingDown;
+pub use search::{Search, search, search_observed};
+pub use sign::{Addition, Sign};
 pub use terms::Terms;
 pub use thesis_decrement::{ThesisCycle, ThesisDecrement};
 pub use turning_energies::{HalfSwing, half_swing_losses, half_swing_losses_of};

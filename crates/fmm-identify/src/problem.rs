@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use fmm_fit::{Block, EvaluationError, Residuals};
+use fmm_fit::{Block, EvaluationError, Fit, Residuals};
+use fmm_friction::Role;
 use fmm_model::{Parameter, Scalar};
 use fmm_record::Quantity;
 use fmm_sim::{Channels, Samples, Sampling, Simulated, Trajectory};
@@ -12,7 +13,8 @@ use crate::dimension::{Scales, bends, is_force};
 use crate::first_guess::Dissipation;
 use crate::law::{DIRECTIONS, Law, Simulate};
 use crate::layout::{Layout, mass_of_stiffness};
-use crate::{IdentifyError, Machine, RingDown, Terms};
+use crate::sign::Addition;
+use crate::{IdentifyError, Machine, RingDown, Sign, Terms};
 
 /// The residuals "model less record" of one or several ring-downs by a law, with exact derivatives.
 ///
@@ -144,8 +146,8 @@ impl<'a> RingDownProblem<'a> {
             .collect()
     }
 
-    /// Simulates `record` by `simulate` at the samples of `ranges`, window by window; `visit` gets the number of samples before
-    /// the window, its samples' indices in the record, and the simulated samples.
+    /// Simulates `record` by `simulate` once, window by window; `visit` gets, for each of `ranges` in a window, the number of
+    /// samples of the ranges before it, its samples' indices in the record, and those among the simulated samples.
     fn simulate<D: Scalar>(
         &self,
         simulate: Simulate<D>,
@@ -153,8 +155,9 @@ impl<'a> RingDownProblem<'a> {
         p: &[f64],
         first: usize,
         ranges: &[Range<usize>],
-        mut visit: impl FnMut(usize, Range<usize>, &Samples<D>),
+        mut visit: impl FnMut(usize, Range<usize>, Range<usize>, &Samples<D>),
     ) -> Result<(), EvaluationError> {
+        let (Some(first_range), Some(last_range)) = (ranges.first(), ranges.last()) else { return Ok(()) };
         let decay = &self.decays[record];
         let motion = self.layout.motion(&self.machine, &self.terms, &self.values::<D>(record, p, first))?;
         let displacement = decay.record().quantity() == Quantity::Displacement;
@@ -162,16 +165,26 @@ impl<'a> RingDownProblem<'a> {
         let sampling = Sampling::uniform(decay.record().interval(), decay.record().len())?.keeping(channels);
         let mut trajectory = Trajectory::new();
         let mut before = 0;
-        for range in ranges {
-            for start in range.clone().step_by(WINDOW) {
-                let samples = start..range.end.min(start + WINDOW);
-                let Some(window) = sampling.window(samples.clone()) else { continue };
-                simulate(&motion, &window, &mut trajectory)?;
-                let simulated = if displacement { trajectory.position() } else { trajectory.velocity() };
-                let count = samples.len();
-                visit(before, samples, simulated);
-                before += count;
+        let (mut next, mut start) = (0, first_range.start);
+        while start < last_range.end {
+            let end = last_range.end.min(start + WINDOW);
+            let Some(window) = sampling.window(start..end) else { break };
+            simulate(&motion, &window, &mut trajectory)?;
+            let simulated = if displacement { trajectory.position() } else { trajectory.velocity() };
+            while let Some(range) = ranges.get(next) {
+                let samples = range.start.max(start)..range.end.min(end);
+                if !samples.is_empty() {
+                    let count = samples.len();
+                    let inside = samples.start - start..samples.end - start;
+                    visit(before, samples, inside, simulated);
+                    before += count;
+                }
+                if range.end > end {
+                    break;
+                }
+                next += 1;
             }
+            start = end;
         }
         Ok(())
     }
@@ -190,8 +203,8 @@ impl<'a> RingDownProblem<'a> {
         let count = self.decays[record].record().len();
         let offset = self.offset(record, p);
         let mut model = vec![0.0; count];
-        self.simulate(self.law().plain, record, p, 0, std::slice::from_ref(&(0..count)), |_, samples, simulated| {
-            for (out, value) in model[samples].iter_mut().zip(simulated.values()) {
+        self.simulate(self.law().plain, record, p, 0, std::slice::from_ref(&(0..count)), |_, samples, inside, simulated| {
+            for (out, value) in model[samples].iter_mut().zip(&simulated.values()[inside]) {
                 *out = value + offset;
             }
         })?;
@@ -267,8 +280,55 @@ impl<'a> RingDownProblem<'a> {
         starts
     }
 
+    /// Start values near a fit of `simple`, with what its residuals ask for: friction that falls over the speeds of the plainest
+    /// signs, by as much as they say; and the same losses without it.
+    pub(crate) fn near(&self, simple: &RingDownProblem<'_>, values: &[f64], signs: &[Sign]) -> Vec<Vec<f64>> {
+        if simple.layout.oscillator != 1 || !self.is_elaborate() {
+            return self.starts();
+        }
+        let (oscillator, rest) = values.split_at(simple.layout.oscillator);
+        let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
+        let own = &values[simple.layout.shared..];
+        let mut falls: Vec<(f64, f64, f64)> = signs
+            .iter()
+            .filter_map(|sign| match sign.addition {
+                Addition::FallsWithSpeed(share) => Some((share, sign.size, sign.significance())),
+                _ => None,
+            })
+            .collect();
+        falls.sort_by(|a, b| b.2.total_cmp(&a.2));
+        falls.truncate(2);
+        if falls.is_empty() {
+            falls = vec![(0.06, 0.3, 0.0), (0.3, 0.3, 0.0)];
+        }
+        if !self.law().fitted().any(bends) {
+            falls.truncate(1);
+        }
+        let bends_at = |share: f64| self.law().bend().map_or(1.0, |typical| typical / share);
+        let mut starts = Vec::new();
+        for (share, size, _) in falls {
+            let mut start = oscillator.to_vec();
+            self.push_dissipation_with(dissipation, bends_at(share), Some(size.clamp(0.05, 2.0)), &mut start);
+            start.extend_from_slice(own);
+            starts.push(self.clamped(&start));
+        }
+        starts
+    }
+
     /// Pushes start values of the damping beside the law and of the law.
     fn push_dissipation(&self, dissipation: Dissipation, sharpness: f64, start: &mut Vec<f64>) {
+        self.push_dissipation_with(dissipation, sharpness, None, start);
+    }
+
+    /// As [`push_dissipation`](Self::push_dissipation), with the excess of the friction at rest as a share of the level, if it is
+    /// given.
+    fn push_dissipation_with(
+        &self,
+        dissipation: Dissipation,
+        sharpness: f64,
+        excess: Option<f64>,
+        start: &mut Vec<f64>,
+    ) {
         let (length, speed) = self.decays[0].scales();
         let Dissipation { friction, damping } = dissipation;
         if self.terms.has_linear_damping() {
@@ -278,7 +338,11 @@ impl<'a> RingDownProblem<'a> {
             start.push(0.1 * (damping + friction / speed) / speed);
         }
         let scales = Scales { length, speed, friction, damping, sharpness };
-        start.extend(self.law().fitted().map(|parameter| scales.typical(parameter)));
+        start.extend(self.law().fitted().map(|parameter| match (parameter.role(), excess) {
+            (Role::Excess | Role::LevelAbove, Some(excess)) => excess * friction,
+            (Role::Level, Some(_)) if parameter.parameter().unit() == "1" => friction,
+            _ => scales.typical(parameter),
+        }));
     }
 
     fn clamped(&self, start: &[f64]) -> Vec<f64> {
@@ -287,6 +351,40 @@ impl<'a> RingDownProblem<'a> {
 
     fn offset(&self, record: usize, p: &[f64]) -> f64 {
         self.decays[record].fixed_offset().unwrap_or_else(|| p[self.layout.own[record] + 2])
+    }
+
+    /// The rows of each record among the residuals.
+    pub(crate) fn row_ranges(&self) -> impl Iterator<Item = Range<usize>> {
+        self.bases().map(|(record, base)| base..base + self.decays[record].summary().samples)
+    }
+
+    /// The derivatives of all residuals by each of the `wanted` parameters.
+    pub(crate) fn columns(&self, p: &[f64], wanted: &[usize]) -> Result<Vec<Vec<f64>>, EvaluationError> {
+        let elements = self.blocks.iter().map(|block| block.rows() * block.parameters().len()).sum();
+        let mut jacobian = vec![0.0; elements];
+        self.jacobian(p, &mut jacobian)?;
+        let mut columns = vec![vec![0.0; self.len()]; wanted.len()];
+        let (mut first, mut rest) = (0, jacobian.as_slice());
+        for block in &self.blocks {
+            for parameter in block.parameters() {
+                let (column, others) = rest.split_at(block.rows());
+                if let Some(index) = wanted.iter().position(|wanted| wanted == parameter) {
+                    columns[index][first..first + block.rows()].copy_from_slice(column);
+                }
+                rest = others;
+            }
+            first += block.rows();
+        }
+        Ok(columns)
+    }
+
+    /// The signal of `record` without its offset at each of its rows, as `fit` has it.
+    pub(crate) fn signal(&self, record: usize, fit: &Fit) -> Vec<f64> {
+        let Some(rows) = self.row_ranges().nth(record) else { return Vec::new() };
+        let offset = self.offset(record, fit.values());
+        let decay = &self.decays[record];
+        let measured = decay.kept().iter().flat_map(|range| &decay.record().values()[range.clone()]);
+        fit.residuals()[rows].iter().zip(measured).map(|(residual, measured)| residual + measured - offset).collect()
     }
 
     /// Each record with the number of residuals before its own.
@@ -300,18 +398,18 @@ impl<'a> RingDownProblem<'a> {
     }
 
     /// Writes the residuals of `record`, which begin at `base`.
-    fn write_residuals<D: Scalar>(
+    fn write_residuals(
         &self,
         record: usize,
         base: usize,
         p: &[f64],
         samples: Range<usize>,
-        simulated: &Samples<D>,
+        simulated: &[f64],
         residuals: &mut [f64],
     ) {
         let offset = self.offset(record, p);
         let measured = &self.decays[record].record().values()[samples];
-        for ((out, model), measured) in residuals[base..].iter_mut().zip(simulated.values()).zip(measured) {
+        for ((out, model), measured) in residuals[base..].iter_mut().zip(simulated).zip(measured) {
             *out = model + offset - measured;
         }
     }
@@ -340,8 +438,8 @@ impl Residuals for RingDownProblem<'_> {
 
     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
         for (record, base) in self.bases() {
-            self.simulate(self.law().plain, record, p, 0, self.decays[record].kept(), |before, samples, simulated| {
-                self.write_residuals(record, base + before, p, samples, simulated, residuals);
+            self.simulate(self.law().plain, record, p, 0, self.decays[record].kept(), |before, samples, inside, simulated| {
+                self.write_residuals(record, base + before, p, samples, &simulated.values()[inside], residuals);
             })?;
         }
         Ok(())
@@ -364,14 +462,15 @@ impl Residuals for RingDownProblem<'_> {
             for first in (0..self.layout.directions()).step_by(DIRECTIONS) {
                 let carried = (self.layout.directions() - first).min(DIRECTIONS);
                 let kept = self.decays[record].kept();
-                self.simulate(self.law().with_derivatives, record, p, first, kept, |before, samples, simulated| {
+                self.simulate(self.law().with_derivatives, record, p, first, kept, |before, samples, inside, simulated| {
                     if first == 0 && !residuals.is_empty() {
-                        self.write_residuals(record, base + before, p, samples, simulated, residuals);
+                        let values = &simulated.values()[inside.clone()];
+                        self.write_residuals(record, base + before, p, samples, values, residuals);
                     }
                     for direction in 0..carried {
                         let Some(partial) = simulated.partial(direction) else { continue };
                         let start = elements + (first + direction) * rows + before;
-                        jacobian[start..start + partial.len()].copy_from_slice(partial);
+                        jacobian[start..start + inside.len()].copy_from_slice(&partial[inside.clone()]);
                     }
                 })?;
             }

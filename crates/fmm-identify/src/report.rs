@@ -92,16 +92,12 @@ impl fmt::Display for Comparison {
             )?;
         }
         for nested in self.tests() {
-            writeln!(
-                f,
-                "  {} within {}: F = {:.1} with {} and {} degrees of freedom, p = {:.2e} if all residuals were independent",
-                nested.restricted,
-                nested.full,
-                nested.test.f,
-                nested.test.degrees_of_freedom.0,
-                nested.test.degrees_of_freedom.1,
-                nested.test.p_value
-            )?;
+            let verdict = if nested.p_value < 0.05 { "too simple" } else { "enough" };
+            let probability = if nested.p_value < 1e-3 { "< 0.001".to_owned() } else { format!("= {:.3}", nested.p_value) };
+            writeln!(f, "  {} beside {}: {verdict} (p {probability})", nested.restricted, nested.full)?;
+        }
+        for sign in self.signs() {
+            writeln!(f, "  {}: {:.2} ± {:.2}", sign.addition, sign.size, sign.uncertainty)?;
         }
         let preferred = self.preferred();
         let confidence = if self.is_decided() { "" } else { ", though the data do not decide" };

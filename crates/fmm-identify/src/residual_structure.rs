@@ -1,11 +1,11 @@
 //! Whether the residuals are noise, and the covariance of the estimates either way.
 
-use std::ops::Range;
-
-use fmm_fit::{CorrelatedCovariance, EvaluationError, Fit, Residuals, autocorrelation_time};
+use fmm_fit::{EvaluationError, Fit, autocorrelation_time};
 
 use crate::RingDown;
-use crate::correlation::{are_correlated, correlated_covariance};
+use crate::correlation::are_correlated;
+use crate::problem::RingDownProblem;
+use crate::residual_noise::{ResidualNoise, Series};
 
 /// What the residuals of a fit look like beside the noise of the records.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,10 +40,14 @@ impl ResidualStructure {
         }
     }
 
-    /// Whether neighbouring residuals tell each other's value: the law misses something, or a coarse converter rounds
-    /// neighbours alike.
+    /// Whether there is more in the residuals than the rounding of doubles.
+    pub(crate) fn is_noisy(&self) -> bool {
+        self.residual > self.rounding
+    }
+
+    /// Whether neighbouring residuals tell each other's value: the law misses something, or the noise is not white.
     pub(crate) fn is_correlated(&self) -> bool {
-        self.residual > self.rounding && are_correlated(self.autocorrelation_time)
+        self.is_noisy() && are_correlated(self.autocorrelation_time)
     }
 
     /// Whether the law misses something that the record shows.
@@ -52,69 +56,125 @@ impl ResidualStructure {
     }
 }
 
-/// Covariance of the estimates: that of independent residuals or, if they are correlated, the larger of that and the one
-/// that takes their correlation into account. A parameter that ended on its bound counts as free to leave it, so that
-/// the uncertainty of the others includes what it may take from them.
-pub(crate) struct Covariance<'a> {
-    fit: &'a Fit,
-    correlated: Option<CorrelatedCovariance>,
+/// Covariance of the estimates, for the noise that the residuals show.
+///
+/// ```text
+/// V = (JᵀJ)⁻¹ JᵀΣJ (JᵀJ)⁻¹
+/// ```
+///
+/// Where the noise is white and of one variance this is that of the [`Fit`]. A parameter that ended on its bound counts as free
+/// to leave it, so that the uncertainty of the others includes what it may take from them.
+#[derive(Debug, Clone)]
+pub(crate) struct Covariance {
+    count: usize,
+    elements: Vec<Option<f64>>,
+    /// Whether the fit knows the parameter: determined, and not on a bound.
+    is_inside: Vec<bool>,
+    degrees_of_freedom: f64,
+    inflation: f64,
+    noise: ResidualNoise,
 }
 
-impl<'a> Covariance<'a> {
+impl Covariance {
     pub(crate) fn of(
-        problem: &impl Residuals,
-        fit: &'a Fit,
+        problem: &RingDownProblem<'_>,
+        fit: &Fit,
         structure: &ResidualStructure,
-        decays: &[RingDown],
     ) -> Result<Self, EvaluationError> {
-        let mut correlated = None;
-        if structure.is_correlated() {
-            let mut end = 0;
-            let series: Vec<Range<usize>> = decays
-                .iter()
-                .map(|decay| {
-                    let start = end;
-                    end += decay.summary().samples;
-                    start..end
-                })
-                .collect();
-            correlated = correlated_covariance(problem, fit, structure.autocorrelation_time, &series)?;
-        }
-        Ok(Self { fit, correlated })
-    }
-
-    /// Covariance of parameters `i` and `j`; none where the record does not determine them.
-    pub(crate) fn get(&self, i: usize, j: usize) -> Option<f64> {
-        match &self.correlated {
-            None if self.fit.estimates()[i].standard_uncertainty().is_some() => {
-                self.fit.relaxed_covariance(i, j).or_else(|| self.fit.covariance(i, j))
+        let count = fit.values().len();
+        let plain = |i: usize, j: usize| fit.relaxed_covariance(i, j).or_else(|| fit.covariance(i, j));
+        let mut elements: Vec<Option<f64>> = (0..count * count).map(|at| plain(at / count, at % count)).collect();
+        let known: Vec<usize> = (0..count).filter(|i| elements[i * count + i].is_some()).collect();
+        let variance = fit.residual_standard_deviation().map_or(0.0, |s| s * s);
+        let columns = problem.columns(fit.values(), &known)?;
+        let scale = 1.0 / variance.max(f64::MIN_POSITIVE);
+        let pairs = known.iter().flat_map(|i| known.iter().map(move |j| i * count + j));
+        let unit: Vec<f64> = pairs.map(|at| elements[at].unwrap_or(0.0) * scale).collect();
+        let noise = Self::noise(problem, fit, structure, &columns, &unit);
+        let independent = fit.degrees_of_freedom() as f64;
+        let (mut degrees_of_freedom, mut inflation) = (independent, 1.0_f64);
+        if structure.is_noisy() && !noise.is_plain() && !known.is_empty() {
+            let order = known.len();
+            let middle = noise.products(&columns);
+            let element = |matrix: &[f64], i: usize, j: usize| matrix[i * order + j];
+            // A parameter's influence on the residuals of one that holds all others apart from what they can take over.
+            let mut sum = 0.0;
+            for (a, &i) in known.iter().enumerate() {
+                for (b, &j) in known.iter().enumerate() {
+                    let mut covariance = 0.0;
+                    for k in 0..order {
+                        for l in 0..order {
+                            covariance += element(&unit, a, k) * element(&middle, k, l) * element(&unit, l, b);
+                        }
+                    }
+                    if a == b {
+                        let ratio = covariance / elements[i * count + j].unwrap_or(f64::INFINITY);
+                        inflation = inflation.max(ratio.sqrt());
+                        sum += ratio;
+                    }
+                    elements[i * count + j] = Some(covariance);
+                }
             }
-            None => None,
-            Some(correlated) => Some(correlated.covariance(i, j)? * self.widening(i) * self.widening(j)),
+            // So many residuals tell no more than one.
+            let alike = (sum / order as f64).max(1.0);
+            let influence: Vec<f64> = (0..columns[0].len())
+                .map(|row| columns.iter().map(|column| column[row]).sum())
+                .collect();
+            let told = (fit.residuals().len() as f64 / alike).min(2.0 * noise.ordinates_along(&influence));
+            degrees_of_freedom = (told - fit.rank() as f64).max(1.5).min(independent);
         }
+        let is_inside = fit.estimates().iter().map(|estimate| estimate.standard_uncertainty().is_some()).collect();
+        Ok(Self { count, elements, is_inside, degrees_of_freedom, inflation, noise })
     }
 
-    /// Factor that keeps an uncertainty from falling below that of independent residuals without bounds.
-    fn widening(&self, i: usize) -> f64 {
-        let correlated = self.correlated.as_ref().and_then(|covariance| covariance.standard_uncertainty(i));
-        match (correlated, self.fit.relaxed_covariance(i, i).map(f64::sqrt)) {
-            (Some(correlated), Some(white)) if correlated > 0.0 => (white / correlated).max(1.0),
-            _ => 1.0,
-        }
+    fn noise(
+        problem: &RingDownProblem<'_>,
+        fit: &Fit,
+        structure: &ResidualStructure,
+        columns: &[Vec<f64>],
+        unit: &[f64],
+    ) -> ResidualNoise {
+        let signals: Vec<Vec<f64>> = (0..problem.decays().len()).map(|record| problem.signal(record, fit)).collect();
+        let parts: Vec<Vec<Vec<f64>>> = problem
+            .row_ranges()
+            .map(|rows| columns.iter().map(|column| column[rows.clone()].to_vec()).collect())
+            .collect();
+        let series: Vec<Series<'_>> = problem
+            .row_ranges()
+            .enumerate()
+            .map(|(record, rows)| Series {
+                rows,
+                signal: structure.is_noisy().then_some(signals[record].as_slice()),
+                period: problem.decays()[record].record().rate() / problem.decays()[record].guess().frequency(),
+                columns: &parts[record],
+                weights: unit,
+            })
+            .collect();
+        ResidualNoise::of(fit.residuals(), &series)
+    }
+
+    /// Covariance of parameters `i` and `j`; none where the record does not determine them, or for those on a bound.
+    pub(crate) fn get(&self, i: usize, j: usize) -> Option<f64> {
+        if self.is_inside[i] && self.is_inside[j] { self.elements[i * self.count + j] } else { None }
+    }
+
+    /// Variance of parameter `i` as if it were not on its bound.
+    pub(crate) fn relaxed(&self, i: usize) -> Option<f64> {
+        self.elements[i * self.count + i]
     }
 
     /// Degrees of freedom of the covariance.
     pub(crate) fn degrees_of_freedom(&self) -> f64 {
-        let independent = self.fit.degrees_of_freedom() as f64;
-        self.correlated.as_ref().map_or(independent, |covariance| covariance.degrees_of_freedom().min(independent))
+        self.degrees_of_freedom
     }
 
     /// Largest ratio of an uncertainty to that of independent residuals.
     pub(crate) fn inflation(&self) -> f64 {
-        let estimates = self.fit.estimates().iter().enumerate();
-        estimates
-            .filter(|(_, estimate)| estimate.standard_uncertainty().is_some())
-            .filter_map(|(i, _)| Some((self.get(i, i)? / self.fit.relaxed_covariance(i, i)?).sqrt()))
-            .fold(1.0, f64::max)
+        self.inflation
+    }
+
+    /// The noise behind it.
+    pub(crate) fn noise_of_residuals(&self) -> &ResidualNoise {
+        &self.noise
     }
 }

@@ -60,6 +60,11 @@ impl Terms {
         Ok(self)
     }
 
+    /// Whether there is none, and nothing is held.
+    pub(crate) fn is_plain(&self) -> bool {
+        *self == Self::NONE
+    }
+
     /// Whether a linear damping of the machine is fitted.
     pub const fn has_linear_damping(&self) -> bool {
         self.linear

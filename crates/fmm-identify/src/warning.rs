@@ -138,6 +138,8 @@ pub enum Warning {
     },
     /// The models are too close to prefer one.
     Undecided,
+    /// The time that was given ended before all laws were tried.
+    TimeLimit,
     /// The hammer hit again.
     FurtherHit {
         /// Number of the trial, from 1.
@@ -389,6 +391,10 @@ impl fmt::Display for Warning {
             | Self::SpikesBridged { .. }
             | Self::NotAtRest { .. }
             | Self::InputsNotPropagated { .. } => self.write_of_blows(f),
+            Self::TimeLimit => write!(
+                f,
+                "the time that was given ended before all laws were tried; what is reported is the best of those that were"
+            ),
             Self::Undecided => write!(
                 f,
                 "the data do not decide between the models; the simplest of the close ones is shown as preferred"

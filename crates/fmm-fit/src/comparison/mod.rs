@@ -10,7 +10,7 @@ mod verdict;
 
 pub use comparing::{Comparing, Criterion, ResidualCount};
 pub use contender::Contender;
-pub use model_comparison::{ComparisonError, FTest, f_test};
+pub use model_comparison::{ComparisonError, FTest, f_tail, f_test};
 pub use model_table::{ModelRow, ModelTable, NestedComparison};
 pub use model_table_error::ModelTableError;
 pub use verdict::{Doubt, Verdict};

@@ -94,6 +94,24 @@ pub fn f_test(restricted: &Fit, full: &Fit) -> Result<FTest, ComparisonError> {
         return Err(ComparisonError::NotNested);
     }
     let f = ((s_r - s_f).max(0.0) / added as f64) / (s_f / freedom as f64);
-    let distribution = FisherSnedecor::new(added as f64, freedom as f64).map_err(|_| ComparisonError::NoVariance)?;
-    Ok(FTest { f, p_value: distribution.sf(f), degrees_of_freedom: (added, freedom) })
+    let p_value = f_tail(f, added as f64, freedom as f64).ok_or(ComparisonError::NoVariance)?;
+    Ok(FTest { f, p_value, degrees_of_freedom: (added, freedom) })
+}
+
+/// Probability that a ratio F of two variances with `added` and `freedom` degrees of freedom is at least `f` by chance (1); none
+/// for degrees of freedom that are not positive, or an `f` that is not a number.
+///
+/// ```
+/// // The square of Student's t of 2.228 with ten degrees of freedom, which 5 % exceed.
+/// let p = fmm_fit::f_tail(2.228_138_852f64.powi(2), 1.0, 10.0).unwrap();
+/// assert!((p - 0.05).abs() < 1e-9);
+/// ```
+pub fn f_tail(f: f64, added: f64, freedom: f64) -> Option<f64> {
+    /// With more the variance below is as good as known.
+    const MANY: f64 = 1e6;
+    if f.is_nan() {
+        return None;
+    }
+    let distribution = FisherSnedecor::new(added, freedom.min(MANY)).ok()?;
+    Some(distribution.sf(f.max(0.0)))
 }

@@ -1,0 +1,281 @@
+//! Noise of the records as the residuals of a fit show it: how it grows with the signal, and how neighbouring samples share it.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+
+use fmm_frf::{Complex64, RealTransform};
+
+use crate::autoregression::Autoregression;
+use crate::noise_growth::NoiseGrowth;
+
+/// The noise of several series of residuals, such as one per record.
+///
+/// ```text
+/// e_i = σ_i z_i,     z stationary with unit variance and the spectral density S(f):     Σ = D C D,   D = diag(σ_i)
+/// ```
+///
+/// S is that of an autoregression, whose order Akaike's criterion chooses, times the periodogram over it where that, averaged
+/// over frequencies up to 2.5 times lower and higher, is significantly larger (prewhitening; Andrews and Monahan). What the
+/// parameters of the fit took out of the periodogram P is put back, E[P] = (1 − h) S with h their share of a line.
+///
+/// # References
+/// D. W. K. Andrews, J. C. Monahan, "An improved heteroskedasticity and autocorrelation consistent covariance matrix
+/// estimator", Econometrica 60 (1992) 953, <https://doi.org/10.2307/2951574>.
+#[derive(Debug, Clone)]
+pub(crate) struct ResidualNoise {
+    series: Vec<SeriesNoise>,
+}
+
+/// One series of residuals, and what is known of it.
+pub(crate) struct Series<'a> {
+    /// Its rows among all residuals.
+    pub(crate) rows: Range<usize>,
+    /// The signal without offset, one value a row, if the noise may grow with it.
+    pub(crate) signal: Option<&'a [f64]>,
+    /// Period of the signal (samples).
+    pub(crate) period: f64,
+    /// Columns of the fit at these rows, and the elements (JᵀJ)⁺ by which they count: pairs of columns with their weight.
+    pub(crate) columns: &'a [Vec<f64>],
+    pub(crate) weights: &'a [f64],
+}
+
+#[derive(Debug, Clone)]
+struct SeriesNoise {
+    rows: Range<usize>,
+    deviations: Vec<f64>,
+    growth: Option<NoiseGrowth>,
+    transform: RealTransform,
+    /// S at the lines of the padded transform (1).
+    density: Vec<f64>,
+    /// Independent ordinates of the periodogram behind each line of the density.
+    ordinates: Vec<f64>,
+    is_white: bool,
+}
+
+/// Frequencies up to this factor lower and higher are averaged,
+const SPREAD: f64 = 2.5;
+/// and no fewer than this many ordinates of the periodogram.
+const FEWEST_ORDINATES: f64 = 12.0;
+/// An average above one by this many standard errors is no chance.
+const SIGNIFICANT: f64 = 2.0;
+/// Steps in which what the parameters took is put back.
+const RESTORATIONS: usize = 3;
+/// Fewer residuals than this are taken as white.
+const FEWEST_RESIDUALS: usize = 32;
+
+impl ResidualNoise {
+    /// The noise that `residuals`, of a fit, show in each of `series`.
+    pub(crate) fn of(residuals: &[f64], series: &[Series<'_>]) -> Self {
+        Self { series: series.iter().map(|series| SeriesNoise::of(residuals, series)).collect() }
+    }
+
+    /// aᵀ Σ b of two columns over all residuals.
+    pub(crate) fn product(&self, a: &[f64], b: &[f64]) -> f64 {
+        self.series.iter().map(|series| series.product(&series.lines(a), &series.lines(b))).sum()
+    }
+
+    /// Jᵀ Σ J of `columns` over all residuals, row by row.
+    pub(crate) fn products(&self, columns: &[Vec<f64>]) -> Vec<f64> {
+        let count = columns.len();
+        let mut products = vec![0.0; count * count];
+        for series in &self.series {
+            let lines: Vec<_> = columns.iter().map(|column| series.lines(column)).collect();
+            for i in 0..count {
+                for j in i..count {
+                    let product = series.product(&lines[i], &lines[j]);
+                    products[i * count + j] += product;
+                    if i != j {
+                        products[j * count + i] += product;
+                    }
+                }
+            }
+        }
+        products
+    }
+
+    /// Variance of the noise along `direction`, aᵀ Σ a/aᵀa, in the unit of the residuals squared; that of white noise for none.
+    pub(crate) fn variance_along(&self, direction: &[f64]) -> f64 {
+        let square: f64 = direction.iter().map(|a| a * a).sum();
+        if square > 0.0 {
+            return self.product(direction, direction) / square;
+        }
+        let count: usize = self.series.iter().map(|series| series.deviations.len()).sum();
+        let sum: f64 = self.series.iter().flat_map(|series| &series.deviations).map(|deviation| deviation * deviation).sum();
+        sum / count.max(1) as f64
+    }
+
+    /// Whether every series is white and of one variance.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.series.iter().all(|series| series.is_white && series.growth.is_none())
+    }
+
+    /// How the noise grows with the signal, if it does in any series.
+    pub(crate) fn growth(&self) -> Option<NoiseGrowth> {
+        self.series.iter().find_map(|series| series.growth)
+    }
+
+    /// Independent ordinates of the periodogram that the density rests on along `direction`.
+    pub(crate) fn ordinates_along(&self, direction: &[f64]) -> f64 {
+        let (mut sum, mut weight) = (0.0, 0.0);
+        for series in &self.series {
+            for (line, ordinates) in series.lines(direction).iter().zip(&series.ordinates) {
+                sum += line.norm_sqr() / ordinates;
+                weight += line.norm_sqr();
+            }
+        }
+        if sum > 0.0 { weight / sum } else { f64::INFINITY }
+    }
+}
+
+impl SeriesNoise {
+    fn of(residuals: &[f64], series: &Series<'_>) -> Self {
+        let own = &residuals[series.rows.clone()];
+        let count = own.len();
+        let growth = series.signal.and_then(|signal| NoiseGrowth::of(own, signal, series.period));
+        let deviations = match (growth, series.signal) {
+            (Some(growth), Some(signal)) => growth.deviations(signal, series.period),
+            _ => vec![(own.iter().map(|r| r * r).sum::<f64>() / count.max(1) as f64).sqrt(); count],
+        };
+        let transform = RealTransform::new(padded(count));
+        let mut noise = Self {
+            rows: series.rows.clone(),
+            deviations,
+            growth,
+            density: vec![1.0; transform.lines()],
+            ordinates: vec![f64::INFINITY; transform.lines()],
+            transform,
+            is_white: true,
+        };
+        if count >= FEWEST_RESIDUALS && noise.deviations.iter().all(|deviation| *deviation > 0.0) {
+            noise.colour(own, series);
+        }
+        noise
+    }
+
+    /// Finds the spectral density of `residuals` of this series.
+    fn colour(&mut self, residuals: &[f64], series: &Series<'_>) {
+        let count = residuals.len();
+        let unit: Vec<f64> = residuals.iter().zip(&self.deviations).map(|(r, deviation)| r / deviation).collect();
+        let raw: Vec<f64> = self.spectrum(&unit).iter().map(|line| line.norm_sqr() / count as f64).collect();
+        let taken = self.taken(series);
+        let mut periodogram = raw.clone();
+        let mut regression = Autoregression::of(&self.autocovariances(&periodogram, count), count);
+        // What the parameters took from a line is a share of the density there, which is known better each time.
+        for _ in 0..RESTORATIONS {
+            self.density = self.densities(&regression);
+            periodogram = raw.iter().zip(&taken).zip(&self.density).map(|((p, share), s)| p + share * s).collect();
+            regression = Autoregression::of(&self.autocovariances(&periodogram, count), count);
+        }
+        self.density = self.densities(&regression);
+        let lines = self.density.len();
+        let mut sums = vec![0.0];
+        for (p, s) in periodogram.iter().zip(&self.density) {
+            sums.push(sums[sums.len() - 1] + p / s);
+        }
+        let mut told = vec![0.0];
+        for share in &taken {
+            told.push(told[told.len() - 1] + (1.0 - share).max(0.0));
+        }
+        let per_line = count as f64 / self.transform.length() as f64;
+        let fewest = FEWEST_ORDINATES / per_line;
+        let mut is_flat = true;
+        for k in 0..lines {
+            let line = k as f64;
+            let low = (line / SPREAD).min(line - 0.5 * fewest).max(0.0) as usize;
+            let high = (SPREAD * line).max(low as f64 + fewest).ceil().min(lines as f64) as usize;
+            let ordinates = ((told[high] - told[low]) * per_line).max(1.0);
+            let average = (sums[high] - sums[low]) / (high - low).max(1) as f64;
+            if average.ln() > SIGNIFICANT / ordinates.sqrt() {
+                self.density[k] *= average;
+                self.ordinates[k] = ordinates;
+                is_flat = false;
+            }
+        }
+        self.is_white = is_flat && regression.order() == 0;
+    }
+
+    fn densities(&self, regression: &Autoregression) -> Vec<f64> {
+        let length = self.transform.length() as f64;
+        (0..self.transform.lines()).map(|k| regression.density(k as f64 / length)).collect()
+    }
+
+    /// The autocovariances of a series of `count` values that belong to its `periodogram`.
+    fn autocovariances(&self, periodogram: &[f64], count: usize) -> Vec<f64> {
+        let length = self.transform.length();
+        let last = periodogram.len() - 1;
+        let at = |lag: usize| {
+            let terms = periodogram.iter().enumerate().map(|(k, p)| {
+                let times = if k == 0 || (k == last && length.is_multiple_of(2)) { 1.0 } else { 2.0 };
+                times * p * (TAU * ((k * lag) % length) as f64 / length as f64).cos()
+            });
+            terms.sum::<f64>() / length as f64
+        };
+        (0..Autoregression::lags(count)).map(at).collect()
+    }
+
+    /// The share of each line that the parameters of the fit have taken (1).
+    fn taken(&self, series: &Series<'_>) -> Vec<f64> {
+        let lines: Vec<Vec<Complex64>> = series.columns.iter().map(|column| self.spectrum(column)).collect();
+        let count = (self.deviations.len().max(1)) as f64;
+        let mut taken = vec![0.0; self.transform.lines()];
+        for (i, a) in lines.iter().enumerate() {
+            for (j, b) in lines.iter().enumerate() {
+                let weight = series.weights[i * lines.len() + j] / count;
+                for ((share, a), b) in taken.iter_mut().zip(a).zip(b) {
+                    *share += weight * (a.conj() * b).re;
+                }
+            }
+        }
+        taken
+    }
+
+    /// The spectrum of `values`, as many as this series has rows, padded with zeros.
+    fn spectrum(&self, values: &[f64]) -> Vec<Complex64> {
+        let mut samples = values.to_vec();
+        samples.resize(self.transform.length(), 0.0);
+        let (mut spectrum, mut scratch) = (Vec::new(), Vec::new());
+        // The length is that of the transform.
+        let _ = self.transform.run(&mut samples, &mut spectrum, &mut scratch);
+        spectrum
+    }
+
+    /// The spectrum of D a, for a `column` over all residuals.
+    fn lines(&self, column: &[f64]) -> Vec<Complex64> {
+        let values: Vec<f64> =
+            column[self.rows.clone()].iter().zip(&self.deviations).map(|(a, deviation)| a * deviation).collect();
+        self.spectrum(&values)
+    }
+
+    /// aᵀ D C D b of two spectra, where C is the Toeplitz matrix that belongs to the density: with as many zeros behind the
+    /// values the sum over the lines is that of the matrix.
+    fn product(&self, a: &[Complex64], b: &[Complex64]) -> f64 {
+        let length = self.transform.length();
+        let last = self.transform.lines() - 1;
+        let sum: f64 = a
+            .iter()
+            .zip(b)
+            .zip(&self.density)
+            .enumerate()
+            .map(|(k, ((a, b), density))| {
+                let times = if k == 0 || (k == last && length.is_multiple_of(2)) { 1.0 } else { 2.0 };
+                times * density * (a.conj() * b).re
+            })
+            .sum();
+        sum / length as f64
+    }
+}
+
+/// The next length of at least twice `count` that has small factors only.
+fn padded(count: usize) -> usize {
+    let least = (2 * count).max(2);
+    let mut best = least.next_power_of_two();
+    for odd in [3, 5, 9, 15] {
+        let mut length = odd;
+        while length < least {
+            length *= 2;
+        }
+        best = best.min(length);
+    }
+    best
+}
