@@ -25,7 +25,7 @@ struct Arguments {
     /// Records a cell, instead of 200 (30 for the cells of laws)
     #[arg(long)]
     seeds: Option<u64>,
-    /// Only cells of these names, or whose names begin so
+    /// Only these cells; the beginning of names, such as falling/, stands for all of them
     #[arg(long = "cell", value_name = "NAME", value_delimiter = ',')]
     names: Vec<String>,
     /// Threads
@@ -43,16 +43,27 @@ struct Arguments {
 const FEW: u64 = 10;
 
 impl Arguments {
-    /// The cells that are asked for.
+    /// The cells that are asked for: those of a name or, if there is none, those whose names begin so.
     fn chosen(&self) -> Found<Vec<Cell>> {
         let mut cells = cells();
-        if let Some(name) =
-            self.names.iter().find(|name| !cells.iter().any(|cell| cell.name.starts_with(name.as_str())))
-        {
-            return Err(format!("there is no cell {name}; --list lists them").into());
+        if self.names.is_empty() {
+            return Ok(cells);
         }
-        cells
-            .retain(|cell| self.names.is_empty() || self.names.iter().any(|name| cell.name.starts_with(name.as_str())));
+        let mut chosen = vec![false; cells.len()];
+        for name in &self.names {
+            let is_cell = cells.iter().any(|cell| cell.name == *name);
+            let mut matched = false;
+            for (cell, chosen) in cells.iter().zip(&mut chosen) {
+                if cell.name == *name || (!is_cell && cell.name.starts_with(name.as_str())) {
+                    (*chosen, matched) = (true, true);
+                }
+            }
+            if !matched {
+                return Err(format!("there is no cell {name}; --list lists them").into());
+            }
+        }
+        let mut chosen = chosen.into_iter();
+        cells.retain(|_| chosen.next().unwrap_or(false));
         Ok(cells)
     }
 
@@ -67,7 +78,7 @@ fn run(arguments: &Arguments) -> Found<()> {
     let mut out = std::io::stdout().lock();
     if arguments.list {
         for cell in &cells {
-            writeln!(out, "{:<40} {}", cell.name, cell.about)?;
+            writeln!(out, "{:<44} {}", cell.name, cell.about)?;
         }
         return Ok(());
     }

@@ -10,7 +10,7 @@ use super::{Found, Levels, Setup};
 pub(crate) struct Truth {
     /// Names of laws that are right; the first is that of the law which moved the machine.
     pub(crate) right: Vec<&'static str>,
-    /// μ at rest and at the peak speed (1).
+    /// μ (1).
     pub(crate) levels: Levels,
     /// c/m of machine and law together (1/s).
     pub(crate) damping_per_mass: f64,

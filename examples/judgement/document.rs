@@ -20,6 +20,7 @@ fn cell(summary: &Summary) -> Value {
         "first_failure": summary.failure,
         "without_mu": summary.without_mu,
         "bias_of_mu": summary.bias,
+        "median_error_of_mu": summary.median_error,
         "scatter_over_u_of_mu": summary.scatter,
         "coverage_of_mu": share(summary.mu),
         "coverage_of_damping": share(summary.damping),

@@ -36,8 +36,6 @@ fn is_loud(warnings: &[Warning]) -> bool {
             warning,
             Warning::StructuredResiduals { .. }
                 | Warning::PeriodDependsOnAmplitude { .. }
-                | Warning::NoDecay
-                | Warning::OffsetStep { .. }
                 | Warning::NotConverged { .. }
                 | Warning::DependsOnLaw { .. }
                 | Warning::OtherLaw { .. }
@@ -77,13 +75,13 @@ pub(crate) struct Verdict {
     /// Kinds of the warnings, each once.
     pub(crate) warnings: Vec<String>,
     pub(crate) is_loud: bool,
-    /// μ, of a law with one level; otherwise its level at large speed, or at rest.
+    /// μ of a law with one level; of others a level that they have a parameter for.
     pub(crate) mu: Option<Stated>,
     /// c/m (1/s).
     pub(crate) damping: Option<Stated>,
     /// f₀ (Hz).
     pub(crate) frequency: Option<Stated>,
-    /// μ at rest and at the peak speed by the preferred law (1), zero of a law without dry friction.
+    /// μ by the preferred law (1), zero of a law without dry friction.
     pub(crate) levels: Levels,
 }
 
@@ -102,10 +100,10 @@ pub(crate) fn judge(case: &Case) -> Result<Verdict, IdentifyError> {
         named: named(&comparison),
         warnings,
         is_loud: is_loud(comparison.warnings()),
-        mu: finding(&["mu", "sliding_mu", "static_mu"]),
+        mu: finding(&["mu", "sliding_mu", "static_mu", "gaining_mu"]),
         damping: finding(&["damping_per_mass"]),
         frequency: finding(&["natural_frequency_hz"]),
-        levels: levels(preferred, &case.truth).unwrap_or(Levels { rest: 0.0, peak: 0.0 }),
+        levels: levels(preferred, &case.truth).unwrap_or(Levels { rest: 0.0, peak: 0.0, beyond: 0.0 }),
     })
 }
 
@@ -123,5 +121,5 @@ fn levels(found: &Identification, truth: &Truth) -> Option<Levels> {
     let first = own.checked_sub(law.fitted().count())?;
     let fitted: Vec<f64> = estimates[first..own].iter().map(fmm_fit::Estimate::value).collect();
     let per_mass = law.levels(&law.of_fitted(&fitted)?, truth.peak_speed)?;
-    Some(Levels { rest: per_mass.rest * truth.mass_by_load, peak: per_mass.peak * truth.mass_by_load })
+    Some(per_mass.times(truth.mass_by_load))
 }

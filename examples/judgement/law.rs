@@ -10,14 +10,35 @@ use fmm_sim::{Sampling, Scenario, Simulated, Trajectory};
 
 use super::Found;
 
-/// The two levels by which a law is judged, without its viscous part (1).
+/// The levels by which a law is judged, without its viscous part (1).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Levels {
     /// At rest: the static level, or the highest level near rest of a law that creeps.
     pub(crate) rest: f64,
     /// At the peak speed, while the speed falls.
     pub(crate) peak: f64,
+    /// Far beyond it: the level that a falling law tends to.
+    pub(crate) beyond: f64,
 }
+
+impl Levels {
+    const fn constant(level: f64) -> Self {
+        Self { rest: level, peak: level, beyond: level }
+    }
+
+    /// All levels times `factor`.
+    pub(crate) fn times(self, factor: f64) -> Self {
+        Self { rest: self.rest * factor, peak: self.peak * factor, beyond: self.beyond * factor }
+    }
+
+    /// Whether the friction is the same at all speeds.
+    pub(crate) fn is_constant(self) -> bool {
+        self.rest == self.peak
+    }
+}
+
+/// A speed beyond all others, in peak speeds.
+const BEYOND: f64 = 1e6;
 
 /// A law family by its name.
 #[derive(Debug)]
@@ -48,7 +69,8 @@ where
     F::At<f64>: SlidingLaw<f64>,
 {
     let law = F::at::<f64>(values).ok()?;
-    Some(Levels { rest: law.coefficient(0.0), peak: law.coefficient_losing_speed(peak_speed) })
+    let at = |speed| law.coefficient_losing_speed(speed);
+    Some(Levels { rest: law.coefficient(0.0), peak: at(peak_speed), beyond: at(BEYOND * peak_speed) })
 }
 
 /// Levels of a law of the sliding speed that begins at zero.
@@ -60,24 +82,25 @@ where
     let law = F::at::<f64>(values).ok()?;
     let speeds = (1..=STEPS).map(|step| peak_speed * (f64::from(step) / f64::from(STEPS)).powi(2));
     let rest = speeds.map(|speed| law.coefficient(speed)).fold(0.0, f64::max);
-    Some(Levels { rest, peak: law.coefficient_losing_speed(peak_speed) })
+    let at = |speed| law.coefficient_losing_speed(speed);
+    Some(Levels { rest, peak: at(peak_speed), beyond: at(BEYOND * peak_speed) })
 }
 
 /// Levels of steady sliding of a law with internal state.
 fn dahl(values: &[f64], _peak_speed: f64) -> Option<Levels> {
-    let level = *values.first()?;
-    Some(Levels { rest: level, peak: level })
+    values.first().copied().map(Levels::constant)
 }
 
 fn bouc_wen(values: &[f64], _peak_speed: f64) -> Option<Levels> {
     let &[stiffness, amplitude, beta, gamma, exponent] = values else { return None };
     let level = stiffness * (amplitude / (beta + gamma)).powf(exponent.recip());
-    Some(Levels { rest: level, peak: level })
+    Some(Levels::constant(level))
 }
 
 fn lugre(values: &[f64], peak_speed: f64) -> Option<Levels> {
     let law = LuGre::at::<f64>(values).ok()?;
-    Some(Levels { rest: law.steady_coefficient(0.0), peak: law.steady_coefficient(peak_speed) })
+    let at = |speed| law.steady_coefficient(speed);
+    Some(Levels { rest: at(0.0), peak: at(peak_speed), beyond: at(BEYOND * peak_speed) })
 }
 
 /// Every law that a record can be made with.

@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::cell::Group;
-use super::judge::Stated;
 use super::study::Outcome;
-use super::{Cell, Truth, Verdict};
+use super::{Cell, Levels, Truth, Verdict};
 
 /// How many of how many.
 #[derive(Debug, Clone, Copy, Default)]
@@ -39,6 +38,8 @@ pub(crate) struct Summary {
     pub(crate) without_mu: usize,
     /// Mean of (stated − true)/true of μ (1).
     pub(crate) bias: Option<f64>,
+    /// Median of the absolute value of that (1).
+    pub(crate) median_error: Option<f64>,
     /// Standard deviation of (stated − true)/u of μ (1).
     pub(crate) scatter: Option<f64>,
     /// 95 % intervals that hold the truth.
@@ -79,12 +80,13 @@ fn is_far(stated: f64, truth: f64, interval: Option<(f64, f64)>) -> bool {
 fn is_wrong(truth: &Truth, verdict: &Verdict) -> bool {
     let interval = verdict.mu.and_then(|mu| mu.interval);
     let (stated, truth) = (verdict.levels, truth.levels);
-    let is_constant = stated.rest == stated.peak;
-    let rest = is_far(stated.rest, truth.rest, interval);
-    let peak = is_far(stated.peak, truth.peak, interval);
-    let hits_other =
-        is_constant && !(is_far(stated.rest, truth.peak, interval) && is_far(stated.peak, truth.rest, interval));
-    rest && peak && !hits_other
+    is_far(stated.rest, truth.rest, interval) && is_far(stated.peak, truth.peak, interval)
+}
+
+/// The levels that the stated μ may mean: at rest, at the peak speed and, if the preferred law is not of one level, beyond.
+fn meant<'a>(truth: &'a Truth, verdict: &Verdict) -> impl Iterator<Item = f64> + Clone + use<'a> {
+    let Levels { rest, peak, beyond } = truth.levels;
+    [rest, peak].into_iter().chain((!verdict.levels.is_constant()).then_some(beyond))
 }
 
 impl Summary {
@@ -97,7 +99,7 @@ impl Summary {
             match &outcome.verdict {
                 Ok((truth, verdict)) => {
                     summary.count(truth, verdict);
-                    if let Some((error, in_uncertainties)) = errors(truth, verdict.mu) {
+                    if let Some((error, in_uncertainties)) = errors(truth, verdict) {
                         relative.push(error);
                         scaled.push(in_uncertainties);
                     }
@@ -111,15 +113,17 @@ impl Summary {
         relative.retain(|error| error.is_finite());
         scaled.retain(|error| error.is_finite());
         summary.bias = mean(&relative);
+        summary.median_error = median(relative.iter().map(|error| error.abs()));
         summary.scatter = deviation(&scaled);
-        let mut seconds: Vec<f64> = outcomes.iter().map(|outcome| outcome.seconds).collect();
-        seconds.sort_by(f64::total_cmp);
-        summary.seconds = seconds.get(seconds.len() / 2).copied().unwrap_or(0.0);
+        summary.seconds = median(outcomes.iter().map(|outcome| outcome.seconds)).unwrap_or(0.0);
         summary
     }
 
     fn count(&mut self, truth: &Truth, verdict: &Verdict) {
-        let holds_mu = verdict.mu.and_then(|mu| Some(mu.holds(truth.levels.rest)? || mu.holds(truth.levels.peak)?));
+        let holds_mu = verdict
+            .mu
+            .filter(|mu| mu.interval.is_some())
+            .map(|mu| meant(truth, verdict).any(|level| mu.holds(level) == Some(true)));
         match holds_mu {
             Some(holds) => {
                 self.mu.add(holds);
@@ -154,16 +158,24 @@ impl Summary {
     }
 }
 
-/// Error of `mu` by the truth and by its uncertainty, from the nearer of the two true levels.
-fn errors(truth: &Truth, mu: Option<Stated>) -> Option<(f64, f64)> {
-    let mu = mu?;
-    let (rest, peak) = (mu.value - truth.levels.rest, mu.value - truth.levels.peak);
-    let (error, level) = if rest.abs() < peak.abs() { (rest, truth.levels.rest) } else { (peak, truth.levels.peak) };
+/// Error of μ by the truth and by its uncertainty, from the nearest level that it may mean.
+fn errors(truth: &Truth, verdict: &Verdict) -> Option<(f64, f64)> {
+    let mu = verdict.mu?;
+    let off = |level: &f64| (mu.value - level).abs();
+    let level = meant(truth, verdict).min_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let error = mu.value - level;
     Some((error / level, error / mu.uncertainty?))
 }
 
 fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// The middle value, the upper one of two.
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
 }
 
 fn deviation(values: &[f64]) -> Option<f64> {

@@ -12,9 +12,10 @@ The default judgement, measured on simulated records of known truth.
 
 n         records                       fail      no verdict but an error
 no μ      none stated though there is one
-bias      mean of (stated − true)/true of μ, %
+bias      mean of (stated − true)/true of μ, %; a μ that changes with the speed is that at rest or at the peak speed,
+          whichever is nearer, or if the law says that it changes, that beyond all speeds
 scatter   standard deviation of (stated − true)/u of μ; 1 if u says how far it scatters
-μ c f₀    95 % intervals that hold the truth, % of those stated; for μ the level at the peak speed or at rest
+μ c f₀    95 % intervals that hold the truth, % of those stated
 loud      intervals of μ that miss, with a warning that the law or the record is not right
 silent    intervals of μ that miss, without
 decided   one law is left
@@ -58,7 +59,7 @@ fn rows(text: &mut String, summaries: &[Summary]) {
     put(
         text,
         format_args!(
-            "\n{:<39}{:>4}{:>5}{:>5}{:>8}{:>8}{:>6}{:>6}{:>6}{:>6}{:>7}{:>8}{:>6}{:>5}{:>8}\n",
+            "\n{:<44}{:>4}{:>5}{:>5}{:>8}{:>8}{:>6}{:>6}{:>6}{:>6}{:>7}{:>8}{:>6}{:>5}{:>8}\n",
             "cell",
             "n",
             "fail",
@@ -81,7 +82,7 @@ fn rows(text: &mut String, summaries: &[Summary]) {
         put(
             text,
             format_args!(
-                "{:<39}{:>4}{:>5}{:>5}{:>8}{:>8}{:>6}{:>6}{:>6}{:>6}{:>7}{:>8}{:>6}{:>5}{:>8.1}\n",
+                "{:<44}{:>4}{:>5}{:>5}{:>8}{:>8}{:>6}{:>6}{:>6}{:>6}{:>7}{:>8}{:>6}{:>5}{:>8.1}\n",
                 row.name,
                 row.records,
                 row.failures,
