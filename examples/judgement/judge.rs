@@ -1,0 +1,125 @@
+//! The thing under test: what the crates say of a record when nothing is asked for.
+
+use fmm_identify::{Candidate, Comparison, Finding, Identification, IdentifyError, Machine, Preparation, RingDown};
+use fmm_identify::{Warning, compare};
+
+use super::law::Law;
+use super::{Case, Levels, Truth};
+
+/// The default judgement. This is the one place that knows how it is asked for.
+fn default_judgement(machine: &Machine, decays: &[RingDown]) -> Result<Comparison, IdentifyError> {
+    compare(machine, decays, &Candidate::standard())
+}
+
+/// Differences of the criterion below which laws are close, as in `fmm_identify`.
+const CLOSE: f64 = 2.0;
+
+/// Names of the laws that the judgement leaves standing: the preferred one if it is decided, otherwise all that come close.
+fn named(comparison: &Comparison) -> Vec<String> {
+    let preferred = comparison.preferred().law();
+    if comparison.is_decided() {
+        return vec![preferred.to_owned()];
+    }
+    let least = comparison.scores().iter().copied().fold(f64::INFINITY, f64::min);
+    let scored = comparison.identifications().iter().zip(comparison.scores());
+    scored
+        .filter(|(found, score)| **score - least <= CLOSE || found.law() == preferred)
+        .map(|(found, _)| found.law().to_owned())
+        .collect()
+}
+
+/// Whether one of `warnings` says that the law is not right, not settled, or does not describe the record. New variants that
+/// say so belong here.
+fn is_loud(warnings: &[Warning]) -> bool {
+    warnings.iter().any(|warning| {
+        matches!(
+            warning,
+            Warning::StructuredResiduals { .. }
+                | Warning::PeriodDependsOnAmplitude { .. }
+                | Warning::NotConverged { .. }
+                | Warning::DependsOnLaw { .. }
+                | Warning::OtherLaw { .. }
+                | Warning::NegativeDamping { .. }
+                | Warning::Misled { .. }
+                | Warning::Undecided
+        )
+    })
+}
+
+/// A quantity as it is stated.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stated {
+    pub(crate) value: f64,
+    pub(crate) uncertainty: Option<f64>,
+    /// With 95 %.
+    pub(crate) interval: Option<(f64, f64)>,
+}
+
+impl Stated {
+    fn of(finding: &Finding) -> Self {
+        Self { value: finding.value(), uncertainty: finding.uncertainty(), interval: finding.interval(0.95) }
+    }
+
+    /// Whether the interval holds `truth`; none without an interval.
+    pub(crate) fn holds(&self, truth: f64) -> Option<bool> {
+        self.interval.map(|(low, high)| (low..=high).contains(&truth))
+    }
+}
+
+/// What is said of one record.
+#[derive(Debug, Clone)]
+pub(crate) struct Verdict {
+    pub(crate) preferred: String,
+    pub(crate) is_decided: bool,
+    pub(crate) named: Vec<String>,
+    /// Kinds of the warnings, each once.
+    pub(crate) warnings: Vec<String>,
+    pub(crate) is_loud: bool,
+    /// μ of a law with one level; of others a level that they have a parameter for.
+    pub(crate) mu: Option<Stated>,
+    /// c/m (1/s).
+    pub(crate) damping: Option<Stated>,
+    /// f₀ (Hz).
+    pub(crate) frequency: Option<Stated>,
+    /// μ by the preferred law (1), zero of a law without dry friction.
+    pub(crate) levels: Levels,
+}
+
+/// Prepares and judges the record of `case`.
+pub(crate) fn judge(case: &Case) -> Result<Verdict, IdentifyError> {
+    let decay = RingDown::prepare(&case.record, &Preparation::default())?;
+    let comparison = default_judgement(&case.machine, &[decay])?;
+    let preferred = comparison.preferred();
+    let mut warnings: Vec<String> = comparison.warnings().iter().map(kind).collect();
+    warnings.sort();
+    warnings.dedup();
+    let finding = |names: &[&str]| names.iter().find_map(|name| preferred.finding(name)).map(Stated::of);
+    Ok(Verdict {
+        preferred: preferred.law().to_owned(),
+        is_decided: comparison.is_decided(),
+        named: named(&comparison),
+        warnings,
+        is_loud: is_loud(comparison.warnings()),
+        mu: finding(&["mu", "sliding_mu", "static_mu", "gaining_mu"]),
+        damping: finding(&["damping_per_mass"]),
+        frequency: finding(&["natural_frequency_hz"]),
+        levels: levels(preferred, &case.truth).unwrap_or(Levels { rest: 0.0, peak: 0.0, beyond: 0.0 }),
+    })
+}
+
+/// Name of the variant.
+fn kind(warning: &Warning) -> String {
+    format!("{warning:?}").chars().take_while(char::is_ascii_alphanumeric).collect()
+}
+
+/// Levels that the fitted law has, by its formula.
+fn levels(found: &Identification, truth: &Truth) -> Option<Levels> {
+    let law = Law::named(found.law())?;
+    let estimates = found.fit().estimates();
+    // Behind the law stands what belongs to the record: initial position and velocity, offset.
+    let own = estimates.iter().position(|estimate| estimate.name() == "initial_position")?;
+    let first = own.checked_sub(law.fitted().count())?;
+    let fitted: Vec<f64> = estimates[first..own].iter().map(fmm_fit::Estimate::value).collect();
+    let per_mass = law.levels(&law.of_fitted(&fitted)?, truth.peak_speed)?;
+    Some(per_mass.times(truth.mass_by_load))
+}

@@ -1,0 +1,55 @@
+//! All records of all cells, over threads.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+use super::{Cell, Truth, Verdict, judge};
+
+/// What came of one record.
+#[derive(Debug, Clone)]
+pub(crate) struct Outcome {
+    /// The truth and what was said, or why nothing was said.
+    pub(crate) verdict: Result<(Truth, Verdict), String>,
+    /// How long it took to say (s).
+    pub(crate) seconds: f64,
+}
+
+fn outcome(cell: &Cell, record: u64) -> Outcome {
+    let case = match cell.case(record) {
+        Ok(case) => case,
+        Err(error) => return Outcome { verdict: Err(format!("no record: {error}")), seconds: 0.0 },
+    };
+    let begun = Instant::now();
+    let verdict = judge(&case);
+    let seconds = begun.elapsed().as_secs_f64();
+    Outcome { verdict: verdict.map(|verdict| (case.truth, verdict)).map_err(|error| error.to_string()), seconds }
+}
+
+/// The outcomes of `counts` records of `cells`, cell by cell in the order of their numbers; `done` is called after each.
+pub(crate) fn study(cells: &[Cell], counts: &[u64], threads: usize, done: &(dyn Fn() + Sync)) -> Vec<Vec<Outcome>> {
+    let numbers = counts.iter().enumerate().flat_map(|(cell, count)| (0..*count).map(move |record| (cell, record)));
+    let jobs: Vec<(usize, u64)> = numbers.collect();
+    let next = AtomicUsize::new(0);
+    let finished = Mutex::new(Vec::with_capacity(jobs.len()));
+    std::thread::scope(|scope| {
+        for _ in 0..threads.max(1) {
+            scope.spawn(|| {
+                while let Some((cell, record)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let outcome = outcome(&cells[*cell], *record);
+                    if let Ok(mut finished) = finished.lock() {
+                        finished.push((*cell, *record, outcome));
+                    }
+                    done();
+                }
+            });
+        }
+    });
+    let mut finished = finished.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    finished.sort_by_key(|(cell, record, _)| (*cell, *record));
+    let mut outcomes: Vec<Vec<Outcome>> = cells.iter().map(|_| Vec::new()).collect();
+    for (cell, _, outcome) in finished {
+        outcomes[cell].push(outcome);
+    }
+    outcomes
+}
