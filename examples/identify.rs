@@ -17,8 +17,9 @@ use std::time::Duration;
 
 use clap::{Parser, ValueEnum};
 use figure::{Layer, Panel, Role};
-use fmm_fit::Options;
-use fmm_identify::{Candidate, Comparison, Known, Machine, Preparation, RingDown, compare_observed};
+use fmm_fit::{Options, Progress};
+use fmm_identify::{Candidate, Comparison, Known, Machine, Preparation, RingDown, Search};
+use fmm_identify::{compare_observed, search_observed};
 use fmm_model::Restoring;
 use fmm_record::{Column, Quantity, Record};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -51,11 +52,15 @@ struct Arguments {
     #[arg(long)]
     unit: Option<String>,
     /// The laws to compare, such as coulomb,berger+quadratic: names with damping of the machine beside them (linear,
-    /// quadratic, any sign); or all (viscous, coulomb and both). An unknown name is answered with the list of laws
-    #[arg(long, value_name = "NAME,..|all", default_value = "all", value_delimiter = ',')]
+    /// quadratic, any sign), or all (viscous, coulomb and both); without it, as many as the record asks for. An unknown name is
+    /// answered with the list of laws
+    #[arg(long, value_name = "NAME,..|all", value_delimiter = ',')]
     law: Vec<String>,
-    /// Hold a fitted parameter of the laws at a value, as in exponent=2
-    #[arg(long, value_name = "NAME=VALUE")]
+    /// Begin no further law after so many seconds
+    #[arg(long, value_name = "S", conflicts_with = "law")]
+    time_limit: Option<f64>,
+    /// Hold a fitted parameter of the laws at a value, as in exponent=2; of one law alone as in stribeck.exponent=2
+    #[arg(long, value_name = "[LAW.]NAME=VALUE")]
     hold: Vec<String>,
     /// The machine is a pendulum; for a record that is no angle in radians, with the length of the arc that makes one radian
     #[arg(long, value_name = "LENGTH", num_args = 0..=1, default_missing_value = "1")]
@@ -267,29 +272,70 @@ fn candidates(arguments: &Arguments) -> Result<Vec<Candidate>, Box<dyn Error>> {
             candidates.push(Candidate::named(law)?);
         }
     }
-    for held in &arguments.hold {
-        let (name, value) = held.split_once('=').ok_or("--hold wants NAME=VALUE, such as exponent=2")?;
-        let value: f64 = value.trim().parse().map_err(|_| format!("--hold {held}: {value:?} is no number"))?;
+    for Held { law, name, value } in held(arguments)? {
+        let mut is_meant = false;
         for candidate in &mut candidates {
-            *candidate = candidate.clone().holding(name.trim(), value)?;
+            if law.as_ref().is_none_or(|law| law == candidate.law_name()) {
+                *candidate = candidate.clone().holding(&name, value)?;
+                is_meant = true;
+            }
+        }
+        if let (false, Some(law)) = (is_meant, law) {
+            return Err(format!("--hold {law}.{name}: {law} is none of the laws to compare").into());
         }
     }
     Ok(candidates)
+}
+
+/// A parameter that is held, of one law or of all.
+struct Held {
+    law: Option<String>,
+    name: String,
+    value: f64,
+}
+
+fn held(arguments: &Arguments) -> Result<Vec<Held>, Box<dyn Error>> {
+    let parse = |held: &String| {
+        let (name, value) = held.split_once('=').ok_or("--hold wants NAME=VALUE or LAW.NAME=VALUE, such as exponent=2")?;
+        let value: f64 = value.trim().parse().map_err(|_| format!("--hold {held}: {value:?} is no number"))?;
+        let (law, name) = match name.split_once('.') {
+            Some((law, name)) => (Some(law.trim().to_owned()), name),
+            None => (None, name),
+        };
+        Ok(Held { law, name: name.trim().to_owned(), value })
+    };
+    arguments.hold.iter().map(parse).collect()
+}
+
+fn searched(arguments: &Arguments) -> Result<Search, Box<dyn Error>> {
+    let mut search = Search::default();
+    for Held { law, name, value } in held(arguments)? {
+        search = search.holding(law.as_deref(), &name, value);
+    }
+    if let Some(seconds) = arguments.time_limit {
+        let limit = Duration::try_from_secs_f64(seconds).map_err(|_| format!("--time-limit {seconds}: give seconds"))?;
+        search = search.within(limit);
+    }
+    Ok(search)
 }
 
 /// Fits all candidates while a line on standard error shows how far they are.
 fn identify(arguments: &Arguments, decay: &RingDown) -> Result<Comparison, Box<dyn Error>> {
     let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {msg}")?);
     bar.enable_steady_tick(Duration::from_millis(100));
-    let candidates = candidates(arguments)?;
     let decays = std::slice::from_ref(decay);
     let samples = decay.summary().samples as f64;
-    let comparison =
-        compare_observed(&machine(arguments)?, decays, &candidates, &Options::default(), |law, progress| {
-            let rms = (progress.sum_of_squares() / samples).sqrt();
-            bar.set_message(format!("{law}: step {}, rms residual {rms:.4e}", progress.iterations()));
-            ControlFlow::Continue(())
-        });
+    let show = |law: &str, progress: &Progress<'_>| {
+        let rms = (progress.sum_of_squares() / samples).sqrt();
+        bar.set_message(format!("{law}: step {}, rms residual {rms:.4e}", progress.iterations()));
+        ControlFlow::Continue(())
+    };
+    let (machine, options) = (machine(arguments)?, Options::default());
+    let comparison = if arguments.law.is_empty() {
+        search_observed(&machine, decays, &searched(arguments)?, &options, show)
+    } else {
+        compare_observed(&machine, decays, &candidates(arguments)?, &options, show)
+    };
     bar.finish_and_clear();
     Ok(comparison?)
 }

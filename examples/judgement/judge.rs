@@ -1,31 +1,32 @@
 //! The thing under test: what the crates say of a record when nothing is asked for.
 
-use fmm_identify::{Candidate, Comparison, Finding, Identification, IdentifyError, Machine, Preparation, RingDown};
-use fmm_identify::{Warning, compare};
+use fmm_identify::{Comparison, Finding, Identification, IdentifyError, Machine, Preparation, RingDown, Search, Warning};
+use fmm_identify::search;
 
 use super::law::Law;
 use super::{Case, Levels, Truth};
 
 /// The default judgement. This is the one place that knows how it is asked for.
 fn default_judgement(machine: &Machine, decays: &[RingDown]) -> Result<Comparison, IdentifyError> {
-    compare(machine, decays, &Candidate::standard())
+    search(machine, decays, &Search::default().on_threads(1))
 }
 
-/// Differences of the criterion below which laws are close, as in `fmm_identify`.
-const CLOSE: f64 = 2.0;
-
-/// Names of the laws that the judgement leaves standing: the preferred one if it is decided, otherwise all that come close.
-fn named(comparison: &Comparison) -> Vec<String> {
-    let preferred = comparison.preferred().law();
-    if comparison.is_decided() {
-        return vec![preferred.to_owned()];
+/// The name of a law without what is held of it, and without a linear damping beside it, which most laws do not have of their own.
+fn plain(name: &str) -> String {
+    let name = name.split(',').next().unwrap_or(name).trim();
+    match name.strip_suffix(" + linear") {
+        Some("coulomb") => "coulomb_viscous".to_owned(),
+        Some(law) => law.to_owned(),
+        None => name.to_owned(),
     }
-    let least = comparison.scores().iter().copied().fold(f64::INFINITY, f64::min);
-    let scored = comparison.identifications().iter().zip(comparison.scores());
-    scored
-        .filter(|(found, score)| **score - least <= CLOSE || found.law() == preferred)
-        .map(|(found, _)| found.law().to_owned())
-        .collect()
+}
+
+/// Names of the laws that the judgement leaves standing: the preferred one if it is decided, otherwise all that are not excluded.
+fn named(comparison: &Comparison) -> Vec<String> {
+    if comparison.is_decided() {
+        return vec![plain(comparison.preferred().law())];
+    }
+    comparison.not_excluded().map(|found| plain(found.law())).collect()
 }
 
 /// Whether one of `warnings` says that the law is not right, not settled, or does not describe the record. New variants that
@@ -95,7 +96,7 @@ pub(crate) fn judge(case: &Case) -> Result<Verdict, IdentifyError> {
     warnings.dedup();
     let finding = |names: &[&str]| names.iter().find_map(|name| preferred.finding(name)).map(Stated::of);
     Ok(Verdict {
-        preferred: preferred.law().to_owned(),
+        preferred: plain(preferred.law()),
         is_decided: comparison.is_decided(),
         named: named(&comparison),
         warnings,

@@ -130,9 +130,9 @@ impl Law {
         Self { name: F::NAME, parameters: F::PARAMETERS, simulate: simulate::<F>, levels }
     }
 
-    /// The law called `name`, of which terms after a plus sign are no part; none if there is no such law.
+    /// The law called `name`, of which terms and what is held are no part; none if there is no such law.
     pub(crate) fn named(name: &str) -> Option<&'static Self> {
-        let name = name.split('+').next()?.trim();
+        let name = name.split(['+', ',']).next()?.trim();
         LAWS.iter().find(|law| law.name == name)
     }
 

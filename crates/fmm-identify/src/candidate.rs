@@ -188,7 +188,7 @@ impl Candidate {
     }
 
     /// Name of the law alone.
-    pub(crate) fn law_name(&self) -> &'static str {
+    pub fn law_name(&self) -> &'static str {
         self.law.name
     }
 

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use fmm_fit::{Options, Progress, f_tail};
 
 use crate::judgement::Judgement;
-use crate::{Candidate, Finding, Identification, IdentifyError, Machine, RecordSummary, RingDown, Sign, Warning};
+use crate::{Candidate, Identification, IdentifyError, Machine, RecordSummary, RingDown, Sign, Warning};
 
 /// A law and the more general one that it was tested against.
 #[derive(Debug, Clone, PartialEq)]

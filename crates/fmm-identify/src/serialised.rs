@@ -132,7 +132,7 @@ impl Serialize for Comparison {
         let mut document = serializer.serialize_struct("Comparison", 6)?;
         document.serialize_field("preferred", self.preferred().law())?;
         document.serialize_field("decided", &self.is_decided())?;
-        document.serialize_field("scores", self.scores())?;
+        document.serialize_field("scores", &self.scores())?;
         document.serialize_field("models", self.identifications())?;
         match self.records() {
             [record] => document.serialize_field("preparation", record)?,
