@@ -31,7 +31,7 @@
 //! | what is in this file? | modules `csv`, `mat`, `npy`, `uff`: a `Reading`, the record with the choices that led to it |
 //! | when does motion begin, and what is the offset? | [`Release`] |
 //! | how does it swing? | [`Swings`]: peaks, crossings, frequency |
-//! | how good is it? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`] |
+//! | how good is it? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`], [`hum()`] |
 //! | another form of it? | [`Record::crop`], [`Record::scaled`], [`Record::shifted`], [`Record::smoothed_by`], [`Record::integrate`], [`Record::differentiate`] |
 //! | which smoothing? | for a fit none, as it correlates the noise; for a derivative [`savitzky_golay_derivative`]; [`moving_average`] to repeat what MATLAB's `smooth` or `movmean` did |
 //!
@@ -79,7 +79,10 @@ pub mod uff;
 
 mod calculus;
 mod error;
+mod fourier;
 mod harmonic;
+mod hum;
+mod line_search;
 mod noise;
 mod offset_step;
 mod order;
@@ -97,12 +100,14 @@ mod smoothing;
 mod spikes;
 #[cfg(any(feature = "mat", feature = "npy"))]
 mod stated;
+mod steadiness;
 mod swings;
 #[cfg(test)]
 mod synthetic;
 mod turning;
 
 pub use error::RecordError;
+pub use hum::{Hum, hum, without_lines};
 pub use noise::noise;
 pub use offset_step::OffsetStep;
 pub use quantisation::quantisation_step;
