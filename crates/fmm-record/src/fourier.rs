@@ -57,6 +57,20 @@ impl Spectrum {
     }
 }
 
+/// Twice the sums of `values` with the cosine and minus the sine of a `frequency` (cycles per sample): A cos φ and
+/// A sin φ of a line A cos(ωi + φ) in values whose window has the sum 1.
+pub(crate) fn component(values: &[f64], frequency: f64) -> (f64, f64) {
+    let (turn_sin, turn_cos) = (TAU * frequency).sin_cos();
+    let (mut sin, mut cos) = (0.0, 1.0);
+    let (mut with_cos, mut with_sin) = (0.0, 0.0);
+    for value in values {
+        with_cos += value * cos;
+        with_sin += value * sin;
+        (sin, cos) = (sin * turn_cos + cos * turn_sin, cos * turn_cos - sin * turn_sin);
+    }
+    (2.0 * with_cos, -2.0 * with_sin)
+}
+
 /// The discrete Fourier transform in place, without a scale; the length is a power of two.
 ///
 /// J. W. Cooley and J. W. Tukey, An algorithm for the machine calculation of complex Fourier series, Mathematics of

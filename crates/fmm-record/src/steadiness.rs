@@ -2,7 +2,7 @@
 
 use std::f64::consts::{LN_2, PI, TAU};
 
-use crate::fourier::{LOBE, blackman_harris};
+use crate::fourier::{LOBE, blackman_harris, component};
 use crate::line_search::Candidate;
 use crate::order::median;
 
@@ -122,20 +122,6 @@ fn segments(values: &[f64], frequency: f64) -> Option<Vec<Segment>> {
         }
     });
     Some(segments.collect())
-}
-
-/// Twice the sums of `values` with the cosine and minus the sine of a `frequency` (cycles per sample): A cos φ and
-/// A sin φ of a line A cos(ωi + φ) in values whose window has the sum 1.
-fn component(values: &[f64], frequency: f64) -> (f64, f64) {
-    let (turn_sin, turn_cos) = (TAU * frequency).sin_cos();
-    let (mut sin, mut cos) = (0.0, 1.0);
-    let (mut with_cos, mut with_sin) = (0.0, 0.0);
-    for value in values {
-        with_cos += value * cos;
-        with_sin += value * sin;
-        (sin, cos) = (sin * turn_cos + cos * turn_sin, cos * turn_cos - sin * turn_sin);
-    }
-    (2.0 * with_cos, -2.0 * with_sin)
 }
 
 /// The mean amplitude, each weighted by its inverse variance; a segment cannot weigh more than ten times the median, so
