@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fmm_record::{OffsetStep, Quantity, Saturation};
+use fmm_record::{Hum, OffsetStep, Quantity, Saturation};
 
 /// Choices in preparing a record. The default uses the whole record after the release, and fits its offset.
 ///
@@ -109,6 +109,8 @@ pub struct RecordSummary {
     pub offset_step: Option<OffsetStep>,
     /// Relative change of the period from the first third of the half swings to the last, if it is significant.
     pub period_change: Option<f64>,
+    /// Steady lines in the record, such as hum of the mains, the largest first. They are still in the record that is fitted.
+    pub hum: Vec<Hum>,
 }
 
 impl fmt::Display for RecordSummary {

@@ -4,7 +4,10 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use fmm_model::{Bounds, ModelError, Restoring};
-use fmm_record::{OffsetStep, Peak, Quantity, Record, Release, Swings, noise, quantisation_step, saturation, spikes};
+use fmm_record::{
+    OffsetStep, Peak, Quantity, Record, Release, Swings, hum, noise, quantisation_step, saturation, spikes,
+    without_lines,
+};
 
 use crate::first_guess::{Dissipation, FirstGuess, Oscillation};
 use crate::{IdentifyError, Machine, Offset, Preparation, RecordSummary};
@@ -14,7 +17,7 @@ use crate::{IdentifyError, Machine, Offset, Preparation, RecordSummary};
 /// If the record begins at rest, it is used from the first peak after the release on (of a displacement, from the
 /// first crossing), as whatever held the machine may act on for a while; otherwise from its beginning. Spikes of
 /// one to three samples are left out. Nothing is smoothed and nothing is subtracted: smoothing would correlate the
-/// noise, and the offset is a parameter.
+/// noise, and the offset is a parameter. Swings, release, spikes and noise are looked for in the record less its hum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RingDown {
     record: Record,
@@ -50,8 +53,11 @@ impl RingDown {
         if record.values().iter().all(|value| *value == first) {
             return Err(IdentifyError::NoMotion { value: first, unit: record.unit().to_owned() });
         }
-        let swings = Swings::of(&record);
-        let release = Release::of(&record);
+        // Hum must not be taken for the machine; what is fitted is the record as it was measured.
+        let hum = hum(&record);
+        let cleaned = without_lines(&record, &hum);
+        let swings = Swings::of(&cleaned);
+        let release = Release::of(&cleaned);
         let held_offset = match preparation.offset {
             Offset::Fitted => None,
             Offset::Rest => Some(release.ok_or(IdentifyError::NoRest)?.offset),
@@ -59,6 +65,7 @@ impl RingDown {
         };
         let begin = release.map_or(record.start(), |release| beginning(&swings, release.rest_end, quantity));
         let record = record.crop(begin, record.end())?;
+        let cleaned = cleaned.crop(begin, cleaned.end())?;
 
         let start = record.start();
         let after = |time: f64| time > start - record.interval();
@@ -76,7 +83,7 @@ impl RingDown {
         let few = IdentifyError::TooFewHalfSwings { found: peaks.len(), needed: FEWEST_HALF_SWINGS };
         let guess = FirstGuess::of(&oscillation, quantity).ok_or(few)?;
 
-        let spikes = spikes(&record);
+        let spikes = spikes(&cleaned);
         let kept = without(record.len(), spikes.iter().map(|spike| spike.index..spike.index + spike.count));
         let amplitudes = guess.amplitudes();
         let summary = RecordSummary {
@@ -92,12 +99,13 @@ impl RingDown {
             half_swings: peaks.len(),
             amplitudes: (amplitudes[0], amplitudes[amplitudes.len() - 1]),
             frequency: guess.frequency(),
-            noise: noise(record.values()),
+            noise: noise(cleaned.values()),
             resolution: quantisation_step(record.values()),
             spikes: spikes.iter().map(|spike| spike.count).sum(),
             saturation: saturation(record.values()),
-            offset_step: OffsetStep::of(&record),
+            offset_step: OffsetStep::of(&cleaned),
             period_change: period_change(&turning_times),
+            hum,
         };
         let peaks = peaks.iter().map(|peak| (peak.time, peak.value)).collect();
         Ok(Self { record, kept, guess, peaks, summary })

@@ -100,7 +100,7 @@ impl Serialize for ImpactSummary {
 /// What a record is: times in s, rates in Hz, values in `unit`.
 impl Serialize for RecordSummary {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut document = serializer.serialize_struct("RecordSummary", 19)?;
+        let mut document = serializer.serialize_struct("RecordSummary", 20)?;
         document.serialize_field("from_s", &self.from)?;
         document.serialize_field("to_s", &self.to)?;
         document.serialize_field("samples", &self.samples)?;
@@ -120,6 +120,8 @@ impl Serialize for RecordSummary {
         document.serialize_field("saturated", &self.saturation.map_or(0, |saturation| saturation.samples))?;
         document.serialize_field("offset_step_s", &self.offset_step.map(|step| step.time))?;
         document.serialize_field("period_change", &self.period_change)?;
+        let hum: Vec<(f64, f64)> = self.hum.iter().map(|hum| (hum.frequency, hum.amplitude)).collect();
+        document.serialize_field("hum_hz_amplitude", &hum)?;
         document.end()
     }
 }

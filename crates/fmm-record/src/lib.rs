@@ -31,7 +31,7 @@
 //! | what is in this file? | modules `csv`, `mat`, `npy`, `uff`: a `Reading`, the record with the choices that led to it |
 //! | when does motion begin, and what is the offset? | [`Release`] |
 //! | how does it swing? | [`Swings`]: peaks, crossings, frequency |
-//! | how good is it? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`] |
+//! | how good is it? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`], [`hum()`] |
 //! | another form of it? | [`Record::crop`], [`Record::scaled`], [`Record::shifted`], [`Record::smoothed_by`], [`Record::integrate`], [`Record::differentiate`] |
 //! | which smoothing? | for a fit none, as it correlates the noise; for a derivative [`savitzky_golay_derivative`]; [`moving_average`] to repeat what MATLAB's `smooth` or `movmean` did |
 //!
@@ -79,10 +79,16 @@ pub mod uff;
 
 mod calculus;
 mod error;
+mod fourier;
+mod further_release;
 mod harmonic;
+mod hum;
+mod least_squares;
+mod line_search;
 mod noise;
 mod offset_step;
 mod order;
+mod period_change;
 mod quantisation;
 mod quantity;
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
@@ -92,19 +98,24 @@ mod release;
 mod sampling;
 mod saturation;
 mod savitzky_golay;
+mod second_mode;
 mod smooth;
 mod smoothing;
 mod spikes;
 #[cfg(any(feature = "mat", feature = "npy"))]
 mod stated;
+mod steadiness;
 mod swings;
 #[cfg(test)]
 mod synthetic;
 mod turning;
 
 pub use error::RecordError;
+pub use further_release::{FurtherRelease, further_releases};
+pub use hum::{Hum, hum, without_lines};
 pub use noise::noise;
 pub use offset_step::OffsetStep;
+pub use period_change::period_change;
 pub use quantisation::quantisation_step;
 pub use quantity::Quantity;
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
@@ -114,6 +125,7 @@ pub use release::Release;
 pub use sampling::{JITTER, RATE_ROUNDING, Sampling, UniformTimes};
 pub use saturation::{Saturation, saturation};
 pub use savitzky_golay::{savitzky_golay, savitzky_golay_derivative};
+pub use second_mode::SecondMode;
 pub use smooth::{EndRule, moving_average};
 pub use smoothing::Smoothing;
 pub use spikes::{Spike, spikes};

@@ -71,6 +71,125 @@ impl CoulombDecay {
     }
 }
 
+/// Free decay of an oscillator with viscous damping and friction that may depend on speed or creep before it slides.
+///
+/// ```text
+/// x″ + ω² x = −c x′ − F(x′, z),        F = F_c (1 + s exp(−|x′|/v_s)) sign(x′), or F_c z with z′ = x′ (1 − z sign(x′))/l
+/// ```
+///
+/// The second is the law of Dahl. It is released from 1 at time 0.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Decay {
+    pub(crate) frequency: f64,
+    /// F_c/ω², half of what a half swing loses.
+    pub(crate) deadband: f64,
+    /// c/(2ω).
+    pub(crate) damping: f64,
+    /// s.
+    pub(crate) rise: f64,
+    /// v_s/ω.
+    pub(crate) speed: f64,
+    /// l.
+    pub(crate) creep: Option<f64>,
+}
+
+impl Decay {
+    /// Displacement and velocity/ω at intervals of `interval` (s), by Runge and Kutta's method, with stops.
+    pub(crate) fn states(&self, interval: f64, count: usize) -> Vec<(f64, f64)> {
+        // In units of 1/ω.
+        let span = 2.0 * PI * self.frequency * interval;
+        let steps = (span / 0.01).ceil().max(1.0);
+        let h = span / steps;
+        let level = |v: f64| self.deadband * (1.0 + self.rise * (-v.abs() / self.speed).exp());
+        // While it slides one way, friction has that side.
+        let slope = |[x, v, z]: [f64; 3], side: f64| {
+            let friction = if self.creep.is_some() { self.deadband * z } else { level(v) * side };
+            let creep = self.creep.map_or(0.0, |length| v * (1.0 - z * v.signum()) / length);
+            [v, -x - 2.0 * self.damping * v - friction, creep]
+        };
+        let (mut state, mut side) = ([1.0_f64, 0.0, 0.0], 0.0_f64);
+        let mut states = Vec::with_capacity(count);
+        for _ in 0..count {
+            states.push((state[0], state[1]));
+            for _ in 0..steps as usize {
+                if self.creep.is_none() && side == 0.0 {
+                    if state[0].abs() <= level(0.0) {
+                        state[1] = 0.0;
+                        break;
+                    }
+                    side = -state[0].signum();
+                }
+                let along = |slope: [f64; 3], h: f64| std::array::from_fn(|i| state[i] + h * slope[i]);
+                let a = slope(state, side);
+                let b = slope(along(a, h / 2.0), side);
+                let c = slope(along(b, h / 2.0), side);
+                let d = slope(along(c, h), side);
+                state = std::array::from_fn(|i| state[i] + h / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]));
+                if self.creep.is_none() && state[1] * side < 0.0 {
+                    (state[1], side) = (0.0, 0.0);
+                }
+            }
+        }
+        states
+    }
+
+    /// One of the laws with random parameters, which comes to rest, or nearly, after about `half_swings`.
+    pub(crate) fn random(random: &mut Noise, half_swings: f64) -> Self {
+        let share = random.uniform();
+        let smooth = Self {
+            frequency: 2.2,
+            deadband: share * 0.5 / half_swings,
+            damping: (1.0 - share) * 0.7 / half_swings,
+            rise: 0.0,
+            speed: 1.0,
+            creep: None,
+        };
+        match random.next() % 5 {
+            0 => Self { damping: 0.0, deadband: 0.5 / half_swings, ..smooth },
+            1 => Self { damping: 0.7 / half_swings, deadband: 0.0, ..smooth },
+            2 => Self { rise: random.uniform(), speed: 0.02 + 0.3 * random.uniform(), ..smooth },
+            3 => Self { creep: Some(0.002 + 0.1 * random.uniform()), ..smooth },
+            _ => smooth,
+        }
+    }
+}
+
+/// A ring-down as somebody might record it, with what is true of it.
+#[derive(Debug, Clone)]
+pub(crate) struct Recorded {
+    pub(crate) record: Record,
+    pub(crate) decay: Decay,
+    /// How long it is held before (s).
+    pub(crate) rest: f64,
+}
+
+impl Recorded {
+    /// Of 3 to 30 half swings in velocity or displacement, with or without rest at both ends, noise of 0.1 % to 3 % and,
+    /// sometimes, a converter of few bits.
+    pub(crate) fn random(seed: u64) -> Self {
+        let random = &mut Noise::new(seed);
+        let half_swings = 3.0 + 27.0 * random.uniform().powi(2);
+        let decay = Decay::random(random, half_swings);
+        let rest = if random.uniform() < 0.5 { 0.0 } else { 0.3 + random.uniform() };
+        let duration = rest + half_swings / 4.4 * (0.7 + 1.5 * random.uniform());
+        let rate = 200.0 * 10f64.powf(random.uniform());
+        let noise = 1e-3 * 30f64.powf(random.uniform());
+        let (before, count) = ((rest * rate) as usize, (duration * rate) as usize);
+        let states = decay.states(rate.recip(), count - before);
+        let displacement = random.uniform() < 0.5;
+        let offset = random.normal();
+        // What is held has the displacement from which it is released.
+        let held = (if displacement { 1.0 } else { 0.0 }, 0.0);
+        let value = |(x, v): (f64, f64)| if displacement { x } else { v };
+        let values = std::iter::repeat_n(value(held), before).chain(states.into_iter().map(value));
+        let values: Vec<f64> = values.map(|value| offset + value + noise * random.normal()).collect();
+        let quantity = if displacement { Quantity::Displacement } else { Quantity::Velocity };
+        let record = Record::sampled(rate, values, quantity, "1").unwrap();
+        let record = if random.uniform() < 0.3 { quantised(&record, 0.005) } else { record };
+        Self { record, decay, rest }
+    }
+}
+
 /// A record of `f` over `duration` (s) at `rate` (Hz), plus `offset` and noise.
 pub(crate) fn sampled(
     rate: f64,
@@ -129,4 +248,34 @@ pub(crate) fn pendulum() -> Record {
 pub(crate) fn pendulum_velocity() -> Record {
     let velocity = column("single_pendulum_55s_1khz.csv", 2);
     Record::sampled(1000.0, velocity, Quantity::Velocity, "rad/s").unwrap()
+}
+
+/// The second column, or the only one, of a file among the test data of this crate.
+fn tested(name: &str) -> Vec<f64> {
+    let text = std::fs::read_to_string(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name));
+    text.unwrap().lines().skip(1).map(|line| line.split(',').next_back().unwrap().parse().unwrap()).collect()
+}
+
+/// A simulated velocity with hum of 3.8 % of its peak, 1 kHz, 3 s.
+pub(crate) fn with_hum() -> Record {
+    Record::sampled(1000.0, tested("hum7.csv"), Quantity::Velocity, "m/s").unwrap()
+}
+
+/// A simulated velocity that is released twice, 1 kHz, 4 s.
+pub(crate) fn released_twice() -> Record {
+    Record::sampled(1000.0, tested("two_v.csv"), Quantity::Velocity, "m/s").unwrap()
+}
+
+/// Free swing of a small pendulum from 66 mrad to rest, encoder, 1 kHz, 6 s; its half period falls by 12 %.
+pub(crate) fn small_pendulum() -> Record {
+    Record::sampled(1000.0, tested("small_pendulum_1khz.csv"), Quantity::Displacement, "counts").unwrap()
+}
+
+/// The measured records of the repository.
+pub(crate) fn measured_records() -> Vec<Record> {
+    #[allow(unused_mut)]
+    let mut records = vec![wheel(), pendulum(), pendulum_velocity(), small_pendulum()];
+    #[cfg(feature = "mat")]
+    records.push(fork());
+    records
 }
