@@ -46,7 +46,8 @@ struct Arguments {
     /// What the channel measures; found by its unit, as in "v [mm/s]" or "theta_rad", or by a word in its name
     #[arg(long, value_enum)]
     quantity: Option<Measured>,
-    /// Factor that turns the channel into --unit; together they stand above a unit in the file
+    /// Factor that turns the channel into --unit, both instead of a unit in the file; one in the name, as in "v [mm/s]", is
+    /// converted by itself
     #[arg(long, value_name = "FACTOR")]
     scale: Option<f64>,
     /// Relative standard uncertainty of that factor, or of the gain of the instrument

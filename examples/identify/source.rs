@@ -66,8 +66,8 @@ impl Choice {
         if !matches!(meaning.quantity, Quantity::Velocity | Quantity::Displacement) {
             let remedy = if meaning.quantity == Quantity::Acceleration { "integrate it first, or " } else { "" };
             return Err(format!(
-                "channel \"{}\" is a record of {}, and friction is fitted to a velocity or a displacement: {remedy}choose one \
-                 of these by --channel",
+                "channel \"{}\" is a record of {}, and friction is fitted to a velocity or a displacement: {remedy}give \
+                 one of these by --channel",
                 label.name(),
                 meaning.quantity
             )
@@ -85,15 +85,14 @@ impl Choice {
         if let Some(time) = &self.time {
             reader = reader.time(time.clone());
         }
-        match &self.channel {
-            Some(channel) => reader = reader.channel(channel.clone()),
-            None => {
-                let channels = reader.channels(path)?;
-                if channels.len() > 1 {
-                    let labels: Vec<Label> = channels.iter().map(|(_, name)| Label::of(name)).collect();
-                    let chosen = self.request.choose(&labels).map_err(with_remedy)?;
-                    reader = reader.channel(channels[chosen].0);
-                }
+        if let Some(channel) = &self.channel {
+            reader = reader.channel(channel.clone());
+        } else {
+            let channels = reader.channels(path)?;
+            if channels.len() > 1 {
+                let labels: Vec<Label> = channels.iter().map(|(_, name)| Label::of(name)).collect();
+                let chosen = self.request.choose(&labels).map_err(with_remedy)?;
+                reader = reader.channel(channels[chosen].0);
             }
         }
         if let Some(rate) = self.rate {
@@ -174,7 +173,9 @@ fn with_remedy(error: MeaningError) -> Box<dyn Error> {
         MeaningError::Contradiction { unit: Some(_), other, .. } => {
             format!("give --quantity {other} if the unit is right, or else both --scale and --unit")
         }
-        MeaningError::Contradiction { told, .. } => format!("give --quantity {told}, or choose another --channel"),
+        MeaningError::Contradiction { other, .. } => {
+            format!("leave out what says {other}, or choose another --channel")
+        }
         MeaningError::OtherUnit { said, .. } => {
             format!("leave out --unit {said}, or give --scale as well, the factor that turns the numbers into {said}")
         }

@@ -50,9 +50,9 @@ impl Label {
         let (bare, groups) = without_groups(name);
         let word = Word::in_name(&bare);
         let unit = in_groups(&groups)
-            .or_else(|| behind_space(&bare, &word).map(Written::Known))
+            .or_else(|| behind_space(&bare, word).map(Written::Known))
             .or_else(|| behind_slash(&bare).map(Written::Known))
-            .or_else(|| behind_underscore(&bare, &word).map(Written::Known));
+            .or_else(|| behind_underscore(&bare, word).map(Written::Known));
         Self { name: name.trim().to_owned(), unit: unit.unwrap_or(Written::Nothing), stated: None, word }
     }
 
@@ -205,7 +205,7 @@ fn is_remark(text: &str) -> bool {
 }
 
 /// The last word, where only a unit looks like it.
-fn behind_space(bare: &str, word: &Word) -> Option<Unit> {
+fn behind_space(bare: &str, word: Word) -> Option<Unit> {
     let (before, last) = bare.rsplit_once([' ', '\t', ',', ':', ';']).unwrap_or(("", bare));
     // A channel called by nothing but its unit has a slash in it: letters alone may be a symbol.
     match before.trim_end() {
@@ -236,7 +236,7 @@ const PER_TIME: [&str; 15] =
     ["m", "mm", "cm", "um", "µm", "μm", "nm", "km", "ft", "rad", "mrad", "urad", "deg", "mdeg", "rev"];
 
 /// The unit in the last parts of `vel_mm_s`, `omega_rad_per_s`, `theta_rad`.
-fn behind_underscore(bare: &str, word: &Word) -> Option<Unit> {
+fn behind_underscore(bare: &str, word: Word) -> Option<Unit> {
     let parts: Vec<&str> = bare.split('_').map(str::trim).collect();
     let lower: Vec<String> = parts.iter().map(|part| part.to_lowercase()).collect();
     let lower: Vec<&str> = lower.iter().map(String::as_str).collect();
@@ -251,7 +251,7 @@ fn behind_underscore(bare: &str, word: &Word) -> Option<Unit> {
 }
 
 /// The unit that the last part of a name is.
-fn last_part(written: &str, word: &Word) -> Option<Unit> {
+fn last_part(written: &str, word: Word) -> Option<Unit> {
     let lower = &*written.to_lowercase();
     let spelled = match lower {
         "ms2" | "mps2" => "m/s2",

@@ -21,7 +21,7 @@ impl std::fmt::Display for Meaning {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let taken = if self.is_assumed { ", taken to be" } else { "" };
         write!(f, "{}{taken} in {}", self.quantity, self.unit)?;
-        if self.factor == 1.0 { Ok(()) } else { write!(f, " after a factor of {:e}", self.factor) }
+        if self.factor == 1.0 { Ok(()) } else { write!(f, " after a factor of {}", self.factor) }
     }
 }
 

@@ -352,7 +352,7 @@ mod tests {
     fn a_meaning_says_what_was_taken_for_granted() {
         let meaning = |request: &Request, name: &str| request.meaning(&Label::of(name)).unwrap().to_string();
         assert_eq!(meaning(&nothing(), "v [m/s]"), "velocity in m/s");
-        assert_eq!(meaning(&nothing(), "v [mm/s]"), "velocity in m/s after a factor of 1e-3");
+        assert_eq!(meaning(&nothing(), "v [mm/s]"), "velocity in m/s after a factor of 0.001");
         assert_eq!(meaning(&nothing().quantity(Displacement), "x"), "displacement, taken to be in m");
     }
 }

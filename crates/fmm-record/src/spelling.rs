@@ -204,8 +204,8 @@ fn motion(tidy: &str) -> Option<Meaning> {
         (None, None) => return None,
     };
     let (quantity, units) = MOTIONS[order];
-    let time = entry(&TIMES, per.trim_end())?.powi(order as i32);
-    Some((size / time, units[usize::from(angular)], quantity))
+    let time = entry(&TIMES, per.trim_end())?;
+    Some((size / [1.0, time, time * time][order], units[usize::from(angular)], quantity))
 }
 
 /// A length (m) by its symbol or its name.

@@ -131,7 +131,7 @@ mod tests {
         all(&["mrad"], 1e-3);
         all(&["µrad", "μrad", "urad"], 1e-6);
         all(&["deg", "°", "º", "degrees", "Degree"], 0.017_453_292_519_943_295);
-        all(&["rev", "revolutions"], 6.283_185_307_179_586);
+        all(&["rev", "revolutions"], std::f64::consts::TAU);
     }
 
     #[test]
