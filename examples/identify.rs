@@ -2,11 +2,14 @@
 //!
 //! Reads a velocity or displacement record (CSV, TSV, MATLAB v5 to v7 or UFF58), prepares it, fits it by one law or by
 //! several, and prints what was found, how sure it is, and what the record could not tell. Without FILE it runs
-//! on the bundled record of a bicycle fork swinging as a pendulum. `--help` lists the options.
+//! on the bundled record of a bicycle fork swinging as a pendulum. What a channel measured is told by its unit, or by a word
+//! in its name, or by options; what would be a guess is refused. `--help` lists the options.
 
 #[path = "common/figure.rs"]
 #[expect(dead_code, reason = "other examples draw curves of other roles")]
 mod figure;
+#[path = "identify/source.rs"]
+mod source;
 
 use std::error::Error;
 use std::io::Write;
@@ -21,8 +24,9 @@ use fmm_fit::{Options, Progress};
 use fmm_identify::{Candidate, Comparison, Known, Machine, Preparation, RingDown, Search};
 use fmm_identify::{compare_observed, search_observed};
 use fmm_model::Restoring;
-use fmm_record::{Column, Quantity, Record};
+use fmm_record::{Column, Quantity, Record, Request, Unit};
 use indicatif::{ProgressBar, ProgressStyle};
+use source::{Choice, Input};
 
 /// Identifies the friction of a machine from the record of its free vibration.
 #[derive(Debug, Parser)]
@@ -30,7 +34,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 struct Arguments {
     /// The record: .csv, .tsv, .txt, .mat, .uff or .unv; without it, the bundled record of a bicycle fork
     file: Option<PathBuf>,
-    /// The channel with the motion, by name or by number counted from 0
+    /// The channel with the motion, by name or by number counted from 0; without it, the only one, or the one that --quantity
+    /// and --unit tell out, or the velocity or else the displacement by its unit
     #[arg(long, value_name = "NAME|INDEX")]
     channel: Option<Column>,
     /// The channel with the time (s)
@@ -39,18 +44,20 @@ struct Arguments {
     /// The sampling rate, if there is no time channel
     #[arg(long, value_name = "HZ")]
     rate: Option<f64>,
-    /// What the channel measures
-    #[arg(long, value_enum, default_value = "velocity")]
-    quantity: Measured,
-    /// Factor that turns the channel into SI units; a unit in the channel's name, as in "v [mm/s]", does so by itself
+    /// What the channel measures; found by its unit, as in "v [mm/s]" or "theta_rad", or by a word in its name
+    #[arg(long, value_enum)]
+    quantity: Option<Measured>,
+    /// Factor that turns the channel into --unit, both instead of a unit in the file; one in the name, as in "v [mm/s]", is
+    /// converted by itself
     #[arg(long, value_name = "FACTOR")]
     scale: Option<f64>,
     /// Relative standard uncertainty of that factor, or of the gain of the instrument
     #[arg(long, value_name = "RELATIVE", default_value_t = 0.0)]
     scale_u: f64,
-    /// Unit of the channel after scaling; m/s or m unless the channel's name says another
+    /// Unit of the channel, such as mm/s, rad or V, after scaling by --scale; needed if the file tells none. With --quantity
+    /// but no unit anywhere, SI units are taken
     #[arg(long)]
-    unit: Option<String>,
+    unit: Option<Unit>,
     /// The laws to compare, such as coulomb,berger+quadratic: names with damping of the machine beside them (linear,
     /// quadratic, any sign), or all (viscous, coulomb and both); without it, as many as the record asks for. An unknown name is
     /// answered with the list of laws
@@ -107,6 +114,9 @@ struct Arguments {
 enum Measured {
     Velocity,
     Displacement,
+    /// Understood, and answered with what to do.
+    #[value(hide = true)]
+    Acceleration,
 }
 
 impl From<Measured> for Quantity {
@@ -114,135 +124,32 @@ impl From<Measured> for Quantity {
         match measured {
             Measured::Velocity => Self::Velocity,
             Measured::Displacement => Self::Displacement,
+            Measured::Acceleration => Self::Acceleration,
         }
     }
-}
-
-/// The record to identify, and how it was read.
-struct Input {
-    record: Record,
-    origin: String,
-}
-
-fn bundled() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/BrowserForkCompoundFirst1.mat")
 }
 
 fn read(arguments: &Arguments) -> Result<Input, Box<dyn Error>> {
-    let quantity = Quantity::from(arguments.quantity);
-    let path = arguments.file.clone().unwrap_or_else(bundled);
-    let is_one_of = |known: &[&str]| {
-        path.extension().is_some_and(|extension| known.iter().any(|known| extension.eq_ignore_ascii_case(known)))
-    };
-    let reading = if is_one_of(&["uff", "unv"]) {
-        if arguments.time.is_some() || arguments.rate.is_some() {
-            return Err("a Universal File has its own time; leave out --time and --rate".into());
-        }
-        let file = fmm_record::uff::UffFile::read(&path)?;
-        for warning in file.warnings() {
-            eprintln!("warning: {warning}");
-        }
-        let mut reading = match &arguments.channel {
-            Some(channel) => file.channel(channel.clone())?,
-            None => file.reading()?,
-        };
-        let (measured, unit) = (reading.record.quantity(), reading.record.unit());
-        if measured != Quantity::Other && measured != quantity {
-            return Err(format!("the file says that \"{}\" is a record of {measured}", reading.channel).into());
-        }
-        if !unit.is_empty() && unit_in(&format!("[{unit}]")).is_none() && arguments.scale.is_none() {
-            return Err(format!("the unit \"{unit}\" of the file is not known; give --scale and --unit").into());
-        }
-        reading.record = reading.record.with_quantity(quantity);
-        reading
-    } else if is_one_of(&["mat"]) {
-        let file = fmm_record::mat::MatFile::read(&path)?;
-        let mut reader = fmm_record::mat::MatReader::default().quantity(quantity);
-        if let Some(channel) = &arguments.channel {
-            reader = reader.channel(variable(&file, channel)?);
-        }
-        if let Some(time) = &arguments.time {
-            reader = reader.time(variable(&file, time)?);
-        }
-        if let Some(rate) = arguments.rate {
-            reader = reader.rate(rate);
-        }
-        reader.read_from(&file)?
-    } else {
-        let mut reader = fmm_record::csv::CsvReader::default().quantity(quantity);
-        if let Some(channel) = &arguments.channel {
-            reader = reader.channel(channel.clone());
-        }
-        if let Some(time) = &arguments.time {
-            reader = reader.time(time.clone());
-        }
-        if let Some(rate) = arguments.rate {
-            reader = reader.rate(rate);
-        }
-        reader.read(&path)?
-    };
-    let name = path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
-    let origin = format!("{name}, channel {}; the sampling rate was {}", reading.channel, reading.sampling);
-    let stated = unit_in(&reading.channel).or_else(|| unit_in(&format!("[{}]", reading.record.unit())));
-    let (factor, unit) = match (&arguments.unit, arguments.scale, stated, &arguments.file) {
-        (Some(unit), factor, ..) => (factor, unit.as_str()),
-        (None, None, Some((factor, unit)), _) => (Some(factor), unit),
-        // The gain of the fork's gyro was not published.
-        (None, None, None, None) => (None, "V"),
-        (None, factor, ..) if quantity == Quantity::Displacement => (factor, "m"),
-        (None, factor, ..) => (factor, "m/s"),
-    };
-    let record = match factor {
-        Some(factor) => reading.record.scaled(factor, unit)?,
-        None => reading.record.with_unit(unit),
-    };
-    Ok(Input { record, origin })
-}
-
-/// The unit in brackets at the end of a channel's name, as a factor to SI and the SI unit: `v [mm/s]`, `theta (deg)`.
-fn unit_in(channel: &str) -> Option<(f64, &'static str)> {
-    let name = channel.trim();
-    let inside = name.strip_suffix(']').map(|rest| rest.rsplit_once('['));
-    let inside = inside.or_else(|| name.strip_suffix(')').map(|rest| rest.rsplit_once('(')))?;
-    let degree = std::f64::consts::PI / 180.0;
-    Some(match inside?.1.trim() {
-        "m/s" => (1.0, "m/s"),
-        "cm/s" => (1e-2, "m/s"),
-        "mm/s" => (1e-3, "m/s"),
-        "µm/s" | "um/s" => (1e-6, "m/s"),
-        "m" => (1.0, "m"),
-        "cm" => (1e-2, "m"),
-        "mm" => (1e-3, "m"),
-        "µm" | "um" => (1e-6, "m"),
-        "rad/s" => (1.0, "rad/s"),
-        "deg/s" | "°/s" => (degree, "rad/s"),
-        "rad" => (1.0, "rad"),
-        "deg" | "°" => (degree, "rad"),
-        "V" => (1.0, "V"),
-        _ => return None,
-    })
-}
-
-/// A MATLAB channel by the name of its variable, or by number: of the arrays in the file, or, if it has but one
-/// matrix, of the columns of that.
-fn variable(file: &fmm_record::mat::MatFile, column: &Column) -> Result<fmm_record::mat::Channel, Box<dyn Error>> {
-    use fmm_record::mat::Channel;
-    let index = match column {
-        Column::Name(name) => return Ok(Channel::from(name.as_str())),
-        Column::Index(index) => *index,
-    };
-    let arrays: Vec<_> = file.arrays().iter().filter(|array| array.values().len() > 1).collect();
-    if let [array] = arrays[..]
-        && array.dimensions().iter().all(|length| *length > 1)
-    {
-        return Ok(Channel::column(array.name(), index + 1));
+    let mut request = Request::default();
+    if let Some(quantity) = arguments.quantity {
+        request = request.quantity(quantity.into());
     }
-    match arrays.get(index) {
-        Some(array) => Ok(Channel::variable(array.name())),
-        None => {
-            Err(format!("there is no channel {index}; the file has {} arrays, counted from 0", arrays.len()).into())
-        }
+    if let Some(unit) = &arguments.unit {
+        request = request.unit(unit.clone());
     }
+    if let Some(scale) = arguments.scale {
+        request = request.scale(scale);
+    }
+    let choice =
+        Choice { channel: arguments.channel.clone(), time: arguments.time.clone(), rate: arguments.rate, request };
+    let input = match &arguments.file {
+        Some(file) => choice.read(file)?,
+        None => choice.read_bundled()?,
+    };
+    for warning in &input.warnings {
+        eprintln!("warning: {warning}");
+    }
+    Ok(input)
 }
 
 fn machine(arguments: &Arguments) -> Result<Machine, Box<dyn Error>> {

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use fmm_record::{Quantity, Reading, Record};
+use fmm_record::{Quantity, Reading, Record, Unit};
 
 use super::source::{Offer, Source};
 
@@ -97,7 +97,8 @@ fn in_si(reading: &Reading, quantity: Quantity, scale: Option<f64>, option: &str
         return Err(format!("the file says that {channel} is a {found}, and no {quantity}").into());
     }
     let (unit, stated) = (unit(quantity), reading.record.unit());
-    let is_si = spellings(quantity).iter().any(|known| stated.trim().eq_ignore_ascii_case(known));
+    let is_si = stated.trim().is_empty()
+        || stated.parse().is_ok_and(|stated: Unit| stated.si() == unit && stated.factor() == 1.0);
     if scale.is_none() && !is_si {
         return Err(
             format!("{channel} is in \"{stated}\"; give the factor that turns it into {unit} as {option}").into()
@@ -113,15 +114,5 @@ fn unit(quantity: Quantity) -> &'static str {
         Quantity::Displacement => "m",
         Quantity::Acceleration => "m/s²",
         _ => "m/s",
-    }
-}
-
-/// How files write the SI unit of a quantity, if they write any.
-fn spellings(quantity: Quantity) -> &'static [&'static str] {
-    match quantity {
-        Quantity::Force => &["", "N", "newton", "newtons"],
-        Quantity::Displacement => &["", "m", "meter", "metre", "meters", "metres"],
-        Quantity::Acceleration => &["", "m/s²", "m/s^2", "m/s2", "m/s**2", "m/s/s"],
-        _ => &["", "m/s"],
     }
 }

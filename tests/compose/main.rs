@@ -5,6 +5,7 @@ mod document;
 mod frf_files;
 mod hammer;
 mod identifiability;
+mod identify_files;
 mod impact;
 mod measurement;
 mod own_law;

@@ -29,6 +29,7 @@
 //! | question | answer |
 //! |---|---|
 //! | what is in this file? | modules `csv`, `mat`, `npy`, `uff`: a `Reading`, the record with the choices that led to it |
+//! | what did this channel measure, and in which unit? | [`Label`], what the file tells; [`Request`], what you say beside it; [`Meaning`], the answer |
 //! | when does motion begin, and what is the offset? | [`Release`] |
 //! | how does it swing? | [`Swings`]: peaks, crossings, frequency |
 //! | how good is it? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`], [`hum()`] |
@@ -38,8 +39,8 @@
 //! # Units and conventions
 //!
 //! Times are in s, rates in Hz, values in the unit that the record states: a unit is a label, only [`Record::scaled`]
-//! changes the numbers with it. A file seldom tells what a channel measured, so a reader says [`Quantity::Other`] unless
-//! the file does, and [`Record::with_quantity`] states it.
+//! changes the numbers with it. A reader leaves the numbers as they are and says [`Quantity::Other`] unless the format has a
+//! place for the quantity; [`Request::meaning`] reads `v [mm/s]` and the like, and refuses what would be a guess.
 //!
 //! # Guarantees
 //!
@@ -85,6 +86,8 @@ mod harmonic;
 mod hum;
 mod least_squares;
 mod line_search;
+mod label;
+mod meaning;
 mod noise;
 mod offset_step;
 mod order;
@@ -95,12 +98,13 @@ mod quantity;
 mod reading;
 mod record;
 mod release;
+mod request;
 mod sampling;
 mod saturation;
 mod savitzky_golay;
-mod second_mode;
 mod smooth;
 mod smoothing;
+mod spelling;
 mod spikes;
 #[cfg(any(feature = "mat", feature = "npy"))]
 mod stated;
@@ -109,10 +113,14 @@ mod swings;
 #[cfg(test)]
 mod synthetic;
 mod turning;
+mod unit;
+mod word;
 
 pub use error::RecordError;
 pub use further_release::{FurtherRelease, further_releases};
 pub use hum::{Hum, hum, without_lines};
+pub use label::Label;
+pub use meaning::{Meaning, MeaningError};
 pub use noise::noise;
 pub use offset_step::OffsetStep;
 pub use period_change::period_change;
@@ -122,6 +130,7 @@ pub use quantity::Quantity;
 pub use reading::{Column, Reading};
 pub use record::Record;
 pub use release::Release;
+pub use request::Request;
 pub use sampling::{JITTER, RATE_ROUNDING, Sampling, UniformTimes};
 pub use saturation::{Saturation, saturation};
 pub use savitzky_golay::{savitzky_golay, savitzky_golay_derivative};
@@ -130,6 +139,7 @@ pub use smooth::{EndRule, moving_average};
 pub use smoothing::Smoothing;
 pub use spikes::{Spike, spikes};
 pub use swings::{Crossing, Peak, Swings};
+pub use unit::{Unit, UnknownUnit};
 
 /// Runs the example of the README.
 #[cfg(all(doctest, feature = "csv"))]

@@ -47,9 +47,7 @@ impl CsvReader {
     /// # Errors
     /// [`CsvError::Open`], otherwise as [`CsvReader::read_from`].
     pub fn read(&self, path: impl AsRef<Path>) -> Result<Reading, CsvError> {
-        let path = path.as_ref();
-        let file = File::open(path).map_err(|source| CsvError::Open { path: path.into(), source })?;
-        self.read_from(file)
+        self.read_from(open(path.as_ref())?)
     }
 
     /// Reads text from `input`, which is buffered here.
@@ -66,11 +64,7 @@ impl CsvReader {
         let channel = self.channel.as_ref().map(|column| table.find(column)).transpose()?;
         let time = match &self.time {
             Some(column) => Some(table.find(column)?),
-            None => columns
-                .iter()
-                .enumerate()
-                .find(|(index, name)| Some(*index) != channel && seconds_per_unit_of_time(name).is_some())
-                .map(|(index, _)| index),
+            None => time_by_name(&columns, channel),
         };
         if let (Some(time), true) = (time, time == channel) {
             return Err(CsvError::SameColumn { column: columns[time].clone() });
@@ -106,6 +100,45 @@ impl CsvReader {
         self.reading(found, columns)
     }
 
+    /// The columns of the file at `path` that can be the channel, by position counted from 0 and name: all but the time.
+    ///
+    /// ```
+    /// use fmm_record::csv::CsvReader;
+    ///
+    /// let channels = CsvReader::default().channels_from("x,Zeit [ms],v\n1,0,4\n2,1,5\n".as_bytes())?;
+    /// assert_eq!(channels, [(0, "x".to_owned()), (2, "v".to_owned())]);
+    /// # Ok::<(), fmm_record::csv::CsvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`CsvError::Open`], otherwise as [`CsvReader::channels_from`].
+    pub fn channels(&self, path: impl AsRef<Path>) -> Result<Vec<(usize, String)>, CsvError> {
+        self.channels_from(open(path.as_ref())?)
+    }
+
+    /// The columns of text that can be the channel, as [`CsvReader::channels`]. Beyond the header, only what is needed to
+    /// find the time is read.
+    ///
+    /// # Errors
+    /// As [`CsvReader::read_from`], but for errors in columns other than the time.
+    pub fn channels_from(&self, input: impl Read) -> Result<Vec<(usize, String)>, CsvError> {
+        let table = Table::open(input, self.separator)?;
+        let columns = table.names().to_vec();
+        let named = match &self.time {
+            Some(column) => Some(table.find(column)?),
+            None => time_by_name(&columns, None),
+        };
+        let time = match named {
+            Some(time) => Some(time),
+            None if columns.len() > 1 => {
+                // Text or gaps are no time either.
+                table.read_columns([0]).ok().filter(|[first]| UniformTimes::of(first).is_ok()).map(|_| 0)
+            }
+            None => None,
+        };
+        Ok(columns.into_iter().enumerate().filter(|(index, _)| Some(*index) != time).collect())
+    }
+
     fn reading(&self, found: Found, columns: Vec<String>) -> Result<Reading, CsvError> {
         let time = found.time.map(|index| columns[index].clone());
         let unit = self.unit.clone();
@@ -120,6 +153,17 @@ impl CsvReader {
         };
         Ok(Reading { record, channel: columns[found.channel].clone(), time, columns, sampling })
     }
+}
+
+fn open(path: &Path) -> Result<File, CsvError> {
+    File::open(path).map_err(|source| CsvError::Open { path: path.into(), source })
+}
+
+/// The first column that is called time, other than the channel.
+fn time_by_name(columns: &[String], channel: Option<usize>) -> Option<usize> {
+    let is_time =
+        |(index, name): &(usize, &String)| Some(*index) != channel && seconds_per_unit_of_time(name).is_some();
+    columns.iter().enumerate().find(is_time).map(|(index, _)| index)
 }
 
 /// The columns in use and their numbers; the time stamps are not needed where the rate is given.

@@ -84,6 +84,22 @@ fn columns_by_name_and_position() {
 }
 
 #[test]
+fn channels_are_all_columns_but_the_time() {
+    let channels = |text: &str| CsvReader::default().channels_from(text.as_bytes()).unwrap();
+    let positions = |text: &str| channels(text).into_iter().map(|(index, _)| index).collect::<Vec<_>>();
+    assert_eq!(channels("t,v\n0,1\n1,2\n"), [(1, "v".to_owned())]);
+    assert_eq!(positions("x,time,v,v\n0,1,a,2\n1,2,b,3\n"), [0, 2, 3], "text in other columns does not matter");
+    assert_eq!(positions("0.1,5,7\n0.2,6,7\n0.3,7,7\n"), [1, 2], "the first column is time by nature");
+    assert_eq!(positions("a,b\n3,5\n1,6\n2,7\n"), [0, 1], "no column is time");
+    assert_eq!(positions("date,b\nMonday,5\nMonday,6\n"), [0, 1], "no column is time");
+    assert_eq!(positions("4\n5\n6\n"), [0], "a single column is no time");
+    let other = CsvReader::default().time("b").channels_from(&b"t,a,b\n0,1,2\n"[..]).unwrap();
+    assert_eq!(other.iter().map(|(index, _)| *index).collect::<Vec<_>>(), [0, 1]);
+    assert!(matches!(CsvReader::default().channels_from(&b""[..]), Err(CsvError::Empty)));
+    assert!(matches!(CsvReader::default().channels("/no/such/file.csv"), Err(CsvError::Open { .. })));
+}
+
+#[test]
 fn damage_is_named_with_its_line() {
     assert_eq!(message("# c\n\nt,v\n0,1\n# c\n1,x2\n"), "line 6, column \"v\": \"x2\" is not a number");
     assert_eq!(message("t,v\n0,1\n1,\n"), "line 3, column \"v\": \"\" is not a number");

@@ -1,0 +1,188 @@
+//! A ring-down from a file: which channel, what it measured, in which unit.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use fmm_record::csv::CsvReader;
+use fmm_record::mat::{Channel, MatFile, MatReader};
+use fmm_record::uff::UffFile;
+use fmm_record::{Column, Label, MeaningError, Quantity, Reading, Record, Request};
+
+/// The record to identify, and how it was read.
+pub(crate) struct Input {
+    /// The record, in SI units unless those are not known.
+    pub(crate) record: Record,
+    /// The file, the channel, what it was taken for, and how its sampling rate was found.
+    pub(crate) origin: String,
+    /// What was not as it should be in the file.
+    pub(crate) warnings: Vec<String>,
+}
+
+/// What the user says of the file; the rest is found in it.
+#[derive(Default)]
+pub(crate) struct Choice {
+    pub(crate) channel: Option<Column>,
+    pub(crate) time: Option<Column>,
+    /// Sampling rate (Hz).
+    pub(crate) rate: Option<f64>,
+    /// Quantity, unit and scale of the channel.
+    pub(crate) request: Request,
+}
+
+fn bundled() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/BrowserForkCompoundFirst1.mat")
+}
+
+impl Choice {
+    /// Reads the record of a bicycle fork that comes with the examples.
+    pub(crate) fn read_bundled(&self) -> Result<Input, Box<dyn Error>> {
+        let path = bundled();
+        let reading = self.matlab(&path)?;
+        // A gyro whose gain was not published.
+        let label = Label::from(&reading).with_unit("V").with_quantity(Quantity::Velocity);
+        self.input(&path, &label, &reading, Vec::new())
+    }
+
+    /// Reads a file, whose format its name tells.
+    pub(crate) fn read(&self, path: &Path) -> Result<Input, Box<dyn Error>> {
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        let (reading, warnings) = match extension.as_deref() {
+            Some("uff" | "unv") => self.universal(path)?,
+            Some("mat") => (self.matlab(path)?, Vec::new()),
+            _ => (self.text(path)?, Vec::new()),
+        };
+        self.input(path, &Label::from(&reading), &reading, warnings)
+    }
+
+    /// The record with the quantity and the unit that follow from the file and the request.
+    fn input(
+        &self,
+        path: &Path,
+        label: &Label,
+        reading: &Reading,
+        warnings: Vec<String>,
+    ) -> Result<Input, Box<dyn Error>> {
+        let meaning = self.request.meaning(label).map_err(with_remedy)?;
+        if !matches!(meaning.quantity, Quantity::Velocity | Quantity::Displacement) {
+            let remedy = if meaning.quantity == Quantity::Acceleration { "integrate it first, or " } else { "" };
+            return Err(format!(
+                "channel \"{}\" is a record of {}, and friction is fitted to a velocity or a displacement: {remedy}give \
+                 one of these by --channel",
+                label.name(),
+                meaning.quantity
+            )
+            .into());
+        }
+        let name =
+            path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
+        let origin = format!("{name}, channel {}: {meaning}; the sampling rate was {}", label.name(), reading.sampling);
+        let record = reading.record.scaled(meaning.factor, meaning.unit)?.with_quantity(meaning.quantity);
+        Ok(Input { record, origin, warnings })
+    }
+
+    fn text(&self, path: &Path) -> Result<Reading, Box<dyn Error>> {
+        let mut reader = CsvReader::default();
+        if let Some(time) = &self.time {
+            reader = reader.time(time.clone());
+        }
+        if let Some(channel) = &self.channel {
+            reader = reader.channel(channel.clone());
+        } else {
+            let channels = reader.channels(path)?;
+            if channels.len() > 1 {
+                let labels: Vec<Label> = channels.iter().map(|(_, name)| Label::of(name)).collect();
+                let chosen = self.request.choose(&labels).map_err(with_remedy)?;
+                reader = reader.channel(channels[chosen].0);
+            }
+        }
+        if let Some(rate) = self.rate {
+            reader = reader.rate(rate);
+        }
+        Ok(reader.read(path)?)
+    }
+
+    fn matlab(&self, path: &Path) -> Result<Reading, Box<dyn Error>> {
+        let file = MatFile::read(path)?;
+        let mut reader = MatReader::default();
+        if let Some(channel) = &self.channel {
+            reader = reader.channel(variable(&file, channel)?);
+        }
+        if let Some(time) = &self.time {
+            reader = reader.time(variable(&file, time)?);
+        }
+        if let Some(rate) = self.rate {
+            reader = reader.rate(rate);
+        }
+        Ok(reader.read_from(&file)?)
+    }
+
+    fn universal(&self, path: &Path) -> Result<(Reading, Vec<String>), Box<dyn Error>> {
+        if self.time.is_some() || self.rate.is_some() {
+            return Err("a Universal File has its own time; leave out --time and --rate".into());
+        }
+        let file = UffFile::read(path)?;
+        let reading = match &self.channel {
+            Some(channel) => file.channel(channel.clone())?,
+            None => file.reading()?,
+        };
+        Ok((reading, file.warnings().iter().map(ToString::to_string).collect()))
+    }
+}
+
+/// A MATLAB channel by the name of its variable, or by number: of the arrays in the file, or, if it has but one
+/// matrix, of the columns of that.
+fn variable(file: &MatFile, column: &Column) -> Result<Channel, Box<dyn Error>> {
+    let index = match column {
+        Column::Name(name) => return Ok(Channel::from(name.as_str())),
+        Column::Index(index) => *index,
+    };
+    let arrays: Vec<_> = file.arrays().iter().filter(|array| array.values().len() > 1).collect();
+    if let [array] = arrays[..]
+        && array.dimensions().iter().all(|length| *length > 1)
+    {
+        return Ok(Channel::column(array.name(), index + 1));
+    }
+    match arrays.get(index) {
+        Some(array) => Ok(Channel::variable(array.name())),
+        None => {
+            Err(format!("there is no channel {index}; the file has {} arrays, counted from 0", arrays.len()).into())
+        }
+    }
+}
+
+/// The error, and the options that help.
+fn with_remedy(error: MeaningError) -> Box<dyn Error> {
+    let remedy = match &error {
+        MeaningError::UnknownUnit { .. } => {
+            "give --unit, such as m/s, and --scale, the factor that turns the numbers into it".to_owned()
+        }
+        MeaningError::Counts { unit, .. } => {
+            format!("give --scale and --unit, as in --scale 1.57e-4 --unit rad, or stay with --unit {unit}")
+        }
+        MeaningError::NoUnit { likely, .. } => {
+            format!("give --unit, such as {likely}, and --scale if the numbers are not in it")
+        }
+        MeaningError::NoQuantity { .. } => "give --quantity velocity or --quantity displacement".to_owned(),
+        MeaningError::Nothing { .. } => {
+            "give --quantity velocity or --quantity displacement, and --unit, with --scale if the numbers are not in it"
+                .to_owned()
+        }
+        MeaningError::OtherQuantity { said, .. } => {
+            format!("leave out --quantity {said}, choose another --channel, or give both --scale and --unit")
+        }
+        MeaningError::Contradiction { unit: Some(_), other, .. } => {
+            format!("give --quantity {other} if the unit is right, or else both --scale and --unit")
+        }
+        MeaningError::Contradiction { other, .. } => {
+            format!("leave out what says {other}, or choose another --channel")
+        }
+        MeaningError::OtherUnit { said, .. } => {
+            format!("leave out --unit {said}, or give --scale as well, the factor that turns the numbers into {said}")
+        }
+        MeaningError::ScaleAlone { .. } => "give --unit as well, or leave out --scale".to_owned(),
+        MeaningError::Said { measured, .. } => format!("give --quantity {measured}, or another --unit"),
+        MeaningError::WhichChannel { .. } => "choose one by --channel".to_owned(),
+        _ => return error.into(),
+    };
+    format!("{error}; {remedy}").into()
+}

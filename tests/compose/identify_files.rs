@@ -1,0 +1,158 @@
+//! The example `identify`: what it takes a channel of a file for, and files that should be refused.
+
+use std::path::{Path, PathBuf};
+
+use fmm_record::uff::{ByteOrder, DataSet, Form, write};
+use fmm_record::{Column, Quantity, Record, Request};
+
+#[path = "../../examples/identify/source.rs"]
+mod source;
+
+use source::{Choice, Input};
+
+use crate::real_records::{data, fork, pendulum, wheel};
+
+/// A file in a folder of these tests.
+fn file(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("identify_files");
+    std::fs::create_dir_all(&folder).unwrap();
+    folder.join(name)
+}
+
+/// A text file with time stamps and the columns of a header, of which the first begins with 1, the second with 2.
+fn text(name: &str, header: &str) -> PathBuf {
+    let columns = header.split(',').count();
+    let row = |time: usize| {
+        let values: Vec<String> = (1..=columns).map(|column| (column + time).to_string()).collect();
+        format!("{time},{}\n", values.join(","))
+    };
+    let path = file(name);
+    std::fs::write(&path, format!("t [s],{header}\n{}{}{}", row(0), row(1), row(2))).unwrap();
+    path
+}
+
+fn asked(request: Request) -> Choice {
+    Choice { request, ..Choice::default() }
+}
+
+fn quantity(quantity: Quantity) -> Request {
+    Request::default().quantity(quantity)
+}
+
+fn unit(text: &str) -> Request {
+    Request::default().unit(text.parse().unwrap())
+}
+
+fn read(choice: &Choice, path: &Path) -> Input {
+    let input = choice.read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    assert!(input.warnings.is_empty(), "{:?}", input.warnings);
+    input
+}
+
+fn refusal(choice: &Choice, path: &Path) -> String {
+    choice.read(path).err().map_or_else(|| panic!("{} was read", path.display()), |error| error.to_string())
+}
+
+/// Quantity, unit and first value.
+fn found(input: &Input) -> (Quantity, &str, f64) {
+    (input.record.quantity(), input.record.unit(), input.record.values()[0])
+}
+
+#[test]
+fn an_acceleration_is_no_velocity() {
+    for (name, header) in [("ms2.csv", "a [m/s^2]"), ("g.csv", "a [g]"), ("suffix.csv", "acc_ms2")] {
+        let path = text(name, header);
+        let refused = refusal(&Choice::default(), &path);
+        let expected = format!("channel \"{header}\" is a record of acceleration, ");
+        assert!(refused.starts_with(&expected) && refused.contains("integrate it first"), "{refused}");
+        let refused = refusal(&asked(quantity(Quantity::Velocity)), &path);
+        assert!(
+            refused.contains("a unit of acceleration, not of velocity; leave out --quantity velocity"),
+            "{refused}"
+        );
+    }
+    let refused = refusal(&Choice::default(), &text("force.csv", "F [N]"));
+    assert!(refused.contains("a record of force") && !refused.contains("integrate"), "{refused}");
+}
+
+#[test]
+fn the_channel_is_the_one_that_its_unit_tells_out() {
+    let three = text("three.csv", "disp [mm],vel [mm/s]");
+    let input = read(&Choice::default(), &three);
+    assert_eq!(found(&input), (Quantity::Velocity, "m/s", 2.0 * 1e-3));
+    let origin = "three.csv, channel vel [mm/s]: velocity in m/s after a factor of 0.001; the sampling rate was";
+    assert!(input.origin.starts_with(origin), "{}", input.origin);
+    let displacement = read(&asked(quantity(Quantity::Displacement)), &three);
+    assert_eq!(found(&displacement), (Quantity::Displacement, "m", 1e-3));
+    let by_name = Choice { channel: Some(Column::from("disp [mm]")), ..Choice::default() };
+    assert_eq!(found(&read(&by_name, &three)), (Quantity::Displacement, "m", 1e-3));
+    let refused = refusal(&Choice::default(), &text("two.csv", "v1 [m/s],v2 [m/s]"));
+    assert!(refused.contains("\"v1 [m/s]\" (velocity in m/s), \"v2 [m/s]\""), "{refused}");
+    assert!(refused.ends_with("choose one by --channel"), "{refused}");
+    let same_names = text("same_names.csv", "v,v,v [m/s]");
+    assert_eq!(found(&read(&Choice::default(), &same_names)), (Quantity::Velocity, "m/s", 3.0));
+}
+
+#[test]
+fn what_no_unit_tells_is_asked_for() {
+    for (header, remedy) in [
+        ("velocity", "--unit, such as m/s"),
+        ("angular_velocity", "--unit, such as rad/s"),
+        ("encoder_counts", "--scale and --unit"),
+        ("ch1 [V]", "--quantity velocity or --quantity displacement"),
+        ("v", "--quantity velocity or --quantity displacement, and --unit"),
+        ("v [knots]", "--unit, such as m/s, and --scale"),
+        ("velocity [mm]", "--quantity displacement if the unit is right"),
+    ] {
+        let refused = refusal(&Choice::default(), &text("silent.csv", header));
+        assert!(refused.contains(&format!("\"{header}\"")) && refused.contains(remedy), "{header}: {refused}");
+    }
+    let millimetres = text("millimetres.csv", "v [mm/s]");
+    for (request, remedy) in [
+        (unit("m/s"), "leave out --unit m/s, or give --scale as well"),
+        (Request::default().scale(2.0), "give --unit as well"),
+        (unit("m").quantity(Quantity::Velocity), "give --quantity displacement"),
+    ] {
+        let refused = refusal(&asked(request), &millimetres);
+        assert!(refused.contains(remedy), "{refused}");
+    }
+    let scaled = asked(unit("rad").scale(0.5).quantity(Quantity::Displacement));
+    let counts = read(&scaled, &text("counts.csv", "encoder_counts"));
+    assert_eq!(found(&counts), (Quantity::Displacement, "rad", 0.5));
+    let input = read(&asked(quantity(Quantity::Displacement)), &text("x.csv", "x"));
+    assert_eq!(found(&input), (Quantity::Displacement, "m", 1.0));
+    assert!(input.origin.contains("displacement, taken to be in m;"), "{}", input.origin);
+}
+
+#[test]
+fn measured_records_are_what_they_were() {
+    let input = Choice::default().read_bundled().unwrap();
+    assert_eq!(input.record, fork());
+    assert!(input.origin.contains("channel data: velocity in V;"), "{}", input.origin);
+    let theta = Choice { channel: Some(Column::from("theta_rad")), ..Choice::default() };
+    assert_eq!(read(&theta, &data("single_pendulum_55s_1khz.csv")).record, pendulum());
+    let wheel_in = |spelled: &str| read(&asked(unit(spelled)), &data("bicycle_wheel_radial_gyro.csv")).record;
+    assert_eq!(wheel_in("rad/s"), wheel());
+    let degree = wheel_in("deg/s").values()[0] / wheel().values()[0];
+    assert!((degree.to_degrees() - 1.0).abs() < 1e-12, "one degree is {degree} rad");
+}
+
+#[test]
+fn universal_files_state_quantity_and_unit() {
+    let universal = |name: &str, quantity, unit: &str| {
+        let path = file(name);
+        let record = Record::sampled(100.0, vec![3.0, 2.0, 1.0], quantity, unit).unwrap();
+        write(&path, &[DataSet::of_record(&record)], Form::Binary(ByteOrder::default())).unwrap();
+        path
+    };
+    let millimetres = read(&Choice::default(), &universal("mm.uff", Quantity::Velocity, "mm/s"));
+    assert_eq!(found(&millimetres), (Quantity::Velocity, "m/s", 3.0 * 1e-3));
+    let volts = universal("volts.uff", Quantity::Displacement, "V");
+    assert_eq!(found(&read(&Choice::default(), &volts)), (Quantity::Displacement, "V", 3.0));
+    let refused = refusal(&asked(quantity(Quantity::Velocity)), &volts);
+    assert!(refused.contains("is a record of displacement, but it was said to be one of velocity"), "{refused}");
+    let refused = refusal(&Choice::default(), &universal("pascal.uff", Quantity::Other, "Pa"));
+    assert!(refused.starts_with("the unit \"Pa\" of channel") && refused.contains("--unit"), "{refused}");
+    let refused = refusal(&Choice { rate: Some(1.0), ..Choice::default() }, &volts);
+    assert!(refused.contains("leave out --time and --rate"), "{refused}");
+}
