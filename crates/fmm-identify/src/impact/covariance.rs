@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use fmm_fit::{Block, EvaluationError, Fit, PropagatedCovariance, Residuals, Sensitivity, autocorrelation_time};
+use fmm_fit::{EvaluationError, Fit, PropagatedCovariance, Residuals, Sensitivity, autocorrelation_time};
 
 use crate::correlation::{are_correlated, correlated_covariance};
 use crate::impact::lines::Scratch;
 use crate::impact::parameters::LOAD;
-use crate::impact::{ImpactDomain, ImpactProblem};
+use crate::impact::{ImpactDomain, ImpactProblem, remainder};
 
 /// What rounding makes of a noise-free velocity, relative to the largest.
 const ROUNDING: f64 = 1e-9;
@@ -23,9 +23,11 @@ pub(crate) struct ImpactCovariance {
     propagated: Option<PropagatedCovariance>,
     /// Why it is not known how the estimates follow what was held.
     pub(crate) unpropagated: Option<String>,
-    /// Root mean square of the residuals, and what noise and the uncertainty of the impulses make of them (m/s).
+    /// Root mean square of the residuals, and of what remains of them when everything uncertain is allowed for (m/s).
     pub(crate) residual: f64,
-    pub(crate) expected: f64,
+    pub(crate) remainder: f64,
+    /// Standard deviation of the noise (m/s).
+    pub(crate) noise: f64,
 }
 
 /// Covariance of the estimates by the noise of the velocity.
@@ -40,13 +42,23 @@ impl ImpactCovariance {
     /// Of a `fit` of `problem`, whose forces share a calibration of relative uncertainty `calibration`.
     pub(crate) fn of(problem: ImpactProblem<'_>, fit: &Fit, calibration: f64) -> Result<Self, EvaluationError> {
         let count = fit.values().len();
-        let residual = (fit.sum_of_squares() / fit.residuals().len() as f64).sqrt();
+        let measured = &fit.residuals()[..problem.measured()];
+        let residual = (measured.iter().map(|r| r * r).sum::<f64>() / measured.len() as f64).sqrt();
         let random = Random::of(&problem, fit)?;
         let problem = problem.with_derivatives_by_inputs();
-        let expected = expected_residual(&problem, fit)?;
         let inputs = input_covariance(&problem, calibration);
-        let mut covariance =
-            Self { count, random, sensitivity: None, propagated: None, unpropagated: None, residual, expected, inputs };
+        let remainder = remainder::of(&problem, fit, &inputs)?;
+        let mut covariance = Self {
+            count,
+            random,
+            sensitivity: None,
+            propagated: None,
+            unpropagated: None,
+            residual,
+            remainder,
+            noise: problem.noise(),
+            inputs,
+        };
         if covariance.inputs.iter().any(|element| *element > 0.0) {
             let sensitivity = Sensitivity::first_order(&problem, fit);
             let propagated = sensitivity.and_then(|sensitivity| {
@@ -120,11 +132,11 @@ impl Random {
             ImpactDomain::Time => {
                 let speed = problem.trials().iter().map(|trial| trial.summary().speed).fold(0.0, f64::max);
                 let deviation = fit.residual_standard_deviation().unwrap_or(0.0);
-                let time = autocorrelation_time(fit.residuals()).unwrap_or(1.0);
+                let time = autocorrelation_time(&fit.residuals()[..problem.measured()]).unwrap_or(1.0);
                 if !(deviation > ROUNDING * speed && are_correlated(time)) {
                     return Ok(random);
                 }
-                let Some(correlated) = correlated_covariance(problem, fit, time, &series(problem.blocks()))? else {
+                let Some(correlated) = correlated_covariance(problem, fit, time, &series(problem))? else {
                     return Ok(random);
                 };
                 let ratio = |i: usize| Some((correlated.covariance(i, i)? / independent(i, i)?).max(1.0).sqrt());
@@ -141,8 +153,9 @@ impl Random {
 }
 
 /// The residuals of each trial.
-fn series(blocks: &[Block]) -> Vec<Range<usize>> {
-    let ends = blocks.iter().scan(0, |end, block| {
+fn series(problem: &ImpactProblem<'_>) -> Vec<Range<usize>> {
+    let of_trials = problem.blocks().iter().take(problem.trials().len());
+    let ends = of_trials.scan(0, |end, block| {
         *end += block.rows();
         Some(*end - block.rows()..*end)
     });
@@ -157,7 +170,8 @@ fn series(blocks: &[Block]) -> Vec<Range<usize>> {
 ///
 /// T and L are the derivatives of samples and lines, and B makes lines of samples; e is white noise. A band
 /// that holds all that a parameter changes has L = BT and LᵀL = TᵀT, and V is that of the samples alone. σ² is the larger of what
-/// samples and lines show, as a misfit shows least diluted in the lines.
+/// samples and lines show, as a misfit shows least diluted in the lines. What is known of the pulses is counted twice like the record,
+/// of which it is independent.
 fn of_both(problem: &ImpactProblem<'_>, fit: &Fit) -> Result<Vec<Option<f64>>, EvaluationError> {
     let count = fit.values().len();
     let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
@@ -169,7 +183,7 @@ fn of_both(problem: &ImpactProblem<'_>, fit: &Fit) -> Result<Vec<Option<f64>>, E
     // Sum of squares and number of samples and of lines.
     let mut sums = [(0.0, 0.0); 2];
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    for (trial, block) in problem.blocks().iter().enumerate() {
+    for (trial, block) in problem.blocks().iter().enumerate().take(problem.trials().len()) {
         let (samples, lines) = problem.rows(trial);
         let (columns, further) = rest.split_at(block.rows() * block.parameters().len());
         let of_samples = columns.chunks_exact(block.rows());
@@ -192,6 +206,15 @@ fn of_both(problem: &ImpactProblem<'_>, fit: &Fit) -> Result<Vec<Option<f64>>, E
         row += block.rows();
         rest = further;
     }
+    let known = &problem.blocks()[problem.trials().len()..];
+    for (block, columns) in known.iter().zip([rest]) {
+        let columns = || block.parameters().iter().zip(columns.chunks_exact(block.rows().max(1)));
+        for (&i, a) in columns() {
+            for (&j, b) in columns() {
+                middle[i * count + j] += problem.repeats() * dot(a, b);
+            }
+        }
+    }
     let rank = fit.rank() as f64;
     let variance = sums.map(|(sum, number)| sum / (number - rank).max(1.0)).into_iter().fold(0.0, f64::max);
     let unit = |i: usize, j: usize| fit.unit_covariance(i, j);
@@ -211,34 +234,15 @@ fn of_both(problem: &ImpactProblem<'_>, fit: &Fit) -> Result<Vec<Option<f64>>, E
     Ok((0..count * count).map(product).collect())
 }
 
-/// Root mean square of the residuals (m/s) that the noise of the velocity and the uncertainty of each impulse bring about.
-fn expected_residual(problem: &ImpactProblem<'_>, fit: &Fit) -> Result<f64, EvaluationError> {
-    let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
-    let mut jacobian = vec![0.0; elements];
-    problem.jacobian(fit.values(), &mut jacobian)?;
-    let (mut sum, mut rest) = (0.0, jacobian.as_slice());
-    for (trial, block) in problem.blocks().iter().enumerate() {
-        let (columns, further) = rest.split_at(block.rows() * block.parameters().len());
-        let index = problem.layout().gain(trial);
-        let known = problem.known(index).filter(|_| problem.layout().is_held(index));
-        let u = known.map_or(0.0, |known| known.uncertainty());
-        let of_gain = &columns[(block.parameters().len() - 2) * block.rows()..][..block.rows()];
-        let noise = problem.trials()[trial].summary().velocity_noise;
-        sum += block.rows() as f64 * noise * noise + of_gain.iter().map(|d| (d * u).powi(2)).sum::<f64>();
-        rest = further;
-    }
-    let speed = problem.trials().iter().map(|trial| trial.summary().speed).fold(0.0, f64::max);
-    Ok((sum / problem.len() as f64).sqrt().max(ROUNDING * speed))
-}
-
 /// Covariance of what is held, in the order of the parameters.
 fn input_covariance(problem: &ImpactProblem<'_>, calibration: f64) -> Vec<f64> {
     let layout = problem.layout();
     let held: Vec<usize> = (0..layout.all.len()).filter(|index| layout.is_held(*index)).collect();
-    let is_gain = |index: usize| index >= layout.shared && (index - layout.shared).is_multiple_of(2);
+    // A calibration is common to all impulses that are held but not those whose gain is free.
+    let is_calibrated = |index: usize| layout.is_impulse_error(index) && layout.uncertainties[index] > 0.0;
     let element = |&a: &usize, &b: &usize| {
         let own = if a == b { layout.uncertainties[a].powi(2) } else { 0.0 };
-        own + if is_gain(a) && is_gain(b) { calibration * calibration } else { 0.0 }
+        own + if is_calibrated(a) && is_calibrated(b) { calibration * calibration } else { 0.0 }
     };
     held.iter().flat_map(|a| held.iter().map(move |b| element(a, b))).collect()
 }

@@ -45,10 +45,10 @@ fn compare_with_differences<F: Simulated>(law: &[f64]) {
         let problem = ImpactProblem::new::<F>(&machine(), &trials, &options).unwrap().with_derivatives_by_inputs();
         let mut p = problem.layout().values.clone();
         p[LAW..LAW + law.len()].copy_from_slice(law);
-        // Gains and an offset that are not the trivial ones.
+        // Gains, offsets, errors and delays that are not the trivial ones.
         p[RESPONSE_GAIN] = 1.02;
         let own = problem.layout().shared;
-        p[own..].copy_from_slice(&[0.97, 1e-3, 1.04, -2e-3]);
+        p[own..].copy_from_slice(&[0.97, 1e-3, 0.02, 3e-5, 1.04, -2e-3, -0.01, -2e-5]);
         let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
         let mut jacobian = vec![0.0; elements];
         let mut together = vec![0.0; problem.len()];
@@ -67,14 +67,14 @@ fn compare_with_differences<F: Simulated>(law: &[f64]) {
         let (mut columns, mut row) = (jacobian.as_slice(), 0);
         for block in problem.blocks() {
             for &j in block.parameters() {
-                let h = 1e-5 * p[j].abs().max(1e-2);
+                let name = problem.parameters()[j].name();
+                let h = if name.starts_with("pulse_delay") { 1e-6 } else { 1e-5 * p[j].abs().max(1e-2) };
                 let (above, below) = (at(j, h), at(j, -h));
                 let (column, rest) = columns.split_at(block.rows());
                 let difference = |i: usize| (above[row + i] - below[row + i]) / (2.0 * h);
                 let scale = column.iter().fold(0.0f64, |scale, d| scale.max(d.abs()));
                 // A reversal may cross a sample within h, which spoils its difference: one sample per half swing at most.
                 let off = (0..block.rows()).filter(|&i| (column[i] - difference(i)).abs() > 1e-4 * scale).count();
-                let name = problem.parameters()[j].name();
                 let has_effect = scale > 0.0 || (name.starts_with("offset") && domain == ImpactDomain::Mobility);
                 assert!(has_effect && off < 20, "{domain}, {name}: {off} of {} differ", block.rows());
                 columns = rest;

@@ -11,7 +11,7 @@ use crate::finding::{Finding, Origin};
 use crate::identification::{FittedMotion, best_fit};
 use crate::impact::covariance::ImpactCovariance;
 use crate::impact::parameters::{DAMPING, LAW, LOAD, MASS, RESPONSE_GAIN, STIFFNESS};
-use crate::impact::problem::ImpactLaw;
+use crate::impact::simulation::ImpactLaw;
 use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactProblem, ImpactSummary, ImpactTrial, warnings};
 use crate::layout::named;
 use crate::{IdentifyError, Warning};
@@ -31,7 +31,7 @@ pub struct ImpactIdentification {
     closed_forms: Vec<Option<f64>>,
     warnings: Vec<Warning>,
     residual: f64,
-    expected: f64,
+    chi: f64,
 }
 
 /// Identifies the parameters of law family `F` from blows on one machine.
@@ -39,9 +39,13 @@ pub struct ImpactIdentification {
 /// No start values are needed: they come from the height of the receptance peaks ([`ImpactProblem::closed_form`]). Laws with more
 /// than one level continue a fit of dry friction; a fit to the time record continues one to the mobility, which is quick.
 ///
-/// Standard uncertainties hold the noise of the velocity, as the residuals show it, and the uncertainty of everything held: mass,
-/// stiffness, damping and load of the machine, the calibration of both channels, and for each trial the noise in its pulse and the
-/// offset taken from its velocity (JCGM 100:2008, 5.1.2).
+/// Standard uncertainties hold the noise of the velocity, as the residuals show it; what the samples of the force leave open of
+/// each pulse, and the calibration of the hammer, as far as the motion does not tell; and the uncertainty of everything held: mass,
+/// stiffness, damping and load of the machine, the calibration of the velocity channel, and the offset taken from each velocity
+/// (JCGM 100:2008, 5.1.2).
+///
+/// A decay shows friction with little help of the impulse, so that a coarse pulse or a hammer of unknown calibration widens the
+/// uncertainty of friction twofold at most; mass and load set its scale.
 ///
 /// # Errors
 /// As for [`ImpactProblem::new`], and [`IdentifyError::Fit`] if the fit cannot begin. How it *ends* is in the result.
@@ -116,7 +120,7 @@ fn identify_by(
         closed_forms,
         warnings,
         residual: covariance.residual,
-        expected: covariance.expected,
+        chi: covariance.remainder / covariance.noise,
     })
 }
 
@@ -152,7 +156,7 @@ fn findings(problem: &ImpactProblem<'_>, fit: &Fit, covariance: &ImpactCovarianc
     let law = LAW..layout.shared;
     let machine = [DAMPING, MASS, STIFFNESS, LOAD];
     let others = std::iter::once(RESPONSE_GAIN).chain(layout.shared..layout.all.len());
-    let others = others.filter(|&index| !layout.is_held(index));
+    let others = others.filter(|&index| !layout.is_held(index) && !layout.has_prior[index]);
     for index in law.clone().chain(machine).chain(others) {
         let estimate = &fit.estimates()[index];
         let variances = if layout.is_held(index) {
@@ -238,10 +242,10 @@ impl ImpactIdentification {
         self.residual
     }
 
-    /// χ, the residuals by what the noise of the velocity and the uncertainty of the impulses explain (1): about 1 if the law
-    /// describes the blows.
+    /// χ (1), what remains of the residuals by the noise of the velocity, when the pulses and all that was held may be off within
+    /// what is known of them: about 1 if the law describes the blows.
     pub fn chi(&self) -> f64 {
-        self.residual / self.expected
+        self.chi
     }
 
     /// Velocity (m/s) that the law gives for every sample of `trial`, which must be one of the `trials` of the identification;

@@ -79,7 +79,22 @@ impl Lines {
         Ok(())
     }
 
-    /// The same for a series of few samples, line by line.
+    /// Writes what the central differences of a series have at each line, of what the series has there:
+    ///
+    /// ```text
+    /// (v_{j+1} − v_{j−1})/2h   has   i sin(2πk/n)/h V_k
+    /// ```
+    ///
+    /// Lines are those of a series that is zero at both ends of the record.
+    pub(crate) fn write_rates(&self, rows: &[f64], rates: &mut [f64]) {
+        let pairs = rates.chunks_exact_mut(2).zip(rows.chunks_exact(2));
+        for (line, (rate, row)) in self.range.clone().zip(pairs) {
+            let factor = self.rate * (TAU * line as f64 / self.plan.length() as f64).sin();
+            rate.copy_from_slice(&[-factor * row[1], factor * row[0]]);
+        }
+    }
+
+    /// Lines of a series of few samples, one by one.
     pub(crate) fn transform_short(&self, begin: usize, series: &[f64]) -> Vec<f64> {
         let (length, scale) = (self.plan.length(), self.scale());
         let value = |line: usize| {
@@ -115,6 +130,23 @@ mod tests {
         let found: f64 = fast.iter().map(|r| r * r).sum();
         let expected = energy - (sum * sum + alternating * alternating) / length as f64;
         assert!((found - expected).abs() < 1e-13 * energy, "{found}, not {expected}");
+    }
+
+    #[test]
+    fn rates_are_those_of_central_differences() {
+        let length = 60;
+        let lines = Lines::new(RealTransform::new(length), 50.0, (0.0, 25.0)).unwrap();
+        // Zero at both ends.
+        let series: Vec<f64> = (0..length).map(|i| (i * (length - 1 - i)) as f64 * (0.3 * i as f64).cos()).collect();
+        let at = |i: usize| series.get(i).copied().unwrap_or(0.0);
+        let differences: Vec<f64> = (0..length).map(|i| 25.0 * (at(i + 1) - at(i.wrapping_sub(1)))).collect();
+        let [mut rows, mut rates, mut expected] = [0; 3].map(|_| vec![0.0; lines.rows()]);
+        lines.transform(0, &series, &mut Scratch::default(), &mut rows).unwrap();
+        lines.transform(0, &differences, &mut Scratch::default(), &mut expected).unwrap();
+        lines.write_rates(&rows, &mut rates);
+        for (rate, expected) in rates.iter().zip(&expected) {
+            assert!((rate - expected).abs() < 1e-12 * 25.0 * 900.0 * 60.0, "{rate}, not {expected}");
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use fmm_friction::Role;
 use fmm_model::{Bounds, Parameter};
 
-use crate::impact::{ImpactMachine, ImpactOptions};
+use crate::impact::{ImpactMachine, ImpactOptions, ImpactTrial};
 use crate::law::Law;
 use crate::{IdentifyError, Known};
 
@@ -24,17 +24,31 @@ const SHARED: [Parameter; LAW] = [
     Parameter::new("normal_load", "N", "N").bounded(Bounds::POSITIVE),
     Parameter::new("response_gain", "g_v", "1").bounded(Bounds::POSITIVE),
 ];
-const FORCE_GAIN: Parameter = Parameter::new("force_gain", "g_f", "1").bounded(Bounds::POSITIVE);
-const OFFSET: Parameter = Parameter::new("offset", "b", "m/s");
+/// How many parameters each trial has of its own, and the order of them.
+pub(crate) const PER_TRIAL: usize = 4;
+const FORCE_GAIN: usize = 0;
+const OFFSET: usize = 1;
+const IMPULSE_ERROR: usize = 2;
+const PULSE_DELAY: usize = 3;
+const OWN: [Parameter; PER_TRIAL] = [
+    Parameter::new("force_gain", "g_f", "1").bounded(Bounds::POSITIVE),
+    Parameter::new("offset", "b", "m/s"),
+    // Beyond that a pulse is not known at all.
+    Parameter::new("impulse_error", "ε", "1").bounded(Bounds::UNBOUNDED.at_least(-0.5)),
+    Parameter::new("pulse_delay", "δ", "s"),
+];
 
-/// All parameters: machine, gain of the response, law, then for each trial gain of the force and offset.
+/// All parameters: machine, gain of the response, law, then for each trial gain of the force, offset, error of the impulse and
+/// delay of the pulse.
 #[derive(Debug, Clone)]
 pub(crate) struct Parameters {
     pub(crate) all: Vec<Parameter>,
     /// Values of those that are held, and starts of those that are not and are not of the law.
     pub(crate) values: Vec<f64>,
-    /// Standard uncertainties of what is held.
+    /// Standard uncertainties of what is held, or known beforehand.
     pub(crate) uncertainties: Vec<f64>,
+    /// Which of them are found from what is known beforehand together with the record.
+    pub(crate) has_prior: Vec<bool>,
     /// How many all trials share.
     pub(crate) shared: usize,
 }
@@ -43,7 +57,7 @@ impl Parameters {
     pub(crate) fn of(
         law: &Law,
         machine: &ImpactMachine,
-        trials: usize,
+        trials: &[ImpactTrial],
         options: &ImpactOptions,
     ) -> Result<Self, IdentifyError> {
         let known = [machine.mass(), machine.stiffness(), machine.damping(), machine.normal_load()];
@@ -67,19 +81,22 @@ impl Parameters {
             uncertainties.push(0.0);
         }
         let shared = all.len();
-        for trial in 0..trials {
-            for parameter in [FORCE_GAIN, OFFSET] {
+        for (number, trial) in (1..).zip(trials) {
+            for parameter in OWN {
                 let name: Cow<'static, str> = match trials {
-                    1 => parameter.name().to_owned().into(),
-                    _ => format!("{}_{}", parameter.name(), trial + 1).into(),
+                    [_] => parameter.name().to_owned().into(),
+                    _ => format!("{}_{number}", parameter.name()).into(),
                 };
                 let (symbol, unit) = (parameter.symbol().to_owned(), parameter.unit().to_owned());
                 all.push(Parameter::named(name, symbol, unit).bounded(parameter.bounds()));
             }
-            values.extend([1.0, 0.0]);
-            uncertainties.extend([0.0, 0.0]);
+            values.extend([1.0, 0.0, 0.0, 0.0]);
+            let summary = trial.summary();
+            let impulse = (summary.impulse.uncertainty / summary.impulse.value).abs();
+            uncertainties.extend([0.0, summary.velocity_offset.uncertainty, impulse, summary.time_uncertainty]);
         }
-        let mut parameters = Self { all, values, uncertainties, shared };
+        let has_prior = vec![false; all.len()];
+        let mut parameters = Self { all, values, uncertainties, has_prior, shared };
         parameters.hold(law, options)?;
         Ok(parameters)
     }
@@ -87,18 +104,29 @@ impl Parameters {
     /// Narrows the bounds of what is held.
     fn hold(&mut self, law: &Law, options: &ImpactOptions) -> Result<(), IdentifyError> {
         let mut is_held: Vec<bool> = (0..self.all.len()).map(|index| !(LAW..self.shared).contains(&index)).collect();
+        let mut is_named = vec![false; self.all.len()];
         for name in &options.free {
             let indices = self.named(name)?;
             if indices == [DAMPING] && law.has_slope() {
                 return Err(IdentifyError::TwoDampings { law: law.name });
             }
             for index in indices {
-                is_held[index] = false;
+                (is_held[index], is_named[index]) = (false, true);
             }
         }
         for (name, value) in &options.held {
             for index in self.named(name)? {
-                (is_held[index], self.values[index]) = (true, *value);
+                (is_held[index], is_named[index], self.values[index]) = (true, true, *value);
+            }
+        }
+        for first in (self.shared..self.all.len()).step_by(PER_TRIAL) {
+            if !is_held[first + FORCE_GAIN] && !is_named[first + IMPULSE_ERROR] {
+                // A free gain holds all that can be said of the impulse.
+                (is_named[first + IMPULSE_ERROR], self.uncertainties[first + IMPULSE_ERROR]) = (true, 0.0);
+            }
+            for index in [first + IMPULSE_ERROR, first + PULSE_DELAY] {
+                self.has_prior[index] = !is_named[index] && self.uncertainties[index] > 0.0;
+                is_held[index] &= !self.has_prior[index];
             }
         }
         for ((parameter, value), _) in self.all.iter_mut().zip(&self.values).zip(is_held).filter(|(_, held)| *held) {
@@ -121,24 +149,44 @@ impl Parameters {
         let indices: Vec<usize> = (0..self.all.len()).filter(|&index| is_of(&self.all[index])).collect();
         if indices.is_empty() {
             let shared = self.all[..self.shared].iter().map(Parameter::name);
-            let known = shared.chain([FORCE_GAIN.name(), OFFSET.name()]).collect::<Vec<_>>().join(", ");
+            let known = shared.chain(OWN.iter().map(Parameter::name)).collect::<Vec<_>>().join(", ");
             return Err(IdentifyError::UnknownParameter { name: name.to_owned(), known });
         }
         Ok(indices)
     }
 
-    /// Index of the gain of the force of `trial`; its offset follows.
+    /// Index of the gain of the force of `trial`.
     pub(crate) fn gain(&self, trial: usize) -> usize {
-        self.shared + 2 * trial
+        self.shared + PER_TRIAL * trial + FORCE_GAIN
+    }
+
+    /// Index of what is left of the offset of its velocity.
+    pub(crate) fn offset(&self, trial: usize) -> usize {
+        self.shared + PER_TRIAL * trial + OFFSET
+    }
+
+    /// Index of the relative error of its impulse.
+    pub(crate) fn impulse_error(&self, trial: usize) -> usize {
+        self.shared + PER_TRIAL * trial + IMPULSE_ERROR
+    }
+
+    /// Index of how much later its pulse acts than its samples say.
+    pub(crate) fn pulse_delay(&self, trial: usize) -> usize {
+        self.shared + PER_TRIAL * trial + PULSE_DELAY
+    }
+
+    /// Whether the parameter at `index` is the error of an impulse.
+    pub(crate) fn is_impulse_error(&self, index: usize) -> bool {
+        index >= self.shared && (index - self.shared) % PER_TRIAL == IMPULSE_ERROR
     }
 
     pub(crate) fn is_held(&self, index: usize) -> bool {
         self.all[index].bounds().is_fixed()
     }
 
-    /// Indices of the parameters on which `trial` depends.
+    /// Indices of the parameters on which `trial` depends: those that are shared, then its own.
     pub(crate) fn of_trial(&self, trial: usize) -> Vec<usize> {
-        (0..self.shared).chain([self.gain(trial), self.gain(trial) + 1]).collect()
+        (0..self.shared).chain(self.gain(trial)..self.gain(trial) + PER_TRIAL).collect()
     }
 }
 

@@ -5,13 +5,15 @@ use std::sync::Arc;
 
 use fmm_fit::{Block, EvaluationError, Residuals};
 use fmm_frf::RealTransform;
-use fmm_model::{Damping, Dual, Oscillator, Parameter, Scalar};
-use fmm_sim::{Channels, Excitation, Sampling, Simulated, Trajectory};
+use fmm_model::Parameter;
+use fmm_sim::Simulated;
 
 use crate::impact::lines::{Lines, Scratch};
-use crate::impact::parameters::{LAW, Parameters, RESPONSE_GAIN};
+use crate::impact::parameters::Parameters;
+use crate::impact::pulse_prior::PulsePrior;
+use crate::impact::simulation::{FEW, ImpactLaw, Memory};
 use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactTrial};
-use crate::law::{DIRECTIONS as MANY, Law, Motion, Simulate};
+use crate::law::Law;
 use crate::pool::Pool;
 use crate::{IdentifyError, Known};
 
@@ -26,6 +28,11 @@ use crate::{IdentifyError, Known};
 /// A gain g of the force channel, reading by force, multiplies mass, stiffness, damping and load in the equation of motion,
 /// which is how it enters here.
 ///
+/// Between its samples a force is not known. Straight lines have its impulse and its centre on average over where the samples
+/// lie, but of one blow both are a little off: by a relative error ε of the impulse, which acts as a gain 1 + ε, and a delay δ.
+/// They are found with everything else, and what is known of them beforehand, [`ImpactSummary::impulse`](crate::ImpactSummary)
+/// with its uncertainty, are residuals after those of the trials: σ ε/u(ε) and σ δ/u(δ), with the noise σ of the velocity.
+///
 /// [`identify_impact`](crate::identify_impact) is what most want.
 #[derive(Debug)]
 pub struct ImpactProblem<'a> {
@@ -33,6 +40,9 @@ pub struct ImpactProblem<'a> {
     machine: ImpactMachine,
     trials: &'a [ImpactTrial],
     parameters: Parameters,
+    prior: PulsePrior,
+    /// Standard deviation of the noise of the velocities (m/s), all trials together.
+    noise: f64,
     domain: ImpactDomain,
     lines: Arc<[Lines]>,
     /// For each trial, the spectrum of its velocity at its lines.
@@ -42,39 +52,8 @@ pub struct ImpactProblem<'a> {
     idle: Pool<Memory>,
 }
 
-/// Directions of derivative that one simulation carries if no more are wanted; [`MANY`] if so.
-const FEW: usize = 2;
-
-/// A law with its simulation in few directions.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct ImpactLaw {
-    law: Law,
-    with_few: Simulate<Dual<FEW>>,
-}
-
-impl ImpactLaw {
-    /// Family `F`.
-    pub(crate) const fn of<F: Simulated>() -> Self {
-        Self { law: Law::of::<F>(), with_few: Motion::simulate::<F> }
-    }
-
-    /// Name of the law.
-    pub(crate) fn name(&self) -> &'static str {
-        self.law.name
-    }
-}
-
-/// The numbers of a simulation before those of the law: mass, stiffness, damping, load.
-const MACHINE: usize = 4;
-
-#[derive(Debug, Default)]
-struct Memory {
-    plain: Trajectory,
-    few: Trajectory<Dual<FEW>>,
-    many: Trajectory<Dual<MANY>>,
-    scratch: Scratch,
-    rows: Vec<f64>,
-}
+/// What rounding makes of a noise-free velocity, relative to the largest.
+const ROUNDING: f64 = 1e-9;
 
 /// Band unless one is given, in natural frequencies.
 const BAND: (f64, f64) = (0.5, 2.0);
@@ -103,12 +82,8 @@ impl<'a> ImpactProblem<'a> {
         if trials.is_empty() {
             return Err(IdentifyError::NoRecord);
         }
-        let mut parameters = Parameters::of(&law.law, machine, trials.len(), options)?;
-        for (trial, of_trial) in trials.iter().enumerate() {
-            let (index, summary) = (parameters.gain(trial), of_trial.summary());
-            parameters.uncertainties[index] = (summary.impulse.uncertainty / summary.impulse.value).abs();
-            parameters.uncertainties[index + 1] = summary.velocity_offset.uncertainty;
-        }
+        let parameters = Parameters::of(&law.law, machine, trials, options)?;
+        let prior = PulsePrior::of(&parameters, options.force_gain_uncertainty);
         let natural = machine.natural_frequency_hz();
         let band = options.band.unwrap_or((BAND.0 * natural, BAND.1 * natural));
         // Trials are often of one length.
@@ -132,6 +107,8 @@ impl<'a> ImpactProblem<'a> {
             machine: *machine,
             trials,
             parameters,
+            prior,
+            noise: noise(trials),
             domain: options.domain,
             lines: lines.into(),
             spectra: spectra.into(),
@@ -150,6 +127,8 @@ impl<'a> ImpactProblem<'a> {
             machine: self.machine,
             trials: self.trials,
             parameters: self.parameters.clone(),
+            prior: self.prior.clone(),
+            noise: self.noise,
             domain,
             lines: Arc::clone(&self.lines),
             spectra: Arc::clone(&self.spectra),
@@ -183,6 +162,10 @@ impl<'a> ImpactProblem<'a> {
         &self.law.law
     }
 
+    pub(crate) fn family(&self) -> &ImpactLaw {
+        &self.law
+    }
+
     pub(crate) fn machine(&self) -> &ImpactMachine {
         &self.machine
     }
@@ -209,7 +192,34 @@ impl<'a> ImpactProblem<'a> {
             let (samples, lines) = self.rows(trial);
             Block::new(samples + lines, self.parameters.of_trial(trial))
         };
-        (0..self.trials.len()).map(block).collect()
+        let prior = self.prior.parameters();
+        let last = (!prior.is_empty()).then(|| Block::new(prior.len(), prior));
+        (0..self.trials.len()).map(block).chain(last).collect()
+    }
+
+    /// Standard deviation of the noise of the velocities (m/s), all trials together.
+    pub(crate) fn noise(&self) -> f64 {
+        self.noise
+    }
+
+    /// How many times what a record says is counted.
+    pub(crate) fn repeats(&self) -> f64 {
+        if self.domain == ImpactDomain::Both { 2.0 } else { 1.0 }
+    }
+
+    /// How many residuals are of trials; those of what is known of the pulses follow.
+    pub(crate) fn measured(&self) -> usize {
+        self.len() - self.prior.parameters().len()
+    }
+
+    /// What residuals of what is known of the pulses are in units of (m/s): they count as often as the record does.
+    fn scale_of_prior(&self) -> f64 {
+        self.noise * self.repeats().sqrt()
+    }
+
+    /// Whether the residuals depend on the parameter at `index`, or their derivatives by it are asked for all the same.
+    pub(crate) fn is_wanted(&self, index: usize) -> bool {
+        self.is_complete || !self.parameters.is_held(index)
     }
 
     /// How many residuals of `trial` are samples, and how many are parts of lines, which follow.
@@ -219,146 +229,22 @@ impl<'a> ImpactProblem<'a> {
         (samples, lines)
     }
 
-    /// Index among the parameters of number `number` of a simulation.
-    fn index(number: usize) -> usize {
-        if number < MACHINE { number } else { LAW + number - MACHINE }
-    }
-
-    /// Simulates `trial` by `simulate` from the begin of its blow on, with derivatives by the numbers of a simulation in `directions`, as far as
-    /// its residuals need it.
-    fn simulate<D: Scalar>(
-        &self,
-        simulate: Simulate<D>,
-        trial: usize,
-        p: &[f64],
-        directions: &[usize],
-        trajectory: &mut Trajectory<D>,
-    ) -> Result<(), EvaluationError> {
-        let gain = p[self.parameters.gain(trial)];
-        let number = |number: usize| {
-            let value = p[Self::index(number)] * if number < MACHINE { gain } else { 1.0 };
-            // What has no direction gets one that no number carries, which makes it a constant.
-            D::variable(value, directions.iter().position(|d| *d == number).unwrap_or(usize::MAX))
-        };
-        let oscillator = Oscillator::new(number(0), number(1))?.with_damping(Damping::linear(number(2))?);
-        let law: Vec<D> = (LAW..self.parameters.shared).map(|index| number(index - LAW + MACHINE)).collect();
-        let trial = &self.trials[trial];
-        let scenario = Motion {
-            oscillator,
-            law: self.law().values(&law),
-            normal_load: number(3),
-            initial: [D::from(0.0); 2],
-            force: Some(Excitation::sampled_force(trial.interval(), trial.shared_force())?),
-        };
-        let (motion, all) = (trial.motion().len(), trial.velocity().len() - trial.begin());
-        let sampling = Sampling::uniform(trial.interval(), all)?.keeping(Channels::Velocity);
-        simulate(&scenario, &sampling.window(0..motion).unwrap_or_else(|| sampling.clone()), trajectory)?;
-        if self.domain != ImpactDomain::Time && motion < all && trajectory.rest().is_none() {
-            simulate(&scenario, &sampling, trajectory)?;
-        }
-        Ok(())
-    }
-
-    /// Samples and lines of a `series` that begins with the blow of `trial`.
-    fn observe(
-        &self,
-        trial: usize,
-        series: &[f64],
-        scratch: &mut Scratch,
-        rows: &mut Vec<f64>,
-    ) -> Result<(), EvaluationError> {
-        let (samples, lines) = self.rows(trial);
-        rows.clear();
-        rows.extend_from_slice(&series[..samples]);
-        rows.resize(samples + lines, 0.0);
-        if lines > 0 {
-            self.lines[trial].transform(self.trials[trial].begin(), series, scratch, &mut rows[samples..])?;
-        }
-        Ok(())
-    }
-
-    /// Residuals of `trial` from what its model shows.
-    fn write_residuals(&self, trial: usize, p: &[f64], model: &[f64], residuals: &mut [f64]) {
-        let (gain, offset) = (p[RESPONSE_GAIN], p[self.parameters.gain(trial) + 1]);
-        let (samples, _) = self.rows(trial);
-        let of_trial = &self.trials[trial];
-        let measured = of_trial.velocity()[of_trial.motion()].iter().take(samples);
-        for ((out, model), measured) in residuals.iter_mut().zip(model).zip(measured) {
-            *out = gain * model + offset - measured;
-        }
-        // A constant has no part in any line but that of zero frequency.
-        for ((out, model), measured) in residuals.iter_mut().zip(model).skip(samples).zip(&self.spectra[trial]) {
-            *out = gain * model - measured;
-        }
-    }
-
-    fn is_wanted(&self, index: usize) -> bool {
-        self.is_complete || !self.parameters.is_held(index)
-    }
-
-    /// The numbers of a simulation of `trial` by which derivatives are needed.
-    fn directions(&self, trial: usize) -> Vec<usize> {
-        let gain = self.is_wanted(self.parameters.gain(trial));
-        let count = MACHINE + self.parameters.shared - LAW;
-        (0..count).filter(|number| self.is_wanted(Self::index(*number)) || (gain && *number < MACHINE)).collect()
-    }
-
-    /// Residuals and columns of `trial` from a simulation with derivatives in `directions`.
-    fn differentiate<const N: usize>(
-        &self,
-        (simulate, trajectory): (Simulate<Dual<N>>, &mut Trajectory<Dual<N>>),
-        trial: usize,
-        p: &[f64],
-        directions: &[usize],
-        (scratch, rows): (&mut Scratch, &mut Vec<f64>),
-        (residuals, columns): (&mut [f64], &mut [f64]),
-    ) -> Result<(), EvaluationError> {
-        self.simulate(simulate, trial, p, directions, trajectory)?;
-        let simulated = trajectory.velocity();
-        let count = self.blocks[trial].rows();
-        let (gain, response_gain) = (p[self.parameters.gain(trial)], p[RESPONSE_GAIN]);
-        self.observe(trial, simulated.values(), scratch, rows)?;
-        self.write_residuals(trial, p, rows, residuals);
-        columns[RESPONSE_GAIN * count..][..count].copy_from_slice(rows);
-        for (direction, &number) in directions.iter().enumerate() {
-            let Some(partial) = simulated.partial(direction) else { continue };
-            self.observe(trial, partial, scratch, rows)?;
-            // Mass, stiffness, damping and load are simulated times the gain of the force.
-            let (by_number, by_gain) = if number < MACHINE { (gain, p[number]) } else { (1.0, 0.0) };
-            let column = &mut columns[Self::index(number) * count..][..count];
-            column.iter_mut().zip(&*rows).for_each(|(out, row)| *out = response_gain * by_number * row);
-            let column = &mut columns[self.parameters.shared * count..][..count];
-            column.iter_mut().zip(&*rows).for_each(|(out, row)| *out += response_gain * by_gain * row);
-        }
-        Ok(())
-    }
-
-    /// What the model says for every sample of the record of `trial`, its offset left out.
-    ///
-    /// # Errors
-    /// [`EvaluationError`] if the motion cannot be simulated with values `p`.
-    pub(crate) fn model(&self, trial: usize, p: &[f64]) -> Result<Vec<f64>, EvaluationError> {
-        let mut trajectory = Trajectory::<f64>::new();
-        self.simulate(self.law().plain, trial, p, &[], &mut trajectory)?;
-        let mut model = vec![0.0; self.trials[trial].velocity().len()];
-        let simulated = trajectory.velocity().values().iter();
-        for (out, value) in model[self.trials[trial].begin()..].iter_mut().zip(simulated) {
-            *out = p[RESPONSE_GAIN] * value;
-        }
-        Ok(model)
-    }
-
-    /// The motion of `trial`, with its events counted from the begin of the blow.
-    pub(crate) fn motion(&self, trial: usize, p: &[f64]) -> Result<Trajectory, EvaluationError> {
-        let mut trajectory = Trajectory::new();
-        self.simulate(self.law().plain, trial, p, &[], &mut trajectory)?;
-        Ok(trajectory)
-    }
-
     /// Standard uncertainty of what is known of the parameter at `index`.
     pub(crate) fn known(&self, index: usize) -> Option<Known> {
         Known::new(self.parameters.values[index], self.parameters.uncertainties[index]).ok()
     }
+}
+
+/// Standard deviation of the noise of the velocities of all `trials` (m/s), at least that of rounding.
+fn noise(trials: &[ImpactTrial]) -> f64 {
+    let (mut sum, mut samples, mut speed) = (0.0, 0.0, 0.0f64);
+    for trial in trials {
+        let count = trial.motion().len() as f64;
+        sum += count * trial.summary().velocity_noise.powi(2);
+        samples += count;
+        speed = speed.max(trial.summary().speed);
+    }
+    (sum / samples).sqrt().max(ROUNDING * speed)
 }
 
 impl Residuals for ImpactProblem<'_> {
@@ -371,15 +257,14 @@ impl Residuals for ImpactProblem<'_> {
     }
 
     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        self.idle.lend(|Memory { plain, scratch, rows, .. }| {
+        self.idle.lend(|memory| {
             let mut rest = residuals;
-            for (trial, block) in self.blocks.iter().enumerate() {
+            for (trial, block) in (0..self.trials.len()).zip(&self.blocks) {
                 let (own, others) = rest.split_at_mut(block.rows());
-                self.simulate(self.law().plain, trial, p, &[], plain)?;
-                self.observe(trial, plain.velocity().values(), scratch, rows)?;
-                self.write_residuals(trial, p, rows, own);
+                self.evaluate(trial, p, memory, own)?;
                 rest = others;
             }
+            self.prior.write_residuals(p, self.scale_of_prior(), rest);
             Ok(())
         })
     }
@@ -395,26 +280,16 @@ impl Residuals for ImpactProblem<'_> {
         jacobian: &mut [f64],
     ) -> Result<bool, EvaluationError> {
         jacobian.fill(0.0);
-        self.idle.lend(|Memory { few, many, scratch, rows, .. }| {
+        self.idle.lend(|memory| {
             let (mut rest, mut elements) = (residuals, jacobian);
-            for (trial, block) in self.blocks.iter().enumerate() {
+            for (trial, block) in (0..self.trials.len()).zip(&self.blocks) {
                 let (own, others) = rest.split_at_mut(block.rows());
                 let (columns, further) = elements.split_at_mut(block.rows() * block.parameters().len());
-                let directions = self.directions(trial);
-                if directions.len() <= FEW {
-                    let run = (self.law.with_few, &mut *few);
-                    self.differentiate(run, trial, p, &directions, (scratch, rows), (own, columns))?;
-                } else {
-                    for directions in directions.chunks(MANY) {
-                        let run = (self.law().with_derivatives, &mut *many);
-                        self.differentiate(run, trial, p, directions, (scratch, rows), (own, columns))?;
-                    }
-                }
-                let (samples, _) = self.rows(trial);
-                let offset = (block.parameters().len() - 1) * block.rows();
-                columns[offset..offset + samples].fill(1.0);
+                self.differentiate(trial, p, memory, own, columns)?;
                 (rest, elements) = (others, further);
             }
+            self.prior.write_residuals(p, self.scale_of_prior(), rest);
+            self.prior.write_jacobian(self.scale_of_prior(), elements);
             Ok(true)
         })
     }

@@ -32,10 +32,10 @@ pub(crate) fn of(
     if let Some(reason) = &covariance.unpropagated {
         warnings.push(Warning::InputsNotPropagated { reason: reason.clone() });
     }
-    if covariance.residual > EXCESS * covariance.expected {
+    if covariance.remainder > EXCESS * covariance.noise {
         warnings.push(Warning::StructuredResiduals {
-            residual: covariance.residual,
-            noise: covariance.expected,
+            residual: covariance.remainder,
+            noise: covariance.noise,
             unit: "m/s".to_owned(),
             inflation: covariance.inflation(),
         });
