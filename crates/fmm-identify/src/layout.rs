@@ -68,6 +68,9 @@ impl Layout {
             if decay.fixed_offset().is_none() {
                 parameters.push(Parameter::named(of_record("offset"), "b", decay.record().unit().to_owned()));
             }
+            let number = if decays.len() == 1 { String::new() } else { format!("_{}", index + 1) };
+            let disturbances = decay.nuisances().iter().enumerate();
+            parameters.extend(disturbances.map(|(at, nuisance)| nuisance.parameter(at, &number, decay.record().unit())));
         }
         for (name, value) in terms.held() {
             let known = || parameters.iter().map(Parameter::name).collect::<Vec<_>>().join(", ");
@@ -87,6 +90,11 @@ impl Layout {
     /// How many parameters the motion of one record depends on: the shared ones and its initial state.
     pub(crate) fn directions(&self) -> usize {
         self.shared + 2
+    }
+
+    /// Index of the first disturbance of record number `record`, which is `decay`.
+    pub(crate) fn nuisance(&self, record: usize, decay: &RingDown) -> usize {
+        self.own[record] + 2 + usize::from(decay.fixed_offset().is_none())
     }
 
     /// Index of parameter `direction` of record `record` among all parameters.

@@ -105,6 +105,7 @@ mod machine;
 mod machine_problem;
 mod pool;
 mod noise_growth;
+mod nuisance;
 mod preparation;
 mod problem;
 mod report;

@@ -101,6 +101,9 @@ pub struct RecordSummary {
     pub noise: f64,
     /// Step of the converter, in the unit of the record, if the values lie on a lattice.
     pub resolution: Option<f64>,
+    /// When the record comes to a rest in which the converter no longer changes (s), of which a few samples are fitted: the others have
+    /// the same error.
+    pub dead_rest: Option<f64>,
     /// Isolated samples that were left out.
     pub spikes: usize,
     /// Samples cut off at the range of the instrument.

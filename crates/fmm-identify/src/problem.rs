@@ -13,6 +13,7 @@ use crate::dimension::{Scales, bends, is_force};
 use crate::first_guess::Dissipation;
 use crate::law::{DIRECTIONS, Law, Simulate};
 use crate::layout::{Layout, mass_of_stiffness};
+use crate::nuisance::Nuisance;
 use crate::sign::Addition;
 use crate::{IdentifyError, Machine, RingDown, Sign, Terms};
 
@@ -208,6 +209,9 @@ impl<'a> RingDownProblem<'a> {
                 *out = value + offset;
             }
         })?;
+        for (size, shape) in self.disturbances(record, p) {
+            model.iter_mut().zip(shape).for_each(|(out, shape)| *out += size * shape);
+        }
         Ok(model)
     }
 
@@ -253,6 +257,7 @@ impl<'a> RingDownProblem<'a> {
             if decay.fixed_offset().is_none() {
                 start.push(decay.guess().offset(dissipation));
             }
+            start.extend(decay.nuisances().iter().map(Nuisance::start));
         }
         self.clamped(&start)
     }
@@ -353,6 +358,13 @@ impl<'a> RingDownProblem<'a> {
         self.decays[record].fixed_offset().unwrap_or_else(|| p[self.layout.own[record] + 2])
     }
 
+    /// Size and shape of the disturbances of `record`.
+    fn disturbances<'s>(&'s self, record: usize, p: &'s [f64]) -> impl Iterator<Item = (f64, &'s [f64])> {
+        let decay = &self.decays[record];
+        let first = self.layout.nuisance(record, decay);
+        decay.shapes().iter().enumerate().map(move |(at, shape)| (p[first + at], shape.as_slice()))
+    }
+
     /// The rows of each record among the residuals.
     pub(crate) fn row_ranges(&self) -> impl Iterator<Item = Range<usize>> {
         self.bases().map(|(record, base)| base..base + self.decays[record].summary().samples)
@@ -384,7 +396,13 @@ impl<'a> RingDownProblem<'a> {
         let offset = self.offset(record, fit.values());
         let decay = &self.decays[record];
         let measured = decay.kept().iter().flat_map(|range| &decay.record().values()[range.clone()]);
-        fit.residuals()[rows].iter().zip(measured).map(|(residual, measured)| residual + measured - offset).collect()
+        let mut signal: Vec<f64> =
+            fit.residuals()[rows].iter().zip(measured).map(|(residual, measured)| residual + measured - offset).collect();
+        for (size, shape) in self.disturbances(record, fit.values()) {
+            let kept = decay.kept().iter().flat_map(|range| &shape[range.clone()]);
+            signal.iter_mut().zip(kept).for_each(|(value, shape)| *value -= size * shape);
+        }
+        signal
     }
 
     /// Each record with the number of residuals before its own.
@@ -408,9 +426,13 @@ impl<'a> RingDownProblem<'a> {
         residuals: &mut [f64],
     ) {
         let offset = self.offset(record, p);
-        let measured = &self.decays[record].record().values()[samples];
+        let measured = &self.decays[record].record().values()[samples.clone()];
         for ((out, model), measured) in residuals[base..].iter_mut().zip(simulated).zip(measured) {
             *out = model + offset - measured;
+        }
+        for (size, shape) in self.disturbances(record, p) {
+            let shape = &shape[samples.clone()];
+            residuals[base..].iter_mut().zip(shape).for_each(|(out, shape)| *out += size * shape);
         }
     }
 }
@@ -422,6 +444,8 @@ fn blocks(layout: &Layout, decays: &[RingDown]) -> Vec<Block> {
         if decay.fixed_offset().is_none() {
             parameters.push(layout.own[record] + 2);
         }
+        let first = layout.nuisance(record, decay);
+        parameters.extend(first..first + decay.nuisances().len());
         Block::new(decay.summary().samples, parameters)
     };
     decays.iter().enumerate().map(block).collect()
@@ -477,6 +501,13 @@ impl Residuals for RingDownProblem<'_> {
             if self.decays[record].fixed_offset().is_none() {
                 let start = elements + self.layout.directions() * rows;
                 jacobian[start..start + rows].fill(1.0);
+            }
+            let decay = &self.decays[record];
+            let beside = self.layout.directions() + usize::from(decay.fixed_offset().is_none());
+            for (column, shape) in decay.shapes().iter().enumerate() {
+                let start = elements + (beside + column) * rows;
+                let kept = decay.kept().iter().flat_map(|range| &shape[range.clone()]);
+                jacobian[start..start + rows].iter_mut().zip(kept).for_each(|(out, shape)| *out = *shape);
             }
             elements += rows * self.blocks[record].parameters().len();
         }

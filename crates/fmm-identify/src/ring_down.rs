@@ -10,6 +10,7 @@ use fmm_record::{
 };
 
 use crate::first_guess::{Dissipation, FirstGuess, Oscillation};
+use crate::nuisance::Nuisance;
 use crate::{IdentifyError, Machine, Offset, Preparation, RecordSummary};
 
 /// A prepared ring-down: the part of a record in which a machine vibrates freely, and what was seen in it.
@@ -24,6 +25,9 @@ pub struct RingDown {
     kept: Vec<Range<usize>>,
     guess: FirstGuess,
     peaks: Vec<(f64, f64)>,
+    nuisances: Vec<Nuisance>,
+    /// The shape of each of them at every sample.
+    shapes: Vec<Vec<f64>>,
     summary: RecordSummary,
 }
 
@@ -85,6 +89,9 @@ impl RingDown {
 
         let spikes = spikes(&cleaned);
         let kept = without(record.len(), spikes.iter().map(|spike| spike.index..spike.index + spike.count));
+        let resolution = quantisation_step(record.values());
+        let dead_rest = resolution.and_then(|step| dead_rest(cleaned.values(), step, record.rate() / guess.frequency()));
+        let kept = dead_rest.map_or_else(|| kept.clone(), |rest| counted_once(&kept, rest));
         let amplitudes = guess.amplitudes();
         let summary = RecordSummary {
             from: record.start(),
@@ -100,7 +107,8 @@ impl RingDown {
             amplitudes: (amplitudes[0], amplitudes[amplitudes.len() - 1]),
             frequency: guess.frequency(),
             noise: noise(cleaned.values()),
-            resolution: quantisation_step(record.values()),
+            resolution,
+            dead_rest: dead_rest.map(|rest| record.start() + rest.begin as f64 * record.interval()),
             spikes: spikes.iter().map(|spike| spike.count).sum(),
             saturation: saturation(record.values()),
             offset_step: OffsetStep::of(&cleaned),
@@ -108,7 +116,28 @@ impl RingDown {
             hum,
         };
         let peaks = peaks.iter().map(|peak| (peak.time, peak.value)).collect();
-        Ok(Self { record, kept, guess, peaks, summary })
+        let nuisances = Nuisance::of_hum(&summary.hum).collect();
+        Ok(Self { record, kept, guess, peaks, nuisances: Vec::new(), shapes: Vec::new(), summary }.beside(nuisances))
+    }
+
+    /// The same with further disturbances to be fitted beside the motion.
+    pub(crate) fn beside(mut self, nuisances: Vec<Nuisance>) -> Self {
+        let (start, end) = (self.record.start(), self.record.end());
+        for nuisance in nuisances {
+            self.shapes.push(self.record.times().map(|time| nuisance.at(time, start, end)).collect());
+            self.nuisances.push(nuisance);
+        }
+        self
+    }
+
+    /// The disturbances that are fitted beside the motion.
+    pub(crate) fn nuisances(&self) -> &[Nuisance] {
+        &self.nuisances
+    }
+
+    /// The shape of each of them (1) at every sample.
+    pub(crate) fn shapes(&self) -> &[Vec<f64>] {
+        &self.shapes
     }
 
     /// The part of the record that is used, as it was measured.
@@ -171,7 +200,8 @@ impl RingDown {
         let thin = |range: &Range<usize>| range.start.div_ceil(stride)..range.end.div_ceil(stride);
         let kept: Vec<Range<usize>> = self.kept.iter().map(thin).filter(|range| !range.is_empty()).collect();
         let summary = RecordSummary { samples: kept.iter().map(Range::len).sum(), ..self.summary.clone() };
-        Some(Self { record, kept, summary, ..self.clone() })
+        let shapes = self.shapes.iter().map(|shape| shape.iter().copied().step_by(stride).collect()).collect();
+        Some(Self { record, kept, summary, shapes, ..self.clone() })
     }
 
     /// Largest displacement and velocity of the motion, in the units of the record and its integral or derivative.
@@ -219,6 +249,39 @@ fn beginning(swings: &Swings, rest_end: f64, quantity: Quantity) -> f64 {
         Box::new(swings.peaks().iter().map(|peak| peak.time))
     };
     candidates.find(|time| *time > rest_end).unwrap_or(rest_end)
+}
+
+/// A rest at the end of a record in which the converter shows the same value, or two neighbouring ones.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct DeadRest {
+    /// Its first sample.
+    begin: usize,
+    /// How many samples a period of the motion before takes.
+    period: usize,
+}
+
+/// The dead rest that `values` with a `resolution` end in, after a motion with a `period` in samples; none if it is shorter than half
+/// a period, which a turning point may be.
+fn dead_rest(values: &[f64], resolution: f64, period: f64) -> Option<DeadRest> {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    let moves = |value: &f64| {
+        (low, high) = (low.min(*value), high.max(*value));
+        high - low > 1.5 * resolution
+    };
+    let begin = values.len() - values.iter().rev().position(moves)?;
+    let period = period.round().max(1.0) as usize;
+    (2 * (values.len() - begin) > period).then_some(DeadRest { begin, period })
+}
+
+/// What is left of `kept` if a dead rest is told by a few samples over one period: its thousand others have the same error of rounding.
+fn counted_once(kept: &[Range<usize>], rest: DeadRest) -> Vec<Range<usize>> {
+    const TELLING: usize = 8;
+    let mut left: Vec<Range<usize>> = kept.iter().map(|range| range.start..range.end.min(rest.begin)).collect();
+    left.retain(|range| !range.is_empty());
+    let is_kept = |index: &usize| kept.iter().any(|range| range.contains(index));
+    let telling = (1..=TELLING).map(|k| rest.begin + k * rest.period / TELLING);
+    left.extend(telling.filter(is_kept).map(|index| index..index + 1));
+    left
 }
 
 /// The ranges of `0..count` between `holes`, which are in order.

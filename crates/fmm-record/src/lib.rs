@@ -134,7 +134,6 @@ pub use request::Request;
 pub use sampling::{JITTER, RATE_ROUNDING, Sampling, UniformTimes};
 pub use saturation::{Saturation, saturation};
 pub use savitzky_golay::{savitzky_golay, savitzky_golay_derivative};
-pub use second_mode::SecondMode;
 pub use smooth::{EndRule, moving_average};
 pub use smoothing::Smoothing;
 pub use spikes::{Spike, spikes};

@@ -74,7 +74,7 @@ impl Swings {
     pub(crate) fn bridging(record: &Record, bridged: usize) -> Self {
         let values = without_spikes(record);
         let step = quantisation_step(&values).unwrap_or(0.0);
-        let turning = turning_points(&values, noise(&values), step, bridged);
+        let turning = turning_points(&values, noise_in_motion(&values), step, bridged);
         let mut turning = &turning[..];
         let mut fitted = fit_peaks(&values, turning);
         // The length of a half swing beside a rest is no length of a half swing: without it, all is fitted again.
@@ -127,6 +127,20 @@ impl Swings {
         });
         (kt > 0.0).then(|| kk / (2.0 * kt))
     }
+}
+
+/// Standard deviation of the white noise where it is loud, but not loudest: a noise that grows with the motion is larger in the
+/// motion than in the rest, and a shock in one part is none.
+fn noise_in_motion(values: &[f64]) -> f64 {
+    const PARTS: usize = 8;
+    const FEWEST: usize = 100;
+    let all = noise(values);
+    if values.len() < PARTS * FEWEST {
+        return all;
+    }
+    let mut parts: Vec<f64> = values.chunks_exact(values.len() / PARTS).map(noise).collect();
+    parts.sort_unstable_by(f64::total_cmp);
+    parts[parts.len() - 2].max(all)
 }
 
 /// A turning point as fitted, in samples.
