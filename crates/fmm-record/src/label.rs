@@ -372,9 +372,14 @@ mod tests {
             let label = Label::of(name);
             assert_eq!((label.unit(), label.unknown_unit()), (None, None), "{name:?}");
         }
-        for (name, text) in
-            [("v [knots]", "knots"), ("v (knots)", "knots"), ("v (raw) [furlong/h]", "furlong/h"), ("v [-]", "-")]
-        {
+        for (name, text) in [
+            ("v [knots]", "knots"),
+            ("v (knots)", "knots"),
+            ("v (raw) [furlong/h]", "furlong/h"),
+            ("v [furlong/h] (raw)", "furlong/h"),
+            ("v (knots (old))", "knots (old)"),
+            ("v [-]", "-"),
+        ] {
             assert_eq!((Label::of(name).unit(), Label::of(name).unknown_unit()), (None, Some(text)), "{name}");
         }
     }

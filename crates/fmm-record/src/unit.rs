@@ -161,6 +161,7 @@ mod tests {
             1.0,
         );
         all(&["mm/s²", "mm/s^2", "mm/s2"], 1e-3);
+        all(&["m/min²", "m/min/min"], 1.0 / 3600.0);
         all(&["g", "gn", "g0"], 9.806_65);
         all(&["mg"], 9.806_65e-3);
         let all = |spellings: &[&str], factor| all_mean(spellings, factor, "rad/s²", Quantity::Acceleration);
