@@ -372,10 +372,15 @@ fn known_values_pass_on_their_uncertainty() {
     let value = |machine: &ImpactMachine, options: &ImpactOptions| {
         identify_impact::<Coulomb>(machine, &trials, options).unwrap().finding("coefficient").unwrap().value()
     };
-    let base = identify_impact::<Coulomb>(&exact, &trials, &ImpactOptions::default()).unwrap();
-    let u0 = base.finding("coefficient").unwrap().uncertainty().unwrap();
-    let gain = |g: f64| ImpactOptions::default().holding("force_gain", g).unwrap();
-    let uncertain = |u: f64| ImpactOptions::default().with_force_gain_uncertainty(u).unwrap();
+    let u = |machine: &ImpactMachine, options: &ImpactOptions| {
+        let found = identify_impact::<Coulomb>(machine, &trials, options).unwrap();
+        found.finding("coefficient").unwrap().uncertainty().unwrap()
+    };
+    // A hammer that is taken at its word: otherwise the motion tells the impulse better.
+    let held = || ImpactOptions::default().holding("impulse_error", 0.0).unwrap();
+    let gain = |g: f64| held().holding("force_gain", g).unwrap();
+    let uncertain = |u: f64| held().with_force_gain_uncertainty(u).unwrap();
+    let u0 = u(&exact, &held());
     let of =
         |stiffness, damping| ImpactMachine::new(known(0.5, 0.0), stiffness).unwrap().with_damping(damping).unwrap();
     let cases = [
@@ -394,10 +399,16 @@ fn known_values_pass_on_their_uncertainty() {
         (exact, uncertain(0.01), (exact, gain(1.01)), (exact, gain(0.99))),
     ];
     for (case, (machine, options, above, below)) in cases.into_iter().enumerate() {
-        let found = identify_impact::<Coulomb>(&machine, &trials, &options).unwrap();
-        let u = found.finding("coefficient").unwrap().uncertainty().unwrap();
+        let u = u(&machine, &options);
         let added = (u * u - u0 * u0).max(0.0).sqrt();
         let expected = 0.5 * (value(&above.0, &above.1) - value(&below.0, &below.1)).abs();
         assert!((added - expected).abs() < 0.15 * expected + 0.05 * u0, "case {case}: {added}, not {expected}");
     }
+    // A hammer that says nothing is one whose gain is free, and a better one helps a little.
+    let known_to = |u: f64| ImpactOptions::default().with_force_gain_uncertainty(u).unwrap();
+    let (nothing, free) = (u(&exact, &known_to(100.0)), u(&exact, &ImpactOptions::default().free("force_gain")));
+    // Two directions of derivative find the minimum in other steps.
+    assert!((nothing / free - 1.0).abs() < 1e-2, "{nothing} and {free}");
+    let [poor, good] = [0.1, 0.0].map(|calibration| u(&exact, &known_to(calibration)));
+    assert!(good < poor && poor < nothing, "{good}, {poor}, {nothing}");
 }

@@ -243,7 +243,8 @@ impl ImpactIdentification {
     }
 
     /// χ (1), what remains of the residuals by the noise of the velocity, when the pulses and all that was held may be off within
-    /// what is known of them: about 1 if the law describes the blows.
+    /// what is known of them: about 1 if the law describes the blows. Of a time record it is that of all samples or of the lines
+    /// in the band, whichever is larger.
     pub fn chi(&self) -> f64 {
         self.chi
     }

@@ -22,7 +22,8 @@ pub enum ImpactDomain {
     /// The complex mobility in a band, (2). What lies outside the band does not count: an offset, drift, hum, other modes.
     #[default]
     Mobility,
-    /// The velocity from the blow until a while after rest, (1).
+    /// The velocity from the end of the blow until a while after rest, (1). While the hammer is in contact the velocity follows a force
+    /// of which only the samples are known, so that these few samples count as zero.
     Time,
     /// Both, as they are: what lies in the band counts twice for the estimate, once for its uncertainty.
     Both,
@@ -39,6 +40,12 @@ pub enum ImpactDomain {
 /// | `force_gain` of each trial | 1 | what the force channel reads, by what acts; free, the friction follows from the decay alone |
 /// | `response_gain` | 1 | what the velocity channel reads, by what moves |
 /// | `offset` of each trial | m/s | offset that is left on the velocity; has no effect on a band |
+/// | `impulse_error` of each trial | 1 | by how much straight lines between the samples of the force have too large an impulse |
+/// | `pulse_delay` of each trial | s | how much later the blow acts than these straight lines |
+///
+/// The last two are found like the friction, but near zero, as far as [`ImpactSummary`](crate::ImpactSummary) says that they are
+/// known; free, they are not known at all, and held they are an uncertain input. A free `force_gain` takes the error of the impulse
+/// in.
 ///
 /// ```
 /// use fmm_identify::{ImpactDomain, ImpactOptions};
@@ -102,8 +109,8 @@ impl ImpactOptions {
         Ok(self)
     }
 
-    /// The same with a relative standard uncertainty (1) of the calibration of the hammer, which all trials share. That of the
-    /// noise in each pulse is added by itself.
+    /// The same with a relative standard uncertainty (1) of the calibration of the hammer, which all trials share. That of each
+    /// impulse is added by itself. The fit takes both for what is known before: where the motion tells the impulse better, it counts.
     ///
     /// # Errors
     /// [`ModelError`] if it is negative or not finite.

@@ -140,7 +140,19 @@ impl ImpactProblem<'_> {
             // A delay is a small part of an interval, so that this is all of it.
             rows.iter_mut().zip(&*rates).for_each(|(row, rate)| *row -= delay * rate);
         }
+        for samples in [rows, rates].into_iter().filter(|samples| !samples.is_empty()) {
+            self.leave_contact_out(trial, samples);
+        }
         Ok(())
+    }
+
+    /// Writes zeros for the samples during which the hammer of `trial` is in contact: there the velocity depends on the course of
+    /// a force of which only the samples are known, afterwards on its impulse and its time.
+    fn leave_contact_out(&self, trial: usize, rows: &mut [f64]) {
+        let (samples, _) = self.rows(trial);
+        for hit in self.trials()[trial].hits() {
+            rows[hit.start.min(samples)..(hit.end + 1).min(samples)].fill(0.0);
+        }
     }
 
     /// Residuals of `trial` from what its model shows.
@@ -152,6 +164,7 @@ impl ImpactProblem<'_> {
         for ((out, model), measured) in residuals.iter_mut().zip(model).zip(measured) {
             *out = gain * model + offset - measured;
         }
+        self.leave_contact_out(trial, residuals);
         // A constant has no part in any line but that of zero frequency.
         for ((out, model), measured) in residuals.iter_mut().zip(model).skip(samples).zip(self.spectrum(trial)) {
             *out = gain * model - measured;
@@ -194,7 +207,9 @@ impl ImpactProblem<'_> {
         }
         let (samples, lines) = self.rows(trial);
         let column = self.layout().offset(trial) - self.layout().gain(trial) + self.layout().shared;
-        out.columns[column * (samples + lines)..][..samples].fill(1.0);
+        let column = &mut out.columns[column * (samples + lines)..][..samples];
+        column.fill(1.0);
+        self.leave_contact_out(trial, column);
         Ok(())
     }
 

@@ -55,6 +55,7 @@ pub struct ImpactTrial {
     interval: f64,
     velocity: Vec<f64>,
     force: Arc<[f64]>,
+    hits: Vec<Range<usize>>,
     begin: usize,
     end: usize,
     summary: ImpactSummary,
@@ -151,7 +152,7 @@ impl ImpactTrial {
             rest: motion.last.map(|last| velocity.time(last)),
         };
         let (velocity, end) = (motion.velocity, motion.end);
-        Ok(Self { interval, velocity, force: blow.force.into(), begin: blow.begin, end, summary })
+        Ok(Self { interval, velocity, force: blow.force.into(), hits: blow.hits, begin: blow.begin, end, summary })
     }
 
     /// What the blow is and what was done to it.
@@ -182,6 +183,11 @@ impl ImpactTrial {
     /// Time between samples (s).
     pub fn interval(&self) -> f64 {
         self.interval
+    }
+
+    /// Indices within the force of the samples in which the hammer is in contact.
+    pub(crate) fn hits(&self) -> &[Range<usize>] {
+        &self.hits
     }
 
     pub(crate) fn shared_force(&self) -> Arc<[f64]> {

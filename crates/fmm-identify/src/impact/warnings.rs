@@ -91,8 +91,9 @@ impl Warning {
             ),
             Warning::CoarsePulse { trial, intervals, error } => write!(
                 f,
-                "trial {trial}: the pulse has {intervals} intervals only; straight lines between its samples make the impulse of a half \
-                 sine {:.1} % too small: sample faster, or set force_gain free",
+                "trial {trial}: the pulse has {intervals} intervals only; by where its samples lie, straight lines between them make \
+                 the impulse of a half sine up to {:.1} % too small, and a closed form with it: sample faster (the fit takes the \
+                 impulse from the motion as well)",
                 100.0 * error
             ),
             Warning::SpikesBridged { trial, samples } => write!(
