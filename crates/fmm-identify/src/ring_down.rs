@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use fmm_model::{Bounds, ModelError, Restoring};
 use fmm_record::{
-    OffsetStep, Peak, Quantity, Record, Release, Swings, hum, noise, quantisation_step, saturation, spikes,
-    without_lines,
+    OffsetStep, Peak, Quantity, Record, Release, SecondMode, Swings, further_releases, hum, noise, period_change,
+    quantisation_step, saturation, spikes, without_lines,
 };
 
 use crate::first_guess::{Dissipation, FirstGuess, Oscillation};
@@ -295,5 +295,27 @@ mod tests {
             assert_eq!(one.summary().further_releases, []);
             assert_eq!((one.summary().second_mode, one.summary().period_change), (None, None));
         }
+    }
+
+    fn file(name: &str, quantity: Quantity) -> RingDown {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../fmm-record/tests/data").join(name);
+        let text = std::fs::read_to_string(path).unwrap();
+        let values = text.lines().skip(1).map(|line| line.rsplit(',').next().unwrap().parse().unwrap()).collect();
+        let record = Record::sampled(1000.0, values, quantity, "1").unwrap();
+        RingDown::prepare(&record, &Preparation::default()).unwrap()
+    }
+
+    #[test]
+    fn records_of_others_are_used_as_a_reader_would() {
+        let humming = file("hum7.csv", Quantity::Velocity);
+        let summary = humming.summary();
+        assert_eq!(summary.hum.len(), 1);
+        assert!((summary.frequency - 2.198).abs() < 0.02 && (4..=6).contains(&summary.half_swings), "{summary}");
+        let twice = file("two_v.csv", Quantity::Velocity);
+        assert!(twice.summary().to < 2.0 && twice.summary().further_releases.len() == 1, "{:?}", twice.summary());
+        let pendulum = file("small_pendulum_1khz.csv", Quantity::Displacement);
+        let summary = pendulum.summary();
+        assert!(summary.period_change.is_some_and(|change| (-0.12..-0.04).contains(&change)), "{summary:?}");
+        assert!(summary.hum.is_empty() && summary.further_releases.is_empty() && summary.second_mode.is_none());
     }
 }
