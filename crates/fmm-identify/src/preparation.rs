@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use fmm_record::{Hum, OffsetStep, Quantity, Saturation};
+use fmm_record::{Hum, OffsetStep, Quantity, Saturation, SecondMode};
 
-/// Choices in preparing a record. The default uses the whole record after the release, and fits its offset.
+/// Choices in preparing a record. The default uses the record from the release to the next, and fits its offset.
 ///
 /// ```
 /// use fmm_identify::{Offset, Preparation};
@@ -110,10 +110,14 @@ pub struct RecordSummary {
     pub saturation: Option<Saturation>,
     /// A jump of the offset.
     pub offset_step: Option<OffsetStep>,
-    /// Relative change of the period from the first third of the half swings to the last, if it is significant.
+    /// Relative change of the period (1) from the first sixth of the half swings to the last, if it is significant.
     pub period_change: Option<f64>,
     /// Steady lines in the record, such as hum of the mains, the largest first. They are still in the record that is fitted.
     pub hum: Vec<Hum>,
+    /// When the machine was released or pushed again (s). The record is used until shortly before the first of them.
+    pub further_releases: Vec<f64>,
+    /// Another mode that vibrates beside the one that is fitted.
+    pub second_mode: Option<SecondMode>,
 }
 
 impl fmt::Display for RecordSummary {

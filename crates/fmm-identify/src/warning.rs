@@ -34,7 +34,7 @@ pub enum Warning {
     },
     /// The period changes with the amplitude: the restoring force is not a linear spring.
     PeriodDependsOnAmplitude {
-        /// Relative change of the period from the first third of the oscillation to the last.
+        /// Relative change of the period from the first sixth of the oscillation to the last.
         change: f64,
     },
     /// The amplitude does not fall.
@@ -57,6 +57,18 @@ pub enum Warning {
         height: f64,
         /// That unit.
         unit: String,
+    },
+    /// The machine was released or pushed again; only the part before that was used.
+    FurtherRelease {
+        /// When (s).
+        time: f64,
+    },
+    /// Another mode vibrates beside the one that is fitted.
+    SecondMode {
+        /// Its frequency (Hz).
+        frequency: f64,
+        /// Its amplitude over that of the mode that is fitted (1).
+        share: f64,
     },
     /// Isolated samples were left out.
     Spikes {
@@ -239,6 +251,9 @@ impl Warning {
             height: step.height,
             unit: summary.unit.clone(),
         }));
+        warnings.extend(summary.further_releases.first().map(|time| Self::FurtherRelease { time: *time }));
+        let second = summary.second_mode;
+        warnings.extend(second.map(|mode| Self::SecondMode { frequency: mode.frequency, share: mode.share }));
         if summary.spikes > 0 {
             warnings.push(Self::Spikes { count: summary.spikes });
         }
@@ -344,6 +359,16 @@ impl fmt::Display for Warning {
                     "the offset jumps by {height:.3e} {unit} near {time:.3} s; fit the parts before and after apart"
                 )
             }
+            Self::FurtherRelease { time } => write!(
+                f,
+                "a second release at {time:.2} s: only the part before it was used; give --from for the part after it"
+            ),
+            Self::SecondMode { frequency, share } => write!(
+                f,
+                "a second mode vibrates at {frequency:.3} Hz with about {:.0} % of the amplitude; the fit knows one mode only: use a \
+                 part in which one is left, or isolate one with a band filter",
+                100.0 * share
+            ),
             Self::Spikes { count } => write!(f, "{count} isolated samples far off their neighbours were left out"),
             Self::AtBound { parameter, value } => {
                 write!(

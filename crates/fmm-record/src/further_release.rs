@@ -1,6 +1,7 @@
 //! Where a machine that was vibrating freely is set in motion again.
 
 use crate::order::{median, range};
+use crate::second_mode::beats;
 use crate::smooth::{EndRule, averaged};
 use crate::spikes::without_spikes;
 use crate::{Record, Swings, noise, quantisation_step};
@@ -37,8 +38,8 @@ const REGULAR: f64 = 0.25;
 /// A free motion of one mode never grows. A release shows where the range of the values in the period that follows is twice
 /// that in the period before, by 5 % of the largest range and by noise, and stays 1.5 times as large after it. Before
 /// it there must be a ring-down: three peaks that span 15 % of the range of the record. What moves the machine to where
-/// it is held before the first release is none. Three rises or more at regular distances are the beat of two modes, no
-/// releases.
+/// it is held before the first release is none. Neither are rises of half swings that a beat of two modes describes, or
+/// three rises at regular distances.
 ///
 /// ```
 /// use fmm_record::{Quantity, Record, further_releases};
@@ -55,7 +56,7 @@ const REGULAR: f64 = 0.25;
 pub fn further_releases(record: &Record) -> Vec<FurtherRelease> {
     let Some(envelope) = Envelope::of(record) else { return Vec::new() };
     let found = envelope.releases(record);
-    if is_beat(&found) { Vec::new() } else { found }
+    if is_beat(&found) || (!found.is_empty() && beats(record)) { Vec::new() } else { found }
 }
 
 /// Whether rises follow each other as those of a beat do.

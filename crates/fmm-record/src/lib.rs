@@ -33,6 +33,7 @@
 //! | when does motion begin, and what is the offset? | [`Release`] |
 //! | how does it swing? | [`Swings`]: peaks, crossings, frequency |
 //! | how good is it? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`], [`hum()`] |
+//! | is it one free vibration of a linear spring? | [`further_releases`], [`SecondMode`], [`period_change`] |
 //! | another form of it? | [`Record::crop`], [`Record::scaled`], [`Record::shifted`], [`Record::smoothed_by`], [`Record::integrate`], [`Record::differentiate`] |
 //! | which smoothing? | for a fit none, as it correlates the noise; for a derivative [`savitzky_golay_derivative`]; [`moving_average`] to repeat what MATLAB's `smooth` or `movmean` did |
 //!
