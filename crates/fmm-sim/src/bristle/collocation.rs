@@ -233,6 +233,11 @@ impl<D: Scalar> Collocation<D> {
         }
     }
 
+    /// What errors of a component are compared with.
+    pub(super) fn scale(&self, component: usize) -> f64 {
+        self.scale[component]
+    }
+
     /// How far a component has moved in this swing, this step included.
     fn moved(&self, component: usize) -> f64 {
         let distance = self.begin[component].value() - self.origin[component];

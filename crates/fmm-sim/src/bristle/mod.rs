@@ -115,4 +115,6 @@ impl<D: Scalar, L: BristleLaw<D>> Engine<D, L> for Bristle {
 }
 
 #[cfg(test)]
+mod forced;
+#[cfg(test)]
 mod tests;

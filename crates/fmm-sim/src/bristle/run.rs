@@ -5,7 +5,7 @@ use fmm_model::Scalar;
 
 use super::collocation::{Collocation, Span};
 use super::field::{Branch, Field};
-use super::guard::Guard;
+use super::guard::{Approach, Guard, Landing};
 use super::radau::STAGES;
 use crate::drive::{Drive, Piece};
 use crate::recorder::Recorder;
@@ -18,8 +18,8 @@ const STEP_BUDGET: usize = 100_000;
 /// Attempts at one step before it is given up.
 const MOST_ATTEMPTS: usize = 100;
 
-/// What is left of a step when an event has been landed on is covered by its tangent if it is no more than this.
-const TANGENT: f64 = 1e-9;
+/// A step that ends this near to a zero of a guard, in units of the step, is corrected from there.
+const NEAR: f64 = 0.99;
 
 /// A simulation under way.
 pub(super) struct Run<'a, D, L> {
@@ -119,7 +119,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         if length < room && room < 2.0 * length {
             length = 0.5 * room;
         }
-        let (mut target, mut turned, mut nearest) = (None, false, f64::INFINITY);
+        let mut turned = false;
+        let mut approach = None;
         for _ in 0..MOST_ATTEMPTS {
             if self.time + 0.125 * length == self.time && length < room {
                 break;
@@ -130,6 +131,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 self.step.forget();
                 let saturates = self.field.saturate(self.branch, &mut self.step.begin, self.tolerance);
                 length *= if saturates { 1.0 } else { 0.25 };
+                approach = None;
                 continue;
             };
             if !self.guards_are_smooth() {
@@ -139,8 +141,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             }
             let found = self.first_guard(at_zero);
             // What is not accurate enough says nothing about where it begins.
-            let credible = solved.error <= 1.0 || found.is_none_or(|(tau, _)| tau > 0.0);
-            if let Some((tau, guard)) = found.filter(|_| credible) {
+            let found = found.filter(|(tau, _)| solved.error <= 1.0 || *tau > 0.0);
+            if let Some((tau, guard)) = found {
                 if tau * length <= 2.0 * f64::EPSILON * (self.time + length) {
                     if !(at_zero && guard == Guard::Speed) {
                         return self.arrive(guard, piece, false);
@@ -153,34 +155,39 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                     self.step.forget();
                     continue;
                 }
-                if target != Some(guard) {
-                    (target, nearest) = (Some(guard), f64::INFINITY);
-                }
-                if tau < 0.99 {
+                approach = Some(Approach::of(guard, approach));
+                if tau < NEAR {
                     self.step.retry(length);
                     length *= tau;
                     continue;
                 }
             }
             if solved.error > 1.0 {
+                // A zero that a step too long has seen may be none.
+                approach = None;
                 self.step.retry(length);
                 length *= change(solved.error);
                 continue;
             }
-            if let Some(guard) = target {
-                let landing = self.landing(guard);
-                let distance = landing.correction.abs();
-                // Corrections that no longer shrink are rounding.
-                if landing.grazing || distance <= TANGENT || (distance < 0.1 && distance > 0.5 * nearest) {
-                    self.finish(length, landing.correction, limit, piece)?;
-                    return self.arrive(guard, piece, landing.grazing);
-                }
-                let correction = 1.0 + landing.correction;
-                if distance < 0.1 && correction * length <= room {
-                    nearest = distance;
-                    self.step.retry(length);
-                    length *= correction;
-                    continue;
+            if let Some(Approach { guard, nearest }) = approach {
+                match self.landing(guard, nearest) {
+                    Landing::There { correction, grazing } => {
+                        self.finish(length, correction, limit, piece)?;
+                        return self.arrive(guard, piece, grazing);
+                    }
+                    Landing::Near { correction } if (1.0 + correction) * length <= room => {
+                        approach = Some(Approach { guard, nearest: correction.abs() });
+                        self.step.retry(length);
+                        length *= 1.0 + correction;
+                        continue;
+                    }
+                    Landing::Near { .. } | Landing::Far => {
+                        if let Some((tau, _)) = found {
+                            self.step.retry(length);
+                            length *= tau.min(NEAR);
+                            continue;
+                        }
+                    }
                 }
             }
             let growth = change(solved.error);
