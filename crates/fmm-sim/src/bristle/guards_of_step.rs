@@ -62,14 +62,14 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
         match guard {
             Guard::Speed => {
                 let (belt, sign) = (field.belt.value(), branch.direction.sign());
-                step.bernstein(|state| (state[1].value() - belt) * sign)
+                step.bernstein_of(1, belt, sign)
             }
             Guard::Reserve(index) => {
                 step.bernstein(|state| field.reserve(index, *branch, state).map_or(f64::INFINITY, Scalar::value))
             }
             Guard::Corner(component) => {
                 let sign = step.begin[component].value().signum();
-                step.bernstein(|state| state[component].value() * sign)
+                step.bernstein_of(component, 0.0, sign)
             }
         }
     }

@@ -29,7 +29,7 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
                 let shift = self.reserve_shift(index);
                 self.branch.regime = self.branch.regime.sliding(index);
                 self.field.begin(self.branch, &self.step.begin);
-                self.step.forget();
+                self.collocation.forget();
                 self.pass(EventKind::Yield(index), piece, shift, grazing)
             }
             Guard::Corner(component) => {
