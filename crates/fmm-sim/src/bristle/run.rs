@@ -65,6 +65,8 @@ pub(super) struct Run<'a, D, L> {
     /// Length of the step to try next (s); infinite if nothing is known of it.
     proposed: f64,
     pub(super) tolerance: f64,
+    /// Stiffness of spring and bristles together, per mass (1/s²), at the beginning of the swing.
+    pub(super) stiffness: f64,
     /// Length of the first step of the swing before (s), and whether that of this one is still to be found.
     opening: f64,
     opens: bool,
@@ -90,6 +92,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             time: 0.0,
             proposed: f64::INFINITY,
             tolerance,
+            stiffness: 0.0,
             opening: f64::INFINITY,
             opens: false,
             steps: 0,
@@ -308,6 +311,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         self.field.jacobian(self.branch, begin, speed, &mut jacobian);
         let bristles = (2..size).map(|state| (jacobian[size + state] * jacobian[state * size + 1]).abs());
         let stiffness = jacobian[size].abs() + bristles.sum::<f64>();
+        self.stiffness = stiffness;
         let length = if stiffness > 0.0 { 0.3 / stiffness.sqrt() } else { f64::MAX };
         length.min(1.5 * self.opening)
     }
