@@ -14,7 +14,8 @@ pub(crate) fn between<D: Scalar>(sliding: D, breakaway: D, share: D, rest: impl 
 
 /// The level after a `path` ≥ 0 of exponential fall from `breakaway` to `sliding`, the share being e⁻ᵖ.
 pub(crate) fn fallen<D: Scalar>(sliding: D, breakaway: D, path: D) -> D {
-    between(sliding, breakaway, (-path).exp(), || risen(path))
+    let share = (-path).exp();
+    between(sliding, breakaway, share, || (path * 0.5).tanh() * (share + 1.0))
 }
 
 /// 1 − e⁻ᵖ with all its digits at a small `path` p ≥ 0.

@@ -79,6 +79,7 @@ mod automaton;
 mod bristle;
 mod curve;
 mod decay;
+mod dormand_prince;
 mod drive;
 mod energy;
 mod engine;

@@ -4,7 +4,7 @@ use fmm_model::Scalar;
 
 use crate::within::Within;
 use crate::work::{PIECE_BUDGET, Power, Work};
-use crate::{Channels, Event, Sampling, SimulationError, State, Trajectory};
+use crate::{Event, Sampling, SimulationError, State, Trajectory};
 
 /// No record resolves more events than this.
 pub(crate) const EVENT_BUDGET: usize = 1_000_000;
@@ -103,45 +103,69 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         length: f64,
         within: &Within<D>,
     ) -> Result<(), SimulationError> {
+        if !self.has_samples_before(end) {
+            return Ok(());
+        }
+        let [position, velocity] = [within.position(), within.velocity()];
+        self.polynomials(end, begin, length, |component| if component == 0 { position } else { velocity })
+    }
+
+    /// Writes the samples before `end`: polynomials in the time since `origin` in units of `unit` (s), `of` giving the
+    /// coefficients for position, velocity and, from 2 on, the internal states.
+    pub(crate) fn polynomials<const N: usize>(
+        &mut self,
+        end: f64,
+        origin: f64,
+        unit: f64,
+        of: impl Fn(usize) -> [D; N],
+    ) -> Result<(), SimulationError> {
         let stop = self.sampling.index_at_or_after(end);
         if stop <= self.written {
             return Ok(());
         }
-        let (sampling, channels) = (self.sampling, self.sampling.channels());
+        let sampling = self.sampling;
+        let per_unit = 1.0 / unit;
+        let polynomials: [[D; N]; 2] = [of(0), of(1)];
         for index in [self.written, stop - 1] {
-            let State { position, velocity } = within.at((sampling.time(index) - begin) / length);
-            if !(position.value().is_finite() && velocity.value().is_finite()) {
+            let theta = (sampling.time(index) - origin) * per_unit;
+            let at = |polynomial: &[D; N]| polynomial.iter().rev().fold(0.0, |sum, c| sum * theta + c.value());
+            if !polynomials.iter().all(|polynomial| at(polynomial).is_finite()) {
                 return Err(SimulationError::NotFinite { time: sampling.time(index) });
             }
         }
-        let per_length = 1.0 / length;
+        let states = self.trajectory.states().len();
         while self.written < stop {
             let range = self.written..stop.min(self.written + LONGEST_RUN);
+            let start = range.start;
             if let Some(interval) = sampling.interval() {
-                let first = (sampling.first() + range.start) as f64;
-                let theta = |index: u32| ((first + f64::from(index)) * interval - begin) * per_length;
-                self.write_polynomials(range.clone(), within, channels, theta);
+                let first = (sampling.first() + start) as f64;
+                let theta = |index: u32| ((first + f64::from(index)) * interval - origin) * per_unit;
+                self.write_polynomials(range.clone(), states, &of, theta);
             } else {
-                let theta = |index: u32| (sampling.time(range.start + index as usize) - begin) * per_length;
-                self.write_polynomials(range.clone(), within, channels, theta);
+                let theta = |index: u32| (sampling.time(start + index as usize) - origin) * per_unit;
+                self.write_polynomials(range.clone(), states, &of, theta);
             }
             self.written = range.end;
         }
         Ok(())
     }
 
-    fn write_polynomials(
+    fn write_polynomials<const N: usize>(
         &mut self,
         range: std::ops::Range<usize>,
-        within: &Within<D>,
-        channels: Channels,
+        states: usize,
+        of: impl Fn(usize) -> [D; N],
         theta: impl Fn(u32) -> f64,
     ) {
+        let channels = self.sampling.channels();
         if channels.position() {
-            self.trajectory.position_mut().polynomial(range.clone(), &within.position(), &theta);
+            self.trajectory.position_mut().polynomial(range.clone(), &of(0), &theta);
         }
         if channels.velocity() {
-            self.trajectory.velocity_mut().polynomial(range, &within.velocity(), &theta);
+            self.trajectory.velocity_mut().polynomial(range.clone(), &of(1), &theta);
+        }
+        for state in 0..states {
+            self.trajectory.state_mut(state).polynomial(range.clone(), &of(2 + state), &theta);
         }
     }
 

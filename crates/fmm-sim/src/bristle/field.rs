@@ -16,6 +16,9 @@ pub(super) struct Branch {
 /// Newton's method converge.
 const DIFFERENCE: f64 = 1e-7;
 
+/// The part of its bound within which a state is near zero.
+const NEAR_ZERO: f64 = 1e-4;
+
 /// The right-hand side of (x, v, z)′.
 ///
 /// Everything is evaluated as if the swing went in the positive direction, with u and z of the other direction mirrored:
@@ -29,8 +32,14 @@ pub(super) struct Field<'a, D, L> {
     pub(super) law: &'a L,
     /// Whether something outside keeps the velocity constant, whatever the forces are.
     pub(super) guided: bool,
+    /// 1/m.
+    per_mass: D,
+    /// The damping coefficient, if damping is linear.
+    linear_damping: Option<D>,
     mirrored: Vec<D>,
     rate: Vec<D>,
+    /// Which states have a corner of their rate at zero.
+    bends: Vec<bool>,
     /// Which states have not yet come back through zero in this swing, and stay below it until that is found.
     below: Vec<bool>,
     /// Which states have reached their bound for the rest of this swing.
@@ -46,6 +55,9 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
             belt,
             law,
             guided: false,
+            per_mass: D::from(1.0) / oscillator.mass(),
+            linear_damping: oscillator.damping().is_linear().then(|| oscillator.damping().linear_coefficient()),
+            bends: Self::corners(law, oscillator.natural_angular_frequency().value()),
             mirrored: zeros.clone(),
             below: vec![false; zeros.len()],
             saturated: vec![false; zeros.len()],
@@ -62,14 +74,38 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
     pub(super) fn begin(&mut self, branch: Branch, state: &[D]) {
         self.below.fill(false);
         for index in 0..self.below.len() {
-            let switches = self.reserve(index, branch, state).is_some() || branch.regime.slides(index);
-            self.below[index] = !switches && state[2 + index].value() * branch.direction.sign() < 0.0;
+            let is_below = self.bends[index] && state[2 + index].value() * branch.direction.sign() < 0.0;
+            self.below[index] =
+                is_below && self.reserve(index, branch, state).is_none() && !branch.regime.slides(index);
         }
     }
 
     /// Whether the state of this `index` is to come back through zero.
     pub(super) fn is_below(&self, index: usize) -> bool {
         self.below[index]
+    }
+
+    /// Which states have a corner of the rate or of the coefficient at zero, seen by the even part of their change near
+    /// it: that of a smooth function is small beside the odd part. `per_second` (1/s) makes a speed of a deflection.
+    fn corners(law: &L, per_second: f64) -> Vec<bool> {
+        let size = law.states();
+        let [mut state, mut rate] = [vec![D::from(0.0); size], vec![D::from(0.0); size]];
+        let corner = |index: usize| {
+            let bound = law.bound(index).value().abs();
+            let speed = D::from(bound * per_second);
+            let mut at = |part: f64| {
+                state[index] = D::from(part * bound);
+                law.rate(speed, &state, Regime::ALL_HOLD, &mut rate);
+                [rate[index].value(), law.coefficient(speed, &state, &rate).value()]
+            };
+            let [below, middle, above] = [at(-NEAR_ZERO), at(0.0), at(NEAR_ZERO)];
+            state[index] = D::from(0.0);
+            (0..2).any(|i| {
+                let (rise, fall) = (above[i] - middle[i], below[i] - middle[i]);
+                !((rise + fall).abs() <= 1e-2 * (rise.abs() + fall.abs()))
+            })
+        };
+        (0..size).map(corner).collect()
     }
 
     /// Lets no state be saturated, as at the beginning of a swing.
@@ -135,9 +171,13 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
     pub(super) fn rates(&mut self, force: D, branch: Branch, state: &[D], rates: &mut [D]) {
         let friction = self.friction(branch, state);
         let (x, v) = (state[0], state[1]);
-        let machine = self.oscillator.damping().force(v) + self.oscillator.restoring_force(x);
+        // The other forms of damping cost as much as everything else here together.
+        let damping = match self.linear_damping {
+            Some(coefficient) => v * coefficient,
+            None => self.oscillator.damping().force(v),
+        };
+        let balance = (force - damping - self.oscillator.restoring_force(x) - friction) * self.per_mass;
         rates[0] = v;
-        let balance = (force - machine - friction) / self.oscillator.mass();
         rates[1] = if self.guided { D::from(0.0) } else { balance };
         for (rate, z) in rates[2..].iter_mut().zip(&self.rate) {
             *rate = *z * branch.direction.sign();

@@ -11,11 +11,32 @@ pub(super) enum Guard {
     Corner(usize),
 }
 
-/// How far the end of a step is from the zero of a guard.
+/// A guard whose zero steps are being shortened or stretched to.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Landing {
-    /// In units of the step; positive if the zero is ahead.
-    pub(super) correction: f64,
-    /// Whether the guard has no slope there.
-    pub(super) grazing: bool,
+pub(super) struct Approach {
+    pub(super) guard: Guard,
+    /// How far from the zero, in units of the step, the nearest of them has ended.
+    pub(super) nearest: f64,
+}
+
+impl Approach {
+    /// The approach to `guard`, gone on with if it is the one under way.
+    pub(super) fn of(guard: Guard, under_way: Option<Self>) -> Self {
+        under_way.filter(|approach| approach.guard == guard).unwrap_or(Self { guard, nearest: f64::INFINITY })
+    }
+}
+
+/// How the end of a step lies to the zero of a guard; corrections are in units of the step, positive if the zero is ahead.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Landing {
+    /// The tangent covers what is left.
+    There {
+        correction: f64,
+        /// Whether the guard has no slope there.
+        grazing: bool,
+    },
+    /// A step changed by the correction ends at the zero, or nearer to it.
+    Near { correction: f64 },
+    /// The zero, if there is one, is elsewhere.
+    Far,
 }

@@ -11,6 +11,12 @@ use super::run::Run;
 /// How large the last Legendre coefficient of a guard on a step may be, relative to the guard.
 const SMOOTH: f64 = 1e-4;
 
+/// What is left of a step when an event has been landed on is covered by its tangent if it is no more than this.
+const TANGENT: f64 = 1e-9;
+
+/// How far from the end of a step (in its units) its polynomial says something of a zero.
+const NEAR: f64 = 0.1;
+
 impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
     /// The first guard that is reached within the step, and where. A step that begins `at_zero` velocity does not find that
     /// zero.
@@ -56,20 +62,20 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
         match guard {
             Guard::Speed => {
                 let (belt, sign) = (field.belt.value(), branch.direction.sign());
-                step.bernstein(|state| (state[1].value() - belt) * sign)
+                step.bernstein_of(1, belt, sign)
             }
             Guard::Reserve(index) => {
                 step.bernstein(|state| field.reserve(index, *branch, state).map_or(f64::INFINITY, Scalar::value))
             }
             Guard::Corner(component) => {
                 let sign = step.begin[component].value().signum();
-                step.bernstein(|state| state[component].value() * sign)
+                step.bernstein_of(component, 0.0, sign)
             }
         }
     }
 
-    /// How far, in units of the step, its end is from the zero of `guard`.
-    pub(super) fn landing(&mut self, guard: Guard) -> Landing {
+    /// How the end of the step lies to the zero of `guard`, where the step before has come as near as `nearest` (1).
+    pub(super) fn landing(&mut self, guard: Guard, nearest: f64) -> Landing {
         let coefficients = self.guard_polynomial(guard);
         let slope = match guard {
             Guard::Speed => self.step.end_slope(1) * self.branch.direction.sign(),
@@ -78,9 +84,27 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
         let [.., before, last, end] = coefficients;
         let curvature = (STAGES * (STAGES - 1)) as f64 * (end - 2.0 * last + before);
         let size = coefficients.iter().fold(0.0f64, |size, coefficient| size.max(coefficient.abs()));
+        let component = match guard {
+            Guard::Speed => 1,
+            Guard::Reserve(index) => 2 + index,
+            Guard::Corner(component) => component,
+        };
+        // A guard is zero within what a step may be off.
+        let is_zero = end.abs() <= self.tolerance * size.max(self.step.scale(component));
         // Where the slope is that small, rounding moves the zero further than it is from the turning point.
-        let grazing = slope >= 0.0 || slope * slope <= 4.0 * f64::EPSILON * size * curvature.abs();
-        let correction = if grazing { 0.0 } else { -end / slope };
-        Landing { correction, grazing }
+        if slope >= 0.0 || slope * slope <= 4.0 * f64::EPSILON * size * curvature.abs() {
+            return if is_zero { Landing::There { correction: 0.0, grazing: true } } else { Landing::Far };
+        }
+        let correction = -end / slope;
+        let distance = correction.abs();
+        // Corrections that no longer shrink are rounding, as long as the tangent is good enough for them.
+        let stagnates = distance > 0.5 * nearest && (is_zero || distance * distance <= self.tolerance);
+        if distance <= TANGENT || stagnates {
+            Landing::There { correction, grazing: false }
+        } else if distance < NEAR {
+            Landing::Near { correction }
+        } else {
+            Landing::Far
+        }
     }
 }

@@ -1,12 +1,14 @@
 //! The engine for laws with an internal state: an implicit collocation method that stops at every kink.
 
 mod collocation;
+mod explicit;
 mod field;
 mod first_root;
 mod guard;
 mod guards_of_step;
 mod lu;
 mod modes;
+mod motion;
 mod passage;
 mod path;
 mod radau;
@@ -114,5 +116,7 @@ impl<D: Scalar, L: BristleLaw<D>> Engine<D, L> for Bristle {
     }
 }
 
+#[cfg(test)]
+mod forced;
 #[cfg(test)]
 mod tests;

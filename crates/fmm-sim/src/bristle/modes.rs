@@ -40,6 +40,12 @@ impl<D: Scalar> Modes<D> {
         &mut self.jacobian
     }
 
+    /// The greatest rate (1/s) at which the velocity or a state follows itself.
+    pub(super) fn stiffness(&self) -> f64 {
+        let size = self.values.len();
+        (1..size).fold(0.0, |most: f64, i| most.max(self.jacobian[i * size + i].abs()))
+    }
+
     /// J_vx (1/s²).
     fn spring(&self) -> f64 {
         self.jacobian[self.values.len()]
@@ -124,7 +130,7 @@ impl<D: Scalar> Modes<D> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::radau::{FROM_MODES, INVERSE, TO_MODES, product};
+    use super::super::radau::{FROM_MODES_COLUMNS, INVERSE_COLUMNS, TO_MODES_COLUMNS, product};
     use super::*;
 
     /// The whole system, (A⁻¹/h ⊗ I − I ⊗ J) W = R, is put together again from a known W.
@@ -138,16 +144,16 @@ mod tests {
         modes.jacobian_mut().copy_from_slice(&jacobian.concat());
         assert!(modes.factor(length));
         for (component, row) in jacobian.iter().enumerate() {
-            let slopes = product(&INVERSE, &known[component]);
+            let slopes = product(&INVERSE_COLUMNS, &known[component]);
             let right = std::array::from_fn(|stage| {
                 let coupled: f64 = row.iter().zip(&known).map(|(entry, known)| entry * known[stage]).sum();
                 slopes[stage] / length - coupled
             });
-            modes.values[component] = product(&TO_MODES, &right);
+            modes.values[component] = product(&TO_MODES_COLUMNS, &right);
         }
         modes.solve();
         for (values, known) in modes.values.iter().zip(&known) {
-            for (got, expected) in product(&FROM_MODES, values).iter().zip(known) {
+            for (got, expected) in product(&FROM_MODES_COLUMNS, values).iter().zip(known) {
                 // T has a condition of about 1e4.
                 assert!((got - expected).abs() < 1e-11, "{got} instead of {expected}");
             }

@@ -29,7 +29,7 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
                 let shift = self.reserve_shift(index);
                 self.branch.regime = self.branch.regime.sliding(index);
                 self.field.begin(self.branch, &self.step.begin);
-                self.step.forget();
+                self.collocation.forget();
                 self.pass(EventKind::Yield(index), piece, shift, grazing)
             }
             Guard::Corner(component) => {
@@ -90,7 +90,9 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
         let amplitude = |wave: &crate::drive::Harmonic<D>| wave.amplitude.value().abs();
         let size = self.field.force_size(force, branch, begin) + piece.waves().iter().map(amplitude).sum::<f64>();
         let load = self.after[1].value() * mass;
-        if load.abs() > 4.0 * f64::EPSILON * size {
+        // A swing on the bristles that the position has no digits for is none.
+        let unseen = begin[0].value().abs() * self.stiffness * mass;
+        if load.abs() > 4.0 * f64::EPSILON * (size + unseen) {
             return Some(Direction::of(load));
         }
         let (stiffness, x) = (self.field.oscillator.stiffness().value(), begin[0].value());

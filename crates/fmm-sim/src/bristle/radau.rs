@@ -121,6 +121,28 @@ pub(super) const BERNSTEIN: [[f64; STAGES + 1]; STAGES + 1] = [
     [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
 ];
 
+/// The coefficients of 1 to (2τ − 1)ˢ of the polynomial that is 0 at 0 and has given values at the stages; about the
+/// middle of the step they are small enough for rounding not to matter.
+#[rustfmt::skip]
+const CENTRED: [[f64; STAGES]; STAGES + 1] = [
+    [0.264_585_964_459_308_26, -0.230_110_365_024_873_5, 0.380_438_636_436_541_7, 0.842_318_898_790_633_9,
+     -0.144_394_307_265_461_2, 0.065_732_601_175_279_47, -0.022_321_428_571_428_572],
+    [-1.868_581_432_262_378, 1.707_596_506_743_949_1, -3.449_511_902_130_082_4, 2.124_347_170_702_485_2,
+     0.598_208_067_715_856, -0.317_415_553_626_972_93, 0.111_607_142_857_142_86],
+    [-5.423_441_371_806_009_5, 4.016_985_264_965_768, -0.071_950_721_016_922_6, -5.481_194_891_130_513,
+     5.153_985_681_450_4, -2.212_241_105_319_866_3, 0.736_607_142_857_142_9],
+    [16.873_849_782_203_063, -15.371_854_700_457_435, 16.199_109_735_564_555, -11.333_472_152_123_583,
+     3.507_016_835_088_709, 0.169_993_356_867_548_38, -0.200_892_857_142_857_15],
+    [15.412_997_561_360_587, -7.154_008_382_507_235, -1.750_585_743_522_938_2, 9.548_077_159_119_657,
+     -11.680_726_268_132_393, 8.481_388_530_825_178, -3.013_392_857_142_857],
+    [-36.375_691_780_024_65, 27.560_556_934_097_498, -23.391_770_313_982_914, 17.689_619_131_896_78,
+     -10.776_318_532_044_801, 4.963_247_417_200_945, -1.325_892_857_142_857_2],
+    [-10.254_142_154_013_886, 3.367_133_482_566_341, 1.442_097_828_103_319_2, -4.909_201_166_779_778,
+     6.671_134_893_947_453, -6.334_880_026_680_592, 2.799_107_142_857_143],
+    [21.370_423_430_083_967, -13.896_298_740_384_012, 10.642_172_480_548_439, -8.480_494_150_475_68,
+     6.671_093_629_240_237, -4.815_825_220_441_52, 1.915_178_571_428_571_4],
+];
+
 /// Barycentric weights of the stages among 0 and the stages.
 #[rustfmt::skip]
 pub(super) const WEIGHTS: [f64; STAGES] = [
@@ -148,6 +170,7 @@ pub(super) fn basis(tau: f64) -> [f64; STAGES] {
 pub(super) type Stages<D> = [D; STAGES];
 
 /// Σ `factors`ᵢ `values`ᵢ.
+#[inline]
 pub(super) fn dot<D: Scalar>(factors: &[f64; STAGES], values: &Stages<D>) -> D {
     let mut sum = values[0] * factors[0];
     for index in 1..STAGES {
@@ -156,7 +179,36 @@ pub(super) fn dot<D: Scalar>(factors: &[f64; STAGES], values: &Stages<D>) -> D {
     sum
 }
 
+/// A matrix by its columns, in which a product adds up several rows at once.
+pub(super) type Columns<const ROWS: usize> = [[f64; ROWS]; STAGES];
+
+const fn columns<const ROWS: usize>(matrix: &[[f64; STAGES]; ROWS]) -> Columns<ROWS> {
+    let mut columns = [[0.0; ROWS]; STAGES];
+    let mut row = 0;
+    while row < ROWS {
+        let mut column = 0;
+        while column < STAGES {
+            columns[column][row] = matrix[row][column];
+            column += 1;
+        }
+        row += 1;
+    }
+    columns
+}
+
+pub(super) static INVERSE_COLUMNS: Columns<STAGES> = columns(&INVERSE);
+pub(super) static TO_MODES_COLUMNS: Columns<STAGES> = columns(&TO_MODES);
+pub(super) static FROM_MODES_COLUMNS: Columns<STAGES> = columns(&FROM_MODES);
+pub(super) static CENTRED_COLUMNS: Columns<{ STAGES + 1 }> = columns(&CENTRED);
+
 /// `matrix` · `values`.
-pub(super) fn product<D: Scalar>(matrix: &[[f64; STAGES]; STAGES], values: &Stages<D>) -> Stages<D> {
-    std::array::from_fn(|row| dot(&matrix[row], values))
+#[inline]
+pub(super) fn product<D: Scalar, const ROWS: usize>(matrix: &Columns<ROWS>, values: &Stages<D>) -> [D; ROWS] {
+    let mut product = matrix[0].map(|factor| values[0] * factor);
+    for (column, value) in matrix.iter().zip(values).skip(1) {
+        for (sum, factor) in product.iter_mut().zip(column) {
+            *sum = *sum + *value * *factor;
+        }
+    }
+    product
 }

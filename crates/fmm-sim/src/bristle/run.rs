@@ -3,9 +3,11 @@
 use fmm_friction::{BristleLaw, Regime};
 use fmm_model::Scalar;
 
-use super::collocation::{Collocation, Span};
+use super::collocation::Collocation;
+use super::explicit::Explicit;
 use super::field::{Branch, Field};
-use super::guard::Guard;
+use super::guard::{Approach, Guard, Landing};
+use super::motion::{Motion, Solved, Span};
 use super::radau::STAGES;
 use crate::drive::{Drive, Piece};
 use crate::recorder::Recorder;
@@ -18,13 +20,42 @@ const STEP_BUDGET: usize = 100_000;
 /// Attempts at one step before it is given up.
 const MOST_ATTEMPTS: usize = 100;
 
-/// What is left of a step when an event has been landed on is covered by its tangent if it is no more than this.
-const TANGENT: f64 = 1e-9;
+/// Step times stiffness above which states that follow the motion are what limits an explicit step.
+const AT_LIMIT: f64 = 0.5;
+
+/// Step times stiffness above which explicit steps are as long as they are for the sake of stability.
+const STABLE: f64 = 4.0;
+
+/// Change of the rates of the states over a step, in units of step times stiffness, below which they follow the motion; a
+/// transient changes as much as it is stiff.
+const FOLLOWS: f64 = 0.2;
+
+/// The angle (rad) by which a machine goes on, and the change of the rates of the states, in a step that only the motion
+/// limits.
+const SMOOTH_ANGLE: f64 = 0.25;
+const SMOOTH_CHANGE: f64 = 1.0;
+
+/// Step times stiffness from which on an implicit step is worth the explicit ones that it replaces, and up to which it is
+/// not.
+const STIFF: f64 = 20.0;
+const NOT_STIFF: f64 = 8.0;
+
+/// The first implicit step after explicit ones, in units of these.
+const FIRST: f64 = 5.0;
+
+/// A step that ends this near to a zero of a guard, in units of the step, is corrected from there.
+const NEAR: f64 = 0.99;
 
 /// A simulation under way.
 pub(super) struct Run<'a, D, L> {
     pub(super) field: Field<'a, D, L>,
-    pub(super) step: Collocation<D>,
+    pub(super) step: Motion<D>,
+    pub(super) collocation: Collocation<D>,
+    explicit: Explicit<D>,
+    /// Whether steps are those of the collocation method.
+    implicit: bool,
+    /// Explicit steps in a row that stability has limited.
+    stiff_steps: usize,
     pub(super) recorder: Recorder<'a, D>,
     pub(super) branch: Branch,
     /// Whether nothing drives the contact from relative rest.
@@ -34,6 +65,11 @@ pub(super) struct Run<'a, D, L> {
     /// Length of the step to try next (s); infinite if nothing is known of it.
     proposed: f64,
     pub(super) tolerance: f64,
+    /// Stiffness of spring and bristles together, per mass (1/s²), at the beginning of the swing.
+    pub(super) stiffness: f64,
+    /// Length of the first step of the swing before (s), and whether that of this one is still to be found.
+    opening: f64,
+    opens: bool,
     steps: usize,
     /// Room for two states or rates.
     pub(super) before: Vec<D>,
@@ -46,12 +82,19 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         begin[0] = initial.position;
         begin[1] = initial.velocity;
         Self {
-            step: Collocation::new(begin.clone()),
+            step: Motion::new(begin.clone()),
+            collocation: Collocation::new(begin.len()),
+            explicit: Explicit::new(begin.len()),
+            implicit: false,
+            stiff_steps: 0,
             branch: Branch { direction: Direction::Positive, regime: Regime::ALL_HOLD },
             resting: false,
             time: 0.0,
             proposed: f64::INFINITY,
             tolerance,
+            stiffness: 0.0,
+            opening: f64::INFINITY,
+            opens: false,
             steps: 0,
             before: begin.clone(),
             after: begin,
@@ -82,7 +125,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 break;
             }
             piece = drive.piece(index);
-            self.step.forget();
+            self.collocation.forget();
             if self.resting
                 && let Some(direction) = self.departure(&piece)
             {
@@ -91,7 +134,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             }
         }
         // The samples at the end itself hold the state after an event there.
-        self.write(f64::INFINITY, None)
+        self.write(f64::INFINITY)
     }
 
     /// Sets the direction of the motion to come, or rest.
@@ -99,6 +142,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         self.resting = direction.is_none();
         self.branch = Branch { direction: direction.unwrap_or(self.branch.direction), regime: Regime::ALL_HOLD };
         self.step.turn(self.field.belt.value());
+        self.collocation.forget();
+        (self.implicit, self.stiff_steps) = (false, 0);
         self.field.release();
         self.field.begin(self.branch, &self.step.begin);
         self.proposed = f64::INFINITY;
@@ -113,34 +158,37 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             }
         }
         self.field.begin(self.branch, &self.step.begin);
+        self.field.saturate(self.branch, &mut self.step.begin, self.tolerance.max(4.0 * f64::EPSILON));
         let at_zero = self.step.begin[1].value() == self.field.belt.value();
         let room = limit - self.time;
         let mut length = self.first_length().min(room);
         if length < room && room < 2.0 * length {
             length = 0.5 * room;
         }
-        let (mut target, mut turned, mut nearest) = (None, false, f64::INFINITY);
+        let mut turned = false;
+        let mut approach = None;
         for _ in 0..MOST_ATTEMPTS {
             if self.time + 0.125 * length == self.time && length < room {
                 break;
             }
             self.count_step()?;
             let span = Span { begin: self.time, length, tolerance: self.tolerance };
-            let Some(solved) = self.step.solve(&mut self.field, self.branch, piece, span)? else {
-                self.step.forget();
+            let Some(solved) = self.take(piece, span)? else {
+                self.collocation.forget();
                 let saturates = self.field.saturate(self.branch, &mut self.step.begin, self.tolerance);
                 length *= if saturates { 1.0 } else { 0.25 };
+                approach = None;
                 continue;
             };
-            if !self.guards_are_smooth() {
-                self.step.retry(length);
+            if solved.followed && !self.guards_are_smooth() {
+                self.retry(length);
                 length *= 0.5;
                 continue;
             }
-            let found = self.first_guard(at_zero);
+            let found = if solved.followed { self.first_guard(at_zero) } else { None };
             // What is not accurate enough says nothing about where it begins.
-            let credible = solved.error <= 1.0 || found.is_none_or(|(tau, _)| tau > 0.0);
-            if let Some((tau, guard)) = found.filter(|_| credible) {
+            let found = found.filter(|(tau, _)| solved.error <= 1.0 || *tau > 0.0);
+            if let Some((tau, guard)) = found {
                 if tau * length <= 2.0 * f64::EPSILON * (self.time + length) {
                     if !(at_zero && guard == Guard::Speed) {
                         return self.arrive(guard, piece, false);
@@ -150,44 +198,95 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                     turned = !turned;
                     self.branch.direction = Direction::of(-self.branch.direction.sign());
                     self.field.begin(self.branch, &self.step.begin);
-                    self.step.forget();
+                    self.collocation.forget();
                     continue;
                 }
-                if target != Some(guard) {
-                    (target, nearest) = (Some(guard), f64::INFINITY);
-                }
-                if tau < 0.99 {
-                    self.step.retry(length);
+                approach = Some(Approach::of(guard, approach));
+                if tau < NEAR {
+                    self.retry(length);
                     length *= tau;
                     continue;
                 }
             }
             if solved.error > 1.0 {
-                self.step.retry(length);
+                // A zero that a step too long has seen may be none.
+                approach = None;
+                self.retry(length);
                 length *= change(solved.error);
                 continue;
             }
-            if let Some(guard) = target {
-                let landing = self.landing(guard);
-                let distance = landing.correction.abs();
-                // Corrections that no longer shrink are rounding.
-                if landing.grazing || distance <= TANGENT || (distance < 0.1 && distance > 0.5 * nearest) {
-                    self.finish(length, landing.correction, limit, piece)?;
-                    return self.arrive(guard, piece, landing.grazing);
-                }
-                let correction = 1.0 + landing.correction;
-                if distance < 0.1 && correction * length <= room {
-                    nearest = distance;
-                    self.step.retry(length);
-                    length *= correction;
-                    continue;
+            if let Some(Approach { guard, nearest }) = approach {
+                match self.landing(guard, nearest) {
+                    Landing::There { correction, grazing } => {
+                        self.finish(length, correction, limit, piece)?;
+                        return self.arrive(guard, piece, grazing);
+                    }
+                    Landing::Near { correction } if (1.0 + correction) * length <= room => {
+                        approach = Some(Approach { guard, nearest: correction.abs() });
+                        self.retry(length);
+                        length *= 1.0 + correction;
+                        continue;
+                    }
+                    Landing::Near { .. } | Landing::Far => {
+                        if let Some((tau, _)) = found {
+                            self.retry(length);
+                            length *= tau.min(NEAR);
+                            continue;
+                        }
+                    }
                 }
             }
             let growth = change(solved.error);
             self.proposed = length * if solved.quick { growth } else { growth.min(1.0) };
+            if self.opens {
+                (self.opening, self.opens) = (length, false);
+            }
+            self.choose(solved, length, piece, limit);
             return self.finish(length, 0.0, limit, piece);
         }
         Err(SimulationError::StepTooSmall { tolerance: self.tolerance, time: self.time })
+    }
+
+    /// Takes a step by the method of the hour.
+    fn take(&mut self, piece: &Piece<D>, span: Span) -> Result<Option<Solved>, SimulationError> {
+        let Self { step, collocation, explicit, field, branch, .. } = self;
+        if self.implicit {
+            collocation.solve(step, field, *branch, piece, span)
+        } else {
+            Ok(explicit.take(step, field, *branch, piece, span))
+        }
+    }
+
+    /// The next step begins where this one of `length` has begun.
+    fn retry(&mut self, length: f64) {
+        if self.implicit {
+            self.collocation.predict_from(&self.step, length, 0.0);
+        }
+    }
+
+    /// Chooses the method of the next step by what this one of `length` has shown.
+    fn choose(&mut self, solved: Solved, length: f64, piece: &Piece<D>, limit: f64) {
+        if self.implicit {
+            self.implicit = solved.stiffness > NOT_STIFF;
+            return;
+        }
+        // The states follow the motion without a memory of where they came from.
+        let follows = solved.variation < FOLLOWS * solved.stiffness && solved.stiffness > AT_LIMIT;
+        let at_limit = solved.stiffness > STABLE;
+        self.stiff_steps = if follows || at_limit { self.stiff_steps + 1 } else { 0 };
+        if self.stiff_steps < 2 {
+            return;
+        }
+        let waves = piece.waves().iter().map(|wave| wave.angular.value());
+        let slow = waves.fold(self.field.oscillator.natural_angular_frequency().value(), f64::max);
+        let smooth = (SMOOTH_ANGLE / slow).min(limit - self.time - length);
+        // What varies at the limit of stability is noise.
+        let smooth = if at_limit { smooth } else { smooth.min(SMOOTH_CHANGE / solved.variation * length) };
+        if solved.stiffness / length * smooth > STIFF {
+            (self.implicit, self.stiff_steps) = (true, 0);
+            self.collocation.forget();
+            self.proposed = FIRST * length;
+        }
     }
 
     fn count_step(&mut self) -> Result<(), SimulationError> {
@@ -202,6 +301,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         if self.proposed.is_finite() {
             return self.proposed;
         }
+        self.opens = true;
         let size = self.field.size();
         let mut jacobian = vec![0.0; size * size];
         let begin = &self.step.begin;
@@ -211,14 +311,19 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         self.field.jacobian(self.branch, begin, speed, &mut jacobian);
         let bristles = (2..size).map(|state| (jacobian[size + state] * jacobian[state * size + 1]).abs());
         let stiffness = jacobian[size].abs() + bristles.sum::<f64>();
-        if stiffness > 0.0 { 0.3 / stiffness.sqrt() } else { f64::MAX }
+        self.stiffness = stiffness;
+        let length = if stiffness > 0.0 { 0.3 / stiffness.sqrt() } else { f64::MAX };
+        length.min(1.5 * self.opening)
     }
 
     /// Writes what the step of `length` passes and goes to its end, or a part `correction` of it further.
     fn finish(&mut self, length: f64, correction: f64, limit: f64, piece: &Piece<D>) -> Result<(), SimulationError> {
         let whole = correction == 0.0 && length == limit - self.time;
         let end = if whole { limit } else { (self.time + length * (1.0 + correction)).min(limit) };
-        self.write(end, Some(length))?;
+        if self.recorder.has_samples_before(end) {
+            let (half, step) = (0.5 * length, &self.step);
+            self.recorder.polynomials(end, self.time + half, half, |component| step.centred(component))?;
+        }
         let Self { step, field, recorder, branch, time, before, .. } = self;
         recorder.work(*time, end, length, |at| {
             step.at((at - *time) / length, before);
@@ -230,30 +335,26 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 external: piece.force(at) * velocity - friction * field.belt,
             }
         })?;
-        self.step.advance(length);
-        if correction != 0.0 {
-            self.step.nudge(correction);
+        if self.implicit {
+            self.collocation.predict_from(&self.step, length, 1.0);
         }
+        self.step.advance(correction);
         self.time = end;
         Ok(())
     }
 
-    /// Writes the samples before `end`, on the step of `length`; without one, the state stays what it is.
-    fn write(&mut self, end: f64, length: Option<f64>) -> Result<(), SimulationError> {
-        let Self { step, recorder, time, before: state, .. } = self;
-        let at = |sample: f64, state: &mut [D]| match length {
-            Some(length) => step.at((sample - *time) / length, state),
-            None => state.copy_from_slice(&step.begin),
-        };
-        recorder.samples_with_states(end, state, |sample, state| {
-            at(sample, state);
+    /// Writes the samples before `end`, at which the state is what it is.
+    fn write(&mut self, end: f64) -> Result<(), SimulationError> {
+        let Self { step, recorder, before: state, .. } = self;
+        recorder.samples_with_states(end, state, |_, state| {
+            state.copy_from_slice(&step.begin);
             State { position: state[0], velocity: state[1] }
         })
     }
 
     /// Rests until `limit` (s).
     fn hold(&mut self, piece: &Piece<D>, limit: f64) -> Result<(), SimulationError> {
-        self.write(limit, None)?;
+        self.write(limit)?;
         let velocity = self.step.begin[1];
         let belt = self.field.belt;
         let friction = self.field.friction(self.branch, &self.step.begin);

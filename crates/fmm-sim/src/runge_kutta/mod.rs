@@ -2,7 +2,6 @@
 
 mod slide;
 mod step;
-mod tableau;
 
 use fmm_friction::SlidingLaw;
 use fmm_model::Scalar;

@@ -2,37 +2,17 @@
 
 use fmm_model::Scalar;
 
-use super::tableau::{
-    DENSE_0, DENSE_1, DENSE_2, DENSE_3, ERROR_3, ERROR_5, NODES, STAGE_1, STAGE_2, STAGE_3, STAGE_4, STAGE_5, STAGE_6,
-    STAGE_7, STAGE_8, STAGE_9, STAGE_10, STAGE_11, STAGE_13, STAGE_14, STAGE_15, STEP, Weights,
-};
 use crate::State;
+use crate::dormand_prince::{END, Rates, dense_stages, error, errors, nested, step};
 use crate::within::{COEFFICIENTS, Within};
-
-/// The derivative of a state: velocity and acceleration.
-type Rate<D> = State<D>;
 
 /// A step taken from `begin` over `length` (s).
 pub(super) struct Step<D> {
     pub(super) begin: State<D>,
     pub(super) end: State<D>,
     pub(super) length: f64,
-    rates: [Rate<D>; 16],
-}
-
-#[inline]
-fn sum<D: Scalar, const N: usize>(weights: &Weights<N>, rates: &[Rate<D>; 16]) -> Rate<D> {
-    let (first, weight) = weights[0];
-    let mut sum = State { position: rates[first].position * weight, velocity: rates[first].velocity * weight };
-    for (stage, weight) in &weights[1..] {
-        sum.position = sum.position + rates[*stage].position * *weight;
-        sum.velocity = sum.velocity + rates[*stage].velocity * *weight;
-    }
-    sum
-}
-
-fn ahead<D: Scalar>(state: State<D>, rate: Rate<D>, length: f64) -> State<D> {
-    State { position: state.position + rate.position * length, velocity: state.velocity + rate.velocity * length }
+    /// Velocity and acceleration.
+    rates: [Rates<D>; 2],
 }
 
 impl<D: Scalar> Step<D> {
@@ -43,78 +23,55 @@ impl<D: Scalar> Step<D> {
         begin: State<D>,
         acceleration: D,
         length: f64,
-        mut accelerate: impl FnMut(f64, State<D>) -> D,
+        accelerate: impl FnMut(f64, State<D>) -> D,
     ) -> Self {
-        let first = State { position: begin.velocity, velocity: acceleration };
-        let mut step = Self { begin, end: begin, length, rates: [first; 16] };
-        macro_rules! stages {
-            ($($stage:literal: $weights:ident),+) => {$(
-                let state = ahead(begin, sum(&$weights, &step.rates), length);
-                let acceleration = accelerate(NODES[$stage] * length, state);
-                step.rates[$stage] = State { position: state.velocity, velocity: acceleration };
-            )+};
-        }
-        stages!(1: STAGE_1, 2: STAGE_2, 3: STAGE_3, 4: STAGE_4, 5: STAGE_5, 6: STAGE_6);
-        stages!(7: STAGE_7, 8: STAGE_8, 9: STAGE_9, 10: STAGE_10, 11: STAGE_11);
-        step.end = ahead(begin, sum(&STEP, &step.rates), length);
-        step.rates[12] = State { position: step.end.velocity, velocity: accelerate(length, step.end) };
-        step
+        let mut rates = [[begin.velocity; 16], [acceleration; 16]];
+        let start = [begin.position, begin.velocity];
+        let (mut state, mut end) = (start, start);
+        step(&start, length, &mut rates, &mut state, &mut end, rate_of(accelerate));
+        Self { begin, end: State { position: end[0], velocity: end[1] }, length, rates }
     }
 
     /// Acceleration at the beginning.
     pub(super) fn first_acceleration(&self) -> D {
-        self.rates[0].velocity
+        self.rates[1][0]
     }
 
     /// Acceleration at the end.
     pub(super) fn last_acceleration(&self) -> D {
-        self.rates[12].velocity
+        self.rates[1][END]
     }
 
     /// The local error relative to a motion of the amplitudes `scale`.
-    ///
-    /// ```text
-    /// err = h |e₅|² / √(|e₅|² + 0.01 |e₃|²)                    (Hairer, Nørsett, Wanner, eq. II.10.17)
-    /// ```
     pub(super) fn error(&self, scale: State<f64>) -> f64 {
-        let norm = |error: Rate<D>| {
-            let (x, v) = (error.position.value() / scale.position, error.velocity.value() / scale.velocity);
+        let [position, velocity] = [errors(&self.rates[0]), errors(&self.rates[1])];
+        let norm = |x: D, v: D| {
+            let (x, v) = (x.value() / scale.position, v.value() / scale.velocity);
             0.5 * (x * x + v * v)
         };
-        let (fifth, third) = (norm(sum(&ERROR_5, &self.rates)), norm(sum(&ERROR_3, &self.rates)));
-        if fifth == 0.0 { 0.0 } else { self.length * fifth / (fifth + 0.01 * third).sqrt() }
+        error(self.length, norm(position.0, velocity.0), norm(position.1, velocity.1))
     }
 
     /// The motion within the step, to order 7.
     #[inline]
-    pub(super) fn within(&mut self, mut accelerate: impl FnMut(f64, State<D>) -> D) -> Within<D> {
-        macro_rules! stages {
-            ($($stage:literal: $weights:ident),+) => {$(
-                let state = ahead(self.begin, sum(&$weights, &self.rates), self.length);
-                let acceleration = accelerate(NODES[$stage] * self.length, state);
-                self.rates[$stage] = State { position: state.velocity, velocity: acceleration };
-            )+};
-        }
-        stages!(13: STAGE_13, 14: STAGE_14, 15: STAGE_15);
-        let length = self.length;
-        let (begin, end) = (self.begin, self.end);
-        let (first, last) = (self.rates[0], self.rates[12]);
-        let scaled = |rate: Rate<D>| State { position: rate.position * length, velocity: rate.velocity * length };
-        let lower = |of: fn(State<D>) -> D| {
-            let (rise, first, last) = (of(end) - of(begin), of(first) * length, of(last) * length);
-            [rise, first - rise, rise * 2.0 - (last + first)]
-        };
-        let (position, velocity) = (lower(|state| state.position), lower(|state| state.velocity));
-        let nested = [
-            State { position: position[0], velocity: velocity[0] },
-            State { position: position[1], velocity: velocity[1] },
-            State { position: position[2], velocity: velocity[2] },
-            scaled(sum(&DENSE_0, &self.rates)),
-            scaled(sum(&DENSE_1, &self.rates)),
-            scaled(sum(&DENSE_2, &self.rates)),
-            scaled(sum(&DENSE_3, &self.rates)),
-        ];
-        Within::new(begin, nested)
+    pub(super) fn within(&mut self, accelerate: impl FnMut(f64, State<D>) -> D) -> Within<D> {
+        let start = [self.begin.position, self.begin.velocity];
+        let mut state = start;
+        dense_stages(&start, self.length, &mut self.rates, &mut state, rate_of(accelerate));
+        let position = nested(&self.rates[0], self.end.position - self.begin.position, self.length);
+        let velocity = nested(&self.rates[1], self.end.velocity - self.begin.velocity, self.length);
+        let term = |index: usize| State { position: position[index], velocity: velocity[index] };
+        Within::new(self.begin, std::array::from_fn(term))
+    }
+}
+
+/// Velocity and acceleration as rates of position and velocity.
+#[inline]
+fn rate_of<D: Scalar>(mut accelerate: impl FnMut(f64, State<D>) -> D) -> impl FnMut(f64, &[D], usize, &mut [Rates<D>]) {
+    move |elapsed, state, stage, rates| {
+        let state = State { position: state[0], velocity: state[1] };
+        rates[0][stage] = state.velocity;
+        rates[1][stage] = accelerate(elapsed, state);
     }
 }
 

@@ -6,25 +6,25 @@
 //! (1981) 67.
 
 /// The weights of one sum over stages, those that are not zero: (stage, weight).
-pub(super) type Weights<const N: usize> = [(usize, f64); N];
+pub(crate) type Weights<const N: usize> = [(usize, f64); N];
 
 /// Stage 1, at node `NODES[1]`.
-pub(super) const STAGE_1: Weights<1> = [(0, 0.052_600_151_958_767_73)];
+pub(crate) const STAGE_1: Weights<1> = [(0, 0.052_600_151_958_767_73)];
 /// Stage 2, at node `NODES[2]`.
-pub(super) const STAGE_2: Weights<2> = [(0, 0.019_725_056_984_537_9), (1, 0.059_175_170_953_613_7)];
+pub(crate) const STAGE_2: Weights<2> = [(0, 0.019_725_056_984_537_9), (1, 0.059_175_170_953_613_7)];
 /// Stage 3, at node `NODES[3]`.
-pub(super) const STAGE_3: Weights<2> = [(0, 0.029_587_585_476_806_85), (2, 0.088_762_756_430_420_54)];
+pub(crate) const STAGE_3: Weights<2> = [(0, 0.029_587_585_476_806_85), (2, 0.088_762_756_430_420_54)];
 /// Stage 4, at node `NODES[4]`.
-pub(super) const STAGE_4: Weights<3> =
+pub(crate) const STAGE_4: Weights<3> =
     [(0, 0.241_365_134_159_266_7), (2, -0.884_549_479_328_286_1), (3, 0.924_834_003_261_792)];
 /// Stage 5, at node `NODES[5]`.
-pub(super) const STAGE_5: Weights<3> =
+pub(crate) const STAGE_5: Weights<3> =
     [(0, 0.037_037_037_037_037_035), (3, 0.170_828_608_729_473_86), (4, 0.125_467_687_566_822_42)];
 /// Stage 6, at node `NODES[6]`.
-pub(super) const STAGE_6: Weights<4> =
+pub(crate) const STAGE_6: Weights<4> =
     [(0, 0.037_109_375), (3, 0.170_252_211_019_544_05), (4, 0.060_216_538_980_455_96), (5, -0.017_578_125)];
 /// Stage 7, at node `NODES[7]`.
-pub(super) const STAGE_7: Weights<5> = [
+pub(crate) const STAGE_7: Weights<5> = [
     (0, 0.037_092_000_118_504_79),
     (3, 0.170_383_925_712_239_98),
     (4, 0.107_262_030_446_373_28),
@@ -32,7 +32,7 @@ pub(super) const STAGE_7: Weights<5> = [
     (6, 0.008_273_789_163_814_023),
 ];
 /// Stage 8, at node `NODES[8]`.
-pub(super) const STAGE_8: Weights<6> = [
+pub(crate) const STAGE_8: Weights<6> = [
     (0, 0.624_110_958_716_075_7),
     (3, -3.360_892_629_446_941_4),
     (4, -0.868_219_346_841_726),
@@ -41,7 +41,7 @@ pub(super) const STAGE_8: Weights<6> = [
     (7, -43.489_884_181_069_96),
 ];
 /// Stage 9, at node `NODES[9]`.
-pub(super) const STAGE_9: Weights<7> = [
+pub(crate) const STAGE_9: Weights<7> = [
     (0, 0.477_662_536_438_264_34),
     (3, -2.488_114_619_971_667_7),
     (4, -0.590_290_826_836_843),
@@ -51,7 +51,7 @@ pub(super) const STAGE_9: Weights<7> = [
     (8, -0.020_331_201_708_508_627),
 ];
 /// Stage 10, at node `NODES[10]`.
-pub(super) const STAGE_10: Weights<8> = [
+pub(crate) const STAGE_10: Weights<8> = [
     (0, -0.937_142_430_085_987_3),
     (3, 5.186_372_428_844_064),
     (4, 1.091_437_348_996_729_5),
@@ -62,7 +62,7 @@ pub(super) const STAGE_10: Weights<8> = [
     (9, -3.046_764_471_898_219_6),
 ];
 /// Stage 11, at node `NODES[11]`.
-pub(super) const STAGE_11: Weights<9> = [
+pub(crate) const STAGE_11: Weights<9> = [
     (0, 2.273_310_147_516_538),
     (3, -10.534_495_466_737_25),
     (4, -2.000_872_058_224_862_5),
@@ -74,7 +74,7 @@ pub(super) const STAGE_11: Weights<9> = [
     (10, 0.643_392_746_015_763_6),
 ];
 /// Stage 13, at node `NODES[13]`.
-pub(super) const STAGE_13: Weights<8> = [
+pub(crate) const STAGE_13: Weights<8> = [
     (0, 0.056_167_502_283_047_954),
     (6, 0.253_500_210_216_624_83),
     (7, -0.246_239_037_470_802_5),
@@ -85,7 +85,7 @@ pub(super) const STAGE_13: Weights<8> = [
     (12, -0.008_298),
 ];
 /// Stage 14, at node `NODES[14]`.
-pub(super) const STAGE_14: Weights<8> = [
+pub(crate) const STAGE_14: Weights<8> = [
     (0, 0.031_834_648_163_502_14),
     (5, 0.028_300_909_672_366_776),
     (6, 0.053_541_988_307_438_566),
@@ -96,7 +96,7 @@ pub(super) const STAGE_14: Weights<8> = [
     (13, 0.141_312_443_674_632_5),
 ];
 /// Stage 15, at node `NODES[15]`.
-pub(super) const STAGE_15: Weights<8> = [
+pub(crate) const STAGE_15: Weights<8> = [
     (0, -0.428_896_301_583_791_94),
     (5, -4.697_621_415_361_164),
     (6, 7.683_421_196_062_599),
@@ -107,7 +107,7 @@ pub(super) const STAGE_15: Weights<8> = [
     (14, -9.150_958_472_179_87),
 ];
 /// The step, of order 8.
-pub(super) const STEP: Weights<8> = [
+pub(crate) const STEP: Weights<8> = [
     (0, 0.054_293_734_116_568_765),
     (5, 4.450_312_892_752_409),
     (6, 1.891_517_899_314_500_3),
@@ -118,7 +118,7 @@ pub(super) const STEP: Weights<8> = [
     (11, 0.044_710_615_727_772_59),
 ];
 /// Step less the embedded formula of order 3.
-pub(super) const ERROR_3: Weights<8> = [
+pub(crate) const ERROR_3: Weights<8> = [
     (0, -0.189_800_754_072_407_62),
     (5, 4.450_312_892_752_409),
     (6, 1.891_517_899_314_500_3),
@@ -129,7 +129,7 @@ pub(super) const ERROR_3: Weights<8> = [
     (11, 0.022_651_792_198_360_82),
 ];
 /// Step less the embedded formula of order 5.
-pub(super) const ERROR_5: Weights<8> = [
+pub(crate) const ERROR_5: Weights<8> = [
     (0, 0.013_120_044_994_194_88),
     (5, -1.225_156_446_376_204_4),
     (6, -0.495_758_949_657_250_2),
@@ -140,7 +140,7 @@ pub(super) const ERROR_5: Weights<8> = [
     (11, -0.022_355_307_863_886_294),
 ];
 /// Coefficient 3 of the interpolant of order 7.
-pub(super) const DENSE_0: Weights<12> = [
+pub(crate) const DENSE_0: Weights<12> = [
     (0, -8.428_938_276_109_013),
     (5, 0.566_714_953_519_377_7),
     (6, -3.068_949_945_949_891_7),
@@ -155,7 +155,7 @@ pub(super) const DENSE_0: Weights<12> = [
     (15, -4.436_036_387_594_894),
 ];
 /// Coefficient 4 of the interpolant of order 7.
-pub(super) const DENSE_1: Weights<12> = [
+pub(crate) const DENSE_1: Weights<12> = [
     (0, 10.427_508_642_579_134),
     (5, 242.283_491_775_258_17),
     (6, 165.200_451_717_270_28),
@@ -170,7 +170,7 @@ pub(super) const DENSE_1: Weights<12> = [
     (15, 35.816_841_486_394_08),
 ];
 /// Coefficient 5 of the interpolant of order 7.
-pub(super) const DENSE_2: Weights<12> = [
+pub(crate) const DENSE_2: Weights<12> = [
     (0, 19.985_053_242_002_433),
     (5, -387.037_308_749_351_8),
     (6, -189.178_138_195_167_58),
@@ -185,7 +185,7 @@ pub(super) const DENSE_2: Weights<12> = [
     (15, 11.992_291_136_182_79),
 ];
 /// Coefficient 6 of the interpolant of order 7.
-pub(super) const DENSE_3: Weights<12> = [
+pub(crate) const DENSE_3: Weights<12> = [
     (0, -25.693_933_462_703_75),
     (5, -154.189_748_690_236_43),
     (6, -231.529_379_176_045_5),
@@ -200,7 +200,7 @@ pub(super) const DENSE_3: Weights<12> = [
     (15, -149.726_836_257_985_64),
 ];
 /// Times of the stages within a step; 12 is the end of the step itself, and 13 to 15 serve the interpolant only.
-pub(super) const NODES: [f64; 16] = [
+pub(crate) const NODES: [f64; 16] = [
     0.0,
     0.052_600_151_958_767_73,
     0.078_900_227_938_151_6,

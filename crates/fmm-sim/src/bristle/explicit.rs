@@ -1,0 +1,146 @@
+//! One explicit step of order 8, where the law is not stiff.
+
+use fmm_friction::BristleLaw;
+use fmm_model::Scalar;
+
+use super::field::{Branch, Field};
+use super::motion::{Motion, ROUNDING, Solved, Span};
+use super::radau::NODES;
+use crate::dormand_prince::{END, Rates, dense_stages, error, errors, mean_rate, nested, step};
+use crate::drive::Piece;
+
+/// The error allowed in a step, in units of the tolerance: many short steps add up to more than a few long ones.
+const SAFETY: f64 = 0.1;
+
+/// The Dormand-Prince method, as the [`RungeKutta`](crate::RungeKutta) engine uses it.
+///
+/// Its interpolant is of the same degree as the polynomial of the collocation method and is handed on as that: by what it
+/// is at the stages there.
+pub(super) struct Explicit<D> {
+    rates: Vec<Rates<D>>,
+    state: Vec<D>,
+    end: Vec<D>,
+    rate: Vec<D>,
+}
+
+impl<D: Scalar> Explicit<D> {
+    pub(super) fn new(size: usize) -> Self {
+        let zeros = vec![D::from(0.0); size];
+        Self { rates: vec![[D::from(0.0); 16]; size], state: zeros.clone(), end: zeros.clone(), rate: zeros }
+    }
+
+    /// Takes the step over `span`. None if it leaves the range of numbers.
+    pub(super) fn take<L: BristleLaw<D>>(
+        &mut self,
+        motion: &mut Motion<D>,
+        field: &mut Field<D, L>,
+        branch: Branch,
+        piece: &Piece<D>,
+        span: Span,
+    ) -> Option<Solved> {
+        let Span { begin: time, length, tolerance } = span;
+        let Self { rates, state, end, rate } = self;
+        let mut rate_at = |elapsed: f64, state: &[D], stage: usize, rates: &mut [Rates<D>]| {
+            field.rates(piece.force(time + elapsed), branch, state, rate);
+            for (rates, rate) in rates.iter_mut().zip(&*rate) {
+                rates[stage] = *rate;
+            }
+        };
+        rate_at(0.0, &motion.begin, 0, rates);
+        step(&motion.begin, length, rates, state, end, &mut rate_at);
+        for (increments, rates) in motion.increments.iter_mut().zip(&*rates) {
+            // The end alone says already how far the step goes, which is what errors are compared with.
+            *increments = [mean_rate(rates) * length; NODES.len()];
+        }
+        let forces = field.force_size(piece.force(time), branch, &motion.begin);
+        let rounding = ROUNDING / tolerance * forces / field.oscillator.mass().value() * length;
+        motion.rescale(span, rounding);
+        let error = self.error(motion, length) / tolerance;
+        if !error.is_finite() {
+            return None;
+        }
+        let (stiffness, variation) = (self.stiffness(motion, length), self.variation(motion));
+        // A step too long for the method is no use, but for what it says of an event within.
+        let followed = error <= 1.0 || self.passes(motion, field.belt.value());
+        if followed {
+            self.follow(motion, field, branch, piece, span);
+            motion.rescale(span, rounding);
+        }
+        Some(Solved { error, quick: true, followed, stiffness, variation })
+    }
+
+    /// The local error of the component that is worst off.
+    fn error(&self, motion: &Motion<D>, length: f64) -> f64 {
+        let mut worst = 0.0f64;
+        for (component, rates) in self.rates.iter().enumerate() {
+            let (fifth, third) = errors(rates);
+            let scale = motion.scale(component);
+            let (fifth, third) = (fifth.value() / scale, third.value() / scale);
+            let error = error(length, fifth * fifth, third * third) / if component < 2 { SAFETY } else { 1.0 };
+            worst = if error > worst || error.is_nan() { error } else { worst };
+        }
+        worst
+    }
+
+    /// Length of the step times the rate by which the two stages at its end tell the stiffest direction from the others.
+    ///
+    /// # References
+    /// E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, Springer 1996, section IV.2, eq. (2.25).
+    fn stiffness(&self, motion: &Motion<D>, length: f64) -> f64 {
+        let (mut rates, mut states) = (0.0, 0.0);
+        for (component, of) in self.rates.iter().enumerate() {
+            let scale = motion.scale(component);
+            let rate = (of[END] - of[END - 1]).value() / scale;
+            let state = (self.end[component] - self.state[component]).value() / scale;
+            rates += rate * rate;
+            states += state * state;
+        }
+        if states > 0.0 { length * (rates / states).sqrt() } else { 0.0 }
+    }
+
+    /// By how much the rates of the states have changed over the step, in units of themselves.
+    fn variation(&self, motion: &Motion<D>) -> f64 {
+        let (mut change, mut size) = (0.0, 0.0);
+        for (component, of) in self.rates.iter().enumerate().skip(2) {
+            let scale = motion.scale(component);
+            let [first, last] = [of[0], of[END]].map(|rate| rate.value() / scale);
+            change += (last - first) * (last - first);
+            size += first * first;
+        }
+        if change == 0.0 { 0.0 } else { (change / size).sqrt() }
+    }
+
+    /// Whether the relative velocity or a state has changed its sign.
+    fn passes(&self, motion: &Motion<D>, belt: f64) -> bool {
+        let changes = |begin: f64, end: f64| begin * end <= 0.0 && begin != end;
+        let [begin, end] = [&motion.begin, &self.end].map(|state| state[1].value());
+        changes(begin - belt, end - belt)
+            || motion.begin[2..].iter().zip(&self.end[2..]).any(|(begin, end)| changes(begin.value(), end.value()))
+    }
+
+    /// The polynomial within the step.
+    fn follow<L: BristleLaw<D>>(
+        &mut self,
+        motion: &mut Motion<D>,
+        field: &mut Field<D, L>,
+        branch: Branch,
+        piece: &Piece<D>,
+        span: Span,
+    ) {
+        let Self { rates, state, rate, .. } = self;
+        dense_stages(&motion.begin, span.length, rates, state, |elapsed, state, stage, rates| {
+            field.rates(piece.force(span.begin + elapsed), branch, state, rate);
+            for (rates, rate) in rates.iter_mut().zip(&*rate) {
+                rates[stage] = *rate;
+            }
+        });
+        for (increments, rates) in motion.increments.iter_mut().zip(&*rates) {
+            let terms = nested(rates, mean_rate(rates) * span.length, span.length);
+            *increments = NODES.map(|node| {
+                let weight = |index: usize| if index % 2 == 0 { node } else { 1.0 - node };
+                let last = terms[6] * weight(6);
+                (0..6).rev().fold(last, |sum, index| (sum + terms[index]) * weight(index))
+            });
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! One step of a motion: the polynomial of degree s that one of the two methods has found for it.
+
+use fmm_model::Scalar;
+
+use super::radau::{BERNSTEIN, CENTRED_COLUMNS, INVERSE, LEGENDRE, STAGES, Stages, basis, dot, product};
+
+/// Rounding of the state, relative to it.
+pub(super) const ROUNDING: f64 = 2e-15;
+
+/// How much of what errors were compared with in one swing counts in the next: its errors are in the state anyway.
+const CARRIED: f64 = 0.3;
+
+/// The interval of a step (s), and the error allowed in it (1).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Span {
+    pub(super) begin: f64,
+    pub(super) length: f64,
+    pub(super) tolerance: f64,
+}
+
+/// The outcome of a step that could be taken.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Solved {
+    /// Estimated error anywhere in the step, in units of the tolerance.
+    pub(super) error: f64,
+    /// Whether a longer step is worth trying, as far as the method goes.
+    pub(super) quick: bool,
+    /// Whether the polynomial is there to look at; if not, the step has to be shorter.
+    pub(super) followed: bool,
+    /// Length of the step times the greatest rate (1/s) at which neighbouring motions approach each other or part.
+    pub(super) stiffness: f64,
+    /// By how much the rates of the states have changed over the step, in units of themselves.
+    pub(super) variation: f64,
+}
+
+/// The state at the beginning of a step and the polynomial from there.
+pub(super) struct Motion<D> {
+    pub(super) size: usize,
+    /// The state at its beginning.
+    pub(super) begin: Vec<D>,
+    /// Yᵢ − y₀ at all stages of the collocation method, for each component.
+    pub(super) increments: Vec<Stages<D>>,
+    /// What errors of each component are compared with.
+    scale: Vec<f64>,
+    /// The state at the beginning of the swing, the velocity being that of the counterface, and how far each component has
+    /// moved from there.
+    origin: Vec<f64>,
+    moved: Vec<f64>,
+    /// What remains of the scale of the swing before.
+    carried: Vec<f64>,
+    state: Vec<D>,
+}
+
+impl<D: Scalar> Motion<D> {
+    pub(super) fn new(begin: Vec<D>) -> Self {
+        let size = begin.len();
+        let zero = D::from(0.0);
+        Self {
+            size,
+            increments: vec![[zero; STAGES]; size],
+            scale: vec![1.0; size],
+            origin: vec![0.0; size],
+            moved: vec![0.0; size],
+            carried: vec![0.0; size],
+            state: begin.clone(),
+            begin,
+        }
+    }
+
+    /// A swing begins; errors are relative to its motion. `belt` is the velocity of the counterface.
+    pub(super) fn turn(&mut self, belt: f64) {
+        for (origin, y) in self.origin.iter_mut().zip(&self.begin) {
+            *origin = y.value();
+        }
+        self.origin[1] = belt;
+        for ((carried, scale), moved) in self.carried.iter_mut().zip(&self.scale).zip(&mut self.moved) {
+            (*carried, *moved) = (if *moved > 0.0 { CARRIED * scale } else { 0.0 }, 0.0);
+        }
+    }
+
+    /// Goes to the end of the step, from which the next one begins, and a short `part` of it further along the tangent.
+    pub(super) fn advance(&mut self, part: f64) {
+        for component in 0..self.size {
+            self.moved[component] = self.moved(component);
+        }
+        for (y, increments) in self.begin.iter_mut().zip(&self.increments) {
+            *y = *y + increments[STAGES - 1];
+            if part != 0.0 {
+                *y = *y + dot(&INVERSE[STAGES - 1], increments) * part;
+            }
+        }
+    }
+
+    /// The state at `tau` in units of the step.
+    pub(super) fn at(&self, tau: f64, state: &mut [D]) {
+        let basis = basis(tau);
+        for ((state, y), increments) in state.iter_mut().zip(&self.begin).zip(&self.increments) {
+            *state = *y + dot(&basis, increments);
+        }
+    }
+
+    /// The coefficients of a component in powers of 2τ − 1.
+    pub(super) fn centred(&self, component: usize) -> [D; STAGES + 1] {
+        let mut coefficients = product(&CENTRED_COLUMNS, &self.increments[component]);
+        coefficients[0] = coefficients[0] + self.begin[component];
+        coefficients
+    }
+
+    /// Writes the state at stage `index` of the collocation method into `state`.
+    pub(super) fn load(&self, index: usize, state: &mut [D]) {
+        for ((state, y), increments) in state.iter_mut().zip(&self.begin).zip(&self.increments) {
+            *state = *y + increments[index];
+        }
+    }
+
+    /// The slope of a component at the end of the step, per unit of the step.
+    pub(super) fn end_slope(&self, component: usize) -> f64 {
+        dot(&INVERSE[STAGES - 1], &self.increments[component]).value()
+    }
+
+    /// The Bernstein coefficients of the polynomial through what `value` gives at the states at the beginning and at all
+    /// stages.
+    pub(super) fn bernstein(&mut self, mut value: impl FnMut(&[D]) -> f64) -> [f64; STAGES + 1] {
+        let mut nodal = [0.0; STAGES + 1];
+        nodal[0] = value(&self.begin);
+        let mut state = std::mem::take(&mut self.state);
+        for (index, nodal) in nodal[1..].iter_mut().enumerate() {
+            self.load(index, &mut state);
+            *nodal = value(&state);
+        }
+        self.state = state;
+        coefficients(&nodal)
+    }
+
+    /// The Bernstein coefficients of `sign` times what a component is above `level`.
+    pub(super) fn bernstein_of(&self, component: usize, level: f64, sign: f64) -> [f64; STAGES + 1] {
+        let begin = self.begin[component].value();
+        let mut nodal = [(begin - level) * sign; STAGES + 1];
+        for (nodal, increment) in nodal[1..].iter_mut().zip(&self.increments[component]) {
+            *nodal = (begin + increment.value() - level) * sign;
+        }
+        coefficients(&nodal)
+    }
+
+    /// What errors of a component are compared with.
+    pub(super) fn scale(&self, component: usize) -> f64 {
+        self.scale[component]
+    }
+
+    /// Compares errors with how far each component has moved in this swing, this step included, or with what rounding makes
+    /// of it; `rounding` is that of the velocity (m/s) in units of the tolerance.
+    pub(super) fn rescale(&mut self, span: Span, rounding: f64) {
+        for component in 0..self.size {
+            let floor = ROUNDING / span.tolerance * self.begin[component].value().abs();
+            let floor = if component == 1 { floor.max(rounding) } else { floor };
+            self.scale[component] =
+                self.moved(component).max(self.carried[component]).max(floor).max(f64::MIN_POSITIVE);
+        }
+    }
+
+    /// How far a component has moved in this swing, this step included.
+    fn moved(&self, component: usize) -> f64 {
+        let distance = self.begin[component].value() - self.origin[component];
+        let increments = &self.increments[component];
+        increments.iter().fold(self.moved[component], |most, w| most.max((distance + w.value()).abs()))
+    }
+
+    /// The first coefficient that the polynomial of y′ lacks, extrapolated from the decay of its last four, as an error
+    /// of y relative to its scale.
+    pub(super) fn error(&self) -> f64 {
+        let mut worst = 0.0f64;
+        for (increments, scale) in self.increments.iter().zip(&self.scale) {
+            let values = increments.map(D::value);
+            let [first, second, third, last] = LEGENDRE.map(|row| dot(&row, &values).abs());
+            // Even and odd coefficients may differ in size, so pairs of them are compared.
+            let pair = third.max(last);
+            let decay = if pair < first.max(second) { (pair / first.max(second)).sqrt() } else { 1.0 };
+            let missing = last.max(third * decay) * decay;
+            let error = missing / (2 * STAGES + 1) as f64 / scale;
+            worst = if error > worst || error.is_nan() { error } else { worst };
+        }
+        worst
+    }
+}
+
+/// Bernstein coefficients from values at the beginning and at all stages.
+fn coefficients(nodal: &[f64; STAGES + 1]) -> [f64; STAGES + 1] {
+    BERNSTEIN.map(|row| row.iter().zip(nodal).map(|(factor, value)| factor * value).sum())
+}
