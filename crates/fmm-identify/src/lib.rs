@@ -87,6 +87,7 @@ mod comparison;
 mod correlation;
 mod decrement;
 mod dimension;
+mod disturbances;
 mod energy_rates;
 mod error;
 mod estimated;
