@@ -251,9 +251,7 @@ impl Warning {
             height: step.height,
             unit: summary.unit.clone(),
         }));
-        warnings.extend(summary.further_releases.first().map(|time| Self::FurtherRelease { time: *time }));
-        let second = summary.second_mode;
-        warnings.extend(second.map(|mode| Self::SecondMode { frequency: mode.frequency, share: mode.share }));
+        warnings.extend(Self::of_disturbances(summary));
         if summary.spikes > 0 {
             warnings.push(Self::Spikes { count: summary.spikes });
         }
@@ -359,16 +357,7 @@ impl fmt::Display for Warning {
                     "the offset jumps by {height:.3e} {unit} near {time:.3} s; fit the parts before and after apart"
                 )
             }
-            Self::FurtherRelease { time } => write!(
-                f,
-                "a second release at {time:.2} s: only the part before it was used; give --from for the part after it"
-            ),
-            Self::SecondMode { frequency, share } => write!(
-                f,
-                "a second mode vibrates at {frequency:.3} Hz with about {:.0} % of the amplitude; the fit knows one mode only: use a \
-                 part in which one is left, or isolate one with a band filter",
-                100.0 * share
-            ),
+            Self::FurtherRelease { .. } | Self::SecondMode { .. } => self.write_of_disturbances(f),
             Self::Spikes { count } => write!(f, "{count} isolated samples far off their neighbours were left out"),
             Self::AtBound { parameter, value } => {
                 write!(

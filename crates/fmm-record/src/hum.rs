@@ -54,16 +54,17 @@ const SMALLEST: f64 = 0.3;
 /// A line counts if
 ///
 /// * it stands out of the noise around it, in the whole record, its first or last half, quarter or eighth. Noise alone
-///   does so in less than one record of a hundred (in tests in none of a thousand);
+///   does so in less than one record of a hundred (in tests in about one of a thousand);
 /// * it is twice as large as all that lies within 2.6 frequencies of the motion, as harmonics of friction would be
 ///   alike. In a rest that is noise, so that smaller lines are found in a record with a rest;
 /// * its amplitude is the same, within a tenth and the noise, wherever in the record it would be seen above motion
 ///   and noise, the last quarter included, and its phase goes on. What decays or stops with the motion fails this;
 /// * its amplitude is less than 0.45 of half the range of the record, and more than 0.3 steps of the converter.
 ///
-/// The record must contain forty periods of the line, and ten of the line in what is left between the motion's and its
-/// own frequency, for both to be told apart. The frequency is uncertain by about 0.1/(T SNR) for a line that is seen for
-/// a time T, at SNR standard deviations of the spectrum; SNR is at least 5.
+/// The record must contain 28 periods of the line. A line below some four frequencies of the motion is found in a rest
+/// only, of 16 of its periods or more, and a line within 4/T of half the rate not at all. The frequency is uncertain by
+/// about 0.5/(T SNR) for a line that is seen for a time T at an amplitude of SNR standard deviations of the spectrum there,
+/// 5 at least: by less than 1/(20 T) from SNR = 10 on.
 ///
 /// ```
 /// use fmm_record::{Quantity, Record, hum, without_lines};

@@ -233,7 +233,7 @@ fn deviation(values: &[f64], mean: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{CoulombDecay, pendulum, pendulum_velocity, quantised, sampled, wheel};
+    use crate::synthetic::{CoulombDecay, Recorded, pendulum, pendulum_velocity, quantised, sampled, wheel};
 
     fn decay(release: f64) -> CoulombDecay {
         CoulombDecay { frequency: 2.2, amplitude: 10.0, deadband: 0.5, release }
@@ -324,5 +324,16 @@ mod tests {
         let record = Record::sampled(1000.0, values, Quantity::Velocity, "mm/s").unwrap();
         let found = Release::of(&record).unwrap();
         assert!((found.rest_end - 1.0).abs() < 1e-3, "{} s", found.rest_end);
+    }
+
+    #[test]
+    fn swings_begin_after_the_rest_before_a_release() {
+        // A displacement is at its extremum while it is held.
+        let is_velocity = |recorded: &Recorded| recorded.record.quantity() == Quantity::Velocity;
+        for recorded in (0..600).map(Recorded::random).filter(is_velocity) {
+            let swings = crate::Swings::of(&recorded.record);
+            let early = swings.peaks().first().filter(|peak| peak.time < recorded.rest - 0.06);
+            assert_eq!(early, None, "released at {} s", recorded.rest);
+        }
     }
 }

@@ -74,7 +74,7 @@ impl CoulombDecay {
 /// Free decay of an oscillator with viscous damping and friction that may depend on speed or creep before it slides.
 ///
 /// ```text
-/// x″ + ω² x = −c x′ − F(x′, z),        F = F_c (1 + s exp(−|x′|/v_s)) sign(x′), or F_c z with z′ = x′ (1 − z sign(x′))/l
+/// x″ + ω² x = −c x′ − q |x′| x′ − F(x′, z),        F = F_c (1 + s exp(−|x′|/v_s)) sign(x′), or F_c z with z′ = x′ (1 − z sign(x′))/l
 /// ```
 ///
 /// The second is the law of Dahl. It is released from 1 at time 0.
@@ -85,6 +85,8 @@ pub(crate) struct Decay {
     pub(crate) deadband: f64,
     /// c/(2ω).
     pub(crate) damping: f64,
+    /// q.
+    pub(crate) quadratic: f64,
     /// s.
     pub(crate) rise: f64,
     /// v_s/ω.
@@ -105,7 +107,7 @@ impl Decay {
         let slope = |[x, v, z]: [f64; 3], side: f64| {
             let friction = if self.creep.is_some() { self.deadband * z } else { level(v) * side };
             let creep = self.creep.map_or(0.0, |length| v * (1.0 - z * v.signum()) / length);
-            [v, -x - 2.0 * self.damping * v - friction, creep]
+            [v, -x - (2.0 * self.damping + self.quadratic * v.abs()) * v - friction, creep]
         };
         let (mut state, mut side) = ([1.0_f64, 0.0, 0.0], 0.0_f64);
         let mut states = Vec::with_capacity(count);
@@ -140,15 +142,18 @@ impl Decay {
             frequency: 2.2,
             deadband: share * 0.5 / half_swings,
             damping: (1.0 - share) * 0.7 / half_swings,
+            quadratic: 0.0,
             rise: 0.0,
             speed: 1.0,
             creep: None,
         };
-        match random.next() % 5 {
+        match random.next() % 6 {
             0 => Self { damping: 0.0, deadband: 0.5 / half_swings, ..smooth },
             1 => Self { damping: 0.7 / half_swings, deadband: 0.0, ..smooth },
             2 => Self { rise: random.uniform(), speed: 0.02 + 0.3 * random.uniform(), ..smooth },
-            3 => Self { creep: Some(0.002 + 0.1 * random.uniform()), ..smooth },
+            // Down to 1/3 to 1/12, as 1/(1 + 4qk/3).
+            3 => Self { damping: 0.0, deadband: 0.0, quadratic: (1.5 + 7.0 * share) / half_swings, ..smooth },
+            4 => Self { creep: Some(0.002 + 0.1 * random.uniform()), ..smooth },
             _ => smooth,
         }
     }
