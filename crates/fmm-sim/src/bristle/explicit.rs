@@ -55,7 +55,7 @@ impl<D: Scalar> Explicit<D> {
         let forces = field.force_size(piece.force(time), branch, &motion.begin);
         let rounding = ROUNDING / tolerance * forces / field.oscillator.mass().value() * length;
         motion.rescale(span, rounding);
-        let error = self.error(motion, length) / tolerance;
+        let error = self.error(motion, length) / (SAFETY * tolerance);
         if !error.is_finite() {
             return None;
         }
@@ -76,7 +76,7 @@ impl<D: Scalar> Explicit<D> {
             let (fifth, third) = errors(rates);
             let scale = motion.scale(component);
             let (fifth, third) = (fifth.value() / scale, third.value() / scale);
-            let error = error(length, fifth * fifth, third * third) / if component < 2 { SAFETY } else { 1.0 };
+            let error = error(length, fifth * fifth, third * third);
             worst = if error > worst || error.is_nan() { error } else { worst };
         }
         worst
