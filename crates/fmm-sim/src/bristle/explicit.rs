@@ -5,7 +5,7 @@ use fmm_model::Scalar;
 
 use super::field::{Branch, Field};
 use super::motion::{Motion, ROUNDING, Solved, Span};
-use super::radau::NODES;
+use super::radau::{Columns, NODES, STAGES, product};
 use crate::dormand_prince::{END, Rates, dense_stages, error, errors, mean_rate, nested, step};
 use crate::drive::Piece;
 
@@ -55,7 +55,7 @@ impl<D: Scalar> Explicit<D> {
         let forces = field.force_size(piece.force(time), branch, &motion.begin);
         let rounding = ROUNDING / tolerance * forces / field.oscillator.mass().value() * length;
         motion.rescale(span, rounding);
-        let error = self.error(motion, length) / tolerance;
+        let error = self.error(motion, length) / (SAFETY * tolerance);
         if !error.is_finite() {
             return None;
         }
@@ -64,7 +64,6 @@ impl<D: Scalar> Explicit<D> {
         let followed = error <= 1.0 || self.passes(motion, field.belt.value());
         if followed {
             self.follow(motion, field, branch, piece, span);
-            motion.rescale(span, rounding);
         }
         Some(Solved { error, quick: true, followed, stiffness, variation })
     }
@@ -76,7 +75,7 @@ impl<D: Scalar> Explicit<D> {
             let (fifth, third) = errors(rates);
             let scale = motion.scale(component);
             let (fifth, third) = (fifth.value() / scale, third.value() / scale);
-            let error = error(length, fifth * fifth, third * third) / if component < 2 { SAFETY } else { 1.0 };
+            let error = error(length, fifth * fifth, third * third);
             worst = if error > worst || error.is_nan() { error } else { worst };
         }
         worst
@@ -135,12 +134,24 @@ impl<D: Scalar> Explicit<D> {
             }
         });
         for (increments, rates) in motion.increments.iter_mut().zip(&*rates) {
-            let terms = nested(rates, mean_rate(rates) * span.length, span.length);
-            *increments = NODES.map(|node| {
-                let weight = |index: usize| if index % 2 == 0 { node } else { 1.0 - node };
-                let last = terms[6] * weight(6);
-                (0..6).rev().fold(last, |sum, index| (sum + terms[index]) * weight(index))
-            });
+            *increments = product(&TERMS, &nested(rates, mean_rate(rates) * span.length, span.length));
         }
     }
 }
+
+/// The factors of the terms of the interpolant at the stages of the collocation method, term by term: θ, θ(1 − θ),
+/// θ²(1 − θ), …
+static TERMS: Columns<STAGES> = {
+    let mut terms = [NODES; STAGES];
+    let mut term = 1;
+    while term < STAGES {
+        let mut stage = 0;
+        while stage < STAGES {
+            let factor = if term % 2 == 0 { NODES[stage] } else { 1.0 - NODES[stage] };
+            terms[term][stage] = terms[term - 1][stage] * factor;
+            stage += 1;
+        }
+        term += 1;
+    }
+    terms
+};

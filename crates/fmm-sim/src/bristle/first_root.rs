@@ -5,6 +5,9 @@ use super::radau::STAGES;
 /// Halvings after which an interval counts as a point; Newton's method on the motion itself takes over.
 const DEPTH: u32 = 44;
 
+/// Secants after which a zero is as near as it gets.
+const MOST_SECANTS: usize = 40;
+
 /// The part of a step that begins at zero velocity in which the velocity counts as rising from it.
 const BEGINNING: f64 = 1.0 / 32.0;
 
@@ -54,11 +57,56 @@ fn first_in(coefficients: [f64; STAGES + 1], begin: f64, width: f64, depth: u32)
     if depth == 0 {
         return Some(begin);
     }
+    if let Some(part) = only_root(&coefficients) {
+        return Some(begin + width * part);
+    }
     let (left, right) = halves(coefficients);
     first_in(left, begin, 0.5 * width, depth - 1).or_else(|| {
         let middle = begin + 0.5 * width;
         if right[0] <= 0.0 { Some(middle) } else { first_in(right, middle, 0.5 * width, depth - 1) }
     })
+}
+
+/// The zero of a polynomial that falls through it once: one whose coefficients change their sign once (variation
+/// diminishing). By the Illinois rule.
+fn only_root(coefficients: &[f64; STAGES + 1]) -> Option<f64> {
+    let changes = coefficients.windows(2).filter(|pair| (pair[0] > 0.0) != (pair[1] > 0.0)).count();
+    if changes != 1 || !(coefficients[0] > 0.0) {
+        return None;
+    }
+    let (mut low, mut high) = ((0.0, coefficients[0]), (1.0, coefficients[STAGES]));
+    let mut side = 0.0f64;
+    for _ in 0..MOST_SECANTS {
+        let tau = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        if !(tau > low.0 && tau < high.0) {
+            break;
+        }
+        let value = at(coefficients, tau);
+        if value > 0.0 {
+            low = (tau, value);
+            high.1 *= if side > 0.0 { 0.5 } else { 1.0 };
+            side = 1.0;
+        } else {
+            high = (tau, value);
+            low.1 *= if side < 0.0 { 0.5 } else { 1.0 };
+            side = -1.0;
+        }
+        if high.0 - low.0 <= f64::EPSILON || value == 0.0 {
+            break;
+        }
+    }
+    Some(high.0)
+}
+
+/// The value at `tau` (de Casteljau).
+fn at(coefficients: &[f64; STAGES + 1], tau: f64) -> f64 {
+    let mut row = *coefficients;
+    for level in 1..=STAGES {
+        for index in 0..=STAGES - level {
+            row[index] += tau * (row[index + 1] - row[index]);
+        }
+    }
+    row[0]
 }
 
 /// The coefficients on both halves of the interval.

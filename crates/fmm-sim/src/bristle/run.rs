@@ -41,7 +41,7 @@ const STIFF: f64 = 20.0;
 const NOT_STIFF: f64 = 8.0;
 
 /// The first implicit step after explicit ones, in units of these.
-const FIRST: f64 = 5.0;
+const FIRST: f64 = 10.0;
 
 /// A step that ends this near to a zero of a guard, in units of the step, is corrected from there.
 const NEAR: f64 = 0.99;
@@ -56,6 +56,10 @@ pub(super) struct Run<'a, D, L> {
     implicit: bool,
     /// Explicit steps in a row that stability has limited.
     stiff_steps: usize,
+    /// The greatest relative change of the rates of the states in these, per second.
+    variation: f64,
+    /// Length (s) and error of the last step of this swing.
+    last: (f64, f64),
     pub(super) recorder: Recorder<'a, D>,
     pub(super) branch: Branch,
     /// Whether nothing drives the contact from relative rest.
@@ -87,6 +91,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             explicit: Explicit::new(begin.len()),
             implicit: false,
             stiff_steps: 0,
+            variation: 0.0,
+            last: (f64::INFINITY, 1.0),
             branch: Branch { direction: Direction::Positive, regime: Regime::ALL_HOLD },
             resting: false,
             time: 0.0,
@@ -143,7 +149,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         self.branch = Branch { direction: direction.unwrap_or(self.branch.direction), regime: Regime::ALL_HOLD };
         self.step.turn(self.field.belt.value());
         self.collocation.forget();
-        (self.implicit, self.stiff_steps) = (false, 0);
+        (self.implicit, self.stiff_steps, self.variation) = (false, 0, 0.0);
+        self.last = (f64::INFINITY, 1.0);
         self.field.release();
         self.field.begin(self.branch, &self.step.begin);
         self.proposed = f64::INFINITY;
@@ -236,7 +243,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                     }
                 }
             }
-            let growth = change(solved.error);
+            let growth = self.growth(length, solved.error);
             self.proposed = length * if solved.quick { growth } else { growth.min(1.0) };
             if self.opens {
                 (self.opening, self.opens) = (length, false);
@@ -264,28 +271,44 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         }
     }
 
+    /// By which factor the next step may be longer than this one of `length` and `error`.
+    ///
+    /// Steps that have become shorter or longer with the motion go on doing so (Gustafsson's predictive controller).
+    fn growth(&mut self, length: f64, error: f64) -> f64 {
+        let growth = change(error);
+        let (before, error_before) = std::mem::replace(&mut self.last, (length, error));
+        let trend = if before.is_finite() { length / before * change(error) / change(error_before) } else { 1.0 };
+        if trend < 1.0 { growth * trend } else { growth }
+    }
+
     /// Chooses the method of the next step by what this one of `length` has shown.
     fn choose(&mut self, solved: Solved, length: f64, piece: &Piece<D>, limit: f64) {
         if self.implicit {
-            self.implicit = solved.stiffness > NOT_STIFF;
+            // What still grows is no measure.
+            self.implicit = solved.stiffness > NOT_STIFF || self.proposed > 1.5 * length;
+            if !self.implicit {
+                self.proposed = length / solved.stiffness.max(1.0);
+                self.last = (f64::INFINITY, 1.0);
+            }
             return;
         }
-        // The states follow the motion without a memory of where they came from.
         let follows = solved.variation < FOLLOWS * solved.stiffness && solved.stiffness > AT_LIMIT;
         let at_limit = solved.stiffness > STABLE;
-        self.stiff_steps = if follows || at_limit { self.stiff_steps + 1 } else { 0 };
-        if self.stiff_steps < 2 {
+        if !(follows || at_limit) {
+            (self.stiff_steps, self.variation) = (0, 0.0);
             return;
         }
+        self.stiff_steps += 1;
+        // What varies at the limit of stability is noise.
+        self.variation = self.variation.max(if at_limit { 0.0 } else { solved.variation / length });
         let waves = piece.waves().iter().map(|wave| wave.angular.value());
         let slow = waves.fold(self.field.oscillator.natural_angular_frequency().value(), f64::max);
-        let smooth = (SMOOTH_ANGLE / slow).min(limit - self.time - length);
-        // What varies at the limit of stability is noise.
-        let smooth = if at_limit { smooth } else { smooth.min(SMOOTH_CHANGE / solved.variation * length) };
-        if solved.stiffness / length * smooth > STIFF {
-            (self.implicit, self.stiff_steps) = (true, 0);
+        let smooth = (SMOOTH_ANGLE / slow).min(SMOOTH_CHANGE / self.variation).min(limit - self.time - length);
+        if self.stiff_steps > 2 && solved.stiffness / length * smooth > STIFF {
+            self.implicit = true;
             self.collocation.forget();
             self.proposed = FIRST * length;
+            (self.stiff_steps, self.variation, self.last) = (0, 0.0, (f64::INFINITY, 1.0));
         }
     }
 
