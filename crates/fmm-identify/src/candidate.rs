@@ -126,6 +126,12 @@ impl Candidate {
             && self.terms.has_quadratic_damping() == other.terms.has_quadratic_damping())
     }
 
+    /// Whether the two are the same but for damping of the machine.
+    pub(crate) fn differs_by_damping(&self, other: &Self) -> bool {
+        let viscous = |candidate: &Self| candidate.law.has_slope() || candidate.terms.has_linear_damping();
+        self.law.dry_name() == other.law.dry_name() && viscous(self) != viscous(other) && self.holds_as(other)
+    }
+
     /// Whether both hold the same parameters at the same values.
     fn holds_as(&self, other: &Self) -> bool {
         self.terms.held().count() == other.terms.held().count()

@@ -60,13 +60,24 @@ pub fn compare_observed(
     options: &Options,
     mut observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Comparison, IdentifyError> {
-    let mut identifications = Vec::with_capacity(candidates.len());
-    for candidate in candidates {
-        let name = candidate.name();
-        let mut observe = |progress: &Progress<'_>| observer(&name, progress);
-        identifications.push(candidate.identify(machine, decays, options, &mut observe)?);
+    let mut fit = |decays: &[RingDown]| {
+        let fitted = candidates.iter().map(|candidate| {
+            let name = candidate.name();
+            let mut observe = |progress: &Progress<'_>| observer(&name, progress);
+            candidate.identify(machine, decays, options, &mut observe)
+        });
+        fitted.collect::<Result<Vec<_>, _>>()
+    };
+    let identifications = fit(decays)?;
+    match closest(&identifications).and_then(|found| found.with_drift(decays)) {
+        Some(drifting) => Comparison::of(&drifting, candidates, fit(&drifting)?),
+        None => Comparison::of(decays, candidates, identifications),
     }
-    Comparison::of(decays, candidates, identifications)
+}
+
+/// The identification with the smallest residuals.
+pub(crate) fn closest(identifications: &[Identification]) -> Option<&Identification> {
+    identifications.iter().min_by(|a, b| a.rms_residual().total_cmp(&b.rms_residual()))
 }
 
 impl Comparison {
@@ -126,11 +137,13 @@ fn misled(identifications: &[Identification], preferred: usize) -> Option<Warnin
     /// Residuals that exceed those of the preferred law by this factor do not describe the record.
     const FAR: f64 = 2.0;
     let right = &identifications[preferred];
+    // A law that was not fitted to its minimum misleads nobody.
     let friction = right.friction_at_rest().filter(|friction| *friction > 0.0)?;
     let ratio = |found: &Identification| found.friction_at_rest().map(|other| other / friction);
     let wrong = identifications
         .iter()
         .filter(|found| found.rms_residual() > FAR * right.rms_residual())
+        .filter(|found| found.fit().outcome().is_success())
         .filter_map(|found| Some((found, ratio(found)?)))
         .filter(|(_, ratio)| *ratio < 0.5)
         .min_by(|a, b| a.1.total_cmp(&b.1));
@@ -186,7 +199,6 @@ fn widen_for_other_laws(
     /// An uncertainty that grows by this factor is worth a line.
     const NOTABLE: f64 = 2.0;
     let preferred = judgement.preferred;
-    let mut warnings = Vec::new();
     let mut widths: Vec<(String, f64, Option<Warning>)> = Vec::new();
     for other in 0..candidates.len() {
         let own_rank = identifications[preferred].fit().rank();
@@ -196,7 +208,7 @@ fn widen_for_other_laws(
         }
         let is_general = candidates[preferred].is_nested_in(&candidates[other]);
         let told = identifications[preferred].told();
-        let weight = judgement.weight(other, further, told);
+        let weight = judgement.weight(other, further, candidates[preferred].differs_by_damping(&candidates[other]), told);
         // Where the record does not decide, either law is as good as the other.
         let weight = if judgement.is_decided && is_general { weight } else { weight.max(0.5) };
         for (own, theirs) in identifications[preferred].common_findings(&identifications[other]) {
@@ -212,12 +224,27 @@ fn widen_for_other_laws(
             widths.push((own.parameter().name().to_owned(), widened, warning));
         }
     }
+    // The widest counts, and one line says so.
+    widths.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut warnings = Vec::new();
+    let mut names: Vec<String> = Vec::new();
     for (name, widened, warning) in widths {
+        if names.contains(&name) {
+            continue;
+        }
         if let Some(own) = identifications[preferred].finding_mut(&name) {
             own.widen(widened);
         }
         warnings.extend(warning);
+        names.push(name);
     }
+    // Several names of one quantity need one line: the one that is farthest from the fit.
+    let last = warnings.pop();
+    let of_law = |warning: &Warning, law: &str| matches!(warning, Warning::DependsOnLaw { law: other, .. } if other == law);
+    if let Some(Warning::DependsOnLaw { law, .. }) = &last {
+        warnings.retain(|warning| !of_law(warning, law));
+    }
+    warnings.extend(last);
     warnings
 }
 

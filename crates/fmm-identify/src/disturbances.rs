@@ -2,14 +2,51 @@
 
 use std::fmt;
 
-use crate::{RecordSummary, Warning};
+use crate::nuisance::Nuisance;
+use crate::{Identification, RecordSummary, RingDown, Warning};
+
+/// A step of the converter that exceeds the noise by this factor rounds it away.
+const COARSE: f64 = 2.0;
+/// A factor of the uncertainties that is worth a word.
+const NOTABLE: f64 = 1.1;
 
 impl Warning {
     /// What besides one ring-down of one mode is in a record.
     pub(crate) fn of_disturbances(summary: &RecordSummary) -> impl Iterator<Item = Self> {
         let further = summary.further_releases.first().map(|time| Self::FurtherRelease { time: *time });
         let second = summary.second_mode.map(|mode| Self::SecondMode { frequency: mode.frequency, share: mode.share });
-        further.into_iter().chain(second)
+        let hum = summary.hum.iter().map(|line| Self::Hum {
+            frequency: line.frequency,
+            amplitude: line.amplitude,
+            unit: summary.unit.clone(),
+        });
+        let rounded = summary.resolution.filter(|step| *step > COARSE * summary.noise);
+        let rounded = rounded.map(|step| Self::Rounded { step, unit: summary.unit.clone(), rest: summary.dead_rest });
+        further.into_iter().chain(second).chain(hum).chain(rounded)
+    }
+
+    /// What the noise of the records is like, as the residuals of `identification` show it, and whether a slow drift was fitted.
+    pub(crate) fn of_noise(identification: &Identification, decays: &[RingDown]) -> Vec<Self> {
+        let mut warnings = Vec::new();
+        let unit = || decays.first().map_or_else(String::new, |decay| decay.record().unit().to_owned());
+        if decays.iter().any(|decay| decay.nuisances().iter().any(|part| matches!(part, Nuisance::Drift(_)))) {
+            warnings.push(Self::Drift);
+        }
+        let structure = identification.structure();
+        if !structure.is_noisy() {
+            return warnings;
+        }
+        if let Some(growth) = identification.noise().growth() {
+            let share = growth.instantaneous.hypot(growth.by_amplitude);
+            warnings.push(Self::GrowingNoise { floor: growth.floor, share, unit: unit() });
+        }
+        if structure.is_correlated() && !structure.is_structured() {
+            warnings.push(Self::ColouredNoise {
+                time: structure.autocorrelation_time,
+                inflation: identification.inflation(),
+            });
+        }
+        warnings
     }
 
     /// The sentences of these warnings; nothing for others.
@@ -24,6 +61,39 @@ impl Warning {
                 "a second mode vibrates at {frequency:.3} Hz with about {:.0} % of the amplitude; the fit knows one mode only: use a \
                  part in which one is left, or isolate one with a band filter",
                 100.0 * share
+            ),
+            Self::Hum { frequency, amplitude, unit } => write!(
+                f,
+                "a hum of {amplitude:.2e} {unit} at {frequency:.3} Hz goes on through the record; it was fitted beside the motion"
+            ),
+            Self::Rounded { step, unit, rest } => {
+                write!(f, "the values are rounded to steps of {step:.2e} {unit}, which is more than their noise")?;
+                match rest {
+                    Some(time) => write!(f, "; they no longer change after {time:.3} s, so that a few of these samples tell all"),
+                    None => Ok(()),
+                }
+            }
+            Self::Drift => {
+                write!(f, "the zero of the instrument drifts slowly; a polynomial of degree 3 was fitted beside the motion")
+            }
+            Self::GrowingNoise { floor, share, unit } => write!(
+                f,
+                "the noise grows with the signal, from {floor:.1e} {unit} by {:.1} % of it; the standard uncertainties take that into \
+                 account",
+                100.0 * share
+            ),
+            Self::ColouredNoise { time, inflation } => {
+                write!(
+                    f,
+                    "neighbouring residuals are alike over some {time:.0} samples: the noise is not white (a filter in the instrument, \
+                     rounding), or the law leaves a little out; the standard uncertainties take that into account"
+                )?;
+                if *inflation > NOTABLE { write!(f, " (by up to a factor of {inflation:.1})") } else { Ok(()) }
+            }
+            Self::NotSi { unit } => write!(
+                f,
+                "the record is in {unit}, of which no mass in kg makes a friction force in N, and no normal load a coefficient mu; give \
+                 the scale of the instrument in metres"
             ),
             _ => Ok(()),
         }

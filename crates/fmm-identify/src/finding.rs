@@ -2,7 +2,7 @@
 
 use fmm_fit::{EstimateStatus, Fit, coverage_factor};
 use fmm_friction::Role;
-use fmm_model::{Dual, Parameter, Rounded, Scalar};
+use fmm_model::{Bounds, Dual, Parameter, Rounded, Scalar};
 
 use crate::Machine;
 use crate::dimension::is_force;
@@ -31,6 +31,8 @@ pub struct Finding {
     degrees_of_freedom: f64,
     pub(crate) origin: Origin,
     is_of_record: bool,
+    /// u as if a value on its bound were not there, where `uncertainty` is none for the bound.
+    at_bound: Option<f64>,
 }
 
 impl Finding {
@@ -55,7 +57,17 @@ impl Finding {
             degrees_of_freedom: variances.map_or(f64::INFINITY, effective),
             origin,
             is_of_record,
+            at_bound: None,
         }
+    }
+
+    /// The same for a value that lies on a bound, or follows from one: the standard uncertainty that it had without the bound.
+    pub(crate) fn at_bound(mut self, uncertainty: Option<f64>, degrees_of_freedom: f64) -> Self {
+        if self.uncertainty.is_none() && uncertainty.is_some() {
+            self.at_bound = uncertainty;
+            self.degrees_of_freedom = degrees_of_freedom;
+        }
+        self
     }
 
     /// Widens the uncertainty, if there is one, to `uncertainty` by something known.
@@ -87,14 +99,16 @@ impl Finding {
     }
 
     /// The interval that covers the quantity with probability `level`, in the unit of the parameter: value ± k u by Student's t
-    /// with the [degrees of freedom](Self::degrees_of_freedom) (JCGM 100:2008, G.4); none without an uncertainty, for what was
-    /// held, or for a level outside (0, 1).
+    /// with the [degrees of freedom](Self::degrees_of_freedom) (JCGM 100:2008, G.4), as far as the bounds of the parameter allow; of
+    /// a value on its bound what lies within the bounds. None without an uncertainty, for what was held, or for a level outside
+    /// (0, 1).
     pub fn interval(&self, level: f64) -> Option<(f64, f64)> {
         if self.origin == Origin::Fitted(EstimateStatus::Fixed) {
             return None;
         }
-        let reach = self.uncertainty? * coverage_factor(level, self.degrees_of_freedom)?;
-        Some((self.value - reach, self.value + reach))
+        let reach = self.uncertainty.or(self.at_bound)? * coverage_factor(level, self.degrees_of_freedom)?;
+        let bounds = self.parameter.bounds();
+        Some((bounds.clamp(self.value - reach), bounds.clamp(self.value + reach)))
     }
 
     /// Value, uncertainty and unit as text.
@@ -104,6 +118,16 @@ impl Finding {
             "1" => value.to_string(),
             unit => format!("{value} {unit}"),
         }
+    }
+
+    /// An end of its interval as text, to the place to which the uncertainty is rounded.
+    pub(crate) fn end(&self, value: f64) -> String {
+        let text = Rounded::new(value, self.uncertainty.or(self.at_bound)).to_string();
+        let (mantissa, exponent) = match text.rsplit_once(')') {
+            Some((inside, exponent)) => (inside.trim_start_matches('('), exponent),
+            None => (text.as_str(), ""),
+        };
+        format!("{}{exponent}", mantissa.split(" ±").next().unwrap_or(mantissa))
     }
 
     /// Whether it belongs to one record alone: its initial state or its offset.
@@ -129,6 +153,9 @@ struct Inputs<'a> {
     gain_uncertainty: f64,
 }
 
+/// Unit of a force per mass of a record in metres.
+pub(crate) const SI_ACCELERATION: &str = "m/s²";
+
 /// Inputs that were not fitted: scale of the machine, normal load, gain of the instrument.
 const KNOWN: usize = 3;
 
@@ -142,6 +169,11 @@ impl Inputs<'_> {
         [scale, self.machine.normal_load().map_or(0.0, |load| load.uncertainty()), self.gain_uncertainty]
     }
 
+    /// Whether forces per mass are accelerations in SI, so that a mass makes forces of them.
+    fn is_si(&self) -> bool {
+        self.machine.scale() == Scale::Unknown || self.acceleration == SI_ACCELERATION
+    }
+
     /// The derived quantities, as numbers whose directions from `first` on are the shared values, then the inputs.
     fn derived<D: Scalar>(&self, first: usize) -> Vec<(Parameter, D)> {
         let variable = |value: f64, direction: usize| D::variable(value, direction.wrapping_sub(first));
@@ -152,12 +184,12 @@ impl Inputs<'_> {
             Scale::Mass(known) => {
                 let mass = variable(known.value(), self.shared.len());
                 let stiffness = mass / mass_of_stiffness(D::from(1.0), natural_frequency);
-                derived.push((Parameter::new("stiffness", "k", "N/m"), stiffness));
+                derived.push((Parameter::new("stiffness", "k", "N/m").bounded(Bounds::POSITIVE), stiffness));
                 Some(mass)
             }
             Scale::Stiffness(known) => {
                 let mass = mass_of_stiffness(variable(known.value(), self.shared.len()), natural_frequency);
-                derived.push((Parameter::new("mass", "m", "kg"), mass));
+                derived.push((Parameter::new("mass", "m", "kg").bounded(Bounds::POSITIVE), mass));
                 Some(mass)
             }
         };
@@ -176,22 +208,23 @@ impl Inputs<'_> {
             if let (Role::LevelAbove, Some(level)) = (role, level) {
                 value = value + level;
                 if self.machine.scale() != Scale::Unknown {
-                    derived.push((named(parameter, "friction_per_mass", self.acceleration), value / gain));
+                    derived.push((named(parameter, "friction_per_mass", self.acceleration).bounded(parameter.bounds()), value / gain));
                 }
             }
             let Some(to_force) = to_force else { continue };
             let force = value * to_force;
             if role == Role::Slope && mass.is_some() {
-                derived.push((Parameter::new("damping", "c", "N s/m"), force));
-            } else if is_force(role) && parameter.unit() == "1" {
+                derived.push((Parameter::new("damping", "c", "N s/m").bounded(parameter.bounds()), force));
+            } else if is_force(role) && parameter.unit() == "1" && self.is_si() {
                 let force = force / gain;
+                let bounded = |quantity, unit| named(parameter, quantity, unit).bounded(parameter.bounds());
                 if mass.is_some() {
-                    derived.push((named(parameter, "friction_force", "N"), force));
+                    derived.push((bounded("friction_force", "N"), force));
                 }
                 if let Some(load) = load {
-                    derived.push((named(parameter, "mu", "1"), force / load));
+                    derived.push((bounded("mu", "1"), force / load));
                 }
-            } else if is_force(role) && parameter.unit() == "1/m" && mass.is_some() {
+            } else if is_force(role) && parameter.unit() == "1/m" && mass.is_some() && self.is_si() {
                 let name = format!("contact_{}", parameter.name());
                 derived.push((Parameter::named(name, parameter.symbol().to_owned(), "N/m"), force));
             }
@@ -222,6 +255,10 @@ pub(crate) fn findings(
             Origin::Fitted(estimate.status()),
             index >= layout.shared,
         )
+        .at_bound(
+            Some(estimate).filter(|estimate| estimate.status().is_at_bound()).and(covariance.relaxed(index)).map(f64::sqrt),
+            covariance.degrees_of_freedom(),
+        )
     });
     let mut findings: Vec<Finding> = estimated.collect();
     let shared = &fit.values()[..layout.shared];
@@ -239,26 +276,27 @@ pub(crate) fn findings(
         }
     }
     for ((parameter, value), gradient) in values.into_iter().zip(gradients) {
-        let variances = variances(covariance, &gradient, inputs.uncertainties());
-        findings.push(Finding::new(
-            parameter,
-            value,
-            variances,
-            covariance.degrees_of_freedom(),
-            Origin::Derived,
-            false,
-        ));
+        let known = inputs.uncertainties();
+        let inside = variances(|i, j| covariance.get(i, j), &gradient, known);
+        let relaxed = variances(|i, j| covariance.relaxed_pair(i, j), &gradient, known).map(|(_, all)| all.sqrt());
+        let freedom = covariance.degrees_of_freedom();
+        let finding = Finding::new(parameter, value, inside, freedom, Origin::Derived, false);
+        findings.push(finding.at_bound(relaxed, freedom));
     }
     findings
 }
 
 /// gᵀ V g over the fitted values, and that with the variances of the inputs; none if a value that matters has none.
-fn variances(covariance: &Covariance, gradient: &[f64], inputs: [f64; KNOWN]) -> Option<(f64, f64)> {
+fn variances(
+    covariance: impl Fn(usize, usize) -> Option<f64>,
+    gradient: &[f64],
+    inputs: [f64; KNOWN],
+) -> Option<(f64, f64)> {
     let (shared, known) = gradient.split_at(gradient.len() - inputs.len());
     let mut random = 0.0;
     for (i, row) in shared.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
         for (j, column) in shared.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
-            random += row * column * covariance.get(i, j)?;
+            random += row * column * covariance(i, j)?;
         }
     }
     let known: f64 = known.iter().zip(inputs).map(|(slope, u)| (slope * u).powi(2)).sum();

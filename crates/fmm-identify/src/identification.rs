@@ -7,9 +7,11 @@ use fmm_friction::{CoulombViscous, Role};
 use fmm_model::Restoring;
 use fmm_sim::{Event, EventKind, Simulated, Trajectory};
 
+use crate::drift::{as_fitted, with_drift};
 use crate::finding::{Finding, findings};
 use crate::law::Law;
 use crate::layout::{Layout, named};
+use crate::nuisance::Nuisance;
 use crate::problem::RingDownProblem;
 use crate::residual_noise::ResidualNoise;
 use crate::residual_structure::{Covariance, ResidualStructure};
@@ -74,6 +76,8 @@ pub struct Identification {
     covariance: Covariance,
     /// By how many standard uncertainties the linear damping would leave its bound, if it is there.
     pull_at_bound: Option<f64>,
+    /// Of each record, what was fitted beside its motion.
+    disturbances: Vec<Vec<Nuisance>>,
     amplitude: f64,
 }
 
@@ -191,6 +195,7 @@ pub(crate) fn identify_by(
         terms: terms.clone(),
         machine: *machine,
         structure,
+        disturbances: decays.iter().map(|decay| decay.nuisances().to_vec()).collect(),
         pull_at_bound: pull_at_bound(&problem, &fit, &covariance),
         covariance,
         amplitude: decays.iter().map(|decay| decay.summary().amplitudes.0).fold(0.0, f64::max),
@@ -425,7 +430,8 @@ impl Identification {
         if record >= decays.len() || decays.len() != self.motions.len() {
             return None;
         }
-        let problem = RingDownProblem::of(self.family, self.machine, self.terms.clone(), decays).ok()?;
+        let decays = as_fitted(decays, &self.disturbances);
+        let problem = RingDownProblem::of(self.family, self.machine, self.terms.clone(), &decays).ok()?;
         problem.model(record, self.fit.values()).ok()
     }
 
@@ -436,6 +442,12 @@ impl Identification {
     /// Largest factor by which an uncertainty exceeds that of independent residuals (1).
     pub(crate) fn inflation(&self) -> f64 {
         self.covariance.inflation()
+    }
+
+    /// The `decays` with slow drift to be fitted beside their motion, if the residuals of this fit show any.
+    pub(crate) fn with_drift(&self, decays: &[RingDown]) -> Option<Vec<RingDown>> {
+        let problem = RingDownProblem::of(self.family, self.machine, self.terms.clone(), decays).ok()?;
+        with_drift(self, &problem, decays)
     }
 
     /// The noise that the residuals show.
@@ -500,6 +512,23 @@ impl Identification {
             other.finding(counterpart).map(|theirs| (finding, theirs))
         };
         self.findings.iter().filter_map(same).collect()
+    }
+
+    /// What most ask for: the friction at large speed and at rest, as coefficient, force or per mass, whichever is known; of a law
+    /// without friction the damping.
+    pub(crate) fn main_findings(&self) -> Vec<&Finding> {
+        let sliding = self.level_names().into_iter().rev().find_map(|name| self.finding(&name));
+        let Some(sliding) = sliding else {
+            return ["damping", LINEAR].iter().find_map(|name| self.finding(name)).into_iter().collect();
+        };
+        let unit = sliding.parameter().unit();
+        let at_rest = self.family.fitted().filter(|parameter| matches!(parameter.role(), Role::LevelAbove | Role::Excess));
+        let at_rest = at_rest.filter_map(|parameter| {
+            let quantities = ["mu", "friction_force", "friction_per_mass"];
+            let names = quantities.map(|quantity| named(parameter.parameter(), quantity, "").name().to_owned());
+            names.iter().find_map(|name| self.finding(name).filter(|finding| finding.parameter().unit() == unit))
+        });
+        std::iter::once(sliding).chain(at_rest).collect()
     }
 
     /// Names of the findings of the first level, as friction per mass, force and coefficient; empty for laws without.

@@ -87,11 +87,13 @@ impl Judgement {
         !is_general && !says_the_same && self.standings[place].score < self.standings[preferred].score + CLOSE
     }
 
-    /// The weight of the law at `general`, of which the preferred one is a special case, beside the preferred one (1), for about
-    /// `count` independent residuals: the ratio of their probabilities in Schwarz' approximation.
-    pub(crate) fn weight(&self, general: usize, further: usize, count: f64) -> f64 {
+    /// The weight of the law at `general`, of which the preferred one is a special case, beside the preferred one (1): the ratio of
+    /// their probabilities by Akaike's criterion where the one has only a viscous part more, as every machine has some, and by
+    /// Schwarz' for about `count` independent residuals otherwise.
+    pub(crate) fn weight(&self, general: usize, further: usize, is_damping: bool, count: f64) -> f64 {
         let gain = self.standings[self.preferred].misfit - self.standings[general].misfit;
-        let odds = (0.5 * (gain - further as f64 * count.max(2.0).ln())).exp();
+        let penalty = if is_damping { 2.0 } else { count.max(8.0).ln() };
+        let odds = (0.5 * (gain - further as f64 * penalty)).exp();
         odds / (1.0 + odds)
     }
 }

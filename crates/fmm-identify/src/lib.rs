@@ -88,6 +88,7 @@ mod comparison;
 mod correlation;
 mod decrement;
 mod dimension;
+mod drift;
 mod disturbances;
 mod energy_rates;
 mod error;

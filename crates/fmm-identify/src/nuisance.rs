@@ -16,6 +16,9 @@ pub(crate) enum Nuisance {
     Drift(u32),
 }
 
+/// The parts of a slow drift.
+pub(crate) const DRIFT: [Nuisance; 3] = [Nuisance::Drift(1), Nuisance::Drift(2), Nuisance::Drift(3)];
+
 impl Nuisance {
     /// The lines of `hum`, two parts each.
     pub(crate) fn of_hum(hum: &[Hum]) -> impl Iterator<Item = Self> {

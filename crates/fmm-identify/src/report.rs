@@ -5,7 +5,8 @@ use std::fmt;
 use fmm_fit::EstimateStatus;
 
 use crate::finding::Origin;
-use crate::{Comparison, Finding, Identification, Warning};
+use crate::judgement::EXCLUDED;
+use crate::{Comparison, Finding, Identification, Sign, Warning};
 
 /// Width of the column that holds the names of parameters.
 pub(crate) fn name_width(findings: &[Finding]) -> usize {
@@ -15,6 +16,10 @@ pub(crate) fn name_width(findings: &[Finding]) -> usize {
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.quantity())?;
+        if let Some((low, high)) = self.interval(0.95) {
+            let unit = Some(self.parameter().unit()).filter(|unit| *unit != "1").map_or(String::new(), |unit| format!(" {unit}"));
+            write!(f, "  [{}, {}]{unit}", self.end(low), self.end(high))?;
+        }
         match self.origin() {
             Origin::Derived => write!(f, "  (with what is known of the machine)"),
             Origin::Fitted(EstimateStatus::Undetermined) => write!(f, "  (not determined)"),
@@ -26,7 +31,7 @@ impl fmt::Display for Finding {
 }
 
 impl Identification {
-    fn write_findings(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn write_findings(&self, f: &mut fmt::Formatter<'_>, rests: &[Option<f64>]) -> fmt::Result {
         let width = name_width(self.findings());
         for finding in self.findings() {
             writeln!(f, "  {:<width$} = {finding}", finding.parameter().name())?;
@@ -37,6 +42,8 @@ impl Identification {
                 Some(time) => format!("at rest from {time:.4} s"),
                 None => "still moving at the end of the record".to_owned(),
             };
+            let seen = rests.get(record).copied().flatten();
+            let ends = seen.map_or(ends.clone(), |time| format!("{ends} (the record rests from {time:.3} s)"));
             writeln!(f, "  {which}{} half swings, {ends}", motion.half_swings())?;
         }
         Ok(())
@@ -63,46 +70,82 @@ impl fmt::Display for Identification {
             fit.free_count(),
             self.rms_residual()
         )?;
-        self.write_findings(f)?;
+        self.write_findings(f, &[])?;
         write_warnings(f, self.warnings())
+    }
+}
+
+impl Comparison {
+    /// What was found, how sure that is, and what would make it surer: two or three sentences.
+    pub fn headline(&self) -> String {
+        let preferred = self.preferred();
+        let main = preferred.main_findings();
+        let found: Vec<String> = main
+            .iter()
+            .map(|finding| {
+                let ends = finding.interval(0.95).map_or(String::new(), |(low, high)| {
+                    format!(", between {} and {} with 95 %", finding.end(low), finding.end(high))
+                });
+                format!("{} = {}{ends}", finding.parameter().name(), finding.quantity())
+            })
+            .collect();
+        let found = if found.is_empty() { "no friction or damping that it determines".to_owned() } else { found.join("; ") };
+        let others: Vec<&str> =
+            self.not_excluded().map(Identification::law).filter(|law| *law != preferred.law()).collect();
+        let sure = match (self.is_decided(), others.is_empty()) {
+            (true, true) => "the record excludes every other law that was tried".to_owned(),
+            (true, false) => format!("the record does not ask for more, nor exclude it ({})", others.join(", ")),
+            (false, _) => format!("the record does not decide: {} may be true as well", others.join(", ")),
+        };
+        let surer = if self.is_decided() {
+            "more half cycles or less noise would make it surer"
+        } else {
+            "releases of other amplitudes fitted together, or less noise, would tell the laws apart"
+        };
+        format!("{} by {}: {found}; {sure}; {surer}.", "Friction", preferred.law())
     }
 }
 
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}\n", self.headline())?;
         for (record, summary) in self.records().iter().enumerate() {
             let number = if self.records().len() > 1 { format!(" {}", record + 1) } else { String::new() };
             writeln!(f, "Record{number}: {summary}")?;
         }
         writeln!(f, "\nLaws")?;
         let width = self.identifications().iter().map(|law| law.law().len()).max().unwrap_or(0);
-        let best = self.scores().iter().copied().fold(f64::INFINITY, f64::min);
-        writeln!(f, "  {:<width$}  rms residual  rank  half swings    rest from   ΔAICc (independent residuals)", "")?;
-        for (law, score) in self.identifications().iter().zip(self.scores()) {
+        let best = self.scores().into_iter().fold(f64::INFINITY, f64::min);
+        writeln!(f, "  {:<width$}  rms residual  rank  half swings    rest from   misfit + 2 rank  probability", "")?;
+        let standings = self.scores().into_iter().zip(self.probabilities());
+        for (law, (score, probability)) in self.identifications().iter().zip(standings) {
             let stop = law.motions().iter().find_map(crate::FittedMotion::stop_time);
             let stop = stop.map_or_else(|| "-".to_owned(), |time| format!("{time:.4} s"));
             let half_swings: usize = law.motions().iter().map(crate::FittedMotion::half_swings).sum();
+            let probability =
+                if probability < EXCLUDED { "excluded".to_owned() } else { format!("{probability:.3}") };
             writeln!(
                 f,
-                "  {:<width$}  {:>12.4e}  {:>4}  {half_swings:>11}  {stop:>11}  {:>6.1}",
+                "  {:<width$}  {:>12.4e}  {:>4}  {half_swings:>11}  {stop:>11}  {:>16.1}  {probability:>11}",
                 law.law(),
                 law.rms_residual(),
                 law.fit().rank(),
                 score - best,
             )?;
         }
-        for nested in self.tests() {
-            let verdict = if nested.p_value < 0.05 { "too simple" } else { "enough" };
-            let probability = if nested.p_value < 1e-3 { "< 0.001".to_owned() } else { format!("= {:.3}", nested.p_value) };
-            writeln!(f, "  {} beside {}: {verdict} (p {probability})", nested.restricted, nested.full)?;
+        let plain: Vec<&Sign> = self.signs().iter().filter(|sign| sign.is_plain()).collect();
+        for sign in &plain {
+            let times = sign.significance();
+            writeln!(f, "  sign of {}: {times:.1} standard uncertainties", sign.addition)?;
         }
-        for sign in self.signs() {
-            writeln!(f, "  {}: {:.2} ± {:.2}", sign.addition, sign.size, sign.uncertainty)?;
+        if plain.is_empty() && !self.signs().is_empty() {
+            writeln!(f, "  looked for and not seen: friction that changes with speed, quadratic damping, presliding, a softening spring")?;
         }
         let preferred = self.preferred();
-        let confidence = if self.is_decided() { "" } else { ", though the data do not decide" };
-        writeln!(f, "\nPreferred: {}{confidence}", preferred.law())?;
-        preferred.write_findings(f)?;
+        let confidence = if self.is_decided() { "" } else { ", though the record does not decide" };
+        writeln!(f, "\nPreferred: {}{confidence}  (value ± standard uncertainty  [95 % interval])", preferred.law())?;
+        let rests: Vec<Option<f64>> = self.records().iter().map(|record| record.rest_from).collect();
+        preferred.write_findings(f, &rests)?;
         write_warnings(f, self.warnings())
     }
 }

@@ -160,7 +160,12 @@ impl Covariance {
 
     /// Variance of parameter `i` as if it were not on its bound.
     pub(crate) fn relaxed(&self, i: usize) -> Option<f64> {
-        self.elements[i * self.count + i]
+        self.relaxed_pair(i, i)
+    }
+
+    /// Covariance of parameters `i` and `j` as if they were not on their bounds.
+    pub(crate) fn relaxed_pair(&self, i: usize, j: usize) -> Option<f64> {
+        self.elements[i * self.count + j]
     }
 
     /// Degrees of freedom of the covariance.

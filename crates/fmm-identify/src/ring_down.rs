@@ -109,6 +109,7 @@ impl RingDown {
             frequency: guess.frequency(),
             noise: noise(cleaned.values()),
             resolution,
+            rest_from: rest_from(&cleaned, resolution.unwrap_or(0.0), guess.frequency()),
             dead_rest: dead_rest.map(|rest| record.start() + rest.begin as f64 * record.interval()),
             spikes: spikes.iter().map(|spike| spike.count).sum(),
             saturation: saturation(record.values()),
@@ -252,6 +253,18 @@ fn beginning(swings: &Swings, rest_end: f64, quantity: Quantity) -> f64 {
         Box::new(swings.peaks().iter().map(|peak| peak.time))
     };
     candidates.find(|time| *time > rest_end).unwrap_or(rest_end)
+}
+
+/// When `record` comes to rest (s): from there on its values stay within their noise and a `resolution` for at least half a period of
+/// the motion; none if they do not.
+fn rest_from(record: &Record, resolution: f64, frequency: f64) -> Option<f64> {
+    /// The range of a thousand normal values, in standard deviations, with some to spare.
+    const RANGE: f64 = 8.0;
+    let values = record.values();
+    let largest = values.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
+    let band = RANGE * noise(values) + 1.5 * resolution + 1e-9 * largest;
+    let rest = dead_rest(values, band / 1.5, record.rate() / frequency)?;
+    Some(record.start() + rest.begin as f64 * record.interval())
 }
 
 /// A rest at the end of a record in which the converter shows the same value, or two neighbouring ones.

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use fmm_fit::{Options, Progress};
 
+use crate::comparison::closest;
 use crate::judgement::Judgement;
 use crate::sign::{Addition, Sign, signs};
 use crate::{Candidate, Comparison, Identification, IdentifyError, Machine, RingDown, Warning};
@@ -121,9 +122,17 @@ pub fn search_observed(
     options: &Options,
     observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
 ) -> Result<Comparison, IdentifyError> {
-    let run = Run { machine, decays, search, options, observer: Mutex::new(observer), begun: Instant::now() };
+    let (observer, begun) = (Mutex::new(observer), Instant::now());
+    let run = Run { machine, decays, search, options, observer: &observer, begun };
     let mut found = Found::default();
     run.fit(search.candidates(&SIMPLE)?, &[], true, &mut found)?;
+    let drifting = closest(&found.identifications).and_then(|found| found.with_drift(decays));
+    let decays = drifting.as_deref().unwrap_or(decays);
+    let run = Run { decays, ..run };
+    if drifting.is_some() {
+        found = Found::default();
+        run.fit(search.candidates(&SIMPLE)?, &[], true, &mut found)?;
+    }
     let mut signs = run.signs(&found);
     if run.asks_for_more(&found, &signs) {
         run.fit(search.candidates(&OF_SPEED)?, &signs, false, &mut found)?;
@@ -161,7 +170,7 @@ struct Run<'a, F> {
     decays: &'a [RingDown],
     search: &'a Search,
     options: &'a Options,
-    observer: Mutex<F>,
+    observer: &'a Mutex<F>,
     begun: Instant,
 }
 
@@ -183,9 +192,9 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
             candidates.iter().map(|_| Mutex::new(None)).collect();
         let simple = found.identification("coulomb_viscous");
         let work = || {
-            while let Some(candidate) = candidates.get(next.load(Ordering::Relaxed)) {
+            loop {
                 let index = next.fetch_add(1, Ordering::Relaxed);
-                let Some(candidate) = candidates.get(index).or(Some(candidate)).filter(|_| index < candidates.len()) else { break };
+                let Some(candidate) = candidates.get(index) else { break };
                 if !must && self.is_late() {
                     break;
                 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use fmm_fit::EstimateStatus;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-use crate::{Comparison, Finding, Identification, ImpactIdentification, ImpactSummary, Origin, RecordSummary};
+use crate::{Comparison, Finding, Identification, ImpactIdentification, ImpactSummary, Origin, RecordSummary, Sign};
 
 impl Serialize for Finding {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -18,9 +18,10 @@ impl Serialize for Finding {
         };
         // An infinite number of them is null, as JSON has none.
         let freedom = Some(self.degrees_of_freedom()).filter(|freedom| freedom.is_finite());
-        let mut document = serializer.serialize_struct("Finding", 5)?;
+        let mut document = serializer.serialize_struct("Finding", 6)?;
         document.serialize_field("value", &self.value())?;
         document.serialize_field("u", &self.uncertainty())?;
+        document.serialize_field("interval_95", &self.interval(0.95))?;
         document.serialize_field("degrees_of_freedom", &freedom)?;
         document.serialize_field("unit", self.parameter().unit())?;
         document.serialize_field("status", status)?;
@@ -116,6 +117,8 @@ impl Serialize for RecordSummary {
         document.serialize_field("frequency_hz", &self.frequency)?;
         document.serialize_field("noise", &self.noise)?;
         document.serialize_field("resolution", &self.resolution)?;
+        document.serialize_field("rest_from_s", &self.rest_from)?;
+        document.serialize_field("dead_rest_s", &self.dead_rest)?;
         document.serialize_field("spikes", &self.spikes)?;
         document.serialize_field("saturated", &self.saturation.map_or(0, |saturation| saturation.samples))?;
         document.serialize_field("offset_step_s", &self.offset_step.map(|step| step.time))?;
@@ -129,14 +132,32 @@ impl Serialize for RecordSummary {
     }
 }
 
-/// `preferred` (name of the law), `decided`, `scores` (one per model, by which laws are preferred), `models`, `preparation` (one object, or a list if there are several
+/// What was looked for, its size and standard uncertainty.
+impl Serialize for Sign {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut document = serializer.serialize_struct("Sign", 3)?;
+        document.serialize_field("addition", &self.addition.to_string())?;
+        document.serialize_field("size", &self.size)?;
+        document.serialize_field("u", &self.uncertainty)?;
+        document.end()
+    }
+}
+
+/// `preferred` (name of the law), `decided`, `summary` (one sentence), `not_excluded` (names), `complete`, `signs`, `probabilities`
+/// and `scores` (one per model, by which laws are preferred), `models`, `preparation` (one object, or a list if there are several
 /// records), `warnings`.
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();
-        let mut document = serializer.serialize_struct("Comparison", 6)?;
+        let mut document = serializer.serialize_struct("Comparison", 11)?;
         document.serialize_field("preferred", self.preferred().law())?;
         document.serialize_field("decided", &self.is_decided())?;
+        document.serialize_field("summary", &self.headline())?;
+        let left: Vec<&str> = self.not_excluded().map(Identification::law).collect();
+        document.serialize_field("not_excluded", &left)?;
+        document.serialize_field("complete", &self.is_complete())?;
+        document.serialize_field("signs", self.signs())?;
+        document.serialize_field("probabilities", &self.probabilities())?;
         document.serialize_field("scores", &self.scores())?;
         document.serialize_field("models", self.identifications())?;
         match self.records() {

@@ -150,6 +150,47 @@ pub enum Warning {
     },
     /// The models are too close to prefer one.
     Undecided,
+    /// A line of constant amplitude lies over the record and was fitted with it.
+    Hum {
+        /// Its frequency (Hz).
+        frequency: f64,
+        /// Its amplitude, in the unit of the record.
+        amplitude: f64,
+        /// That unit.
+        unit: String,
+    },
+    /// The steps of the converter exceed the noise.
+    Rounded {
+        /// The step, in the unit of the record.
+        step: f64,
+        /// That unit.
+        unit: String,
+        /// When the values stop changing (s), if they do.
+        rest: Option<f64>,
+    },
+    /// The zero of the instrument drifts, and a slow polynomial was fitted beside the motion.
+    Drift,
+    /// The noise grows with the signal.
+    GrowingNoise {
+        /// Standard deviation of the noise without a signal, in the unit of the record.
+        floor: f64,
+        /// By how much of the signal it grows (1).
+        share: f64,
+        /// Unit of the record.
+        unit: String,
+    },
+    /// Neighbouring residuals are alike, though not larger than the noise.
+    ColouredNoise {
+        /// Autocorrelation time (samples).
+        time: f64,
+        /// Largest factor by which a standard uncertainty exceeds that of white noise (1).
+        inflation: f64,
+    },
+    /// The record is in a unit of which no mass and no load makes a force or a coefficient.
+    NotSi {
+        /// Unit of the record.
+        unit: String,
+    },
     /// The time that was given ended before all laws were tried.
     TimeLimit,
     /// The hammer hit again.
@@ -223,6 +264,12 @@ impl Warning {
         Self::of_fit(identification.fit(), &mut warnings);
         Self::of_damping(identification, &mut warnings);
         Self::of_residuals(identification, decays, &mut warnings);
+        warnings.extend(Self::of_noise(identification, decays));
+        let unit = decays.first().map_or("", |decay| decay.record().unit());
+        let is_scaled = matches!(machine.scale(), Scale::Mass(_) | Scale::Stiffness(_));
+        if is_scaled && !matches!(unit, "m" | "m/s") {
+            warnings.push(Self::NotSi { unit: unit.to_owned() });
+        }
         warnings.extend(Self::of_narrow_stop(identification.motions()));
         warnings
     }
@@ -333,7 +380,8 @@ impl fmt::Display for Warning {
                 f,
                 "the residuals are structured, not noise: {residual:.3e} {unit} rms against {noise:.1e} {unit} of noise \
                  between samples, and neighbours are alike; the law leaves something out, and the standard \
-                 uncertainties were widened for it, by up to a factor of {inflation:.1}"
+                 uncertainties take it for noise{}",
+                if *inflation > 1.05 { format!(", {inflation:.1} times as large as if it were white") } else { String::new() }
             ),
             Self::PeriodDependsOnAmplitude { change } => write!(
                 f,
@@ -357,7 +405,13 @@ impl fmt::Display for Warning {
                     "the offset jumps by {height:.3e} {unit} near {time:.3} s; fit the parts before and after apart"
                 )
             }
-            Self::FurtherRelease { .. } | Self::SecondMode { .. } => self.write_of_disturbances(f),
+            Self::Hum { .. }
+            | Self::Rounded { .. }
+            | Self::Drift
+            | Self::GrowingNoise { .. }
+            | Self::ColouredNoise { .. }
+            | Self::NotSi { .. }
+            | Self::FurtherRelease { .. } | Self::SecondMode { .. } => self.write_of_disturbances(f),
             Self::Spikes { count } => write!(f, "{count} isolated samples far off their neighbours were left out"),
             Self::AtBound { parameter, value } => {
                 write!(
@@ -394,10 +448,9 @@ impl fmt::Display for Warning {
             ),
             Self::Misled { law, friction, preferred, residuals } => write!(
                 f,
-                "{law} alone would have put the friction at rest at {friction:.3}, {:.1} times less than the {preferred:.3} of the \
+                "{law} alone would have put the friction at rest at {friction:.3} in place of the {preferred:.3} of the \
                  preferred law: with friction that changes with speed, a level and a straight line share the losses of large \
-                 swings and miss those of small ones (its residuals are {residuals:.1} times larger)",
-                preferred / friction
+                 swings and miss those of small ones (its residuals are {residuals:.1} times larger)"
             ),
             Self::FurtherHit { .. }
             | Self::Overload { .. }
@@ -411,7 +464,7 @@ impl fmt::Display for Warning {
             ),
             Self::Undecided => write!(
                 f,
-                "the data do not decide between the models; the simplest of the close ones is shown as preferred"
+                "the record does not decide between the laws that are left; the simplest that it bears well is shown as preferred"
             ),
         }
     }

@@ -36,15 +36,27 @@ impl fmt::Display for Rounded {
         // The decimal place of the second digit of the uncertainty; rounding up to 100 is harmless.
         let place = uncertainty.log10().floor() as i32 - 1;
         let leading = value.abs().max(uncertainty).log10().floor() as i32;
-        if (-4..6).contains(&leading) && place <= 0 && place > -12 {
-            let decimals = place.unsigned_abs() as usize;
-            f.pad(&format!("{value:.decimals$} ± {uncertainty:.decimals$}"))
+        if (-4..6).contains(&leading) && place > -12 {
+            let decimals = place.min(0).unsigned_abs() as usize;
+            // Digits before the last known place are zeros.
+            let step = 10f64.powi(place.max(0));
+            let rounded = |x: f64| if place > 0 { (x / step).round() * step } else { x };
+            f.pad(&format!("{} ± {:.decimals$}", signed(rounded(value), decimals), rounded(uncertainty)))
         } else {
             // At most 17 digits mean anything.
             let decimals = (leading - place).clamp(0, 16) as usize;
             let scale = 10f64.powi(leading);
-            f.pad(&format!("({:.decimals$} ± {:.decimals$})e{leading}", value / scale, uncertainty / scale))
+            f.pad(&format!("({} ± {:.decimals$})e{leading}", signed(value / scale, decimals), uncertainty / scale))
         }
+    }
+}
+
+/// `value` with so many decimals, and without the sign of a zero.
+fn signed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.chars().all(|digit| matches!(digit, '0' | '.')) => digits.to_owned(),
+        _ => text,
     }
 }
 
@@ -72,7 +84,9 @@ mod tests {
         assert_eq!(text(0.1, 3.4e-5), "0.100000 ± 0.000034");
         assert_eq!(text(238.942, 2.707), "238.9 ± 2.7");
         assert_eq!(text(238.942, 27.07), "239 ± 27");
-        assert_eq!(text(238_942.0, 270.7), "(2.3894 ± 0.0027)e5");
+        assert_eq!(text(238_942.0, 270.7), "238940 ± 270");
+        assert_eq!(text(20.0, 112.0), "20 ± 110");
+        assert_eq!(text(-1e-9, 0.2), "0.00 ± 0.20");
         assert_eq!(text(5.5e-7, 2.0e-9), "(5.500 ± 0.020)e-7");
         assert_eq!(text(1.0, 0.0), "1 ± 0");
         assert_eq!(text(1e-9, 0.2), "0.00 ± 0.20");
