@@ -7,6 +7,7 @@ mod hammer;
 mod identifiability;
 mod identify_files;
 mod impact;
+mod judgement;
 mod measurement;
 mod own_law;
 mod pendulum;

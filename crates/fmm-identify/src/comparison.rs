@@ -69,10 +69,19 @@ pub fn compare_observed(
         fitted.collect::<Result<Vec<_>, _>>()
     };
     let identifications = fit(decays)?;
-    match closest(&identifications).and_then(|found| found.with_drift(decays)) {
-        Some(drifting) => Comparison::of(&drifting, candidates, fit(&drifting)?),
-        None => Comparison::of(decays, candidates, identifications),
+    if let Some(drifting) = closest(&identifications).and_then(|found| found.with_drift(decays)) {
+        let with_drift = fit(&drifting)?;
+        if explains(&with_drift) {
+            return Comparison::of(&drifting, candidates, with_drift);
+        }
     }
+    Comparison::of(decays, candidates, identifications)
+}
+
+/// Whether what is left of the records by the closest of these laws is noise: a drift that leaves more may be a law that misses
+/// something.
+pub(crate) fn explains(identifications: &[Identification]) -> bool {
+    closest(identifications).is_some_and(|found| !found.structure().is_structured())
 }
 
 /// The identification with the smallest residuals.

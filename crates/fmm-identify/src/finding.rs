@@ -120,14 +120,10 @@ impl Finding {
         }
     }
 
-    /// An end of its interval as text, to the place to which the uncertainty is rounded.
-    pub(crate) fn end(&self, value: f64) -> String {
-        let text = Rounded::new(value, self.uncertainty.or(self.at_bound)).to_string();
-        let (mantissa, exponent) = match text.rsplit_once(')') {
-            Some((inside, exponent)) => (inside.trim_start_matches('('), exponent),
-            None => (text.as_str(), ""),
-        };
-        format!("{}{exponent}", mantissa.split(" ±").next().unwrap_or(mantissa))
+    /// Its 95 % interval as text, to the place to which the uncertainty is rounded.
+    pub(crate) fn interval_text(&self) -> Option<String> {
+        let (low, high) = self.interval(0.95)?;
+        Some(Rounded::new(self.value, self.uncertainty.or(self.at_bound)).interval(low, high))
     }
 
     /// Whether it belongs to one record alone: its initial state or its offset.

@@ -16,9 +16,8 @@ pub(crate) fn name_width(findings: &[Finding]) -> usize {
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.quantity())?;
-        if let Some((low, high)) = self.interval(0.95) {
-            let unit = Some(self.parameter().unit()).filter(|unit| *unit != "1").map_or(String::new(), |unit| format!(" {unit}"));
-            write!(f, "  [{}, {}]{unit}", self.end(low), self.end(high))?;
+        if let Some(interval) = self.interval_text() {
+            write!(f, "  {interval}")?;
         }
         match self.origin() {
             Origin::Derived => write!(f, "  (with what is known of the machine)"),
@@ -83,10 +82,8 @@ impl Comparison {
         let found: Vec<String> = main
             .iter()
             .map(|finding| {
-                let ends = finding.interval(0.95).map_or(String::new(), |(low, high)| {
-                    format!(", between {} and {} with 95 %", finding.end(low), finding.end(high))
-                });
-                format!("{} = {}{ends}", finding.parameter().name(), finding.quantity())
+                let interval = finding.interval_text().map_or(String::new(), |text| format!(", 95 % within {text}"));
+                format!("{} = {}{interval}", finding.parameter().name(), finding.quantity())
             })
             .collect();
         let found = if found.is_empty() { "no friction or damping that it determines".to_owned() } else { found.join("; ") };
@@ -102,7 +99,7 @@ impl Comparison {
         } else {
             "releases of other amplitudes fitted together, or less noise, would tell the laws apart"
         };
-        format!("{} by {}: {found}; {sure}; {surer}.", "Friction", preferred.law())
+        format!("{}: {found}; {sure}; {surer}.", preferred.law())
     }
 }
 

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use fmm_fit::{Options, Progress};
 
-use crate::comparison::closest;
+use crate::comparison::{closest, explains};
 use crate::judgement::Judgement;
 use crate::sign::{Addition, Sign, signs};
 use crate::{Candidate, Comparison, Identification, IdentifyError, Machine, RingDown, Warning};
@@ -127,12 +127,15 @@ pub fn search_observed(
     let mut found = Found::default();
     run.fit(search.candidates(&SIMPLE)?, &[], true, &mut found)?;
     let drifting = closest(&found.identifications).and_then(|found| found.with_drift(decays));
-    let decays = drifting.as_deref().unwrap_or(decays);
-    let run = Run { decays, ..run };
-    if drifting.is_some() {
-        found = Found::default();
-        run.fit(search.candidates(&SIMPLE)?, &[], true, &mut found)?;
+    let mut decays = decays;
+    if let Some(drifting) = &drifting {
+        let mut with_drift = Found::default();
+        Run { decays: drifting, ..run }.fit(search.candidates(&SIMPLE)?, &[], true, &mut with_drift)?;
+        if explains(&with_drift.identifications) {
+            (decays, found) = (drifting, with_drift);
+        }
     }
+    let run = Run { decays, ..run };
     let mut signs = run.signs(&found);
     if run.asks_for_more(&found, &signs) {
         run.fit(search.candidates(&OF_SPEED)?, &signs, false, &mut found)?;

@@ -22,6 +22,26 @@ impl Rounded {
     pub const fn new(value: f64, uncertainty: Option<f64>) -> Self {
         Self { value, uncertainty }
     }
+
+    /// The ends of an interval, in the same unit, as text in brackets, to the same decimal place as the value.
+    ///
+    /// ```
+    /// use fmm_model::Rounded;
+    ///
+    /// assert_eq!(Rounded::new(0.250_31, Some(0.000_52)).interval(0.249_29, 0.251_33), "[0.24929, 0.25133]");
+    /// assert_eq!(Rounded::new(1.6e-5, Some(1.9e-5)).interval(-2.1e-5, 5.3e-5), "[-2.1, 5.3]e-5");
+    /// ```
+    pub fn interval(&self, low: f64, high: f64) -> String {
+        let uncertainty = self.uncertainty.filter(|u| *u > 0.0 && u.is_finite() && self.value.is_finite());
+        match uncertainty.map(|uncertainty| Notation::of(self.value, uncertainty)) {
+            None => format!("[{}, {}]", plain(low), plain(high)),
+            Some(Notation::Plain { place }) => format!("[{}, {}]", at_place(low, place), at_place(high, place)),
+            Some(Notation::Scaled { decimals, exponent }) => {
+                let scale = 10f64.powi(exponent);
+                format!("[{}, {}]e{exponent}", signed(low / scale, decimals), signed(high / scale, decimals))
+            }
+        }
+    }
 }
 
 impl fmt::Display for Rounded {
@@ -33,22 +53,46 @@ impl fmt::Display for Rounded {
         if !(uncertainty > 0.0 && uncertainty.is_finite() && value.is_finite()) {
             return f.pad(&format!("{} ± {}", plain(value), plain(uncertainty)));
         }
-        // The decimal place of the second digit of the uncertainty; rounding up to 100 is harmless.
-        let place = uncertainty.log10().floor() as i32 - 1;
-        let leading = value.abs().max(uncertainty).log10().floor() as i32;
-        if (-4..6).contains(&leading) && place > -12 {
-            let decimals = place.min(0).unsigned_abs() as usize;
-            // Digits before the last known place are zeros.
-            let step = 10f64.powi(place.max(0));
-            let rounded = |x: f64| if place > 0 { (x / step).round() * step } else { x };
-            f.pad(&format!("{} ± {:.decimals$}", signed(rounded(value), decimals), rounded(uncertainty)))
-        } else {
-            // At most 17 digits mean anything.
-            let decimals = (leading - place).clamp(0, 16) as usize;
-            let scale = 10f64.powi(leading);
-            f.pad(&format!("({} ± {:.decimals$})e{leading}", signed(value / scale, decimals), uncertainty / scale))
+        match Notation::of(value, uncertainty) {
+            Notation::Plain { place } => {
+                f.pad(&format!("{} ± {}", at_place(value, place), at_place(uncertainty, place)))
+            }
+            Notation::Scaled { decimals, exponent } => {
+                let scale = 10f64.powi(exponent);
+                let (value, uncertainty) = (signed(value / scale, decimals), signed(uncertainty / scale, decimals));
+                f.pad(&format!("({value} ± {uncertainty})e{exponent}"))
+            }
         }
     }
+}
+
+/// How a value and its uncertainty are written.
+enum Notation {
+    /// As they are, down to the decimal `place`.
+    Plain { place: i32 },
+    /// As multiples of a power of ten.
+    Scaled { decimals: usize, exponent: i32 },
+}
+
+impl Notation {
+    fn of(value: f64, uncertainty: f64) -> Self {
+        // The decimal place of the second digit of the uncertainty; rounding up to 100 is harmless.
+        let place = uncertainty.log10().floor() as i32 - 1;
+        let exponent = value.abs().max(uncertainty).log10().floor() as i32;
+        if (-4..6).contains(&exponent) && place > -12 {
+            Self::Plain { place }
+        } else {
+            // At most 17 digits mean anything.
+            Self::Scaled { decimals: (exponent - place).clamp(0, 16) as usize, exponent }
+        }
+    }
+}
+
+/// `value` down to a decimal `place`; digits behind the last known place before the point are zeros.
+fn at_place(value: f64, place: i32) -> String {
+    let step = 10f64.powi(place.max(0));
+    let value = if place > 0 { (value / step).round() * step } else { value };
+    signed(value, place.min(0).unsigned_abs() as usize)
 }
 
 /// `value` with so many decimals, and without the sign of a zero.

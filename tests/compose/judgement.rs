@@ -1,0 +1,153 @@
+//! Records on which a judgement went wrong once: each must be right, or say what is the matter.
+
+use std::path::PathBuf;
+
+use fmm_identify::{
+    Candidate, Comparison, Identification, Known, Machine, Preparation, RingDown, Search, Warning, compare, search,
+};
+use fmm_model::Restoring;
+use fmm_record::{Column, Quantity, Record, csv};
+
+fn path(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/judgement").join(name)
+}
+
+fn record(name: &str, quantity: Quantity, unit: &str) -> Record {
+    csv::CsvReader::default().quantity(quantity).unit(unit).read(path(name)).unwrap().record
+}
+
+fn machine() -> Machine {
+    let mass = Machine::of_mass(Known::exact(10.391).unwrap()).unwrap();
+    mass.with_normal_load(Known::exact(14.0).unwrap()).unwrap()
+}
+
+fn judged(name: &str, quantity: Quantity, unit: &str) -> Comparison {
+    let decay = RingDown::prepare(&record(name, quantity, unit), &Preparation::default()).unwrap();
+    search(&machine(), &[decay], &Search::default()).unwrap()
+}
+
+/// Whether the 95 % interval of the finding called `name` holds `truth`.
+fn holds(found: &Identification, name: &str, truth: f64) -> bool {
+    let (low, high) = found.interval(name, 0.95).unwrap_or_else(|| panic!("no interval of {name}: {found}"));
+    (low..=high).contains(&truth)
+}
+
+/// Friction that falls from 0.12 to 0.06: no law of one level is left.
+#[test]
+fn friction_that_falls_is_seen() {
+    let comparison = judged("bad_120.csv", Quantity::Velocity, "m/s");
+    let left: Vec<&str> = comparison.not_excluded().map(Identification::law).collect();
+    for simple in ["viscous", "coulomb", "coulomb_viscous"] {
+        assert!(!left.contains(&simple), "{comparison}");
+    }
+    assert!(left.iter().any(|law| law.starts_with("stribeck")), "{comparison}");
+    let preferred = comparison.preferred();
+    assert!(holds(preferred, "sliding_mu", 0.06) && holds(preferred, "static_mu", 0.12), "{comparison}");
+    assert!(comparison.signs().iter().any(fmm_identify::Sign::is_plain));
+}
+
+/// The same friction in five times the noise: nothing is decided, and laws that fall are named.
+#[test]
+fn friction_that_may_fall_is_left_open() {
+    let comparison = judged("und_122.csv", Quantity::Velocity, "m/s");
+    assert!(!comparison.is_decided(), "{comparison}");
+    assert!(comparison.warnings().contains(&Warning::Undecided));
+    assert!(comparison.not_excluded().any(|found| found.law().starts_with("stribeck")), "{comparison}");
+}
+
+/// Presliding too small to be seen: the level is that of the truth, 1.2 N.
+#[test]
+fn presliding_that_cannot_be_seen_does_no_harm() {
+    let comparison = judged("dahlt_60.csv", Quantity::Velocity, "m/s");
+    assert!(holds(comparison.preferred(), "friction_force", 1.2), "{comparison}");
+}
+
+/// An encoder that ends in rest: its thousand samples of rest count as a few.
+#[test]
+fn a_rest_without_noise_counts_once() {
+    let comparison = judged("enc1.csv", Quantity::Displacement, "m");
+    let summary = &comparison.records()[0];
+    assert!(summary.samples < 1400 && summary.dead_rest.is_some_and(|time| (1.3..1.4).contains(&time)), "{summary:?}");
+    let simple = comparison.identifications().iter().find(|found| found.law() == "coulomb_viscous").unwrap();
+    assert!((simple.finding("mu").unwrap().value() - 0.25).abs() < 5e-4, "{comparison}");
+    assert!((simple.finding("damping").unwrap().value() - 0.275).abs() < 0.03, "{comparison}");
+    let right = comparison.is_decided() && holds(comparison.preferred(), "mu", 0.25);
+    let loud = !comparison.is_decided() && comparison.not_excluded().any(|found| found.law() == "coulomb_viscous");
+    assert!(right || loud, "{comparison}");
+    assert!(comparison.warnings().iter().any(|warning| matches!(warning, Warning::Rounded { .. })), "{comparison}");
+}
+
+#[test]
+fn slow_drift_is_fitted_beside_the_motion() {
+    let comparison = judged("drift_50um.csv", Quantity::Displacement, "m");
+    assert!(comparison.warnings().contains(&Warning::Drift), "{comparison}");
+    assert!(holds(comparison.preferred(), "mu", 0.25), "{comparison}");
+    assert!(holds(comparison.preferred(), "damping", 0.275), "{comparison}");
+}
+
+#[test]
+fn hum_is_not_the_machine() {
+    let comparison = judged("hum7.csv", Quantity::Velocity, "m/s");
+    assert!((comparison.records()[0].frequency - 2.198).abs() < 0.02, "{comparison}");
+    assert!(comparison.warnings().iter().any(|warning| matches!(warning, Warning::Hum { .. })), "{comparison}");
+    assert!(holds(comparison.preferred(), "mu", 0.25), "{comparison}");
+}
+
+#[test]
+fn the_first_of_two_releases_is_used() {
+    let comparison = judged("two_v.csv", Quantity::Velocity, "m/s");
+    let second = |warning: &Warning| matches!(warning, Warning::FurtherRelease { time } if (1.9..2.1).contains(time));
+    assert!(comparison.warnings().iter().any(second), "{comparison}");
+    assert!(holds(comparison.preferred(), "mu", 0.25), "{comparison}");
+}
+
+fn pendulum(stride: usize, laws: &[&str]) -> Comparison {
+    let reader = csv::CsvReader::default().channel(Column::Name("encoder_counts".to_owned()));
+    let reader = reader.time(Column::Name("t_s".to_owned())).quantity(Quantity::Displacement).unit("1");
+    let record = reader.read(path("small_pendulum_10khz.csv")).unwrap().record.scaled(1.570_796_3e-4, "rad").unwrap();
+    let values = record.values().iter().copied().step_by(stride).collect();
+    let record =
+        Record::new(record.start(), record.interval() * stride as f64, values, Quantity::Displacement, "rad").unwrap();
+    let decay = RingDown::prepare(&record, &Preparation::default().from(0.35)).unwrap();
+    let machine = Machine::per_unit_mass().with_restoring(Restoring::sine(1.0).unwrap());
+    let candidates: Vec<Candidate> = laws.iter().map(|law| Candidate::named(law).unwrap()).collect();
+    compare(&machine, &[decay], &candidates).unwrap()
+}
+
+/// The law with presliding is preferred at either rate, and another candidate moves the distance of the two by little.
+#[test]
+fn presliding_is_seen_however_often_it_is_sampled() {
+    let distance = |comparison: &Comparison| comparison.scores()[0] - comparison.scores()[1];
+    let fast = pendulum(1, &["coulomb", "dahl"]);
+    let slow = pendulum(10, &["coulomb", "dahl"]);
+    let with_another = pendulum(10, &["coulomb", "dahl", "viscous"]);
+    for comparison in [&fast, &slow, &with_another] {
+        assert!(comparison.is_decided() && comparison.preferred().law() == "dahl", "{comparison}");
+    }
+    let ratio = distance(&fast) / distance(&slow);
+    assert!((0.5..2.0).contains(&ratio), "misfits of {} and {}", distance(&fast), distance(&slow));
+    assert_eq!(distance(&slow), distance(&with_another));
+}
+
+/// What is held of one law is not held of the others, and a search that has no time reports what it has.
+#[test]
+fn a_search_holds_by_law_and_ends_in_time() {
+    let decay = RingDown::prepare(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
+    let holding = Search::default().holding(Some("stribeck"), "exponent", 1.0);
+    let comparison = search(&machine(), std::slice::from_ref(&decay), &holding).unwrap();
+    assert!(comparison.identifications().iter().any(|found| found.law() == "stribeck, exponent = 1"), "{comparison}");
+    let hurried = Search::default().within(std::time::Duration::ZERO);
+    let comparison = search(&machine(), &[decay], &hurried).unwrap();
+    assert!(!comparison.is_complete() && comparison.warnings().contains(&Warning::TimeLimit), "{comparison}");
+    assert_eq!(comparison.identifications().len(), 3);
+}
+
+/// The result is the same on any number of threads.
+#[test]
+fn threads_change_nothing() {
+    let decay = RingDown::prepare(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
+    let on = |threads: usize| {
+        search(&machine(), std::slice::from_ref(&decay), &Search::default().on_threads(threads)).unwrap().to_string()
+    };
+    assert_eq!(on(1), on(3));
+}
