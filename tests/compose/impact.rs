@@ -407,8 +407,8 @@ fn known_values_pass_on_their_uncertainty() {
     // A hammer that says nothing is one whose gain is free, and a better one helps a little.
     let known_to = |u: f64| ImpactOptions::default().with_force_gain_uncertainty(u).unwrap();
     let (nothing, free) = (u(&exact, &known_to(100.0)), u(&exact, &ImpactOptions::default().free("force_gain")));
-    // Two directions of derivative find the minimum in other steps.
-    assert!((nothing / free - 1.0).abs() < 1e-2, "{nothing} and {free}");
+    // Of two blows it still says how much one is more than the other.
+    assert!(nothing < free && nothing > 0.9 * free, "{nothing} and {free}");
     let [poor, good] = [0.1, 0.0].map(|calibration| u(&exact, &known_to(calibration)));
     assert!(good < poor && poor < nothing, "{good}, {poor}, {nothing}");
 }

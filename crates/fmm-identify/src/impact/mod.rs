@@ -6,6 +6,7 @@ mod derivatives;
 mod identification;
 mod lines;
 mod machine;
+mod motion;
 mod options;
 mod parameters;
 mod problem;

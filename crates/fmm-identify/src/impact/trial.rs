@@ -4,25 +4,19 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use fmm_frf::{Baseline, Channel, FrfError, Hit, Pulse};
-use fmm_record::{Quantity, Record, noise, quantisation_step, saturation, spikes};
+use fmm_record::{Quantity, Record, noise, quantisation_step, saturation};
 
+use crate::impact::motion::{Motion, bridged};
 use crate::impact::sampled_pulse::SampledPulse;
 use crate::{Estimated, IdentifyError};
 
 /// Fewer samples than this are too few to know an offset from.
-const FEWEST_QUIET: usize = 16;
+pub(crate) const FEWEST_QUIET: usize = 16;
 /// A pulse stands this far above the noise (standard deviations),
 const SIGNIFICANT: f64 = 20.0;
-/// ends where the force has fallen to this, or to that share of its level,
+/// and ends where the force has fallen to this, or to that share of its level.
 const SPENT: f64 = 2.0;
 const SPENT_SHARE: f64 = 1e-6;
-/// and a motion is seen that far above it, or this share of its largest velocity.
-const SEEN: f64 = 6.0;
-const SEEN_SHARE: f64 = 1e-3;
-/// Share of an offset that may be rounding.
-const ROUNDING: f64 = 1e-12;
-/// A motion is followed for this share of its duration after it was last seen.
-const AFTER: f64 = 0.1;
 
 /// A blow: the force of its pulse and the velocity that it caused.
 ///
@@ -225,7 +219,7 @@ fn require_together(force: &Record, velocity: &Record) -> Result<(), IdentifyErr
 }
 
 /// Mean of the samples with its uncertainty if they have white noise of this standard deviation.
-fn mean<'a>(samples: impl Iterator<Item = &'a f64>, deviation: f64) -> Estimated {
+pub(crate) fn mean<'a>(samples: impl Iterator<Item = &'a f64>, deviation: f64) -> Estimated {
     let (sum, count) = samples.fold((0.0, 0.0), |(sum, count), sample| (sum + sample, count + 1.0));
     Estimated { value: sum / count, uncertainty: deviation / f64::sqrt(count) }
 }
@@ -280,65 +274,6 @@ impl Blow {
         }
         let hits = windows.into_iter().map(|window| window.start - begin..window.end - begin).collect();
         Ok(Self { begin, force: kept, hits, offset, pulse })
-    }
-}
-
-/// The values of a record with its spikes bridged by straight lines, and how many samples those are.
-fn bridged(record: &Record) -> (Vec<f64>, usize) {
-    let (mut values, mut count) = (record.values().to_vec(), 0);
-    for spike in spikes(record) {
-        let (before, after) = (spike.index - 1, (spike.index + spike.count).min(values.len() - 1));
-        let (from, to) = (values[before], values[after]);
-        for (step, value) in (1..).zip(&mut values[spike.index..after]) {
-            *value = from + (to - from) * f64::from(step) / (after - before) as f64;
-        }
-        count += spike.count;
-    }
-    (values, count)
-}
-
-/// The velocity that a blow causes.
-struct Motion {
-    velocity: Vec<f64>,
-    offset: Estimated,
-    noise: f64,
-    speed: f64,
-    /// Index of the last sample in which motion is seen, if it ends in the record.
-    last: Option<usize>,
-    /// Index after the last sample that may move.
-    end: usize,
-}
-
-impl Motion {
-    fn of(mut velocity: Vec<f64>, begin: usize) -> Result<Self, IdentifyError> {
-        let length = velocity.len();
-        // A converter step counts as the noise of its rounding.
-        let noise = noise(&velocity).hypot(quantisation_step(&velocity).unwrap_or(0.0) / 12f64.sqrt());
-        let before = velocity[..begin].iter();
-        // A machine that was not watched before the blow is at rest again at the end, if anywhere.
-        let rough = if begin >= FEWEST_QUIET {
-            mean(before, noise)
-        } else {
-            mean(velocity[length - length / 10 - 1..].iter(), noise)
-        };
-        let speed_about = |offset: f64| velocity[begin..].iter().fold(0.0f64, |most, v| most.max((v - offset).abs()));
-        // The mean of equal numbers is off by rounding.
-        let seen = (SEEN * noise).max(SEEN_SHARE * speed_about(rough.value)).max(ROUNDING * rough.value.abs());
-        let last = (begin..length).rev().find(|&i| (velocity[i] - rough.value).abs() > seen);
-        let last = last.ok_or(IdentifyError::NoMotion { value: rough.value, unit: "m/s".to_owned() })?;
-        let follow = ((AFTER * (last - begin) as f64) as usize).max(FEWEST_QUIET);
-        let end = (last + 1 + follow).min(length);
-        let is_at_rest = length - end >= FEWEST_QUIET;
-        let after = if is_at_rest { end..length } else { length..length };
-        if begin.max(after.len()) < FEWEST_QUIET {
-            return Err(IdentifyError::NoQuiet { channel: Channel::Response, samples: begin, needed: FEWEST_QUIET });
-        }
-        let offset = mean(velocity[..begin].iter().chain(&velocity[after]), noise);
-        let speed = speed_about(offset.value);
-        for v in &mut velocity {
-            *v -= offset.value;
-        }
-        Ok(Self { velocity, offset, noise, speed, last: is_at_rest.then_some(last), end })
     }
 }
 
