@@ -285,7 +285,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         let growth = change(error);
         let (before, error_before) = std::mem::replace(&mut self.last, (length, error));
         let trend = if before.is_finite() { length / before * change(error) / change(error_before) } else { 1.0 };
-        if trend < 1.0 { growth * trend } else { growth }
+        growth * trend.clamp(0.5, 1.0)
     }
 
     /// Chooses the method of the next step by what this one of `length` has shown.
