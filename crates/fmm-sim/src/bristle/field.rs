@@ -19,6 +19,9 @@ const DIFFERENCE: f64 = 1e-7;
 /// The part of its bound within which a state is near zero.
 const NEAR_ZERO: f64 = 1e-4;
 
+/// A speed (m/s) beyond all that a law may depend on.
+const FAST: f64 = 1e6;
+
 /// The right-hand side of (x, v, z)′.
 ///
 /// Everything is evaluated as if the swing went in the positive direction, with u and z of the other direction mirrored:
@@ -127,12 +130,14 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
             if self.saturated[index] || !near {
                 continue;
             }
-            let mut rate = |factor: f64| {
+            let mut rate = |factor: f64, speed: D| {
                 self.mirrored[index] = bound * factor;
                 self.law.rate(speed, &self.mirrored, branch.regime, &mut self.rate);
                 self.rate[index].value()
             };
-            if rate(1.0 - tolerance) >= 0.0 && rate(1.0 + tolerance) <= 0.0 {
+            // A bound that attracts at one speed only is left when the speed changes.
+            let mut attracts = |speed: D| rate(1.0 - tolerance, speed) >= 0.0 && rate(1.0 + tolerance, speed) <= 0.0;
+            if attracts(speed) && attracts(D::from(FAST)) {
                 self.saturated[index] = true;
                 state[2 + index] = bound * branch.direction.sign();
                 found = true;

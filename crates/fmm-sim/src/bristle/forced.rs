@@ -154,3 +154,18 @@ fn sampled_forces_move_lugre_contacts_without_false_events() {
 fn sampled_forces_move_bouc_wen_contacts_without_false_events() {
     check_random("Bouc-Wen", bouc_wen, true);
 }
+
+/// A counterface too slow to tell the level of a LuGre contact from its static one drags the state to its bound within
+/// rounding. A blow then makes it fast: the state must fall to the sliding level.
+#[test]
+fn a_state_at_its_bound_leaves_it_with_the_speed() {
+    let machine = Oscillator::new(1.0, 1e6).unwrap().with_damping(Damping::linear(500.0).unwrap());
+    let law = LuGre::new(0.2, 0.3, 10.0, 2.0, 1e5, 0.0, 0.0).unwrap();
+    let blow = Excitation::half_sine(-1e5, 0.002).unwrap().delayed(3.0).unwrap();
+    let scenario = Scenario::new(machine, law, 5.0).unwrap().driven_by(Excitation::belt(5e-5).unwrap());
+    let sampling = Sampling::uniform(1e-4, 30_020).unwrap();
+    let motion = Bristle::default().run(&scenario.driven_by(blow), &sampling).unwrap();
+    let [held, slid] = [29_999, 30_008].map(|index| motion.states()[0].values()[index] * 1e5);
+    assert!((held + 0.3).abs() < 1e-6, "a coefficient of {held}");
+    assert!((slid + 0.2).abs() < 1e-3, "a coefficient of {slid}");
+}

@@ -71,7 +71,9 @@ pub(super) struct Run<'a, D, L> {
     pub(super) tolerance: f64,
     /// Stiffness of spring and bristles together, per mass (1/s²), at the beginning of the swing.
     pub(super) stiffness: f64,
-    /// Length of the first step of the swing before (s), and whether that of this one is still to be found.
+    /// Length that a first step would have by the stiffness (s), the part of it that the last first step from rest has
+    /// had, and whether that of this swing is still to be found.
+    first: f64,
     opening: f64,
     opens: bool,
     steps: usize,
@@ -99,6 +101,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             proposed: f64::INFINITY,
             tolerance,
             stiffness: 0.0,
+            first: 0.0,
             opening: f64::INFINITY,
             opens: false,
             steps: 0,
@@ -165,7 +168,11 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             }
         }
         self.field.begin(self.branch, &self.step.begin);
-        self.field.saturate(self.branch, &mut self.step.begin, self.tolerance.max(4.0 * f64::EPSILON));
+        if self.field.saturate(self.branch, &mut self.step.begin, self.tolerance.max(4.0 * f64::EPSILON)) {
+            // What has kept the steps short is over.
+            self.proposed = SMOOTH_ANGLE / self.slow(piece);
+            self.last = (f64::INFINITY, 1.0);
+        }
         let at_zero = self.step.begin[1].value() == self.field.belt.value();
         let room = limit - self.time;
         let mut length = self.first_length().min(room);
@@ -245,8 +252,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             }
             let growth = self.growth(length, solved.error);
             self.proposed = length * if solved.quick { growth } else { growth.min(1.0) };
-            if self.opens {
-                (self.opening, self.opens) = (length, false);
+            if std::mem::take(&mut self.opens) && at_zero {
+                self.opening = length / self.first;
             }
             self.choose(solved, length, piece, limit);
             return self.finish(length, 0.0, limit, piece);
@@ -278,7 +285,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         let growth = change(error);
         let (before, error_before) = std::mem::replace(&mut self.last, (length, error));
         let trend = if before.is_finite() { length / before * change(error) / change(error_before) } else { 1.0 };
-        if trend < 1.0 { growth * trend } else { growth }
+        growth * trend.clamp(0.5, 1.0)
     }
 
     /// Chooses the method of the next step by what this one of `length` has shown.
@@ -301,15 +308,20 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         self.stiff_steps += 1;
         // What varies at the limit of stability is noise.
         self.variation = self.variation.max(if at_limit { 0.0 } else { solved.variation / length });
-        let waves = piece.waves().iter().map(|wave| wave.angular.value());
-        let slow = waves.fold(self.field.oscillator.natural_angular_frequency().value(), f64::max);
-        let smooth = (SMOOTH_ANGLE / slow).min(SMOOTH_CHANGE / self.variation).min(limit - self.time - length);
+        let smooth =
+            (SMOOTH_ANGLE / self.slow(piece)).min(SMOOTH_CHANGE / self.variation).min(limit - self.time - length);
         if self.stiff_steps > 2 && solved.stiffness / length * smooth > STIFF {
             self.implicit = true;
             self.collocation.forget();
             self.proposed = FIRST * length;
             (self.stiff_steps, self.variation, self.last) = (0, 0.0, (f64::INFINITY, 1.0));
         }
+    }
+
+    /// Angular frequency (rad/s) of the machine, or of the fastest wave.
+    fn slow(&self, piece: &Piece<D>) -> f64 {
+        let waves = piece.waves().iter().map(|wave| wave.angular.value());
+        waves.fold(self.field.oscillator.natural_angular_frequency().value(), f64::max)
     }
 
     fn count_step(&mut self) -> Result<(), SimulationError> {
@@ -336,7 +348,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         let stiffness = jacobian[size].abs() + bristles.sum::<f64>();
         self.stiffness = stiffness;
         let length = if stiffness > 0.0 { 0.3 / stiffness.sqrt() } else { f64::MAX };
-        length.min(1.5 * self.opening)
+        self.first = length;
+        length * (1.5 * self.opening).min(1.0)
     }
 
     /// Writes what the step of `length` passes and goes to its end, or a part `correction` of it further.
