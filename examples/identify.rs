@@ -203,7 +203,8 @@ struct Held {
 
 fn held(arguments: &Arguments) -> Result<Vec<Held>, Box<dyn Error>> {
     let parse = |held: &String| {
-        let (name, value) = held.split_once('=').ok_or("--hold wants NAME=VALUE or LAW.NAME=VALUE, such as exponent=2")?;
+        let (name, value) =
+            held.split_once('=').ok_or("--hold wants NAME=VALUE or LAW.NAME=VALUE, such as exponent=2")?;
         let value: f64 = value.trim().parse().map_err(|_| format!("--hold {held}: {value:?} is no number"))?;
         let (law, name) = match name.split_once('.') {
             Some((law, name)) => (Some(law.trim().to_owned()), name),
@@ -220,7 +221,8 @@ fn searched(arguments: &Arguments) -> Result<Search, Box<dyn Error>> {
         search = search.holding(law.as_deref(), &name, value);
     }
     if let Some(seconds) = arguments.time_limit {
-        let limit = Duration::try_from_secs_f64(seconds).map_err(|_| format!("--time-limit {seconds}: give seconds"))?;
+        let limit =
+            Duration::try_from_secs_f64(seconds).map_err(|_| format!("--time-limit {seconds}: give seconds"))?;
         search = search.within(limit);
     }
     Ok(search)

@@ -1,7 +1,9 @@
 //! The thing under test: what the crates say of a record when nothing is asked for.
 
-use fmm_identify::{Comparison, Finding, Identification, IdentifyError, Machine, Preparation, RingDown, Search, Warning};
 use fmm_identify::search;
+use fmm_identify::{
+    Comparison, Finding, Identification, IdentifyError, Machine, Preparation, RingDown, Search, Warning,
+};
 
 use super::law::Law;
 use super::{Case, Levels, Truth};

@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use fmm_fit::{Options, Progress};
 use fmm_friction::{
     AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, Hyperbolic,
-    Karnopp, LuGre, MakkarDixon, PowerLaw, RegularisedStribeck, Shifted, SpecialCase,
-    Stribeck, StribeckLorentzian, Viscous,
+    Karnopp, LuGre, MakkarDixon, PowerLaw, RegularisedStribeck, Shifted, SpecialCase, Stribeck, StribeckLorentzian,
+    Viscous,
 };
 use fmm_sim::Simulated;
 
@@ -122,8 +122,12 @@ impl Candidate {
         let viscous = |candidate: &Self| candidate.law.has_slope() || candidate.terms.has_linear_damping();
         let damped = viscous(self) <= viscous(other)
             && self.terms.has_quadratic_damping() <= other.terms.has_quadratic_damping();
-        damped && self.is_dry_case_of(other) && !(self.holds_as(other) && other.is_dry_case_of(self) && viscous(self) == viscous(other)
-            && self.terms.has_quadratic_damping() == other.terms.has_quadratic_damping())
+        damped
+            && self.is_dry_case_of(other)
+            && !(self.holds_as(other)
+                && other.is_dry_case_of(self)
+                && viscous(self) == viscous(other)
+                && self.terms.has_quadratic_damping() == other.terms.has_quadratic_damping())
     }
 
     /// Whether the two are the same but for damping of the machine.
@@ -152,9 +156,7 @@ impl Candidate {
         }
         let catalogue = Self::catalogue();
         let allowed = |case: &SpecialCase| {
-            let free = |(name, value): &(&str, f64)| {
-                other.terms.held().all(|(held, at)| held != *name || at == *value)
-            };
+            let free = |(name, value): &(&str, f64)| other.terms.held().all(|(held, at)| held != *name || at == *value);
             case.needed().iter().all(free) && case.restricted().iter().all(|(name, value)| held(name) == Some(*value))
         };
         other.law.special_cases.iter().filter(|case| allowed(case)).any(|case| {

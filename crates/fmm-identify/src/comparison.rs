@@ -212,12 +212,16 @@ fn widen_for_other_laws(
     for other in 0..candidates.len() {
         let own_rank = identifications[preferred].fit().rank();
         let further = identifications[other].fit().rank().saturating_sub(own_rank);
-        if other == preferred || !judgement.is_left(other) || further == 0 && candidates[preferred].is_nested_in(&candidates[other]) {
+        if other == preferred
+            || !judgement.is_left(other)
+            || further == 0 && candidates[preferred].is_nested_in(&candidates[other])
+        {
             continue;
         }
         let is_general = candidates[preferred].is_nested_in(&candidates[other]);
         let told = identifications[preferred].told();
-        let weight = judgement.weight(other, further, candidates[preferred].differs_by_damping(&candidates[other]), told);
+        let weight =
+            judgement.weight(other, further, candidates[preferred].differs_by_damping(&candidates[other]), told);
         // Where the record does not decide, either law is as good as the other.
         let weight = if judgement.is_decided && is_general { weight } else { weight.max(0.5) };
         for (own, theirs) in identifications[preferred].common_findings(&identifications[other]) {
@@ -249,7 +253,8 @@ fn widen_for_other_laws(
     }
     // Several names of one quantity need one line: the one that is farthest from the fit.
     let last = warnings.pop();
-    let of_law = |warning: &Warning, law: &str| matches!(warning, Warning::DependsOnLaw { law: other, .. } if other == law);
+    let of_law =
+        |warning: &Warning, law: &str| matches!(warning, Warning::DependsOnLaw { law: other, .. } if other == law);
     if let Some(Warning::DependsOnLaw { law, .. }) = &last {
         warnings.retain(|warning| !of_law(warning, law));
     }
@@ -281,14 +286,14 @@ impl Comparison {
 
     /// Probability of a misfit as large as that of each law, beside the law that fits best, if the law were true (1), one per
     /// identification.
-    pub fn probabilities(&self) -> Vec<f64> {
-        self.judgement.standings.iter().map(|standing| standing.probability).collect()
+    pub fn probabilities(&self) -> &[f64] {
+        &self.judgement.probabilities
     }
 
     /// The misfit of each law beside the law that fits best in variances of the noise, with 2 for each parameter that is determined
     /// (1), one per identification. Only differences mean anything.
-    pub fn scores(&self) -> Vec<f64> {
-        self.judgement.standings.iter().map(|standing| standing.score).collect()
+    pub fn scores(&self) -> &[f64] {
+        &self.judgement.scores
     }
 
     /// What was looked for beside the simple laws, and how plain it is.

@@ -1,4 +1,4 @@
-//! Warnings about a record that is not the free vibration of one mode.
+//! Warnings about what is in a record besides the free vibration of one mode in white noise, and about what it leaves open.
 
 use std::fmt;
 
@@ -69,12 +69,17 @@ impl Warning {
             Self::Rounded { step, unit, rest } => {
                 write!(f, "the values are rounded to steps of {step:.2e} {unit}, which is more than their noise")?;
                 match rest {
-                    Some(time) => write!(f, "; they no longer change after {time:.3} s, so that a few of these samples tell all"),
+                    Some(time) => {
+                        write!(f, "; they no longer change after {time:.3} s, so that a few of these samples tell all")
+                    }
                     None => Ok(()),
                 }
             }
             Self::Drift => {
-                write!(f, "the zero of the instrument drifts slowly; a polynomial of degree 3 was fitted beside the motion")
+                write!(
+                    f,
+                    "the zero of the instrument drifts slowly; a polynomial of degree 3 was fitted beside the motion"
+                )
             }
             Self::GrowingNoise { floor, share, unit } => write!(
                 f,
@@ -94,6 +99,21 @@ impl Warning {
                 f,
                 "the record is in {unit}, of which no mass in kg makes a friction force in N, and no normal load a coefficient mu; give \
                  the scale of the instrument in metres"
+            ),
+            Self::DependsOnLaw { parameter, law, finding } => {
+                write!(
+                    f,
+                    "{parameter} depends on the law: {law}, which the record cannot exclude, gives {finding}; the standard \
+                 uncertainty was widened for that"
+                )
+            }
+            Self::TimeLimit => write!(
+                f,
+                "the time that was given ended before all laws were tried; what is reported is the best of those that were"
+            ),
+            Self::Undecided => write!(
+                f,
+                "the record does not decide between the laws that are left; the simplest that it bears well is shown as preferred"
             ),
             _ => Ok(()),
         }

@@ -47,8 +47,7 @@ pub(crate) fn with_drift(
             let product: f64 = direction.iter().zip(found.fit().residuals()).map(|(d, r)| d * r).sum();
             (square > 0.0).then(|| product * product / square)
         };
-        let slow: f64 =
-            DRIFT.iter().filter_map(|nuisance| energy(&|time| nuisance.at(time, start, end))).sum();
+        let slow: f64 = DRIFT.iter().filter_map(|nuisance| energy(&|time| nuisance.at(time, start, end))).sum();
         let frequency = decay.guess().frequency();
         let above: f64 = BETWEEN
             .iter()

@@ -204,7 +204,10 @@ impl Inputs<'_> {
             if let (Role::LevelAbove, Some(level)) = (role, level) {
                 value = value + level;
                 if self.machine.scale() != Scale::Unknown {
-                    derived.push((named(parameter, "friction_per_mass", self.acceleration).bounded(parameter.bounds()), value / gain));
+                    derived.push((
+                        named(parameter, "friction_per_mass", self.acceleration).bounded(parameter.bounds()),
+                        value / gain,
+                    ));
                 }
             }
             let Some(to_force) = to_force else { continue };
@@ -252,7 +255,10 @@ pub(crate) fn findings(
             index >= layout.shared,
         )
         .at_bound(
-            Some(estimate).filter(|estimate| estimate.status().is_at_bound()).and(covariance.relaxed(index)).map(f64::sqrt),
+            Some(estimate)
+                .filter(|estimate| estimate.status().is_at_bound())
+                .and(covariance.relaxed(index))
+                .map(f64::sqrt),
             covariance.degrees_of_freedom(),
         )
     });

@@ -471,7 +471,8 @@ impl Identification {
         let products: Vec<f64> =
             columns.iter().map(|column| column.iter().zip(&*direction).map(|(a, d)| a * d).sum()).collect();
         for (i, column) in known.iter().zip(&columns) {
-            let share: f64 = known.iter().zip(&products).map(|(j, product)| unit(*i, *j).unwrap_or(0.0) * product).sum();
+            let share: f64 =
+                known.iter().zip(&products).map(|(j, product)| unit(*i, *j).unwrap_or(0.0) * product).sum();
             direction.iter_mut().zip(column).for_each(|(d, a)| *d -= share * a);
         }
         Some(())
@@ -482,9 +483,10 @@ impl Identification {
     pub(crate) fn damping_would_be_negative(&self) -> bool {
         /// Standard uncertainties by which it would be negative.
         const PLAIN: f64 = 2.33;
-        let Some(index) = self.fit.estimates().iter().position(|estimate| estimate.name() == LINEAR) else { return false };
-        self.fit.estimates()[index].status().is_at_bound()
-            && self.pull_at_bound.is_some_and(|pull| pull < -PLAIN)
+        let Some(index) = self.fit.estimates().iter().position(|estimate| estimate.name() == LINEAR) else {
+            return false;
+        };
+        self.fit.estimates()[index].status().is_at_bound() && self.pull_at_bound.is_some_and(|pull| pull < -PLAIN)
     }
 
     /// By how much this fit is worse than that by `other`, in variances of the noise that the residuals of the other show in the
@@ -522,7 +524,8 @@ impl Identification {
             return ["damping", LINEAR].iter().find_map(|name| self.finding(name)).into_iter().collect();
         };
         let unit = sliding.parameter().unit();
-        let at_rest = self.family.fitted().filter(|parameter| matches!(parameter.role(), Role::LevelAbove | Role::Excess));
+        let at_rest =
+            self.family.fitted().filter(|parameter| matches!(parameter.role(), Role::LevelAbove | Role::Excess));
         let at_rest = at_rest.filter_map(|parameter| {
             let quantities = ["mu", "friction_force", "friction_per_mass"];
             let names = quantities.map(|quantity| named(parameter.parameter(), quantity, "").name().to_owned());

@@ -4,22 +4,16 @@ use fmm_fit::f_tail;
 
 use crate::{Candidate, Identification};
 
-/// What the records say of one law, beside the law that fits them best.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Standing {
-    /// D, by how much it fits worse, in variances of the noise (1).
-    pub(crate) misfit: f64,
-    /// Probability of a misfit as large if this law were the true one (1).
-    pub(crate) probability: f64,
-    /// D + 2 k, by which laws with as many parameters and more are ranked (1).
-    pub(crate) score: f64,
-}
-
-/// Which laws are left, and which of them is preferred.
+/// What the records say of each of several laws beside the one that fits them best, which laws are left, and which of them is
+/// preferred.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Judgement {
-    /// One per law.
-    pub(crate) standings: Vec<Standing>,
+    /// D of each law, by how much it fits worse than the best, in variances of the noise (1).
+    misfits: Vec<f64>,
+    /// Probability of a misfit as large if that law were the true one (1).
+    pub(crate) probabilities: Vec<f64>,
+    /// D + 2 k, by which laws with as many parameters and more are ranked (1).
+    pub(crate) scores: Vec<f64>,
     /// Place of the preferred law.
     pub(crate) preferred: usize,
     /// Whether no rival is left.
@@ -50,23 +44,31 @@ impl Judgement {
     pub(crate) fn of(candidates: &[Candidate], identifications: &[Identification]) -> Option<Self> {
         let floor = |found: &Identification| found.fit().sum_of_squares().max(found.floor());
         let best = identifications.iter().min_by(|a, b| floor(a).total_cmp(&floor(b)))?;
-        let standings: Vec<Standing> = identifications.iter().map(|found| Standing::of(found, best)).collect();
-        let bears = |i: &usize| standings[*i].probability >= DOUBTED;
         let rank = |i: usize| identifications[i].fit().rank();
-        let preferred = (0..standings.len()).filter(bears).min_by(|&a, &b| {
-            let (near, far) = (standings[a].misfit, standings[b].misfit);
+        let standings = identifications.iter().map(|found| {
+            let (misfit, freedom) = found.misfit_beside(best);
+            let further = best.fit().rank().saturating_sub(found.fit().rank()).max(1) as f64;
+            let probability = f_tail(misfit / further, further, freedom).unwrap_or(0.0);
+            (misfit, if misfit > 0.0 { probability } else { 1.0 })
+        });
+        let (misfits, probabilities): (Vec<f64>, Vec<f64>) = standings.unzip();
+        let scores = misfits.iter().enumerate().map(|(i, misfit)| misfit + 2.0 * rank(i) as f64).collect();
+        let bears = |i: &usize| probabilities[*i] >= DOUBTED;
+        let preferred = (0..misfits.len()).filter(bears).min_by(|&a, &b| {
+            let (near, far) = (misfits[a], misfits[b]);
             let by_misfit = if (near - far).abs() > 1e-6 { near.total_cmp(&far) } else { std::cmp::Ordering::Equal };
             let by_count = candidates[a].parameter_count().cmp(&candidates[b].parameter_count());
             rank(a).cmp(&rank(b)).then(by_misfit).then(by_count)
         })?;
-        let mut judgement = Self { standings, preferred, is_decided: true };
-        judgement.is_decided = !(0..judgement.standings.len()).any(|i| judgement.is_rival(i, candidates, identifications));
+        let mut judgement = Self { misfits, probabilities, scores, preferred, is_decided: true };
+        judgement.is_decided =
+            !(0..candidates.len()).any(|place| judgement.is_rival(place, candidates, identifications));
         Some(judgement)
     }
 
     /// Whether the records do not exclude the law at this place.
     pub(crate) fn is_left(&self, place: usize) -> bool {
-        self.standings[place].probability >= EXCLUDED
+        self.probabilities[place] >= EXCLUDED
     }
 
     /// Whether the law at this place may be true in the stead of the preferred one: not excluded, and no law that merely says the
@@ -81,29 +83,19 @@ impl Judgement {
             return identifications[place].fit().rank() < identifications[preferred].fit().rank();
         }
         let is_general = candidates[preferred].is_nested_in(&candidates[place]);
-        let says_the_same = (self.standings[place].misfit - self.standings[preferred].misfit).abs() < 1e-6
+        let says_the_same = (self.misfits[place] - self.misfits[preferred]).abs() < 1e-6
             && identifications[place].fit().rank() == identifications[preferred].fit().rank()
             && candidates[place].parameter_count() > candidates[preferred].parameter_count();
-        !is_general && !says_the_same && self.standings[place].score < self.standings[preferred].score + CLOSE
+        !is_general && !says_the_same && self.scores[place] < self.scores[preferred] + CLOSE
     }
 
     /// The weight of the law at `general`, of which the preferred one is a special case, beside the preferred one (1): the ratio of
     /// their probabilities by Akaike's criterion where the one has only a viscous part more, as every machine has some, and by
     /// Schwarz' for about `count` independent residuals otherwise.
     pub(crate) fn weight(&self, general: usize, further: usize, is_damping: bool, count: f64) -> f64 {
-        let gain = self.standings[self.preferred].misfit - self.standings[general].misfit;
+        let gain = self.misfits[self.preferred] - self.misfits[general];
         let penalty = if is_damping { 2.0 } else { count.max(8.0).ln() };
         let odds = (0.5 * (gain - further as f64 * penalty)).exp();
         odds / (1.0 + odds)
-    }
-}
-
-impl Standing {
-    fn of(found: &Identification, best: &Identification) -> Self {
-        let (misfit, freedom) = found.misfit_beside(best);
-        let (own, other) = (found.fit().rank(), best.fit().rank());
-        let further = other.saturating_sub(own).max(1) as f64;
-        let probability = if misfit > 0.0 { f_tail(misfit / further, further, freedom).unwrap_or(0.0) } else { 1.0 };
-        Self { misfit, probability, score: misfit + 2.0 * own as f64 }
     }
 }

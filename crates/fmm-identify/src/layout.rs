@@ -70,7 +70,8 @@ impl Layout {
             }
             let number = if decays.len() == 1 { String::new() } else { format!("_{}", index + 1) };
             let disturbances = decay.nuisances().iter().enumerate();
-            parameters.extend(disturbances.map(|(at, nuisance)| nuisance.parameter(at, &number, decay.record().unit())));
+            parameters
+                .extend(disturbances.map(|(at, nuisance)| nuisance.parameter(at, &number, decay.record().unit())));
         }
         for (name, value) in terms.held() {
             let known = || parameters.iter().map(Parameter::name).collect::<Vec<_>>().join(", ");

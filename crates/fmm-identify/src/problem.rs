@@ -204,11 +204,18 @@ impl<'a> RingDownProblem<'a> {
         let count = self.decays[record].record().len();
         let offset = self.offset(record, p);
         let mut model = vec![0.0; count];
-        self.simulate(self.law().plain, record, p, 0, std::slice::from_ref(&(0..count)), |_, samples, inside, simulated| {
-            for (out, value) in model[samples].iter_mut().zip(&simulated.values()[inside]) {
-                *out = value + offset;
-            }
-        })?;
+        self.simulate(
+            self.law().plain,
+            record,
+            p,
+            0,
+            std::slice::from_ref(&(0..count)),
+            |_, samples, inside, simulated| {
+                for (out, value) in model[samples].iter_mut().zip(&simulated.values()[inside]) {
+                    *out = value + offset;
+                }
+            },
+        )?;
         for (size, shape) in self.disturbances(record, p) {
             model.iter_mut().zip(shape).for_each(|(out, shape)| *out += size * shape);
         }
@@ -396,8 +403,11 @@ impl<'a> RingDownProblem<'a> {
         let offset = self.offset(record, fit.values());
         let decay = &self.decays[record];
         let measured = decay.kept().iter().flat_map(|range| &decay.record().values()[range.clone()]);
-        let mut signal: Vec<f64> =
-            fit.residuals()[rows].iter().zip(measured).map(|(residual, measured)| residual + measured - offset).collect();
+        let mut signal: Vec<f64> = fit.residuals()[rows]
+            .iter()
+            .zip(measured)
+            .map(|(residual, measured)| residual + measured - offset)
+            .collect();
         for (size, shape) in self.disturbances(record, fit.values()) {
             let kept = decay.kept().iter().flat_map(|range| &shape[range.clone()]);
             signal.iter_mut().zip(kept).for_each(|(value, shape)| *value -= size * shape);
@@ -462,9 +472,16 @@ impl Residuals for RingDownProblem<'_> {
 
     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
         for (record, base) in self.bases() {
-            self.simulate(self.law().plain, record, p, 0, self.decays[record].kept(), |before, samples, inside, simulated| {
-                self.write_residuals(record, base + before, p, samples, &simulated.values()[inside], residuals);
-            })?;
+            self.simulate(
+                self.law().plain,
+                record,
+                p,
+                0,
+                self.decays[record].kept(),
+                |before, samples, inside, simulated| {
+                    self.write_residuals(record, base + before, p, samples, &simulated.values()[inside], residuals);
+                },
+            )?;
         }
         Ok(())
     }
@@ -486,17 +503,24 @@ impl Residuals for RingDownProblem<'_> {
             for first in (0..self.layout.directions()).step_by(DIRECTIONS) {
                 let carried = (self.layout.directions() - first).min(DIRECTIONS);
                 let kept = self.decays[record].kept();
-                self.simulate(self.law().with_derivatives, record, p, first, kept, |before, samples, inside, simulated| {
-                    if first == 0 && !residuals.is_empty() {
-                        let values = &simulated.values()[inside.clone()];
-                        self.write_residuals(record, base + before, p, samples, values, residuals);
-                    }
-                    for direction in 0..carried {
-                        let Some(partial) = simulated.partial(direction) else { continue };
-                        let start = elements + (first + direction) * rows + before;
-                        jacobian[start..start + inside.len()].copy_from_slice(&partial[inside.clone()]);
-                    }
-                })?;
+                self.simulate(
+                    self.law().with_derivatives,
+                    record,
+                    p,
+                    first,
+                    kept,
+                    |before, samples, inside, simulated| {
+                        if first == 0 && !residuals.is_empty() {
+                            let values = &simulated.values()[inside.clone()];
+                            self.write_residuals(record, base + before, p, samples, values, residuals);
+                        }
+                        for direction in 0..carried {
+                            let Some(partial) = simulated.partial(direction) else { continue };
+                            let start = elements + (first + direction) * rows + before;
+                            jacobian[start..start + inside.len()].copy_from_slice(&partial[inside.clone()]);
+                        }
+                    },
+                )?;
             }
             if self.decays[record].fixed_offset().is_none() {
                 let start = elements + self.layout.directions() * rows;

@@ -86,7 +86,8 @@ impl Comparison {
                 format!("{} = {}{interval}", finding.parameter().name(), finding.quantity())
             })
             .collect();
-        let found = if found.is_empty() { "no friction or damping that it determines".to_owned() } else { found.join("; ") };
+        let found =
+            if found.is_empty() { "no friction or damping that it determines".to_owned() } else { found.join("; ") };
         let others: Vec<&str> =
             self.not_excluded().map(Identification::law).filter(|law| *law != preferred.law()).collect();
         let sure = match (self.is_decided(), others.is_empty()) {
@@ -112,15 +113,14 @@ impl fmt::Display for Comparison {
         }
         writeln!(f, "\nLaws")?;
         let width = self.identifications().iter().map(|law| law.law().len()).max().unwrap_or(0);
-        let best = self.scores().into_iter().fold(f64::INFINITY, f64::min);
+        let best = self.scores().iter().copied().fold(f64::INFINITY, f64::min);
         writeln!(f, "  {:<width$}  rms residual  rank  half swings    rest from   misfit + 2 rank  probability", "")?;
-        let standings = self.scores().into_iter().zip(self.probabilities());
+        let standings = self.scores().iter().copied().zip(self.probabilities().iter().copied());
         for (law, (score, probability)) in self.identifications().iter().zip(standings) {
             let stop = law.motions().iter().find_map(crate::FittedMotion::stop_time);
             let stop = stop.map_or_else(|| "-".to_owned(), |time| format!("{time:.4} s"));
             let half_swings: usize = law.motions().iter().map(crate::FittedMotion::half_swings).sum();
-            let probability =
-                if probability < EXCLUDED { "excluded".to_owned() } else { format!("{probability:.3}") };
+            let probability = if probability < EXCLUDED { "excluded".to_owned() } else { format!("{probability:.3}") };
             writeln!(
                 f,
                 "  {:<width$}  {:>12.4e}  {:>4}  {half_swings:>11}  {stop:>11}  {:>16.1}  {probability:>11}",
@@ -136,7 +136,10 @@ impl fmt::Display for Comparison {
             writeln!(f, "  sign of {}: {times:.1} standard uncertainties", sign.addition)?;
         }
         if plain.is_empty() && !self.signs().is_empty() {
-            writeln!(f, "  looked for and not seen: friction that changes with speed, quadratic damping, presliding, a softening spring")?;
+            writeln!(
+                f,
+                "  looked for and not seen: friction that changes with speed, quadratic damping, presliding, a softening spring"
+            )?;
         }
         let preferred = self.preferred();
         let confidence = if self.is_decided() { "" } else { ", though the record does not decide" };

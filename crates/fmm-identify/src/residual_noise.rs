@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-
 use fmm_frf::{Complex64, RealTransform};
 
 use crate::autoregression::Autoregression;
@@ -101,7 +100,8 @@ impl ResidualNoise {
             return self.product(direction, direction) / square;
         }
         let count: usize = self.series.iter().map(|series| series.deviations.len()).sum();
-        let sum: f64 = self.series.iter().flat_map(|series| &series.deviations).map(|deviation| deviation * deviation).sum();
+        let sum: f64 =
+            self.series.iter().flat_map(|series| &series.deviations).map(|deviation| deviation * deviation).sum();
         sum / count.max(1) as f64
     }
 

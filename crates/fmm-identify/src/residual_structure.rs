@@ -117,9 +117,8 @@ impl Covariance {
             }
             // So many residuals tell no more than one.
             let alike = (sum / order as f64).max(1.0);
-            let influence: Vec<f64> = (0..columns[0].len())
-                .map(|row| columns.iter().map(|column| column[row]).sum())
-                .collect();
+            let influence: Vec<f64> =
+                (0..columns[0].len()).map(|row| columns.iter().map(|column| column[row]).sum()).collect();
             let told = (fit.residuals().len() as f64 / alike).min(2.0 * noise.ordinates_along(&influence));
             degrees_of_freedom = (told - fit.rank() as f64).max(1.5).min(independent);
         }

@@ -91,7 +91,8 @@ impl RingDown {
         let spikes = spikes(&cleaned);
         let kept = without(record.len(), spikes.iter().map(|spike| spike.index..spike.index + spike.count));
         let resolution = quantisation_step(record.values());
-        let dead_rest = resolution.and_then(|step| dead_rest(cleaned.values(), step, record.rate() / guess.frequency()));
+        let dead_rest =
+            resolution.and_then(|step| dead_rest(cleaned.values(), step, record.rate() / guess.frequency()));
         let kept = dead_rest.map_or_else(|| kept.clone(), |rest| counted_once(&kept, rest));
         let amplitudes = guess.amplitudes();
         let summary = RecordSummary {
@@ -205,7 +206,7 @@ impl RingDown {
         let kept: Vec<Range<usize>> = self.kept.iter().map(thin).filter(|range| !range.is_empty()).collect();
         let summary = RecordSummary { samples: kept.iter().map(Range::len).sum(), ..self.summary.clone() };
         let shapes = self.shapes.iter().map(|shape| shape.iter().copied().step_by(stride).collect()).collect();
-        Some(Self { record, kept, summary, shapes, ..self.clone() })
+        Some(Self { record, kept, shapes, summary, ..self.clone() })
     }
 
     /// Largest displacement and velocity of the motion, in the units of the record and its integral or derivative.

@@ -66,22 +66,24 @@ impl Search {
         let (name, own) = name.split_once(',').unwrap_or((name, ""));
         let mut candidate = Candidate::named(name)?;
         if let Some((parameter, value)) = own.split_once('=') {
-            let is_given = self.held.iter().any(|(law, held, _)| held == parameter.trim() && self.is_meant(law, &candidate));
+            let is_given =
+                self.held.iter().any(|(law, held, _)| held == parameter.trim() && is_meant(law.as_deref(), &candidate));
             if let (false, Ok(value)) = (is_given, value.trim().parse()) {
                 candidate = candidate.holding(parameter.trim(), value)?;
             }
         }
         for (law, parameter, value) in &self.held {
-            if self.is_meant(law, &candidate) && candidate.has_parameter(parameter) {
+            if is_meant(law.as_deref(), &candidate) && candidate.has_parameter(parameter) {
                 candidate = candidate.holding(parameter, *value)?;
             }
         }
         Ok(candidate)
     }
+}
 
-    fn is_meant(&self, law: &Option<String>, candidate: &Candidate) -> bool {
-        law.as_ref().is_none_or(|law| candidate.law_name() == law)
-    }
+/// Whether what is held of `law`, or of all if it is none, is meant for the `candidate`.
+fn is_meant(law: Option<&str>, candidate: &Candidate) -> bool {
+    law.is_none_or(|law| candidate.law_name() == law)
 }
 
 /// Laws of the first stage.
@@ -137,10 +139,10 @@ pub fn search_observed(
     }
     let run = Run { decays, ..run };
     let mut signs = run.signs(&found);
-    if run.asks_for_more(&found, &signs) {
+    if found.asks_for_more(&signs) {
         run.fit(search.candidates(&OF_SPEED)?, &signs, false, &mut found)?;
         let presliding = signs.iter().any(|sign| sign.addition == Addition::Presliding && sign.significance() > 2.0);
-        if presliding || run.is_structured(&found) {
+        if presliding || found.is_structured() {
             run.fit(search.candidates(&WITH_STATE)?, &signs, false, &mut found)?;
         }
     }
@@ -163,6 +165,20 @@ struct Found {
 }
 
 impl Found {
+    /// Whether the simple laws leave something in the residuals.
+    fn asks_for_more(&self, signs: &[Sign]) -> bool {
+        let held_back = |found: &Identification| found.damping_would_be_negative();
+        signs.iter().any(Sign::is_plain)
+            || self.is_structured()
+            || self.identification("coulomb_viscous").is_some_and(held_back)
+    }
+
+    /// Whether the residuals of the best law are alike where they should be noise.
+    fn is_structured(&self) -> bool {
+        let judgement = Judgement::of(&self.candidates, &self.identifications);
+        judgement.is_some_and(|judgement| self.identifications[judgement.preferred].structure().is_correlated())
+    }
+
     fn identification(&self, law: &str) -> Option<&Identification> {
         self.identifications.iter().find(|found| found.law() == law)
     }
@@ -244,19 +260,5 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
     fn signs(&self, found: &Found) -> Vec<Sign> {
         let base = found.identification("coulomb_viscous");
         base.and_then(|base| signs(base, self.decays).ok()).unwrap_or_default()
-    }
-
-    /// Whether the simple laws leave something in the residuals.
-    fn asks_for_more(&self, found: &Found, signs: &[Sign]) -> bool {
-        let held_back = |found: &Identification| found.damping_would_be_negative();
-        signs.iter().any(Sign::is_plain)
-            || self.is_structured(found)
-            || found.identification("coulomb_viscous").is_some_and(held_back)
-    }
-
-    /// Whether the residuals of the best law are alike where they should be noise.
-    fn is_structured(&self, found: &Found) -> bool {
-        let judgement = Judgement::of(&found.candidates, &found.identifications);
-        judgement.is_some_and(|judgement| found.identifications[judgement.preferred].structure().is_correlated())
     }
 }

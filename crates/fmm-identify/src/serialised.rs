@@ -157,8 +157,8 @@ impl Serialize for Comparison {
         document.serialize_field("not_excluded", &left)?;
         document.serialize_field("complete", &self.is_complete())?;
         document.serialize_field("signs", self.signs())?;
-        document.serialize_field("probabilities", &self.probabilities())?;
-        document.serialize_field("scores", &self.scores())?;
+        document.serialize_field("probabilities", self.probabilities())?;
+        document.serialize_field("scores", self.scores())?;
         document.serialize_field("models", self.identifications())?;
         match self.records() {
             [record] => document.serialize_field("preparation", record)?,

@@ -28,7 +28,9 @@ pub enum Addition {
 impl fmt::Display for Addition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::FallsWithSpeed(share) => write!(f, "friction that falls within {:.0} % of the largest speed", 100.0 * share),
+            Self::FallsWithSpeed(share) => {
+                write!(f, "friction that falls within {:.0} % of the largest speed", 100.0 * share)
+            }
             Self::QuadraticDamping => write!(f, "damping with the square of the speed"),
             Self::Presliding => write!(f, "presliding of the contact"),
             Self::SofteningSpring => write!(f, "a spring that softens"),
@@ -129,16 +131,16 @@ pub(crate) fn signs(base: &Identification, decays: &[RingDown]) -> Result<Vec<Si
 /// The sign for an `addition` whose small step makes the residuals `changed`; none if the parameters can follow it, or if the
 /// residuals are rounding.
 fn sign(base: &Identification, problem: &RingDownProblem<'_>, addition: Addition, changed: &[f64]) -> Option<Sign> {
+    /// What is left below this share is rounding and curvature.
+    const LEAST: f64 = 1e-6;
     let residuals = base.fit().residuals();
     let mut direction: Vec<f64> =
         changed.iter().zip(residuals).map(|(changed, residual)| (changed - residual) / STEP).collect();
     let before: f64 = direction.iter().map(|d| d * d).sum();
     base.take_out_parameters(problem, &mut direction)?;
     let square: f64 = direction.iter().map(|d| d * d).sum();
-    /// What is left below this share is rounding and curvature.
-    const LEAST: f64 = 1e-6;
     let noise = base.noise().product(&direction, &direction);
-    if !(square > LEAST * before && noise > 0.0) || !base.structure().is_noisy() {
+    if !(square > LEAST * before && noise > 0.0 && base.structure().is_noisy()) {
         return None;
     }
     let product: f64 = direction.iter().zip(residuals).map(|(d, r)| d * r).sum();

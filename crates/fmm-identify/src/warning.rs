@@ -381,7 +381,11 @@ impl fmt::Display for Warning {
                 "the residuals are structured, not noise: {residual:.3e} {unit} rms against {noise:.1e} {unit} of noise \
                  between samples, and neighbours are alike; the law leaves something out, and the standard \
                  uncertainties take it for noise{}",
-                if *inflation > 1.05 { format!(", {inflation:.1} times as large as if it were white") } else { String::new() }
+                if *inflation > 1.05 {
+                    format!(", {inflation:.1} times as large as if it were white")
+                } else {
+                    String::new()
+                }
             ),
             Self::PeriodDependsOnAmplitude { change } => write!(
                 f,
@@ -411,7 +415,11 @@ impl fmt::Display for Warning {
             | Self::GrowingNoise { .. }
             | Self::ColouredNoise { .. }
             | Self::NotSi { .. }
-            | Self::FurtherRelease { .. } | Self::SecondMode { .. } => self.write_of_disturbances(f),
+            | Self::TimeLimit
+            | Self::DependsOnLaw { .. }
+            | Self::Undecided
+            | Self::FurtherRelease { .. }
+            | Self::SecondMode { .. } => self.write_of_disturbances(f),
             Self::Spikes { count } => write!(f, "{count} isolated samples far off their neighbours were left out"),
             Self::AtBound { parameter, value } => {
                 write!(
@@ -433,13 +441,6 @@ impl fmt::Display for Warning {
                 f,
                 "{parameter} was held at the sliding level: a free decay depends on it only in where it stops"
             ),
-            Self::DependsOnLaw { parameter, law, finding } => {
-                write!(
-                    f,
-                    "{parameter} depends on the law: {law}, which the record cannot exclude, gives {finding}; the standard \
-                 uncertainty was widened for that"
-                )
-            }
             Self::OtherLaw { law, sentence } => write!(f, "{law}: {sentence}"),
             Self::NegativeDamping { law, parameter, value, unit } => write!(
                 f,
@@ -458,14 +459,6 @@ impl fmt::Display for Warning {
             | Self::SpikesBridged { .. }
             | Self::NotAtRest { .. }
             | Self::InputsNotPropagated { .. } => self.write_of_blows(f),
-            Self::TimeLimit => write!(
-                f,
-                "the time that was given ended before all laws were tried; what is reported is the best of those that were"
-            ),
-            Self::Undecided => write!(
-                f,
-                "the record does not decide between the laws that are left; the simplest that it bears well is shown as preferred"
-            ),
         }
     }
 }
