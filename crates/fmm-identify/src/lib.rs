@@ -2,7 +2,7 @@
 //! tell.
 //!
 //! A [`Record`](fmm_record::Record) of a freely vibrating machine is prepared ([`RingDown`]), what is known of the machine
-//! is stated ([`Machine`]), and one law ([`identify`]) or several ([`compare`]) are fitted to it by simulating the motion
+//! is stated ([`Machine`]), and as many laws as it asks for ([`search`]), several ([`compare`]) or one ([`identify`]) are fitted to it by simulating the motion
 //! exactly, through every reversal and stop.
 //!
 //! ```
@@ -38,7 +38,7 @@
 //! | Which start values do I give? | none; they come from the peaks and crossings of the record |
 //! | What can a free vibration show? | frequency, damping per mass and friction per mass; not the mass |
 //! | How do I get μ? | give a mass or a stiffness, and the normal load, with their uncertainties |
-//! | Which law? | [`compare`] tells, and says when the data do not decide; [`Candidate`] chooses one by its name |
+//! | Which law? | [`search`] tries as many as the record asks for, [`compare`] those given, and both say when it does not decide; [`Candidate`] chooses one by its name |
 //! | Damping of the machine beside the law? | known: [`Machine::with_damping`]; to be found: [`identify_with`] and [`Terms`] |
 //! | Several records? | give them together: the law and the frequency are shared, initial states and offsets are not |
 //! | How does damping depend on velocity? | [`decrements`] cycle by cycle, [`Windows`] a few cycles at a time |
@@ -68,6 +68,7 @@
 //! In proportion to samples and records. Of 1500 samples, on a Xeon at 2.8 GHz: 1 ms to prepare, 0.2 ms for Coulomb's law,
 //! 0.7 ms with a viscous part, 15 ms for Berger's; laws of more parameters are fitted from many starts, Stribeck's with a
 //! free exponent in 2 s. Hold what is known: it is quicker, and better determined. [`compare`] costs the sum of its candidates.
+//! [`search`] takes 30 ms of 3000 samples where a simple law is right, and about 1 s of processor time where it is not.
 //!
 //! # Features
 //!
