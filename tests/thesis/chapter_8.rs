@@ -25,7 +25,7 @@ fn targets() {
         assert!((level + 20.0 * order.log10()).abs() < 0.2, "{order}: {level} dB");
     }
 
-    // Noise of 0.5 mm/s leaves 0.01 % to 0.05 % of the coefficient, whichever the level.
+    // Noise of 0.5 mm/s leaves some 0.005 % of the coefficient, and more than that is allowed, whichever the level.
     for level in ["450", "1000", "1450"] {
         let mu = ours(chapter, "C15", &format!("μ from complex mobility, 1 Hz to 4 Hz, {level}"));
         assert!((mu / 0.113 - 1.0).abs() < 1e-3, "{level} N: {mu}");

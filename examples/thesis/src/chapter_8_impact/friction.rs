@@ -68,7 +68,7 @@ pub(super) fn add(
         let single = Observations::new(&single.collect::<Found<Vec<_>>>()?)?;
         rows.push(vec![
             level,
-            format!("{mu:.5} ± {u:.5}"),
+            format!("{mu:.6} ± {u:.6}"),
             format!("{:.2}", found.chi()),
             format!("{:.5} ± {:.5}", single.mean(), single.standard_deviation()),
             format!("{viscous:.4}"),
@@ -138,7 +138,7 @@ fn joint_fit(chapter: &mut Chapter, joint: &ImpactIdentification, rows: &mut Vec
     );
     rows.push(vec![
         "all, c free".to_owned(),
-        format!("{mu:.5} ± {u:.5}"),
+        format!("{mu:.6} ± {u:.6}"),
         format!("{:.2}", joint.chi()),
         "–".to_owned(),
         "–".to_owned(),
@@ -168,10 +168,12 @@ fn uncertainty(chapter: &mut Chapter, trials: &[ImpactTrial]) -> Found<()> {
     let inputs = u(&machine, &options)?;
     let calibration = u(&machine, &options.with_force_gain_uncertainty(HAMMER)?)?;
     chapter.finding(
-        "Three digits of a coefficient need a hammer and a damping that are known.",
+        "Three digits of a coefficient need a damping that is known; the height of a peak needs a hammer that is known as well.",
         format!(
             "One trial of 1000 N gives μ with a standard uncertainty of {noise:.2} % if all else is exact, {inputs:.2} % with the standard deviations \
-             of Table 2, and {calibration:.1} % with a hammer calibrated to an assumed {:.0} %: the peak is proportional to J and to 1/μ.",
+             of Table 2, and {calibration:.2} % with a hammer calibrated to an assumed {:.0} %: the fit sees the impulse in the motion. A peak is \
+             proportional to J and to 1/μ, and off by the {:.0} %.",
+            100.0 * HAMMER,
             100.0 * HAMMER
         ),
         &[],
