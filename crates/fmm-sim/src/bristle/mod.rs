@@ -1,4 +1,5 @@
-//! The engine for laws with an internal state: an implicit collocation method that stops at every kink.
+//! The engine for laws with an internal state: explicit steps where they are cheap, an implicit collocation method where
+//! the law is stiff, both ending at every kink.
 
 mod collocation;
 mod explicit;
@@ -9,6 +10,7 @@ mod guards_of_step;
 mod lu;
 mod modes;
 mod motion;
+mod pace;
 mod passage;
 mod path;
 mod radau;
@@ -25,8 +27,7 @@ use run::Run;
 
 pub(crate) use path::follow;
 
-/// Integrates laws with internal state, however stiff, with a collocation method of order 13 that ends a step wherever the
-/// motion has a kink.
+/// Integrates laws with internal state, however stiff, from kink to kink of the motion.
 ///
 /// ```text
 /// m x″ = f(t) − F_c(x′) − F_k(x) − N μ(u, z, z′),   z′ = r(u, z),   u = x′ − v_b,   z(0) = 0
@@ -34,10 +35,16 @@ pub(crate) use path::follow;
 ///
 /// The rates of bristles depend on |u|: they have a kink wherever the relative velocity u passes zero, and jump where an
 /// element of [`MaxwellSlip`](fmm_friction::MaxwellSlip) or [`Gms`](fmm_friction::Gms) begins to slide. Between such events
-/// the equations are smooth but stiff. Each step solves the 7 stages of the Radau IIA method together, by Newton's method
-/// with a Jacobian from differences of the law's own formulas; the method is L-stable, so that the stiffness of the
-/// bristles does not limit the step. Its polynomial gives the samples, and its Bernstein coefficients prove that no zero
-/// of u lies within a step, or show where: the step is then taken again to end there, by Newton's method on its length.
+/// the equations are smooth. While the bristles bend, steps are those of the explicit method of order 8 that
+/// [`RungeKutta`](crate::RungeKutta) uses. Once they only follow the sliding speed, which is where the equations are stiff,
+/// each step solves the 7 stages of the Radau IIA method of order 13 together, by Newton's method with a Jacobian from
+/// differences of the law's own formulas: the method is L-stable, so that the stiffness of the bristles does not limit the
+/// step. The two last stages of an explicit step measure the stiffness, and with it which of the two is cheaper. A state
+/// that has reached a bound which attracts it at any speed ([`Dahl`](fmm_friction::Dahl) and
+/// [`BoucWen`](fmm_friction::BoucWen) slide so) stays there until the swing ends.
+///
+/// The polynomial of a step gives the samples, and its Bernstein coefficients prove that no zero of u lies within the step,
+/// or show where: the step is then taken again to end there, by Newton's method on its length.
 ///
 /// A law with bristles has no stick: a contact that seems to hold creeps or swings on its bristles. At u = 0 all elements
 /// hold again ([`EventKind::Reversal`](crate::EventKind::Reversal)), and the direction comes from the load, never from the
@@ -45,12 +52,16 @@ pub(crate) use path::follow;
 /// contact within rounding, it rests ([`Mode::Stick`](crate::Mode::Stick)) until the force changes. The
 /// [`static_level`](crate::Event::static_level) of an event is the force that the bristles carry.
 ///
-/// `tolerance` bounds the error of a step, its inside included, relative to the motion since the last reversal. Steps are
+/// `tolerance` bounds the error of a step, its inside included, relative to the motion since the last reversal or to a third
+/// of that before it, whichever is larger. Steps are
 /// chosen by values alone: at a dual number they are those of the plain number, values agree to the last bit, and
 /// derivatives include the change of event times. At rest the derivatives are held as well; a start at rest that the
 /// inputs would disturb is marked as [`grazing`](crate::Event::grazing).
 ///
-/// Guaranteed is a typed error instead of an endless run: at most a hundred thousand steps, and a million events.
+/// What a half swing costs does not grow with the stiffness of the bristles, but a contact that no longer slides goes on
+/// swinging on them, as often as √(N σ/m)/π a second.
+///
+/// Guaranteed is a typed error instead of an endless run: at most three hundred thousand steps, and a million events.
 ///
 /// ```
 /// use fmm_friction::LuGre;
@@ -71,7 +82,8 @@ pub(crate) use path::follow;
 /// # References
 /// E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, Springer 1996, sections IV.5 and IV.8,
 /// doi 10.1007/978-3-642-05221-7; "Stiff differential equations solved by Radau methods", J. Comput. Appl. Math. 111
-/// (1999) 93, doi 10.1016/S0377-0427(99)00134-X.
+/// (1999) 93, doi 10.1016/S0377-0427(99)00134-X. E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential
+/// Equations I*, 2nd ed., Springer 1993, section II.10 (DOP853), doi 10.1007/978-3-540-78862-1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bristle {
     tolerance: f64,
@@ -112,10 +124,12 @@ impl<D: Scalar, L: BristleLaw<D>> Engine<D, L> for Bristle {
         let drive = Drive::new(scenario.excitations(), oscillator.mass());
         let field = Field::new(oscillator, scenario.law(), scenario.normal_load(), drive.belt());
         let recorder = Recorder::new("bristle", scenario.law().states(), sampling, trajectory);
-        Run::new(field, scenario.initial(), self.tolerance, recorder).run(&drive)
+        Run::new(field, scenario.initial(), self.tolerance, recorder).run(&drive).map(|_| ())
     }
 }
 
+#[cfg(test)]
+mod cost;
 #[cfg(test)]
 mod forced;
 #[cfg(test)]

@@ -8,40 +8,17 @@ use super::explicit::Explicit;
 use super::field::{Branch, Field};
 use super::guard::{Approach, Guard, Landing};
 use super::motion::{Motion, Solved, Span};
-use super::radau::STAGES;
+use super::pace::{Pace, change};
 use crate::drive::{Drive, Piece};
 use crate::recorder::Recorder;
 use crate::work::Power;
 use crate::{Direction, EventKind, SimulationError, State};
 
-/// No record needs more steps.
-const STEP_BUDGET: usize = 100_000;
+/// No record needs more steps; they take about a second.
+const STEP_BUDGET: usize = 300_000;
 
 /// Attempts at one step before it is given up.
 const MOST_ATTEMPTS: usize = 100;
-
-/// Step times stiffness above which states that follow the motion are what limits an explicit step.
-const AT_LIMIT: f64 = 0.5;
-
-/// Step times stiffness above which explicit steps are as long as they are for the sake of stability.
-const STABLE: f64 = 4.0;
-
-/// Change of the rates of the states over a step, in units of step times stiffness, below which they follow the motion; a
-/// transient changes as much as it is stiff.
-const FOLLOWS: f64 = 0.2;
-
-/// The angle (rad) by which a machine goes on, and the change of the rates of the states, in a step that only the motion
-/// limits.
-const SMOOTH_ANGLE: f64 = 0.25;
-const SMOOTH_CHANGE: f64 = 1.0;
-
-/// Step times stiffness from which on an implicit step is worth the explicit ones that it replaces, and up to which it is
-/// not.
-const STIFF: f64 = 20.0;
-const NOT_STIFF: f64 = 8.0;
-
-/// The first implicit step after explicit ones, in units of these.
-const FIRST: f64 = 10.0;
 
 /// A step that ends this near to a zero of a guard, in units of the step, is corrected from there.
 const NEAR: f64 = 0.99;
@@ -52,30 +29,16 @@ pub(super) struct Run<'a, D, L> {
     pub(super) step: Motion<D>,
     pub(super) collocation: Collocation<D>,
     explicit: Explicit<D>,
-    /// Whether steps are those of the collocation method.
-    implicit: bool,
-    /// Explicit steps in a row that stability has limited.
-    stiff_steps: usize,
-    /// The greatest relative change of the rates of the states in these, per second.
-    variation: f64,
-    /// Length (s) and error of the last step of this swing.
-    last: (f64, f64),
+    pace: Pace,
     pub(super) recorder: Recorder<'a, D>,
     pub(super) branch: Branch,
     /// Whether nothing drives the contact from relative rest.
     pub(super) resting: bool,
     /// Time that the state belongs to (s).
     pub(super) time: f64,
-    /// Length of the step to try next (s); infinite if nothing is known of it.
-    proposed: f64,
     pub(super) tolerance: f64,
     /// Stiffness of spring and bristles together, per mass (1/s²), at the beginning of the swing.
     pub(super) stiffness: f64,
-    /// Length that a first step would have by the stiffness (s), the part of it that the last first step from rest has
-    /// had, and whether that of this swing is still to be found.
-    first: f64,
-    opening: f64,
-    opens: bool,
     steps: usize,
     /// Room for two states or rates.
     pub(super) before: Vec<D>,
@@ -91,19 +54,12 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             step: Motion::new(begin.clone()),
             collocation: Collocation::new(begin.len()),
             explicit: Explicit::new(begin.len()),
-            implicit: false,
-            stiff_steps: 0,
-            variation: 0.0,
-            last: (f64::INFINITY, 1.0),
+            pace: Pace::new(),
             branch: Branch { direction: Direction::Positive, regime: Regime::ALL_HOLD },
             resting: false,
             time: 0.0,
-            proposed: f64::INFINITY,
             tolerance,
             stiffness: 0.0,
-            first: 0.0,
-            opening: f64::INFINITY,
-            opens: false,
             steps: 0,
             before: begin.clone(),
             after: begin,
@@ -112,8 +68,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         }
     }
 
-    /// Runs from the initial state to the last sample.
-    pub(super) fn run(mut self, drive: &Drive<D>) -> Result<(), SimulationError> {
+    /// Runs from the initial state to the last sample. The number of steps, those not accepted among them.
+    pub(super) fn run(mut self, drive: &Drive<D>) -> Result<usize, SimulationError> {
         let end = self.recorder.sampling.end();
         let mut piece = drive.piece(0);
         let relative = self.step.begin[1].value() - self.field.belt.value();
@@ -143,7 +99,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             }
         }
         // The samples at the end itself hold the state after an event there.
-        self.write(f64::INFINITY)
+        self.write(f64::INFINITY)?;
+        Ok(self.steps)
     }
 
     /// Sets the direction of the motion to come, or rest.
@@ -152,11 +109,9 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         self.branch = Branch { direction: direction.unwrap_or(self.branch.direction), regime: Regime::ALL_HOLD };
         self.step.turn(self.field.belt.value());
         self.collocation.forget();
-        (self.implicit, self.stiff_steps, self.variation) = (false, 0, 0.0);
-        self.last = (f64::INFINITY, 1.0);
         self.field.release();
         self.field.begin(self.branch, &self.step.begin);
-        self.proposed = f64::INFINITY;
+        self.pace.turn();
     }
 
     /// Goes on by one step, to `limit` (s) at most, or to an event before it.
@@ -169,9 +124,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         }
         self.field.begin(self.branch, &self.step.begin);
         if self.field.saturate(self.branch, &mut self.step.begin, self.tolerance.max(4.0 * f64::EPSILON)) {
-            // What has kept the steps short is over.
-            self.proposed = SMOOTH_ANGLE / self.slow(piece);
-            self.last = (f64::INFINITY, 1.0);
+            self.pace.relax(self.slow(piece));
         }
         let at_zero = self.step.begin[1].value() == self.field.belt.value();
         let room = limit - self.time;
@@ -250,12 +203,11 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                     }
                 }
             }
-            let growth = self.growth(length, solved.error);
-            self.proposed = length * if solved.quick { growth } else { growth.min(1.0) };
-            if std::mem::take(&mut self.opens) && at_zero {
-                self.opening = length / self.first;
+            let was_implicit = self.pace.implicit;
+            self.pace.accept(solved, length, at_zero, self.slow(piece), room - length);
+            if self.pace.implicit != was_implicit {
+                self.collocation.forget();
             }
-            self.choose(solved, length, piece, limit);
             return self.finish(length, 0.0, limit, piece);
         }
         Err(SimulationError::StepTooSmall { tolerance: self.tolerance, time: self.time })
@@ -264,7 +216,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
     /// Takes a step by the method of the hour.
     fn take(&mut self, piece: &Piece<D>, span: Span) -> Result<Option<Solved>, SimulationError> {
         let Self { step, collocation, explicit, field, branch, .. } = self;
-        if self.implicit {
+        if self.pace.implicit {
             collocation.solve(step, field, *branch, piece, span)
         } else {
             Ok(explicit.take(step, field, *branch, piece, span))
@@ -273,48 +225,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
 
     /// The next step begins where this one of `length` has begun.
     fn retry(&mut self, length: f64) {
-        if self.implicit {
+        if self.pace.implicit {
             self.collocation.predict_from(&self.step, length, 0.0);
-        }
-    }
-
-    /// By which factor the next step may be longer than this one of `length` and `error`.
-    ///
-    /// Steps that have become shorter or longer with the motion go on doing so (Gustafsson's predictive controller).
-    fn growth(&mut self, length: f64, error: f64) -> f64 {
-        let growth = change(error);
-        let (before, error_before) = std::mem::replace(&mut self.last, (length, error));
-        let trend = if before.is_finite() { length / before * change(error) / change(error_before) } else { 1.0 };
-        growth * trend.clamp(0.5, 1.0)
-    }
-
-    /// Chooses the method of the next step by what this one of `length` has shown.
-    fn choose(&mut self, solved: Solved, length: f64, piece: &Piece<D>, limit: f64) {
-        if self.implicit {
-            // What still grows is no measure.
-            self.implicit = solved.stiffness > NOT_STIFF || self.proposed > 1.5 * length;
-            if !self.implicit {
-                self.proposed = length / solved.stiffness.max(1.0);
-                self.last = (f64::INFINITY, 1.0);
-            }
-            return;
-        }
-        let follows = solved.variation < FOLLOWS * solved.stiffness && solved.stiffness > AT_LIMIT;
-        let at_limit = solved.stiffness > STABLE;
-        if !(follows || at_limit) {
-            (self.stiff_steps, self.variation) = (0, 0.0);
-            return;
-        }
-        self.stiff_steps += 1;
-        // What varies at the limit of stability is noise.
-        self.variation = self.variation.max(if at_limit { 0.0 } else { solved.variation / length });
-        let smooth =
-            (SMOOTH_ANGLE / self.slow(piece)).min(SMOOTH_CHANGE / self.variation).min(limit - self.time - length);
-        if self.stiff_steps > 2 && solved.stiffness / length * smooth > STIFF {
-            self.implicit = true;
-            self.collocation.forget();
-            self.proposed = FIRST * length;
-            (self.stiff_steps, self.variation, self.last) = (0, 0.0, (f64::INFINITY, 1.0));
         }
     }
 
@@ -333,10 +245,9 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
     /// Length (s) of the step to try first: as the last one says, or a part of the period in which the machine swings on
     /// its bristles.
     fn first_length(&mut self) -> f64 {
-        if self.proposed.is_finite() {
-            return self.proposed;
+        if let Some(proposed) = self.pace.proposed() {
+            return proposed;
         }
-        self.opens = true;
         let size = self.field.size();
         let mut jacobian = vec![0.0; size * size];
         let begin = &self.step.begin;
@@ -347,9 +258,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         let bristles = (2..size).map(|state| (jacobian[size + state] * jacobian[state * size + 1]).abs());
         let stiffness = jacobian[size].abs() + bristles.sum::<f64>();
         self.stiffness = stiffness;
-        let length = if stiffness > 0.0 { 0.3 / stiffness.sqrt() } else { f64::MAX };
-        self.first = length;
-        length * (1.5 * self.opening).min(1.0)
+        self.pace.first(stiffness)
     }
 
     /// Writes what the step of `length` passes and goes to its end, or a part `correction` of it further.
@@ -371,7 +280,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 external: piece.force(at) * velocity - friction * field.belt,
             }
         })?;
-        if self.implicit {
+        if self.pace.implicit {
             self.collocation.predict_from(&self.step, length, 1.0);
         }
         self.step.advance(correction);
@@ -402,9 +311,4 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         self.time = limit;
         Ok(())
     }
-}
-
-/// By which factor to change the length of a step with this error, in units of the tolerance.
-fn change(error: f64) -> f64 {
-    (0.9 * error.powf(-1.0 / (STAGES + 1) as f64)).clamp(0.1, 3.0)
 }

@@ -1,0 +1,144 @@
+//! How long the next step is to be, and by which method.
+
+use super::motion::Solved;
+use super::radau::STAGES;
+
+/// Step times stiffness above which states that follow the motion are what limits an explicit step.
+const AT_LIMIT: f64 = 0.5;
+
+/// Step times stiffness above which explicit steps are as long as they are for the sake of stability.
+const STABLE: f64 = 4.0;
+
+/// Change of the rates of the states over a step, in units of step times stiffness, below which they follow the motion; a
+/// transient changes as much as it is stiff.
+const FOLLOWS: f64 = 0.2;
+
+/// The angle (rad) by which a machine goes on, and the change of the rates of the states, in a step that only the motion
+/// limits.
+const SMOOTH_ANGLE: f64 = 0.25;
+const SMOOTH_CHANGE: f64 = 1.0;
+
+/// Step times stiffness from which on an implicit step is worth the explicit ones that it replaces, and up to which it is
+/// not. An implicit one costs five to ten explicit ones.
+const STIFF: f64 = 8.0;
+const NOT_STIFF: f64 = 4.0;
+
+/// Explicit steps that have to be limited by stiffness in a row.
+const PERSISTENT: usize = 3;
+
+/// The first implicit step after explicit ones, in units of these.
+const FIRST: f64 = 8.0;
+
+/// The part of a period of the machine on its bristles with which a swing begins, if no other has.
+const BEGINNING: f64 = 0.3;
+
+/// Nothing is known of a step before.
+const NO_STEP: (f64, f64) = (f64::INFINITY, 1.0);
+
+/// Length and method of the steps of one swing.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pace {
+    /// Whether steps are those of the collocation method.
+    pub(super) implicit: bool,
+    /// Length of the step to try next (s); infinite at the beginning of a swing.
+    proposed: f64,
+    /// Length (s) and error of the last step, in units of the tolerance.
+    last: (f64, f64),
+    /// Explicit steps in a row that stiffness has limited, and the greatest relative change of the rates of the states in
+    /// these, per second.
+    stiff_steps: usize,
+    variation: f64,
+    /// Length that a first step would have by the stiffness (s), whether the swing waits for its first step, and the part
+    /// of that length that the last first step from rest has had.
+    first: f64,
+    opens: bool,
+    opening: f64,
+}
+
+impl Pace {
+    pub(super) const fn new() -> Self {
+        Self {
+            implicit: false,
+            proposed: f64::INFINITY,
+            last: NO_STEP,
+            stiff_steps: 0,
+            variation: 0.0,
+            first: 0.0,
+            opens: true,
+            opening: f64::INFINITY,
+        }
+    }
+
+    /// A swing begins, at rest and so without stiffness.
+    pub(super) fn turn(&mut self) {
+        *self = Self { opening: self.opening, ..Self::new() };
+    }
+
+    /// Length of the next step (s), if anything is known of it.
+    pub(super) fn proposed(&self) -> Option<f64> {
+        self.proposed.is_finite().then_some(self.proposed)
+    }
+
+    /// Length (s) of the first step of a swing of this `stiffness` per mass (1/s²).
+    pub(super) fn first(&mut self, stiffness: f64) -> f64 {
+        self.first = if stiffness > 0.0 { BEGINNING / stiffness.sqrt() } else { f64::MAX };
+        self.first * (1.5 * self.opening).min(1.0)
+    }
+
+    /// What has kept steps short is over; from now on the motion goes on with the angular frequency `slow` (rad/s).
+    pub(super) fn relax(&mut self, slow: f64) {
+        (self.proposed, self.last) = (SMOOTH_ANGLE / slow, NO_STEP);
+    }
+
+    /// Takes note of an accepted step of `length` (s) from relative rest (`at_zero`) or not, where the motion has the angular
+    /// frequency `slow` (rad/s) and `room` (s) is left after it.
+    pub(super) fn accept(&mut self, solved: Solved, length: f64, at_zero: bool, slow: f64, room: f64) {
+        if std::mem::take(&mut self.opens) && at_zero {
+            self.opening = length / self.first;
+        }
+        let growth = self.growth(length, solved.error);
+        self.proposed = length * if solved.quick { growth } else { growth.min(1.0) };
+        if self.implicit {
+            // What still grows is no measure.
+            if solved.stiffness <= NOT_STIFF && self.proposed <= 1.5 * length {
+                self.implicit = false;
+                (self.proposed, self.last) = (length / solved.stiffness.max(1.0), NO_STEP);
+            }
+            return;
+        }
+        let follows = solved.variation < FOLLOWS * solved.stiffness && solved.stiffness > AT_LIMIT;
+        let at_limit = solved.stiffness > STABLE;
+        if !(follows || at_limit) {
+            (self.stiff_steps, self.variation) = (0, 0.0);
+            return;
+        }
+        self.stiff_steps += 1;
+        // What varies at the limit of stability is noise.
+        self.variation = self.variation.max(if at_limit { 0.0 } else { solved.variation / length });
+        let smooth = (SMOOTH_ANGLE / slow).min(SMOOTH_CHANGE / self.variation).min(room);
+        if self.stiff_steps >= PERSISTENT && solved.stiffness / length * smooth > STIFF {
+            self.implicit = true;
+            (self.proposed, self.last) = (FIRST * length, NO_STEP);
+            (self.stiff_steps, self.variation) = (0, 0.0);
+        }
+    }
+
+    /// By which factor the next step may be longer than this one of `length` and `error`.
+    ///
+    /// Steps that become shorter with the motion go on doing so.
+    ///
+    /// # References
+    /// K. Gustafsson, "Control-theoretic techniques for stepsize selection in implicit Runge-Kutta methods", ACM Trans.
+    /// Math. Software 20 (1994) 496, doi 10.1145/198429.198437.
+    fn growth(&mut self, length: f64, error: f64) -> f64 {
+        let growth = change(error);
+        let (before, error_before) = std::mem::replace(&mut self.last, (length, error));
+        let trend = if before.is_finite() { length / before * growth / change(error_before) } else { 1.0 };
+        growth * trend.clamp(0.5, 1.0)
+    }
+}
+
+/// By which factor to change the length of a step with this error, in units of the tolerance.
+pub(super) fn change(error: f64) -> f64 {
+    (0.9 * error.powf(-1.0 / (STAGES + 1) as f64)).clamp(0.1, 3.0)
+}
