@@ -10,6 +10,8 @@ use crate::{Identification, RingDown};
 
 /// The chance that noise alone looks like a drift.
 const CHANCE: f64 = 1e-3;
+/// Residuals below this many times the noise are near it: the parameters of the motion follow the drift by a little as well.
+const NEAR: f64 = 2.0;
 /// Frequencies between the harmonics of the motion, in natural frequencies, where the residuals show their noise.
 const BETWEEN: [f64; 6] = [1.5, 2.5, 3.5, 4.5, 5.5, 6.5];
 
@@ -59,7 +61,11 @@ pub(crate) fn with_drift(
             .sum();
         let (degrees, controls) = (DRIFT.len() as f64, 2.0 * BETWEEN.len() as f64);
         let ratio = (slow / degrees) / (above / controls);
-        let drifts = above > 0.0 && f_tail(ratio, degrees, controls).is_some_and(|p| p < CHANCE);
+        // What is left must be near the noise, or it is a law that misses something.
+        let left = (found.fit().sum_of_squares() - slow).max(0.0) / found.fit().residuals().len() as f64;
+        let drifts = above > 0.0
+            && left.sqrt() < NEAR * found.structure().noise
+            && f_tail(ratio, degrees, controls).is_some_and(|p| p < CHANCE);
         any |= drifts;
         drifting.push(if drifts { decay.clone().beside(DRIFT.to_vec()) } else { decay.clone() });
     }

@@ -98,6 +98,8 @@ const OF_SPEED: [&str; 7] = [
     "acceleration_coulomb",
     "hyperbolic+linear",
 ];
+/// Presliding over less of the amplitude than this (1) is none that a record shows.
+const LEAST_PRESLIDING: f64 = 2e-3;
 /// Laws with presliding.
 const WITH_STATE: [&str; 1] = ["dahl+linear,exponent=1"];
 
@@ -141,7 +143,15 @@ pub fn search_observed(
     let mut signs = run.signs(&found);
     if found.asks_for_more(&signs) {
         run.fit(search.candidates(&OF_SPEED)?, &signs, false, &mut found)?;
-        let presliding = signs.iter().any(|sign| sign.addition == Addition::Presliding && sign.significance() > 2.0);
+        let seen = |sign: &Sign| {
+            sign.addition == Addition::Presliding && sign.significance() > 2.0 && sign.size > LEAST_PRESLIDING
+        };
+        // Steps of a converter look like presliding: neither moves where the machine turns.
+        let is_rounded = decays.iter().any(|decay| {
+            let summary = decay.summary();
+            summary.resolution.is_some_and(|step| step > 2.0 * summary.noise)
+        });
+        let presliding = !is_rounded && signs.iter().any(seen);
         if presliding || found.is_structured() {
             run.fit(search.candidates(&WITH_STATE)?, &signs, false, &mut found)?;
         }
