@@ -19,7 +19,7 @@ use judgement::{Cell, Found, Summary, cells, document, study, text};
 #[derive(Debug, Parser)]
 #[command(name = "judgement")]
 struct Arguments {
-    /// Few records: 10 a cell
+    /// Few records: 2 a cell
     #[arg(long)]
     quick: bool,
     /// Records a cell, instead of 200 (30 for the cells of laws)
@@ -40,7 +40,7 @@ struct Arguments {
 }
 
 /// Records a cell with `--quick`.
-const FEW: u64 = 10;
+const FEW: u64 = 2;
 
 impl Arguments {
     /// The cells that are asked for: those of a name or, if there is none, those whose names begin so.

@@ -55,10 +55,11 @@ fn bicycle_fork() {
     assert!(comparison.is_decided());
 
     // The residuals are correlated over hundreds of samples: their number is no number of witnesses, for the
-    // uncertainties no more than for the preference.
+    // uncertainties no more than for the preference. They are largest at the frequency of the fork itself, where they look
+    // like damping.
     let damping = both.fit().estimate("damping_per_mass").unwrap().standard_uncertainty().unwrap();
     let widened = both.finding("damping_per_mass").unwrap().uncertainty().unwrap();
-    assert!((3.0..10.0).contains(&(widened / damping)), "u(c/m) = {widened} 1/s, {damping} 1/s if independent");
+    assert!((5.0..25.0).contains(&(widened / damping)), "u(c/m) = {widened} 1/s, {damping} 1/s if independent");
     let lead = comparison.scores()[1] - comparison.scores()[2];
     assert!((2.0..100.0).contains(&lead), "Coulomb and viscous leads Coulomb by {lead}");
 }

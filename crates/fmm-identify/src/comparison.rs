@@ -210,12 +210,12 @@ fn widen_for_other_laws(
     let preferred = judgement.preferred;
     let mut widths: Vec<(String, f64, Option<Warning>)> = Vec::new();
     for other in 0..candidates.len() {
+        let (own, theirs) = (&candidates[preferred], &candidates[other]);
+        let added = theirs.parameter_count().saturating_sub(own.parameter_count());
         let own_rank = identifications[preferred].fit().rank();
-        let further = identifications[other].fit().rank().saturating_sub(own_rank);
-        if other == preferred
-            || !judgement.is_left(other)
-            || further == 0 && candidates[preferred].is_nested_in(&candidates[other])
-        {
+        // A parameter that ended on its bound is one more all the same.
+        let further = identifications[other].fit().rank().saturating_sub(own_rank).max(added.min(1));
+        if other == preferred || !judgement.is_left(other) || further == 0 && own.is_nested_in(theirs) {
             continue;
         }
         let is_general = candidates[preferred].is_nested_in(&candidates[other]);
