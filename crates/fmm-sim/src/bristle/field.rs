@@ -147,6 +147,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
     }
 
     /// Relative speed along `branch`, and the mirrored states in `self.mirrored`.
+    #[inline]
     fn mirror(&mut self, branch: Branch, state: &[D]) -> D {
         let sign = branch.direction.sign();
         for ((mirrored, z), below) in self.mirrored.iter_mut().zip(&state[2..]).zip(&self.below) {
@@ -158,6 +159,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
     }
 
     /// Friction force (N) along the direction of the swing; the mirrored rates of the bristles are left in `self.rate`.
+    #[inline]
     fn mirrored_friction(&mut self, branch: Branch, speed: D) -> D {
         self.law.rate(speed, &self.mirrored, branch.regime, &mut self.rate);
         for (rate, saturated) in self.rate.iter_mut().zip(&self.saturated) {
@@ -167,12 +169,14 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
     }
 
     /// Friction force (N), with its sign.
+    #[inline]
     pub(super) fn friction(&mut self, branch: Branch, state: &[D]) -> D {
         let speed = self.mirror(branch, state);
         self.mirrored_friction(branch, speed) * branch.direction.sign()
     }
 
     /// Writes (x, v, z)′ at `state` under `force` (N) into `rates`.
+    #[inline]
     pub(super) fn rates(&mut self, force: D, branch: Branch, state: &[D], rates: &mut [D]) {
         let friction = self.friction(branch, state);
         let (x, v) = (state[0], state[1]);
