@@ -8,7 +8,7 @@ use serde_json::Value;
 /// What each crate takes from others when nobody asks for a feature, and for what.
 const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
     ("fmm-model", &[PULP, THISERROR]),
-    ("fmm-record", &[CSV, ("libflate", "inflates MATLAB files up to a limit"), MATFILE, THISERROR]),
+    ("fmm-record", &[CSV, ("libflate", "inflates MATLAB files up to a limit"), MATFILE, REALFFT, THISERROR]),
     ("fmm-friction", &[THISERROR]),
     (
         "fmm-fit",
@@ -33,14 +33,7 @@ const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     ("fmm-sim", &[THISERROR]),
-    (
-        "fmm-frf",
-        &[
-            ("num-complex", "the number type of a response, part of the public interface"),
-            ("realfft", "Fourier transforms of any length"),
-            THISERROR,
-        ],
-    ),
+    ("fmm-frf", &[("num-complex", "the number type of a response, part of the public interface"), REALFFT, THISERROR]),
     ("fmm-identify", &[THISERROR]),
 ];
 
@@ -48,6 +41,7 @@ const CSV: (&str, &str) = ("csv", "rows of text, quotes and separators");
 const MATFILE: (&str, &str) = ("matfile", "decodes the arrays of MATLAB files");
 const PULP: (&str, &str) = ("pulp", "vectors as wide as the processor has, without unsafe code here");
 const RAND_CHACHA: (&str, &str) = ("rand_chacha", "streams of the same bits on every machine");
+const REALFFT: (&str, &str) = ("realfft", "Fourier transforms of any length");
 const STATRS: (&str, &str) = ("statrs", "quantiles of normal, t, F and chi-square distributions");
 const THISERROR: (&str, &str) = ("thiserror", "writes Display and Error of the error types");
 

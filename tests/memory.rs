@@ -29,8 +29,12 @@ fn ten_million_samples() {
     let sampling = Sampling::uniform(interval, SAMPLES).unwrap().keeping(Channels::Velocity);
     let motion = Exact.run(&scenario.starting_at(0.03, 0.0).unwrap(), &sampling).unwrap();
     // Noise of 1 mm/s, deterministic: the record must not be so smooth that any fit is exact.
-    let noise = |i: usize| (i.wrapping_mul(2_654_435_761) % 65_536) as f64 / 65_536.0 - 0.5;
-    let values = motion.velocity().values().iter().enumerate().map(|(i, v)| v + 3.5e-3 * noise(i)).collect();
+    let mut state = 1_u64;
+    let mut noise = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let values = motion.velocity().values().iter().map(|v| v + 3.5e-3 * noise()).collect();
     drop(motion);
     let record = Record::new(0.0, interval, values, Quantity::Velocity, "m/s").unwrap();
 

@@ -382,17 +382,23 @@ impl<'a> RingDownProblem<'a> {
         let elements = self.blocks.iter().map(|block| block.rows() * block.parameters().len()).sum();
         let mut jacobian = vec![0.0; elements];
         self.jacobian(p, &mut jacobian)?;
-        let mut columns = vec![vec![0.0; self.len()]; wanted.len()];
-        let (mut first, mut rest) = (0, jacobian.as_slice());
-        for block in &self.blocks {
-            for parameter in block.parameters() {
-                let (column, others) = rest.split_at(block.rows());
-                if let Some(index) = wanted.iter().position(|wanted| wanted == parameter) {
-                    columns[index][first..first + block.rows()].copy_from_slice(column);
+        let mut columns = vec![Vec::new(); wanted.len()];
+        let mut end = self.len();
+        // From the end on, so that what is in a column is given back at once.
+        for block in self.blocks.iter().rev() {
+            for parameter in block.parameters().iter().rev() {
+                let part = jacobian.split_off(jacobian.len() - block.rows());
+                jacobian.shrink_to_fit();
+                let Some(index) = wanted.iter().position(|wanted| wanted == parameter) else { continue };
+                let column = &mut columns[index];
+                if block.rows() == self.len() {
+                    *column = part;
+                } else {
+                    column.resize(self.len(), 0.0);
+                    column[end - block.rows()..end].copy_from_slice(&part);
                 }
-                rest = others;
             }
-            first += block.rows();
+            end -= block.rows();
         }
         Ok(columns)
     }

@@ -34,7 +34,7 @@ pub(crate) struct Series<'a> {
     pub(crate) signal: Option<&'a [f64]>,
     /// Period of the signal (samples).
     pub(crate) period: f64,
-    /// Columns of the fit at these rows, and the elements (JᵀJ)⁺ by which they count: pairs of columns with their weight.
+    /// Columns of the fit at all rows, and the elements (JᵀJ)⁺ by which they count: pairs of columns with their weight.
     pub(crate) columns: &'a [Vec<f64>],
     pub(crate) weights: &'a [f64],
 }
@@ -42,6 +42,9 @@ pub(crate) struct Series<'a> {
 #[derive(Debug, Clone)]
 struct SeriesNoise {
     rows: Range<usize>,
+    /// Neighbouring rows that are taken together.
+    group: usize,
+    /// σ of every group.
     deviations: Vec<f64>,
     growth: Option<NoiseGrowth>,
     transform: RealTransform,
@@ -62,6 +65,10 @@ const SIGNIFICANT: f64 = 2.0;
 const RESTORATIONS: usize = 3;
 /// Fewer residuals than this are taken as white.
 const FEWEST_RESIDUALS: usize = 32;
+/// Of more rows than this neighbours are taken together,
+const MOST_ROWS: usize = 1 << 17;
+/// but a period keeps this many groups: noise faster than that moves no parameter.
+const GROUPS_PER_PERIOD: f64 = 64.0;
 
 impl ResidualNoise {
     /// The noise that `residuals`, of a fit, show in each of `series`.
@@ -130,16 +137,23 @@ impl ResidualNoise {
 
 impl SeriesNoise {
     fn of(residuals: &[f64], series: &Series<'_>) -> Self {
-        let own = &residuals[series.rows.clone()];
+        let group = series.rows.len().div_ceil(MOST_ROWS).min((series.period / GROUPS_PER_PERIOD) as usize).max(1);
+        let own = gathered(&residuals[series.rows.clone()], group);
         let count = own.len();
-        let growth = series.signal.and_then(|signal| NoiseGrowth::of(own, signal, series.period));
-        let deviations = match (growth, series.signal) {
-            (Some(growth), Some(signal)) => growth.deviations(signal, series.period),
+        let period = series.period / group as f64;
+        let signal = series.signal.map(|signal| {
+            // The sum of a group is that of its mean, taken as often as the noise of a group is that of one row.
+            gathered(signal, group).into_iter().map(|y| y / (group as f64).sqrt()).collect::<Vec<_>>()
+        });
+        let growth = signal.as_ref().and_then(|signal| NoiseGrowth::of(&own, signal, period));
+        let deviations = match (growth, &signal) {
+            (Some(growth), Some(signal)) => growth.deviations(signal, period),
             _ => vec![(own.iter().map(|r| r * r).sum::<f64>() / count.max(1) as f64).sqrt(); count],
         };
         let transform = RealTransform::new(padded(count));
         let mut noise = Self {
             rows: series.rows.clone(),
+            group,
             deviations,
             growth,
             density: vec![1.0; transform.lines()],
@@ -148,7 +162,7 @@ impl SeriesNoise {
             is_white: true,
         };
         if count >= FEWEST_RESIDUALS && noise.deviations.iter().all(|deviation| *deviation > 0.0) {
-            noise.colour(own, series);
+            noise.colour(&own, series);
         }
         noise
     }
@@ -216,7 +230,8 @@ impl SeriesNoise {
 
     /// The share of each line that the parameters of the fit have taken (1).
     fn taken(&self, series: &Series<'_>) -> Vec<f64> {
-        let lines: Vec<Vec<Complex64>> = series.columns.iter().map(|column| self.spectrum(column)).collect();
+        let own = |column: &Vec<f64>| self.spectrum(&gathered(&column[self.rows.clone()], self.group));
+        let lines: Vec<Vec<Complex64>> = series.columns.iter().map(own).collect();
         let count = (self.deviations.len().max(1)) as f64;
         let mut taken = vec![0.0; self.transform.lines()];
         for (i, a) in lines.iter().enumerate() {
@@ -230,7 +245,7 @@ impl SeriesNoise {
         taken
     }
 
-    /// The spectrum of `values`, as many as this series has rows, padded with zeros.
+    /// The spectrum of `values`, as many as this series has groups, padded with zeros.
     fn spectrum(&self, values: &[f64]) -> Vec<Complex64> {
         let mut samples = values.to_vec();
         samples.resize(self.transform.length(), 0.0);
@@ -242,8 +257,8 @@ impl SeriesNoise {
 
     /// The spectrum of D a, for a `column` over all residuals.
     fn lines(&self, column: &[f64]) -> Vec<Complex64> {
-        let values: Vec<f64> =
-            column[self.rows.clone()].iter().zip(&self.deviations).map(|(a, deviation)| a * deviation).collect();
+        let mut values = gathered(&column[self.rows.clone()], self.group);
+        values.iter_mut().zip(&self.deviations).for_each(|(a, deviation)| *a *= deviation);
         self.spectrum(&values)
     }
 
@@ -264,6 +279,14 @@ impl SeriesNoise {
             .sum();
         sum / length as f64
     }
+}
+
+/// Σ/√m of every `group` of m neighbouring values: independent ones keep their variance, and slow ones their sum of products.
+fn gathered(values: &[f64], group: usize) -> Vec<f64> {
+    if group == 1 {
+        return values.to_vec();
+    }
+    values.chunks(group).map(|values| values.iter().sum::<f64>() / (values.len() as f64).sqrt()).collect()
 }
 
 /// The next length of at least twice `count` that has small factors only.

@@ -134,10 +134,6 @@ impl Covariance {
         unit: &[f64],
     ) -> ResidualNoise {
         let signals: Vec<Vec<f64>> = (0..problem.decays().len()).map(|record| problem.signal(record, fit)).collect();
-        let parts: Vec<Vec<Vec<f64>>> = problem
-            .row_ranges()
-            .map(|rows| columns.iter().map(|column| column[rows.clone()].to_vec()).collect())
-            .collect();
         let series: Vec<Series<'_>> = problem
             .row_ranges()
             .enumerate()
@@ -145,7 +141,7 @@ impl Covariance {
                 rows,
                 signal: structure.is_noisy().then_some(signals[record].as_slice()),
                 period: problem.decays()[record].record().rate() / problem.decays()[record].guess().frequency(),
-                columns: &parts[record],
+                columns,
                 weights: unit,
             })
             .collect();

@@ -1,6 +1,8 @@
 //! The spectrum of a piece of a record, for finding lines far below its largest one.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
+
+use realfft::RealFftPlanner;
 
 /// Half of the width of a line in a spectrum of [`blackman_harris`], in units of 1/duration. Beyond it, a line shows
 /// less than 3e-5 of its amplitude.
@@ -39,10 +41,12 @@ impl Spectrum {
         let mean = weighted / sum;
         let mut real: Vec<f64> = values.iter().zip(window).map(|(y, w)| (y - mean) * w).collect();
         real.resize(length, 0.0);
-        let mut imaginary = vec![0.0; length];
-        transform(&mut real, &mut imaginary);
+        let plan = RealFftPlanner::new().plan_fft_forward(length);
+        let mut lines = plan.make_output_vec();
+        // Both have the lengths of the plan.
+        let _ = plan.process(&mut real, &mut lines);
         let scale = 4.0 / (sum * sum);
-        let squares = (0..=length / 2).map(|k| scale * (real[k] * real[k] + imaginary[k] * imaginary[k])).collect();
+        let squares = lines.iter().map(|line| scale * line.norm_sqr()).collect();
         Self { squares, spacing: values.len() as f64 / length as f64 }
     }
 
@@ -69,37 +73,6 @@ pub(crate) fn component(values: &[f64], frequency: f64) -> (f64, f64) {
         (sin, cos) = (sin * turn_cos + cos * turn_sin, cos * turn_cos - sin * turn_sin);
     }
     (2.0 * with_cos, -2.0 * with_sin)
-}
-
-/// The discrete Fourier transform in place, without a scale; the length is a power of two.
-///
-/// J. W. Cooley and J. W. Tukey, An algorithm for the machine calculation of complex Fourier series, Mathematics of
-/// Computation 19 (1965).
-fn transform(real: &mut [f64], imaginary: &mut [f64]) {
-    let n = real.len();
-    let shift = usize::BITS - n.trailing_zeros();
-    for i in 0..n {
-        let j = i.reverse_bits() >> shift;
-        if i < j {
-            real.swap(i, j);
-            imaginary.swap(i, j);
-        }
-    }
-    let turns: Vec<(f64, f64)> = (0..n / 2).map(|i| (2.0 * PI * i as f64 / n as f64).sin_cos()).collect();
-    let mut half = 1;
-    while half < n {
-        let stride = n / (2 * half);
-        for start in (0..n).step_by(2 * half) {
-            for i in 0..half {
-                let (sin, cos) = turns[i * stride];
-                let (a, b) = (start + i, start + i + half);
-                let (re, im) = (real[b] * cos + imaginary[b] * sin, imaginary[b] * cos - real[b] * sin);
-                (real[b], imaginary[b]) = (real[a] - re, imaginary[a] - im);
-                (real[a], imaginary[a]) = (real[a] + re, imaginary[a] + im);
-            }
-        }
-        half *= 2;
-    }
 }
 
 #[cfg(test)]

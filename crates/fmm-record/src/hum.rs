@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use crate::line_search::{fundamental, lines};
+use crate::line_search::{Candidate, fundamental, lines};
 use crate::order::range;
-use crate::steadiness::steady;
+use crate::steadiness::{Steady, steady};
 use crate::{Record, quantisation_step};
 
 /// A line of constant amplitude in a record.
@@ -47,6 +47,8 @@ const MOST_CANDIDATES: usize = 12;
 const LARGEST: f64 = 0.45;
 /// Smallest amplitude, in steps of the converter.
 const SMALLEST: f64 = 0.3;
+/// Of more samples than this neighbours are averaged to look for lines: 10 million would take half a minute.
+pub(crate) const MOST_SAMPLES: usize = 1 << 18;
 
 /// The lines in `record` that go on unchanged while its motion decays, and after it has stopped: hum of the mains at
 /// 50 Hz or 60 Hz, their multiples, or any other constant line. The largest comes first; none if there is none.
@@ -61,7 +63,8 @@ const SMALLEST: f64 = 0.3;
 ///   and noise, the last quarter included, and its phase goes on. What decays or stops with the motion fails this;
 /// * its amplitude is less than 0.45 of half the range of the record, and more than 0.3 steps of the converter.
 ///
-/// The record must contain 28 periods of the line. A line below some four frequencies of the motion is found in a rest
+/// The record must contain 28 periods of the line, and if it has more than 262 144 samples the line must lie below half of the
+/// rate that so many would have. A line below some four frequencies of the motion is found in a rest
 /// only, of 16 of its periods or more, and a line within 4/T of half the rate not at all. The frequency is uncertain by
 /// about 0.5/(T SNR) for a line that is seen for a time T at an amplitude of SNR standard deviations of the spectrum there,
 /// 5 at least: by less than 1/(20 T) from SNR = 10 on.
@@ -81,10 +84,12 @@ const SMALLEST: f64 = 0.3;
 /// # Ok::<(), fmm_record::RecordError>(())
 /// ```
 pub fn hum(record: &Record) -> Vec<Hum> {
-    let mut values = record.values().to_vec();
+    let survey = record.in_at_most(MOST_SAMPLES);
+    let group = (survey.interval() / record.interval()).round();
+    let mut values = survey.values().to_vec();
     let (low, high) = range(&values);
     let largest = LARGEST * 0.5 * (high - low);
-    let smallest = SMALLEST * quantisation_step(&values).unwrap_or(0.0);
+    let smallest = SMALLEST * quantisation_step(record.values()).unwrap_or(0.0);
     let fundamental = fundamental(&values);
     let count = values.len();
     let parts = [
@@ -99,27 +104,32 @@ pub fn hum(record: &Record) -> Vec<Hum> {
     let mut known = Vec::new();
     let mut found: Vec<Hum> = Vec::new();
     // Each line is taken out before the next is looked for, so that the largest do not hide smaller ones.
-    while found.len() < MOST {
+    for _ in 0..MOST {
         let candidates = parts
             .iter()
             .flat_map(|part| lines(&values, part.clone(), fundamental, &known).into_iter().take(MOST_CANDIDATES));
         let mut candidates: Vec<_> = candidates.filter(|candidate| candidate.amplitude < 2.0 * largest).collect();
         candidates.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
         let allowed = smallest..largest;
-        let line = candidates.into_iter().find_map(|candidate| {
-            steady(&values, candidate).filter(|line| line.amplitude > 0.0 && allowed.contains(&line.amplitude))
-        });
-        let Some(line) = line else { break };
+        let is_allowed = |line: &Steady| line.amplitude > 0.0 && allowed.contains(&line.amplitude);
+        let line = candidates.into_iter().find_map(|candidate| steady(&values, candidate).filter(is_allowed));
+        let Some(mut line) = line else { break };
+        known.push(line.frequency);
+        if group > 1.0 {
+            // Averages show faster lines at the wrong frequency, where the samples themselves have none.
+            let candidate = Candidate { frequency: line.frequency / group, amplitude: line.amplitude };
+            let Some(sharper) = steady(record.values(), candidate).filter(is_allowed) else { continue };
+            line = sharper;
+        }
         let hum = Hum {
             frequency: line.frequency / record.interval(),
             amplitude: line.amplitude,
             phase: line.phase,
             start: record.start(),
         };
-        known.push(line.frequency);
         found.push(hum);
         for (i, value) in values.iter_mut().enumerate() {
-            *value -= hum.at(record.time(i));
+            *value -= hum.at(survey.time(i));
         }
     }
     found.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));

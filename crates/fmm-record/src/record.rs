@@ -1,5 +1,7 @@
 //! A uniformly sampled series with its quantity and unit.
 
+use std::borrow::Cow;
+
 use crate::{Quantity, RecordError, UniformTimes};
 
 /// A measured channel: samples at equal intervals, what they are, and their unit.
@@ -200,6 +202,17 @@ impl Record {
         }
         let (first, last) = (first as usize, last as usize);
         Ok(self.derived(self.time(first), self.values[first..=last].to_vec()))
+    }
+
+    /// The same motion in `most` samples or fewer: the means of neighbours where there are more.
+    pub(crate) fn in_at_most(&self, most: usize) -> Cow<'_, Self> {
+        let group = self.len().div_ceil(most);
+        if group == 1 {
+            return Cow::Borrowed(self);
+        }
+        let start = self.start + 0.5 * (group - 1) as f64 * self.interval;
+        let means = Self { interval: group as f64 * self.interval, ..self.derived(start, Vec::new()) };
+        Cow::Owned(Self { values: self.values.chunks_exact(group).map(mean).collect(), ..means })
     }
 
     /// Every sample times `factor`, in the new `unit`.

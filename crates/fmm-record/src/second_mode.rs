@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::fourier::component;
+use crate::hum::MOST_SAMPLES;
 use crate::least_squares::LeastSquares;
 use crate::line_search::lines;
 use crate::spikes::without_spikes;
@@ -88,7 +89,7 @@ impl SecondMode {
     /// # Ok::<(), fmm_record::RecordError>(())
     /// ```
     pub fn of(record: &Record) -> Option<Self> {
-        let motion = Motion::of(record)?;
+        let motion = Motion::of(&record.in_at_most(MOST_SAMPLES))?;
         motion.line().or_else(|| motion.beat())
     }
 }
