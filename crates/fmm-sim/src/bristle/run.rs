@@ -8,7 +8,7 @@ use super::explicit::Explicit;
 use super::field::{Branch, Field};
 use super::guard::{Approach, Guard, Landing};
 use super::motion::{Motion, Solved, Span};
-use super::pace::{Pace, change};
+use super::pace::Pace;
 use crate::drive::{Drive, Piece};
 use crate::recorder::Recorder;
 use crate::work::Power;
@@ -179,7 +179,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 // A zero that a step too long has seen may be none.
                 approach = None;
                 self.retry(length);
-                length *= change(solved.error);
+                length = self.pace.refuse(solved, length);
                 continue;
             }
             if let Some(Approach { guard, nearest }) = approach {
