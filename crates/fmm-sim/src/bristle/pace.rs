@@ -25,6 +25,9 @@ const NOT_STIFF: f64 = 4.0;
 /// Explicit steps that have to be limited by stiffness in a row, and implicit ones that have to be refused in vain.
 const PERSISTENT: usize = 3;
 
+/// The count of unstable explicit steps from which on their stiffness is believed.
+const UNSTABLE: usize = 5;
+
 /// What a shorter step has to leave of the error, or it was in vain.
 const VAIN: f64 = 0.7;
 
@@ -53,6 +56,10 @@ pub(super) struct Pace {
     /// of these, per second.
     stiff_steps: usize,
     variation: f64,
+    /// Twice the explicit steps that stability has refused, less those that were good, and the greatest rate (1/s) then: states
+    /// that follow the motion to the last digit show no stiffness in a good step.
+    unstable: usize,
+    rate: f64,
     /// Error of the last refused step, and how many refusals in a row have been in vain.
     refused: f64,
     vain: usize,
@@ -71,6 +78,8 @@ impl Pace {
             last: NO_STEP,
             stiff_steps: 0,
             variation: 0.0,
+            unstable: 0,
+            rate: 0.0,
             refused: f64::INFINITY,
             vain: 0,
             first: 0.0,
@@ -117,9 +126,11 @@ impl Pace {
             }
             return;
         }
+        let often_unstable = self.unstable >= UNSTABLE;
+        self.unstable = self.unstable.saturating_sub(1);
         let follows = solved.variation < FOLLOWS * solved.stiffness && solved.stiffness > AT_LIMIT;
         let at_limit = solved.stiffness > STABLE;
-        if !(follows || at_limit) {
+        if !(follows || at_limit || often_unstable) {
             (self.stiff_steps, self.variation) = (0, 0.0);
             return;
         }
@@ -127,8 +138,9 @@ impl Pace {
         // What varies at the limit of stability and does not follow is noise; what varies less and less is a transient.
         self.variation = (FADING * self.variation).max(if follows { solved.variation / length } else { 0.0 });
         let smooth = (SMOOTH_ANGLE / slow).min(SMOOTH_CHANGE / self.variation).min(room);
-        if self.stiff_steps >= PERSISTENT && solved.stiffness / length * smooth > STIFF {
-            self.implicit = true;
+        let rate = if often_unstable { self.rate } else { solved.stiffness / length };
+        if (self.stiff_steps >= PERSISTENT || often_unstable) && rate * smooth > STIFF {
+            (self.implicit, self.unstable) = (true, 0);
             (self.proposed, self.last) = (FIRST * length, NO_STEP);
             (self.stiff_steps, self.variation) = (0, 0.0);
         }
@@ -136,6 +148,9 @@ impl Pace {
 
     /// Length (s) with which to try a step again that was too long.
     pub(super) fn refuse(&mut self, solved: Solved, length: f64) -> f64 {
+        if !self.implicit && solved.stiffness > STABLE {
+            (self.unstable, self.rate) = (self.unstable + 2, solved.stiffness / length);
+        }
         let in_vain = self.implicit && solved.error > VAIN * self.refused;
         (self.refused, self.vain) = (solved.error, if in_vain { self.vain + 1 } else { 0 });
         if self.vain < PERSISTENT {

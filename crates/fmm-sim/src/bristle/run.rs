@@ -154,9 +154,10 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             }
             let found = if solved.followed { self.first_guard(at_zero) } else { None };
             // What is not accurate enough says nothing about where it begins.
-            let found = found.filter(|(tau, _)| solved.error <= 1.0 || *tau > 0.0);
+            let at_once = |tau: f64| tau * length <= 2.0 * f64::EPSILON * (self.time + length);
+            let found = found.filter(|(tau, _)| solved.error <= 1.0 || !at_once(*tau));
             if let Some((tau, guard)) = found {
-                if tau * length <= 2.0 * f64::EPSILON * (self.time + length) {
+                if at_once(tau) {
                     if !(at_zero && guard == Guard::Speed) {
                         return self.arrive(guard, piece, false);
                     }
