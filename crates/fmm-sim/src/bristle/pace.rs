@@ -22,8 +22,17 @@ const SMOOTH_CHANGE: f64 = 1.0;
 const STIFF: f64 = 8.0;
 const NOT_STIFF: f64 = 4.0;
 
-/// Explicit steps that have to be limited by stiffness in a row.
+/// Explicit steps that have to be limited by stiffness in a row, and implicit ones that have to be refused in vain.
 const PERSISTENT: usize = 3;
+
+/// The count of unstable explicit steps from which on their stiffness is believed.
+const UNSTABLE: usize = 5;
+
+/// What a shorter step has to leave of the error, or it was in vain.
+const VAIN: f64 = 0.7;
+
+/// How much of the change of the rates in one step counts in the next, as one may be small by chance.
+const FADING: f64 = 0.3;
 
 /// The first implicit step after explicit ones, in units of these.
 const FIRST: f64 = 8.0;
@@ -43,10 +52,17 @@ pub(super) struct Pace {
     proposed: f64,
     /// Length (s) and error of the last step, in units of the tolerance.
     last: (f64, f64),
-    /// Explicit steps in a row that stiffness has limited, and the greatest relative change of the rates of the states in
-    /// these, per second.
+    /// Explicit steps in a row that stiffness has limited, and the relative change of the rates of the states in the last
+    /// of these, per second.
     stiff_steps: usize,
     variation: f64,
+    /// Twice the explicit steps that stability has refused, less those that were good, and the greatest rate (1/s) then: states
+    /// that follow the motion to the last digit show no stiffness in a good step.
+    unstable: usize,
+    rate: f64,
+    /// Error of the last refused step, and how many refusals in a row have been in vain.
+    refused: f64,
+    vain: usize,
     /// Length that a first step would have by the stiffness (s), whether the swing waits for its first step, and the part
     /// of that length that the last first step from rest has had.
     first: f64,
@@ -62,6 +78,10 @@ impl Pace {
             last: NO_STEP,
             stiff_steps: 0,
             variation: 0.0,
+            unstable: 0,
+            rate: 0.0,
+            refused: f64::INFINITY,
+            vain: 0,
             first: 0.0,
             opens: true,
             opening: f64::INFINITY,
@@ -95,6 +115,7 @@ impl Pace {
         if std::mem::take(&mut self.opens) && at_zero {
             self.opening = length / self.first;
         }
+        (self.refused, self.vain) = (f64::INFINITY, 0);
         let growth = self.growth(length, solved.error);
         self.proposed = length * if solved.quick { growth } else { growth.min(1.0) };
         if self.implicit {
@@ -105,21 +126,41 @@ impl Pace {
             }
             return;
         }
+        let often_unstable = self.unstable >= UNSTABLE;
+        self.unstable = self.unstable.saturating_sub(1);
         let follows = solved.variation < FOLLOWS * solved.stiffness && solved.stiffness > AT_LIMIT;
         let at_limit = solved.stiffness > STABLE;
-        if !(follows || at_limit) {
+        if !(follows || at_limit || often_unstable) {
             (self.stiff_steps, self.variation) = (0, 0.0);
             return;
         }
         self.stiff_steps += 1;
-        // What varies at the limit of stability is noise.
-        self.variation = self.variation.max(if at_limit { 0.0 } else { solved.variation / length });
+        // What varies at the limit of stability and does not follow is noise; what varies less and less is a transient.
+        self.variation = (FADING * self.variation).max(if follows { solved.variation / length } else { 0.0 });
         let smooth = (SMOOTH_ANGLE / slow).min(SMOOTH_CHANGE / self.variation).min(room);
-        if self.stiff_steps >= PERSISTENT && solved.stiffness / length * smooth > STIFF {
-            self.implicit = true;
+        let rate = if often_unstable { self.rate } else { solved.stiffness / length };
+        if (self.stiff_steps >= PERSISTENT || often_unstable) && rate * smooth > STIFF {
+            (self.implicit, self.unstable) = (true, 0);
             (self.proposed, self.last) = (FIRST * length, NO_STEP);
             (self.stiff_steps, self.variation) = (0, 0.0);
         }
+    }
+
+    /// Length (s) with which to try a step again that was too long.
+    pub(super) fn refuse(&mut self, solved: Solved, length: f64) -> f64 {
+        if !self.implicit && solved.stiffness > STABLE {
+            (self.unstable, self.rate) = (self.unstable + 2, solved.stiffness / length);
+        }
+        let in_vain = self.implicit && solved.error > VAIN * self.refused;
+        (self.refused, self.vain) = (solved.error, if in_vain { self.vain + 1 } else { 0 });
+        if self.vain < PERSISTENT {
+            return length * change(solved.error);
+        }
+        // States that do not begin where they would follow the motion jump there, however short the step is, until it is
+        // as short as the jump.
+        self.implicit = false;
+        (self.last, self.refused, self.vain) = (NO_STEP, f64::INFINITY, 0);
+        length / solved.stiffness.max(1.0)
     }
 
     /// By which factor the next step may be longer than this one of `length` and `error`.
@@ -138,7 +179,7 @@ impl Pace {
 }
 
 /// By which factor to change the length of a step with this error, in units of the tolerance.
-pub(super) fn change(error: f64) -> f64 {
+fn change(error: f64) -> f64 {
     // Both estimates grow with the eighth power of the length.
     (0.9 / error.sqrt().sqrt().sqrt()).clamp(0.1, 3.0)
 }

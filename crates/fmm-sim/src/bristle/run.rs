@@ -8,7 +8,7 @@ use super::explicit::Explicit;
 use super::field::{Branch, Field};
 use super::guard::{Approach, Guard, Landing};
 use super::motion::{Motion, Solved, Span};
-use super::pace::{Pace, change};
+use super::pace::Pace;
 use crate::drive::{Drive, Piece};
 use crate::recorder::Recorder;
 use crate::work::Power;
@@ -154,9 +154,10 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             }
             let found = if solved.followed { self.first_guard(at_zero) } else { None };
             // What is not accurate enough says nothing about where it begins.
-            let found = found.filter(|(tau, _)| solved.error <= 1.0 || *tau > 0.0);
+            let at_once = |tau: f64| tau * length <= 2.0 * f64::EPSILON * (self.time + length);
+            let found = found.filter(|(tau, _)| solved.error <= 1.0 || !at_once(*tau));
             if let Some((tau, guard)) = found {
-                if tau * length <= 2.0 * f64::EPSILON * (self.time + length) {
+                if at_once(tau) {
                     if !(at_zero && guard == Guard::Speed) {
                         return self.arrive(guard, piece, false);
                     }
@@ -179,7 +180,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 // A zero that a step too long has seen may be none.
                 approach = None;
                 self.retry(length);
-                length *= change(solved.error);
+                length = self.pace.refuse(solved, length);
                 continue;
             }
             if let Some(Approach { guard, nearest }) = approach {
