@@ -31,8 +31,8 @@ fn named(comparison: &Comparison) -> Vec<String> {
     comparison.not_excluded().map(|found| plain(found.law())).collect()
 }
 
-/// Whether one of `warnings` says that the law is not right, not settled, or does not describe the record. New variants that
-/// say so belong here.
+/// Whether one of `warnings` says that the law is not right or not settled, or names what disturbs the record. New variants
+/// that say so belong here.
 fn is_loud(warnings: &[Warning]) -> bool {
     warnings.iter().any(|warning| {
         matches!(
@@ -45,6 +45,14 @@ fn is_loud(warnings: &[Warning]) -> bool {
                 | Warning::NegativeDamping { .. }
                 | Warning::Misled { .. }
                 | Warning::Undecided
+                | Warning::FurtherRelease { .. }
+                | Warning::SecondMode { .. }
+                | Warning::Hum { .. }
+                | Warning::Rounded { .. }
+                | Warning::Drift
+                | Warning::GrowingNoise { .. }
+                | Warning::ColouredNoise { .. }
+                | Warning::TimeLimit
         )
     })
 }
