@@ -83,11 +83,11 @@ fn lugre_with_a_falling_level() {
     decays(&file, lugre(&file["params"], 1.0), tolerances(&file));
 }
 
-/// The file's own tolerances are for closed forms.
+/// The file's own tolerances are for closed forms; times are good to what the engine promises of them.
 #[test]
 fn maxwell_slip() {
     let file = read("maxwell_slip_free_decay");
-    decays(&file, elements(&file["params"]), [1e-12, 1e-12, 1e-11]);
+    decays(&file, elements(&file["params"]), [1e-11, 1e-12, 1e-11]);
 }
 
 fn elements(params: &Value) -> MaxwellSlip {

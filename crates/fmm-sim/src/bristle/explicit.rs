@@ -10,7 +10,7 @@ use crate::dormand_prince::{END, Rates, dense_stages, error, errors, mean_rate, 
 use crate::drive::Piece;
 
 /// The error allowed in a step, in units of the tolerance: many short steps add up to more than a few long ones.
-const SAFETY: f64 = 0.02;
+const SAFETY: f64 = 0.1;
 
 /// The Dormand-Prince method, as the [`RungeKutta`](crate::RungeKutta) engine uses it.
 ///
