@@ -5,8 +5,6 @@ use std::fmt;
 use crate::nuisance::Nuisance;
 use crate::{Identification, RecordSummary, RingDown, Warning};
 
-/// A step of the converter that exceeds the noise by this factor rounds it away.
-const COARSE: f64 = 2.0;
 /// A factor of the uncertainties that is worth a word.
 const NOTABLE: f64 = 1.1;
 
@@ -20,7 +18,7 @@ impl Warning {
             amplitude: line.amplitude,
             unit: summary.unit.clone(),
         });
-        let rounded = summary.resolution.filter(|step| *step > COARSE * summary.noise);
+        let rounded = summary.resolution.filter(|_| summary.is_rounded());
         let rounded = rounded.map(|step| Self::Rounded { step, unit: summary.unit.clone(), rest: summary.dead_rest });
         further.into_iter().chain(second).chain(hum).chain(rounded)
     }

@@ -30,6 +30,23 @@ pub(crate) const DOUBTED: f64 = 0.05;
 /// likelihood.
 const CLOSE: f64 = 6.0;
 
+/// Relative uncertainty (1) from which on a parameter is told too badly to say that there is no damping beside it.
+const TOLD_BADLY: f64 = 0.01;
+/// How much of that uncertainty, against that of the law without damping, is due to the damping (1).
+const DUE_TO_DAMPING: f64 = 2.0;
+
+/// Whether a parameter of the law `without` damping may be off by more than a hundredth for want of it, as the law `with` it says.
+fn hides_damping(without: &Identification, with: &Identification) -> bool {
+    without.findings().iter().filter(|own| !own.is_of_record()).any(|own| {
+        let theirs = with.finding(own.parameter().name());
+        let (u, value, their_u) = (own.uncertainty(), own.value().abs(), theirs.and_then(|theirs| theirs.uncertainty()));
+        match (u, their_u) {
+            (Some(u), Some(their_u)) => their_u > TOLD_BADLY * value && their_u > DUE_TO_DAMPING * u,
+            _ => false,
+        }
+    })
+}
+
 impl Judgement {
     /// The judgement of `candidates` by their `identifications` from the same records; none without any.
     ///
@@ -83,6 +100,9 @@ impl Judgement {
             return identifications[place].fit().rank() < identifications[preferred].fit().rank();
         }
         let is_general = candidates[preferred].is_nested_in(&candidates[place]);
+        if is_general && candidates[place].differs_by_damping(&candidates[preferred]) {
+            return hides_damping(&identifications[preferred], &identifications[place]);
+        }
         let says_the_same = (self.misfits[place] - self.misfits[preferred]).abs() < 1e-6
             && identifications[place].fit().rank() == identifications[preferred].fit().rank()
             && candidates[place].parameter_count() > candidates[preferred].parameter_count();

@@ -122,6 +122,16 @@ pub struct RecordSummary {
     pub second_mode: Option<SecondMode>,
 }
 
+/// A step of the converter that exceeds the noise by this factor rounds it away.
+pub(crate) const COARSE: f64 = 2.0;
+
+impl RecordSummary {
+    /// Whether the steps of the converter exceed the noise, so that rounding is no noise of its own at every sample.
+    pub fn is_rounded(&self) -> bool {
+        self.resolution.is_some_and(|step| step > COARSE * self.noise)
+    }
+}
+
 impl fmt::Display for RecordSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { from, to, samples, rate, quantity, unit, half_swings, frequency, noise, .. } = self;

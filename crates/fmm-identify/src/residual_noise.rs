@@ -18,7 +18,20 @@ use crate::noise_growth::NoiseGrowth;
 /// over frequencies up to 2.5 times lower and higher, is significantly larger (prewhitening; Andrews and Monahan). What the
 /// parameters of the fit took out of the periodogram P is put back, E[P] = (1 − h) S with h their share of a line.
 ///
+/// The errors of a converter whose steps exceed the noise are not stationary: they go on while the machine turns, and change with
+/// every sample while it is fast. There the residuals within a stay count together, and different stays are independent:
+///
+/// ```text
+/// aᵀΣb = Σ_g (a_gᵀe_g)(b_gᵀe_g)/(1 − h_g)
+/// ```
+///
+/// over the stays g, h the share of its mean that the parameters took (Liang and Zeger; Bell and McCaffrey).
+///
 /// # References
+/// K.-Y. Liang, S. L. Zeger, "Longitudinal data analysis using generalized linear models", Biometrika 73 (1986) 13,
+/// <https://doi.org/10.1093/biomet/73.1.13>; R. M. Bell, D. F. McCaffrey, "Bias reduction in standard errors for linear regression with
+/// multi-stage samples", Survey Methodology 28 (2002) 169.
+///
 /// D. W. K. Andrews, J. C. Monahan, "An improved heteroskedasticity and autocorrelation consistent covariance matrix
 /// estimator", Econometrica 60 (1992) 953, <https://doi.org/10.2307/2951574>.
 #[derive(Debug, Clone)]
@@ -37,6 +50,8 @@ pub(crate) struct Series<'a> {
     /// Columns of the fit at all rows, and the elements (JᵀJ)⁺ by which they count: pairs of columns with their weight.
     pub(crate) columns: &'a [Vec<f64>],
     pub(crate) weights: &'a [f64],
+    /// Rows within the series over which the values stay at one step of the converter, where its steps exceed the noise.
+    pub(crate) stays: Vec<Range<usize>>,
 }
 
 #[derive(Debug, Clone)]
@@ -53,6 +68,22 @@ struct SeriesNoise {
     /// Independent ordinates of the periodogram behind each line of the density.
     ordinates: Vec<f64>,
     is_white: bool,
+    /// The residuals of each stay, none where no steps exceed the noise.
+    stays: Vec<Stay>,
+}
+
+/// Neighbouring rows with one error of rounding.
+#[derive(Debug, Clone)]
+struct Stay {
+    rows: Range<usize>,
+    /// With what the parameters took put back, in the unit of the residuals.
+    residuals: Vec<f64>,
+}
+
+/// What the noise of a series makes of a column.
+enum Image {
+    Spectrum(Vec<Complex64>),
+    Stays(Vec<f64>),
 }
 
 /// Frequencies up to this factor lower and higher are averaged,
@@ -78,7 +109,7 @@ impl ResidualNoise {
 
     /// aᵀ Σ b of two columns over all residuals.
     pub(crate) fn product(&self, a: &[f64], b: &[f64]) -> f64 {
-        self.series.iter().map(|series| series.product(&series.lines(a), &series.lines(b))).sum()
+        self.series.iter().map(|series| series.product(&series.image(a), &series.image(b))).sum()
     }
 
     /// Jᵀ Σ J of `columns` over all residuals, row by row.
@@ -86,10 +117,10 @@ impl ResidualNoise {
         let count = columns.len();
         let mut products = vec![0.0; count * count];
         for series in &self.series {
-            let lines: Vec<_> = columns.iter().map(|column| series.lines(column)).collect();
+            let images: Vec<_> = columns.iter().map(|column| series.image(column)).collect();
             for i in 0..count {
                 for j in i..count {
-                    let product = series.product(&lines[i], &lines[j]);
+                    let product = series.product(&images[i], &images[j]);
                     products[i * count + j] += product;
                     if i != j {
                         products[j * count + i] += product;
@@ -114,7 +145,7 @@ impl ResidualNoise {
 
     /// Whether every series is white and of one variance.
     pub(crate) fn is_plain(&self) -> bool {
-        self.series.iter().all(|series| series.is_white && series.growth.is_none())
+        self.series.iter().all(|series| series.is_white && series.growth.is_none() && series.stays.is_empty())
     }
 
     /// How the noise grows with the signal, if it does in any series.
@@ -122,13 +153,22 @@ impl ResidualNoise {
         self.series.iter().find_map(|series| series.growth)
     }
 
-    /// Independent ordinates of the periodogram that the density rests on along `direction`.
+    /// Independent ordinates of the periodogram, or stays, that the variance rests on along `direction`.
     pub(crate) fn ordinates_along(&self, direction: &[f64]) -> f64 {
         let (mut sum, mut weight) = (0.0, 0.0);
         for series in &self.series {
-            for (line, ordinates) in series.lines(direction).iter().zip(&series.ordinates) {
-                sum += line.norm_sqr() / ordinates;
-                weight += line.norm_sqr();
+            match series.image(direction) {
+                Image::Spectrum(lines) => {
+                    for (line, ordinates) in lines.iter().zip(&series.ordinates) {
+                        sum += line.norm_sqr() / ordinates;
+                        weight += line.norm_sqr();
+                    }
+                }
+                Image::Stays(parts) => {
+                    let squares: f64 = parts.iter().map(|part| part * part).sum();
+                    sum += parts.iter().map(|part| part.powi(4)).sum::<f64>() / squares.max(f64::MIN_POSITIVE);
+                    weight += squares;
+                }
             }
         }
         if sum > 0.0 { weight / sum } else { f64::INFINITY }
@@ -160,6 +200,7 @@ impl SeriesNoise {
             ordinates: vec![f64::INFINITY; transform.lines()],
             transform,
             is_white: true,
+            stays: stays(&residuals[series.rows.clone()], series),
         };
         if count >= FEWEST_RESIDUALS && noise.deviations.iter().all(|deviation| *deviation > 0.0) {
             noise.colour(&own, series);
@@ -255,30 +296,55 @@ impl SeriesNoise {
         spectrum
     }
 
-    /// The spectrum of D a, for a `column` over all residuals.
-    fn lines(&self, column: &[f64]) -> Vec<Complex64> {
-        let mut values = gathered(&column[self.rows.clone()], self.group);
+    /// What the noise of the series makes of a `column` over all residuals: the spectrum of D a, or its part in every stay.
+    fn image(&self, column: &[f64]) -> Image {
+        let column = &column[self.rows.clone()];
+        if !self.stays.is_empty() {
+            let part = |stay: &Stay| column[stay.rows.clone()].iter().zip(&stay.residuals).map(|(a, r)| a * r).sum();
+            return Image::Stays(self.stays.iter().map(part).collect());
+        }
+        let mut values = gathered(column, self.group);
         values.iter_mut().zip(&self.deviations).for_each(|(a, deviation)| *a *= deviation);
-        self.spectrum(&values)
+        Image::Spectrum(self.spectrum(&values))
     }
 
-    /// aᵀ D C D b of two spectra, where C is the Toeplitz matrix that belongs to the density: with as many zeros behind the
-    /// values the sum over the lines is that of the matrix.
-    fn product(&self, a: &[Complex64], b: &[Complex64]) -> f64 {
-        let length = self.transform.length();
-        let last = self.transform.lines() - 1;
-        let sum: f64 = a
-            .iter()
-            .zip(b)
-            .zip(&self.density)
-            .enumerate()
-            .map(|(k, ((a, b), density))| {
-                let times = if k == 0 || (k == last && length.is_multiple_of(2)) { 1.0 } else { 2.0 };
-                times * density * (a.conj() * b).re
-            })
-            .sum();
-        sum / length as f64
+    /// aᵀ Σ b of the images of two columns. With C the Toeplitz matrix that belongs to the density, aᵀ D C D b is a sum over the
+    /// lines of spectra of values with as many zeros behind them.
+    fn product(&self, a: &Image, b: &Image) -> f64 {
+        match (a, b) {
+            (Image::Spectrum(a), Image::Spectrum(b)) => {
+                let length = self.transform.length();
+                let last = self.transform.lines() - 1;
+                let terms = a.iter().zip(b).zip(&self.density).enumerate().map(|(k, ((a, b), density))| {
+                    let times = if k == 0 || (k == last && length.is_multiple_of(2)) { 1.0 } else { 2.0 };
+                    times * density * (a.conj() * b).re
+                });
+                terms.sum::<f64>() / length as f64
+            }
+            (Image::Stays(a), Image::Stays(b)) => a.iter().zip(b).map(|(a, b)| a * b).sum(),
+            // One series makes images of one kind.
+            _ => 0.0,
+        }
     }
+}
+
+/// The stays of `series`, with its own `residuals` and what the parameters took of the mean of each put back.
+fn stays(residuals: &[f64], series: &Series<'_>) -> Vec<Stay> {
+    /// A mean of which the parameters took more than this (1) says nothing of its error.
+    const MOST: f64 = 0.8;
+    let own = |column: &Vec<f64>, rows: &Range<usize>| -> f64 {
+        column[series.rows.start + rows.start..series.rows.start + rows.end].iter().sum()
+    };
+    let stay = |rows: &Range<usize>| {
+        let sums: Vec<f64> = series.columns.iter().map(|column| own(column, rows)).collect();
+        let mut share = 0.0;
+        for (a, weights) in sums.iter().zip(series.weights.chunks(sums.len())) {
+            share += a * weights.iter().zip(&sums).map(|(weight, b)| weight * b).sum::<f64>();
+        }
+        let left = 1.0 - (share / rows.len() as f64).clamp(0.0, MOST);
+        Stay { rows: rows.clone(), residuals: residuals[rows.clone()].iter().map(|r| r / left.sqrt()).collect() }
+    };
+    series.stays.iter().map(stay).collect()
 }
 
 /// Σ/√m of every `group` of m neighbouring values: independent ones keep their variance, and slow ones their sum of products.

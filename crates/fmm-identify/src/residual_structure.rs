@@ -143,6 +143,7 @@ impl Covariance {
                 period: problem.decays()[record].record().rate() / problem.decays()[record].guess().frequency(),
                 columns,
                 weights: unit,
+                stays: problem.decays()[record].stays(),
             })
             .collect();
         ResidualNoise::of(fit.residuals(), &series)

@@ -11,6 +11,7 @@ use fmm_record::{
 
 use crate::first_guess::{Dissipation, FirstGuess, Oscillation};
 use crate::nuisance::Nuisance;
+use crate::preparation::COARSE;
 use crate::{IdentifyError, Machine, Offset, Preparation, RecordSummary};
 
 /// A prepared ring-down: the part of a record in which a machine vibrates freely, and what was seen in it.
@@ -93,7 +94,14 @@ impl RingDown {
         let resolution = quantisation_step(record.values());
         let dead_rest =
             resolution.and_then(|step| dead_rest(cleaned.values(), step, record.rate() / guess.frequency()));
-        let kept = dead_rest.map_or_else(|| kept.clone(), |rest| counted_once(&kept, rest));
+        let mut kept = dead_rest.map_or_else(|| kept.clone(), |rest| counted_once(&kept, rest));
+        let noise = noise(cleaned.values());
+        if resolution.is_some_and(|step| step > COARSE * noise) {
+            // What swings within a step or two is rounded to another motion.
+            let last = peaks.last().map_or(0.0, |peak| (peak.time - start) / record.interval());
+            kept.iter_mut().for_each(|range| range.end = range.end.min((last.max(0.0) as usize).max(range.start)));
+            kept.retain(|range| !range.is_empty());
+        }
         let amplitudes = guess.amplitudes();
         let summary = RecordSummary {
             from: record.start(),
@@ -108,7 +116,7 @@ impl RingDown {
             half_swings: peaks.len(),
             amplitudes: (amplitudes[0], amplitudes[amplitudes.len() - 1]),
             frequency: guess.frequency(),
-            noise: noise(cleaned.values()),
+            noise,
             resolution,
             rest_from: rest_from(&cleaned, resolution.unwrap_or(0.0), guess.frequency()),
             dead_rest: dead_rest.map(|rest| record.start() + rest.begin as f64 * record.interval()),
@@ -163,6 +171,26 @@ impl RingDown {
     /// Ranges of samples that are fitted; what lies between them is left out.
     pub fn kept(&self) -> &[Range<usize>] {
         &self.kept
+    }
+
+    /// Samples in a row among those that are kept over which the values stay within one step of the converter; none if the steps do
+    /// not exceed the noise.
+    pub(crate) fn stays(&self) -> Vec<Range<usize>> {
+        let Some(step) = self.summary.resolution.filter(|_| self.summary.is_rounded()) else { return Vec::new() };
+        let mut stays: Vec<Range<usize>> = Vec::new();
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let values = self.kept.iter().flat_map(|range| &self.record.values()[range.clone()]);
+        for (row, value) in values.enumerate() {
+            (low, high) = (low.min(*value), high.max(*value));
+            match stays.last_mut() {
+                Some(stay) if high - low < 1.5 * step => stay.end = row + 1,
+                _ => {
+                    stays.push(row..row + 1);
+                    (low, high) = (*value, *value);
+                }
+            }
+        }
+        stays
     }
 
     /// The same ring-down up to its last peak; none if that leaves nothing out or too little.

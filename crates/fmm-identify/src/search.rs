@@ -147,10 +147,7 @@ pub fn search_observed(
             sign.addition == Addition::Presliding && sign.significance() > 2.0 && sign.size > LEAST_PRESLIDING
         };
         // Steps of a converter look like presliding: neither moves where the machine turns.
-        let is_rounded = decays.iter().any(|decay| {
-            let summary = decay.summary();
-            summary.resolution.is_some_and(|step| step > 2.0 * summary.noise)
-        });
+        let is_rounded = decays.iter().any(|decay| decay.summary().is_rounded());
         let presliding = !is_rounded && signs.iter().any(seen);
         if presliding || found.is_structured() {
             run.fit(search.candidates(&WITH_STATE)?, &signs, false, &mut found)?;
