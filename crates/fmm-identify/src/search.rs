@@ -100,13 +100,16 @@ const OF_SPEED: [&str; 7] = [
 ];
 /// Presliding over less of the amplitude than this (1) is none that a record shows.
 const LEAST_PRESLIDING: f64 = 2e-3;
+/// Iterations of a fit with presliding, each of which takes a hundred times as long as one without: one that needs more is led by
+/// something else.
+const MOST_ITERATIONS: usize = 25;
 /// Laws with presliding.
 const WITH_STATE: [&str; 1] = ["dahl+linear,exponent=1"];
 
 /// Identifies `decays` by as many laws as they ask for.
 ///
 /// First viscous damping, Coulomb friction and both. If the residuals of these show signs of something else, or are alike where they
-/// should be noise, laws whose friction changes with speed; and laws with presliding if there are signs of it. What was looked for
+/// should be noise, laws whose friction changes with speed; and laws with presliding if there are signs of that. What was looked for
 /// is in [`Comparison::signs`].
 ///
 /// # Errors
@@ -148,8 +151,9 @@ pub fn search_observed(
         };
         // Steps of a converter look like presliding: neither moves where the machine turns.
         let is_rounded = decays.iter().any(|decay| decay.summary().is_rounded());
-        let presliding = !is_rounded && signs.iter().any(seen);
-        if presliding || found.is_structured() {
+        if !is_rounded && signs.iter().any(seen) {
+            let options = options.clone().with_max_iterations(MOST_ITERATIONS.min(options.max_iterations()));
+            let run = Run { options: &options, ..run };
             run.fit(search.candidates(&WITH_STATE)?, &signs, false, &mut found)?;
         }
     }
