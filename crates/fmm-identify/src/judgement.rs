@@ -2,7 +2,7 @@
 
 use fmm_fit::f_tail;
 
-use crate::{Candidate, Identification};
+use crate::{Candidate, Finding, Identification};
 
 /// What the records say of each of several laws beside the one that fits them best, which laws are left, and which of them is
 /// preferred.
@@ -39,8 +39,7 @@ const DUE_TO_DAMPING: f64 = 2.0;
 fn hides_damping(without: &Identification, with: &Identification) -> bool {
     without.findings().iter().filter(|own| !own.is_of_record()).any(|own| {
         let theirs = with.finding(own.parameter().name());
-        let (u, value, their_u) =
-            (own.uncertainty(), own.value().abs(), theirs.and_then(|theirs| theirs.uncertainty()));
+        let (u, value, their_u) = (own.uncertainty(), own.value().abs(), theirs.and_then(Finding::uncertainty));
         match (u, their_u) {
             (Some(u), Some(their_u)) => their_u > TOLD_BADLY * value && their_u > DUE_TO_DAMPING * u,
             _ => false,

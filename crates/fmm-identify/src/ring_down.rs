@@ -99,7 +99,9 @@ impl RingDown {
         if resolution.is_some_and(|step| step > COARSE * noise) {
             // What swings within a step or two is rounded to another motion.
             let last = peaks.last().map_or(0.0, |peak| (peak.time - start) / record.interval());
-            kept.iter_mut().for_each(|range| range.end = range.end.min((last.max(0.0) as usize).max(range.start)));
+            for range in &mut kept {
+                range.end = range.end.min((last.max(0.0) as usize).max(range.start));
+            }
             kept.retain(|range| !range.is_empty());
         }
         let amplitudes = guess.amplitudes();
