@@ -368,3 +368,100 @@ fn padded(count: usize) -> usize {
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Normal numbers by the sum of twelve uniform ones.
+    fn normals(seed: u64, count: usize) -> Vec<f64> {
+        let mut state = seed;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..count).map(|_| (0..12).map(|_| uniform()).sum::<f64>() - 6.0).collect()
+    }
+
+    fn series(rows: usize, stays: Vec<Range<usize>>) -> Series<'static> {
+        Series { rows: 0..rows, signal: None, period: 100.0, columns: &[], weights: &[], stays }
+    }
+
+    fn slow(count: usize) -> Vec<f64> {
+        (0..count).map(|i| (TAU * i as f64 / 500.0).sin()).collect()
+    }
+
+    #[test]
+    fn white_noise_has_its_variance_along_every_direction() {
+        let residuals = normals(1, 4000);
+        let noise = ResidualNoise::of(&residuals, &[series(4000, Vec::new())]);
+        assert!(noise.is_plain());
+        let variance = noise.variance_along(&slow(4000));
+        assert!((variance - 1.0).abs() < 0.1, "{variance}");
+    }
+
+    /// z_i = 0.9 z_{i−1} + e_i has 19 times its variance at frequencies far below the rate.
+    #[test]
+    fn noise_that_remembers_itself_has_more_along_slow_directions() {
+        let mut last = 0.0;
+        let residuals: Vec<f64> = normals(2, 8000)
+            .into_iter()
+            .map(|e| {
+                last = 0.9 * last + e;
+                last
+            })
+            .collect();
+        let noise = ResidualNoise::of(&residuals, &[series(8000, Vec::new())]);
+        assert!(!noise.is_plain());
+        let variance = noise.variance_along(&slow(8000));
+        assert!((variance / 100.0 - 1.0).abs() < 0.25, "{variance}");
+    }
+
+    /// Long series are judged by their groups, to the same end.
+    #[test]
+    fn a_million_residuals_tell_the_variance_of_one() {
+        let count = 1_000_000;
+        let residuals = normals(3, count);
+        let series = Series { period: 1e5, ..series(count, Vec::new()) };
+        let noise = ResidualNoise::of(&residuals, &[series]);
+        let direction: Vec<f64> = (0..count).map(|i| (TAU * i as f64 / 1e5).sin()).collect();
+        let variance = noise.variance_along(&direction);
+        assert!((variance - 1.0).abs() < 0.1, "{variance}");
+    }
+
+    /// One error for each ten rows: along a constant its variance is ten times that of a row.
+    #[test]
+    fn what_stays_counts_together() {
+        let errors = normals(4, 400);
+        let residuals: Vec<f64> = errors.iter().flat_map(|error| [*error; 10]).collect();
+        let stays = (0..400).map(|stay| 10 * stay..10 * stay + 10).collect();
+        let noise = ResidualNoise::of(&residuals, &[series(4000, stays)]);
+        let square = errors.iter().map(|e| e * e).sum::<f64>() / 400.0;
+        let variance = noise.variance_along(&[1.0; 4000]);
+        assert!((variance - 10.0 * square).abs() < 1e-9 * variance, "{variance}");
+        assert!(!noise.is_plain());
+        assert!((50.0..400.0).contains(&noise.ordinates_along(&[1.0; 4000])));
+    }
+
+    /// A column that takes the whole mean of a stay hides its error, which is put back as far as can be told.
+    #[test]
+    fn what_parameters_took_of_a_stay_is_put_back() {
+        let residuals = [0.6, 0.6, 0.6, 0.6, 1.0, 1.0, 1.0, 1.0];
+        let columns = [vec![1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
+        let series = Series {
+            rows: 0..8,
+            signal: None,
+            period: 100.0,
+            columns: &columns,
+            weights: &[0.16],
+            stays: vec![0..4, 4..8],
+        };
+        let noise = ResidualNoise::of(&residuals, &[series]);
+        // h = 0.16 · 4²/4 = 0.64: the first error of 0.6 stands for 1.
+        let [first, second] = [0..4, 4..8].map(|rows: Range<usize>| {
+            let direction: Vec<f64> = (0..8).map(|row| f64::from(u8::from(rows.contains(&row)))).collect();
+            noise.product(&direction, &direction)
+        });
+        assert!((first - 16.0).abs() < 1e-9 && (second - 16.0).abs() < 1e-9, "{first}, {second}");
+    }
+}

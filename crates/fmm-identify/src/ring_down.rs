@@ -404,6 +404,32 @@ mod tests {
         }
     }
 
+    #[test]
+    fn coarse_values_stay_at_a_step_and_the_last_swings_are_left_out() {
+        const STEP: f64 = 0.02;
+        let clean = released(&[0.3]);
+        assert_eq!(RingDown::prepare(&clean, &Preparation::default()).unwrap().stays(), []);
+        let values = clean.values().iter().map(|value| (value / STEP).round() * STEP).collect();
+        let record = Record::sampled(1000.0, values, Quantity::Velocity, "m/s").unwrap();
+        let coarse = RingDown::prepare(&record, &Preparation::default()).unwrap();
+        assert!(coarse.summary().is_rounded());
+        let kept: Vec<f64> =
+            coarse.kept().iter().flat_map(|range| &coarse.record().values()[range.clone()]).copied().collect();
+        let stays = coarse.stays();
+        assert!(stays.len() > 20 && stays.len() < kept.len() / 2, "{} of {}", stays.len(), kept.len());
+        assert_eq!((stays[0].start, stays[stays.len() - 1].end), (0, kept.len()));
+        assert!(stays.windows(2).all(|pair| pair[0].end == pair[1].start));
+        for stay in stays {
+            let (low, high) = kept[stay]
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |range, value| (value.min(range.0), value.max(range.1)));
+            assert!(high - low < 1.5 * STEP);
+        }
+        let (last, _) = coarse.peaks()[coarse.peaks().len() - 1];
+        let end = coarse.kept().last().unwrap().end;
+        assert!(coarse.record().start() + end as f64 * 1e-3 <= last + 1e-9);
+    }
+
     fn file(name: &str, quantity: Quantity) -> RingDown {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../fmm-record/tests/data").join(name);
         let text = std::fs::read_to_string(path).unwrap();
