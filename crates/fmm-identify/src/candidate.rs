@@ -10,7 +10,8 @@ use fmm_friction::{
 };
 use fmm_sim::Simulated;
 
-use crate::identification::{Near, identify_by};
+use crate::fit_stages::Near;
+use crate::identification::identify_by;
 use crate::law::Law;
 use crate::{Identification, IdentifyError, Machine, RingDown, Sign, Terms};
 

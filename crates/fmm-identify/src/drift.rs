@@ -32,6 +32,7 @@ pub(crate) fn with_drift(
     if !found.structure().is_noisy() {
         return None;
     }
+    let tangent = found.tangent(problem)?;
     let mut any = false;
     let mut drifting = Vec::with_capacity(decays.len());
     for (decay, rows) in decays.iter().zip(problem.row_ranges()) {
@@ -44,7 +45,7 @@ pub(crate) fn with_drift(
         let energy = |shape: &dyn Fn(f64) -> f64| -> Option<f64> {
             let mut direction = vec![0.0; found.fit().residuals().len()];
             direction[rows.clone()].iter_mut().zip(&times).for_each(|(d, time)| *d = shape(*time));
-            found.take_out_parameters(problem, &mut direction)?;
+            tangent.take_out(&mut direction);
             let square: f64 = direction.iter().map(|d| d * d).sum();
             let product: f64 = direction.iter().zip(found.fit().residuals()).map(|(d, r)| d * r).sum();
             (square > 0.0).then(|| product * product / square)

@@ -2,21 +2,22 @@
 
 use std::ops::ControlFlow;
 
-use fmm_fit::{EvaluationError, Fit, Options, Outcome, Progress, Residuals, solve_observed};
-use fmm_friction::{CoulombViscous, Role};
-use fmm_model::Restoring;
+use fmm_fit::{EvaluationError, Fit, Options, Progress, solve_observed};
+use fmm_friction::Role;
 use fmm_sim::{Event, EventKind, Simulated, Trajectory};
 
 use crate::drift::{as_fitted, with_drift};
 use crate::finding::{Finding, findings};
+use crate::fit_stages::{Near, fit_in_stages, fit_near};
 use crate::law::Law;
 use crate::layout::{Layout, named};
 use crate::nuisance::Nuisance;
 use crate::problem::RingDownProblem;
 use crate::residual_noise::ResidualNoise;
 use crate::residual_structure::{Covariance, ResidualStructure};
+use crate::tangent::Tangent;
 use crate::terms::LINEAR;
-use crate::{IdentifyError, Machine, RingDown, Sign, Terms, Warning};
+use crate::{IdentifyError, Machine, RingDown, Terms, Warning};
 
 /// How the fitted motion of one record ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -144,12 +145,6 @@ pub fn identify_observed<F: Simulated>(
     identify_by(Law::of::<F>(), machine, terms, decays, None, options, observer)
 }
 
-/// A fit by Coulomb and viscous friction to begin another one near, and what its residuals ask for.
-pub(crate) struct Near<'a> {
-    pub(crate) simple: &'a Identification,
-    pub(crate) signs: &'a [Sign],
-}
-
 /// As [`identify_observed`], by a law that is known at run time, near another fit if there is one.
 pub(crate) fn identify_by(
     law: Law,
@@ -216,15 +211,7 @@ pub(crate) fn identify_by(
 fn pull_at_bound(problem: &RingDownProblem<'_>, fit: &Fit, covariance: &Covariance) -> Option<f64> {
     let index = fit.estimates().iter().position(|estimate| estimate.name() == LINEAR)?;
     fit.estimates()[index].status().is_at_bound().then_some(())?;
-    let count = fit.values().len();
-    let variance = fit.residual_standard_deviation()?.powi(2);
-    let known: Vec<usize> = (0..count).filter(|i| fit.relaxed_covariance(*i, *i).is_some()).collect();
-    let columns = problem.columns(fit.values(), &known).ok()?;
-    let step = |(j, column): (&usize, &Vec<f64>)| {
-        let product: f64 = column.iter().zip(fit.residuals()).map(|(a, r)| a * r).sum();
-        -fit.relaxed_covariance(index, *j).unwrap_or(0.0) / variance * product
-    };
-    let step: f64 = known.iter().zip(&columns).map(step).sum();
+    let step = -Tangent::of(problem, fit)?.step(index, fit.residuals());
     Some(step / covariance.relaxed(index)?.sqrt())
 }
 
@@ -234,110 +221,6 @@ fn friction_at_rest(layout: &Layout, values: &[f64]) -> Option<f64> {
     let (_, level) = parameters().find(|(parameter, _)| parameter.role() == Role::Level)?;
     let above = parameters().filter(|(parameter, _)| matches!(parameter.role(), Role::Excess | Role::LevelAbove));
     Some(level + above.map(|(_, excess)| excess).sum::<f64>())
-}
-
-/// Shares of a record to which a pendulum is fitted before the whole, as its period depends on the amplitude.
-const BEGINNINGS: [f64; 2] = [0.125, 0.4];
-
-/// The best end of the fits from all start values. Displacements are first fitted up to their last peak, and from
-/// there as a whole. Laws with more than a level and a viscous part continue the fit of one that has just these.
-fn fit_in_stages(
-    problem: &RingDownProblem<'_>,
-    options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
-) -> Result<Fit, IdentifyError> {
-    if let Some(thinned) = problem.thinned() {
-        // One fit of all samples, begun where a search with few of them has ended.
-        let search = problem.with_records(&thinned);
-        let found = fit_in_search(&search, options, observer)?;
-        return best_fit(problem, problem.name(), vec![found.values().to_vec()], options, observer);
-    }
-    fit_in_search(problem, options, observer)
-}
-
-/// The best end of the fits from the starts near a simple fit, with few of the samples first.
-fn fit_near(
-    problem: &RingDownProblem<'_>,
-    near: &Near<'_>,
-    options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
-) -> Result<Fit, IdentifyError> {
-    let simple = RingDownProblem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
-    let starts = problem.near(&simple, near.simple.fit().values(), near.signs);
-    let starts = match problem.thinned() {
-        Some(thinned) if starts.len() > 1 => {
-            let search = problem.with_records(&thinned);
-            vec![best_fit(&search, problem.name(), starts, options, observer)?.values().to_vec()]
-        }
-        _ => starts,
-    };
-    best_fit(problem, problem.name(), starts, options, observer)
-}
-
-/// The best end of the fits from everything that may be a start.
-fn fit_in_search(
-    problem: &RingDownProblem<'_>,
-    options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
-) -> Result<Fit, IdentifyError> {
-    if !problem.is_elaborate() {
-        return fit_simple(problem, options, observer);
-    }
-    let simple = RingDownProblem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
-    let known = fit_simple(&simple, options, observer)?;
-    let mut starts = problem.continued(&simple, known.values());
-    starts.extend(problem.starts().into_iter().next());
-    best_fit(problem, problem.name(), starts, options, observer)
-}
-
-/// The best end of the fits from start values that the records show.
-fn fit_simple(
-    problem: &RingDownProblem<'_>,
-    options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
-) -> Result<Fit, IdentifyError> {
-    let mut starts = problem.starts();
-    if let Some(swinging) = problem.up_to_last_peaks() {
-        let problem = problem.with_records(&swinging);
-        if let Ok(fit) = best_fit(&problem, problem.name(), problem.starts(), options, observer) {
-            starts.push(fit.values().to_vec());
-        }
-    }
-    if problem.machine().restoring() != Restoring::Linear {
-        let mut begun = problem.starts();
-        for share in BEGINNINGS {
-            let beginning = problem.beginnings(share);
-            let problem = problem.with_records(&beginning);
-            if let Ok(fit) = best_fit(&problem, problem.name(), std::mem::take(&mut begun), options, observer) {
-                begun.push(fit.values().to_vec());
-            }
-        }
-        starts.extend(begun);
-    }
-    best_fit(problem, problem.name(), starts, options, observer)
-}
-
-/// The best end of the fits from `starts`. No other end is better than one that leaves rounding only.
-pub(crate) fn best_fit(
-    problem: &impl Residuals,
-    law: &'static str,
-    starts: Vec<Vec<f64>>,
-    options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
-) -> Result<Fit, IdentifyError> {
-    let mut best: Option<Fit> = None;
-    let mut failure = None;
-    for start in starts {
-        match solve_observed(problem, &start, options, |progress| observer(progress)) {
-            Ok(fit) if fit.outcome() == Outcome::AtNoiseFloor => return Ok(fit),
-            Ok(fit) if best.as_ref().is_none_or(|best| fit.sum_of_squares() < best.sum_of_squares()) => {
-                best = Some(fit);
-            }
-            Ok(_) => {}
-            Err(source) => failure = Some(IdentifyError::Fit { law, source }),
-        }
-    }
-    best.ok_or_else(|| failure.unwrap_or(IdentifyError::TooFewHalfSwings { found: 0, needed: 2 }))
 }
 
 /// Adds half the difference that moving an input by ± its uncertainty makes (JCGM 100:2008, 5.1.3 note 2).
@@ -460,22 +343,9 @@ impl Identification {
         self.covariance.degrees_of_freedom() + self.fit.rank() as f64
     }
 
-    /// Takes out of `direction`, a change of all residuals, what the parameters of this fit to `problem` can follow, those on a bound
-    /// included; none if the derivatives cannot be had.
-    pub(crate) fn take_out_parameters(&self, problem: &RingDownProblem<'_>, direction: &mut [f64]) -> Option<()> {
-        let count = self.fit.values().len();
-        let variance = self.fit.residual_standard_deviation()?.powi(2);
-        let unit = |i: usize, j: usize| self.fit.relaxed_covariance(i, j).map(|covariance| covariance / variance);
-        let known: Vec<usize> = (0..count).filter(|i| unit(*i, *i).is_some()).collect();
-        let columns = problem.columns(self.fit.values(), &known).ok()?;
-        let products: Vec<f64> =
-            columns.iter().map(|column| column.iter().zip(&*direction).map(|(a, d)| a * d).sum()).collect();
-        for (i, column) in known.iter().zip(&columns) {
-            let share: f64 =
-                known.iter().zip(&products).map(|(j, product)| unit(*i, *j).unwrap_or(0.0) * product).sum();
-            direction.iter_mut().zip(column).for_each(|(d, a)| *d -= share * a);
-        }
-        Some(())
+    /// What the parameters of this fit to `problem` can follow, those on a bound included; none if the derivatives cannot be had.
+    pub(crate) fn tangent(&self, problem: &RingDownProblem<'_>) -> Option<Tangent> {
+        Tangent::of(problem, &self.fit)
     }
 
     /// Whether a viscous part that ended at zero would be significantly negative without its bound, as if friction fell with the

@@ -96,6 +96,7 @@ mod error;
 mod estimated;
 mod finding;
 mod first_guess;
+mod fit_stages;
 mod free_vibration;
 mod half_swings;
 mod identification;
@@ -119,6 +120,7 @@ mod search;
 #[cfg(feature = "serde")]
 mod serialised;
 mod sign;
+mod tangent;
 mod terms;
 mod test_function;
 mod thesis_decrement;

@@ -1,21 +1,17 @@
 //! The least-squares problem of an identification: these records by that law.
 
-use std::f64::consts::PI;
 use std::ops::Range;
 
 use fmm_fit::{Block, EvaluationError, Fit, Residuals};
-use fmm_friction::Role;
 use fmm_model::{Parameter, Scalar};
 use fmm_record::Quantity;
 use fmm_sim::{Channels, Samples, Sampling, Simulated, Trajectory};
 
-use crate::dimension::{Scales, bends, is_force};
-use crate::first_guess::Dissipation;
 use crate::law::{DIRECTIONS, Law, Simulate};
-use crate::layout::{Layout, mass_of_stiffness};
-use crate::nuisance::Nuisance;
-use crate::sign::Addition;
-use crate::{IdentifyError, Machine, RingDown, Sign, Terms};
+use crate::layout::Layout;
+use crate::{IdentifyError, Machine, RingDown, Terms};
+
+mod starts;
 
 /// The residuals "model less record" of one or several ring-downs by a law, with exact derivatives.
 ///
@@ -220,145 +216,6 @@ impl<'a> RingDownProblem<'a> {
             model.iter_mut().zip(shape).for_each(|(out, shape)| *out += size * shape);
         }
         Ok(model)
-    }
-
-    /// Whether the law or the terms beside it have more to find than levels and a viscous part.
-    pub(crate) fn is_elaborate(&self) -> bool {
-        self.layout.law > self.layout.oscillator
-            || self.law().fitted().filter(|parameter| is_force(parameter.role())).count() > 1
-            || self.law().fitted().any(bends)
-    }
-
-    /// Start values, one set per hypothesis that the law can express, each inside the bounds.
-    pub(crate) fn starts(&self) -> Vec<Vec<f64>> {
-        let has_level = self.law().fitted().any(|parameter| is_force(parameter.role()));
-        let has_slope = self.has_linear_damping();
-        let hypotheses = self.decays[0].guess().hypotheses();
-        let expressible = |dissipation: &&Dissipation| {
-            (has_level || dissipation.friction == 0.0) && (has_slope || dissipation.damping == 0.0)
-        };
-        let mut starts: Vec<_> =
-            hypotheses.iter().filter(expressible).map(|hypothesis| self.start(*hypothesis)).collect();
-        if starts.is_empty() {
-            starts.extend(hypotheses.first().map(|hypothesis| self.start(*hypothesis)));
-        }
-        starts
-    }
-
-    fn has_linear_damping(&self) -> bool {
-        self.terms.has_linear_damping() || self.law().has_slope()
-    }
-
-    /// Start values under one hypothesis.
-    fn start(&self, dissipation: Dissipation) -> Vec<f64> {
-        let frequency = self.decays[0].natural_frequency(dissipation, &self.machine);
-        // An unknown mass starts at 1 kg; nothing in the record says better.
-        let mut start = match self.layout.oscillator {
-            1 => vec![frequency],
-            _ => vec![1.0, 1.0 / mass_of_stiffness(1.0, frequency)],
-        };
-        self.push_dissipation(dissipation, 1.0, &mut start);
-        for decay in self.decays {
-            let (position, velocity) = decay.guess().initial_state(dissipation);
-            start.extend([position, velocity]);
-            if decay.fixed_offset().is_none() {
-                start.push(decay.guess().offset(dissipation));
-            }
-            start.extend(decay.nuisances().iter().map(Nuisance::start));
-        }
-        self.clamped(&start)
-    }
-
-    /// Start values that continue a fit of `simple`, which has a level and a viscous part: the same losses, put into the law
-    /// in as many ways as it offers.
-    pub(crate) fn continued(&self, simple: &RingDownProblem<'_>, values: &[f64]) -> Vec<Vec<f64>> {
-        let (oscillator, rest) = values.split_at(simple.layout.oscillator);
-        let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
-        // A damper and Coulomb friction lose the same in a swing if F = π/4 c V.
-        let as_friction = dissipation.friction + 0.25 * PI * dissipation.damping * 0.5 * self.decays[0].scales().1;
-        let all_friction = Dissipation { friction: as_friction, damping: 0.0 };
-        let half = Dissipation { friction: as_friction, damping: 0.5 * dissipation.damping };
-        let mut starts = Vec::new();
-        let sharpnesses: &[f64] = if self.law().fitted().any(bends) { &[1.0, 8.0, 0.125] } else { &[1.0] };
-        for sharpness in sharpnesses {
-            let shares = if self.has_linear_damping() { vec![dissipation, half] } else { vec![all_friction] };
-            for share in shares {
-                let mut start = oscillator.to_vec();
-                self.push_dissipation(share, *sharpness, &mut start);
-                start.extend_from_slice(&values[simple.layout.shared..]);
-                starts.push(self.clamped(&start));
-            }
-        }
-        starts
-    }
-
-    /// Start values near a fit of `simple`, with what its residuals ask for: friction that falls over the speeds of the plainest
-    /// signs, by as much as they say; and the same losses without it.
-    pub(crate) fn near(&self, simple: &RingDownProblem<'_>, values: &[f64], signs: &[Sign]) -> Vec<Vec<f64>> {
-        if simple.layout.oscillator != 1 || !self.is_elaborate() {
-            return self.starts();
-        }
-        let (oscillator, rest) = values.split_at(simple.layout.oscillator);
-        let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
-        let own = &values[simple.layout.shared..];
-        let mut falls: Vec<(f64, f64, f64)> = signs
-            .iter()
-            .filter_map(|sign| match sign.addition {
-                Addition::FallsWithSpeed(share) => Some((share, sign.size, sign.significance())),
-                _ => None,
-            })
-            .collect();
-        falls.sort_by(|a, b| b.2.total_cmp(&a.2));
-        falls.truncate(2);
-        if falls.is_empty() {
-            falls = vec![(0.06, 0.3, 0.0), (0.3, 0.3, 0.0)];
-        }
-        if !self.law().fitted().any(bends) {
-            falls.truncate(1);
-        }
-        let bends_at = |share: f64| self.law().bend().map_or(1.0, |typical| typical / share);
-        let mut starts = Vec::new();
-        for (share, size, _) in falls {
-            let mut start = oscillator.to_vec();
-            self.push_dissipation_with(dissipation, bends_at(share), Some(size.clamp(0.05, 2.0)), &mut start);
-            start.extend_from_slice(own);
-            starts.push(self.clamped(&start));
-        }
-        starts
-    }
-
-    /// Pushes start values of the damping beside the law and of the law.
-    fn push_dissipation(&self, dissipation: Dissipation, sharpness: f64, start: &mut Vec<f64>) {
-        self.push_dissipation_with(dissipation, sharpness, None, start);
-    }
-
-    /// As [`push_dissipation`](Self::push_dissipation), with the excess of the friction at rest as a share of the level, if it is
-    /// given.
-    fn push_dissipation_with(
-        &self,
-        dissipation: Dissipation,
-        sharpness: f64,
-        excess: Option<f64>,
-        start: &mut Vec<f64>,
-    ) {
-        let (length, speed) = self.decays[0].scales();
-        let Dissipation { friction, damping } = dissipation;
-        if self.terms.has_linear_damping() {
-            start.push(damping);
-        }
-        if self.terms.has_quadratic_damping() {
-            start.push(0.1 * (damping + friction / speed) / speed);
-        }
-        let scales = Scales { length, speed, friction, damping, sharpness };
-        start.extend(self.law().fitted().map(|parameter| match (parameter.role(), excess) {
-            (Role::Excess | Role::LevelAbove, Some(excess)) => excess * friction,
-            (Role::Level, Some(_)) if parameter.parameter().unit() == "1" => friction,
-            _ => scales.typical(parameter),
-        }));
-    }
-
-    fn clamped(&self, start: &[f64]) -> Vec<f64> {
-        start.iter().zip(&self.parameters).map(|(value, parameter)| parameter.bounds().clamp(*value)).collect()
     }
 
     fn offset(&self, record: usize, p: &[f64]) -> f64 {

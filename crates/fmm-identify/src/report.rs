@@ -90,12 +90,17 @@ impl Comparison {
             if found.is_empty() { "no friction or damping that it determines".to_owned() } else { found.join("; ") };
         let others: Vec<&str> =
             self.not_excluded().map(Identification::law).filter(|law| *law != preferred.law()).collect();
+        let is_explained = !preferred.structure().is_structured();
         let sure = match (self.is_decided(), others.is_empty()) {
+            _ if !is_explained => "of the laws that were tried none explains the record to its noise".to_owned(),
             (true, true) => "the record excludes every other law that was tried".to_owned(),
             (true, false) => format!("the record does not ask for more, nor exclude it ({})", others.join(", ")),
-            (false, _) => format!("the record does not decide: {} may be true as well", others.join(", ")),
+            (false, true) => "a law that was tried could not be fitted to the end".to_owned(),
+            (false, false) => format!("the record does not decide: {} may be true as well", others.join(", ")),
         };
-        let surer = if self.is_decided() {
+        let surer = if !is_explained {
+            "a law that was not tried, a spring that is not linear or a second mode may"
+        } else if self.is_decided() {
             "more half cycles or less noise would make it surer"
         } else {
             "releases of other amplitudes fitted together, or less noise, would tell the laws apart"

@@ -100,8 +100,9 @@ const OF_SPEED: [&str; 7] = [
 ];
 /// Presliding over less of the amplitude than this (1) is none that a record shows.
 const LEAST_PRESLIDING: f64 = 2e-3;
-/// Iterations of a fit with presliding, each of which takes a hundred times as long as one without: one that needs more is led by
-/// something else.
+/// Steps of a converter that presliding must exceed to be seen.
+const STEPS_OF_PRESLIDING: f64 = 3.0;
+/// Iterations of a fit with presliding, whose motion has no closed form: one that needs more is led by something else.
 const MOST_ITERATIONS: usize = 25;
 /// Laws with presliding.
 const WITH_STATE: [&str; 1] = ["dahl+linear,exponent=1"];
@@ -146,12 +147,16 @@ pub fn search_observed(
     let mut signs = run.signs(&found);
     if found.asks_for_more(&signs) {
         run.fit(search.candidates(&OF_SPEED)?, &signs, false, &mut found)?;
-        let seen = |sign: &Sign| {
-            sign.addition == Addition::Presliding && sign.significance() > 2.0 && sign.size > LEAST_PRESLIDING
-        };
-        // Steps of a converter look like presliding: neither moves where the machine turns.
-        let is_rounded = decays.iter().any(|decay| decay.summary().is_rounded());
-        if !is_rounded && signs.iter().any(seen) {
+        // A converter hides what is not longer than a few of its steps, and its steps look like presliding: neither moves where the
+        // machine turns.
+        let steps = decays.iter().map(|decay| {
+            let summary = decay.summary();
+            summary.resolution.filter(|_| summary.is_rounded()).unwrap_or(0.0) / summary.amplitudes.0
+        });
+        let least = steps.map(|step| STEPS_OF_PRESLIDING * step).fold(LEAST_PRESLIDING, f64::max);
+        let seen =
+            |sign: &Sign| sign.addition == Addition::Presliding && sign.significance() > 2.0 && sign.size > least;
+        if signs.iter().any(seen) {
             let options = options.clone().with_max_iterations(MOST_ITERATIONS.min(options.max_iterations()));
             let run = Run { options: &options, ..run };
             run.fit(search.candidates(&WITH_STATE)?, &signs, false, &mut found)?;

@@ -9,6 +9,7 @@ use fmm_model::{ModelError, Restoring};
 
 use crate::law::Law;
 use crate::problem::RingDownProblem;
+use crate::tangent::Tangent;
 use crate::{Identification, IdentifyError, RingDown, Terms};
 
 /// An addition to Coulomb and viscous friction on a linear spring.
@@ -125,19 +126,20 @@ pub(crate) fn signs(base: &Identification, decays: &[RingDown]) -> Result<Vec<Si
             changes.push((Addition::SofteningSpring, changed));
         }
     }
-    Ok(changes.into_iter().filter_map(|(addition, changed)| sign(base, &problem, addition, &changed)).collect())
+    let Some(tangent) = base.tangent(&problem) else { return Ok(Vec::new()) };
+    Ok(changes.into_iter().filter_map(|(addition, changed)| sign(base, &tangent, addition, &changed)).collect())
 }
 
 /// The sign for an `addition` whose small step makes the residuals `changed`; none if the parameters can follow it, or if the
 /// residuals are rounding.
-fn sign(base: &Identification, problem: &RingDownProblem<'_>, addition: Addition, changed: &[f64]) -> Option<Sign> {
+fn sign(base: &Identification, tangent: &Tangent, addition: Addition, changed: &[f64]) -> Option<Sign> {
     /// What is left below this share is rounding and curvature.
     const LEAST: f64 = 1e-6;
     let residuals = base.fit().residuals();
     let mut direction: Vec<f64> =
         changed.iter().zip(residuals).map(|(changed, residual)| (changed - residual) / STEP).collect();
     let before: f64 = direction.iter().map(|d| d * d).sum();
-    base.take_out_parameters(problem, &mut direction)?;
+    tangent.take_out(&mut direction);
     let square: f64 = direction.iter().map(|d| d * d).sum();
     let noise = base.noise().product(&direction, &direction);
     if !(square > LEAST * before && noise > 0.0 && base.structure().is_noisy()) {

@@ -8,7 +8,8 @@ use fmm_model::Parameter;
 use fmm_sim::Simulated;
 
 use crate::finding::{Finding, Origin};
-use crate::identification::{FittedMotion, best_fit};
+use crate::fit_stages::best_fit;
+use crate::identification::FittedMotion;
 use crate::impact::covariance::ImpactCovariance;
 use crate::impact::parameters::{DAMPING, LAW, LOAD, MASS, RESPONSE_GAIN, STIFFNESS};
 use crate::impact::simulation::ImpactLaw;
