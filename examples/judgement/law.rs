@@ -22,10 +22,6 @@ pub(crate) struct Levels {
 }
 
 impl Levels {
-    const fn constant(level: f64) -> Self {
-        Self { rest: level, peak: level, beyond: level }
-    }
-
     /// All levels times `factor`.
     pub(crate) fn times(self, factor: f64) -> Self {
         Self { rest: self.rest * factor, peak: self.peak * factor, beyond: self.beyond * factor }
@@ -87,20 +83,10 @@ where
 }
 
 /// Levels of steady sliding of a law with internal state.
-fn dahl(values: &[f64], _peak_speed: f64) -> Option<Levels> {
-    values.first().copied().map(Levels::constant)
-}
-
-fn bouc_wen(values: &[f64], _peak_speed: f64) -> Option<Levels> {
-    let &[stiffness, amplitude, beta, gamma, exponent] = values else { return None };
-    let level = stiffness * (amplitude / (beta + gamma)).powf(exponent.recip());
-    Some(Levels::constant(level))
-}
-
-fn lugre(values: &[f64], peak_speed: f64) -> Option<Levels> {
-    let law = LuGre::at::<f64>(values).ok()?;
-    let at = |speed| law.steady_coefficient(speed);
-    Some(Levels { rest: at(0.0), peak: at(peak_speed), beyond: at(BEYOND * peak_speed) })
+fn with_state<F: Simulated>(values: &[f64], peak_speed: f64) -> Option<Levels> {
+    let law = F::at::<f64>(values).ok()?;
+    let at = |speed| F::steady_coefficient(&law, speed, true);
+    Some(Levels { rest: at(0.0)?, peak: at(peak_speed)?, beyond: at(BEYOND * peak_speed)? })
 }
 
 /// Every law that a record can be made with.
@@ -120,9 +106,9 @@ const LAWS: &[Law] = &[
     Law::of::<Shifted<MakkarDixon>>(sliding::<Shifted<MakkarDixon>>),
     Law::of::<MakkarDixon>(creeping::<MakkarDixon>),
     Law::of::<RegularisedStribeck>(creeping::<RegularisedStribeck>),
-    Law::of::<Dahl>(dahl),
-    Law::of::<BoucWen>(bouc_wen),
-    Law::of::<LuGre>(lugre),
+    Law::of::<Dahl>(with_state::<Dahl>),
+    Law::of::<BoucWen>(with_state::<BoucWen>),
+    Law::of::<LuGre>(with_state::<LuGre>),
 ];
 
 impl Law {

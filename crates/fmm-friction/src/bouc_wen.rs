@@ -81,6 +81,10 @@ impl<D: Scalar> BristleLaw<D> for BoucWen<D> {
     fn bound(&self, _index: usize) -> D {
         (self.amplitude / (self.beta + self.gamma)).powf(D::from(1.0) / self.exponent)
     }
+
+    fn steady_coefficient(&self, _speed: D) -> Option<D> {
+        Some(self.stiffness * self.bound(0))
+    }
 }
 
 #[cfg(test)]

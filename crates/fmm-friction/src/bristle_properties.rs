@@ -85,7 +85,7 @@ fn steady_states_are_reached_and_are_steady() {
         let still = rate(&lugre, speed, &[deflection], Regime::ALL_HOLD);
         assert!(still[0].abs() <= rounding(speed), "{lugre:?}: {} m/s", still[0]);
         let coefficient = lugre.coefficient(speed, &[deflection], &[0.0]);
-        let steady = lugre.steady_coefficient(speed);
+        let steady = lugre.steady_coefficient(speed).unwrap();
         assert!((coefficient - steady).abs() <= rounding(steady), "{lugre:?}: {coefficient} against {steady}");
     }
 }
@@ -99,6 +99,8 @@ fn limits_between_the_bristles() {
         let dahl = Dahl::new(mu, sigma, 1.0).unwrap();
         let lugre = LuGre::new(mu, mu, 0.01, 2.0, sigma, 0.0, 0.0).unwrap();
         let bouc_wen = BoucWen::new(sigma, 1.0, sigma / mu, 0.0, 1.0).unwrap();
+        let steady = [dahl.steady_coefficient(1.0), lugre.steady_coefficient(1.0), bouc_wen.steady_coefficient(1.0)];
+        assert!(steady.iter().flatten().all(|steady| (steady - mu).abs() <= 1e-15 * mu), "{steady:?} of {mu}");
         let velocity = log_uniform(&mut random, -6.0, 1.0) * if random.random_range(0..2) == 0 { -1.0 } else { 1.0 };
         let state = random_state(&mut random, &dahl);
         let expected = rate(&dahl, velocity, &state, Regime::ALL_HOLD)[0];

@@ -61,6 +61,10 @@ impl<D: Scalar> BristleLaw<D> for Dahl<D> {
     fn bound(&self, _index: usize) -> D {
         self.coefficient / self.stiffness
     }
+
+    fn steady_coefficient(&self, _speed: D) -> Option<D> {
+        Some(self.coefficient)
+    }
 }
 
 #[cfg(test)]

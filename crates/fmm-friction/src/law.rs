@@ -115,6 +115,13 @@ pub trait BristleLaw<D: Scalar> {
     /// Half width of the invariant interval of state `index`.
     fn bound(&self, index: usize) -> D;
 
+    /// Friction coefficient (1) of steady sliding at `speed` ≥ 0 (m/s); none for laws that have no closed form for it, or state
+    /// none.
+    fn steady_coefficient(&self, speed: D) -> Option<D> {
+        let _ = speed;
+        None
+    }
+
     /// For an element that holds and moves with `velocity`, how far it is from sliding: positive while it holds. None
     /// for laws without elements that switch.
     fn reserve(&self, index: usize, velocity: D, state: &[D]) -> Option<D> {

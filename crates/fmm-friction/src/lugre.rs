@@ -65,11 +65,6 @@ impl<D: Scalar> LuGre<D> {
         }
     }
 
-    /// The friction coefficient (1) of steady sliding at `speed` ≥ 0 (m/s).
-    pub fn steady_coefficient(&self, speed: D) -> D {
-        self.steady().coefficient(speed)
-    }
-
     /// Whether the contact is sure never to give back more energy than its bristles store: a sufficient condition.
     ///
     /// ```text
@@ -99,6 +94,10 @@ impl<D: Scalar> BristleLaw<D> for LuGre<D> {
 
     fn bound(&self, _index: usize) -> D {
         self.breakaway / self.stiffness
+    }
+
+    fn steady_coefficient(&self, speed: D) -> Option<D> {
+        Some(self.steady().coefficient(speed))
     }
 }
 

@@ -90,6 +90,23 @@ pub trait Simulated: LawFamily {
         SimulationError::require_tolerance(tolerance)?;
         Self::simulate_into(scenario, sampling, trajectory)
     }
+
+    /// Friction coefficient (1) of steady sliding at `speed` ≥ 0 (m/s), in the limit of a speed that grows slowly or, if it is
+    /// `losing`, falls; none unless the family says so. A search among laws begins a fit by one where another has ended by it.
+    fn steady_coefficient<D: Scalar>(law: &Self::At<D>, speed: D, losing: bool) -> Option<D> {
+        let _ = (law, speed, losing);
+        None
+    }
+}
+
+/// Friction coefficient (1) of a law of the sliding `speed` (m/s).
+fn of_speed<D: Scalar>(law: &impl SlidingLaw<D>, speed: D, losing: bool) -> impl Into<Option<D>> {
+    if losing { law.coefficient_losing_speed(speed) } else { law.coefficient(speed) }
+}
+
+/// Friction coefficient (1) of a law with internal state in steady sliding at `speed` (m/s).
+fn of_state<D: Scalar>(law: &impl BristleLaw<D>, speed: D, _losing: bool) -> impl Into<Option<D>> {
+    law.steady_coefficient(speed)
 }
 
 /// Below this ω₀ t the closed form has lost four digits.
@@ -139,7 +156,7 @@ fn with_bristles<D: Scalar, L: BristleLaw<D>>(
 }
 
 macro_rules! simulated {
-    ($run:ident: $($law:ty),+) => {$(
+    ($run:ident, $steady:ident: $($law:ty),+) => {$(
         impl Simulated for $law {
             fn simulate_into<D: Scalar>(
                 scenario: &Scenario<D, Self::At<D>>,
@@ -157,14 +174,17 @@ macro_rules! simulated {
                 SimulationError::require_tolerance(tolerance)?;
                 $run(scenario, sampling, Some(tolerance), trajectory)
             }
+            fn steady_coefficient<D: Scalar>(law: &Self::At<D>, speed: D, losing: bool) -> Option<D> {
+                $steady(law, speed, losing).into()
+            }
         }
     )+};
 }
 
-simulated!(exact_where_possible: Viscous, Coulomb, CoulombStatic, CoulombViscous, AccelerationCoulomb);
-simulated!(integrated: Stribeck, StribeckLorentzian, Hyperbolic, Berger, PowerLaw, ExponentialPair, Karnopp);
-simulated!(integrated: MakkarDixon, Shifted<MakkarDixon>, RegularisedStribeck);
-simulated!(with_bristles: Dahl, LuGre, BoucWen);
+simulated!(exact_where_possible, of_speed: Viscous, Coulomb, CoulombStatic, CoulombViscous, AccelerationCoulomb);
+simulated!(integrated, of_speed: Stribeck, StribeckLorentzian, Hyperbolic, Berger, PowerLaw, ExponentialPair, Karnopp);
+simulated!(integrated, of_speed: MakkarDixon, Shifted<MakkarDixon>, RegularisedStribeck);
+simulated!(with_bristles, of_state: Dahl, LuGre, BoucWen);
 
 #[cfg(test)]
 mod tests {
