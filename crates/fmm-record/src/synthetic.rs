@@ -278,9 +278,8 @@ pub(crate) fn small_pendulum() -> Record {
 
 /// The measured records of the repository.
 pub(crate) fn measured_records() -> Vec<Record> {
-    #[allow(unused_mut)]
-    let mut records = vec![wheel(), pendulum(), pendulum_velocity(), small_pendulum()];
+    let records = vec![wheel(), pendulum(), pendulum_velocity(), small_pendulum()];
     #[cfg(feature = "mat")]
-    records.push(fork());
+    let records = [records, vec![fork()]].concat();
     records
 }
