@@ -19,7 +19,7 @@ impl Warning {
             unit: summary.unit.clone(),
         });
         let rounded = summary.resolution.filter(|_| summary.is_rounded());
-        let rounded = rounded.map(|step| Self::Rounded { step, unit: summary.unit.clone(), rest: summary.dead_rest });
+        let rounded = rounded.map(|step| Self::Rounded { step, unit: summary.unit.clone() });
         further.into_iter().chain(second).chain(hum).chain(rounded)
     }
 
@@ -64,15 +64,11 @@ impl Warning {
                 f,
                 "a hum of {amplitude:.2e} {unit} at {frequency:.3} Hz goes on through the record; it was fitted beside the motion"
             ),
-            Self::Rounded { step, unit, rest } => {
-                write!(f, "the values are rounded to steps of {step:.2e} {unit}, which is more than their noise")?;
-                match rest {
-                    Some(time) => {
-                        write!(f, "; they no longer change after {time:.3} s, so that a few of these samples tell all")
-                    }
-                    None => Ok(()),
-                }
-            }
+            Self::Rounded { step, unit } => write!(
+                f,
+                "the values are rounded to steps of {step:.2e} {unit}, which is more than their noise; what follows the last turning \
+                 point was left out, as what swings within a step is rounded to another motion"
+            ),
             Self::Drift => {
                 write!(
                     f,

@@ -103,9 +103,6 @@ pub struct RecordSummary {
     pub resolution: Option<f64>,
     /// When the values come to rest within their noise (s), without any law; none if the record ends before.
     pub rest_from: Option<f64>,
-    /// When the record comes to a rest in which the converter no longer changes (s), of which a few samples are fitted: the others have
-    /// the same error.
-    pub dead_rest: Option<f64>,
     /// Isolated samples that were left out.
     pub spikes: usize,
     /// Samples cut off at the range of the instrument.

@@ -19,7 +19,7 @@ use crate::{IdentifyError, Machine, Offset, Preparation, RecordSummary};
 /// If the record begins at rest, it is used from the first peak after the release on (of a displacement, from the
 /// first crossing), as whatever held the machine may act on for a while; otherwise from its beginning. If it is released or
 /// pushed again, it is used until shortly before that. Spikes of
-/// one to three samples are left out. Nothing is smoothed and nothing is subtracted: smoothing would correlate the
+/// one to three samples are left out, and where the steps of a converter exceed the noise, what follows the last turning point. Nothing is smoothed and nothing is subtracted: smoothing would correlate the
 /// noise, and the offset is a parameter. Swings, release, spikes and noise are looked for in the record less its hum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RingDown {
@@ -90,11 +90,8 @@ impl RingDown {
         let guess = FirstGuess::of(&oscillation, quantity).ok_or(few)?;
 
         let spikes = spikes(&cleaned);
-        let kept = without(record.len(), spikes.iter().map(|spike| spike.index..spike.index + spike.count));
+        let mut kept = without(record.len(), spikes.iter().map(|spike| spike.index..spike.index + spike.count));
         let resolution = quantisation_step(record.values());
-        let dead_rest =
-            resolution.and_then(|step| dead_rest(cleaned.values(), step, record.rate() / guess.frequency()));
-        let mut kept = dead_rest.map_or_else(|| kept.clone(), |rest| counted_once(&kept, rest));
         let noise = noise(cleaned.values());
         if resolution.is_some_and(|step| step > COARSE * noise) {
             // What swings within a step or two is rounded to another motion.
@@ -121,7 +118,6 @@ impl RingDown {
             noise,
             resolution,
             rest_from: rest_from(&cleaned, resolution.unwrap_or(0.0), guess.frequency()),
-            dead_rest: dead_rest.map(|rest| record.start() + rest.begin as f64 * record.interval()),
             spikes: spikes.iter().map(|spike| spike.count).sum(),
             saturation: saturation(record.values()),
             offset_step: OffsetStep::of(&cleaned),
@@ -294,41 +290,15 @@ fn rest_from(record: &Record, resolution: f64, frequency: f64) -> Option<f64> {
     let values = record.values();
     let largest = values.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
     let band = RANGE * noise(values) + 1.5 * resolution + 1e-9 * largest;
-    let rest = dead_rest(values, band / 1.5, record.rate() / frequency)?;
-    Some(record.start() + rest.begin as f64 * record.interval())
-}
-
-/// A rest at the end of a record in which the converter shows the same value, or two neighbouring ones.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct DeadRest {
-    /// Its first sample.
-    begin: usize,
-    /// How many samples a period of the motion before takes.
-    period: usize,
-}
-
-/// The dead rest that `values` with a `resolution` end in, after a motion with a `period` in samples; none if it is shorter than half
-/// a period, which a turning point may be.
-fn dead_rest(values: &[f64], resolution: f64, period: f64) -> Option<DeadRest> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let moves = |value: &f64| {
         (low, high) = (low.min(*value), high.max(*value));
-        high - low > 1.5 * resolution
+        high - low > band
     };
     let begin = values.len() - values.iter().rev().position(moves)?;
-    let period = period.round().max(1.0) as usize;
-    (2 * (values.len() - begin) > period).then_some(DeadRest { begin, period })
-}
-
-/// What is left of `kept` if a dead rest is told by a few samples over one period: its thousand others have the same error of rounding.
-fn counted_once(kept: &[Range<usize>], rest: DeadRest) -> Vec<Range<usize>> {
-    const TELLING: usize = 8;
-    let mut left: Vec<Range<usize>> = kept.iter().map(|range| range.start..range.end.min(rest.begin)).collect();
-    left.retain(|range| !range.is_empty());
-    let is_kept = |index: &usize| kept.iter().any(|range| range.contains(index));
-    let telling = (1..=TELLING).map(|k| rest.begin + k * rest.period / TELLING);
-    left.extend(telling.filter(is_kept).map(|index| index..index + 1));
-    left
+    // A turning point may last half a period.
+    let half_period = 0.5 * record.rate() / frequency;
+    ((values.len() - begin) as f64 > half_period).then(|| record.start() + begin as f64 * record.interval())
 }
 
 /// The ranges of `0..count` between `holes`, which are in order.

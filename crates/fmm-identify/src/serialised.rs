@@ -101,7 +101,7 @@ impl Serialize for ImpactSummary {
 /// What a record is: times in s, rates in Hz, values in `unit`.
 impl Serialize for RecordSummary {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut document = serializer.serialize_struct("RecordSummary", 23)?;
+        let mut document = serializer.serialize_struct("RecordSummary", 22)?;
         document.serialize_field("from_s", &self.from)?;
         document.serialize_field("to_s", &self.to)?;
         document.serialize_field("samples", &self.samples)?;
@@ -118,7 +118,6 @@ impl Serialize for RecordSummary {
         document.serialize_field("noise", &self.noise)?;
         document.serialize_field("resolution", &self.resolution)?;
         document.serialize_field("rest_from_s", &self.rest_from)?;
-        document.serialize_field("dead_rest_s", &self.dead_rest)?;
         document.serialize_field("spikes", &self.spikes)?;
         document.serialize_field("saturated", &self.saturation.map_or(0, |saturation| saturation.samples))?;
         document.serialize_field("offset_step_s", &self.offset_step.map(|step| step.time))?;
