@@ -13,7 +13,7 @@ use fmm_sim::Simulated;
 use crate::fit_stages::Near;
 use crate::identification::identify_by;
 use crate::law::Law;
-use crate::{Identification, IdentifyError, Machine, RingDown, Sign, Terms};
+use crate::{Identification, IdentifyError, Machine, RingDown, Terms};
 
 /// An observer of trial steps that may end the fit.
 pub(crate) type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
@@ -182,18 +182,16 @@ impl Candidate {
         identify_by(self.law, machine, &self.terms, decays, None, options, observer)
     }
 
-    /// As [`identify`](Self::identify), begun near a fit by Coulomb and viscous friction if there is one.
+    /// As [`identify`](Self::identify), begun near other fits of the same records.
     pub(crate) fn identify_near(
         &self,
         machine: &Machine,
         decays: &[RingDown],
-        simple: Option<&Identification>,
-        signs: &[Sign],
+        near: Option<&Near<'_>>,
         options: &Options,
         observer: &mut Observer<'_>,
     ) -> Result<Identification, IdentifyError> {
-        let near = simple.map(|simple| Near { simple, signs });
-        identify_by(self.law, machine, &self.terms, decays, near.as_ref(), options, observer)
+        identify_by(self.law, machine, &self.terms, decays, near, options, observer)
     }
 
     /// Name of the law alone.

@@ -85,8 +85,8 @@ pub(crate) fn explains(identifications: &[Identification]) -> bool {
 }
 
 /// The identification with the smallest residuals.
-pub(crate) fn closest(identifications: &[Identification]) -> Option<&Identification> {
-    identifications.iter().min_by(|a, b| a.rms_residual().total_cmp(&b.rms_residual()))
+pub(crate) fn closest<'a>(identifications: impl IntoIterator<Item = &'a Identification>) -> Option<&'a Identification> {
+    identifications.into_iter().min_by(|a, b| a.rms_residual().total_cmp(&b.rms_residual()))
 }
 
 impl Comparison {
@@ -140,7 +140,7 @@ fn tests(candidates: &[Candidate], identifications: &[Identification]) -> Vec<Ne
     tests
 }
 
-/// The law among the others that states the most different friction at rest, if it does so by more than half of it and has
+/// The level and straight line among the others that states the most different friction at rest, if it does so by more than half of it and has
 /// missed the record by far: what somebody would have reported who had asked no further.
 fn misled(identifications: &[Identification], preferred: usize) -> Option<Warning> {
     /// Residuals that exceed those of the preferred law by this factor do not describe the record.
@@ -152,7 +152,7 @@ fn misled(identifications: &[Identification], preferred: usize) -> Option<Warnin
     let wrong = identifications
         .iter()
         .filter(|found| found.rms_residual() > FAR * right.rms_residual())
-        .filter(|found| found.fit().outcome().is_success())
+        .filter(|found| found.fit().outcome().is_success() && found.family().dry_name() == Some("coulomb"))
         .filter_map(|found| Some((found, ratio(found)?)))
         .filter(|(_, ratio)| *ratio < 0.5)
         .min_by(|a, b| a.1.total_cmp(&b.1));
@@ -165,7 +165,7 @@ fn misled(identifications: &[Identification], preferred: usize) -> Option<Warnin
 }
 
 /// Laws that were not fitted to their minimum, or not to the lowest: a law cannot be worse than a special case of it.
-fn unfinished(candidates: &[Candidate], identifications: &[Identification]) -> Vec<Warning> {
+pub(crate) fn unfinished(candidates: &[Candidate], identifications: &[Identification]) -> Vec<Warning> {
     /// Rounding of a sum of squares.
     const ROUNDING: f64 = 1e-9;
     let mut warnings = Vec::new();
@@ -226,6 +226,10 @@ fn widen_for_other_laws(
         let weight = if judgement.is_decided && is_general { weight } else { weight.max(0.5) };
         for (own, theirs) in identifications[preferred].common_findings(&identifications[other]) {
             let (Some(u), Some(their_u)) = (own.uncertainty(), theirs.uncertainty()) else { continue };
+            // A law that leaves the value open says nothing of it.
+            if their_u > theirs.value().abs() && !own.is_of_record() {
+                continue;
+            }
             let difference = own.value() - theirs.value();
             let widened = ((1.0 - weight) * u * u + weight * (their_u * their_u + difference * difference)).sqrt();
             let notable = widened > NOTABLE * u && !own.is_of_record();

@@ -13,7 +13,14 @@ use crate::{Identification, IdentifyError, Sign};
 pub(crate) struct Near<'a> {
     pub(crate) simple: &'a Identification,
     pub(crate) signs: &'a [Sign],
+    /// Fits by other laws that describe the records better.
+    pub(crate) others: Vec<&'a Identification>,
+    /// How many of the starts beside others are fitted, the best first.
+    pub(crate) tries: usize,
 }
+
+/// Iterations after which a law that still fits worse than Coulomb and viscous friction is given up.
+const ENOUGH_TO_BE_BETTER: usize = 30;
 
 /// Shares of a record to which a pendulum is fitted before the whole, as its period depends on the amplitude.
 const BEGINNINGS: [f64; 2] = [0.125, 0.4];
@@ -34,7 +41,8 @@ pub(crate) fn fit_in_stages(
     fit_in_search(problem, options, observer)
 }
 
-/// The best end of the fits from the starts near a simple fit, with few of the samples first.
+/// The best end of the fits from the starts near a simple fit, or near one by another law, with few of the samples first. The latter
+/// is given up if it stays worse than the simple fit.
 pub(crate) fn fit_near(
     problem: &RingDownProblem<'_>,
     near: &Near<'_>,
@@ -42,15 +50,46 @@ pub(crate) fn fit_near(
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
     let simple = RingDownProblem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
-    let starts = problem.near(&simple, near.simple.fit().values(), near.signs);
-    let starts = match problem.thinned() {
-        Some(thinned) if starts.len() > 1 => {
-            let search = problem.with_records(&thinned);
-            vec![best_fit(&search, problem.name(), starts, options, observer)?.values().to_vec()]
-        }
-        _ => starts,
+    let mut starts = problem.near(&simple, near.simple.fit().values(), near.signs);
+    let beside: Vec<Vec<f64>> =
+        near.others.iter().filter_map(|other| problem.beside(other, &near.others, &starts)).collect();
+    if !beside.is_empty() {
+        let mut all = problem.continued(&simple, near.simple.fit().values());
+        all.truncate(1);
+        all.extend(beside);
+        starts = lowest(problem, all, near.tries);
+    }
+    let worse = near.simple.rms_residual().powi(2);
+    let mut is_given_up = false;
+    let mut observe = |progress: &Progress<'_>, residuals: usize| {
+        let is_worse = progress.sum_of_squares() > worse * residuals as f64;
+        is_given_up |= !near.others.is_empty() && progress.iterations() > ENOUGH_TO_BE_BETTER && is_worse;
+        if is_given_up && is_worse { ControlFlow::Break(()) } else { observer(progress) }
     };
-    best_fit(problem, problem.name(), starts, options, observer)
+    let mut polish = options.clone();
+    if let Some(thinned) = problem.thinned() {
+        let search = problem.with_records(&thinned);
+        let found =
+            best_fit(&search, problem.name(), starts, options, &mut |progress| observe(progress, search.len()))?;
+        starts = vec![found.values().to_vec()];
+        polish = polish.with_max_iterations(options.max_iterations().div_ceil(3));
+    }
+    best_fit(problem, problem.name(), starts, &polish, &mut |progress| observe(progress, problem.len()))
+}
+
+/// Those of `starts` with the smallest sums of squares, at most `count`.
+fn lowest(problem: &RingDownProblem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec<f64>> {
+    if starts.len() <= count {
+        return starts;
+    }
+    let mut residuals = vec![0.0; problem.len()];
+    let mut sum = |start: &Vec<f64>| match problem.residuals(start, &mut residuals) {
+        Ok(()) => residuals.iter().map(|residual| residual * residual).sum(),
+        Err(_) => f64::INFINITY,
+    };
+    let mut sums: Vec<(f64, Vec<f64>)> = starts.into_iter().map(|start| (sum(&start), start)).collect();
+    sums.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sums.into_iter().take(count).map(|(_, start)| start).collect()
 }
 
 /// The best end of the fits from everything that may be a start.

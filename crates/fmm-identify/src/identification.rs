@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use fmm_fit::{EvaluationError, Fit, Options, Progress, solve_observed};
+use fmm_fit::{Estimate, EvaluationError, Fit, Options, Progress, solve_observed};
 use fmm_friction::Role;
 use fmm_sim::{Event, EventKind, Simulated, Trajectory};
 
@@ -157,7 +157,7 @@ pub(crate) fn identify_by(
 ) -> Result<Identification, IdentifyError> {
     let problem = RingDownProblem::of(law, *machine, terms.clone(), decays)?;
     let fit = match near {
-        Some(near) => fit_near(&problem, near, options, observer)?,
+        Some(near) => fit_near(&problem.clone().bending_in_sight(), near, options, observer)?,
         None => fit_in_stages(&problem, options, observer)?,
     };
     // One instrument for all records; the worst statement counts.
@@ -215,10 +215,10 @@ fn pull_at_bound(problem: &RingDownProblem<'_>, fit: &Fit, covariance: &Covarian
     Some(step / covariance.relaxed(index)?.sqrt())
 }
 
-/// F/m at rest that fitted `values` stand for: the first level of the law with what lies above it; none for laws without.
+/// F/m at rest that fitted `values` stand for: the sliding level of the law with what lies above it; none for laws without.
 fn friction_at_rest(layout: &Layout, values: &[f64]) -> Option<f64> {
     let parameters = || layout.family.fitted().zip(&values[layout.law..]);
-    let (_, level) = parameters().find(|(parameter, _)| parameter.role() == Role::Level)?;
+    let (_, level) = parameters().nth(layout.family.level()?)?;
     let above = parameters().filter(|(parameter, _)| matches!(parameter.role(), Role::Excess | Role::LevelAbove));
     Some(level + above.map(|(_, excess)| excess).sum::<f64>())
 }
@@ -237,6 +237,10 @@ impl Identification {
     /// Name of the law, with the terms beside it.
     pub fn law(&self) -> &str {
         &self.law
+    }
+
+    pub(crate) fn family(&self) -> Law {
+        self.family
     }
 
     /// What was fitted beside the law, and what was held.
@@ -331,6 +335,13 @@ impl Identification {
     pub(crate) fn with_drift(&self, decays: &[RingDown]) -> Option<Vec<RingDown>> {
         let problem = RingDownProblem::of(self.family, self.machine, self.terms.clone(), decays).ok()?;
         with_drift(self, &problem, decays)
+    }
+
+    /// How many parameters the fit makes use of: those that the records determine, and those that ended on a bound other than zero,
+    /// where a term is not merely left out.
+    pub(crate) fn parameters_used(&self) -> usize {
+        let is_used = |estimate: &&Estimate| estimate.status().is_at_bound() && estimate.value() != 0.0;
+        self.fit.rank() + self.fit.estimates().iter().filter(is_used).count()
     }
 
     /// The noise that the residuals show.

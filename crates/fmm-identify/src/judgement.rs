@@ -61,7 +61,7 @@ impl Judgement {
     pub(crate) fn of(candidates: &[Candidate], identifications: &[Identification]) -> Option<Self> {
         let floor = |found: &Identification| found.fit().sum_of_squares().max(found.floor());
         let best = identifications.iter().min_by(|a, b| floor(a).total_cmp(&floor(b)))?;
-        let rank = |i: usize| identifications[i].fit().rank();
+        let rank = |i: usize| identifications[i].parameters_used();
         let standings = identifications.iter().map(|found| {
             let (misfit, freedom) = found.misfit_beside(best);
             let further = best.fit().rank().saturating_sub(found.fit().rank()).max(1) as f64;
@@ -97,14 +97,14 @@ impl Judgement {
         }
         // A special case of the preferred law is doubted, or it would be preferred, but it is not excluded.
         if candidates[place].is_nested_in(&candidates[preferred]) {
-            return identifications[place].fit().rank() < identifications[preferred].fit().rank();
+            return identifications[place].parameters_used() < identifications[preferred].parameters_used();
         }
         let is_general = candidates[preferred].is_nested_in(&candidates[place]);
         if is_general && candidates[place].differs_by_damping(&candidates[preferred]) {
             return hides_damping(&identifications[preferred], &identifications[place]);
         }
         let says_the_same = (self.misfits[place] - self.misfits[preferred]).abs() < 1e-6
-            && identifications[place].fit().rank() == identifications[preferred].fit().rank()
+            && identifications[place].parameters_used() == identifications[preferred].parameters_used()
             && candidates[place].parameter_count() > candidates[preferred].parameter_count();
         !is_general && !says_the_same && self.scores[place] < self.scores[preferred] + CLOSE
     }
@@ -115,7 +115,6 @@ impl Judgement {
     pub(crate) fn weight(&self, general: usize, further: usize, is_damping: bool, count: f64) -> f64 {
         let gain = self.misfits[self.preferred] - self.misfits[general];
         let penalty = if is_damping { 2.0 } else { count.max(8.0).ln() };
-        let odds = (0.5 * (gain - further as f64 * penalty)).exp();
-        odds / (1.0 + odds)
+        1.0 / (1.0 + (-0.5 * (gain - further as f64 * penalty)).exp())
     }
 }

@@ -36,6 +36,11 @@ impl<D: Scalar> Motion<D> {
     }
 }
 
+/// Friction coefficient (1) of steady sliding by family `F` of these `values` at a speed (m/s) that grows or, if it is `losing`, falls.
+fn steady<F: Simulated>(values: &[f64], speed: f64, losing: bool) -> Option<f64> {
+    F::steady_coefficient(&F::at::<f64>(values).ok()?, speed, losing)
+}
+
 /// The simulation of a motion by one family.
 pub(crate) type Simulate<D> = fn(&Motion<D>, &Sampling, &mut Trajectory<D>) -> Result<(), EvaluationError>;
 
@@ -47,6 +52,7 @@ pub(crate) struct Law {
     pub(crate) special_cases: &'static [SpecialCase],
     pub(crate) plain: Simulate<f64>,
     pub(crate) with_derivatives: Simulate<Dual<DIRECTIONS>>,
+    steady: fn(&[f64], f64, bool) -> Option<f64>,
 }
 
 impl Law {
@@ -58,7 +64,14 @@ impl Law {
             special_cases: F::SPECIAL_CASES,
             plain: Motion::simulate::<F>,
             with_derivatives: Motion::simulate::<F>,
+            steady: steady::<F>,
         }
+    }
+
+    /// Friction of steady sliding by the law of these [`fitted`](Self::fitted) values, in their unit of force, at a `speed` that grows
+    /// or, if it is `losing`, falls; none if the family does not say.
+    pub(crate) fn steady(&self, fitted: &[f64], speed: f64, losing: bool) -> Option<f64> {
+        (self.steady)(&self.values(fitted), speed, losing)
     }
 
     /// The parameters that a record is fitted by: all but static levels, on which the motion depends only in where it stops.
@@ -67,9 +80,15 @@ impl Law {
         self.parameters.iter().filter(|parameter| parameter.role() != Role::Breakaway)
     }
 
-    /// The place of its first level among the [`fitted`](Self::fitted) parameters.
+    /// The place of its sliding level among the [`fitted`](Self::fitted) parameters: of several levels the one that is called so, or
+    /// else the first.
     pub(crate) fn level(&self) -> Option<usize> {
-        self.fitted().position(|parameter| parameter.role() == Role::Level)
+        let is_level =
+            |parameter: &LawParameter| parameter.role() == Role::Level && parameter.parameter().unit() == "1";
+        let is_named = |parameter: &LawParameter| {
+            is_level(parameter) && matches!(parameter.parameter().name(), "coefficient" | "sliding_coefficient")
+        };
+        self.fitted().position(is_named).or_else(|| self.fitted().position(is_level))
     }
 
     /// The share of the largest speed at which the law typically bends, of the first parameter that says so; none for laws without.

@@ -98,6 +98,7 @@ mod finding;
 mod first_guess;
 mod fit_stages;
 mod free_vibration;
+mod friction_curve;
 mod half_swings;
 mod identification;
 mod impact;

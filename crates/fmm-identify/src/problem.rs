@@ -3,7 +3,8 @@
 use std::ops::Range;
 
 use fmm_fit::{Block, EvaluationError, Fit, Residuals};
-use fmm_model::{Parameter, Scalar};
+use fmm_friction::Role;
+use fmm_model::{Bounds, Parameter, Scalar};
 use fmm_record::Quantity;
 use fmm_sim::{Channels, Samples, Sampling, Simulated, Trajectory};
 
@@ -116,6 +117,27 @@ impl<'a> RingDownProblem<'a> {
         any.then(|| complete.collect())
     }
 
+    /// The same problem with laws that bend at no less than 1e-4 of the largest speed: below, a law is to the records as good as one
+    /// that leaps, and its motion takes far longer to simulate.
+    pub(crate) fn bending_in_sight(mut self) -> Self {
+        const SLOWEST: f64 = 1e-4;
+        let slowest = SLOWEST * self.decays[0].scales().1;
+        for (index, law) in self.law().fitted().enumerate() {
+            let parameter = &mut self.parameters[self.layout.law + index];
+            let bounds = parameter.bounds();
+            let bounds = match law.parameter().unit() {
+                "m/s" => Bounds::new(bounds.lower().max(slowest), bounds.upper()),
+                "s/m" if law.role() == Role::Shape => Bounds::new(bounds.lower(), bounds.upper().min(slowest.recip())),
+                _ => continue,
+            };
+            // One that is held elsewhere stays so.
+            if let Ok(bounds) = bounds {
+                *parameter = parameter.clone().bounded(bounds);
+            }
+        }
+        self
+    }
+
     /// The same problem with other records of the same kind and number.
     pub(crate) fn with_records<'b>(&self, decays: &'b [RingDown]) -> RingDownProblem<'b> {
         RingDownProblem {
@@ -216,6 +238,18 @@ impl<'a> RingDownProblem<'a> {
             model.iter_mut().zip(shape).for_each(|(out, shape)| *out += size * shape);
         }
         Ok(model)
+    }
+
+    /// That the motion follows the parameter at `index`, of this `value`, less steeply than any that can be fitted.
+    fn require_smooth(&self, index: usize, value: f64, derivatives: &[f64]) -> Result<(), EvaluationError> {
+        /// Amplitudes by which a relative change of one would move the motion. The phase of ten million periods moves by as much.
+        const STEEP: f64 = 1e8;
+        let most = STEEP * self.decays[0].summary().amplitudes.0;
+        if derivatives.iter().all(|derivative| (derivative * value).abs() <= most) {
+            return Ok(());
+        }
+        let name = self.parameters[index].name();
+        Err(EvaluationError::message(format!("the motion changes with {name} by leaps near {value:e}")))
     }
 
     fn offset(&self, record: usize, p: &[f64]) -> f64 {
@@ -384,6 +418,11 @@ impl Residuals for RingDownProblem<'_> {
                         }
                     },
                 )?;
+                for direction in first..first + carried {
+                    let index = self.layout.index(record, direction);
+                    let column = &jacobian[elements + direction * rows..][..rows];
+                    self.require_smooth(index, p[index], column)?;
+                }
             }
             if self.decays[record].fixed_offset().is_none() {
                 let start = elements + self.layout.directions() * rows;

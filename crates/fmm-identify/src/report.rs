@@ -140,7 +140,8 @@ impl fmt::Display for Comparison {
             let times = sign.significance();
             writeln!(f, "  sign of {}: {times:.1} standard uncertainties", sign.addition)?;
         }
-        if plain.is_empty() && !self.signs().is_empty() {
+        let is_simple = matches!(self.preferred().family().dry_name(), None | Some("coulomb"));
+        if plain.is_empty() && !self.signs().is_empty() && is_simple {
             writeln!(
                 f,
                 "  looked for and not seen: friction that changes with speed, quadratic damping, presliding, a softening spring"

@@ -283,7 +283,7 @@ impl SeriesNoise {
                 }
             }
         }
-        taken
+        taken.iter().map(|share| share.clamp(0.0, 1.0)).collect()
     }
 
     /// The spectrum of `values`, as many as this series has groups, padded with zeros.

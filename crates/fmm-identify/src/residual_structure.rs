@@ -6,6 +6,7 @@ use crate::RingDown;
 use crate::correlation::are_correlated;
 use crate::problem::RingDownProblem;
 use crate::residual_noise::{ResidualNoise, Series};
+use crate::tangent::inverse_of_products;
 
 /// What the residuals of a fit look like beside the noise of the records.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,7 +91,7 @@ impl Covariance {
         let scale = 1.0 / variance.max(f64::MIN_POSITIVE);
         let pairs = known.iter().flat_map(|i| known.iter().map(move |j| i * count + j));
         let unit: Vec<f64> = pairs.map(|at| elements[at].unwrap_or(0.0) * scale).collect();
-        let noise = Self::noise(problem, fit, structure, &columns, &unit);
+        let noise = Self::noise(problem, fit, structure, &columns, &inverse_of_products(&columns));
         let independent = fit.degrees_of_freedom() as f64;
         let (mut degrees_of_freedom, mut inflation) = (independent, 1.0_f64);
         if structure.is_noisy() && !noise.is_plain() && !known.is_empty() {
@@ -131,7 +132,7 @@ impl Covariance {
         fit: &Fit,
         structure: &ResidualStructure,
         columns: &[Vec<f64>],
-        unit: &[f64],
+        weights: &[f64],
     ) -> ResidualNoise {
         let signals: Vec<Vec<f64>> = (0..problem.decays().len()).map(|record| problem.signal(record, fit)).collect();
         let series: Vec<Series<'_>> = problem
@@ -142,7 +143,7 @@ impl Covariance {
                 signal: structure.is_noisy().then_some(signals[record].as_slice()),
                 period: problem.decays()[record].record().rate() / problem.decays()[record].guess().frequency(),
                 columns,
-                weights: unit,
+                weights,
                 stays: problem.decays()[record].stays(),
             })
             .collect();

@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 
 use fmm_fit::{Options, Progress};
 
-use crate::comparison::{closest, explains};
+use crate::comparison::{closest, explains, unfinished};
+use crate::fit_stages::Near;
 use crate::judgement::Judgement;
 use crate::sign::{Addition, Sign, signs};
 use crate::{Candidate, Comparison, Identification, IdentifyError, Machine, RingDown, Warning};
@@ -95,17 +96,24 @@ const OF_SPEED: [&str; 7] = [
     "stribeck_lorentzian",
     "coulomb+quadratic",
     "coulomb_viscous+quadratic",
-    "acceleration_coulomb",
+    "acceleration_coulomb+linear",
     "hyperbolic+linear",
 ];
+/// Laws whose friction changes with speed in ways of their own.
+const OF_SPEED_FURTHER: [&str; 6] =
+    ["stribeck", "power_law", "exponential_pair+linear", "makkar_dixon", "regularised_stribeck", "karnopp+linear"];
 /// Presliding over less of the amplitude than this (1) is none that a record shows.
 const LEAST_PRESLIDING: f64 = 2e-3;
 /// Steps of a converter that presliding must exceed to be seen.
 const STEPS_OF_PRESLIDING: f64 = 3.0;
-/// Iterations of a fit with presliding, whose motion has no closed form: one that needs more is led by something else.
-const MOST_ITERATIONS: usize = 25;
+/// Iterations of a fit that is begun near another one: one that needs more is led by something else.
+const MOST_ITERATIONS: usize = 80;
+/// The same of laws with presliding, whose motion takes long to simulate.
+const MOST_ITERATIONS_WITH_STATE: usize = 40;
 /// Laws with presliding.
 const WITH_STATE: [&str; 1] = ["dahl+linear,exponent=1"];
+/// Laws with presliding that are begun near the one that describes the records best.
+const WITH_STATE_FURTHER: [&str; 2] = ["lugre,exponent=2", "bouc_wen+linear,amplitude=1"];
 
 /// Identifies `decays` by as many laws as they ask for.
 ///
@@ -132,13 +140,11 @@ pub fn search_observed(
 ) -> Result<Comparison, IdentifyError> {
     let (observer, begun) = (Mutex::new(observer), Instant::now());
     let run = Run { machine, decays, search, options, observer: &observer, begun };
-    let mut found = Found::default();
-    run.fit(search.candidates(&SIMPLE)?, &[], true, &mut found)?;
-    let drifting = closest(&found.identifications).and_then(|found| found.with_drift(decays));
+    let mut found = run.fit(search.candidates(&SIMPLE)?, None)?;
+    let drifting = closest(found.identifications.iter()).and_then(|found| found.with_drift(decays));
     let mut decays = decays;
     if let Some(drifting) = &drifting {
-        let mut with_drift = Found::default();
-        Run { decays: drifting, ..run }.fit(search.candidates(&SIMPLE)?, &[], true, &mut with_drift)?;
+        let with_drift = Run { decays: drifting, ..run }.fit(search.candidates(&SIMPLE)?, None)?;
         if explains(&with_drift.identifications) {
             (decays, found) = (drifting, with_drift);
         }
@@ -146,7 +152,14 @@ pub fn search_observed(
     let run = Run { decays, ..run };
     let mut signs = run.signs(&found);
     if found.asks_for_more(&signs) {
-        run.fit(search.candidates(&OF_SPEED)?, &signs, false, &mut found)?;
+        let falling = run.fit(search.candidates(&OF_SPEED)?, found.near(&signs, &[], 0).as_ref())?;
+        found.add(falling);
+        let limited = |most: usize| options.clone().with_max_iterations(most.min(options.max_iterations()));
+        let (of_speed, limited_more) = (limited(MOST_ITERATIONS), limited(MOST_ITERATIONS_WITH_STATE));
+        let run = Run { options: &of_speed, ..run };
+        let further = found.unfinished().chain(search.candidates(&OF_SPEED_FURTHER)?).collect();
+        let further = run.fit(further, found.near(&signs, &[|_| true], 1).as_ref())?;
+        found.add(further);
         // A converter hides what is not longer than a few of its steps, and its steps look like presliding: neither moves where the
         // machine turns.
         let steps = decays.iter().map(|decay| {
@@ -157,17 +170,24 @@ pub fn search_observed(
         let seen =
             |sign: &Sign| sign.addition == Addition::Presliding && sign.significance() > 2.0 && sign.size > least;
         if signs.iter().any(seen) {
-            let options = options.clone().with_max_iterations(MOST_ITERATIONS.min(options.max_iterations()));
-            let run = Run { options: &options, ..run };
-            run.fit(search.candidates(&WITH_STATE)?, &signs, false, &mut found)?;
+            let run = Run { options: &limited_more, ..run };
+            let with_state = run.fit(search.candidates(&WITH_STATE)?, found.near(&signs, &[], 0).as_ref())?;
+            found.add(with_state);
+            let with_state =
+                run.fit(search.candidates(&WITH_STATE_FURTHER)?, found.near(&signs, &[preslides], 2).as_ref())?;
+            found.add(with_state);
         }
     }
+    let dropped = found.drop_unfinished();
     signs.retain(|sign| sign.uncertainty.is_finite());
     let mut comparison = Comparison::of(decays, &found.candidates, found.identifications)?;
     comparison.signs = signs;
     comparison.is_complete = !found.is_cut_short;
     if found.is_cut_short {
         comparison.warnings.push(Warning::TimeLimit);
+    }
+    if !dropped.is_empty() {
+        comparison.warnings.push(Warning::NotFitted { laws: dropped.join(", ") });
     }
     Ok(comparison)
 }
@@ -181,6 +201,58 @@ struct Found {
 }
 
 impl Found {
+    /// Adds what was found further; of two fits by one law the better stays.
+    fn add(&mut self, further: Self) {
+        self.is_cut_short |= further.is_cut_short;
+        for (candidate, found) in further.candidates.into_iter().zip(further.identifications) {
+            match self.identifications.iter_mut().find(|known| known.law() == found.law()) {
+                Some(known) if found.fit().sum_of_squares() < known.fit().sum_of_squares() => *known = found,
+                Some(_) => {}
+                None => {
+                    self.candidates.push(candidate);
+                    self.identifications.push(found);
+                }
+            }
+        }
+    }
+
+    /// Fits to begin another one near: that by Coulomb and viscous friction, and the closest to the records of each of `kinds`; so many
+    /// `tries` are made.
+    fn near<'a>(&'a self, signs: &'a [Sign], kinds: &[fn(&Identification) -> bool], tries: usize) -> Option<Near<'a>> {
+        let simple = self.identification("coulomb_viscous")?;
+        let others =
+            kinds.iter().filter_map(|is_kind| closest(self.identifications.iter().filter(|found| is_kind(found))));
+        Some(Near { simple, signs, others: others.collect(), tries })
+    }
+
+    /// Laws whose fits have not ended in their lowest minimum.
+    fn unfinished(&self) -> impl Iterator<Item = Candidate> {
+        let warnings = unfinished(&self.candidates, &self.identifications);
+        let named = move |name: &str| {
+            warnings.iter().any(|warning| matches!(warning, Warning::OtherLaw { law, .. } if law == name))
+        };
+        self.candidates.iter().filter(move |candidate| named(&candidate.name())).cloned()
+    }
+
+    /// Leaves out the laws whose fits have not ended in their lowest minimum and are far from what other laws reach; returns their
+    /// names.
+    fn drop_unfinished(&mut self) -> Vec<String> {
+        let Some(judgement) = Judgement::of(&self.candidates, &self.identifications) else { return Vec::new() };
+        let unfinished: Vec<String> = self.unfinished().map(|candidate| candidate.name()).collect();
+        let all = std::mem::take(&mut self.candidates).into_iter().zip(std::mem::take(&mut self.identifications));
+        let mut dropped = Vec::new();
+        for (place, (candidate, found)) in all.enumerate() {
+            let is_simple = SIMPLE.contains(&candidate.law_name());
+            if !is_simple && !judgement.is_left(place) && unfinished.contains(&candidate.name()) {
+                dropped.push(candidate.name());
+            } else {
+                self.candidates.push(candidate);
+                self.identifications.push(found);
+            }
+        }
+        dropped
+    }
+
     /// Whether the simple laws leave something in the residuals.
     fn asks_for_more(&self, signs: &[Sign]) -> bool {
         let held_back = |found: &Identification| found.damping_would_be_negative();
@@ -200,6 +272,11 @@ impl Found {
     }
 }
 
+/// Whether the law has presliding.
+fn preslides(found: &Identification) -> bool {
+    found.finding("contact_stiffness_per_mass").is_some()
+}
+
 struct Run<'a, F> {
     machine: &'a Machine,
     decays: &'a [RingDown],
@@ -214,18 +291,14 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
         self.search.time_limit.is_some_and(|limit| self.begun.elapsed() >= limit)
     }
 
-    /// Fits the `candidates`, each a piece of work for whichever thread is idle; laws that must be there are fitted whatever the time.
-    fn fit(
-        &self,
-        candidates: Vec<Candidate>,
-        signs: &[Sign],
-        must: bool,
-        found: &mut Found,
-    ) -> Result<(), IdentifyError> {
+    /// Fits the `candidates`, each a piece of work for whichever thread is idle. Those that are not begun near others must be there,
+    /// whatever the time.
+    fn fit(&self, candidates: Vec<Candidate>, near: Option<&Near<'_>>) -> Result<Found, IdentifyError> {
+        let must = near.is_none();
+        let mut found = Found::default();
         let next = AtomicUsize::new(0);
         let results: Vec<Mutex<Option<Result<Identification, IdentifyError>>>> =
             candidates.iter().map(|_| Mutex::new(None)).collect();
-        let simple = found.identification("coulomb_viscous");
         let work = || {
             loop {
                 let index = next.fetch_add(1, Ordering::Relaxed);
@@ -243,8 +316,7 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
                         Err(_) => ControlFlow::Break(()),
                     }
                 };
-                let result =
-                    candidate.identify_near(self.machine, self.decays, simple, signs, self.options, &mut observe);
+                let result = candidate.identify_near(self.machine, self.decays, near, self.options, &mut observe);
                 if let Ok(mut slot) = results[index].lock() {
                     *slot = Some(result);
                 }
@@ -270,7 +342,7 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
                 _ => found.is_cut_short = true,
             }
         }
-        Ok(())
+        Ok(found)
     }
 
     fn signs(&self, found: &Found) -> Vec<Sign> {

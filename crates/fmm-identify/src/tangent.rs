@@ -1,6 +1,7 @@
 //! Changes of the residuals that the parameters of a fit can follow.
 
 use fmm_fit::Fit;
+use nalgebra::DMatrix;
 
 use crate::problem::RingDownProblem;
 
@@ -10,18 +11,16 @@ pub(crate) struct Tangent {
     /// Places of these parameters among all.
     known: Vec<usize>,
     columns: Vec<Vec<f64>>,
-    /// (JᵀJ)⁻¹, row by row.
+    /// (JᵀJ)⁺, row by row.
     inverse: Vec<f64>,
 }
 
 impl Tangent {
     /// That of `fit`, which is one to `problem`; none if the derivatives cannot be had.
     pub(crate) fn of(problem: &RingDownProblem<'_>, fit: &Fit) -> Option<Self> {
-        let variance = fit.residual_standard_deviation()?.powi(2);
         let known: Vec<usize> = (0..fit.values().len()).filter(|i| fit.relaxed_covariance(*i, *i).is_some()).collect();
         let columns = problem.columns(fit.values(), &known).ok()?;
-        let pairs = known.iter().flat_map(|i| known.iter().map(move |j| (*i, *j)));
-        let inverse = pairs.map(|(i, j)| fit.relaxed_covariance(i, j).unwrap_or(0.0) / variance).collect();
+        let inverse = inverse_of_products(&columns);
         Some(Self { known, columns, inverse })
     }
 
@@ -44,5 +43,44 @@ impl Tangent {
         for (step, column) in self.steps(direction).iter().zip(&self.columns) {
             direction.iter_mut().zip(column).for_each(|(d, a)| *d -= step * a);
         }
+    }
+}
+
+/// (JᵀJ)⁺ of the columns of J, row by row: J (JᵀJ)⁺ Jᵀ takes what the columns can follow and nothing else, however alike they are.
+pub(crate) fn inverse_of_products(columns: &[Vec<f64>]) -> Vec<f64> {
+    /// Directions with less than this of the largest square, of columns of unit length, are rounding.
+    const ROUNDING: f64 = 1e-12;
+    let order = columns.len();
+    let product = |a: &Vec<f64>, b: &Vec<f64>| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+    let lengths: Vec<f64> = columns.iter().map(|column| product(column, column).sqrt()).collect();
+    let scale = |i: usize| if lengths[i] > 0.0 { lengths[i].recip() } else { 0.0 };
+    let products = DMatrix::from_fn(order, order, |i, j| {
+        if i <= j { product(&columns[i], &columns[j]) * scale(i) * scale(j) } else { 0.0 }
+    });
+    let symmetric = DMatrix::from_fn(order, order, |i, j| products[(i.min(j), i.max(j))]);
+    let spectrum = symmetric.symmetric_eigen();
+    let least = ROUNDING * spectrum.eigenvalues.iter().copied().fold(0.0, f64::max);
+    let inverse = |value: f64| if value > least { value.recip() } else { 0.0 };
+    let element = |i: usize, j: usize| {
+        let vectors = &spectrum.eigenvectors;
+        let terms = (0..order).map(|k| vectors[(i, k)] * inverse(spectrum.eigenvalues[k]) * vectors[(j, k)]);
+        terms.sum::<f64>() * scale(i) * scale(j)
+    };
+    (0..order * order).map(|at| element(at / order, at % order)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three columns in a plane: what they take of a direction is its part in the plane.
+    #[test]
+    fn columns_that_are_alike_take_no_more_than_one() {
+        let columns = vec![vec![1.0, 0.0, 0.0], vec![1e6, 1e6, 0.0], vec![1e6, 1e6 + 1e-3, 0.0]];
+        let inverse = inverse_of_products(&columns);
+        let known = (0..3).collect();
+        let mut direction = vec![0.3, -0.2, 0.7];
+        Tangent { known, columns, inverse }.take_out(&mut direction);
+        assert!(direction[0].abs() + direction[1].abs() < 1e-9 && (direction[2] - 0.7).abs() < 1e-15, "{direction:?}");
     }
 }

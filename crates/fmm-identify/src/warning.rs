@@ -126,6 +126,11 @@ pub enum Warning {
         /// What happened.
         sentence: String,
     },
+    /// Laws that the search tried, but could not fit to the end, and that were then far from what others reach.
+    NotFitted {
+        /// Their names.
+        laws: String,
+    },
     /// A damper came out negative.
     NegativeDamping {
         /// Name of the law.
@@ -165,8 +170,6 @@ pub enum Warning {
         step: f64,
         /// That unit.
         unit: String,
-        /// When the values stop changing (s), if they do.
-        rest: Option<f64>,
     },
     /// The zero of the instrument drifts, and a slow polynomial was fitted beside the motion.
     Drift,
@@ -442,6 +445,9 @@ impl fmt::Display for Warning {
                 "{parameter} was held at the sliding level: a free decay depends on it only in where it stops"
             ),
             Self::OtherLaw { law, sentence } => write!(f, "{law}: {sentence}"),
+            Self::NotFitted { laws } => {
+                write!(f, "{laws}: tried, but not fitted to the end; so far other laws describe the record better")
+            }
             Self::NegativeDamping { law, parameter, value, unit } => write!(
                 f,
                 "{law}: {parameter} is negative, {value:.4} {unit}: no damper feeds the motion; it stands for friction that falls with \

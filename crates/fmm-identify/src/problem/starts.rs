@@ -2,15 +2,18 @@
 
 use std::f64::consts::PI;
 
+use fmm_fit::Estimate;
 use fmm_friction::Role;
+use fmm_model::Parameter;
 
 use super::RingDownProblem;
-use crate::Sign;
 use crate::dimension::{Scales, bends, is_force};
 use crate::first_guess::Dissipation;
-use crate::layout::mass_of_stiffness;
+use crate::friction_curve::FrictionCurve;
+use crate::layout::{Layout, mass_of_stiffness};
 use crate::nuisance::Nuisance;
 use crate::sign::Addition;
+use crate::{Identification, Sign};
 
 impl RingDownProblem<'_> {
     /// Whether the law or the terms beside it have more to find than levels and a viscous part.
@@ -116,6 +119,33 @@ impl RingDownProblem<'_> {
             starts.push(self.clamped(&start));
         }
         starts
+    }
+
+    /// Start values that put this law where `other` has ended: the same friction over the speed, as nearly as it can, and what else has
+    /// the same name there or in one of `others`; none if one of the two laws states no friction over the speed.
+    pub(crate) fn beside(
+        &self,
+        other: &Identification,
+        others: &[&Identification],
+        starts: &[Vec<f64>],
+    ) -> Option<Vec<f64>> {
+        if self.layout.oscillator != 1 {
+            return None;
+        }
+        let fitted = other.fit();
+        let (layout, _) = Layout::of(other.family(), &self.machine, other.terms(), self.decays).ok()?;
+        let curve = FrictionCurve::of(&layout, other.terms(), fitted.values(), self.decays[0].scales().1)?;
+        let own = &fitted.values()[layout.shared..];
+        let of_that_name = |(value, parameter): (&f64, &Parameter)| {
+            let mut estimates = std::iter::once(&other).chain(others).flat_map(|other| other.fit().estimates());
+            estimates.find(|estimate| estimate.name() == parameter.name()).map_or(*value, Estimate::value)
+        };
+        let continued = |start: &Vec<f64>| {
+            let shared = start.iter().zip(&self.parameters).take(self.layout.shared).map(of_that_name);
+            self.clamped(&shared.chain(own.iter().copied()).collect::<Vec<_>>())
+        };
+        let starts: Vec<Vec<f64>> = starts.iter().map(continued).collect();
+        curve.followed(&self.layout, &self.terms, &self.parameters, &starts)
     }
 
     /// Pushes start values of the damping beside the law and of the law.
