@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod document;
+mod every_law;
 mod frf_files;
 mod hammer;
 mod identifiability;
