@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use fmm_fit::{Options, Progress, f_tail};
 
-use crate::judgement::Judgement;
+use crate::judgement::{Judgement, shortcomings};
 use crate::{Candidate, Identification, IdentifyError, Machine, RecordSummary, RingDown, Sign, Warning};
 
 /// A law and the more general one that it was tested against.
@@ -164,27 +164,14 @@ fn misled(identifications: &[Identification], preferred: usize) -> Option<Warnin
     })
 }
 
-/// Laws that were not fitted to their minimum, or not to the lowest: a law cannot be worse than a special case of it.
-pub(crate) fn unfinished(candidates: &[Candidate], identifications: &[Identification]) -> Vec<Warning> {
-    /// Rounding of a sum of squares.
-    const ROUNDING: f64 = 1e-9;
-    let mut warnings = Vec::new();
-    for (candidate, found) in candidates.iter().zip(identifications) {
+/// What was not fitted to the end, law by law.
+fn unfinished(candidates: &[Candidate], identifications: &[Identification]) -> Vec<Warning> {
+    let of_law = |(place, candidate): (usize, &Candidate)| {
         let law = candidate.name();
-        if !found.fit().outcome().is_success() {
-            let sentence = format!("the fit {}", found.fit().outcome());
-            warnings.push(Warning::OtherLaw { law: law.clone(), sentence });
-        }
-        let sum = found.fit().sum_of_squares();
-        let lower = |(special, other): &(&Candidate, &Identification)| {
-            special.is_nested_in(candidate) && other.fit().sum_of_squares() < sum * (1.0 - ROUNDING) - found.floor()
-        };
-        if let Some((special, _)) = candidates.iter().zip(identifications).find(lower) {
-            let sentence = format!("the fit missed its lowest minimum, as {} fits better", special.name());
-            warnings.push(Warning::OtherLaw { law, sentence });
-        }
-    }
-    warnings
+        let sentences = shortcomings(place, candidates, identifications).into_iter();
+        sentences.map(move |sentence| Warning::OtherLaw { law: law.clone(), sentence })
+    };
+    candidates.iter().enumerate().flat_map(of_law).collect()
 }
 
 /// Widens the uncertainties of the preferred law's parameters for what other laws, which the record does not exclude, see
@@ -215,7 +202,11 @@ fn widen_for_other_laws(
         let own_rank = identifications[preferred].fit().rank();
         // A parameter that ended on its bound is one more all the same.
         let further = identifications[other].fit().rank().saturating_sub(own_rank).max(added.min(1));
-        if other == preferred || !judgement.is_left(other) || further == 0 && own.is_nested_in(theirs) {
+        if other == preferred
+            || !judgement.is_left(other)
+            || !judgement.is_finished[other]
+            || further == 0 && own.is_nested_in(theirs)
+        {
             continue;
         }
         let is_general = candidates[preferred].is_nested_in(&candidates[other]);

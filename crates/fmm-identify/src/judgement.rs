@@ -14,6 +14,8 @@ pub(crate) struct Judgement {
     pub(crate) probabilities: Vec<f64>,
     /// D + 2 k, by which laws with as many parameters and more are ranked (1).
     pub(crate) scores: Vec<f64>,
+    /// Whether each law was fitted to its lowest minimum, as far as is known.
+    pub(crate) is_finished: Vec<bool>,
     /// Place of the preferred law.
     pub(crate) preferred: usize,
     /// Whether no rival is left.
@@ -47,6 +49,25 @@ fn hides_damping(without: &Identification, with: &Identification) -> bool {
     })
 }
 
+/// What keeps the fit at this place from being the best that its law can do: it has not ended, or a special case fits better.
+pub(crate) fn shortcomings(place: usize, candidates: &[Candidate], identifications: &[Identification]) -> Vec<String> {
+    /// Rounding of a sum of squares.
+    const ROUNDING: f64 = 1e-9;
+    let found = &identifications[place];
+    let mut sentences = Vec::new();
+    if !found.fit().outcome().is_success() {
+        sentences.push(format!("the fit {}", found.fit().outcome()));
+    }
+    let least = found.fit().sum_of_squares() * (1.0 - ROUNDING) - found.floor();
+    let is_better = |(special, other): &(&Candidate, &Identification)| {
+        other.fit().sum_of_squares() < least && special.is_nested_in(&candidates[place])
+    };
+    if let Some((special, _)) = candidates.iter().zip(identifications).find(is_better) {
+        sentences.push(format!("the fit missed its lowest minimum, as {} fits better", special.name()));
+    }
+    sentences
+}
+
 impl Judgement {
     /// The judgement of `candidates` by their `identifications` from the same records; none without any.
     ///
@@ -70,14 +91,18 @@ impl Judgement {
         });
         let (misfits, probabilities): (Vec<f64>, Vec<f64>) = standings.unzip();
         let scores = misfits.iter().enumerate().map(|(i, misfit)| misfit + 2.0 * rank(i) as f64).collect();
-        let bears = |i: &usize| probabilities[*i] >= DOUBTED;
+        let is_finished: Vec<bool> =
+            (0..candidates.len()).map(|place| shortcomings(place, candidates, identifications).is_empty()).collect();
+        // A fit that has not ended says what the law can do at least, not what its parameters are.
+        let is_any = (0..misfits.len()).any(|i| probabilities[i] >= DOUBTED && is_finished[i]);
+        let bears = |i: &usize| probabilities[*i] >= DOUBTED && (is_finished[*i] || !is_any);
         let preferred = (0..misfits.len()).filter(bears).min_by(|&a, &b| {
             let (near, far) = (misfits[a], misfits[b]);
             let by_misfit = if (near - far).abs() > 1e-6 { near.total_cmp(&far) } else { std::cmp::Ordering::Equal };
             let by_count = candidates[a].parameter_count().cmp(&candidates[b].parameter_count());
             rank(a).cmp(&rank(b)).then(by_misfit).then(by_count)
         })?;
-        let mut judgement = Self { misfits, probabilities, scores, preferred, is_decided: true };
+        let mut judgement = Self { misfits, probabilities, scores, is_finished, preferred, is_decided: true };
         judgement.is_decided =
             !(0..candidates.len()).any(|place| judgement.is_rival(place, candidates, identifications));
         Some(judgement)

@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use fmm_fit::{Options, Progress};
 
-use crate::comparison::{closest, explains, unfinished};
+use crate::comparison::{closest, explains};
 use crate::fit_stages::Near;
-use crate::judgement::Judgement;
+use crate::judgement::{Judgement, shortcomings};
 use crate::sign::{Addition, Sign, signs};
 use crate::{Candidate, Comparison, Identification, IdentifyError, Machine, RingDown, Warning};
 
@@ -227,23 +227,20 @@ impl Found {
 
     /// Laws whose fits have not ended in their lowest minimum.
     fn unfinished(&self) -> impl Iterator<Item = Candidate> {
-        let warnings = unfinished(&self.candidates, &self.identifications);
-        let named = move |name: &str| {
-            warnings.iter().any(|warning| matches!(warning, Warning::OtherLaw { law, .. } if law == name))
-        };
-        self.candidates.iter().filter(move |candidate| named(&candidate.name())).cloned()
+        let all = self.candidates.iter().enumerate();
+        all.filter(|(place, _)| !shortcomings(*place, &self.candidates, &self.identifications).is_empty())
+            .map(|(_, candidate)| candidate.clone())
     }
 
     /// Leaves out the laws whose fits have not ended in their lowest minimum and are far from what other laws reach; returns their
     /// names.
     fn drop_unfinished(&mut self) -> Vec<String> {
         let Some(judgement) = Judgement::of(&self.candidates, &self.identifications) else { return Vec::new() };
-        let unfinished: Vec<String> = self.unfinished().map(|candidate| candidate.name()).collect();
         let all = std::mem::take(&mut self.candidates).into_iter().zip(std::mem::take(&mut self.identifications));
         let mut dropped = Vec::new();
         for (place, (candidate, found)) in all.enumerate() {
             let is_simple = SIMPLE.contains(&candidate.law_name());
-            if !is_simple && !judgement.is_left(place) && unfinished.contains(&candidate.name()) {
+            if !is_simple && !judgement.is_left(place) && !judgement.is_finished[place] {
                 dropped.push(candidate.name());
             } else {
                 self.candidates.push(candidate);
