@@ -447,7 +447,7 @@ impl Residuals for RingDownProblem<'_> {
 
 #[cfg(test)]
 mod tests {
-    use fmm_friction::CoulombViscous;
+    use fmm_friction::{CoulombViscous, Stribeck};
     use fmm_model::Oscillator;
     use fmm_record::Record;
     use fmm_sim::{Engine, Exact, Scenario};
@@ -505,5 +505,26 @@ mod tests {
             row += block.rows();
         }
         assert_eq!((row, columns.len()), (problem.len(), 0));
+    }
+
+    /// A law put beside another begins with its friction over the speed, and with its oscillator and initial state.
+    #[test]
+    fn a_law_beside_another_begins_with_its_friction() {
+        let decays = &decays()[..1];
+        let other = crate::identify::<CoulombViscous>(&Machine::per_unit_mass(), decays).unwrap();
+        let machine = Machine::per_unit_mass();
+        let problem = RingDownProblem::new::<Stribeck>(machine, decays).unwrap();
+        let start = problem.beside(&other, &[&other], &problem.starts()).unwrap();
+        let law = problem.layout().law..problem.layout().shared;
+        let steady = |speed: f64| problem.law().steady(&start[law.clone()], speed, true).unwrap();
+        let known = |name: &str| other.finding(name).unwrap().value();
+        let speed = decays[0].scales().1;
+        for share in [0.01, 0.1, 0.5, 1.0] {
+            let expected = known("friction_per_mass") + known("damping_per_mass") * share * speed;
+            let got = steady(share * speed);
+            assert!((got - expected).abs() < 1e-4 * expected, "{got} in place of {expected} at {share}");
+        }
+        assert_eq!(start[0], known("natural_frequency_hz"));
+        assert_eq!(start[law.end..], other.fit().values()[3..]);
     }
 }
