@@ -344,6 +344,15 @@ impl Identification {
         self.fit.rank() + self.fit.estimates().iter().filter(is_used).count()
     }
 
+    /// How many places a law has to leap at: the samples of a half swing for one that comes to rest within a dead zone, else one.
+    pub(crate) fn tries(&self) -> f64 {
+        if self.finding("dead_zone").is_none() {
+            return 1.0;
+        }
+        let half_swings: usize = self.motions.iter().map(FittedMotion::half_swings).sum();
+        self.fit.residuals().len() as f64 / half_swings.max(1) as f64
+    }
+
     /// The noise that the residuals show.
     pub(crate) fn noise(&self) -> &ResidualNoise {
         self.covariance.noise_of_residuals()

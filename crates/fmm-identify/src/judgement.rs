@@ -78,7 +78,8 @@ impl Judgement {
     /// b is the law with the smallest sum of squares S, Σ the noise that its residuals r show. σ_i² is the variance of that noise in the
     /// direction in which the two laws differ: twice the logarithm of a ratio of likelihoods for correlated noise. It depends on
     /// the two laws alone, and not on how often the record was sampled, nor on other candidates. The probability of D_i is that of
-    /// Fisher's F with as many degrees of freedom as the best law has more parameters, at least one.
+    /// Fisher's F with as many degrees of freedom as the best law has more parameters, at least one; times the places at which a best
+    /// law that leaps can leap, each of which is a try (Bonferroni).
     pub(crate) fn of(candidates: &[Candidate], identifications: &[Identification]) -> Option<Self> {
         let floor = |found: &Identification| found.fit().sum_of_squares().max(found.floor());
         let best = identifications.iter().min_by(|a, b| floor(a).total_cmp(&floor(b)))?;
@@ -86,7 +87,7 @@ impl Judgement {
         let standings = identifications.iter().map(|found| {
             let (misfit, freedom) = found.misfit_beside(best);
             let further = best.fit().rank().saturating_sub(found.fit().rank()).max(1) as f64;
-            let probability = f_tail(misfit / further, further, freedom).unwrap_or(0.0);
+            let probability = (f_tail(misfit / further, further, freedom).unwrap_or(0.0) * best.tries()).min(1.0);
             (misfit, if misfit > 0.0 { probability } else { 1.0 })
         });
         let (misfits, probabilities): (Vec<f64>, Vec<f64>) = standings.unzip();
