@@ -24,9 +24,9 @@ pub struct NestedTest {
 ///
 /// A law is *excluded* if its misfit, beside the law that fits best, has a probability below 0.002 for the noise that the
 /// residuals show; correlated residuals count for as much as they tell, so that the answer is the same however often a record is
-/// sampled. Among the others the simplest with a probability of at least 0.05 is preferred. The preference is *decided* if what is left
-/// beside it are laws that have it as a special case, whose further parameters the record does not ask for. If a law is true, it is
-/// undecided in about one record of ten, and excluded in less than one of a hundred. The uncertainties of the preferred law include
+/// sampled. Among the others the simplest with a probability of at least 0.0125 is preferred. The preference is *decided* if its
+/// probability is at least 0.05 and what is left beside it are laws that have it as a special case, whose further parameters the record
+/// does not ask for. If a simple law is true, it is undecided in about one record of eight, and excluded in less than one of a hundred. The uncertainties of the preferred law include
 /// what the laws that are left would change, by how probable they are.
 ///
 /// `Display` gives the report.

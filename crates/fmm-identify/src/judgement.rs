@@ -25,8 +25,11 @@ pub(crate) struct Judgement {
 /// A law that fits worse than this by chance is excluded. The law that is true is excluded by no more than one in a hundred records:
 /// the best of several others is a little better than one other.
 pub(crate) const EXCLUDED: f64 = 0.002;
-/// A law with a smaller probability is not preferred to a more general one, and one with a larger is a rival. A law that is true is
-/// therefore called undecided by about one record in ten.
+/// A law with a smaller probability is not preferred to a more general one. The best of a dozen laws is better than one other by
+/// chance about four times as often as that one.
+const UNFIT: f64 = 0.0125;
+/// A preferred law with a smaller probability has the more general ones as rivals. A simple law that is true is called undecided by
+/// about one record in eight.
 pub(crate) const DOUBTED: f64 = 0.05;
 /// A rival with more parameters must come within this of the score of the preferred law: what lies farther off has a twentieth of its
 /// likelihood.
@@ -95,8 +98,8 @@ impl Judgement {
         let is_finished: Vec<bool> =
             (0..candidates.len()).map(|place| shortcomings(place, candidates, identifications).is_empty()).collect();
         // A fit that has not ended says what the law can do at least, not what its parameters are.
-        let is_any = (0..misfits.len()).any(|i| probabilities[i] >= DOUBTED && is_finished[i]);
-        let bears = |i: &usize| probabilities[*i] >= DOUBTED && (is_finished[*i] || !is_any);
+        let is_any = (0..misfits.len()).any(|i| probabilities[i] >= UNFIT && is_finished[i]);
+        let bears = |i: &usize| probabilities[*i] >= UNFIT && (is_finished[*i] || !is_any);
         let preferred = (0..misfits.len()).filter(bears).min_by(|&a, &b| {
             let (near, far) = (misfits[a], misfits[b]);
             let by_misfit = if (near - far).abs() > 1e-6 { near.total_cmp(&far) } else { std::cmp::Ordering::Equal };
@@ -128,6 +131,9 @@ impl Judgement {
         let is_general = candidates[preferred].is_nested_in(&candidates[place]);
         if is_general && candidates[place].differs_by_damping(&candidates[preferred]) {
             return hides_damping(&identifications[preferred], &identifications[place]);
+        }
+        if is_general && self.probabilities[preferred] < DOUBTED {
+            return self.scores[place] < self.scores[preferred];
         }
         let says_the_same = (self.misfits[place] - self.misfits[preferred]).abs() < 1e-6
             && identifications[place].parameters_used() == identifications[preferred].parameters_used()
