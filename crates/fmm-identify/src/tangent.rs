@@ -1,7 +1,6 @@
 //! Changes of the residuals that the parameters of a fit can follow.
 
 use fmm_fit::Fit;
-use nalgebra::DMatrix;
 
 use crate::problem::RingDownProblem;
 
@@ -11,7 +10,7 @@ pub(crate) struct Tangent {
     /// Places of these parameters among all.
     known: Vec<usize>,
     columns: Vec<Vec<f64>>,
-    /// (JᵀJ)⁺, row by row.
+    /// (JᵀJ)⁻, row by row.
     inverse: Vec<f64>,
 }
 
@@ -46,25 +45,49 @@ impl Tangent {
     }
 }
 
-/// (JᵀJ)⁺ of the columns of J, row by row: J (JᵀJ)⁺ Jᵀ takes what the columns can follow and nothing else, however alike they are.
+/// (JᵀJ)⁻ of the columns of J, row by row: J (JᵀJ)⁻ Jᵀ takes what the columns can follow and nothing else, however alike they are.
+///
+/// Of columns that are alike but for rounding, one is left. The normal matrix of at most a dozen columns is swept here, column by column
+/// (Beaton): a matrix crate would be nine more to build.
 pub(crate) fn inverse_of_products(columns: &[Vec<f64>]) -> Vec<f64> {
-    /// Directions with less than this of the largest square, of columns of unit length, are rounding.
-    const ROUNDING: f64 = 1e-12;
+    /// Of a column of unit length, what is left below this square beside the others is rounding.
+    const ROUNDING: f64 = 1e-10;
     let order = columns.len();
-    let product = |a: &Vec<f64>, b: &Vec<f64>| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-    let lengths: Vec<f64> = columns.iter().map(|column| product(column, column).sqrt()).collect();
-    let scale = |i: usize| if lengths[i] > 0.0 { lengths[i].recip() } else { 0.0 };
-    let products = DMatrix::from_fn(order, order, |i, j| {
-        if i <= j { product(&columns[i], &columns[j]) * scale(i) * scale(j) } else { 0.0 }
-    });
-    let symmetric = DMatrix::from_fn(order, order, |i, j| products[(i.min(j), i.max(j))]);
-    let spectrum = symmetric.symmetric_eigen();
-    let least = ROUNDING * spectrum.eigenvalues.iter().copied().fold(0.0, f64::max);
-    let inverse = |value: f64| if value > least { value.recip() } else { 0.0 };
+    let product = |i: usize, j: usize| -> f64 { columns[i].iter().zip(&columns[j]).map(|(a, b)| a * b).sum() };
+    let scales: Vec<f64> = (0..order).map(|i| product(i, i).sqrt().recip()).collect();
+    let mut swept = vec![0.0; order * order];
+    for i in (0..order).filter(|i| scales[*i].is_finite()) {
+        for j in (i..order).filter(|j| scales[*j].is_finite()) {
+            swept[i * order + j] = product(i, j) * scales[i] * scales[j];
+            swept[j * order + i] = swept[i * order + j];
+        }
+    }
+    let mut left: Vec<usize> = (0..order).collect();
+    while let Some(place) =
+        (0..left.len()).max_by(|a, b| swept[left[*a] * (order + 1)].total_cmp(&swept[left[*b] * (order + 1)]))
+    {
+        let pivot = left[place];
+        let square = swept[pivot * (order + 1)];
+        if !(square > ROUNDING) {
+            break;
+        }
+        left.swap_remove(place);
+        let row: Vec<f64> = swept[pivot * order..(pivot + 1) * order].iter().map(|element| element / square).collect();
+        for i in (0..order).filter(|i| *i != pivot) {
+            let factor = swept[i * order + pivot];
+            for j in (0..order).filter(|j| *j != pivot) {
+                swept[i * order + j] -= factor * row[j];
+            }
+        }
+        for i in 0..order {
+            swept[i * order + pivot] = row[i];
+            swept[pivot * order + i] = row[i];
+        }
+        swept[pivot * (order + 1)] = -square.recip();
+    }
     let element = |i: usize, j: usize| {
-        let vectors = &spectrum.eigenvectors;
-        let terms = (0..order).map(|k| vectors[(i, k)] * inverse(spectrum.eigenvalues[k]) * vectors[(j, k)]);
-        terms.sum::<f64>() * scale(i) * scale(j)
+        let is_left = left.contains(&i) || left.contains(&j);
+        if is_left { 0.0 } else { -swept[i * order + j] * scales[i] * scales[j] }
     };
     (0..order * order).map(|at| element(at / order, at % order)).collect()
 }
@@ -72,6 +95,19 @@ pub(crate) fn inverse_of_products(columns: &[Vec<f64>]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn of_independent_columns_it_is_the_inverse() {
+        let columns = [vec![2.0, 0.0, 1.0], vec![1.0, 3.0, 0.0], vec![0.0, 1.0, -4.0]];
+        let inverse = inverse_of_products(&columns);
+        let product = |i: usize, j: usize| -> f64 { columns[i].iter().zip(&columns[j]).map(|(a, b)| a * b).sum() };
+        for i in 0..3 {
+            for j in 0..3 {
+                let unit: f64 = (0..3).map(|k| inverse[3 * i + k] * product(k, j)).sum();
+                assert!((unit - f64::from(u8::from(i == j))).abs() < 1e-13, "{unit}");
+            }
+        }
+    }
 
     /// Three columns in a plane: what they take of a direction is its part in the plane.
     #[test]
