@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use fmm_identify::{
-    Candidate, Comparison, Identification, Known, Machine, Preparation, RingDown, Search, Warning, compare, search,
+    Candidate, Comparison, Finding, Identification, IdentifyError, Known, Machine, Preparation, RingDown, Search,
+    Warning, compare, search,
 };
 use fmm_model::Restoring;
 use fmm_record::{Column, Quantity, Record, csv};
@@ -158,9 +159,28 @@ fn a_search_holds_by_law_and_ends_in_time() {
     let comparison = search(&machine(), std::slice::from_ref(&decay), &holding).unwrap();
     assert!(comparison.identifications().iter().any(|found| found.law() == "stribeck, exponent = 1"), "{comparison}");
     let hurried = Search::default().within(std::time::Duration::ZERO);
-    let comparison = search(&machine(), &[decay], &hurried).unwrap();
-    assert!(!comparison.is_complete() && comparison.warnings().contains(&Warning::TimeLimit), "{comparison}");
-    assert_eq!(comparison.identifications().len(), 3);
+    // What is held of the simple laws changes nothing of that.
+    for hurried in [hurried.clone(), hurried.holding(None, "damping_per_mass", 0.1)] {
+        let comparison = search(&machine(), std::slice::from_ref(&decay), &hurried).unwrap();
+        assert!(!comparison.is_complete() && comparison.warnings().contains(&Warning::TimeLimit), "{comparison}");
+        assert_eq!(comparison.identifications().len(), 3);
+    }
+    assert!(matches!(search(&machine(), &[], &Search::default()), Err(IdentifyError::NoRecord)));
+    let nobody = search(&machine(), &[decay], &Search::default().holding(None, "colour", 1.0));
+    assert!(matches!(nobody, Err(IdentifyError::UnknownParameter { ref name, .. }) if name == "colour"), "{nobody:?}");
+}
+
+/// What is held under the name that a fit gives it is held of every law that has it, in all stages.
+#[test]
+fn a_search_holds_by_the_names_of_fits() {
+    let decay = RingDown::prepare(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
+    let holding = Search::default().holding(None, "damping_per_mass", 0.1);
+    let comparison = search(&machine(), &[decay], &holding).unwrap();
+    assert!(comparison.identifications().len() > 10, "{comparison}");
+    for found in comparison.identifications() {
+        let damping = found.finding("damping_per_mass").map(Finding::value);
+        assert!(damping.is_none_or(|damping| damping == 0.1), "{found}");
+    }
 }
 
 /// The result is the same on any number of threads.

@@ -13,6 +13,7 @@ use fmm_sim::Simulated;
 use crate::fit_stages::Near;
 use crate::identification::identify_by;
 use crate::law::Law;
+use crate::layout::Layout;
 use crate::{Identification, IdentifyError, Machine, RingDown, Terms};
 
 /// An observer of trial steps that may end the fit.
@@ -199,8 +200,15 @@ impl Candidate {
         self.law.name
     }
 
-    /// Whether the law, or the damping beside it, has a parameter of this name, as the law or as a fit calls it.
-    pub(crate) fn has_parameter(&self, name: &str) -> bool {
-        self.law.fitted().any(|parameter| parameter.parameter().name() == name)
+    /// Names of the parameters of a fit to `decays`: of the oscillator, the damping, the law, and the initial state.
+    ///
+    /// # Errors
+    /// [`IdentifyError::NoRecord`], and as [`Layout::of`].
+    pub(crate) fn parameters(&self, machine: &Machine, decays: &[RingDown]) -> Result<Vec<String>, IdentifyError> {
+        if decays.is_empty() {
+            return Err(IdentifyError::NoRecord);
+        }
+        let (_, parameters) = Layout::of(self.law, machine, &self.terms, decays)?;
+        Ok(parameters.iter().map(|parameter| parameter.name().to_owned()).collect())
     }
 }

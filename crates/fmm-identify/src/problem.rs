@@ -3,8 +3,7 @@
 use std::ops::Range;
 
 use fmm_fit::{Block, EvaluationError, Fit, Residuals};
-use fmm_friction::Role;
-use fmm_model::{Bounds, Parameter, Scalar};
+use fmm_model::{Parameter, Scalar};
 use fmm_record::Quantity;
 use fmm_sim::{Channels, Samples, Sampling, Simulated, Trajectory};
 
@@ -12,6 +11,7 @@ use crate::law::{DIRECTIONS, Law, Simulate};
 use crate::layout::Layout;
 use crate::{IdentifyError, Machine, RingDown, Terms};
 
+mod parts;
 mod starts;
 
 /// The residuals "model less record" of one or several ring-downs by a law, with exact derivatives.
@@ -30,10 +30,6 @@ pub struct RingDownProblem<'a> {
     layout: Layout,
     blocks: Vec<Block>,
 }
-
-/// Samples of a record, and of each of its periods, that are enough to search with.
-const ENOUGH_SAMPLES: usize = 1500;
-const SAMPLES_PER_SWING: f64 = 24.0;
 
 /// Samples simulated at a time: memory beyond the solver's own stays below 4 MB however long the record.
 const WINDOW: usize = 1 << 16;
@@ -71,23 +67,6 @@ impl<'a> RingDownProblem<'a> {
         Ok(Self { machine, terms, decays, parameters, layout, blocks })
     }
 
-    /// The ring-downs up to a `share` of their duration (1), for a fit in which a small error of the period does not yet add up.
-    pub(crate) fn beginnings(&self, share: f64) -> Vec<RingDown> {
-        self.decays.iter().map(|decay| decay.beginning(share)).collect()
-    }
-
-    /// The ring-downs with so few of their samples that a search among many starts is quick and yet sees every swing; none if
-    /// they have no more.
-    pub(crate) fn thinned(&self) -> Option<Vec<RingDown>> {
-        let stride = |decay: &RingDown| {
-            let swings = decay.record().duration() * decay.guess().frequency();
-            let enough = ENOUGH_SAMPLES.max((SAMPLES_PER_SWING * swings) as usize);
-            decay.record().len() / enough
-        };
-        let stride = self.decays.iter().map(stride).min().filter(|stride| *stride > 1)?;
-        self.decays.iter().map(|decay| decay.thinned(stride)).collect()
-    }
-
     fn law(&self) -> &Law {
         &self.layout.family
     }
@@ -103,51 +82,6 @@ impl<'a> RingDownProblem<'a> {
 
     pub(crate) fn decays(&self) -> &'a [RingDown] {
         self.decays
-    }
-
-    /// The ring-downs up to their last peaks, if they are displacements and that leaves something out.
-    pub(crate) fn up_to_last_peaks(&self) -> Option<Vec<RingDown>> {
-        if self.decays[0].record().quantity() != Quantity::Displacement {
-            return None;
-        }
-        let shortened = self.decays.iter().map(RingDown::up_to_last_peak).collect::<Vec<_>>();
-        let any = shortened.iter().any(Option::is_some);
-        let complete =
-            shortened.into_iter().zip(self.decays).map(|(short, whole)| short.unwrap_or_else(|| whole.clone()));
-        any.then(|| complete.collect())
-    }
-
-    /// The same problem with laws that bend at no less than 1e-4 of the largest speed: below, a law is to the records as good as one
-    /// that leaps, and its motion takes far longer to simulate.
-    pub(crate) fn bending_in_sight(mut self) -> Self {
-        const SLOWEST: f64 = 1e-4;
-        let slowest = SLOWEST * self.decays[0].scales().1;
-        for (index, law) in self.law().fitted().enumerate() {
-            let parameter = &mut self.parameters[self.layout.law + index];
-            let bounds = parameter.bounds();
-            let bounds = match law.parameter().unit() {
-                "m/s" => Bounds::new(bounds.lower().max(slowest), bounds.upper()),
-                "s/m" if law.role() == Role::Shape => Bounds::new(bounds.lower(), bounds.upper().min(slowest.recip())),
-                _ => continue,
-            };
-            // One that is held elsewhere stays so.
-            if let Ok(bounds) = bounds {
-                *parameter = parameter.clone().bounded(bounds);
-            }
-        }
-        self
-    }
-
-    /// The same problem with other records of the same kind and number.
-    pub(crate) fn with_records<'b>(&self, decays: &'b [RingDown]) -> RingDownProblem<'b> {
-        RingDownProblem {
-            machine: self.machine,
-            terms: self.terms.clone(),
-            decays,
-            parameters: self.parameters.clone(),
-            layout: self.layout.clone(),
-            blocks: blocks(&self.layout, decays),
-        }
     }
 
     pub(crate) fn layout(&self) -> &Layout {

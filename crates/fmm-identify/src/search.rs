@@ -58,12 +58,8 @@ impl Search {
         Self { threads: threads.max(1), ..self }
     }
 
-    /// The candidates of these names, with what is held.
-    fn candidates(&self, names: &[&str]) -> Result<Vec<Candidate>, IdentifyError> {
-        names.iter().map(|name| self.candidate(name)).collect()
-    }
-
-    fn candidate(&self, name: &str) -> Result<Candidate, IdentifyError> {
+    /// The candidate of this name, with what is held.
+    fn candidate(&self, name: &str, machine: &Machine, decays: &[RingDown]) -> Result<Candidate, IdentifyError> {
         let (name, own) = name.split_once(',').unwrap_or((name, ""));
         let mut candidate = Candidate::named(name)?;
         if let Some((parameter, value)) = own.split_once('=') {
@@ -73,12 +69,32 @@ impl Search {
                 candidate = candidate.holding(parameter.trim(), value)?;
             }
         }
+        let known = candidate.parameters(machine, decays)?;
         for (law, parameter, value) in &self.held {
-            if is_meant(law.as_deref(), &candidate) && candidate.has_parameter(parameter) {
+            if is_meant(law.as_deref(), &candidate) && known.contains(parameter) {
                 candidate = candidate.holding(parameter, *value)?;
             }
         }
         Ok(candidate)
+    }
+
+    /// That each parameter that is held is one of some law that may be tried.
+    fn require_known(&self, machine: &Machine, decays: &[RingDown]) -> Result<(), IdentifyError> {
+        let mut known = Vec::new();
+        for name in
+            SIMPLE.iter().chain(&OF_SPEED).chain(&OF_SPEED_FURTHER).chain(&WITH_STATE).chain(&WITH_STATE_FURTHER)
+        {
+            let candidate = self.candidate(name, machine, decays)?;
+            known.extend(candidate.parameters(machine, decays)?.into_iter().map(|name| (candidate.law_name(), name)));
+        }
+        let is_one = |(law, name): (&Option<String>, &String)| {
+            known.iter().any(|(of, known)| known == name && law.as_ref().is_none_or(|law| law == of))
+        };
+        let Some((_, name, _)) = self.held.iter().find(|(law, name, _)| !is_one((law, name))) else { return Ok(()) };
+        let mut names: Vec<String> = known.into_iter().map(|(_, name)| name).collect();
+        names.sort();
+        names.dedup();
+        Err(IdentifyError::UnknownParameter { name: name.clone(), known: names.join(", ") })
     }
 }
 
@@ -141,11 +157,14 @@ pub fn search_observed(
 ) -> Result<Comparison, IdentifyError> {
     let (observer, begun) = (Mutex::new(observer), Instant::now());
     let run = Run { machine, decays, search, options, observer: &observer, begun };
-    let mut found = run.fit(search.candidates(&SIMPLE)?, None)?;
+    if !search.held.is_empty() {
+        search.require_known(machine, decays)?;
+    }
+    let mut found = run.fit(run.candidates(&SIMPLE)?, None)?;
     let drifting = closest(found.identifications.iter()).and_then(|found| found.with_drift(decays));
     let mut decays = decays;
     if let Some(drifting) = &drifting {
-        let with_drift = Run { decays: drifting, ..run }.fit(search.candidates(&SIMPLE)?, None)?;
+        let with_drift = Run { decays: drifting, ..run }.fit(run.candidates(&SIMPLE)?, None)?;
         if explains(&with_drift.identifications) {
             (decays, found) = (drifting, with_drift);
         }
@@ -153,12 +172,12 @@ pub fn search_observed(
     let run = Run { decays, ..run };
     let mut signs = run.signs(&found);
     if found.asks_for_more(&signs) {
-        let falling = run.fit(search.candidates(&OF_SPEED)?, found.near(&signs, &[], 0).as_ref())?;
+        let falling = run.fit(run.candidates(&OF_SPEED)?, found.near(&signs, &[], 0).as_ref())?;
         found.add(falling);
         let limited = |most: usize| options.clone().with_max_iterations(most.min(options.max_iterations()));
         let (of_speed, limited_more) = (limited(MOST_ITERATIONS), limited(MOST_ITERATIONS_WITH_STATE));
         let run = Run { options: &of_speed, ..run };
-        let further = found.unfinished().chain(search.candidates(&OF_SPEED_FURTHER)?).collect();
+        let further = found.unfinished().chain(run.candidates(&OF_SPEED_FURTHER)?).collect();
         let further = run.fit(further, found.near(&signs, &[|_| true], 1).as_ref())?;
         found.add(further);
         // A converter hides what is not longer than a few of its steps, and its steps look like presliding: neither moves where the
@@ -172,10 +191,10 @@ pub fn search_observed(
             |sign: &Sign| sign.addition == Addition::Presliding && sign.significance() > 2.0 && sign.size > least;
         if signs.iter().any(seen) {
             let run = Run { options: &limited_more, ..run };
-            let with_state = run.fit(search.candidates(&WITH_STATE)?, found.near(&signs, &[], 0).as_ref())?;
+            let with_state = run.fit(run.candidates(&WITH_STATE)?, found.near(&signs, &[], 0).as_ref())?;
             found.add(with_state);
             let with_state =
-                run.fit(search.candidates(&WITH_STATE_FURTHER)?, found.near(&signs, &[preslides], 2).as_ref())?;
+                run.fit(run.candidates(&WITH_STATE_FURTHER)?, found.near(&signs, &[preslides], 2).as_ref())?;
             found.add(with_state);
         }
     }
@@ -220,7 +239,7 @@ impl Found {
     /// Fits to begin another one near: that by Coulomb and viscous friction, and the closest to the records of each of `kinds`; so many
     /// `tries` are made.
     fn near<'a>(&'a self, signs: &'a [Sign], kinds: &[fn(&Identification) -> bool], tries: usize) -> Option<Near<'a>> {
-        let simple = self.identification("coulomb_viscous")?;
+        let simple = self.simple()?;
         let others =
             kinds.iter().filter_map(|is_kind| closest(self.identifications.iter().filter(|found| is_kind(found))));
         Some(Near { simple, signs, others: others.collect(), tries })
@@ -254,9 +273,7 @@ impl Found {
     /// Whether the simple laws leave something in the residuals.
     fn asks_for_more(&self, signs: &[Sign]) -> bool {
         let held_back = |found: &Identification| found.damping_would_be_negative();
-        signs.iter().any(Sign::is_plain)
-            || self.is_structured()
-            || self.identification("coulomb_viscous").is_some_and(held_back)
+        signs.iter().any(Sign::is_plain) || self.is_structured() || self.simple().is_some_and(held_back)
     }
 
     /// Whether the residuals of the best law are alike where they should be noise.
@@ -265,8 +282,9 @@ impl Found {
         judgement.is_some_and(|judgement| self.identifications[judgement.preferred].structure().is_correlated())
     }
 
-    fn identification(&self, law: &str) -> Option<&Identification> {
-        self.identifications.iter().find(|found| found.law() == law)
+    /// The fit by Coulomb and viscous friction, whatever is held of it; it is among the first.
+    fn simple(&self) -> Option<&Identification> {
+        self.identifications.iter().find(|found| found.family().name == "coulomb_viscous")
     }
 }
 
@@ -285,6 +303,11 @@ struct Run<'a, F> {
 }
 
 impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
+    /// The candidates of these names, with what is held.
+    fn candidates(&self, names: &[&str]) -> Result<Vec<Candidate>, IdentifyError> {
+        names.iter().map(|name| self.search.candidate(name, self.machine, self.decays)).collect()
+    }
+
     fn is_late(&self) -> bool {
         self.search.time_limit.is_some_and(|limit| self.begun.elapsed() >= limit)
     }
@@ -344,7 +367,7 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
     }
 
     fn signs(&self, found: &Found) -> Vec<Sign> {
-        let base = found.identification("coulomb_viscous");
+        let base = found.simple();
         base.and_then(|base| signs(base, self.decays).ok()).unwrap_or_default()
     }
 }
