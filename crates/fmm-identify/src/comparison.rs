@@ -286,7 +286,7 @@ impl Comparison {
     }
 
     /// The misfit of each law beside the law that fits best in variances of the noise, with 2 for each parameter that is determined
-    /// (1), one per identification. Only differences mean anything.
+    /// or on a bound other than zero (1), one per identification. Only differences mean anything.
     pub fn scores(&self) -> &[f64] {
         &self.judgement.scores
     }
