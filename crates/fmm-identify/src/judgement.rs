@@ -36,11 +36,11 @@ pub(crate) const DOUBTED: f64 = 0.05;
 const CLOSE: f64 = 6.0;
 
 /// Relative uncertainty (1) from which on a parameter is told too badly to say that there is no damping beside it.
-const TOLD_BADLY: f64 = 0.01;
+const TOLD_BADLY: f64 = 0.004;
 /// How much of that uncertainty, against that of the law without damping, is due to the damping (1).
 const DUE_TO_DAMPING: f64 = 2.0;
 
-/// Whether a parameter of the law `without` damping may be off by more than a hundredth for want of it, as the law `with` it says.
+/// Whether a parameter of the law `without` damping may be off by more than four thousandths for want of it, as the law `with` it says.
 fn hides_damping(without: &Identification, with: &Identification) -> bool {
     without.findings().iter().filter(|own| !own.is_of_record()).any(|own| {
         let theirs = with.finding(own.parameter().name());
