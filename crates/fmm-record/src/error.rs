@@ -92,6 +92,22 @@ pub enum RecordError {
         /// The interval of the grid (s).
         interval: f64,
     },
+    /// Time stamps in a unit that is not known.
+    #[error(
+        "the time stamps \"{name}\" are in \"{unit}\", which is no unit of time that is known; give the sampling rate"
+    )]
+    TimeUnit {
+        /// Name of the column or variable.
+        name: String,
+        /// What is written as its unit.
+        unit: String,
+    },
+    /// A series that counts samples and tells no time.
+    #[error("\"{name}\" counts samples and tells no time; give the sampling rate, or time stamps with their unit")]
+    Counter {
+        /// Name of the column or variable.
+        name: String,
+    },
     /// A span of time in which the record has no sample.
     #[error("no sample lies between {from} s and {to} s; the record spans {start} s to {end} s")]
     NothingLeft {

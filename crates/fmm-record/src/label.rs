@@ -144,14 +144,14 @@ impl From<&crate::Reading> for Label {
 }
 
 /// A text in brackets, and whether they are square.
-struct Group {
-    text: String,
+pub(crate) struct Group {
+    pub(crate) text: String,
     is_square: bool,
 }
 
 /// The name with a space for every text in brackets, and these texts. An opening bracket without its partner is a sign
 /// like others.
-fn without_groups(name: &str) -> (String, Vec<Group>) {
+pub(crate) fn without_groups(name: &str) -> (String, Vec<Group>) {
     let (mut bare, mut groups, mut rest) = (String::new(), Vec::new(), name);
     while let Some(open) = rest.find(['[', '(']) {
         let is_square = rest[open..].starts_with('[');
@@ -198,7 +198,7 @@ fn in_groups(groups: &[Group]) -> Option<Written> {
 }
 
 /// Whether a text in brackets is no unit: an index, a column, an axis, a sentence.
-fn is_remark(text: &str) -> bool {
+pub(crate) fn is_remark(text: &str) -> bool {
     let is_axis = matches!(text, "x" | "y" | "z" | "X" | "Y" | "Z");
     let is_index = text.chars().all(|sign| sign.is_ascii_digit());
     is_axis || is_index || text.contains([':', ',']) || text.split_whitespace().count() > 2

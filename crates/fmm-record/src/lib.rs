@@ -80,6 +80,8 @@ pub mod npy;
 pub mod uff;
 
 mod calculus;
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
+mod clock;
 mod error;
 mod fourier;
 mod further_release;

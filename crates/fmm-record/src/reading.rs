@@ -33,7 +33,7 @@ macro_rules! builder_of_choices {
             self
         }
 
-        /// The column of time stamps, in seconds unless its name tells another unit.
+        /// The column of time stamps, in seconds unless its name tells another unit; one that is not known is an error.
         #[must_use]
         pub fn time(mut self, column: impl Into<$column>) -> Self {
             self.time = Some(column.into());
@@ -119,66 +119,8 @@ impl std::fmt::Display for Column {
     }
 }
 
-/// Whether `name` calls a column or variable of time stamps, and if so how many seconds its unit has: `t`,
-/// `time`, `Zeit`, alone or followed by a unit as in `t_s`, `time (ms)`, `Time [s]` or `t/s`.
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
-pub(crate) fn seconds_per_unit_of_time(name: &str) -> Option<f64> {
-    const WORDS: [&str; 3] = ["time", "zeit", "t"];
-    let lower = name.trim().to_lowercase();
-    let rest = WORDS.iter().find_map(|word| {
-        let rest = lower.strip_prefix(word)?;
-        rest.chars().next().is_none_or(|next| !next.is_alphanumeric()).then_some(rest)
-    })?;
-    seconds_in(rest.trim_matches(|c: char| !c.is_alphanumeric()))
-}
-
-/// How many seconds a unit of time has, in lower case; no unit means seconds.
-pub(crate) fn seconds_in(unit: &str) -> Option<f64> {
-    const UNITS: [(&str, f64); 10] = [
-        ("", 1.0),
-        ("s", 1.0),
-        ("sec", 1.0),
-        ("second", 1.0),
-        ("seconds", 1.0),
-        ("ms", 1e-3),
-        ("us", 1e-6),
-        ("µs", 1e-6),
-        ("μs", 1e-6),
-        ("ns", 1e-9),
-    ];
-    UNITS.iter().find(|(known, _)| *known == unit).map(|(_, seconds)| *seconds)
-}
-
 /// Names for an error that lists them.
 #[cfg(any(feature = "csv", feature = "uff"))]
 pub(crate) fn quoted(names: &[String]) -> String {
     names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
-}
-
-/// Brings time stamps to seconds from the unit that the `name` of their column tells, if it tells one.
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
-pub(crate) fn to_seconds(name: &str, times: &mut [f64]) {
-    let scale = seconds_per_unit_of_time(name).unwrap_or(1.0);
-    if scale != 1.0 {
-        for time in times {
-            *time *= scale;
-        }
-    }
-}
-
-#[cfg(all(test, any(feature = "csv", feature = "mat", feature = "npy")))]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_of_time_are_known_with_their_units() {
-        for name in ["t", "T", "time", "t_s", "time_s", "Time (s)", "t [s]", "t/s", "Zeit", " Zeit [s] ", "TIME"] {
-            assert_eq!(seconds_per_unit_of_time(name), Some(1.0), "{name}");
-        }
-        assert_eq!(seconds_per_unit_of_time("time_ms"), Some(1e-3));
-        assert_eq!(seconds_per_unit_of_time("t [µs]"), Some(1e-6));
-        for name in ["theta", "t_coil", "velocity", "timer", "", "trial", "time constant"] {
-            assert_eq!(seconds_per_unit_of_time(name), None, "{name}");
-        }
-    }
 }

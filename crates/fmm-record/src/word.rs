@@ -91,7 +91,7 @@ impl Word {
 }
 
 /// The words of a name in small letters, without digits at their ends: `angularVelocity1` has two.
-fn words(name: &str) -> Vec<String> {
+pub(crate) fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut previous_is_small = false;
     for sign in name.chars() {

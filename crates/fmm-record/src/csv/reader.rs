@@ -6,9 +6,9 @@ use std::path::Path;
 
 use super::CsvError;
 use super::table::Table;
+use crate::clock::{Choice, Clock};
 use crate::reading::builder_of_choices;
-use crate::reading::{seconds_per_unit_of_time, to_seconds};
-use crate::{Column, Quantity, Reading, Record, Sampling, UniformTimes};
+use crate::{Column, Quantity, Reading, Record, RecordError, Sampling, UniformTimes};
 
 /// Reads one channel of a text file.
 ///
@@ -17,8 +17,8 @@ use crate::{Column, Quantity, Reading, Record, Sampling, UniformTimes};
 /// | separator | semicolon or tab if the rows have one, else comma |
 /// | header | the first row, if any of its fields is not a number |
 /// | decimal comma | where it is used throughout and the separator is not a comma |
-/// | time | the column called `t`, `time` or `Zeit`, with or without its unit (s, ms, µs, ns); else the first column, if it increases uniformly |
-/// | channel | the first column that is not the time |
+/// | time | the column called `t`, `time`, `Zeit`, `timestamp` or the like, in seconds unless its name tells another unit (ms, µs, ns, min, h, in any usual spelling); else the first column, if it increases uniformly, but not by whole numbers without a unit |
+/// | channel | the first column that is neither the time nor called a number of samples |
 /// | quantity, unit | [`Quantity::Other`], empty |
 ///
 /// With a rate, time stamps are not looked at, and the record begins at 0 s.
@@ -69,7 +69,8 @@ impl CsvReader {
         if let (Some(time), true) = (time, time == channel) {
             return Err(CsvError::SameColumn { column: columns[time].clone() });
         }
-        let other_than = |time| (0..columns.len()).find(|index| *index != time);
+        let other_than =
+            |time| (0..columns.len()).find(|index| *index != time && !Clock::of(&columns[*index]).is_counter);
         let found = match (time, channel) {
             (Some(time), channel) => {
                 let Some(channel) = channel.or_else(|| other_than(time)) else {
@@ -78,18 +79,24 @@ impl CsvReader {
                 if self.rate.is_some() {
                     Found::only(channel, table.read_columns([channel])?).beside(time)
                 } else {
-                    Found::both(time, channel, table.read_columns([time, channel])?)
+                    Found::both(time, Choice::Called, channel, table.read_columns([time, channel])?)
                 }
             }
             (None, Some(channel)) if self.rate.is_some() => Found::only(channel, table.read_columns([channel])?),
             // No column says that it is time: the first one is, if it increases uniformly.
-            (None, channel) if columns.len() > 1 && channel != Some(0) => {
+            (None, channel) if columns.len() > 1 && channel != Some(0) && Clock::of(&columns[0]).may_be_time() => {
                 let second = channel.unwrap_or(1);
                 let [first, values] = table.read_columns([0, second])?;
                 if UniformTimes::of(&first).is_ok() {
-                    Found::both(0, second, [first, values])
+                    Found::both(0, Choice::ByNature, second, [first, values])
                 } else if self.rate.is_some() {
-                    Found::only(0, [first])
+                    if Clock::of(&columns[0]).is_counter {
+                        Found::only(second, [values])
+                    } else {
+                        Found::only(0, [first])
+                    }
+                } else if Clock::of(&columns[0]).is_counter {
+                    return Err(RecordError::Counter { name: columns[0].clone() }.into());
                 } else {
                     return Err(CsvError::NoRate { available: columns });
                 }
@@ -130,13 +137,14 @@ impl CsvReader {
         };
         let time = match named {
             Some(time) => Some(time),
-            None if columns.len() > 1 => {
+            None if columns.len() > 1 && Clock::of(&columns[0]).may_be_time() => {
                 // Text or gaps are no time either.
                 table.read_columns([0]).ok().filter(|[first]| UniformTimes::of(first).is_ok()).map(|_| 0)
             }
-            None => None,
+            _ => None,
         };
-        Ok(columns.into_iter().enumerate().filter(|(index, _)| Some(*index) != time).collect())
+        let is_channel = |(index, name): &(usize, String)| Some(*index) != time && !Clock::of(name).is_counter;
+        Ok(columns.into_iter().enumerate().filter(is_channel).collect())
     }
 
     fn reading(&self, found: Found, columns: Vec<String>) -> Result<Reading, CsvError> {
@@ -145,7 +153,7 @@ impl CsvReader {
         let (record, sampling) = match (self.rate, found.times, &time) {
             (Some(rate), ..) => (Record::sampled(rate, found.values, self.quantity, unit)?, Sampling::Given { rate }),
             (None, Some(mut times), Some(name)) => {
-                to_seconds(name, &mut times);
+                Clock::of(name).to_seconds(name, found.choice, &mut times)?;
                 let record = Record::from_times(&times, found.values, self.quantity, unit)?;
                 (record, Sampling::Times { name: name.clone() })
             }
@@ -159,28 +167,31 @@ fn open(path: &Path) -> Result<File, CsvError> {
     File::open(path).map_err(|source| CsvError::Open { path: path.into(), source })
 }
 
-/// The first column that is called time, other than the channel.
+/// The first column that is called time, other than the channel; one in a known unit before others.
 fn time_by_name(columns: &[String], channel: Option<usize>) -> Option<usize> {
-    let is_time =
-        |(index, name): &(usize, &String)| Some(*index) != channel && seconds_per_unit_of_time(name).is_some();
-    columns.iter().enumerate().find(is_time).map(|(index, _)| index)
+    let first = |is_time: fn(&Clock) -> bool| {
+        let mut others = columns.iter().enumerate().filter(|(index, _)| Some(*index) != channel);
+        others.find(|(_, name)| is_time(&Clock::of(name))).map(|(index, _)| index)
+    };
+    first(Clock::is_known_time).or_else(|| first(|clock| clock.is_time))
 }
 
 /// The columns in use and their numbers; the time stamps are not needed where the rate is given.
 struct Found {
     time: Option<usize>,
     times: Option<Vec<f64>>,
+    choice: Choice,
     channel: usize,
     values: Vec<f64>,
 }
 
 impl Found {
     fn only(channel: usize, [values]: [Vec<f64>; 1]) -> Self {
-        Self { time: None, times: None, channel, values }
+        Self { time: None, times: None, choice: Choice::Called, channel, values }
     }
 
-    fn both(time: usize, channel: usize, [times, values]: [Vec<f64>; 2]) -> Self {
-        Self { time: Some(time), times: Some(times), channel, values }
+    fn both(time: usize, choice: Choice, channel: usize, [times, values]: [Vec<f64>; 2]) -> Self {
+        Self { time: Some(time), times: Some(times), choice, channel, values }
     }
 
     fn beside(self, time: usize) -> Self {

@@ -46,7 +46,7 @@ impl<R: Read> Table<R> {
         if !table.advance()? {
             return Err(CsvError::Empty);
         }
-        let fields: Vec<_> = table.row.iter().map(|field| String::from_utf8_lossy(field).into_owned()).collect();
+        let fields: Vec<_> = table.row.iter().map(text).collect();
         table.pending = fields.iter().all(|field| field.is_empty() || number::parse(field, separator).is_some());
         table.names = if table.pending { (0..fields.len()).map(|i| i.to_string()).collect() } else { fields };
         Ok(table)
@@ -138,6 +138,11 @@ impl<R: Read> Table<R> {
         }
         Ok(value)
     }
+}
+
+/// The text of a field, in Latin-1 if it is not UTF-8.
+fn text(field: &[u8]) -> String {
+    std::str::from_utf8(field).map_or_else(|_| field.iter().copied().map(char::from).collect(), str::to_owned)
 }
 
 /// The separator in the last lines that `head` shows: a semicolon or a tab, where there is one, since a comma beside

@@ -23,7 +23,7 @@ fn measured(name: &str) -> std::path::PathBuf {
 fn separators_headers_comments_and_line_ends() {
     for text in [
         "t,v\n0,1.5\n1,2.5\n2,-1\n",
-        "0,1.5\n1,2.5\n2,-1",
+        "t,v\n0,1.5\n1,2.5\n2,-1",
         "t;v\r\n0;1,5\r\n1;2,5\r\n2;-1\r\n",
         "t\tv\n0\t1,5\n1\t2,5\n2\t-1\n",
         "\u{feff}t;v\n0;1.5\n1;2.5\n2;-1\n",
@@ -176,4 +176,66 @@ fn measured_records_are_read_by_themselves() {
     assert_eq!((pendulum.record.len(), pendulum.record.rate(), pendulum.record.end()), (55_001, 1000.0, 55.0));
     assert_eq!((pendulum.record.quantity(), pendulum.record.unit()), (Quantity::Velocity, "rad/s"));
     assert_eq!(values("t,v\n0,1\n1,2\n"), [1.0, 2.0]);
+}
+
+#[test]
+fn time_is_in_the_unit_that_its_name_tells() {
+    let text = |name: &str, stamps: [&str; 3]| {
+        let [a, b, c] = stamps;
+        // Bytes, as some programs write Latin-1.
+        let mut text: Vec<u8> = name.chars().map(|letter| letter as u8).collect();
+        text.extend(format!(";v\n{a};1\n{b};2\n{c};4\n").bytes());
+        text
+    };
+    for name in
+        ["t", "Time", "time_s", "Time (sec)", "Elapsed Time [s]", "time_seconds", "Zeit [Sekunden]", "seconds", "[s]"]
+    {
+        let reading = CsvReader::default().read_from(&text(name, ["0", "0.001", "0.002"])[..]).unwrap();
+        assert_eq!((reading.record.rate(), reading.time.as_deref()), (1000.0, Some(name)), "{name}");
+    }
+    for name in ["Time (msec)", "Timestamp (ms)", "time_millis", "millis", "timeMs", "Time [Milliseconds]", "x [ms]"] {
+        let reading = CsvReader::default().read_from(&text(name, ["10", "11", "12"])[..]).unwrap();
+        assert_eq!((reading.record.rate(), reading.time.as_deref()), (1000.0, Some(name)), "{name}");
+    }
+    for name in ["Time [µs]", "time_us", "micros", "Timestamp (usec)"] {
+        let reading = CsvReader::default().read_from(&text(name, ["0", "1000", "2000"])[..]).unwrap();
+        assert_eq!((reading.record.rate(), &reading.time.unwrap()[..]), (1000.0, name), "{name}");
+    }
+    let minutes = CsvReader::default().read_from(&text("Time (min)", ["0", "0.5", "1.0"])[..]).unwrap();
+    assert!((minutes.record.interval() - 30.0).abs() < 1e-12);
+
+    for (name, unit) in [("Time (jiffies)", "jiffies"), ("Time [samples]", "samples"), ("time/rev", "rev")] {
+        for reader in [CsvReader::default(), CsvReader::default().time(name)] {
+            let error = reader.read_from(&text(name, ["0", "1", "2"])[..]).unwrap_err();
+            let expected = RecordError::TimeUnit { name: name.into(), unit: unit.into() };
+            assert!(matches!(&error, CsvError::Record(error) if *error == expected), "{name}: {error}");
+        }
+        let rate = CsvReader::default().rate(50.0).read_from(&text(name, ["0", "1", "2"])[..]).unwrap();
+        assert_eq!((&rate.channel[..], rate.record.rate()), ("v", 50.0));
+    }
+}
+
+#[test]
+fn a_counter_of_samples_is_no_time() {
+    for name in ["Sample", "", "Unnamed: 0", "index", "N° no.", "Frame No.", "x", "Timestamp"] {
+        let text = format!("{name},v\n0,1.5\n1,2.5\n2,4.5\n");
+        let error = CsvReader::default().read_from(text.as_bytes()).unwrap_err();
+        let expected = RecordError::Counter { name: name.into() };
+        assert!(matches!(&error, CsvError::Record(error) if *error == expected), "{name}: {error}");
+        let rate = CsvReader::default().rate(50.0).read_from(text.as_bytes()).unwrap();
+        assert_eq!((&rate.channel[..], rate.record.values()), ("v", &[1.5, 2.5, 4.5][..]), "{name}");
+    }
+    assert!(matches!(read_text("0,1.5\n1,2.5\n2,1\n"), Err(CsvError::Record(RecordError::Counter { .. }))));
+    let stated = CsvReader::default().time(0).read_from(&b"0,1.5\n1,2.5\n2,1.5\n"[..]).unwrap();
+    assert_eq!(stated.record.rate(), 1.0, "who says that it is time is believed");
+    // Beside time, a counter is no channel unless it is asked for.
+    let pandas = ",time,v\n0,0.0,1.5\n1,0.5,2.5\n2,1.0,4.5\n";
+    let reading = read_text(pandas).unwrap();
+    assert_eq!((&reading.channel[..], reading.record.rate()), ("v", 2.0));
+    assert_eq!(CsvReader::default().channels_from(pandas.as_bytes()).unwrap(), [(2, "v".to_owned())]);
+    // Temperatures, angles and frequencies are no time.
+    for name in ["T [K]", "angle [deg]", "f (Hz)"] {
+        let text = format!("{name},v\n0.1,1.5\n0.2,2.5\n0.3,4.5\n");
+        assert!(matches!(read_text(&text), Err(CsvError::NoRate { .. })), "{name}");
+    }
 }

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::{Array, Channel, MatError, MatFile};
+use crate::clock::{Choice, Clock, are_whole};
 use crate::reading::builder_of_choices;
-use crate::reading::{seconds_per_unit_of_time, to_seconds};
 use crate::stated::stated;
 use crate::{Quantity, Reading, Record, Sampling, UniformTimes};
 
@@ -14,7 +14,8 @@ use crate::{Quantity, Reading, Record, Sampling, UniformTimes};
 /// have two, the first of them time. Where no channel is named, the file must have exactly one array that can be it.
 ///
 /// The rate is, in this order: given; from the time stamps given; from the first column of the channel's own
-/// matrix, if it increases uniformly; from a vector called `t` or `time` of the same length; from a scalar whose
+/// matrix, if it increases uniformly and not by whole numbers; from a vector called `t`, `time` or the like of the same
+/// length, in the unit of time that its name tells; from a scalar whose
 /// name says rate or interval, such as `fs`, `ActualRate`, `sample_rate`, `dt`, `Ts`, in any case.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MatReader {
@@ -61,7 +62,9 @@ impl MatReader {
             (Record::sampled(rate, values, self.quantity, unit)?, Sampling::Given { rate })
         } else if let Some(time) = &time {
             let mut times = numbers(file, time)?.1.to_vec();
-            to_seconds(&time.variable, &mut times);
+            // The name of a matrix is not that of its first column.
+            let clock = if time.column.is_none() { Clock::of(&time.variable) } else { Clock::nameless() };
+            clock.to_seconds(&time.to_string(), Choice::Called, &mut times)?;
             let sampling = Sampling::Times { name: time.to_string() };
             (Record::from_times(&times, values, self.quantity, unit)?, sampling)
         } else if let Some((rate, sampling)) = stated(scalars(file))? {
@@ -95,7 +98,7 @@ fn scalars(file: &MatFile) -> impl Iterator<Item = (&str, f64)> {
 
 /// The only array that can be a channel: a vector that is not called time, or a matrix.
 fn only_candidate(file: &MatFile) -> Result<&Array, MatError> {
-    let is_time = |array: &Array| seconds_per_unit_of_time(array.name()).is_some();
+    let is_time = |array: &Array| Clock::of(array.name()).is_time;
     let mut candidates =
         file.arrays().iter().filter(|array| array.is_matrix() || (array.is_vector() && !is_time(array)));
     match (candidates.next(), candidates.next()) {
@@ -127,12 +130,12 @@ fn numbers<'a>(file: &'a MatFile, channel: &Channel) -> Result<(&'a Array, &'a [
 /// Time stamps beside the channel: in the first column of its matrix, or in a vector of the same length that is
 /// called time.
 fn time_beside(file: &MatFile, array: &Array, channel: &Channel) -> Option<Channel> {
-    if array.is_matrix() && channel.column != Some(1) && has_uniform_first_column(array) {
+    if array.is_matrix() && channel.column != Some(1) && has_time_in_first_column(array) {
         return Some(Channel::column(array.name(), 1));
     }
     let length = if array.is_matrix() { array.rows() } else { array.values().len() };
     let is_time = |other: &&Array| {
-        seconds_per_unit_of_time(other.name()).is_some()
+        Clock::of(other.name()).is_known_time()
             && other.is_vector()
             && other.values().len() == length
             && other.name() != array.name()
@@ -142,4 +145,9 @@ fn time_beside(file: &MatFile, array: &Array, channel: &Channel) -> Option<Chann
 
 fn has_uniform_first_column(array: &Array) -> bool {
     array.column(1).is_some_and(|times| UniformTimes::of(times).is_ok())
+}
+
+/// Whether the first column is time by nature: uniform, and no count of samples.
+fn has_time_in_first_column(array: &Array) -> bool {
+    has_uniform_first_column(array) && !array.column(1).is_some_and(are_whole)
 }

@@ -139,7 +139,14 @@ fn matrices_with_time_and_vectors_beside_time() {
     assert_eq!(reading.sampling.to_string(), "found from the time stamps in \"t\"");
     assert!(matches!(MatReader::default().time("t").rate(1.0).read_from(&file), Err(MatError::TimeAndRate)));
 
-    let three = parse(&[LITTLE.doubles("m", &[2, 3], &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0])]).unwrap();
+    // Whole numbers count samples.
+    let counted = LITTLE.doubles("m", &[3, 2], &[1.0, 2.0, 3.0, 5.0, 6.0, 7.0]);
+    let counted = parse(&[counted, LITTLE.doubles("fs", &[1, 1], &[50.0])]).unwrap().channel("m").unwrap();
+    assert_eq!((counted.record.rate(), counted.record.values(), counted.time), (50.0, &[5.0, 6.0, 7.0][..], None));
+    let millis = [LITTLE.doubles("time_ms", &[1, 3], &[1.0, 2.0, 3.0]), LITTLE.doubles("v", &[1, 3], &[5.0, 6.0, 7.0])];
+    assert_eq!(parse(&millis).unwrap().channel("v").unwrap().record.rate(), 1000.0);
+
+    let three = parse(&[LITTLE.doubles("m", &[2, 3], &[0.0, 0.5, 2.0, 3.0, 4.0, 5.0])]).unwrap();
     let error = three.channel("m").unwrap_err().to_string();
     assert_eq!(error, "\"m\" is a matrix of 2 rows and 3 columns; choose a column, as in m(:,1)");
     assert_eq!(three.channel("m(:,3)").unwrap().record.values(), [4.0, 5.0]);

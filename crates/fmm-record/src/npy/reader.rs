@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::{Channel, NpyArray, NpyError, NpyFile, Series};
-use crate::reading::{builder_of_choices, seconds_per_unit_of_time, to_seconds};
+use crate::clock::{Choice, Clock, are_whole};
+use crate::reading::builder_of_choices;
 use crate::stated::stated;
 use crate::{Quantity, Reading, Record, Sampling, UniformTimes};
 
@@ -14,7 +15,8 @@ use crate::{Quantity, Reading, Record, Sampling, UniformTimes};
 /// must have exactly one that can be the channel.
 ///
 /// The rate is, in this order: given; from the time stamps given; from the first row or column of the channel's own
-/// matrix, if it increases uniformly; from a vector called `t` or `time` of the same length; from a single number whose
+/// matrix, if it increases uniformly and not by whole numbers; from a vector called `t`, `time` or the like of the same
+/// length, in the unit of time that its name tells; from a single number whose
 /// name says rate or interval, such as `fs`, `sample_rate`, `dt`, in any case.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NpyReader {
@@ -62,7 +64,9 @@ impl NpyReader {
             (Record::sampled(rate, values, self.quantity, unit)?, Sampling::Given { rate })
         } else if let Some(time) = &time {
             let mut times = numbers(file, time)?;
-            to_seconds(&time.array, &mut times);
+            // The name of a matrix is not that of its first series.
+            let clock = if time.series == Series::Whole { Clock::of(&time.array) } else { Clock::nameless() };
+            clock.to_seconds(&time.to_string(), Choice::Called, &mut times)?;
             (Record::from_times(&times, values, self.quantity, unit)?, Sampling::Times { name: time.to_string() })
         } else if let Some((rate, sampling)) = stated(scalars)? {
             (Record::sampled(rate, values, self.quantity, unit)?, sampling)
@@ -95,7 +99,7 @@ impl NpyReader {
 
 /// The only array that can be a channel: a vector that is not called time, or a matrix.
 fn only_candidate(file: &NpyFile) -> Result<&NpyArray, NpyError> {
-    let is_time = |array: &NpyArray| seconds_per_unit_of_time(array.name()).is_some();
+    let is_time = |array: &NpyArray| Clock::of(array.name()).is_time;
     let mut candidates =
         file.arrays().iter().filter(|array| array.matrix().is_some() || (array.is_vector() && !is_time(array)));
     match (candidates.next(), candidates.next()) {
@@ -131,19 +135,24 @@ fn time_beside(file: &NpyFile, channel: &Channel, length: usize) -> Result<Optio
         Series::Column(1..) => Some(Series::Column(0)),
         _ => None,
     };
-    if let Some(series) = first.filter(|series| array.matrix().is_some() && is_uniform(array, *series)) {
+    if let Some(series) = first.filter(|series| array.matrix().is_some() && is_time(array, *series)) {
         return Ok(Some(Channel { array: channel.array.clone(), series }));
     }
-    let is_time = |other: &&NpyArray| {
-        seconds_per_unit_of_time(other.name()).is_some()
+    let is_called_time = |other: &&NpyArray| {
+        Clock::of(other.name()).is_known_time()
             && other.is_vector()
             && other.values().len() == length
             && other.name() != array.name()
     };
-    let time = file.arrays().iter().find(is_time);
+    let time = file.arrays().iter().find(is_called_time);
     Ok(time.map(|time| Channel { array: time.name().into(), series: Series::Whole }))
 }
 
 fn is_uniform(array: &NpyArray, series: Series) -> bool {
     array.series(series).is_some_and(|times| UniformTimes::of(&times).is_ok())
+}
+
+/// Whether a series is time by nature: uniform, and no count of samples.
+fn is_time(array: &NpyArray, series: Series) -> bool {
+    is_uniform(array, series) && !array.series(series).is_some_and(|times| are_whole(&times))
 }

@@ -1,7 +1,7 @@
 //! Between data sets and records.
 
 use super::{Abscissa, DataSet, DataType, FunctionType, Ordinate, UffError, UffFile};
-use crate::reading::seconds_in;
+use crate::clock::seconds_in;
 use crate::sampling::whole_hertz;
 use crate::{Column, Reading, Record, Sampling};
 
@@ -33,8 +33,7 @@ impl DataSet {
         }
         let Ordinate::Real(values) = self.ordinate() else { return Err(UffError::Complex { name: self.name() }) };
         let unit = &header.abscissa.unit;
-        let second = seconds_in(&unit.to_lowercase())
-            .ok_or_else(|| UffError::TimeUnit { name: self.name(), unit: unit.clone() })?;
+        let second = seconds_in(unit).ok_or_else(|| UffError::TimeUnit { name: self.name(), unit: unit.clone() })?;
         let (values, quantity) = (values.clone(), header.ordinate.data_type.quantity());
         let unit = header.ordinate.unit.clone();
         Ok(match self.abscissa() {

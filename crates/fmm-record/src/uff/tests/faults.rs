@@ -207,7 +207,7 @@ fn records_that_cannot_be() {
     };
     // The nearest whole number of hertz; at such a rate six digits do not tell 512 000 Hz.
     assert_eq!(record(unit("ms").as_bytes()).unwrap().interval(), 512_001f64.recip());
-    assert!(matches!(record(unit("min").as_bytes()), Err(UffError::TimeUnit { .. })));
+    assert!(matches!(record(unit("rev").as_bytes()), Err(UffError::TimeUnit { .. })));
     // An interval with more digits than the format has is what it says.
     assert_eq!(record(&ascii(&form("1.953126E-03"), POINTS)).unwrap().interval(), 1.953_126e-3);
     // Six digits that no whole number of hertz explains.
