@@ -8,7 +8,7 @@ use serde_json::Value;
 /// What each crate takes from others when nobody asks for a feature, and for what.
 const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
     ("fmm-model", &[PULP, THISERROR]),
-    ("fmm-record", &[CSV, ("libflate", "inflates MATLAB files up to a limit"), MATFILE, REALFFT, THISERROR]),
+    ("fmm-record", &[("libflate", "inflates MATLAB files up to a limit"), MATFILE, REALFFT, THISERROR]),
     ("fmm-friction", &[THISERROR]),
     (
         "fmm-fit",
@@ -37,7 +37,6 @@ const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
     ("fmm-identify", &[THISERROR]),
 ];
 
-const CSV: (&str, &str) = ("csv", "rows of text, quotes and separators");
 const MATFILE: (&str, &str) = ("matfile", "decodes the arrays of MATLAB files");
 const PULP: (&str, &str) = ("pulp", "vectors as wide as the processor has, without unsafe code here");
 const RAND_CHACHA: (&str, &str) = ("rand_chacha", "streams of the same bits on every machine");

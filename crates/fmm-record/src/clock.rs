@@ -94,7 +94,8 @@ impl Clock {
         let is_time = only_time || is_letter || is_bare_unit || (begins && is_known && in_brackets);
         let is_nameless = matches!(stem.trim(), "" | "#");
         let counts = !stem_words.is_empty() && stem_words.iter().all(|word| one_of(&COUNTERS, word));
-        let is_counter = !is_time && !is_known && (is_nameless || counts);
+        let unit_counts = matches!(&unit, Written::Other(unit) if !words(unit).is_empty() && words(unit).iter().all(|word| one_of(&COUNTERS, word)));
+        let is_counter = !is_time && !is_known && (is_nameless || counts || unit_counts);
         Self { is_time, is_counter, unit }
     }
 
@@ -105,7 +106,12 @@ impl Clock {
 
     /// Whether a series that is not called time may be it.
     pub(crate) fn may_be_time(&self) -> bool {
-        self.is_time || !matches!(self.unit, Written::Other(_))
+        self.is_time || self.is_counter || !matches!(self.unit, Written::Other(_))
+    }
+
+    /// Whether uniform numbers count samples: whole ones in no unit.
+    pub(crate) fn counts(&self, numbers: &[f64]) -> bool {
+        self.unit == Written::Nothing && are_whole(numbers)
     }
 
     /// Brings the time stamps of the series called `name` to seconds.
@@ -114,7 +120,6 @@ impl Clock {
     /// [`RecordError::TimeUnit`] if something else is written where the unit belongs, [`RecordError::Counter`] if they
     /// count samples: by their name, or as whole numbers of which nobody said that they are time.
     pub(crate) fn to_seconds(&self, name: &str, choice: Choice, times: &mut [f64]) -> Result<(), RecordError> {
-        let counts = are_whole(times);
         // A stamp of a computer is a whole number of whatever its clock counts.
         let is_vague = choice == Choice::ByNature || (self.is_time && name.to_lowercase().contains("stamp"));
         match &self.unit {
@@ -122,7 +127,9 @@ impl Clock {
                 return Err(RecordError::TimeUnit { name: name.into(), unit: unit.clone() });
             }
             _ if self.is_counter => return Err(RecordError::Counter { name: name.into() }),
-            Written::Nothing if is_vague && counts => return Err(RecordError::Counter { name: name.into() }),
+            Written::Nothing if is_vague && self.counts(times) => {
+                return Err(RecordError::Counter { name: name.into() });
+            }
             Written::Seconds(scale) if *scale != 1.0 => times.iter_mut().for_each(|time| *time *= scale),
             _ => {}
         }

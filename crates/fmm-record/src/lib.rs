@@ -110,7 +110,7 @@ mod smooth;
 mod smoothing;
 mod spelling;
 mod spikes;
-#[cfg(any(feature = "mat", feature = "npy"))]
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
 mod stated;
 mod steadiness;
 mod swings;

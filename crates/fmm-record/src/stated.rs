@@ -16,8 +16,18 @@ const RATES: [&str; 9] = [
 ];
 
 /// Names of scalars that hold an interval (s), in lower case and without underscores.
-const INTERVALS: [&str; 8] =
-    ["dt", "ts", "deltat", "tsample", "sampletime", "samplingtime", "sampleinterval", "samplinginterval"];
+const INTERVALS: [&str; 10] = [
+    "dt",
+    "ts",
+    "deltat",
+    "deltax",
+    "xincrement",
+    "tsample",
+    "sampletime",
+    "samplingtime",
+    "sampleinterval",
+    "samplinginterval",
+];
 
 /// How far two statements of the rate may differ, relative.
 const AGREEMENT: f64 = 1e-3;
@@ -34,7 +44,7 @@ pub(crate) struct Conflict {
 pub(crate) fn stated<'a>(scalars: impl Iterator<Item = (&'a str, f64)>) -> Result<Option<(f64, Sampling)>, Conflict> {
     let mut found: Option<(f64, Sampling, &str)> = None;
     for (name, value) in scalars {
-        let plain = name.replace('_', "").to_lowercase();
+        let plain = name.replace(['_', ' '], "").to_lowercase();
         let is_interval = INTERVALS.contains(&&plain[..]);
         if !is_interval && !RATES.contains(&&plain[..]) {
             continue;

@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::reading::quoted;
+use crate::stated::Conflict;
 use crate::{Column, RecordError};
 
 /// A text file that does not hold the record asked for. Lines count from 1, as in an editor.
@@ -70,6 +71,35 @@ pub enum CsvError {
         /// The field, cut after some characters.
         text: String,
     },
+    /// A last line that ends within its last number.
+    #[error(
+        "line {line} ends with \"{text}\" and without a line end, and all other numbers of its column have more digits: the \
+         file is cut off; if it is not, end its last line"
+    )]
+    Cut {
+        /// The line.
+        line: u64,
+        /// The last field, cut after some characters.
+        text: String,
+    },
+    /// Numbers with a comma that may be two.
+    #[error("\"{text}\" may be two whole numbers or one with a decimal comma; give the separator, a comma or another")]
+    AmbiguousComma {
+        /// The first row.
+        text: String,
+    },
+    /// Two numbers above the table tell different rates.
+    #[error("\"{first}\" says {first_rate} Hz, but \"{second}\" says {second_rate} Hz; give the rate")]
+    ConflictingRates {
+        /// One name.
+        first: String,
+        /// The rate that it states (Hz).
+        first_rate: f64,
+        /// The other name.
+        second: String,
+        /// The rate that it states (Hz).
+        second_rate: f64,
+    },
     /// Decimal points and decimal commas in one file.
     #[error(
         "line {line}, column \"{column}\": \"{text}\" has a decimal {}, but earlier numbers have a decimal {}; \
@@ -127,10 +157,17 @@ pub enum CsvError {
     Record(#[from] RecordError),
 }
 
+impl From<Conflict> for CsvError {
+    fn from(Conflict { first, first_rate, second, second_rate }: Conflict) -> Self {
+        Self::ConflictingRates { first, first_rate, second, second_rate }
+    }
+}
+
 /// What to try when rows have different numbers of fields.
 fn remedy(separator: u8) -> &'static str {
     if separator == b',' {
-        "; if the numbers have decimal commas, save the file with semicolons or tabs between the columns"
+        "; if the numbers have decimal commas, save the file with semicolons or tabs between the columns; if lines stand above \
+         the table, skip them"
     } else {
         ""
     }

@@ -1,68 +1,96 @@
-//! The text without its comments, with its line numbers kept.
+//! The lines of a text file, with their numbers.
 
-use std::io::{self, BufRead, Read};
+use std::io::{BufRead, ErrorKind};
 
 use super::CsvError;
 
 /// The longest line that is read (bytes). A file without line ends is refused instead of filling the memory.
 pub const LONGEST_LINE: usize = 1 << 20;
 
-/// What stands for a line without data: a row of one empty field. The parser behind skips empty lines in silence,
-/// and then tells the line of a row wrong.
-pub(super) const NO_DATA: &[u8] = b"\"\"\n";
+/// A line that is neither blank nor a comment.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Line {
+    /// Counted from 1, as in an editor.
+    pub(super) number: u64,
+    pub(super) text: Vec<u8>,
+    /// Whether a line end follows; it may be missing at the end of the file only.
+    pub(super) is_ended: bool,
+    /// The comment right before it.
+    pub(super) comment: Option<Vec<u8>>,
+}
 
-/// Passes lines on, with [`NO_DATA`] for those that are comments or blank.
-///
-/// The csv crate knows comments of its own, but of one kind only.
-pub(super) struct WithoutComments<R> {
+/// Goes through the lines of a text, whose ends may be those of any system.
+pub(super) struct Lines<R> {
     source: R,
-    line: Vec<u8>,
-    given: usize,
     number: u64,
+    skip: u64,
+    after_return: bool,
 }
 
-impl<R: BufRead> WithoutComments<R> {
-    pub(super) fn new(source: R) -> Self {
-        Self { source, line: Vec::new(), given: 0, number: 0 }
+impl<R: BufRead> Lines<R> {
+    /// The lines behind the first `skip`.
+    pub(super) fn new(source: R, skip: u64) -> Self {
+        Self { source, number: 0, skip, after_return: false }
     }
 
-    /// Reads the next line; false at the end.
-    fn advance(&mut self) -> io::Result<bool> {
-        self.line.clear();
-        self.given = 0;
-        let limit = LONGEST_LINE as u64 + 1;
-        if self.source.by_ref().take(limit).read_until(b'\n', &mut self.line)? == 0 {
-            return Ok(false);
-        }
-        self.number += 1;
-        if self.number == 1 {
-            if self.line.starts_with(&[0xFF, 0xFE]) || self.line.starts_with(&[0xFE, 0xFF]) {
-                return Err(io::Error::other(CsvError::Utf16));
+    /// Reads the next line that is neither blank nor a comment; false at the end.
+    pub(super) fn next(&mut self, line: &mut Line) -> Result<bool, CsvError> {
+        line.comment = None;
+        while self.read(line)? {
+            if line.number == 1 {
+                if line.text.starts_with(&[0xFF, 0xFE]) || line.text.starts_with(&[0xFE, 0xFF]) {
+                    return Err(CsvError::Utf16);
+                }
+                if line.text.starts_with("\u{FEFF}".as_bytes()) {
+                    line.text.drain(..3);
+                }
             }
-            if self.line.starts_with("\u{FEFF}".as_bytes()) {
-                self.line.drain(..3);
+            if line.number <= self.skip {
+                continue;
+            }
+            match line.text.iter().find(|byte| !byte.is_ascii_whitespace()) {
+                None => {}
+                Some(b'#' | b'%') => line.comment = Some(std::mem::take(&mut line.text)),
+                Some(_) => return Ok(true),
             }
         }
-        if self.line.len() > LONGEST_LINE {
-            return Err(io::Error::other(CsvError::LineTooLong { line: self.number, limit: LONGEST_LINE }));
-        }
-        let first = self.line.iter().find(|byte| !byte.is_ascii_whitespace());
-        if matches!(first, None | Some(b'#' | b'%')) {
-            self.line.clear();
-            self.line.extend_from_slice(NO_DATA);
-        }
-        Ok(true)
+        Ok(false)
     }
-}
 
-impl<R: BufRead> Read for WithoutComments<R> {
-    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
-        if self.given == self.line.len() && !self.advance()? {
-            return Ok(0);
+    /// Reads the next line, whatever is in it; false at the end.
+    fn read(&mut self, line: &mut Line) -> Result<bool, CsvError> {
+        line.text.clear();
+        line.is_ended = false;
+        let mut is_any = false;
+        while !line.is_ended {
+            let buffer = match self.source.fill_buf() {
+                Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+                buffer => buffer?,
+            };
+            // A line feed behind a carriage return belongs to the end of the line before.
+            if std::mem::take(&mut self.after_return) && buffer.first() == Some(&b'\n') {
+                self.source.consume(1);
+                continue;
+            }
+            if buffer.is_empty() {
+                break;
+            }
+            is_any = true;
+            let end = buffer.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+            let piece = &buffer[..end.unwrap_or(buffer.len())];
+            if line.text.len() + piece.len() > LONGEST_LINE {
+                return Err(CsvError::LineTooLong { line: self.number + 1, limit: LONGEST_LINE });
+            }
+            line.text.extend_from_slice(piece);
+            line.is_ended = end.is_some();
+            self.after_return = end.is_some_and(|end| buffer[end] == b'\r');
+            let used = piece.len() + usize::from(line.is_ended);
+            self.source.consume(used);
         }
-        let count = out.len().min(self.line.len() - self.given);
-        out[..count].copy_from_slice(&self.line[self.given..self.given + count]);
-        self.given += count;
-        Ok(count)
+        if is_any {
+            self.number += 1;
+            line.number = self.number;
+        }
+        Ok(is_any)
     }
 }

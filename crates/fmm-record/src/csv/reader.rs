@@ -8,23 +8,27 @@ use super::CsvError;
 use super::table::Table;
 use crate::clock::{Choice, Clock};
 use crate::reading::builder_of_choices;
+use crate::stated::stated;
 use crate::{Column, Quantity, Reading, Record, RecordError, Sampling, UniformTimes};
 
 /// Reads one channel of a text file.
 ///
 /// | what | found by default |
 /// |---|---|
-/// | separator | semicolon or tab if the rows have one, else comma |
-/// | header | the first row, if any of its fields is not a number |
-/// | decimal comma | where it is used throughout and the separator is not a comma |
+/// | separator | semicolon or tab if the rows have one, else blanks between nothing but numbers, else comma; what a first line `sep=;` says |
+/// | first row | the first line with as many fields as the last ones have, and numbers where they have numbers |
+/// | names | the line above the first row, with the units of a row of units; or a comment there, if it names the time |
+/// | decimal comma | where it is used throughout and the separator is not a comma; one column of whole numbers with commas is refused if it may be two |
 /// | time | the column called `t`, `time`, `Zeit`, `timestamp` or the like, in seconds unless its name tells another unit (ms, µs, ns, min, h, in any usual spelling); else the first column, if it increases uniformly, but not by whole numbers without a unit |
 /// | channel | the first column that is neither the time nor called a number of samples |
 /// | quantity, unit | [`Quantity::Other`], empty |
 ///
-/// With a rate, time stamps are not looked at, and the record begins at 0 s.
+/// Where no column is time, a number above the table that is called an interval or a rate (`Sample Interval`, `Delta_X`) tells
+/// the rate. With a rate, time stamps are not looked at, and the record begins at 0 s.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CsvReader {
     separator: Option<u8>,
+    skip: u64,
     time: Option<Column>,
     channel: Option<Column>,
     rate: Option<f64>,
@@ -33,7 +37,14 @@ pub struct CsvReader {
 }
 
 impl CsvReader {
-    /// The byte between columns: comma, semicolon, tab, space, `|` or `:`.
+    /// Passes over the first `lines` lines of the file, which may hold anything.
+    #[must_use]
+    pub fn skip(mut self, lines: u64) -> Self {
+        self.skip = lines;
+        self
+    }
+
+    /// The byte between columns: comma, semicolon, tab, `|` or `:`; a space stands for blanks, as many as there are.
     #[must_use]
     pub fn separator(mut self, separator: u8) -> Self {
         self.separator = Some(separator);
@@ -59,7 +70,7 @@ impl CsvReader {
         if self.time.is_some() && self.rate.is_some() {
             return Err(CsvError::TimeAndRate);
         }
-        let table = Table::open(input, self.separator)?;
+        let table = Table::open(input, self.separator, self.skip)?;
         let columns = table.names().to_vec();
         let channel = self.channel.as_ref().map(|column| table.find(column)).transpose()?;
         let time = match &self.time {
@@ -69,42 +80,37 @@ impl CsvReader {
         if let (Some(time), true) = (time, time == channel) {
             return Err(CsvError::SameColumn { column: columns[time].clone() });
         }
-        let other_than =
-            |time| (0..columns.len()).find(|index| *index != time && !Clock::of(&columns[*index]).is_counter);
-        let found = match (time, channel) {
-            (Some(time), channel) => {
-                let Some(channel) = channel.or_else(|| other_than(time)) else {
-                    return Err(CsvError::NoChannel { time: columns[time].clone() });
-                };
-                if self.rate.is_some() {
-                    Found::only(channel, table.read_columns([channel])?).beside(time)
-                } else {
-                    Found::both(time, Choice::Called, channel, table.read_columns([time, channel])?)
-                }
-            }
-            (None, Some(channel)) if self.rate.is_some() => Found::only(channel, table.read_columns([channel])?),
-            // No column says that it is time: the first one is, if it increases uniformly.
-            (None, channel) if columns.len() > 1 && channel != Some(0) && Clock::of(&columns[0]).may_be_time() => {
-                let second = channel.unwrap_or(1);
-                let [first, values] = table.read_columns([0, second])?;
-                if UniformTimes::of(&first).is_ok() {
-                    Found::both(0, Choice::ByNature, second, [first, values])
-                } else if self.rate.is_some() {
-                    if Clock::of(&columns[0]).is_counter {
-                        Found::only(second, [values])
-                    } else {
-                        Found::only(0, [first])
-                    }
-                } else if Clock::of(&columns[0]).is_counter {
-                    return Err(RecordError::Counter { name: columns[0].clone() }.into());
-                } else {
-                    return Err(CsvError::NoRate { available: columns });
-                }
-            }
-            (None, None) if self.rate.is_some() => Found::only(0, table.read_columns([0])?),
-            (None, _) => return Err(CsvError::NoRate { available: columns }),
+        let rate = match self.rate {
+            Some(rate) => Some((rate, Sampling::Given { rate })),
+            None if time.is_some() => None,
+            None => stated(table.stated().iter().map(|(name, value)| (&name[..], *value)))?,
         };
-        self.reading(found, columns)
+        let first = time.unwrap_or(table.first());
+        let is_other =
+            |index: &usize| *index != first && !table.is_blank(*index) && !Clock::of(&columns[*index]).is_counter;
+        let other = channel.or_else(|| (0..columns.len()).find(is_other));
+        let may_be_time = Clock::of(&columns[first]).may_be_time();
+        let is_settled = channel.is_some() && self.rate.is_some();
+        let series = match (time, other, rate) {
+            (Some(time), None, _) => return Err(CsvError::NoChannel { time: columns[time].clone() }),
+            (Some(time), Some(channel), Some(rate)) => {
+                Series::of(channel, table.read_columns([channel])?).at(rate).beside(time)
+            }
+            (Some(time), Some(channel), None) => {
+                let [times, values] = table.read_columns([time, channel])?;
+                Series::of(channel, [values]).timed(time, Choice::Called, times)
+            }
+            (None, Some(second), rate) if may_be_time && !is_settled && second != first => {
+                let both = table.read_columns([first, second])?;
+                by_nature(&columns, [first, second], both, rate, channel.is_some())?
+            }
+            (None, _, Some(rate)) => {
+                let channel = channel.unwrap_or(first);
+                Series::of(channel, table.read_columns([channel])?).at(rate)
+            }
+            (None, _, None) => return Err(CsvError::NoRate { available: columns }),
+        };
+        self.reading(series, columns)
     }
 
     /// The columns of the file at `path` that can be the channel, by position counted from 0 and name: all but the time.
@@ -129,37 +135,40 @@ impl CsvReader {
     /// # Errors
     /// As [`CsvReader::read_from`], but for errors in columns other than the time.
     pub fn channels_from(&self, input: impl Read) -> Result<Vec<(usize, String)>, CsvError> {
-        let table = Table::open(input, self.separator)?;
+        let table = Table::open(input, self.separator, self.skip)?;
         let columns = table.names().to_vec();
+        let first = table.first();
+        let blank: Vec<bool> = (0..columns.len()).map(|column| table.is_blank(column)).collect();
         let named = match &self.time {
             Some(column) => Some(table.find(column)?),
             None => time_by_name(&columns, None),
         };
         let time = match named {
             Some(time) => Some(time),
-            None if columns.len() > 1 && Clock::of(&columns[0]).may_be_time() => {
+            None if columns.len() > 1 && Clock::of(&columns[first]).may_be_time() => {
                 // Text or gaps are no time either.
-                table.read_columns([0]).ok().filter(|[first]| UniformTimes::of(first).is_ok()).map(|_| 0)
+                table.read_columns([first]).ok().filter(|[times]| UniformTimes::of(times).is_ok()).map(|_| first)
             }
             _ => None,
         };
-        let is_channel = |(index, name): &(usize, String)| Some(*index) != time && !Clock::of(name).is_counter;
+        let is_channel =
+            |(index, name): &(usize, String)| Some(*index) != time && !blank[*index] && !Clock::of(name).is_counter;
         Ok(columns.into_iter().enumerate().filter(is_channel).collect())
     }
 
-    fn reading(&self, found: Found, columns: Vec<String>) -> Result<Reading, CsvError> {
-        let time = found.time.map(|index| columns[index].clone());
-        let unit = self.unit.clone();
-        let (record, sampling) = match (self.rate, found.times, &time) {
-            (Some(rate), ..) => (Record::sampled(rate, found.values, self.quantity, unit)?, Sampling::Given { rate }),
-            (None, Some(mut times), Some(name)) => {
-                Clock::of(name).to_seconds(name, found.choice, &mut times)?;
-                let record = Record::from_times(&times, found.values, self.quantity, unit)?;
-                (record, Sampling::Times { name: name.clone() })
+    fn reading(&self, series: Series, columns: Vec<String>) -> Result<Reading, CsvError> {
+        let Series { time, channel, values, scale } = series;
+        let (time, channel) = (time.map(|index| columns[index].clone()), columns[channel].clone());
+        let (quantity, unit) = (self.quantity, self.unit.clone());
+        let (record, sampling) = match (scale, &time) {
+            (Some(Scale::Rate(rate, sampling)), _) => (Record::sampled(rate, values, quantity, unit)?, sampling),
+            (Some(Scale::Times(choice, mut times)), Some(name)) => {
+                Clock::of(name).to_seconds(name, choice, &mut times)?;
+                (Record::from_times(&times, values, quantity, unit)?, Sampling::Times { name: name.clone() })
             }
             _ => return Err(CsvError::NoRate { available: columns }),
         };
-        Ok(Reading { record, channel: columns[found.channel].clone(), time, columns, sampling })
+        Ok(Reading { record, channel, time, columns, sampling })
     }
 }
 
@@ -176,22 +185,57 @@ fn time_by_name(columns: &[String], channel: Option<usize>) -> Option<usize> {
     first(Clock::is_known_time).or_else(|| first(|clock| clock.is_time))
 }
 
-/// The columns in use and their numbers; the time stamps are not needed where the rate is given.
-struct Found {
-    time: Option<usize>,
-    times: Option<Vec<f64>>,
-    choice: Choice,
-    channel: usize,
-    values: Vec<f64>,
+/// The series of a table in which no column says that it is time: the first one is, if it increases uniformly and does not
+/// count. `rate` is that which is given or stated above the table; `is_chosen` tells whether the second column is the channel
+/// in any case.
+fn by_nature(
+    columns: &[String],
+    [first, second]: [usize; 2],
+    [times, values]: [Vec<f64>; 2],
+    rate: Option<(f64, Sampling)>,
+    is_chosen: bool,
+) -> Result<Series, CsvError> {
+    let clock = Clock::of(&columns[first]);
+    let is_uniform = UniformTimes::of(&times).is_ok();
+    let counts = clock.is_counter || (is_uniform && clock.counts(&times));
+    let is_time = is_uniform && !counts;
+    let is_given = matches!(rate, Some((_, Sampling::Given { .. })));
+    match rate {
+        Some(rate) if is_given || !is_time => Ok(match is_time || counts || is_chosen {
+            true if is_time => Series::of(second, [values]).at(rate).beside(first),
+            true => Series::of(second, [values]).at(rate),
+            false => Series::of(first, [times]).at(rate),
+        }),
+        _ if is_time => Ok(Series::of(second, [values]).timed(first, Choice::ByNature, times)),
+        _ if counts => Err(RecordError::Counter { name: columns[first].clone() }.into()),
+        _ => Err(CsvError::NoRate { available: columns.to_vec() }),
+    }
 }
 
-impl Found {
-    fn only(channel: usize, [values]: [Vec<f64>; 1]) -> Self {
-        Self { time: None, times: None, choice: Choice::Called, channel, values }
+/// The columns in use, the numbers of the channel, and what scales its time.
+struct Series {
+    time: Option<usize>,
+    channel: usize,
+    values: Vec<f64>,
+    scale: Option<Scale>,
+}
+
+enum Scale {
+    Rate(f64, Sampling),
+    Times(Choice, Vec<f64>),
+}
+
+impl Series {
+    fn of(channel: usize, [values]: [Vec<f64>; 1]) -> Self {
+        Self { time: None, channel, values, scale: None }
     }
 
-    fn both(time: usize, choice: Choice, channel: usize, [times, values]: [Vec<f64>; 2]) -> Self {
-        Self { time: Some(time), times: Some(times), choice, channel, values }
+    fn at(self, (rate, sampling): (f64, Sampling)) -> Self {
+        Self { scale: Some(Scale::Rate(rate, sampling)), ..self }
+    }
+
+    fn timed(self, time: usize, choice: Choice, times: Vec<f64>) -> Self {
+        Self { time: Some(time), scale: Some(Scale::Times(choice, times)), ..self }
     }
 
     fn beside(self, time: usize) -> Self {

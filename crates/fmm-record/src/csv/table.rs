@@ -1,79 +1,107 @@
-//! The rows of a text file, and the names of its columns.
+//! The rows of a text file.
 
-use std::io::{BufReader, Chain, Cursor, Read};
-
-use ::csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder, Trim};
+use std::collections::VecDeque;
+use std::io::{BufReader, Read};
+use std::ops::Range;
 
 use super::CsvError;
-use super::lines::{NO_DATA, WithoutComments};
-use super::number::{self, Mark};
+use super::fields::{Separator, split};
+use super::header::Header;
+use super::layout::{Kind, Layout};
+use super::lines::{Line, Lines};
+use super::number::{self, Digits, Mark};
 use crate::Column;
 
-/// How much of the file the separator is judged by (bytes).
-const HEAD: u64 = 1 << 16;
+/// How much of the file its layout is judged by (bytes).
+const HEAD: usize = 1 << 16;
 
-/// The text of the table: what the separator was judged by, then the rest.
-type Source<R> = Chain<Cursor<Vec<u8>>, WithoutComments<BufReader<R>>>;
+/// Rows that the last one is compared with before it is called cut off.
+const ENOUGH: usize = 8;
 
 /// An open table: the names of its columns are known, its rows are read one by one.
-pub(super) struct Table<R: Read> {
-    reader: Reader<Source<R>>,
-    row: ByteRecord,
-    pending: bool,
-    separator: u8,
-    names: Vec<String>,
+pub(super) struct Table<R> {
+    head: VecDeque<Line>,
+    lines: Lines<BufReader<R>>,
+    line: Line,
+    fields: Vec<Range<usize>>,
+    separator: Separator,
+    columns: Vec<Kind>,
+    header: Header,
     mark: Option<Mark>,
 }
 
 impl<R: Read> Table<R> {
-    /// Opens the table and reads its first row, which is a header if any of its fields is not a number.
-    pub(super) fn open(input: R, separator: Option<u8>) -> Result<Self, CsvError> {
-        if let Some(separator) = separator.filter(|byte| !matches!(byte, b',' | b';' | b'\t' | b' ' | b'|' | b':')) {
-            return Err(CsvError::Separator { separator });
-        }
-        let mut source = WithoutComments::new(BufReader::new(input));
+    /// Opens the table behind the first `skip` lines.
+    pub(super) fn open(input: R, separator: Option<u8>, skip: u64) -> Result<Self, CsvError> {
+        let separator = match separator {
+            None => None,
+            Some(b' ') => Some(Separator::Blanks),
+            Some(sign @ (b',' | b';' | b'\t' | b'|' | b':')) => Some(Separator::Sign(sign)),
+            Some(separator) => return Err(CsvError::Separator { separator }),
+        };
+        let mut lines = Lines::new(BufReader::new(input), skip);
         let mut head = Vec::new();
-        source.by_ref().take(HEAD).read_to_end(&mut head).map_err(io_error)?;
-        let separator = separator.unwrap_or_else(|| likely_separator(&head));
-        let reader = ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .delimiter(separator)
-            .trim(Trim::All)
-            .from_reader(Cursor::new(head).chain(source));
-        let mut table =
-            Self { reader, row: ByteRecord::new(), pending: false, separator, names: Vec::new(), mark: None };
-        if !table.advance()? {
+        let mut length = 0;
+        let mut line = Line::default();
+        while length < HEAD && lines.next(&mut line)? {
+            length += line.text.len() + 1;
+            head.push(std::mem::take(&mut line));
+        }
+        if head.is_empty() {
             return Err(CsvError::Empty);
         }
-        let fields: Vec<_> = table.row.iter().map(text).collect();
-        table.pending = fields.iter().all(|field| field.is_empty() || number::parse(field, separator).is_some());
-        table.names = if table.pending { (0..fields.len()).map(|i| i.to_string()).collect() } else { fields };
-        Ok(table)
+        let Layout { separator, columns, header, first } = Layout::of(&head, separator)?;
+        let head = head.into_iter().skip(first).collect();
+        let (fields, mark) = (Vec::new(), None);
+        Ok(Self { head, lines, line, fields, separator, columns, header, mark })
     }
 
+    /// The names of the columns.
     pub(super) fn names(&self) -> &[String] {
-        &self.names
+        &self.header.names
+    }
+
+    /// Numbers that are stated above the table.
+    pub(super) fn stated(&self) -> &[(String, f64)] {
+        &self.header.stated
+    }
+
+    /// The first column that holds anything.
+    pub(super) fn first(&self) -> usize {
+        self.columns.iter().position(|kind| *kind != Kind::Blank).unwrap_or(0)
+    }
+
+    /// Whether nothing is in a column.
+    pub(super) fn is_blank(&self, column: usize) -> bool {
+        self.columns[column] == Kind::Blank
     }
 
     /// Position of the column that the caller means.
     pub(super) fn find(&self, column: &Column) -> Result<usize, CsvError> {
-        let matching = |same: &dyn Fn(&str) -> bool| -> Vec<usize> {
-            self.names.iter().enumerate().filter(|(_, name)| same(name)).map(|(index, _)| index).collect()
-        };
+        let names = &self.header.names;
         let found = match column {
-            Column::Index(index) if *index < self.names.len() => vec![*index],
+            Column::Index(index) if *index < names.len() => vec![*index],
             Column::Index(_) => Vec::new(),
             Column::Name(wanted) => {
                 let wanted = wanted.trim();
-                let exact = matching(&|name| name == wanted);
                 let lower = wanted.to_lowercase();
-                if exact.is_empty() { matching(&|name| name.to_lowercase() == lower) } else { exact }
+                let matching = |names: &[String], same: &dyn Fn(&str) -> bool| -> Vec<usize> {
+                    names.iter().enumerate().filter(|(_, name)| same(name)).map(|(index, _)| index).collect()
+                };
+                let exact = |name: &str| name == wanted;
+                let alike = |name: &str| name.to_lowercase() == lower;
+                let in_turn = [
+                    matching(names, &exact),
+                    matching(&self.header.bare, &exact),
+                    matching(names, &alike),
+                    matching(&self.header.bare, &alike),
+                ];
+                in_turn.into_iter().find(|found| !found.is_empty()).unwrap_or_default()
             }
         };
         match found[..] {
             [index] => Ok(index),
-            [] => Err(CsvError::NoSuchColumn { column: column.clone(), available: self.names.clone() }),
+            [] => Err(CsvError::NoSuchColumn { column: column.clone(), available: names.clone() }),
             _ => Err(CsvError::AmbiguousColumn { column: column.clone(), count: found.len() }),
         }
     }
@@ -81,17 +109,21 @@ impl<R: Read> Table<R> {
     /// Reads the chosen columns of all rows.
     pub(super) fn read_columns<const N: usize>(mut self, chosen: [usize; N]) -> Result<[Vec<f64>; N], CsvError> {
         let mut columns = [const { Vec::new() }; N];
+        let last = self.columns.len() - 1;
+        let is_last_in_use = chosen.contains(&last);
+        let mut least: Option<Digits> = None;
         while self.advance()? {
-            if self.row.len() != self.names.len() {
-                return Err(CsvError::Ragged {
-                    line: self.line(),
-                    expected: self.names.len(),
-                    found: self.row.len(),
-                    separator: self.separator,
-                });
-            }
+            self.check_width()?;
             for (values, &column) in columns.iter_mut().zip(&chosen) {
                 values.push(self.number(column)?);
+            }
+            if is_last_in_use {
+                let digits = Digits::of(self.field(last));
+                let rows = columns.first().map_or(0, Vec::len);
+                if !self.line.is_ended && rows > ENOUGH && least.is_some_and(|least| digits.are_fewer_than(least)) {
+                    return Err(CsvError::Cut { line: self.line.number, text: self.shown(last) });
+                }
+                least = Some(least.map_or(digits, |least| least.least(digits)));
             }
         }
         if columns.iter().any(Vec::is_empty) { Err(CsvError::NoRows) } else { Ok(columns) }
@@ -99,73 +131,55 @@ impl<R: Read> Table<R> {
 
     /// Goes to the next row that is not blank; false at the end.
     fn advance(&mut self) -> Result<bool, CsvError> {
-        if std::mem::take(&mut self.pending) {
-            return Ok(true);
-        }
-        while self.reader.read_byte_record(&mut self.row).map_err(csv_error)? {
-            if self.row.iter().any(|field| !field.is_empty()) {
+        loop {
+            match self.head.pop_front() {
+                Some(line) => self.line = line,
+                None if self.lines.next(&mut self.line)? => {}
+                None => return Ok(false),
+            }
+            split(&self.line.text, self.separator, &mut self.fields);
+            if self.fields.iter().any(|field| !field.is_empty()) {
                 return Ok(true);
             }
         }
-        Ok(false)
     }
 
-    fn line(&self) -> u64 {
-        self.row.position().map_or(0, ::csv::Position::line)
+    /// Refuses a row with more or fewer fields than the table has columns; only columns in which nothing is may be missing.
+    fn check_width(&self) -> Result<(), CsvError> {
+        let (expected, found) = (self.columns.len(), self.fields.len());
+        let missing_are_blank = || self.columns[found..].iter().all(|kind| *kind == Kind::Blank);
+        if found == expected || (found < expected && missing_are_blank()) {
+            return Ok(());
+        }
+        let separator = if let Separator::Sign(sign) = self.separator { sign } else { b' ' };
+        Err(CsvError::Ragged { line: self.line.number, expected, found, separator })
+    }
+
+    fn field(&self, column: usize) -> &[u8] {
+        self.fields.get(column).map_or(&[], |range| &self.line.text[range.clone()])
+    }
+
+    /// A field, cut after as much as is enough to recognise it by.
+    fn shown(&self, column: usize) -> String {
+        const SHOWN: usize = 40;
+        String::from_utf8_lossy(self.field(column)).chars().take(SHOWN).collect()
     }
 
     /// The number in a field of the current row.
     fn number(&mut self, column: usize) -> Result<f64, CsvError> {
-        /// Enough to recognise a field by.
-        const SHOWN: usize = 40;
-        let field = self.row.get(column).unwrap_or_default();
-        let parsed = std::str::from_utf8(field).ok().and_then(|text| number::parse(text, self.separator));
-        let shown = || String::from_utf8_lossy(field).chars().take(SHOWN).collect();
-        let Some((value, mark)) = parsed else {
-            return Err(CsvError::NotANumber { line: self.line(), column: self.names[column].clone(), text: shown() });
+        let name = || self.header.names[column].clone();
+        let line = self.line.number;
+        let Some((value, mark)) = number::parse(self.field(column), self.separator) else {
+            return Err(CsvError::NotANumber { line, column: name(), text: self.shown(column) });
         };
         match (self.mark, mark) {
             (None, _) => self.mark = mark,
             (Some(earlier), Some(mark)) if earlier != mark => {
-                return Err(CsvError::MixedDecimals {
-                    line: self.line(),
-                    column: self.names[column].clone(),
-                    text: shown(),
-                    comma: mark == Mark::Comma,
-                });
+                let comma = mark == Mark::Comma;
+                return Err(CsvError::MixedDecimals { line, column: name(), text: self.shown(column), comma });
             }
             _ => {}
         }
         Ok(value)
-    }
-}
-
-/// The text of a field, in Latin-1 if it is not UTF-8.
-fn text(field: &[u8]) -> String {
-    std::str::from_utf8(field).map_or_else(|_| field.iter().copied().map(char::from).collect(), str::to_owned)
-}
-
-/// The separator in the last lines that `head` shows: a semicolon or a tab, where there is one, since a comma beside
-/// them is a decimal comma. Two lines are asked, because the head may end within one; they are the last, because
-/// the first may be a header of any text.
-fn likely_separator(head: &[u8]) -> u8 {
-    let rows = head.split_inclusive(|byte| *byte == b'\n').rev().filter(|line| *line != NO_DATA).take(2);
-    let found = |separator: &u8| rows.clone().any(|row| row.contains(separator));
-    [b';', b'\t'].into_iter().find(found).unwrap_or(b',')
-}
-
-fn csv_error(error: ::csv::Error) -> CsvError {
-    match error.into_kind() {
-        ErrorKind::Io(source) => io_error(source),
-        // The other kinds concern headers, UTF-8 and equal lengths, none of which is asked for here.
-        kind => CsvError::Io { source: std::io::Error::other(format!("{kind:?}")) },
-    }
-}
-
-/// The error that [`WithoutComments`] wrapped, or the system's.
-fn io_error(source: std::io::Error) -> CsvError {
-    match source.downcast::<CsvError>() {
-        Ok(error) => error,
-        Err(source) => CsvError::Io { source },
     }
 }

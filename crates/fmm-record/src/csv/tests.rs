@@ -1,7 +1,7 @@
 use std::io::{self, Read};
 
 use super::*;
-use crate::{Quantity, RecordError};
+use crate::{Quantity, RecordError, Sampling};
 
 fn read_text(text: &str) -> Result<Reading, CsvError> {
     CsvReader::default().read_from(text.as_bytes())
@@ -59,7 +59,7 @@ fn a_given_rate_needs_no_time() {
     assert_eq!((chosen.record.values(), chosen.record.rate(), chosen.record.start()), (&[4.0, 5.0][..], 100.0, 0.0));
     assert_eq!((chosen.sampling.to_string(), chosen.time.as_deref()), ("given as 100 Hz".into(), Some("t")));
     assert_eq!(reader.read_from(&b"4\n5\n"[..]).unwrap().record.values(), [4.0, 5.0]);
-    assert_eq!(reader.read_from(&b"4,1\n2,2\n"[..]).unwrap().record.values(), [4.0, 2.0]);
+    assert_eq!(reader.read_from(&b"4,1\n2,-2\n"[..]).unwrap().record.values(), [4.0, 2.0]);
     // The first column could be nothing but time.
     assert_eq!(reader.read_from(&b"0.00,1\n0.01,2\n"[..]).unwrap().record.values(), [1.0, 2.0]);
     assert!(matches!(reader.time(0).read_from(&b"1,2\n"[..]), Err(CsvError::TimeAndRate)));
@@ -237,5 +237,183 @@ fn a_counter_of_samples_is_no_time() {
     for name in ["T [K]", "angle [deg]", "f (Hz)"] {
         let text = format!("{name},v\n0.1,1.5\n0.2,2.5\n0.3,4.5\n");
         assert!(matches!(read_text(&text), Err(CsvError::NoRate { .. })), "{name}");
+    }
+}
+
+/// As the programs write them, with numbers of our own; `µ` in Latin-1.
+mod programs {
+    use super::*;
+
+    fn reading(text: &str) -> Reading {
+        let bytes: Vec<u8> = text.chars().map(|letter| u8::try_from(u32::from(letter)).unwrap()).collect();
+        CsvReader::default().read_from(&bytes[..]).unwrap_or_else(|error| panic!("{error}:\n{text}"))
+    }
+
+    #[test]
+    fn labview() {
+        let head = "LabVIEW Measurement\t\nWriter_Version\t2\nReader_Version\t2\nSeparator\tTab\nDecimal_Separator\t,\n\
+                    Multi_Headings\tYes\nX_Columns\tOne\nTime_Pref\tRelative\nDate\t2021/03/04\nTime\t10:11:12,5\n\
+                    ***End_of_Header***\t\n\t\nChannels\t2\t\t\nSamples\t4\t4\t\nDate\t2021/03/04\t2021/03/04\t\n\
+                    Y_Unit_Label\tVolts\tVolts\t\nX_Dimension\tTime\tTime\t\nX0\t0,0\t0,0\t\nDelta_X\t0,000500\t0,000500\t\n\
+                    ***End_of_Header***\t\t\t\n";
+        let rows = "0,000000\t1,5\t-2,0\n0,000500\t1,25\t-1,0\n0,001000\t0,75\t-0,5\n0,001500\t0,5\t0,25\n";
+        let one = reading(&format!("{head}X_Value\tgyro\tforce\tComment\n{rows}"));
+        assert_eq!((one.record.values(), one.record.rate()), (&[1.5, 1.25, 0.75, 0.5][..], 2000.0));
+        assert_eq!((&one.channel[..], one.columns), ("gyro", ["X_Value", "gyro", "force"].map(String::from).to_vec()));
+        // Without a column of time, its header tells the interval.
+        let rows = "\t1,5\t-2,0\n\t1,25\t-1,0\n\t0,75\t-0,5\n\t0,5\t0,25\n";
+        let none = reading(&format!("{head}X_Value\tgyro\tforce\tComment\n{rows}"));
+        assert_eq!((none.record.values(), none.record.rate()), (&[1.5, 1.25, 0.75, 0.5][..], 2000.0));
+        let expected = Sampling::IntervalVariable { name: "Delta_X".into(), interval: 5e-4 };
+        assert_eq!((&none.channel[..], none.time, none.sampling), ("gyro", None, expected));
+    }
+
+    #[test]
+    fn tektronix() {
+        let newer = "Model,DPO2024B\nFirmware Version,1.56\n\nWaveform Type,ANALOG\nHorizontal Units,s\nSample Interval,4e-06\n\
+                     Record Length,4\nProbe Attenuation,1.0\nVertical Units,V\n,\n,\nLabel,\nTIME,CH1\n";
+        let rows = "-8.0e-06,0.04\n-4.0e-06,0.02\n0.0e+00,0.01\n4.0e-06,0.00\n";
+        let found = reading(&format!("{newer}{rows}"));
+        assert_eq!((found.record.rate(), &found.channel[..]), (250_000.0, "CH1"));
+        assert_eq!((found.record.start(), found.record.values()), (-8e-6, &[0.04, 0.02, 0.01, 0.0][..]));
+        // The older ones write the header beside the first rows.
+        let older = "Record Length,2.500000e+03,,-0.000500,  0.0160,\nSample Interval,1.000000e-04,,-0.000400,  0.0200,\n\
+                     Trigger Point,1.250000000000e+03,,-0.000300,  0.0240,\n,,,-0.000200,  0.0280,\n,,,-0.000100,  0.0320,\n";
+        let found = reading(older);
+        assert_eq!((found.record.rate(), found.record.start()), (10_000.0, -5e-4));
+        assert_eq!((&found.channel[..], found.record.values()), ("4", &[0.016, 0.02, 0.024, 0.028, 0.032][..]));
+    }
+
+    #[test]
+    fn rigol() {
+        let found = reading(
+            "X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,-6.000000e-03,1.000000e-05\n\
+             0,1.20e+00,2.0e-01,,\n1,1.60e+00,1.0e-01,,\n2,2.00e+00,3.0e-01,,\n",
+        );
+        assert_eq!((&found.channel[..], found.record.values()), ("CH1 [Volt]", &[1.2, 1.6, 2.0][..]));
+        assert!((found.record.rate() / 1e5 - 1.0).abs() < 1e-12);
+        assert_eq!(found.sampling.to_string(), "found from the interval of 0.00001 s in the variable \"X Increment\"");
+        let newer = reading("Time(s),CH1(V)\n-0.0060,1.2\n-0.0059,1.6\n-0.0058,2.0\n");
+        assert!((newer.record.interval() - 1e-4).abs() < 1e-15);
+    }
+
+    #[test]
+    fn picoscope() {
+        let found = reading("Time;Channel A;Channel B\n(µs);(mV);(V)\n\n-10,0;0,5;1,5\n-5,0;0,25;1,0\n0,0;0,125;0,5\n");
+        assert_eq!((found.record.interval(), &found.channel[..]), (5e-6, "Channel A [mV]"));
+        assert_eq!(crate::Label::from(&found).unit().map(crate::Unit::si), Some("V"));
+        assert_eq!(found.record.values(), [0.5, 0.25, 0.125]);
+        // Either name chooses the channel.
+        let text = "Time,A,B\n(ms),(V),(V)\n0.0,1,4\n0.5,2,5\n1.0,3,6\n";
+        for name in ["B", "b", "B [V]"] {
+            let found = CsvReader::default().channel(name).read_from(text.as_bytes()).unwrap();
+            assert_eq!((found.record.values(), found.record.rate()), (&[4.0, 5.0, 6.0][..], 2000.0), "{name}");
+        }
+    }
+
+    #[test]
+    fn catman() {
+        let found = reading(
+            "HBM_CATMANDATAFILE_40\t\nNo test\t\nT0 = 04.03.2021 10:11:12\t\nZeit  1 - Standardmessrate\tMX840_1 CH 1\tKraft\n\
+             s\tmm\tN\n0,0000\t1,50\t12,0\n0,0005\t1,25\t12,5\n0,0010\t0,75\t13,0\n",
+        );
+        assert_eq!((found.record.rate(), &found.channel[..]), (2000.0, "MX840_1 CH 1 [mm]"));
+        assert_eq!(found.time.as_deref(), Some("Zeit  1 - Standardmessrate [s]"));
+        let inline = reading("Zeit  1 - Standardmessrate [ms]\tx [µm]\n0,0\t1,50\n0,5\t1,25\n1,0\t0,75\n");
+        assert_eq!((inline.record.rate(), &inline.channel[..]), (2000.0, "x [µm]"));
+    }
+
+    #[test]
+    fn spreadsheets_and_numpy() {
+        let excel = reading("sep=;\nt [ms];v [m/s]\n0,5;1,5\n1,0;1,25\n1,5;0,75\n");
+        assert_eq!((excel.record.rate(), &excel.channel[..]), (2000.0, "v [m/s]"));
+        let bar = reading("sep=|\nt|v\n0.5|1.5\n1.0|1.25\n1.5|0.75\n");
+        assert_eq!((bar.record.rate(), bar.record.values()), (2.0, &[1.5, 1.25, 0.75][..]));
+        let savetxt = reading(
+            "0.000000000000000000e+00 1.500000000000000000e+00\n5.000000000000000000e-01 -1.250000000000000000e+00\n\
+             1.000000000000000000e+00 7.500000000000000000e-01\n",
+        );
+        assert_eq!((savetxt.record.rate(), savetxt.record.values()), (2.0, &[1.5, -1.25, 0.75][..]));
+        let aligned = reading("# t [ms]   v [mm/s]\n    0.00      1.500\n    0.50     -1.250\n   10.00e-1  -0.75\n");
+        assert_eq!((aligned.record.rate(), &aligned.channel[..]), (2000.0, "v [mm/s]"));
+        let named =
+            reading("  t [s]   angular velocity   x\n  0,0     1,5     3\n  0,5     1,25   4\n  1,0     0,75   5\n");
+        assert_eq!((named.record.values(), &named.channel[..]), (&[1.5, 1.25, 0.75][..], "angular velocity"));
+        let comma = reading("# t,v\n0.0,1.5\n0.5,1.25\n1.0,0.75\n");
+        assert_eq!((comma.time.as_deref(), &comma.channel[..]), (Some("t"), "v"));
+    }
+
+    #[test]
+    fn lines_above_may_be_skipped() {
+        let text = "7,8\n9,1\nt,v\n0.0,1.5\n0.5,2.5\n";
+        let found = CsvReader::default().skip(2).read_from(text.as_bytes()).unwrap();
+        assert_eq!((found.record.values(), found.record.rate()), (&[1.5, 2.5][..], 2.0));
+        let error = CsvReader::default().skip(2).read_from("a\nb\nt,v\n0,1\n1,x\n2,3\n".as_bytes()).unwrap_err();
+        assert_eq!(error.to_string(), "line 5, column \"v\": \"x\" is not a number");
+        let all = reading("Logger 4711\nStart 10:11\n\n0.0;1.5\n0.5;1.25\n1.0;0.75\n");
+        assert_eq!((all.record.rate(), &all.columns[..]), (2.0, &["0".to_owned(), "1".to_owned()][..]));
+    }
+}
+
+#[test]
+fn decimal_commas_without_another_separator() {
+    let read = |text: &str| CsvReader::default().rate(10.0).read_from(text.as_bytes());
+    for (text, expected) in [
+        ("1,5\n1,05\n0,75\n", &[1.5, 1.05, 0.75][..]),
+        ("v\n1,5\n1,25\n0,75\n", &[1.5, 1.25, 0.75]),
+        ("angular velocity\n1,5\n1,25\n", &[1.5, 1.25]),
+        ("1,5\n2\n-0,5\n", &[1.5, 2.0, -0.5]),
+        ("0,1\n1,3\n2,5\n", &[1.0, 3.0, 5.0]),
+    ] {
+        assert_eq!(read(text).unwrap().record.values(), expected, "{text:?}");
+    }
+    let error = read("4,1\n2,2\n9,5\n").unwrap_err();
+    assert!(matches!(&error, CsvError::AmbiguousComma { text } if text == "4,1"), "{error}");
+    let separated = |separator| CsvReader::default().rate(10.0).separator(separator).read_from(&b"4,1\n2,2\n"[..]);
+    assert_eq!(separated(b',').unwrap().record.values(), [4.0, 2.0]);
+    assert_eq!(separated(b';').unwrap().record.values(), [4.1, 2.2]);
+}
+
+#[test]
+fn a_file_cut_off_within_its_last_number_is_refused() {
+    let rows = |format: fn(f64) -> String| -> String {
+        let value = |i: u32| (f64::from(i) * 0.7).sin();
+        (0..40).map(|i| format!("{:.3};{}\n", f64::from(i) / 1e3, format(value(i)))).collect()
+    };
+    let formats: [fn(f64) -> String; 4] = [
+        |value| format!("{value:.4}"),
+        |value| format!("{value:.5e}"),
+        |value| format!("{:.3}", value).replace('.', ","),
+        |value| format!("{:+06}", (value * 1e4) as i32),
+    ];
+    for format in formats {
+        let text = format!("t;v\n{}", rows(format).replace('.', if format(0.1).contains(',') { "," } else { "." }));
+        assert_eq!(values(&text).len(), 40);
+        assert_eq!(values(text.trim_end()).len(), 40, "the last line need not end");
+        let last = text.trim_end().rfind(';').unwrap() + 1;
+        for length in last..text.len() - 1 {
+            let error = read_text(&text[..length]).unwrap_err();
+            assert!(matches!(error, CsvError::Cut { line: 41, .. } | CsvError::NotANumber { line: 41, .. }), "{error}");
+        }
+    }
+}
+
+#[test]
+fn a_stray_quote_costs_no_memory_and_no_rows() {
+    let rows: String = (0..1000).map(|i| format!("{:.3},{}\n", f64::from(i) / 1e3, i % 7)).collect();
+    let text = format!("t,\"v\n{rows}");
+    let reading = read_text(&text).unwrap();
+    assert_eq!((reading.record.len(), &reading.channel[..]), (1000, "\"v"));
+    let error = read_text(&text.replace("0.500,3", "0.500,\"3")).unwrap_err().to_string();
+    assert_eq!(error, "line 502, column \"\"v\": \"\"3\" is not a number");
+}
+
+#[test]
+fn no_row_is_lost_above_the_first() {
+    for (text, line) in
+        [("t,v\n0,n/a\n1,5\n2,6\n", 2), ("t,v\n,1\n0.5,2\n1.0,3\n", 2), ("t,v\n0,1\n1,x\n2,3\n3,4\n", 3)]
+    {
+        let error = read_text(text).unwrap_err();
+        assert!(matches!(error, CsvError::NotANumber { line: at, .. } if at == line), "{text:?}: {error}");
     }
 }

@@ -1,0 +1,193 @@
+//! Where the table of a text file begins, how its columns are separated, and what they are called.
+
+use std::ops::Range;
+
+use super::CsvError;
+use super::fields::{Separator, split, text};
+use super::header::{Header, header};
+use super::lines::Line;
+use super::number;
+
+/// What a column holds, by the last rows that are known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Number,
+    Text,
+    Blank,
+}
+
+/// The layout of a table.
+pub(super) struct Layout {
+    pub(super) separator: Separator,
+    pub(super) columns: Vec<Kind>,
+    pub(super) header: Header,
+    /// Which of the lines is the first row.
+    pub(super) first: usize,
+}
+
+impl Layout {
+    /// The layout that the first lines of a file show, of which there must be one.
+    ///
+    /// The table is what the last of these lines look like. What stands before its first row is a preamble, but for the
+    /// names of the columns and a row of units right before it.
+    pub(super) fn of(lines: &[Line], given: Option<Separator>) -> Result<Self, CsvError> {
+        let (begin, told) = preamble(lines);
+        let body = &lines[begin..];
+        if body.is_empty() {
+            return Err(CsvError::NoRows);
+        }
+        let separator = match given.or(told) {
+            Some(separator) => separator,
+            None => likely_separator(body)?,
+        };
+        let rows: Vec<Row> = body.iter().map(|line| Row::of(line, separator)).collect();
+        let width = usual_width(&rows);
+        let columns = kinds(&rows, width, separator);
+        let first = first_row(&rows, &columns, separator);
+        let header = header(&lines[..begin + first], begin, lines.get(begin + first), &columns, separator)?;
+        Ok(Self { separator, columns, header, first: begin + first })
+    }
+}
+
+/// Where the table may begin at the earliest, and the separator, if lines say so: the first one of a spreadsheet
+/// (`sep=;`), and the one of LabVIEW that ends its header.
+fn preamble(lines: &[Line]) -> (usize, Option<Separator>) {
+    let is_end = |line: &Line| line.text.trim_ascii().to_ascii_lowercase().starts_with(b"***end_of_header***");
+    if let Some(end) = lines.iter().rposition(is_end) {
+        return (end + 1, None);
+    }
+    let first = lines.first().map_or(&b""[..], |line| &line.text);
+    match first.strip_prefix(b"sep=").or_else(|| first.strip_prefix(b"SEP=")) {
+        Some(&[sign]) => (1, Some(Separator::Sign(sign))),
+        // A separator that spreadsheets put behind the line as behind every other.
+        Some(&[sign, ..]) => (1, Some(Separator::Sign(sign))),
+        _ => (0, None),
+    }
+}
+
+/// A line and its fields.
+pub(super) struct Row<'a> {
+    line: &'a Line,
+    fields: Vec<Range<usize>>,
+}
+
+impl<'a> Row<'a> {
+    pub(super) fn of(line: &'a Line, separator: Separator) -> Self {
+        let mut fields = Vec::new();
+        split(&line.text, separator, &mut fields);
+        Self { line, fields }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.fields.len()
+    }
+
+    pub(super) fn field(&self, column: usize) -> &'a [u8] {
+        self.fields.get(column).map_or(&[], |range| &self.line.text[range.clone()])
+    }
+}
+
+/// How many fields most of the last three rows have, or else the last one.
+fn usual_width(rows: &[Row]) -> usize {
+    let last: Vec<usize> = rows.iter().rev().take(3).map(Row::len).collect();
+    let repeated = last.iter().find(|width| last.iter().filter(|other| other == width).count() > 1);
+    repeated.or(last.first()).copied().unwrap_or(0)
+}
+
+/// What the columns hold in the last two rows of that width. One damaged number is no text.
+fn kinds(rows: &[Row], width: usize, separator: Separator) -> Vec<Kind> {
+    let last: Vec<&Row> = rows.iter().rev().filter(|row| row.len() == width).take(2).collect();
+    let kind = |column: usize| {
+        if last.iter().any(|row| number::parse(row.field(column), separator).is_some()) {
+            Kind::Number
+        } else if last.iter().all(|row| row.field(column).is_empty()) {
+            Kind::Blank
+        } else {
+            Kind::Text
+        }
+    };
+    (0..width).map(kind).collect()
+}
+
+/// The first row of the table: of its width, with a number in the first column of numbers and in half of all others. What
+/// is wrong with the others of its fields is then an error that tells the line, and not a row that is lost.
+fn first_row(rows: &[Row], columns: &[Kind], separator: Separator) -> usize {
+    let numbers: Vec<usize> = (0..columns.len()).filter(|column| columns[*column] == Kind::Number).collect();
+    let is_row = |row: &Row| {
+        let is_number = |column: &&usize| number::parse(row.field(**column), separator).is_some();
+        let found = numbers.iter().filter(is_number).count();
+        row.len() == columns.len() && numbers.first().iter().any(is_number) && 2 * found >= numbers.len()
+    };
+    let first = rows.iter().position(is_row);
+    // Without any number, the first line names the columns of whatever follows.
+    first.unwrap_or_else(|| rows.iter().position(|row| row.len() == columns.len()).map_or(0, |header| header + 1))
+}
+
+/// The separator in the last two lines: a semicolon or a tab, where there is one, since a comma beside them is a decimal
+/// comma; blanks between nothing but numbers; else a comma.
+fn likely_separator(lines: &[Line]) -> Result<Separator, CsvError> {
+    let last = || lines.iter().rev().take(2);
+    let found = |separator: &u8| last().any(|line| line.text.contains(separator));
+    if let Some(sign) = [b';', b'\t'].into_iter().find(found) {
+        return Ok(Separator::Sign(sign));
+    }
+    let are_aligned = |line: &Line| {
+        let row = Row::of(line, Separator::Blanks);
+        row.len() > 1 && (0..row.len()).all(|column| number::parse(row.field(column), Separator::Blanks).is_some())
+    };
+    if last().all(are_aligned) {
+        return Ok(Separator::Blanks);
+    }
+    if found(&b',') && is_decimal_comma(lines)? { Ok(Separator::Blanks) } else { Ok(Separator::Sign(b',')) }
+}
+
+/// Whether the commas of a table that has no other separator are decimal commas of one column of numbers.
+fn is_decimal_comma(lines: &[Line]) -> Result<bool, CsvError> {
+    let numbers: Vec<Comma> = lines.iter().rev().map_while(|line| Comma::of(line.text.trim_ascii())).collect();
+    if numbers.len() < lines.len().min(2) {
+        return Ok(false);
+    }
+    if let Some(above) = lines.len().checked_sub(numbers.len() + 1).map(|above| &lines[above]) {
+        // A name without a comma is that of one column.
+        return Ok(!above.text.contains(&b','));
+    }
+    if numbers.iter().any(Comma::is_decimal) {
+        return Ok(true);
+    }
+    let counts = numbers.windows(2).all(|pair| pair[0].before == pair[1].before + 1);
+    if numbers.len() > 2 && counts {
+        return Ok(false);
+    }
+    let text = lines.first().map(|line| text(line.text.trim_ascii())).unwrap_or_default();
+    Err(CsvError::AmbiguousComma { text })
+}
+
+/// A number with at most one comma and no point, which may be two whole numbers.
+struct Comma {
+    before: i64,
+    after: Option<usize>,
+    is_padded: bool,
+    is_negative_zero: bool,
+}
+
+impl Comma {
+    fn of(text: &[u8]) -> Option<Self> {
+        let text = std::str::from_utf8(text).ok()?;
+        let (before, after) = text.split_once(',').map_or((text, None), |(before, after)| (before, Some(after)));
+        let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+        if after.is_some_and(|after| !digits(after)) || !digits(before.trim_start_matches(['-', '+'])) {
+            return None;
+        }
+        Some(Self {
+            before: before.parse().ok()?,
+            after: after.map(str::len),
+            is_padded: after.is_some_and(|after| after.len() > 1 && after.starts_with('0')),
+            is_negative_zero: before == "-0",
+        })
+    }
+
+    /// Whether it cannot be two whole numbers as programs write them.
+    fn is_decimal(&self) -> bool {
+        self.after.is_none() || self.is_padded || self.is_negative_zero
+    }
+}
