@@ -125,12 +125,17 @@ impl Source {
     }
 }
 
-/// Vectors by name, matrices column by column as MATLAB writes it; scalars are no channels.
+/// Vectors by name, matrices by their columns or rows, whichever are longer; scalars are no channels.
 fn matlab_names(file: &MatFile) -> Vec<String> {
     let arrays = file.arrays().iter().filter(|array| array.values().len() > 1);
     let names = arrays.flat_map(|array| match array.dimensions() {
         [rows, columns] if *rows > 1 && *columns > 1 => {
-            (1..=*columns).map(|column| mat::Channel::column(array.name(), column).to_string()).collect()
+            let is_wide = rows < columns;
+            let series = |number| match is_wide {
+                true => mat::Channel::row(array.name(), number),
+                false => mat::Channel::column(array.name(), number),
+            };
+            (1..=*if is_wide { rows } else { columns }).map(|number| series(number).to_string()).collect()
         }
         _ => vec![array.name().to_owned()],
     });

@@ -130,7 +130,7 @@ impl Choice {
 }
 
 /// A MATLAB channel by the name of its variable, or by number: of the arrays in the file, or, if it has but one
-/// matrix, of the columns of that.
+/// matrix, of the columns of that, or of its rows if these are longer.
 fn variable(file: &MatFile, column: &Column) -> Result<Channel, Box<dyn Error>> {
     let index = match column {
         Column::Name(name) => return Ok(Channel::from(name.as_str())),
@@ -140,7 +140,9 @@ fn variable(file: &MatFile, column: &Column) -> Result<Channel, Box<dyn Error>> 
     if let [array] = arrays[..]
         && array.dimensions().iter().all(|length| *length > 1)
     {
-        return Ok(Channel::column(array.name(), index + 1));
+        let is_wide = array.dimensions()[0] < array.dimensions()[1];
+        let name = array.name();
+        return Ok(if is_wide { Channel::row(name, index + 1) } else { Channel::column(name, index + 1) });
     }
     match arrays.get(index) {
         Some(array) => Ok(Channel::variable(array.name())),

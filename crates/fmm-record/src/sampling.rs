@@ -49,8 +49,8 @@ impl UniformTimes {
         if let Some((index, &time)) = times.iter().enumerate().find(|(_, time)| !time.is_finite()) {
             return Err(RecordError::TimeNotFinite { index, time });
         }
-        if let Some(i) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
-            return Err(RecordError::TimeNotIncreasing { index: i + 1, time: times[i + 1], previous: times[i] });
+        if times.windows(2).any(|pair| pair[1] <= pair[0]) {
+            return Err(odd_stamp(times, 0.0).unwrap_or(RecordError::Interval { interval: 0.0 }));
         }
         let interval = (end - start) / (count - 1) as f64;
         if !(interval > 0.0 && interval.is_finite()) {
@@ -63,7 +63,9 @@ impl UniformTimes {
             let expected = start + interval * index as f64;
             let deviation = time - expected;
             if deviation.abs() > tolerance || time - previous > 1.5 * interval + rounding {
-                return Err(RecordError::NonUniform { index, time, expected, deviation, interval });
+                // One gap bends the grid, which all stamps before it then miss.
+                let drifted = RecordError::NonUniform { index, time, expected, deviation, interval };
+                return Err(odd_stamp(times, tolerance).unwrap_or(drifted));
             }
             previous = time;
         }
@@ -79,6 +81,31 @@ impl UniformTimes {
     pub fn interval(&self) -> f64 {
         self.interval
     }
+}
+
+/// The error of the first stamp that comes early or late after the one before it, by more than `tolerance` (s) and by more
+/// than half of what the worst one does; none if all steps are alike. What is right is the mean of all other steps.
+fn odd_stamp(times: &[f64], tolerance: f64) -> Option<RecordError> {
+    let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mut sorted = steps.clone();
+    let middle = sorted.len() / 2;
+    let usual = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let worst = steps.iter().map(|step| (step - usual).abs()).fold(0.0, f64::max);
+    let is_odd = |step: f64| (step - usual).abs() > (0.5 * worst).max(tolerance);
+    let Some(before) = steps.iter().position(|step| is_odd(*step)) else {
+        let before = steps.iter().position(|step| *step <= 0.0)?;
+        let (time, previous) = (times[before + 1], times[before]);
+        return Some(RecordError::TimeNotIncreasing { index: before + 1, time, previous });
+    };
+    let (index, time, previous) = (before + 1, times[before + 1], times[before]);
+    if time <= previous {
+        return Some(RecordError::TimeNotIncreasing { index, time, previous });
+    }
+    let (sum, count) =
+        steps.iter().filter(|step| !is_odd(**step)).fold((0.0, 0.0), |(sum, count), step| (sum + step, count + 1.0));
+    let interval = if count > 0.0 { sum / count } else { usual };
+    let expected = previous + interval;
+    Some(RecordError::NonUniform { index, time, expected, deviation: time - expected, interval })
 }
 
 /// `interval` (s), or that of the nearest whole number of hertz if it is the same within [`RATE_ROUNDING`].
@@ -212,6 +239,23 @@ mod tests {
             let found = UniformTimes::of(&times);
             assert!(matches!(found, Err(RecordError::NonUniform { .. })), "{gap} s in {count} stamps: {found:?}");
         }
+    }
+
+    #[test]
+    fn the_error_points_to_the_stamp_that_is_wrong() {
+        for (rate, decimals, gap) in [(1000.0, 3, 1e-3), (600.0, 3, 0.01), (1000.0, 15, 1e-4)] {
+            let mut times = stamps(rate, decimals, 10_000);
+            times[3333..].iter_mut().for_each(|time| *time += gap);
+            let Err(RecordError::NonUniform { index, deviation, .. }) = UniformTimes::of(&times) else {
+                panic!("{rate} Hz")
+            };
+            assert_eq!(index, 3333, "{rate} Hz with {decimals} decimals");
+            assert!((deviation - gap).abs() < 0.6e-3, "{deviation} s for {gap} s");
+        }
+        let error = UniformTimes::of(&[0.0, 1.0, 2.0, 300.0, 4.0, 5.0]).unwrap_err();
+        assert!(matches!(error, RecordError::NonUniform { index: 3, time: 300.0, expected: 3.0, .. }), "{error}");
+        let back = UniformTimes::of(&[0.0, 1.0, 2.0, -7.0, 4.0, 5.0]).unwrap_err();
+        assert_eq!(back, RecordError::TimeNotIncreasing { index: 3, time: -7.0, previous: 2.0 });
     }
 
     #[test]

@@ -44,7 +44,9 @@ pub(crate) struct Conflict {
 pub(crate) fn stated<'a>(scalars: impl Iterator<Item = (&'a str, f64)>) -> Result<Option<(f64, Sampling)>, Conflict> {
     let mut found: Option<(f64, Sampling, &str)> = None;
     for (name, value) in scalars {
-        let plain = name.replace(['_', ' '], "").to_lowercase();
+        // A field is called as its structure is, with its own name behind a point.
+        let own = name.rsplit('.').next().unwrap_or(name);
+        let plain = own.replace(['_', ' '], "").to_lowercase();
         let is_interval = INTERVALS.contains(&&plain[..]);
         if !is_interval && !RATES.contains(&&plain[..]) {
             continue;

@@ -1,5 +1,7 @@
 //! A real numeric array.
 
+use super::channel::Series;
+
 /// A real numeric array of a MATLAB file, its numbers converted to `f64` whatever their type was. (Integers beyond
 /// 2⁵³ are rounded.)
 #[derive(Debug, Clone, PartialEq)]
@@ -50,13 +52,24 @@ impl Array {
         self.dimensions.len() == 2 && self.rows() >= 2 && self.columns() >= 2
     }
 
-    /// The numbers of a column, counted from 1, of an array of two dimensions. A row vector counts as one column.
-    pub(super) fn column(&self, column: usize) -> Option<&[f64]> {
-        let index = column.checked_sub(1)?;
+    /// The numbers of a series; none if the array does not have it, or is a matrix and no series is chosen.
+    pub(super) fn series(&self, series: Series) -> Option<Vec<f64>> {
         if self.is_vector() {
-            return (index == 0).then_some(&self.values[..]);
+            // A vector is its own row or column.
+            return matches!(series, Series::Whole | Series::Row(1) | Series::Column(1)).then(|| self.values.clone());
         }
-        (index < self.columns()).then(|| &self.values[index * self.rows()..(index + 1) * self.rows()])
+        let (rows, columns) = (self.rows(), self.columns());
+        match series {
+            Series::Whole => (self.values.len() == 1).then(|| self.values.clone()),
+            Series::Row(row) => {
+                let first = row.checked_sub(1).filter(|index| *index < rows)?;
+                Some(self.values.iter().skip(first).step_by(rows).copied().collect())
+            }
+            Series::Column(column) => {
+                let index = column.checked_sub(1).filter(|index| *index < columns)?;
+                Some(self.values[index * rows..(index + 1) * rows].to_vec())
+            }
+        }
     }
 }
 

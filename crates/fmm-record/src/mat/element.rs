@@ -8,7 +8,7 @@ use libflate::zlib::Decoder;
 use super::{MOST_INFLATED, MatError};
 
 const HEADER: usize = 128;
-const MATRIX: u32 = 14;
+pub(super) const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 
 /// Order of the bytes in a number.
@@ -81,6 +81,24 @@ pub(super) struct Variable<'a> {
     pub(super) body: Cow<'a, [u8]>,
 }
 
+/// A compressed variable that cannot be expanded, and why.
+pub(super) struct Packed {
+    pub(super) offset: usize,
+    pub(super) reason: String,
+}
+
+impl Variable<'_> {
+    /// What it is called as long as its name is not known.
+    pub(super) fn place(&self) -> String {
+        place(self.offset)
+    }
+}
+
+/// What the variable there is called as long as its name is not known.
+pub(super) fn place(offset: usize) -> String {
+    format!("(at byte {offset})")
+}
+
 /// Goes through the variables of a file.
 pub(super) struct Variables<'a> {
     file: &'a [u8],
@@ -95,8 +113,11 @@ impl<'a> Variables<'a> {
         Self { file, endian, at: HEADER, budget: MOST_INFLATED }
     }
 
-    /// The next variable, none at the end of the file.
-    pub(super) fn next(&mut self) -> Result<Option<Variable<'a>>, MatError> {
+    /// The next variable, or why it cannot be expanded; none at the end of the file.
+    ///
+    /// # Errors
+    /// Those after which it is not known where the next one begins.
+    pub(super) fn next(&mut self) -> Result<Option<Result<Variable<'a>, Packed>>, MatError> {
         let offset = self.at;
         let rest = self.file.get(offset..).unwrap_or_default();
         if rest.is_empty() {
@@ -116,8 +137,11 @@ impl<'a> Variables<'a> {
         // Arrays are padded to eight bytes, compressed ones are not; padding may be missing at the end of the file.
         let padded = if code == MATRIX { content.len().next_multiple_of(8) } else { content.len() };
         self.at = offset + tag.len() + padded;
-        let body = if code == MATRIX { Cow::Borrowed(content) } else { Cow::Owned(self.inflate(offset, content)?) };
-        Ok(Some(Variable { offset, body }))
+        if code == MATRIX {
+            return Ok(Some(Ok(Variable { offset, body: Cow::Borrowed(content) })));
+        }
+        let variable = self.inflate(offset, content).map(|body| Variable { offset, body: Cow::Owned(body) });
+        Ok(Some(variable.map_err(|error| Packed { offset, reason: error.to_string() })))
     }
 
     /// Expands a compressed variable and takes it off the budget. The tag of the array inside says how long it is;
@@ -132,7 +156,10 @@ impl<'a> Variables<'a> {
             return Err(MatError::UnknownElement { offset, code });
         }
         let length = length as usize;
-        self.budget = self.budget.checked_sub(length).ok_or(MatError::TooLarge { limit: MOST_INFLATED })?;
+        if length > self.budget {
+            return Err(MatError::TooLarge { limit: MOST_INFLATED });
+        }
+        self.budget -= length;
         let mut body = Vec::new();
         decoder.by_ref().take(length as u64).read_to_end(&mut body).map_err(|error| damaged(&error))?;
         if body.len() < length {
@@ -140,7 +167,7 @@ impl<'a> Variables<'a> {
         }
         // The checksum stands behind the data, and is compared only when the end of the stream is reached.
         let beyond = std::io::copy(&mut decoder.take(8), &mut std::io::sink()).map_err(|error| damaged(&error))?;
-        if beyond < 8 { Ok(body) } else { Err(MatError::Malformed { offset, what: "data follow the array" }) }
+        if beyond < 8 { Ok(body) } else { Err(damaged(&"data follow the array")) }
     }
 }
 

@@ -3,11 +3,12 @@
 use std::io;
 use std::path::PathBuf;
 
-use super::Kind;
+use super::{Channel, Kind};
 use crate::RecordError;
 use crate::stated::Conflict;
 
-/// A MATLAB file that cannot be read, or that does not hold the record asked for.
+/// A MATLAB file that cannot be read, or that does not hold the record asked for. What is wrong with a variable of a file
+/// that can be read is [`MatError::Damaged`] where the variable is asked for, and in [`MatFile::damaged`](super::MatFile::damaged).
 ///
 /// Byte positions count from the begin of the file.
 #[derive(Debug, thiserror::Error)]
@@ -79,21 +80,13 @@ pub enum MatError {
         /// What the decoder says.
         reason: String,
     },
-    /// A variable of an HDF5 file that is damaged, or stored in a way that cannot be read.
+    /// A variable that is damaged, or stored in a way that cannot be read.
     #[error("the variable \"{name}\" cannot be read: {reason}")]
-    Hdf5Variable {
+    Damaged {
         /// Its name.
         name: String,
         /// What is wrong with it.
         reason: String,
-    },
-    /// A variable that contradicts itself.
-    #[error("the variable at byte {offset} is damaged: {what}")]
-    Malformed {
-        /// Where the variable begins.
-        offset: usize,
-        /// What is wrong with it.
-        what: &'static str,
     },
     /// No variable of that name.
     #[error("there is no variable \"{name}\"; the file has: {}", list(available))]
@@ -114,16 +107,18 @@ pub enum MatError {
         available: Vec<String>,
     },
     /// An array of more than two dimensions.
-    #[error("\"{name}\" has {dimensions} dimensions; a record is a vector or a column of a matrix")]
+    #[error("\"{name}\" has {dimensions} dimensions; a record is a vector, or a row or column of a matrix")]
     Dimensions {
         /// Its name.
         name: String,
         /// How many dimensions it has.
         dimensions: usize,
     },
-    /// A matrix of which a column must be chosen.
-    #[error("\"{name}\" is a matrix of {rows} rows and {columns} columns; choose a column, as in {name}(:,1)")]
-    ChooseColumn {
+    /// A matrix of which a row or column must be chosen.
+    #[error(
+        "\"{name}\" is a matrix of {rows} rows and {columns} columns; choose one, as in {name}(1,:) or {name}(:,1)"
+    )]
+    ChooseSeries {
         /// Its name.
         name: String,
         /// Number of rows.
@@ -131,15 +126,13 @@ pub enum MatError {
         /// Number of columns.
         columns: usize,
     },
-    /// A column that the array does not have.
-    #[error("\"{name}\" has {columns} columns; there is no {name}(:,{column})")]
-    NoSuchColumn {
-        /// Its name.
-        name: String,
-        /// The column asked for, counted from 1.
-        column: usize,
-        /// How many it has.
-        columns: usize,
+    /// A row or column that the array does not have.
+    #[error("there is no {channel}; the array is {array}")]
+    NoSuchSeries {
+        /// What was asked for.
+        channel: Channel,
+        /// Name and size of the array.
+        array: String,
     },
     /// No channel was named, and the file does not have exactly one.
     #[error("name the channel; the file has: {}", list(available))]

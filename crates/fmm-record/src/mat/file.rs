@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::element::{Variables, endian};
-use super::numbers::{Content, content};
+use super::element::{Packed, Variables, endian, place};
+use super::numbers::{Content, contents};
 use super::{Array, Channel, MatError, MatReader};
 use crate::Reading;
 
@@ -52,11 +52,13 @@ impl std::fmt::Display for Kind {
     }
 }
 
-/// All real numeric arrays of a MATLAB file, and the names of its other variables.
+/// All real numeric arrays of a MATLAB file, and the names of its other variables. Fields of structures count as variables,
+/// called as MATLAB calls them: `run.v`, `trial(2).v`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MatFile {
     pub(super) arrays: Vec<Array>,
     pub(super) others: Vec<(String, Kind)>,
+    pub(super) damaged: Vec<(String, String)>,
 }
 
 impl MatFile {
@@ -74,10 +76,10 @@ impl MatFile {
     ///
     /// # Errors
     /// [`MatError::NotMat`], the errors of versions ([`MatError::Version4`], [`MatError::Version73`],
-    /// [`MatError::UnknownVersion`]) or those of damage ([`MatError::Truncated`], [`MatError::UnknownElement`],
-    /// [`MatError::Compression`], [`MatError::Malformed`], in version 7.3 [`MatError::Hdf5File`] and
-    /// [`MatError::Hdf5Variable`]), and [`MatError::TooLarge`]. A file of version 5 to 7 that is cut off exactly between
-    /// two variables is a valid file with fewer variables.
+    /// [`MatError::UnknownVersion`]) or those of damage to the file as a whole ([`MatError::Truncated`],
+    /// [`MatError::UnknownElement`], in version 7.3 [`MatError::Hdf5File`]). A variable that is damaged by itself is an error
+    /// only where it is asked for. A file of version 5 to 7 that is cut off exactly between two variables is a valid file
+    /// with fewer variables.
     pub fn parse(bytes: &[u8]) -> Result<Self, MatError> {
         let endian = match endian(bytes) {
             #[cfg(feature = "hdf5")]
@@ -85,12 +87,21 @@ impl MatFile {
             endian => endian?,
         };
         let mut variables = Variables::new(bytes, endian);
-        let mut file = Self { arrays: Vec::new(), others: Vec::new() };
+        let mut file = Self { arrays: Vec::new(), others: Vec::new(), damaged: Vec::new() };
         while let Some(variable) = variables.next()? {
-            match content(&variable, endian)? {
-                Some(Content::Real(array)) => file.arrays.push(array),
-                Some(Content::Other { name, kind }) => file.others.push((name, kind)),
-                None => {}
+            let variable = match variable {
+                Ok(variable) => variable,
+                Err(Packed { offset, reason }) => {
+                    file.damaged.push((place(offset), reason));
+                    continue;
+                }
+            };
+            for content in contents(&variable, endian) {
+                match content {
+                    Content::Real(array) => file.arrays.push(array),
+                    Content::Other { name, kind } => file.others.push((name, kind)),
+                    Content::Damaged { name, what } => file.damaged.push((name, what.into())),
+                }
             }
         }
         Ok(file)
@@ -106,6 +117,12 @@ impl MatFile {
         &self.others
     }
 
+    /// The variables that cannot be read, and why. Where the name cannot be read either, it is the place, as
+    /// `(at byte 128)`.
+    pub fn damaged(&self) -> &[(String, String)] {
+        &self.damaged
+    }
+
     /// Names of the real numeric arrays, in the order of the file.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.arrays.iter().map(Array::name)
@@ -114,12 +131,18 @@ impl MatFile {
     /// The real numeric array called `name`.
     ///
     /// # Errors
-    /// [`MatError::NoSuchVariable`] or [`MatError::NotNumeric`].
+    /// [`MatError::NoSuchVariable`], [`MatError::NotNumeric`] or [`MatError::Damaged`].
     pub fn array(&self, name: &str) -> Result<&Array, MatError> {
         if let Some(array) = self.arrays.iter().find(|array| array.name() == name) {
             return Ok(array);
         }
-        let (name, available) = (name.to_owned(), self.listing());
+        let (name, mut available) = (name.to_owned(), self.listing());
+        if let Some((_, reason)) = self.damaged.iter().find(|(other, _)| *other == name) {
+            return Err(MatError::Damaged { name, reason: reason.clone() });
+        }
+        // It may be one whose name is not known.
+        let unnamed = self.damaged.iter().filter(|(place, _)| place.starts_with('('));
+        available.extend(unnamed.map(|(place, reason)| format!("one {place} that cannot be read: {reason}")));
         match self.others.iter().find(|(other, _)| *other == name) {
             Some((_, kind)) => Err(MatError::NotNumeric { name, kind: *kind, available }),
             None => Err(MatError::NoSuchVariable { name, available }),

@@ -1,39 +1,101 @@
 //! MATLAB files of version 7.3, which are HDF5.
 
-use hdf5_pure::{AttrValue, DType, Dataset, File, Layout};
+use hdf5_pure::{AttrValue, DType, Dataset, File, Group, Layout};
 
 use super::{Array, Kind, MOST_INFLATED, MatError, MatFile};
 
 /// Most bytes that one byte of deflated data can expand to (RFC 1951: 258 bytes for two bits).
 const DEFLATE_RATIO: u64 = 1032;
 
+/// Groups within groups that are followed.
+const DEEPEST: usize = 32;
+
 /// Reads the arrays of a file, and the names of its other variables.
 ///
 /// No size is trusted that the file states: arrays that are not chunked lie in the file, chunks must be there all,
 /// and none may expand more than deflate can.
 pub(super) fn parse(bytes: &[u8]) -> Result<MatFile, MatError> {
+    let mut variables = Variables {
+        file: MatFile { arrays: Vec::new(), others: Vec::new(), damaged: Vec::new() },
+        length: bytes.len() as u64,
+        budget: MOST_INFLATED as u64,
+    };
     let damaged = |error: hdf5_pure::Error| MatError::Hdf5File { reason: error.to_string() };
-    let (mut arrays, mut others) = (Vec::new(), Vec::new());
-    let file = File::from_bytes(bytes.to_vec()).map_err(damaged)?;
-    let root = file.root();
-    let mut budget = MOST_INFLATED as u64;
-    for (name, dataset) in root.iter_datasets().map_err(damaged)? {
-        match variable(&dataset, bytes.len() as u64, &mut budget) {
-            Ok(Variable::Array { dimensions, values }) => arrays.push(Array { name, dimensions, values }),
-            Ok(Variable::Other(kind)) => others.push((name, kind)),
-            Err(Fault::TooLarge) => return Err(MatError::TooLarge { limit: MOST_INFLATED }),
-            Err(Fault::Because(reason)) => return Err(MatError::Hdf5Variable { name, reason }),
-        }
+    let mut opened = File::from_bytes(bytes.to_vec()).map_err(damaged)?;
+    if opened.root().datasets().is_err() {
+        // The decoder follows symbolic links to where they do not lead, and then gives the whole group up.
+        opened = File::from_bytes(without_symbolic_links(bytes)).map_err(damaged)?;
     }
-    // Names with number signs are MATLAB's own: the contents of cells and of objects.
-    for (name, group) in root.iter_groups().map_err(damaged)?.filter(|(name, _)| !name.starts_with('#')) {
-        match group.attrs() {
-            Ok(attributes) if attributes.contains_key("MATLAB_sparse") => others.push((name, Kind::Sparse)),
-            Ok(_) => others.push((name, Kind::Structure)),
-            Err(error) => return Err(MatError::Hdf5Variable { name, reason: error.to_string() }),
+    variables.add(&opened.root(), "", 0).map_err(damaged)?;
+    Ok(variables.file)
+}
+
+/// What has been read of a file.
+struct Variables {
+    file: MatFile,
+    /// Length of the file (bytes).
+    length: u64,
+    /// What its arrays may still take (bytes).
+    budget: u64,
+}
+
+impl Variables {
+    /// Adds what lies in a group, and in those in it: fields of structures. `prefix` is how they are called, up to their own
+    /// name.
+    fn add(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<(), hdf5_pure::Error> {
+        for (name, dataset) in group.iter_datasets()? {
+            let name = format!("{prefix}{name}");
+            match variable(&dataset, self.length, &mut self.budget) {
+                Ok(Variable::Array { dimensions, values }) => self.file.arrays.push(Array { name, dimensions, values }),
+                Ok(Variable::Other(kind)) => self.file.others.push((name, kind)),
+                Err(Fault::TooLarge) => {
+                    let error = MatError::TooLarge { limit: MOST_INFLATED };
+                    self.file.damaged.push((name, error.to_string()));
+                }
+                Err(Fault::Because(reason)) => self.file.damaged.push((name, reason)),
+            }
         }
+        // Names with number signs are MATLAB's own: the contents of cells and of objects.
+        for (name, group) in group.iter_groups()?.filter(|(name, _)| !name.starts_with('#')) {
+            let name = format!("{prefix}{name}");
+            match group.attrs() {
+                Ok(attributes) if attributes.contains_key("MATLAB_sparse") => {
+                    self.file.others.push((name, Kind::Sparse))
+                }
+                Ok(_) if depth == DEEPEST => self.file.damaged.push((name, "its groups are too deep".into())),
+                Ok(_) => match self.add(&group, &format!("{name}."), depth + 1) {
+                    Ok(()) => self.file.others.push((name, Kind::Structure)),
+                    Err(error) => self.file.damaged.push((name, error.to_string())),
+                },
+                Err(error) => self.file.damaged.push((name, error.to_string())),
+            }
+        }
+        Ok(())
     }
-    Ok(MatFile { arrays, others })
+}
+
+/// The bytes of a file whose symbol tables (version 1 of the format of groups) have no symbolic links any more.
+///
+/// ```text
+/// node  = "SNOD", version 1, 0, count (2 bytes), entries of 40 bytes
+/// entry = name (8 bytes), address of the object (8), kind (4; 2 is a symbolic link), 20 others
+/// ```
+fn without_symbolic_links(bytes: &[u8]) -> Vec<u8> {
+    const HEAD: usize = 8;
+    const ENTRY: usize = 40;
+    let mut file = bytes.to_vec();
+    let nodes: Vec<usize> =
+        (0..file.len().saturating_sub(HEAD)).filter(|at| file[*at..].starts_with(b"SNOD\x01\0")).collect();
+    for node in nodes {
+        let count = usize::from(u16::from_le_bytes([file[node + 6], file[node + 7]]));
+        let Some(entries) = file.get(node + HEAD..node + HEAD + count * ENTRY) else { continue };
+        let is_link = |entry: &&[u8]| entry[16..20] == [2, 0, 0, 0] && entry[8..16].iter().all(|byte| *byte == 0xFF);
+        let kept: Vec<u8> = entries.chunks_exact(ENTRY).filter(|entry| !is_link(entry)).flatten().copied().collect();
+        let left = (kept.len() / ENTRY) as u16;
+        file[node + 6..node + 8].copy_from_slice(&left.to_le_bytes());
+        file[node + HEAD..node + HEAD + kept.len()].copy_from_slice(&kept);
+    }
+    file
 }
 
 enum Variable {
@@ -71,8 +133,11 @@ fn variable(dataset: &Dataset, length: u64, budget: &mut u64) -> Result<Variable
         return Err("its numbers have a width that no numbers have".into());
     }
     let needed = count.and_then(|count| count.checked_mul(8)).ok_or(Fault::TooLarge)?;
-    *budget = budget.checked_sub(needed).ok_or(Fault::TooLarge)?;
+    if needed > *budget {
+        return Err(Fault::TooLarge);
+    }
     check_storage(dataset, &sizes, needed / 8 * width, length)?;
+    *budget -= needed;
     let values = if needed == 0 { Vec::new() } else { dataset.read_f64()? };
     if values.len() as u64 != needed / 8 {
         return Err("its dimensions do not match its amount of data".into());

@@ -1,8 +1,8 @@
 //! Records from MATLAB files, versions 5 to 7.3.
 //!
-//! [`MatFile`] holds every real numeric array of a file; [`MatReader`] makes a record of one of them. Arrays of
-//! other kinds (text, structures, cells, complex or sparse arrays) are not read, but they are listed, and asking for
-//! one says what it is. Version 7.3, which is HDF5, needs the feature `hdf5`; without it, it is told apart and refused,
+//! [`MatFile`] holds every real numeric array of a file, fields of structures among them; [`MatReader`] makes a record of
+//! one of them. Arrays of other kinds (text, cells, complex or sparse arrays) are not read, but they are listed, as is what
+//! cannot be read, and asking for one says what it is. Version 7.3, which is HDF5, needs the feature `hdf5`; without it, it is told apart and refused,
 //! as version 4 is. HDF5 files of other programs are read as MATLAB shows them, with the order of dimensions reversed.
 //!
 //! ```no_run

@@ -2,8 +2,8 @@
 
 use matfile::NumericData;
 
-use super::element::{Endian, Variable};
-use super::{Array, Kind, MatError};
+use super::element::{Endian, MATRIX, Variable};
+use super::{Array, Kind};
 
 const INT8: u32 = 1;
 const INT32: u32 = 5;
@@ -11,62 +11,132 @@ const UINT32: u32 = 6;
 const DOUBLE_CLASS: u32 = 6;
 const COMPLEX: u32 = 0x0800;
 
-/// What a variable turned out to be.
+/// Structures within structures that are followed.
+const DEEPEST: usize = 32;
+
+/// What a variable, or a field of one, turned out to be.
 pub(super) enum Content {
     Real(Array),
     Other { name: String, kind: Kind },
+    Damaged { name: String, what: &'static str },
 }
 
-/// Takes a variable apart; none if it has no name, as the data that MATLAB keeps for its own objects.
-pub(super) fn content(variable: &Variable, endian: Endian) -> Result<Option<Content>, MatError> {
-    let Variable { offset, body } = variable;
-    let malformed = |what| MatError::Malformed { offset: *offset, what };
-    let mut parts = Parts { body, endian, at: 0 };
+/// Takes a variable apart, with the fields of structures as variables of their own: `s.v`, or `s(2).v` where there are
+/// several. Nothing is found in one without a name, as the data that MATLAB keeps for its own objects are.
+pub(super) fn contents(variable: &Variable, endian: Endian) -> Vec<Content> {
+    let mut found = Vec::new();
+    if let Err(what) = take_apart(&variable.body, endian, None, 0, &mut found) {
+        found.push(Content::Damaged { name: variable.place(), what });
+    }
+    found
+}
 
-    let flags = parts.next().ok_or(malformed("it has no flags"))?;
+/// Takes an array apart; `field` is what it is called in its structure. An error is what is wrong before its name is known.
+fn take_apart(
+    body: &[u8],
+    endian: Endian,
+    field: Option<String>,
+    depth: usize,
+    found: &mut Vec<Content>,
+) -> Result<(), &'static str> {
+    let mut parts = Parts { body, endian, at: 0 };
+    let flags = parts.next().ok_or("it has no flags")?;
     let (UINT32, Some(word)) = (flags.code, flags.data.first_chunk::<4>()) else {
-        return Err(malformed("its flags are not what flags must be"));
+        return Err("its flags are not what flags must be");
     };
     let word = endian.u32(*word);
-    let class = word & 0xFF;
-    let kind = Kind::of_class(class);
+    let kind = Kind::of_class(word & 0xFF);
     // MATLAB's own objects have a name right behind the flags, and no dimensions.
-    let dimensions = if kind == Some(Kind::Object) && parts.peek_code() == Some(INT8) {
+    let dimensions: Vec<usize> = if kind == Some(Kind::Object) && parts.peek_code() == Some(INT8) {
         Vec::new()
     } else {
-        let part = parts.next().ok_or(malformed("it has no dimensions"))?;
+        let part = parts.next().ok_or("it has no dimensions")?;
         if part.code != INT32 || part.data.len() < 8 || part.data.len() % 4 != 0 {
-            return Err(malformed("its dimensions are not what dimensions must be"));
+            return Err("its dimensions are not what dimensions must be");
         }
         part.data.as_chunks().0.iter().map(|bytes| endian.u32(*bytes) as usize).collect()
     };
-    let name = parts.next().ok_or(malformed("it has no name"))?;
+    let name = parts.next().ok_or("it has no name")?;
     let (INT8, Ok(name)) = (name.code, std::str::from_utf8(name.data)) else {
-        return Err(malformed("its name is not text"));
+        return Err("its name is not text");
     };
+    let name = field.unwrap_or_else(|| name.to_owned());
     if name.is_empty() {
-        return Ok(None);
+        return Ok(());
     }
-    let name = name.to_owned();
-    if let Some(kind) = kind {
-        return Ok(Some(Content::Other { name, kind }));
+    let kind = kind.or((word & COMPLEX != 0).then_some(Kind::Complex));
+    let Some(kind) = kind else {
+        found.push(match numbers(&mut parts, &dimensions, endian) {
+            Ok(values) => Content::Real(Array { name, dimensions, values }),
+            Err(what) => Content::Damaged { name, what },
+        });
+        return Ok(());
+    };
+    if kind == Kind::Structure
+        && let Err(what) = fields(&mut parts, &dimensions, &name, depth, found)
+    {
+        found.push(Content::Damaged { name, what });
+        return Ok(());
     }
-    if word & COMPLEX != 0 {
-        return Ok(Some(Content::Other { name, kind: Kind::Complex }));
-    }
+    found.push(Content::Other { name, kind });
+    Ok(())
+}
 
-    let part = parts.next().ok_or(malformed("its numbers are missing or cut off"))?;
-    let stored = Stored::of(part.code).ok_or(malformed("its numbers are of an unknown type"))?;
+/// The fields of a structure, element by element.
+fn fields(
+    parts: &mut Parts,
+    dimensions: &[usize],
+    name: &str,
+    depth: usize,
+    found: &mut Vec<Content>,
+) -> Result<(), &'static str> {
+    if depth == DEEPEST {
+        return Err("its structures are too deep");
+    }
+    let length = parts.next().filter(|part| part.code == INT32).ok_or("its names have no length")?;
+    let length = length.data.first_chunk().map_or(0, |bytes| parts.endian.u32(*bytes) as usize);
+    let names = parts.next().filter(|part| part.code == INT8).ok_or("its fields have no names")?;
+    if length == 0 || names.data.len() % length != 0 {
+        return Err("the names of its fields do not match their length");
+    }
+    let until_zero = |name: &[u8]| {
+        let length = name.iter().position(|byte| *byte == 0).unwrap_or(name.len());
+        String::from_utf8_lossy(&name[..length]).into_owned()
+    };
+    let names: Vec<String> = names.data.chunks_exact(length).map(until_zero).collect();
+    let count = dimensions.iter().try_fold(1usize, |product, size| product.checked_mul(*size));
+    let count = count.ok_or("its dimensions are beyond all memory")?;
+    if names.is_empty() {
+        return Ok(());
+    }
+    for element in 1..=count {
+        for field in &names {
+            let part = parts.next().filter(|part| part.code == MATRIX).ok_or("fields of it are missing or cut off")?;
+            let path = if count == 1 { format!("{name}.{field}") } else { format!("{name}({element}).{field}") };
+            // An empty field may have no content at all.
+            if part.data.is_empty() {
+                continue;
+            }
+            if let Err(what) = take_apart(part.data, parts.endian, Some(path.clone()), depth + 1, found) {
+                found.push(Content::Damaged { name: path, what });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The numbers of a real array.
+fn numbers(parts: &mut Parts, dimensions: &[usize], endian: Endian) -> Result<Vec<f64>, &'static str> {
+    let part = parts.next().ok_or("its numbers are missing or cut off")?;
+    let stored = Stored::of(part.code).ok_or("its numbers are of an unknown type")?;
     let count = dimensions.iter().try_fold(1usize, |product, size| product.checked_mul(*size));
     if count.and_then(|count| count.checked_mul(stored.width)) != Some(part.data.len()) {
-        return Err(malformed("its dimensions do not match its amount of data"));
+        return Err("its dimensions do not match its amount of data");
     }
-    let values = if part.data.is_empty() {
-        Vec::new()
-    } else {
-        decode(part.data, &stored, part.code, endian).ok_or(malformed("its numbers cannot be decoded"))?
-    };
-    Ok(Some(Content::Real(Array { name, dimensions, values })))
+    if part.data.is_empty() {
+        return Ok(Vec::new());
+    }
+    decode(part.data, &stored, part.code, endian).ok_or("its numbers cannot be decoded")
 }
 
 /// A tagged piece of an array.

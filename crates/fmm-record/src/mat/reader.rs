@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::channel::Series;
 use super::{Array, Channel, MatError, MatFile};
 use crate::clock::{Choice, Clock, are_whole};
 use crate::reading::builder_of_choices;
@@ -10,10 +11,11 @@ use crate::{Quantity, Reading, Record, Sampling, UniformTimes};
 
 /// Reads one channel of a MATLAB file.
 ///
-/// The channel is a vector, or a column of a matrix, written `name(:,2)`. Where no column is named, a matrix must
-/// have two, the first of them time. Where no channel is named, the file must have exactly one array that can be it.
+/// The channel is a vector, or a column `name(:,2)` or row `name(2,:)` of a matrix. Where none is named, a matrix must have
+/// two columns, or two rows, the first of them time. Where no channel is named, the file must have exactly one array that
+/// can be it.
 ///
-/// The rate is, in this order: given; from the time stamps given; from the first column of the channel's own
+/// The rate is, in this order: given; from the time stamps given; from the first column or row of the channel's own
 /// matrix, if it increases uniformly and not by whole numbers; from a vector called `t`, `time` or the like of the same
 /// length, in the unit of time that its name tells; from a scalar whose
 /// name says rate or interval, such as `fs`, `ActualRate`, `sample_rate`, `dt`, `Ts`, in any case.
@@ -40,8 +42,8 @@ impl MatReader {
     /// Makes a record of a file that has been read.
     ///
     /// # Errors
-    /// The errors of choice ([`MatError::NoSuchVariable`], [`MatError::NotNumeric`], [`MatError::Dimensions`],
-    /// [`MatError::ChooseColumn`], [`MatError::NoSuchColumn`], [`MatError::ChooseVariable`]) and of sampling
+    /// The errors of choice ([`MatError::NoSuchVariable`], [`MatError::NotNumeric`], [`MatError::Damaged`], [`MatError::Dimensions`],
+    /// [`MatError::ChooseSeries`], [`MatError::NoSuchSeries`], [`MatError::ChooseVariable`]) and of sampling
     /// ([`MatError::NoRate`], [`MatError::ConflictingRates`], [`MatError::TimeAndRate`]), and [`MatError::Record`].
     pub fn read_from(&self, file: &MatFile) -> Result<Reading, MatError> {
         if self.time.is_some() && self.rate.is_some() {
@@ -52,22 +54,25 @@ impl MatReader {
             None => self.resolved(file, &Channel::variable(only_candidate(file)?.name()))?,
         };
         let (array, values) = numbers(file, &channel)?;
-        let values = values.to_vec();
         let time = match &self.time {
             Some(time) => Some(time.clone()),
-            None => time_beside(file, array, &channel),
+            None => time_beside(file, array, &channel, values.len()).or_else(|| {
+                let is_stated = self.rate.is_some() || !matches!(stated(scalars(file, array)), Ok(None));
+                if is_stated { None } else { time_around(file, array, values.len()) }
+            }),
         };
         let unit = self.unit.clone();
         let (record, sampling) = if let Some(rate) = self.rate {
             (Record::sampled(rate, values, self.quantity, unit)?, Sampling::Given { rate })
         } else if let Some(time) = &time {
-            let mut times = numbers(file, time)?.1.to_vec();
-            // The name of a matrix is not that of its first column.
-            let clock = if time.column.is_none() { Clock::of(&time.variable) } else { Clock::nameless() };
+            let mut times = numbers(file, time)?.1;
+            // The name of a matrix is not that of its first series.
+            let is_whole = time.series == Series::Whole;
+            let clock = if is_whole { Clock::of(leaf(&time.variable)) } else { Clock::nameless() };
             clock.to_seconds(&time.to_string(), Choice::Called, &mut times)?;
             let sampling = Sampling::Times { name: time.to_string() };
             (Record::from_times(&times, values, self.quantity, unit)?, sampling)
-        } else if let Some((rate, sampling)) = stated(scalars(file))? {
+        } else if let Some((rate, sampling)) = stated(scalars(file, array))? {
             (Record::sampled(rate, values, self.quantity, unit)?, sampling)
         } else {
             return Err(MatError::NoRate { available: file.listing() });
@@ -76,78 +81,103 @@ impl MatReader {
         Ok(Reading { record, channel: channel.to_string(), time, columns: file.listing(), sampling })
     }
 
-    /// The channel with its column, where the array is a matrix.
+    /// The channel with its row or column, where the array is a matrix.
     fn resolved(&self, file: &MatFile, channel: &Channel) -> Result<Channel, MatError> {
         let array = file.array(&channel.variable)?;
-        if channel.column.is_some() || !array.is_matrix() {
+        if channel.series != Series::Whole || !array.is_matrix() {
             return Ok(channel.clone());
         }
-        let first = Channel::column(array.name(), 1);
-        let is_time = self.time.as_ref() == Some(&first) || has_uniform_first_column(array);
-        if array.columns() == 2 && is_time {
-            return Ok(Channel::column(array.name(), 2));
+        let (rows, columns) = (array.rows(), array.columns());
+        for (count, [first, second]) in [(columns, [1, 2].map(Series::Column)), (rows, [1, 2].map(Series::Row))] {
+            let is_time = self.time == Some(Channel::of(array, first)) || is_uniform(array, first);
+            if count == 2 && is_time {
+                return Ok(Channel::of(array, second));
+            }
         }
-        Err(MatError::ChooseColumn { name: array.name().into(), rows: array.rows(), columns: array.columns() })
+        Err(MatError::ChooseSeries { name: array.name().into(), rows, columns })
     }
 }
 
-/// The scalars of a file and their names.
-fn scalars(file: &MatFile) -> impl Iterator<Item = (&str, f64)> {
-    file.arrays().iter().filter_map(|array| array.scalar().map(|value| (array.name(), value)))
+/// The name of a field without that of its structure.
+fn leaf(name: &str) -> &str {
+    name.rsplit('.').next().unwrap_or(name)
+}
+
+/// The structure that a field lies in, empty for a variable.
+fn parent(name: &str) -> &str {
+    name.rsplit_once('.').map_or("", |(parent, _)| parent)
+}
+
+/// The scalars that may speak of an array, and their names: those beside it, and beside the structures that it lies in.
+fn scalars<'a>(file: &'a MatFile, array: &'a Array) -> impl Iterator<Item = (&'a str, f64)> {
+    let speaks = |other: &&Array| {
+        let parent = parent(other.name());
+        parent.is_empty() || array.name().strip_prefix(parent).is_some_and(|rest| rest.starts_with('.'))
+    };
+    file.arrays().iter().filter(speaks).filter_map(|other| other.scalar().map(|value| (other.name(), value)))
 }
 
 /// The only array that can be a channel: a vector that is not called time, or a matrix.
 fn only_candidate(file: &MatFile) -> Result<&Array, MatError> {
-    let is_time = |array: &Array| Clock::of(array.name()).is_time;
+    let is_time = |array: &Array| Clock::of(leaf(array.name())).is_time;
     let mut candidates =
         file.arrays().iter().filter(|array| array.is_matrix() || (array.is_vector() && !is_time(array)));
     match (candidates.next(), candidates.next()) {
-        (Some(array), None) => Ok(array),
+        (Some(array), None) if file.damaged().is_empty() => Ok(array),
         _ => Err(MatError::ChooseVariable { available: file.listing() }),
     }
 }
 
 /// The array of a channel and its numbers.
-fn numbers<'a>(file: &'a MatFile, channel: &Channel) -> Result<(&'a Array, &'a [f64]), MatError> {
+fn numbers<'a>(file: &'a MatFile, channel: &Channel) -> Result<(&'a Array, Vec<f64>), MatError> {
     let array = file.array(&channel.variable)?;
-    let name = array.name();
-    let dimensions = array.dimensions().len();
+    let (name, dimensions) = (array.name(), array.dimensions().len());
     if dimensions != 2 {
         return Err(MatError::Dimensions { name: name.into(), dimensions });
     }
-    let column = match channel.column {
-        Some(column) => column,
-        None if array.is_matrix() => {
-            let (rows, columns) = (array.rows(), array.columns());
-            return Err(MatError::ChooseColumn { name: name.into(), rows, columns });
-        }
-        None => 1,
-    };
-    let none = || MatError::NoSuchColumn { name: name.into(), column, columns: array.columns() };
-    Ok((array, array.column(column).ok_or_else(none)?))
+    if channel.series == Series::Whole && array.is_matrix() {
+        let (rows, columns) = (array.rows(), array.columns());
+        return Err(MatError::ChooseSeries { name: name.into(), rows, columns });
+    }
+    let none = || MatError::NoSuchSeries { channel: channel.clone(), array: array.to_string() };
+    Ok((array, array.series(channel.series).ok_or_else(none)?))
 }
 
-/// Time stamps beside the channel: in the first column of its matrix, or in a vector of the same length that is
-/// called time.
-fn time_beside(file: &MatFile, array: &Array, channel: &Channel) -> Option<Channel> {
-    if array.is_matrix() && channel.column != Some(1) && has_time_in_first_column(array) {
-        return Some(Channel::column(array.name(), 1));
+/// Time stamps beside the channel: in the first row or column of its matrix, or in a vector of the same length that is
+/// called time, in the same structure.
+fn time_beside(file: &MatFile, array: &Array, channel: &Channel, length: usize) -> Option<Channel> {
+    let first = match channel.series {
+        Series::Row(2..) => Some(Series::Row(1)),
+        Series::Column(2..) => Some(Series::Column(1)),
+        _ => None,
+    };
+    if let Some(first) = first.filter(|first| array.is_matrix() && is_time(array, *first)) {
+        return Some(Channel::of(array, first));
     }
-    let length = if array.is_matrix() { array.rows() } else { array.values().len() };
-    let is_time = |other: &&Array| {
-        Clock::of(other.name()).is_known_time()
+    let mut times = times(file, array, length);
+    times.find(|time| parent(time.name()) == parent(array.name())).map(|time| Channel::variable(time.name()))
+}
+
+/// A vector of the same length that is called time, outside the structure of the channel.
+fn time_around(file: &MatFile, array: &Array, length: usize) -> Option<Channel> {
+    times(file, array, length).next().map(|time| Channel::variable(time.name()))
+}
+
+/// The vectors of that length that are called time.
+fn times<'a>(file: &'a MatFile, array: &'a Array, length: usize) -> impl Iterator<Item = &'a Array> {
+    file.arrays().iter().filter(move |other| {
+        Clock::of(leaf(other.name())).is_known_time()
             && other.is_vector()
             && other.values().len() == length
             && other.name() != array.name()
-    };
-    file.arrays().iter().find(is_time).map(|time| Channel::variable(time.name()))
+    })
 }
 
-fn has_uniform_first_column(array: &Array) -> bool {
-    array.column(1).is_some_and(|times| UniformTimes::of(times).is_ok())
+fn is_uniform(array: &Array, series: Series) -> bool {
+    array.series(series).is_some_and(|times| UniformTimes::of(&times).is_ok())
 }
 
-/// Whether the first column is time by nature: uniform, and no count of samples.
-fn has_time_in_first_column(array: &Array) -> bool {
-    has_uniform_first_column(array) && !array.column(1).is_some_and(are_whole)
+/// Whether a series is time by nature: uniform, and no count of samples.
+fn is_time(array: &Array, series: Series) -> bool {
+    is_uniform(array, series) && !array.series(series).is_some_and(|times| are_whole(&times))
 }

@@ -146,12 +146,12 @@ fn matrices_with_time_and_vectors_beside_time() {
     let millis = [LITTLE.doubles("time_ms", &[1, 3], &[1.0, 2.0, 3.0]), LITTLE.doubles("v", &[1, 3], &[5.0, 6.0, 7.0])];
     assert_eq!(parse(&millis).unwrap().channel("v").unwrap().record.rate(), 1000.0);
 
-    let three = parse(&[LITTLE.doubles("m", &[2, 3], &[0.0, 0.5, 2.0, 3.0, 4.0, 5.0])]).unwrap();
+    let three = parse(&[LITTLE.doubles("m", &[2, 3], &[0.0, 0.5, 2.5, 3.0, 4.0, 5.0])]).unwrap();
     let error = three.channel("m").unwrap_err().to_string();
-    assert_eq!(error, "\"m\" is a matrix of 2 rows and 3 columns; choose a column, as in m(:,1)");
+    assert_eq!(error, "\"m\" is a matrix of 2 rows and 3 columns; choose one, as in m(1,:) or m(:,1)");
     assert_eq!(three.channel("m(:,3)").unwrap().record.values(), [4.0, 5.0]);
-    assert!(matches!(three.channel("m(:,4)"), Err(MatError::NoSuchColumn { column: 4, columns: 3, .. })));
-    assert!(matches!(three.channel("m(:,0)"), Err(MatError::NoSuchColumn { .. })));
+    assert!(matches!(three.channel("m(:,4)"), Err(MatError::NoSuchSeries { .. })));
+    assert!(matches!(three.channel("m(:,0)"), Err(MatError::NoSuchSeries { .. })));
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn other_kinds_are_listed_and_named() {
     assert_eq!(file.others(), [("z".into(), Kind::Complex), ("c".into(), Kind::Cell), ("table".into(), Kind::Object)]);
     assert!(matches!(file.channel("z"), Err(MatError::NotNumeric { kind: Kind::Complex, .. })));
     assert!(matches!(file.channel("cube"), Err(MatError::Dimensions { dimensions: 3, .. })));
-    assert!(matches!(file.channel("none"), Err(MatError::NoSuchColumn { columns: 0, .. })));
+    assert!(matches!(file.channel("none"), Err(MatError::NoSuchSeries { .. })));
 }
 
 #[test]
@@ -226,16 +226,17 @@ fn lies_about_sizes_are_found_out() {
     let unknown = parse(&[LITTLE.part(9, &[0; 8])]);
     assert!(matches!(unknown, Err(MatError::UnknownElement { offset: 128, code: 9 })));
     for dimensions in [&[4, 1][..], &[u32::MAX, u32::MAX], &[70_000, 70_000, 0, 9], &[1 << 31, 2]] {
-        let error = parse(&[LITTLE.doubles("x", dimensions, &[1.0, 2.0])]).unwrap_err();
-        assert!(matches!(error, MatError::Malformed { .. }), "{dimensions:?}: {error}");
+        let error = parse(&[LITTLE.doubles("x", dimensions, &[1.0, 2.0])]).unwrap().channel("x").unwrap_err();
+        assert!(matches!(error, MatError::Damaged { .. }), "{dimensions:?}: {error}");
     }
     // A promise of more than the limit is refused before anything is expanded.
     let mut bomb = LITTLE.number(14).to_vec();
     bomb.extend_from_slice(&LITTLE.number(MOST_INFLATED as u32 + 8));
-    assert!(matches!(parse(&[compressed(&bomb)]), Err(MatError::TooLarge { .. })));
+    let reason = |variable: &[u8]| parse(&[compressed(variable)]).unwrap().damaged()[0].1.clone();
+    assert_eq!(reason(&bomb), "the variables of the file expand to more than 268435456 bytes");
     // Data behind the array that it promises are not expanded either.
     let more = [LITTLE.doubles("x", &[1, 1], &[1.0]), vec![0; 1 << 20]].concat();
-    assert!(matches!(parse(&[compressed(&more)]), Err(MatError::Malformed { .. })));
+    assert!(reason(&more).ends_with("data follow the array"));
 }
 
 #[test]
@@ -279,4 +280,92 @@ fn damaged_files_never_panic() {
         damage(&bytes[..0x250], 0x250);
         damage(&plain, plain.len() as u64);
     }
+}
+
+/// A structure, one or several in a row, of fields whose contents are whole arrays without a name, element by element.
+fn structure(name: &str, count: u32, fields: &[&str], contents: &[Vec<u8>]) -> Vec<u8> {
+    let flags = LITTLE.part(6, &[2, 0, 0, 0, 0, 0, 0, 0]);
+    let sizes = LITTLE.part(5, &[LITTLE.number(1), LITTLE.number(count)].concat());
+    let mut names = Vec::new();
+    for field in fields {
+        names.extend_from_slice(field.as_bytes());
+        names.resize(names.len().next_multiple_of(16), 0);
+    }
+    // The length of names stands in its tag.
+    let length = [LITTLE.number(4 << 16 | 5), LITTLE.number(16)].concat();
+    let parts = [flags, sizes, LITTLE.part(1, name.as_bytes()), length, LITTLE.part(1, &names), contents.concat()];
+    LITTLE.part(14, &parts.concat())
+}
+
+#[test]
+fn fields_of_structures_are_variables() {
+    let v = LITTLE.doubles("", &[3, 1], &[5.0, 6.0, 7.0]);
+    let inner = structure("", 1, &["dt", "v"], &[LITTLE.doubles("", &[1, 1], &[0.5]), v.clone()]);
+    let text = LITTLE.array(4, "", &[1, 2], 4, &[b'm', 0, b'm', 0]);
+    let run = structure(
+        "run",
+        1,
+        &["t_ms", "x", "unit", "gyro"],
+        &[LITTLE.doubles("", &[3, 1], &[0.0, 2.0, 4.0]), v.clone(), text, inner],
+    );
+    let two = structure(
+        "trial",
+        2,
+        &["fs", "v"],
+        &[
+            LITTLE.doubles("", &[1, 1], &[10.0]),
+            v.clone(),
+            LITTLE.doubles("", &[1, 1], &[20.0]),
+            LITTLE.doubles("", &[3, 2], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+        ],
+    );
+    let file = parse(&[run, compressed(&two)]).unwrap();
+    for (name, rate, values) in [
+        ("run.x", 500.0, [5.0, 6.0, 7.0]),
+        ("run.gyro.v", 2.0, [5.0, 6.0, 7.0]),
+        ("trial(1).v", 10.0, [5.0, 6.0, 7.0]),
+        ("trial(2).v(:,2)", 20.0, [4.0, 5.0, 6.0]),
+    ] {
+        let reading = file.channel(name).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!((reading.record.rate(), reading.record.values()), (rate, &values[..]), "{name}");
+    }
+    assert!(matches!(file.channel("run"), Err(MatError::NotNumeric { kind: Kind::Structure, .. })));
+    assert!(matches!(file.channel("run.unit"), Err(MatError::NotNumeric { kind: Kind::Text, .. })));
+}
+
+#[test]
+fn rows_of_a_matrix_are_channels() {
+    let file = parse(&[LITTLE.doubles("m", &[2, 4], &[0.0, 5.0, 0.5, 6.0, 1.0, 7.0, 1.5, 8.0])]).unwrap();
+    for channel in ["m", "m(2,:)", " m ( 2 , : ) "] {
+        let reading = file.channel(channel).unwrap();
+        assert_eq!((reading.record.rate(), reading.record.values()), (2.0, &[5.0, 6.0, 7.0, 8.0][..]));
+        assert_eq!((&reading.channel[..], reading.time.as_deref()), ("m(2,:)", Some("m(1,:)")));
+    }
+    let row = MatReader::default().channel("m(1,:)").rate(10.0).read_from(&file).unwrap();
+    assert_eq!(row.record.values(), [0.0, 0.5, 1.0, 1.5]);
+    assert!(file.channel("m(3,:)").is_err() && file.channel("m(0,:)").is_err());
+    let vector =
+        parse(&[LITTLE.doubles("v", &[1, 3], &[5.0, 6.0, 7.0]), LITTLE.doubles("fs", &[1, 1], &[50.0])]).unwrap();
+    assert_eq!(vector.channel("v(1,:)").unwrap().record.values(), [5.0, 6.0, 7.0]);
+}
+
+#[test]
+fn a_damaged_variable_leaves_the_others() {
+    let v = LITTLE.doubles("v", &[3, 1], &[5.0, 6.0, 7.0]);
+    let fs = LITTLE.doubles("fs", &[1, 1], &[50.0]);
+    let mut broken = compressed(&LITTLE.doubles("x", &[200, 1], &[1.5; 200]));
+    let end = broken.len();
+    broken[end - 1] ^= 1;
+    let mut bomb = LITTLE.number(14).to_vec();
+    bomb.extend_from_slice(&LITTLE.number(MOST_INFLATED as u32 + 8));
+    let wrong = LITTLE.doubles("w", &[4, 1], &[1.0, 2.0]);
+    let file = parse(&[broken, v, wrong, compressed(&bomb), fs]).unwrap_or_else(|error| panic!("{error}"));
+    let reading = file.channel("v").unwrap();
+    assert_eq!((reading.record.values(), reading.record.rate()), (&[5.0, 6.0, 7.0][..], 50.0));
+    let error = file.channel("w").unwrap_err().to_string();
+    assert_eq!(error, "the variable \"w\" cannot be read: its dimensions do not match its amount of data");
+    let none = file.channel("x").unwrap_err().to_string();
+    assert!(none.contains("at byte 128"), "the name of what cannot be expanded is not known: {none}");
+    // Which one is meant is not known where others cannot be read.
+    assert!(matches!(MatReader::default().read_from(&file), Err(MatError::ChooseVariable { .. })));
 }

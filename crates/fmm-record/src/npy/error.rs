@@ -79,6 +79,14 @@ pub enum NpyError {
         /// The limit (bytes), [`MOST_INFLATED`](super::MOST_INFLATED).
         limit: usize,
     },
+    /// An array of an archive that is damaged, or stored in a way that cannot be read.
+    #[error("the array \"{name}\" cannot be read: {reason}")]
+    Damaged {
+        /// Its name.
+        name: String,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// No array of that name.
     #[error("there is no array \"{name}\"; the file has: {}", list(available))]
     NoSuchArray {

@@ -14,6 +14,7 @@ use crate::Reading;
 pub struct NpyFile {
     arrays: Vec<NpyArray>,
     others: Vec<(String, String)>,
+    damaged: Vec<(String, String)>,
 }
 
 impl NpyFile {
@@ -30,32 +31,35 @@ impl NpyFile {
     /// Reads the bytes of a file.
     ///
     /// # Errors
-    /// [`NpyError::NotNpy`], [`NpyError::Archive`], [`NpyError::Version`], [`NpyError::Header`],
-    /// [`NpyError::Truncated`], [`NpyError::Trailing`], [`NpyError::TooLarge`], and for an npy file
-    /// [`NpyError::Unsupported`].
+    /// [`NpyError::NotNpy`]; for an archive [`NpyError::Archive`]; for an npy file [`NpyError::Version`],
+    /// [`NpyError::Header`], [`NpyError::Truncated`], [`NpyError::Trailing`], [`NpyError::Unsupported`]. An array of an archive
+    /// that cannot be read is an error only where it is asked for.
     pub fn parse(bytes: &[u8]) -> Result<Self, NpyError> {
         if bytes.starts_with(MAGIC) {
             // What is there cannot be too much.
             let array = array(bytes, String::new(), &mut { usize::MAX })?;
-            return Ok(Self { arrays: vec![array], others: Vec::new() });
+            return Ok(Self { arrays: vec![array], others: Vec::new(), damaged: Vec::new() });
         }
         if !bytes.starts_with(b"PK") {
             return Err(NpyError::NotNpy { length: bytes.len() });
         }
         let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| NpyError::damaged(&error))?;
-        let mut file = Self { arrays: Vec::new(), others: Vec::new() };
+        let mut file = Self { arrays: Vec::new(), others: Vec::new(), damaged: Vec::new() };
         let mut budget = MOST_INFLATED / size_of::<f64>();
         for index in 0..archive.len() {
-            let entry = archive.by_index(index).map_err(|error| NpyError::damaged(&error))?;
-            let name = entry.name().map_err(|error| NpyError::damaged(&error))?.into_owned();
+            let name = match archive.name_for_index(index) {
+                Some(name) => name.map_err(|error| NpyError::damaged(&error))?.into_owned(),
+                None => continue,
+            };
             let Some(name) = name.strip_suffix(".npy") else {
                 file.others.push((name, "no array".into()));
                 continue;
             };
-            match array(entry, name.to_owned(), &mut budget) {
+            let entry = archive.by_index(index).map_err(|error| NpyError::damaged(&error));
+            match entry.and_then(|entry| array(entry, name.to_owned(), &mut budget)) {
                 Ok(array) => file.arrays.push(array),
                 Err(NpyError::Unsupported { name, descr }) => file.others.push((name, descr)),
-                Err(error) => return Err(error),
+                Err(error) => file.damaged.push((name.to_owned(), error.to_string())),
             }
         }
         Ok(file)
@@ -71,6 +75,11 @@ impl NpyFile {
         &self.others
     }
 
+    /// The arrays that cannot be read, and why.
+    pub fn damaged(&self) -> &[(String, String)] {
+        &self.damaged
+    }
+
     /// Names of the real numeric arrays, in the order of the file; that of an npy file is empty.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.arrays.iter().map(NpyArray::name)
@@ -79,12 +88,15 @@ impl NpyFile {
     /// The real numeric array called `name`.
     ///
     /// # Errors
-    /// [`NpyError::NoSuchArray`], or [`NpyError::Unsupported`] if it is of another type.
+    /// [`NpyError::NoSuchArray`], [`NpyError::Unsupported`] if it is of another type, or [`NpyError::Damaged`].
     pub fn array(&self, name: &str) -> Result<&NpyArray, NpyError> {
         if let Some(array) = self.arrays.iter().find(|array| array.name() == name) {
             return Ok(array);
         }
         let (name, available) = (name.to_owned(), self.listing());
+        if let Some((_, reason)) = self.damaged.iter().find(|(other, _)| *other == name) {
+            return Err(NpyError::Damaged { name, reason: reason.clone() });
+        }
         match self.others.iter().find(|(other, _)| *other == name) {
             Some((_, descr)) => Err(NpyError::Unsupported { name, descr: descr.clone() }),
             None => Err(NpyError::NoSuchArray { name, available }),
@@ -109,7 +121,10 @@ impl NpyFile {
 fn array(mut input: impl Read, name: String, budget: &mut usize) -> Result<NpyArray, NpyError> {
     let header = header::read(&mut input, &name)?;
     let Header { number, count, .. } = header;
-    *budget = budget.checked_sub(count).ok_or(NpyError::TooLarge { limit: MOST_INFLATED })?;
+    if count > *budget {
+        return Err(NpyError::TooLarge { limit: MOST_INFLATED });
+    }
+    *budget -= count;
     let promised = (count * number.width) as u64;
     let mut bytes = Vec::new();
     input.by_ref().take(promised).read_to_end(&mut bytes).map_err(|error| NpyError::damaged(&error))?;

@@ -41,7 +41,7 @@ impl NpyReader {
     /// Makes a record of a file that has been read.
     ///
     /// # Errors
-    /// The errors of choice ([`NpyError::NoSuchArray`], [`NpyError::Unsupported`], [`NpyError::Axes`],
+    /// The errors of choice ([`NpyError::NoSuchArray`], [`NpyError::Damaged`], [`NpyError::Unsupported`], [`NpyError::Axes`],
     /// [`NpyError::ChooseSeries`], [`NpyError::NoSuchSeries`], [`NpyError::ChooseArray`]) and of sampling
     /// ([`NpyError::NoRate`], [`NpyError::ConflictingRates`], [`NpyError::TimeAndRate`]), and [`NpyError::Record`].
     pub fn read_from(&self, file: &NpyFile) -> Result<Reading, NpyError> {
@@ -103,7 +103,7 @@ fn only_candidate(file: &NpyFile) -> Result<&NpyArray, NpyError> {
     let mut candidates =
         file.arrays().iter().filter(|array| array.matrix().is_some() || (array.is_vector() && !is_time(array)));
     match (candidates.next(), candidates.next()) {
-        (Some(array), None) => Ok(array),
+        (Some(array), None) if file.damaged().is_empty() => Ok(array),
         _ => Err(NpyError::ChooseArray { available: file.listing() }),
     }
 }
