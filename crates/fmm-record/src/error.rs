@@ -78,7 +78,7 @@ pub enum RecordError {
     /// Time stamps that do not lie on a uniform grid.
     #[error(
         "sampling is not uniform: time stamp {index} is {time} s, but a uniform interval of {interval} s puts it at \
-         {expected} s ({deviation} s off); resample the record or give its rate"
+         {expected} s ({deviation} s off); resample the record, with the band of its motion, or give its rate"
     )]
     NonUniform {
         /// Index of the time stamp.
@@ -107,6 +107,29 @@ pub enum RecordError {
     Counter {
         /// Name of the column or variable.
         name: String,
+    },
+    /// A band that is not positive, or too wide for a rate.
+    #[error(
+        "the band of a motion must be positive and at most 0.45 of the rates, but is {band} Hz at a rate of {rate} Hz"
+    )]
+    Band {
+        /// The band given (Hz).
+        band: f64,
+        /// The rate for which it is too wide (Hz).
+        rate: f64,
+    },
+    /// Time stamps that leave a motion of the band unknown.
+    #[error(
+        "at {time} s, the time stamps are too far apart: a motion of up to {band} Hz is known there with a relative error of \
+         {error} only; give a narrower band, or crop the record"
+    )]
+    Unresolved {
+        /// Where it is known least (s).
+        time: f64,
+        /// Its relative error (1).
+        error: f64,
+        /// The band (Hz).
+        band: f64,
     },
     /// A span of time in which the record has no sample.
     #[error("no sample lies between {from} s and {to} s; the record spans {start} s to {end} s")]

@@ -34,7 +34,7 @@
 //! | how does it swing? | [`Swings`]: peaks, crossings, frequency |
 //! | how good is it? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`], [`hum()`] |
 //! | is it one free vibration of a linear spring? | [`further_releases`], [`SecondMode`], [`period_change`] |
-//! | another form of it? | [`Record::crop`], [`Record::scaled`], [`Record::shifted`], [`Record::smoothed_by`], [`Record::integrate`], [`Record::differentiate`] |
+//! | another form of it? | [`Record::crop`], [`Record::scaled`], [`Record::shifted`], [`Record::smoothed_by`], [`Record::integrate`], [`Record::differentiate`]; at a uniform or another rate [`Resampling`] |
 //! | which smoothing? | for a fit none, as it correlates the noise; for a derivative [`savitzky_golay_derivative`]; [`moving_average`] to repeat what MATLAB's `smooth` or `movmean` did |
 //!
 //! # Units and conventions
@@ -102,6 +102,7 @@ mod reading;
 mod record;
 mod release;
 mod request;
+mod resampling;
 mod sampling;
 mod saturation;
 mod savitzky_golay;
@@ -135,6 +136,7 @@ pub use reading::{Column, Reading};
 pub use record::Record;
 pub use release::Release;
 pub use request::Request;
+pub use resampling::{Resampled, Resampling};
 pub use sampling::{JITTER, RATE_ROUNDING, Sampling, UniformTimes};
 pub use saturation::{Saturation, saturation};
 pub use savitzky_golay::{savitzky_golay, savitzky_golay_derivative};

@@ -3,6 +3,8 @@
 use std::convert::Infallible;
 use std::str::FromStr;
 
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
+use crate::{Quantity, RecordError, Resampling};
 use crate::{Record, Sampling};
 
 /// A record as read from a file, with the choices that led to it, so that a report can name them.
@@ -47,6 +49,13 @@ macro_rules! builder_of_choices {
             self
         }
 
+        /// Brings the samples to a uniform rate by their time stamps, which need not be uniform.
+        #[must_use]
+        pub fn resampling(mut self, resampling: $crate::Resampling) -> Self {
+            self.resampling = Some(resampling);
+            self
+        }
+
         /// What the channel measured.
         #[must_use]
         pub fn quantity(mut self, quantity: Quantity) -> Self {
@@ -64,6 +73,23 @@ macro_rules! builder_of_choices {
 }
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
 pub(crate) use builder_of_choices;
+
+/// The record of `values` at `times` (s) in the series called `name`, resampled if asked for.
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
+pub(crate) fn timed(
+    name: String,
+    times: &[f64],
+    values: Vec<f64>,
+    resampling: Option<Resampling>,
+) -> Result<(Record, Sampling), RecordError> {
+    let Some(resampling) = resampling else {
+        return Ok((Record::from_times(times, values, Quantity::Other, "")?, Sampling::Times { name }));
+    };
+    let resampled = resampling.of(times, &values)?;
+    let sampling =
+        Sampling::Resampled { name, rate: resampling.rate(), band: resampling.band(), error: resampled.error };
+    Ok((resampled.record(Quantity::Other, "")?, sampling))
+}
 
 /// How many bytes the compressed data of one file may expand to, all together: 33 million numbers. A small file can
 /// be made to expand a thousandfold; one that exceeds this limit is refused.

@@ -154,6 +154,17 @@ pub enum Sampling {
         /// Its name.
         name: String,
     },
+    /// From time stamps that were resampled.
+    Resampled {
+        /// Name of their column or variable.
+        name: String,
+        /// The rate asked for (Hz).
+        rate: f64,
+        /// The frequency above which nothing of the motion lies (Hz).
+        band: f64,
+        /// Relative error of a motion of this band ([`Resampled::error`](crate::Resampled::error)).
+        error: f64,
+    },
     /// From a scalar variable in the file that holds the rate (Hz).
     RateVariable {
         /// Its name.
@@ -183,6 +194,11 @@ impl std::fmt::Display for Sampling {
         match self {
             Self::Given { rate } => write!(f, "given as {rate} Hz"),
             Self::Times { name } => write!(f, "found from the time stamps in \"{name}\""),
+            Self::Resampled { name, rate, band, error } => write!(
+                f,
+                "brought to {rate} Hz by the time stamps in \"{name}\", for a motion of up to {band} Hz with a relative \
+                 error of {error:.1e}"
+            ),
             Self::RateVariable { name, rate } => write!(f, "read as {rate} Hz from the variable \"{name}\""),
             Self::IntervalVariable { name, interval } => {
                 write!(f, "found from the interval of {interval} s in the variable \"{name}\"")

@@ -7,9 +7,9 @@ use std::path::Path;
 use super::CsvError;
 use super::table::Table;
 use crate::clock::{Choice, Clock};
-use crate::reading::builder_of_choices;
+use crate::reading::{builder_of_choices, timed};
 use crate::stated::stated;
-use crate::{Column, Quantity, Reading, Record, RecordError, Sampling, UniformTimes};
+use crate::{Column, Quantity, Reading, Record, RecordError, Resampling, Sampling, UniformTimes};
 
 /// Reads one channel of a text file.
 ///
@@ -32,6 +32,7 @@ pub struct CsvReader {
     time: Option<Column>,
     channel: Option<Column>,
     rate: Option<f64>,
+    resampling: Option<Resampling>,
     quantity: Quantity,
     unit: String,
 }
@@ -164,7 +165,8 @@ impl CsvReader {
             (Some(Scale::Rate(rate, sampling)), _) => (Record::sampled(rate, values, quantity, unit)?, sampling),
             (Some(Scale::Times(choice, mut times)), Some(name)) => {
                 Clock::of(name).to_seconds(name, choice, &mut times)?;
-                (Record::from_times(&times, values, quantity, unit)?, Sampling::Times { name: name.clone() })
+                let (record, sampling) = timed(name.clone(), &times, values, self.resampling)?;
+                (record.with_quantity(quantity).with_unit(unit), sampling)
             }
             _ => return Err(CsvError::NoRate { available: columns }),
         };

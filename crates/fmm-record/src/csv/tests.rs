@@ -417,3 +417,21 @@ fn no_row_is_lost_above_the_first() {
         assert!(matches!(error, CsvError::NotANumber { line: at, .. } if at == line), "{text:?}: {error}");
     }
 }
+
+#[test]
+fn a_record_whose_times_are_not_uniform_is_resampled() {
+    let wave = |t: f64| (20.0 * t).sin();
+    let time = |i: u32| f64::from(i) / 200.0 + if i % 3 == 0 { 6e-4 } else { 0.0 };
+    let text: String = (0..600).map(|i| format!("{:.6},{:.9}\n", 1e3 * time(i), wave(time(i)))).collect();
+    let text = format!("t [ms],v\n{text}");
+    let error = read_text(&text).unwrap_err().to_string();
+    assert!(error.contains("resample the record"), "{error}");
+    let reader = CsvReader::default().resampling(crate::Resampling::new(200.0, 40.0).unwrap()).unit("m/s");
+    let reading = reader.read_from(text.as_bytes()).unwrap();
+    assert_eq!((reading.record.rate(), reading.record.unit()), (200.0, "m/s"));
+    for (time, value) in reading.record.times().zip(reading.record.values()) {
+        assert!((value - wave(time)).abs() < 1e-3, "{value} at {time} s");
+    }
+    let Sampling::Resampled { error, .. } = reading.sampling else { panic!("{}", reading.sampling) };
+    assert!(error < 1e-3, "{error}");
+}

@@ -5,9 +5,9 @@ use std::path::Path;
 use super::channel::Series;
 use super::{Array, Channel, MatError, MatFile};
 use crate::clock::{Choice, Clock, are_whole};
-use crate::reading::builder_of_choices;
+use crate::reading::{builder_of_choices, timed};
 use crate::stated::stated;
-use crate::{Quantity, Reading, Record, Sampling, UniformTimes};
+use crate::{Quantity, Reading, Record, Resampling, Sampling, UniformTimes};
 
 /// Reads one channel of a MATLAB file.
 ///
@@ -24,6 +24,7 @@ pub struct MatReader {
     channel: Option<Channel>,
     time: Option<Channel>,
     rate: Option<f64>,
+    resampling: Option<Resampling>,
     quantity: Quantity,
     unit: String,
 }
@@ -70,8 +71,8 @@ impl MatReader {
             let is_whole = time.series == Series::Whole;
             let clock = if is_whole { Clock::of(leaf(&time.variable)) } else { Clock::nameless() };
             clock.to_seconds(&time.to_string(), Choice::Called, &mut times)?;
-            let sampling = Sampling::Times { name: time.to_string() };
-            (Record::from_times(&times, values, self.quantity, unit)?, sampling)
+            let (record, sampling) = timed(time.to_string(), &times, values, self.resampling)?;
+            (record.with_quantity(self.quantity).with_unit(unit), sampling)
         } else if let Some((rate, sampling)) = stated(scalars(file, array))? {
             (Record::sampled(rate, values, self.quantity, unit)?, sampling)
         } else {

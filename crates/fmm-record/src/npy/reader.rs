@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::{Channel, NpyArray, NpyError, NpyFile, Series};
 use crate::clock::{Choice, Clock, are_whole};
-use crate::reading::builder_of_choices;
+use crate::reading::{builder_of_choices, timed};
 use crate::stated::stated;
-use crate::{Quantity, Reading, Record, Sampling, UniformTimes};
+use crate::{Quantity, Reading, Record, Resampling, Sampling, UniformTimes};
 
 /// Reads one channel of a file of NumPy.
 ///
@@ -23,6 +23,7 @@ pub struct NpyReader {
     channel: Option<Channel>,
     time: Option<Channel>,
     rate: Option<f64>,
+    resampling: Option<Resampling>,
     quantity: Quantity,
     unit: String,
 }
@@ -67,7 +68,8 @@ impl NpyReader {
             // The name of a matrix is not that of its first series.
             let clock = if time.series == Series::Whole { Clock::of(&time.array) } else { Clock::nameless() };
             clock.to_seconds(&time.to_string(), Choice::Called, &mut times)?;
-            (Record::from_times(&times, values, self.quantity, unit)?, Sampling::Times { name: time.to_string() })
+            let (record, sampling) = timed(time.to_string(), &times, values, self.resampling)?;
+            (record.with_quantity(self.quantity).with_unit(unit), sampling)
         } else if let Some((rate, sampling)) = stated(scalars)? {
             (Record::sampled(rate, values, self.quantity, unit)?, sampling)
         } else {
