@@ -86,6 +86,8 @@
 //! # Guarantees
 //!
 //! * Bounds are never crossed, in differences neither, and active ones are met exactly.
+//! * A difference whose step crosses a jump of the model is taken to the other side, and a step that rounding hides is
+//!   lengthened.
 //! * How a fit ends is an [`Outcome`] with the best point, errors are for what does not let it begin. A small step where
 //!   the gradient does not vanish is [`Outcome::Stalled`] and no success.
 //! * A trial point without finite residuals is no error: the search goes less far, and [`Fit::non_finite`] says what it

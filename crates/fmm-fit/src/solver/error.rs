@@ -45,6 +45,15 @@ pub enum FitError {
         /// Its value.
         value: f64,
     },
+    /// The residuals at the start are not zero, but so small that squares of what a fit leaves of them underflow.
+    #[error(
+        "the residuals at the start are at most {largest:e}, so that their squares underflow; give them in a smaller \
+         unit, or divide them by their uncertainties"
+    )]
+    ResidualsUnderflow {
+        /// The largest of their magnitudes.
+        largest: f64,
+    },
     /// A derivative at the start is NaN, infinite, or so large that its square overflows.
     #[error("the derivative of the residuals by {parameter} is not finite at the start")]
     DerivativeNotFinite {

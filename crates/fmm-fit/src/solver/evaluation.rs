@@ -4,7 +4,7 @@ use crate::problem::block::{Scratch, Structure};
 use crate::solver::non_finite::worst;
 use crate::solver::sums::sum_of_squares;
 use crate::solver::triangle::Triangle;
-use crate::{EvaluationError, FitError, NonFinite, Residuals};
+use crate::{FitError, NonFinite, Residuals};
 
 /// Where the derivatives come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -39,7 +39,7 @@ impl Scheme {
     }
 
     /// The relative step that balances truncation against rounding.
-    fn relative_step(self) -> f64 {
+    pub(crate) fn relative_step(self) -> f64 {
         if self == Self::Forward { f64::EPSILON.sqrt() } else { f64::EPSILON.cbrt() }
     }
 }
@@ -82,16 +82,18 @@ pub(crate) struct Evaluator {
     /// What was last not finite.
     pub(crate) non_finite: Option<NonFinite>,
     /// The magnitude below which a value counts as zero in the choice of a difference step.
-    floor: Vec<f64>,
-    jacobian: Vec<f64>,
+    pub(crate) floor: Vec<f64>,
+    pub(crate) jacobian: Vec<f64>,
     is_jacobian_current: bool,
-    probe: Vec<f64>,
-    scratch: Vec<f64>,
+    pub(crate) probe: Vec<f64>,
+    pub(crate) scratch: Vec<f64>,
+    /// A column while that of another step is tried.
+    pub(crate) kept: Vec<f64>,
     factoring: Scratch,
     /// Whether the problem has told that it gives blocks only all together.
-    is_indivisible: bool,
+    pub(crate) is_indivisible: bool,
     /// Residuals of blocks evaluated alone, not yet enough for an evaluation of all.
-    evaluated_rows: usize,
+    pub(crate) evaluated_rows: usize,
 }
 
 impl Evaluator {
@@ -241,195 +243,5 @@ impl Evaluator {
     /// The first free parameter whose column of the Jacobian is not finite.
     pub(crate) fn first_bad_column(&self) -> Option<usize> {
         self.free.iter().copied().find(|&j| !self.structure.square(&self.jacobian, j).is_finite())
-    }
-
-    /// What a step of parameter `j` from `value` is measured by.
-    pub(crate) fn magnitude(&self, value: f64, j: usize) -> f64 {
-        let width = self.upper[j] - self.lower[j];
-        let magnitude = value.abs().max(self.floor[j]);
-        match (magnitude > 0.0, width.is_finite()) {
-            (true, _) => magnitude,
-            (false, true) => 1e-3 * width,
-            (false, false) => 1.0,
-        }
-    }
-
-    /// Fills column `j` by differences that stay inside the bounds and, if possible, where the model is finite.
-    fn difference<P: Residuals + ?Sized>(&mut self, problem: &P, point: &Point, j: usize) {
-        let value = point.values[j];
-        let (below, above) = (value - self.lower[j], self.upper[j] - value);
-        let magnitude = self.magnitude(value, j);
-        let is_central = self.scheme != Scheme::Forward;
-        let step = self.scheme.relative_step() * magnitude;
-        let reach = if is_central { 2.0 * step } else { step };
-        let found =
-            (is_central && step <= below.min(above) && self.slope(problem, point, j, [value + step, value - step]))
-                || (above >= below.min(reach) && self.one_sided(problem, point, j, reach.min(above)))
-                || (below > 0.0 && self.one_sided(problem, point, j, -reach.min(below)))
-                || (above > 0.0 && self.one_sided(problem, point, j, reach.min(above)));
-        if !found {
-            for column in self.structure.columns_of(j) {
-                self.jacobian[column.elements].fill(f64::NAN);
-            }
-        }
-        self.probe[j] = value;
-    }
-
-    fn one_sided<P: Residuals + ?Sized>(&mut self, problem: &P, point: &Point, j: usize, reach: f64) -> bool {
-        let value = point.values[j];
-        let near = if self.scheme == Scheme::Forward { value } else { value + 0.5 * reach };
-        self.slope(problem, point, j, [value + reach, near])
-    }
-
-    /// The derivative at `point` of the parabola through the residuals there and at two other values of parameter
-    /// `j`; of the line through two points if one of the values is that of `point`. False if the residuals are not finite
-    /// at the two values.
-    fn slope<P: Residuals + ?Sized>(&mut self, problem: &P, point: &Point, j: usize, at: [f64; 2]) -> bool {
-        let [first, second] = at.map(|target| target.max(self.lower[j]).min(self.upper[j]));
-        let value = point.values[j];
-        // Differences of the values as they are stored, not as they were wished.
-        let (a, b) = (first - value, second - value);
-        self.probe[j] = first;
-        if a == 0.0 || a == b || self.probe_columns(problem, j).is_err() {
-            return false;
-        }
-        if b != 0.0 {
-            self.probe[j] = second;
-            if self.probe_scratch(problem, j).is_err() {
-                return false;
-            }
-        }
-        let mut square = 0.0;
-        for column in self.structure.columns_of(j) {
-            let elements = &mut self.jacobian[column.elements];
-            let residuals = &point.residuals[column.rows.clone()];
-            if b == 0.0 {
-                for (c, r) in elements.iter_mut().zip(residuals) {
-                    *c = (*c - r) / a;
-                }
-            } else {
-                let (weight_a, weight_b) = parabola(a, b);
-                for ((c, s), r) in elements.iter_mut().zip(&self.scratch[column.rows]).zip(residuals) {
-                    *c = weight_a * (*c - r) + weight_b * (s - r);
-                }
-            }
-            square += sum_of_squares(elements);
-        }
-        square.is_finite()
-    }
-
-    /// Writes the residuals at `probe` to the columns of parameter `j`.
-    fn probe_columns<P: Residuals + ?Sized>(&mut self, problem: &P, j: usize) -> Result<(), EvaluationError> {
-        if self.structure.is_dense() {
-            self.residual_evaluations += 1;
-            let rows = self.scratch.len();
-            return problem.residuals(&self.probe, &mut self.jacobian[j * rows..(j + 1) * rows]);
-        }
-        self.probe_scratch(problem, j)?;
-        for column in self.structure.columns_of(j) {
-            self.jacobian[column.elements].copy_from_slice(&self.scratch[column.rows]);
-        }
-        Ok(())
-    }
-
-    /// Writes the residuals at `probe` that depend on parameter `j` to their places in `scratch`.
-    fn probe_scratch<P: Residuals + ?Sized>(&mut self, problem: &P, j: usize) -> Result<(), EvaluationError> {
-        if !self.structure.is_dense() && !self.is_indivisible {
-            for column in self.structure.columns_of(j) {
-                // Blocks count by their share of the residuals.
-                self.evaluated_rows += column.rows.len();
-                if !problem.block_residuals(column.block, &self.probe, &mut self.scratch[column.rows])? {
-                    self.is_indivisible = true;
-                    self.evaluated_rows = 0;
-                    break;
-                }
-            }
-            let all = self.scratch.len().max(1);
-            self.residual_evaluations += self.evaluated_rows / all;
-            self.evaluated_rows %= all;
-            if !self.is_indivisible {
-                return Ok(());
-            }
-        }
-        self.residual_evaluations += 1;
-        problem.residuals(&self.probe, &mut self.scratch)
-    }
-}
-
-/// The weights of `f_a − f` and `f_b − f` in the derivative of the parabola through `f` and two neighbours.
-///
-/// ```text
-/// f′ = (a² (f_b − f) − b² (f_a − f)) / (a b (a − b)),   distances a, b
-/// ```
-///
-/// For a = −b this is the central difference.
-pub(crate) fn parabola(a: f64, b: f64) -> (f64, f64) {
-    (-b / (a * (a - b)), a / (b * (a - b)))
-}
-
-#[cfg(test)]
-mod tests {
-    use std::cell::RefCell;
-
-    use fmm_model::{Bounds, Parameter};
-
-    use super::*;
-    use crate::EvaluationError;
-
-    /// r = exp(θ), finite below `edge` only; notes every value asked for.
-    struct Exponential {
-        parameters: [Parameter; 1],
-        edge: f64,
-        asked: RefCell<Vec<f64>>,
-    }
-
-    impl Residuals for Exponential {
-        fn parameters(&self) -> &[Parameter] {
-            &self.parameters
-        }
-        fn len(&self) -> usize {
-            1
-        }
-        fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-            self.asked.borrow_mut().push(p[0]);
-            residuals[0] = if p[0] > self.edge { f64::NAN } else { p[0].exp() };
-            Ok(())
-        }
-    }
-
-    fn slope(scheme: Scheme, value: f64, bounds: (f64, f64), edge: f64) -> f64 {
-        let parameter = Parameter::new("rate", "b", "1/s").bounded(Bounds::new(bounds.0, bounds.1).unwrap());
-        let problem = Exponential { parameters: [parameter], edge, asked: RefCell::default() };
-        let mut evaluator = Evaluator::default();
-        evaluator.begin(&problem, std::iter::once(bounds), &[value]).unwrap();
-        let mut point = Point { values: vec![value], ..Point::default() };
-        assert!(evaluator.residuals(&problem, &mut point));
-        evaluator.scheme = scheme;
-        evaluator.factor(&problem, &mut point);
-        for asked in problem.asked.borrow().iter() {
-            assert!(bounds.0 <= *asked && *asked <= bounds.1, "evaluated at {asked}, outside the bounds");
-        }
-        evaluator.jacobian[0]
-    }
-
-    #[test]
-    fn differences_stay_inside_and_keep_their_order() {
-        let (inf, exact) = (f64::INFINITY, 1f64.exp());
-        // Truncation h/2 = 7e-9 and h²/6 = 6e-12 or, to one side, (h²/3) 2e-11, plus rounding ε/h of 4e-8 and 1e-10.
-        for (scheme, tolerance) in [(Scheme::Forward, 1e-7), (Scheme::Central, 1e-9)] {
-            for bounds in [(-inf, inf), (1.0, inf), (-inf, 1.0), (1.0 - 1e-9, 1.0 + 1e-9), (0.0, 1.0 + 1e-7)] {
-                let error = slope(scheme, 1.0, bounds, inf) - exact;
-                let tolerance = if bounds.1 - bounds.0 < 1e-8 { 1e-5 } else { tolerance };
-                assert!(error.abs() < tolerance, "{scheme:?} in {bounds:?}: error {error}");
-            }
-            let error = slope(scheme, 1.0, (-inf, inf), 1.0) - exact;
-            assert!(error.abs() < tolerance, "{scheme:?} at the edge of the model: error {error}");
-        }
-    }
-
-    #[test]
-    fn a_value_of_zero_has_a_step() {
-        assert!((slope(Scheme::Forward, 0.0, (0.0, f64::INFINITY), f64::INFINITY) - 1.0).abs() < 1e-7);
-        assert!((slope(Scheme::Central, 0.0, (-1.0, 1.0), f64::INFINITY) - 1.0).abs() < 1e-7);
     }
 }

@@ -117,7 +117,10 @@ impl Minimizer {
         let accepted = is_better && self.evaluator.factor(problem, &mut self.trial);
         if ratio < 0.25 || (is_better && !accepted) {
             self.region.radius = SHRINKING * length.min(self.region.radius);
-        } else if ratio > 0.75 && length >= 0.9 * self.region.radius {
+        }
+        // A step that was good and might have been longer says nothing about what is left to gain.
+        let is_held_back = accepted && ratio > 0.75 && length >= 0.9 * self.region.radius;
+        if is_held_back {
             self.region.radius = 2.0 * length;
         }
         if accepted {
@@ -132,7 +135,7 @@ impl Minimizer {
         let negligible = self.options.cost_tolerance * half_cost;
         let free_values = self.evaluator.free.iter().map(|&j| self.current.values[j]);
         let shortest = self.options.step_tolerance * self.region.scaled_length(free_values);
-        if predicted <= negligible && actual.abs() <= negligible {
+        if predicted <= negligible && actual.abs() <= negligible && !is_held_back {
             self.end_search(problem, Outcome::CostConverged);
         } else if length.min(self.region.radius) <= shortest.max(f64::MIN_POSITIVE) {
             let left_the_model = !is_finite || (is_better && !accepted);

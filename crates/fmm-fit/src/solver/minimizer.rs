@@ -10,6 +10,9 @@ use crate::solver::triangle::Triangle;
 use crate::solver::trust_region::TrustRegion;
 use crate::{Fit, FitError, NonFinite, Options, Outcome, Residuals};
 
+/// The square of the rounding of a smaller residual, √10⁻³⁰⁸/ε, is no normal number.
+const SMALLEST_RESIDUAL: f64 = 1e-138;
+
 /// The solver without its trimmings: what a Monte Carlo calculation with many small fits calls, as it keeps its
 /// buffers from one fit to the next. [`solve`](crate::solve) is the short way to one fit.
 ///
@@ -210,6 +213,10 @@ impl Minimizer {
         self.current.values.clone_from(&self.start);
         if !self.evaluator.residuals(problem, &mut self.current) {
             return Err(self.bad_start(problem));
+        }
+        let largest = worst(&self.current.residuals).1.abs();
+        if largest > 0.0 && largest < SMALLEST_RESIDUAL {
+            return Err(FitError::ResidualsUnderflow { largest });
         }
         if free == 0 {
             self.current.triangle.reset(0);

@@ -2,6 +2,7 @@
 
 mod argmin_solver;
 mod box_least_squares;
+pub(crate) mod differences;
 mod error;
 pub(crate) mod evaluation;
 mod iteration;

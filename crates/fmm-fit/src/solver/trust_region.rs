@@ -4,6 +4,9 @@ use crate::solver::box_least_squares::BoxLeastSquares;
 use crate::solver::spectrum::{Spectrum, is_surely_of_full_rank};
 use crate::solver::triangle::Triangle;
 
+/// Values that together move the residuals by less than this share of them are lost in their rounding.
+const ROUNDING: f64 = 1e-13;
+
 /// The linear model of the residuals at one point, and how far it is trusted.
 ///
 /// ```text
@@ -31,12 +34,21 @@ pub(crate) struct TrustRegion {
 }
 
 impl TrustRegion {
-    /// Forgets everything; the radius becomes `factor · ‖D x‖` at the point `x`.
-    pub(crate) fn begin(&mut self, triangle: &Triangle, x: impl Iterator<Item = f64>, factor: f64) {
+    /// Forgets everything; the radius becomes `factor · ‖D x‖` at the point `x`, and of a zero point `factor` times the norm
+    /// of the residual.
+    ///
+    /// That is also the radius of a point that is as good as zero, since its own would be lost in rounding. There the
+    /// columns say little of how far their parameters may go, so that each goes no further than its own size or one.
+    pub(crate) fn begin(&mut self, triangle: &Triangle, x: impl Iterator<Item = f64> + Clone, factor: f64) {
         self.scaling.clear();
         self.scaling.extend((0..triangle.order()).map(|column| triangle.column_norm(column)));
-        let length = self.scaled_length(x);
-        self.radius = if length > 0.0 { factor * length } else { factor * triangle.residual_norm() };
+        let (length, residual) = (self.scaled_length(x.clone()), triangle.residual_norm());
+        self.radius = factor * if length > ROUNDING * residual { length } else { residual };
+        if 0.0 < length && length <= ROUNDING * residual {
+            for (scale, x) in self.scaling.iter_mut().zip(x) {
+                *scale = scale.max(residual / x.abs().max(1.0));
+            }
+        }
     }
 
     /// `‖D p‖`.

@@ -2,7 +2,8 @@
 
 use fmm_model::Parameter;
 
-use crate::solver::evaluation::{Evaluator, Point, Scheme, parabola};
+use crate::solver::differences::parabola;
+use crate::solver::evaluation::{Evaluator, Point, Scheme};
 use crate::solver::spectrum::Spectrum;
 use crate::solver::sums::dot;
 use crate::solver::triangle::Triangle;
