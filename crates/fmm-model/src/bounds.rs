@@ -32,14 +32,11 @@ impl Bounds {
     /// # Errors
     /// [`ModelError::InvertedBounds`] if `lower > upper`, if an end is NaN, or if no finite value fits between them.
     pub fn new(lower: f64, upper: f64) -> Result<Self, ModelError> {
-        if lower <= upper && lower < f64::INFINITY && upper > f64::NEG_INFINITY {
-            Ok(Self { lower, upper })
-        } else {
-            Err(ModelError::InvertedBounds { lower, upper })
-        }
+        let bounds = Self { lower, upper };
+        if bounds.is_empty() { Err(ModelError::InvertedBounds { lower, upper }) } else { Ok(bounds) }
     }
 
-    /// The same interval from `lower` on; an end beyond the upper one becomes the upper one.
+    /// The same interval from `lower` on. It is [empty](Self::is_empty) if `lower` is NaN or beyond the upper end.
     ///
     /// With [`at_most`](Self::at_most) this makes bounds that are constants:
     ///
@@ -52,13 +49,20 @@ impl Bounds {
     /// ```
     #[must_use]
     pub const fn at_least(self, lower: f64) -> Self {
-        Self { lower: self.lower.max(lower).min(self.upper), upper: self.upper }
+        Self { lower: if self.lower >= lower { self.lower } else { lower }, upper: self.upper }
     }
 
-    /// The same interval up to `upper`; an end below the lower one becomes the lower one.
+    /// The same interval up to `upper`. It is [empty](Self::is_empty) if `upper` is NaN or below the lower end.
+    ///
+    /// ```
+    /// use fmm_model::Bounds;
+    ///
+    /// let nowhere = Bounds::UNBOUNDED.at_least(3.0).at_most(1.0);
+    /// assert!(nowhere.is_empty() && !nowhere.contains(2.0));
+    /// ```
     #[must_use]
     pub const fn at_most(self, upper: f64) -> Self {
-        Self { lower: self.lower, upper: self.upper.min(upper).max(self.lower) }
+        Self { lower: self.lower, upper: if self.upper <= upper { self.upper } else { upper } }
     }
 
     /// The lower end, possibly −∞.
@@ -71,12 +75,18 @@ impl Bounds {
         self.upper
     }
 
+    /// Whether no finite value lies in the interval, because its ends exclude each other; a fit refuses such bounds by the
+    /// name of their parameter.
+    pub const fn is_empty(&self) -> bool {
+        !(self.lower <= self.upper && self.lower < f64::INFINITY && self.upper > f64::NEG_INFINITY)
+    }
+
     /// Whether `value` lies in the interval; NaN never does.
     pub fn contains(&self, value: f64) -> bool {
         self.lower <= value && value <= self.upper
     }
 
-    /// The point of the interval nearest to `value`.
+    /// The point of the interval nearest to `value`; meaningless for an empty one.
     pub fn clamp(&self, value: f64) -> f64 {
         value.max(self.lower).min(self.upper)
     }
@@ -84,5 +94,29 @@ impl Bounds {
     /// Whether the interval is a single point, which holds the parameter fixed.
     pub fn is_fixed(&self) -> bool {
         self.lower == self.upper
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_that_exclude_each_other_leave_nothing() {
+        let apart = [
+            Bounds::UNBOUNDED.at_least(3.0).at_most(1.0),
+            Bounds::UNBOUNDED.at_most(1.0).at_least(3.0),
+            Bounds::NOT_NEGATIVE.at_most(-1.0),
+            Bounds::UNBOUNDED.at_least(f64::NAN),
+            Bounds::UNBOUNDED.at_most(f64::NAN),
+            Bounds::UNBOUNDED.at_least(f64::INFINITY),
+        ];
+        for bounds in apart {
+            assert!(bounds.is_empty() && !bounds.is_fixed(), "{bounds:?}");
+            assert!([-1.0, 0.0, 1.0, 2.0, 3.0].iter().all(|value| !bounds.contains(*value)), "{bounds:?}");
+        }
+        let some = Bounds::UNBOUNDED.at_least(1.0).at_least(0.5).at_most(3.0).at_most(4.0);
+        assert_eq!(some, Bounds::new(1.0, 3.0).unwrap());
+        assert!(!some.is_empty() && Bounds::new(3.0, 1.0).is_err());
     }
 }

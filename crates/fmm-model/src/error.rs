@@ -1,11 +1,13 @@
 //! What can be wrong with the description of a machine.
 
+use crate::Rounded;
+
 /// A machine description that cannot be.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelError {
     /// A quantity that must be positive is zero, negative or not finite.
-    #[error("{quantity} must be positive and finite, but is {value} {unit}")]
+    #[error("{quantity} must be positive and finite, but is {value} {unit}", value = Rounded::every_digit(*.value))]
     NotPositive {
         /// Which quantity.
         quantity: &'static str,
@@ -15,7 +17,7 @@ pub enum ModelError {
         unit: &'static str,
     },
     /// A quantity that must not be negative is negative or not finite.
-    #[error("{quantity} must be zero or positive and finite, but is {value} {unit}")]
+    #[error("{quantity} must be zero or positive and finite, but is {value} {unit}", value = Rounded::every_digit(*.value))]
     Negative {
         /// Which quantity.
         quantity: &'static str,
@@ -25,7 +27,7 @@ pub enum ModelError {
         unit: &'static str,
     },
     /// A quantity that may have either sign is infinite or not a number.
-    #[error("{quantity} must be finite, but is {value} {unit}")]
+    #[error("{quantity} must be finite, but is {value} {unit}", value = Rounded::every_digit(*.value))]
     NotFinite {
         /// Which quantity.
         quantity: &'static str,
@@ -35,7 +37,7 @@ pub enum ModelError {
         unit: &'static str,
     },
     /// Bounds that no value can satisfy.
-    #[error("the lower bound {lower} must not exceed the upper bound {upper}, and neither may be NaN")]
+    #[error("the lower bound {lower} must not exceed the upper bound {upper}, and neither may be NaN", lower = Rounded::every_digit(*.lower), upper = Rounded::every_digit(*.upper))]
     InvertedBounds {
         /// The lower bound given.
         lower: f64,

@@ -23,6 +23,24 @@ impl Rounded {
         Self { value, uncertainty }
     }
 
+    /// Every digit of `value`, for messages that have to tell it from its neighbours; large and small ones with a power
+    /// of ten instead of zeros.
+    ///
+    /// ```
+    /// use fmm_model::Rounded;
+    ///
+    /// assert_eq!(Rounded::every_digit(-1.000_000_1), "-1.0000001");
+    /// assert_eq!(Rounded::every_digit(f64::MIN_POSITIVE), "2.2250738585072014e-308");
+    /// ```
+    pub fn every_digit(value: f64) -> String {
+        let magnitude = value.abs();
+        if magnitude == 0.0 || !magnitude.is_finite() || (1e-5..1e16).contains(&magnitude) {
+            format!("{value}")
+        } else {
+            format!("{value:e}")
+        }
+    }
+
     /// The ends of an interval, in the same unit, as text in brackets, to the same decimal place as the value.
     ///
     /// ```

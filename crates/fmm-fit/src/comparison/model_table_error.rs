@@ -1,5 +1,7 @@
 //! Why models cannot be compared.
 
+use fmm_model::Rounded;
+
 /// Why models cannot be compared.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -48,7 +50,7 @@ pub enum ModelTableError {
         name: String,
     },
     /// The number of residuals to count, or another setting, makes no sense.
-    #[error("the {setting} must be {expected}, but is {value}")]
+    #[error("the {setting} must be {expected}, but is {value}", value = Rounded::every_digit(*.value))]
     BadSetting {
         /// What was set.
         setting: &'static str,

@@ -1,5 +1,7 @@
 //! What a caller can do wrong when joining problems.
 
+use fmm_model::Rounded;
+
 /// Problems that cannot be joined, or values that do not belong to a joint problem.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -30,7 +32,7 @@ pub enum JointError {
         other: String,
     },
     /// A shared parameter has no value that all problems allow.
-    #[error("no value of the shared parameter {name} is at least {lower} and at most {upper}, as the problems ask")]
+    #[error("no value of the shared parameter {name} is at least {lower} and at most {upper}, as the problems ask", lower = Rounded::every_digit(*.lower), upper = Rounded::every_digit(*.upper))]
     BoundsApart {
         /// The name.
         name: String,

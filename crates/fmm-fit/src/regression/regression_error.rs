@@ -1,6 +1,7 @@
 //! What a caller can do wrong when asking for a regression.
 
 use crate::FitError;
+use fmm_model::Rounded;
 
 /// A regression that is not possible with the data given.
 #[derive(Debug, thiserror::Error)]
@@ -17,7 +18,7 @@ pub enum RegressionError {
         observations: usize,
     },
     /// A value is NaN or infinite.
-    #[error("value {index} of {name} must be finite, but is {value}")]
+    #[error("value {index} of {name} must be finite, but is {value}", value = Rounded::every_digit(*.value))]
     NotFinite {
         /// What the value belongs to.
         name: String,
@@ -27,7 +28,7 @@ pub enum RegressionError {
         value: f64,
     },
     /// A standard uncertainty is not a positive number, or so small that its inverse overflows.
-    #[error("the standard uncertainty of observation {index} must be positive and finite, but is {value}")]
+    #[error("the standard uncertainty of observation {index} must be positive and finite, but is {value}", value = Rounded::every_digit(*.value))]
     BadUncertainty {
         /// Index of the observation, from 0.
         index: usize,
@@ -35,7 +36,7 @@ pub enum RegressionError {
         value: f64,
     },
     /// A correlation coefficient is not between −1 and 1.
-    #[error("the correlation of the errors of point {index} must lie between -1 and 1, both excluded, but is {value}")]
+    #[error("the correlation of the errors of point {index} must lie between -1 and 1, both excluded, but is {value}", value = Rounded::every_digit(*.value))]
     BadCorrelation {
         /// Index of the point, from 0.
         index: usize,
@@ -65,7 +66,7 @@ pub enum RegressionError {
         coefficients: usize,
     },
     /// A power law has no value at a negative abscissa.
-    #[error("value {index} of x is {value}, but a power law needs values that are not negative")]
+    #[error("value {index} of x is {value}, but a power law needs values that are not negative", value = Rounded::every_digit(*.value))]
     NegativeAbscissa {
         /// Index of the value, from 0.
         index: usize,

@@ -16,6 +16,10 @@ use std::fmt;
 pub struct NullDirection {
     names: Vec<String>,
     components: Vec<f64>,
+    /// The changes of the parameters themselves, each in its unit.
+    changes: Vec<f64>,
+    /// Whether each component is relative to the value of its parameter.
+    is_relative: Vec<bool>,
     /// Components smaller than this are rounding or differencing noise.
     noise: f64,
 }
@@ -50,8 +54,9 @@ pub(crate) fn null_directions(
     noise: f64,
 ) -> Vec<NullDirection> {
     let influence = columns.iter().zip(scales).map(|(&j, scale)| values[j].abs() * scale).fold(0.0, f64::max);
+    let is_relative = |(&j, scale): (&usize, &f64)| values[j].abs() * scale > ZERO * influence;
     let unit = |(&j, scale): (&usize, &f64)| match values[j].abs() * scale {
-        own if own > ZERO * influence => own,
+        own if is_relative((&j, scale)) => own,
         _ if influence > 0.0 => influence,
         _ => 1.0,
     };
@@ -61,11 +66,19 @@ pub(crate) fn null_directions(
     reduce(&mut rows);
     rows.into_iter()
         .map(|row| {
-            let mut components = vec![0.0; values.len()];
-            for (&j, component) in columns.iter().zip(row) {
-                components[j] = component;
+            let mut direction = NullDirection {
+                names: names.iter().map(|&name| name.to_owned()).collect(),
+                components: vec![0.0; values.len()],
+                changes: vec![0.0; values.len()],
+                is_relative: vec![true; values.len()],
+                noise,
+            };
+            for (((&j, scale), unit), component) in columns.iter().zip(scales).zip(&units).zip(row) {
+                direction.components[j] = component;
+                direction.changes[j] = component * unit / scale;
+                direction.is_relative[j] = is_relative((&j, scale));
             }
-            NullDirection { names: names.iter().map(|&name| name.to_owned()).collect(), components, noise }
+            direction
         })
         .collect()
 }
@@ -118,30 +131,91 @@ fn normalise(row: &mut [f64]) {
     }
 }
 
+impl NullDirection {
+    /// What is determined, if that has a name.
+    ///
+    /// A direction is known at one point only, where values of one size can be scaled and shifted alike.
+    fn pattern(&self) -> (Pattern, Pattern) {
+        let parts: Vec<usize> = (0..self.names.len()).filter(|&j| self.components[j].abs() > self.noise).collect();
+        let of = |numbers: &[f64]| {
+            let first = numbers.first().copied().unwrap_or(0.0);
+            let is = |number: f64, wanted: f64| (number - wanted).abs() <= 1e-3 * first.abs();
+            if numbers.iter().all(|number| is(*number, first)) {
+                Pattern::Together
+            } else if numbers.len() == 2 && is(numbers[1], -first) {
+                Pattern::Opposite
+            } else {
+                Pattern::None
+            }
+        };
+        let collect = |numbers: &[f64]| parts.iter().map(|&j| numbers[j]).collect::<Vec<f64>>();
+        let has_shares = parts.iter().all(|&j| self.is_relative[j]);
+        let shares = if has_shares { of(&collect(&self.components)) } else { Pattern::None };
+        // The change of a value whose sign the share does not tell.
+        (shares, of(&collect(&self.changes)))
+    }
+}
+
+/// How numbers are alike.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Pattern {
+    /// All are equal.
+    Together,
+    /// There are two, and they are opposite.
+    Opposite,
+    /// Otherwise.
+    None,
+}
+
 impl fmt::Display for NullDirection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let parts: Vec<(&str, f64)> = self.participants().collect();
-        let names: Vec<&str> = parts.iter().map(|(name, _)| *name).collect();
-        let is = |change: f64, wanted: f64| (change - wanted).abs() < 1e-3;
-        match parts.as_slice() {
-            [] => write!(f, "no parameter has any influence on the residuals"),
-            [(name, _)] => write!(f, "{name} has no influence on the residuals"),
-            _ if parts.iter().all(|(_, change)| is(*change, 1.0)) => write!(
-                f,
-                "{} can be scaled together without changing the residuals; only their ratios are determined",
-                enumerate(&names)
-            ),
-            [(first, _), (second, change)] if is(*change, -1.0) => write!(
-                f,
-                "{first} can grow as {second} shrinks without changing the residuals; only their product is determined"
-            ),
-            _ => {
-                let changes: Vec<String> =
-                    parts.iter().map(|(name, change)| format!("{name} by {change:+.3} %")).collect();
-                let changes: Vec<&str> = changes.iter().map(String::as_str).collect();
-                write!(f, "the residuals stay the same when {} change together", enumerate(&changes))
+        let names: Vec<&str> = self.participants().map(|(name, _)| name).collect();
+        let (how, what) = match names.as_slice() {
+            [] => return write!(f, "no parameter has any influence on the residuals"),
+            [name] => return write!(f, "{name} has no influence on the residuals"),
+            _ => match self.pattern() {
+                (Pattern::Together, Pattern::None) => ("can be scaled together", "only their ratios are determined"),
+                (Pattern::None, Pattern::Together) => {
+                    ("can be shifted together", "only their differences are determined")
+                }
+                (Pattern::Together, Pattern::Together) => {
+                    ("can be changed together", "only their ratios or their differences are determined")
+                }
+                (Pattern::Opposite, Pattern::None) => ("can grow as", "only their product is determined"),
+                (Pattern::None, Pattern::Opposite) => ("can grow by as much as", "only their sum is determined"),
+                (Pattern::Opposite, Pattern::Opposite) => {
+                    ("can grow as", "only their product or their sum is determined")
+                }
+                (Pattern::Together, Pattern::Opposite) => {
+                    ("can grow in size together", "only their ratio or their sum is determined")
+                }
+                (Pattern::Opposite, Pattern::Together) => {
+                    ("can be shifted together", "only their difference or their product is determined")
+                }
+                (Pattern::None, Pattern::None) => return self.write_changes(f),
+            },
+        };
+        match names.as_slice() {
+            [first, second] if how.ends_with("as") => {
+                write!(f, "{first} {how} {second} shrinks without changing the residuals; {what}")
             }
+            names => write!(f, "{} {how} without changing the residuals; {what}", enumerate(names)),
         }
+    }
+}
+
+impl NullDirection {
+    /// In percent, and for values of zero as they are.
+    fn write_changes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = (0..self.names.len()).filter(|&j| self.components[j].abs() > self.noise);
+        let changes: Vec<String> = parts
+            .map(|j| match self.is_relative[j] {
+                true => format!("{} by {:+.3} %", self.names[j], self.components[j]),
+                false => format!("{} by {:+.3e}", self.names[j], 0.01 * self.changes[j]),
+            })
+            .collect();
+        let changes: Vec<&str> = changes.iter().map(String::as_str).collect();
+        write!(f, "the residuals stay the same when {} change together", enumerate(&changes))
     }
 }
 
@@ -163,6 +237,8 @@ mod tests {
         let direction = |components: &[f64]| NullDirection {
             names: ["mass", "stiffness", "damping"].map(str::to_owned).to_vec(),
             components: components.to_vec(),
+            changes: components.iter().zip([1.0, 20.0, 0.3]).map(|(share, value)| share * value).collect(),
+            is_relative: vec![true; 3],
             noise: 1e-6,
         };
         assert_eq!(

@@ -2,12 +2,18 @@
 
 use argmin::core::{Error, IterState, KV, Problem, Solver, State, TerminationReason};
 
+use crate::solver::minimizer::Phase;
 use crate::{Fit, FitError, Minimizer, Options, Outcome, Residuals};
+
+/// What argmin calls the evaluations of the residuals and those of the Jacobian by the problem itself.
+const RESIDUALS: &str = "residuals_count";
+const JACOBIANS: &str = "jacobian_count";
 
 /// The bounded Levenberg–Marquardt method as an [`argmin::core::Solver`] for every [`Residuals`] problem, without
 /// any argmin-math type: observers, timeouts, Ctrl-C and iteration limits of the executor come with it.
 ///
-/// The cost that argmin sees is the sum of squares. What argmin cannot express stays here:
+/// The cost that argmin sees is the sum of squares, its counts `residuals_count` and `jacobian_count` are those of the
+/// [`Fit`]. What argmin cannot express stays here:
 /// [`outcome`](Self::outcome) and, with uncertainties and rank, [`fit`](Self::fit). A model that fails at a trial
 /// point is not an error, and a cancelled run keeps its best point.
 ///
@@ -71,8 +77,20 @@ impl BoundedLevenbergMarquardt {
         self.minimizer.fit()
     }
 
-    fn report(&self, state: FitState) -> FitState {
-        state.param(self.minimizer.values().to_vec()).cost(self.minimizer.sum_of_squares())
+    /// Tells argmin where the fit is and what it has cost.
+    ///
+    /// The points of the sharpening are the best ones though their sum of squares may be larger in its last digits, so
+    /// that argmin, which compares these, has to be told.
+    fn report<O>(&self, mut state: FitState, problem: &mut Problem<O>) -> FitState {
+        let minimizer = &self.minimizer;
+        problem.counts.insert(RESIDUALS, minimizer.residual_evaluations() as u64);
+        problem.counts.insert(JACOBIANS, minimizer.jacobian_evaluations() as u64);
+        if matches!(minimizer.phase, Phase::Polish { .. } | Phase::Done(_)) {
+            state.best_param = Some(minimizer.values().to_vec());
+            state.best_cost = minimizer.sum_of_squares();
+            state.last_best_iter = state.iter;
+        }
+        state.param(minimizer.values().to_vec()).cost(minimizer.sum_of_squares())
     }
 }
 
@@ -87,14 +105,14 @@ impl<O: Residuals> Solver<O, FitState> for BoundedLevenbergMarquardt {
     fn init(&mut self, problem: &mut Problem<O>, mut state: FitState) -> Result<(FitState, Option<KV>), Error> {
         let start = state.take_param().unwrap_or_default();
         let minimizer = &mut self.minimizer;
-        problem.problem("residuals_count", |problem| Ok(minimizer.begin(problem, &start)?))?;
-        Ok((self.report(state), None))
+        problem.problem(RESIDUALS, |problem| Ok(minimizer.begin(problem, &start)?))?;
+        Ok((self.report(state, problem), None))
     }
 
     fn next_iter(&mut self, problem: &mut Problem<O>, state: FitState) -> Result<(FitState, Option<KV>), Error> {
         let minimizer = &mut self.minimizer;
-        let outcome = problem.problem("residuals_count", |problem| Ok(minimizer.iterate(problem)))?;
-        let state = self.report(state);
+        let outcome = problem.problem(RESIDUALS, |problem| Ok(minimizer.iterate(problem)))?;
+        let state = self.report(state, problem);
         let kv = argmin::kv!(
             "radius" => self.minimizer.radius();
             "residual_evaluations" => self.minimizer.residual_evaluations() as u64;

@@ -1,5 +1,6 @@
 //! What a caller can do wrong when asking for a fit.
 
+use fmm_model::Rounded;
 use std::error::Error;
 
 /// A fit that could not begin.
@@ -18,7 +19,7 @@ pub enum FitError {
         parameters: usize,
     },
     /// A start value is NaN or infinite.
-    #[error("the start value of {parameter} must be finite, but is {value}")]
+    #[error("the start value of {parameter} must be finite, but is {value}", value = Rounded::every_digit(*.value))]
     StartNotFinite {
         /// Name of the parameter.
         parameter: String,
@@ -26,7 +27,7 @@ pub enum FitError {
         value: f64,
     },
     /// A start value lies outside the bounds of its parameter.
-    #[error("the start value of {parameter} is {value}, outside its bounds [{lower}, {upper}]")]
+    #[error("the start value of {parameter} is {value}, outside its bounds [{lower}, {upper}]", value = Rounded::every_digit(*.value), lower = Rounded::every_digit(*.lower), upper = Rounded::every_digit(*.upper))]
     StartOutsideBounds {
         /// Name of the parameter.
         parameter: String,
@@ -37,8 +38,24 @@ pub enum FitError {
         /// Upper bound.
         upper: f64,
     },
+    /// Bounds that no value satisfies.
+    #[error("the bounds of {parameter} exclude each other: at least {lower} and at most {upper}", lower = Rounded::every_digit(*.lower), upper = Rounded::every_digit(*.upper))]
+    EmptyBounds {
+        /// Name of the parameter.
+        parameter: String,
+        /// Lower bound.
+        lower: f64,
+        /// Upper bound.
+        upper: f64,
+    },
+    /// Two parameters with one name.
+    #[error("two parameters are called {name}; give each a name of its own")]
+    DuplicateName {
+        /// The name.
+        name: String,
+    },
     /// A residual at the start is NaN, infinite, or so large that the sum of squares overflows.
-    #[error("residual {index} is {value} at the start, so that the sum of squares is not finite")]
+    #[error("residual {index} is {value} at the start, so that the sum of squares is not finite", value = Rounded::every_digit(*.value))]
     ResidualNotFinite {
         /// Index of the residual, from 0.
         index: usize,
@@ -90,7 +107,7 @@ pub enum FitError {
     #[error("the model failed at the start: {0}")]
     ModelFailed(#[source] Box<dyn Error + Send + Sync>),
     /// An option has an impossible value.
-    #[error("the option {option} must be {expected}, but is {value}")]
+    #[error("the option {option} must be {expected}, but is {value}", value = Rounded::every_digit(*.value))]
     InvalidOption {
         /// Name of the option.
         option: &'static str,
@@ -108,7 +125,7 @@ pub enum FitError {
         residuals: usize,
     },
     /// A standard uncertainty cannot be divided by.
-    #[error("the standard uncertainty of residual {index} must be positive and finite, but is {value}")]
+    #[error("the standard uncertainty of residual {index} must be positive and finite, but is {value}", value = Rounded::every_digit(*.value))]
     BadUncertainty {
         /// Index of the residual, from 0.
         index: usize,

@@ -197,6 +197,7 @@ impl Minimizer {
         self.options.validate()?;
         let parameters = problem.parameters();
         if self.parameters != parameters {
+            check_parameters(parameters)?;
             self.parameters = parameters.to_vec();
         }
         check_start(parameters, start)?;
@@ -245,6 +246,20 @@ impl Minimizer {
         let (index, value) = worst(&self.current.residuals);
         FitError::ResidualNotFinite { index, value }
     }
+}
+
+fn check_parameters(parameters: &[Parameter]) -> Result<(), FitError> {
+    for (j, parameter) in parameters.iter().enumerate() {
+        let (name, bounds) = (parameter.name(), parameter.bounds());
+        if bounds.is_empty() {
+            let (parameter, lower, upper) = (name.to_owned(), bounds.lower(), bounds.upper());
+            return Err(FitError::EmptyBounds { parameter, lower, upper });
+        }
+        if parameters[..j].iter().any(|other| other.name() == name) {
+            return Err(FitError::DuplicateName { name: name.to_owned() });
+        }
+    }
+    Ok(())
 }
 
 fn check_start(parameters: &[Parameter], start: &[f64]) -> Result<(), FitError> {

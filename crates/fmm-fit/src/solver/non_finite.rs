@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use fmm_model::Rounded;
+
 /// What had no finite value when a fit last gave a trial point up.
 ///
 /// `Display` gives it in words.
@@ -27,7 +29,7 @@ pub enum NonFinite {
 impl fmt::Display for NonFinite {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Residual { index, value } => write!(f, "residual {index} is {value}"),
+            Self::Residual { index, value } => write!(f, "residual {index} is {}", Rounded::every_digit(*value)),
             Self::Derivative { parameter } => write!(f, "the derivative of the residuals by {parameter} is not finite"),
             Self::Model(text) => write!(f, "the model said: {text}"),
         }

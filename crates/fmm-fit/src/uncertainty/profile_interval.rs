@@ -1,6 +1,7 @@
 //! Intervals from the profile of the sum of squares.
 
 use crate::{FitError, Outcome};
+use fmm_model::Rounded;
 
 /// What is known of the variance of the residuals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -116,7 +117,7 @@ pub enum ProfileError {
         found: f64,
     },
     /// A fit with the parameter held did not converge.
-    #[error("with {parameter} held at {value} the fit ended as: {outcome}")]
+    #[error("with {parameter} held at {value} the fit ended as: {outcome}", value = Rounded::every_digit(*.value))]
     HeldFit {
         /// Name of the parameter.
         parameter: String,

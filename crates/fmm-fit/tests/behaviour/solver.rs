@@ -249,6 +249,57 @@ fn a_parameter_without_influence_is_named() {
     assert!(text.ends_with("only their product is determined"), "{text}");
 }
 
+/// What the residuals depend on is said as far as one point shows it.
+#[test]
+fn what_is_determined_is_named_as_it_is() {
+    let named = |start: &[f64], combined: fn(f64, f64) -> f64| {
+        let pair = problem(&[FREE, FREE, FREE], 50, move |p, i| decay(&[combined(p[0], p[1]), p[2]], i));
+        let fit = solve(&pair, start, &Options::default()).unwrap();
+        assert!(fit.outcome().is_success() && fit.null_directions().len() == 1);
+        fit.null_directions()[0].to_string()
+    };
+    let of_one_size = named(&[1.0, 1.0, 1.0], |a, b| a + b);
+    assert!(of_one_size.ends_with("only their product or their sum is determined"), "{of_one_size}");
+    let of_one_size = named(&[1.0, 1.0, 1.0], |a, b| a * b);
+    assert!(of_one_size.ends_with("only their product or their sum is determined"), "{of_one_size}");
+    let sum = named(&[1.5, 0.3, 1.0], |a, b| a + b);
+    assert_eq!(
+        sum,
+        "p0 can grow by as much as p1 shrinks without changing the residuals; only their sum is determined"
+    );
+    let product = named(&[2.0, 0.5, 1.0], |a, b| a * b);
+    assert_eq!(product, "p0 can grow as p1 shrinks without changing the residuals; only their product is determined");
+    let ratio = named(&[2.0, 0.5, 1.0], |a, b| a / b);
+    assert!(ratio.ends_with("can be scaled together without changing the residuals; only their ratios are determined"));
+    let difference = named(&[3.0, 0.5, 1.0], |a, b| a - b);
+    assert!(difference.ends_with("only their differences are determined"), "{difference}");
+}
+
+#[test]
+fn messages_have_no_rows_of_zeros() {
+    let positive = problem(&[(f64::MIN_POSITIVE, 1.0)], 2, |p, _| p[0]);
+    let message = |start: f64| solve(&positive, &[start], &Options::default()).unwrap_err().to_string();
+    assert_eq!(message(1e300), "the start value of p0 is 1e300, outside its bounds [2.2250738585072014e-308, 1]");
+    let huge = problem(&[FREE], 2, |p, _| p[0]);
+    let message = solve(&huge, &[-1e290], &Options::default()).unwrap_err().to_string();
+    assert_eq!(message, "residual 0 is -1e290 at the start, so that the sum of squares is not finite");
+}
+
+#[test]
+fn parameters_that_cannot_be_are_refused_by_name() {
+    let refused = |parameters: [Parameter; 2]| {
+        let pair =
+            Problem { parameters: parameters.to_vec(), count: 3, residual: |p: &[f64], i| Ok(p[0] + p[1] * i as f64) };
+        solve(&pair, &[2.0, 2.0], &Options::default()).unwrap_err().to_string()
+    };
+    let free = |name: &'static str| Parameter::new(name, name, "1");
+    assert_eq!(
+        refused([free("a"), free("b").bounded(Bounds::UNBOUNDED.at_least(3.0).at_most(1.0))]),
+        "the bounds of b exclude each other: at least 3 and at most 1"
+    );
+    assert_eq!(refused([free("a"), free("a")]), "two parameters are called a; give each a name of its own");
+}
+
 #[test]
 fn equal_input_gives_equal_bits_also_in_used_buffers() {
     let decay = problem(&[FREE, (0.0, 5.0)], 3000, |p, i| decay(p, i % 80));
@@ -341,6 +392,24 @@ fn argmin_runs_the_same_iterations() {
         .run();
     let message = refused.err().unwrap().to_string();
     assert_eq!(message, "the start value of p0 is -1.2, outside its bounds [0, 1]");
+}
+
+/// What argmin holds for the best point and for its cost is what the fit gives.
+#[test]
+fn argmin_has_the_same_result_and_counts() {
+    for start in (0..40).map(|i| [0.5 + 0.05 * f64::from(i), 1.2 - 0.02 * f64::from(i)]) {
+        let solver = BoundedLevenbergMarquardt::new(Options::default());
+        let result = Executor::new(problem(&[FREE, FREE], 50, decay), solver)
+            .configure(|state| state.param(start.to_vec()).max_iters(500).counting(true))
+            .run()
+            .unwrap();
+        let fit = result.solver.fit().unwrap();
+        assert_eq!(result.state.get_best_param().unwrap().as_slice(), fit.values(), "from {start:?}");
+        assert_eq!(result.state.get_best_cost(), fit.sum_of_squares());
+        let counts = result.state.get_func_counts();
+        assert_eq!(counts["residuals_count"], fit.residual_evaluations() as u64);
+        assert_eq!(counts["jacobian_count"], fit.jacobian_evaluations() as u64);
+    }
 }
 
 #[test]
