@@ -50,6 +50,7 @@
 //! | fit a hundred thousand times | [`Refit`] where only what was held changes; else [`Minimizer`], which keeps its buffers |
 //! | fit under argmin's executor | [`BoundedLevenbergMarquardt`] |
 //! | exact derivatives without writing any | [`Automatic`] |
+//! | are my own derivatives right? | [`check_jacobian`]; [`solve`] looks once in debug builds |
 //! | give each residual its uncertainty | [`Weighted`] |
 //! | let outliers count less | [`solve_robust`], as a problem of its own [`Robust`] |
 //! | find the lowest of many minima | [`MultiStart`] |
@@ -139,7 +140,8 @@ pub use regression::{
 pub use result::{Estimate, EstimateStatus, Fit, NullDirection};
 pub use robust::{Loss, Robust, RobustFit, Scale, median_deviation, solve_robust};
 pub use solver::{
-    BoundedLevenbergMarquardt, FitError, Minimizer, NonFinite, Options, Outcome, Progress, solve, solve_observed,
+    BoundedLevenbergMarquardt, FitError, JacobianDoubt, Minimizer, NonFinite, Options, Outcome, Progress,
+    check_jacobian, solve, solve_observed,
 };
 pub use starts::{Minima, Minimum, MultiStart, StartFailure};
 pub use uncertainty::{

@@ -101,7 +101,8 @@ impl Fit {
             .filter(|estimate| estimate.status().is_at_bound())
             .map(crate::Estimate::name)
             .collect();
-        let is_quiet = at_bound.is_empty() && self.null_directions().is_empty() && self.model_error().is_none();
+        let is_plain = at_bound.is_empty() && self.null_directions().is_empty() && self.model_error().is_none();
+        let is_quiet = is_plain && self.jacobian_doubts().is_empty();
         if is_quiet && self.outcome().is_success() {
             return Ok(());
         }
@@ -113,6 +114,9 @@ impl Fit {
             && let Some(reason) = self.non_finite()
         {
             writeln!(f, "  what had no finite value beyond them: {reason}")?;
+        }
+        for doubt in self.jacobian_doubts() {
+            writeln!(f, "  {doubt}")?;
         }
         for direction in self.null_directions() {
             writeln!(f, "  {direction}")?;

@@ -43,7 +43,7 @@ impl Minimizer {
         Outcome::Cancelled
     }
 
-    fn limit_reached(&self) -> Option<Outcome> {
+    pub(crate) fn limit_reached(&self) -> Option<Outcome> {
         let is_late = |began: Instant| self.options.time_limit.is_some_and(|limit| began.elapsed() >= limit);
         if self.options.is_cancelled() {
             Some(Outcome::Cancelled)
@@ -169,6 +169,9 @@ impl Minimizer {
         };
         let is_worse = self.best.as_ref().is_some_and(|best| best.sum_of_squares < self.current.sum_of_squares);
         if reason.is_success() && !is_worse {
+            if self.may_leave_saddle(reason) && self.leave_saddle(problem, reason) {
+                return;
+            }
             self.begin_polish(problem, reason);
             return;
         }
@@ -213,7 +216,7 @@ impl Minimizer {
 
     fn begin_polish<P: Residuals + ?Sized>(&mut self, problem: &P, reason: Outcome) {
         if self.options.polish_steps == 0 {
-            self.finish(reason);
+            self.finish(problem, reason, 0.0);
             return;
         }
         if self.evaluator.scheme == Scheme::Forward {
@@ -231,13 +234,15 @@ impl Minimizer {
         let step = self.region.gauss_newton(&self.gaps.0, &self.gaps.1);
         take(step, &self.evaluator, &self.current.values, &mut self.trial.values);
         let moved = self.trial.values != self.current.values;
+        let free_values = self.evaluator.free.iter().map(|&j| self.current.values[j]);
+        let length = self.region.scaled_length(self.region_step()) / self.region.scaled_length(free_values);
         let tolerated = self.current.sum_of_squares * (1.0 + 1e-9);
         if !(moved
             && self.evaluator.residuals(problem, &mut self.trial)
             && self.trial.sum_of_squares <= tolerated
             && self.evaluator.factor(problem, &mut self.trial))
         {
-            self.finish(reason);
+            self.finish(problem, reason, length);
             return;
         }
         let next = projected_residual(&self.trial, &self.evaluator);
@@ -246,13 +251,15 @@ impl Minimizer {
             self.region.set_model(&self.current.triangle, self.rank_threshold());
         }
         if next > 0.9 * level || left == 1 {
-            self.finish(reason);
+            self.finish(problem, reason, length);
         } else {
             self.phase = Phase::Polish { reason, level: next, left: left - 1 };
         }
     }
 
-    fn finish(&mut self, reason: Outcome) {
+    /// Ends a fit whose last sharpening step was relatively so long.
+    fn finish<P: Residuals + ?Sized>(&mut self, problem: &P, reason: Outcome, length: f64) {
+        self.sharpen_by_curvature(problem, length);
         self.phase = Phase::Done(if is_at_noise_floor(&self.current, &self.evaluator) {
             Outcome::AtNoiseFloor
         } else if largest_cosine(&self.current, &self.evaluator) <= self.options.gradient_tolerance {

@@ -8,7 +8,7 @@ use crate::solver::evaluation::{Evaluator, Point, Scheme};
 use crate::solver::non_finite::worst;
 use crate::solver::triangle::Triangle;
 use crate::solver::trust_region::TrustRegion;
-use crate::{Fit, FitError, NonFinite, Options, Outcome, Residuals};
+use crate::{Fit, FitError, JacobianDoubt, NonFinite, Options, Outcome, Residuals};
 
 /// The square of the rounding of a smaller residual, √10⁻³⁰⁸/ε, is no normal number.
 const SMALLEST_RESIDUAL: f64 = 1e-138;
@@ -19,7 +19,9 @@ const SMALLEST_RESIDUAL: f64 = 1e-138;
 /// A Levenberg–Marquardt method in a box. Each step minimises the linear model of the residuals within the trust
 /// region *and* the bounds, so that active bounds are met exactly; a search that ends where the gradient does not
 /// vanish begins again with another radius; a search that ends well is followed by Gauss–Newton steps that are
-/// accepted for lowering the gradient, as the sum of squares can no longer tell them apart.
+/// accepted for lowering the gradient, as the sum of squares can no longer tell them apart, and, if these do not end, by
+/// Newton steps with differences of exact derivatives. Where the residuals do not determine all directions, the fit looks
+/// once for one in which the sum of squares falls, as from a saddle, which symmetric starts lead to.
 ///
 /// ```
 /// use fmm_fit::{EvaluationError, Minimizer, Options, Residuals};
@@ -63,6 +65,9 @@ pub struct Minimizer {
     pub(crate) phase: Phase,
     pub(crate) attempt: usize,
     pub(crate) best: Option<Attempt>,
+    /// Whether the fit has left a point where the gradient vanishes and the sum of squares falls all the same.
+    pub(crate) is_saddle_left: bool,
+    pub(crate) doubts: Vec<JacobianDoubt>,
     pub(crate) iterations: usize,
     pub(crate) began: Option<Instant>,
 }
@@ -202,7 +207,8 @@ impl Minimizer {
         }
         check_start(parameters, start)?;
         self.began = self.options.time_limit.map(|_| Instant::now());
-        (self.iterations, self.attempt, self.best) = (0, 0, None);
+        (self.iterations, self.attempt, self.best, self.is_saddle_left) = (0, 0, None, false);
+        self.doubts.clear();
         self.start.clear();
         self.start.extend_from_slice(start);
         let bounds = parameters.iter().map(|parameter| (parameter.bounds().lower(), parameter.bounds().upper()));
@@ -262,7 +268,7 @@ fn check_parameters(parameters: &[Parameter]) -> Result<(), FitError> {
     Ok(())
 }
 
-fn check_start(parameters: &[Parameter], start: &[f64]) -> Result<(), FitError> {
+pub(crate) fn check_start(parameters: &[Parameter], start: &[f64]) -> Result<(), FitError> {
     if start.len() != parameters.len() {
         return Err(FitError::StartLength { values: start.len(), parameters: parameters.len() });
     }

@@ -2,10 +2,12 @@
 
 mod argmin_solver;
 mod box_least_squares;
+mod curvature;
 pub(crate) mod differences;
 mod error;
 pub(crate) mod evaluation;
 mod iteration;
+mod jacobian_check;
 pub(crate) mod minimizer;
 mod non_finite;
 mod optimality;
@@ -19,6 +21,7 @@ mod trust_region;
 
 pub use argmin_solver::BoundedLevenbergMarquardt;
 pub use error::FitError;
+pub use jacobian_check::{JacobianDoubt, check_jacobian};
 pub use minimizer::Minimizer;
 pub use non_finite::NonFinite;
 pub use options::Options;

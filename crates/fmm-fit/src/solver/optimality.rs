@@ -37,7 +37,7 @@ pub(crate) fn projected_residual(point: &Point, evaluator: &Evaluator) -> f64 {
 }
 
 /// The free parameters, as columns, that do not lie on a bound that the gradient pushes them against.
-fn loose<'a>(point: &'a Point, evaluator: &'a Evaluator) -> impl Iterator<Item = usize> + 'a {
+pub(crate) fn loose<'a>(point: &'a Point, evaluator: &'a Evaluator) -> impl Iterator<Item = usize> + 'a {
     let is_held = |column: usize| {
         let (j, gradient) = (evaluator.free[column], point.triangle.gradient(column));
         (point.values[j] == evaluator.lower[j] && gradient > 0.0)

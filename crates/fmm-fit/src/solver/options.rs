@@ -28,6 +28,7 @@ pub struct Options {
     pub(crate) initial_radius: f64,
     pub(crate) polish_steps: usize,
     pub(crate) restarts: usize,
+    pub(crate) jacobian_check: bool,
 }
 
 impl Default for Options {
@@ -43,6 +44,7 @@ impl Default for Options {
             initial_radius: 1.0,
             polish_steps: 40,
             restarts: 3,
+            jacobian_check: cfg!(debug_assertions),
         }
     }
 }
@@ -118,6 +120,15 @@ impl Options {
     #[must_use]
     pub fn with_restarts(mut self, restarts: usize) -> Self {
         self.restarts = restarts;
+        self
+    }
+
+    /// Whether [`solve`](crate::solve) compares the derivatives that a problem gives with differences at the start, as
+    /// [`check_jacobian`](crate::check_jacobian) does (in debug builds yes, in release builds no). What it finds is in
+    /// [`Fit::jacobian_doubts`](crate::Fit::jacobian_doubts) and changes nothing else; its evaluations are not counted.
+    #[must_use]
+    pub fn with_jacobian_check(mut self, check: bool) -> Self {
+        self.jacobian_check = check;
         self
     }
 

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::{Fit, FitError, Minimizer, Options, Outcome, Residuals};
+use crate::{Fit, FitError, Minimizer, Options, Outcome, Residuals, check_jacobian};
 
 /// Fits `problem` from `start`, one value per parameter within its bounds.
 ///
@@ -53,6 +53,9 @@ pub fn solve_observed<P: Residuals + ?Sized>(
 ) -> Result<Fit, FitError> {
     let mut minimizer = Minimizer::new(options.clone());
     minimizer.begin(problem, start)?;
+    if options.jacobian_check {
+        minimizer.doubts = check_jacobian(problem, start)?;
+    }
     let mut outcome = minimizer.outcome();
     while outcome.is_none() {
         outcome = minimizer.iterate(problem);
