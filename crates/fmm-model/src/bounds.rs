@@ -93,7 +93,7 @@ impl Bounds {
 
     /// Whether the interval is a single point, which holds the parameter fixed.
     pub fn is_fixed(&self) -> bool {
-        self.lower == self.upper
+        self.lower == self.upper && !self.is_empty()
     }
 }
 
