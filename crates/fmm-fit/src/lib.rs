@@ -1,6 +1,17 @@
 //! Bounded nonlinear least squares for argmin, with covariance, rank and what the data could not tell.
 //!
-//! Describe a problem by [`Residuals`], or by a formula as a [`Model`]; call [`solve`]; read the [`Fit`].
+//! For a curve through data a closure is enough; its derivatives are exact:
+//!
+//! ```
+//! use fmm_fit::{Scalar, curve_fit};
+//!
+//! let (t, x) = ([0.0, 1.0, 2.0, 3.0, 4.0], [2.003, 1.211, 0.738, 0.442, 0.271]);
+//! let fit = curve_fit(&t, &x, [("amplitude", 1.0), ("rate", 0.1)], |t, [a, b]| a * (-b * t).exp())?;
+//! assert!((fit.values()[1] - 0.501_354).abs() < 1e-4);
+//! # Ok::<(), fmm_fit::FitError>(())
+//! ```
+//!
+//! Otherwise describe a problem by [`Residuals`], or by a formula as a [`Model`]; call [`solve`]; read the [`Fit`].
 //!
 //! ```
 //! use fmm_fit::{EvaluationError, Options, Residuals, solve};
@@ -46,6 +57,7 @@
 //!
 //! | question | item |
 //! |---|---|
+//! | fit a curve, or residuals that a closure gives | [`curve_fit`], [`fit`]; with options or weights [`curve`], [`Formula`] |
 //! | fit once | [`solve`]; with progress and cancellation [`solve_observed`] |
 //! | fit a hundred thousand times | [`Refit`] where only what was held changes; else [`Minimizer`], which keeps its buffers |
 //! | fit under argmin's executor | [`BoundedLevenbergMarquardt`] |
@@ -133,7 +145,11 @@ pub use diagnostics::{
     NormalityTest, ResidualDiagnostics, RunsTest, anderson_darling, autocorrelation_time, durbin_watson,
     effective_count, runs_test,
 };
-pub use problem::{Automatic, Block, EvaluationError, Held, Joint, JointError, JointPart, Model, Residuals, Weighted};
+pub use fmm_model::{Bounds, Dual, ModelError, Parameter, Scalar};
+pub use problem::{
+    Automatic, Block, EvaluationError, Formula, Held, Joint, JointError, JointPart, Model, Residuals, Weighted, curve,
+    curve_fit, fit,
+};
 pub use regression::{
     LinearRegression, Polynomial, PowerLaw, RegressionError, StraightLine, UncertainPoint, Weighting, YorkLine,
 };

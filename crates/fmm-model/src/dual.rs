@@ -1,6 +1,7 @@
 //! A number that carries its partial derivatives along.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::cmp::Ordering;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use crate::Scalar;
 
@@ -10,11 +11,11 @@ use crate::Scalar;
 /// f(a + Σ aᵢ εᵢ) = f(a) + Σ f′(a) aᵢ εᵢ,     εᵢ εⱼ = 0
 /// ```
 ///
-/// The values are bit for bit those of `f64`. [`Scalar`] holds its functions.
+/// The values are bit for bit those of `f64`, and comparisons are those of values. [`Scalar`] holds its functions.
 ///
 /// # References
 /// W. K. Clifford, "Preliminary sketch of biquaternions", Proc. London Math. Soc. 4 (1873) 381.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Dual<const N: usize> {
     value: f64,
     partials: [f64; N],
@@ -111,6 +112,61 @@ impl<const N: usize> Div<f64> for Dual<N> {
     }
 }
 
+macro_rules! with_plain_numbers {
+    ($($trait:ident $method:ident $assign:ident $assign_method:ident),*) => {$(
+        impl<const N: usize> $trait<Dual<N>> for f64 {
+            type Output = Dual<N>;
+            fn $method(self, other: Dual<N>) -> Dual<N> {
+                Dual::from(self).$method(other)
+            }
+        }
+
+        impl<const N: usize> $assign for Dual<N> {
+            fn $assign_method(&mut self, other: Self) {
+                *self = self.$method(other);
+            }
+        }
+
+        impl<const N: usize> $assign<f64> for Dual<N> {
+            fn $assign_method(&mut self, other: f64) {
+                *self = self.$method(other);
+            }
+        }
+    )*};
+}
+
+with_plain_numbers!(
+    Add add AddAssign add_assign,
+    Sub sub SubAssign sub_assign,
+    Mul mul MulAssign mul_assign,
+    Div div DivAssign div_assign
+);
+
+/// By values alone: branches are those of plain numbers.
+impl<const N: usize> PartialEq for Dual<N> {
+    fn eq(&self, other: &Self) -> bool {
+        self.value == other.value
+    }
+}
+
+impl<const N: usize> PartialOrd for Dual<N> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        self.value.partial_cmp(&other.value)
+    }
+}
+
+impl<const N: usize> PartialEq<f64> for Dual<N> {
+    fn eq(&self, other: &f64) -> bool {
+        self.value == *other
+    }
+}
+
+impl<const N: usize> PartialOrd<f64> for Dual<N> {
+    fn partial_cmp(&self, other: &f64) -> Option<Ordering> {
+        self.value.partial_cmp(other)
+    }
+}
+
 impl<const N: usize> Scalar for Dual<N> {
     const DIRECTIONS: usize = N;
 
@@ -142,16 +198,45 @@ impl<const N: usize> Scalar for Dual<N> {
         let (sin, cos) = self.value.sin_cos();
         (self.chain(sin, cos), self.chain(cos, -sin))
     }
+    fn sin(self) -> Self {
+        self.chain(self.value.sin(), self.value.cos())
+    }
+    fn cos(self) -> Self {
+        self.chain(self.value.cos(), -self.value.sin())
+    }
+    fn tan(self) -> Self {
+        let tan = self.value.tan();
+        self.chain(tan, 1.0 + tan * tan)
+    }
+    fn atan(self) -> Self {
+        self.chain(self.value.atan(), (1.0 + self.value * self.value).recip())
+    }
+    fn log10(self) -> Self {
+        self.chain(self.value.log10(), (self.value * std::f64::consts::LN_10).recip())
+    }
     fn tanh(self) -> Self {
         let tanh = self.value.tanh();
         // 1 − tanh² loses its digits where tanh is close to 1; 1/cosh² does not.
         let cosh = self.value.cosh();
         self.chain(tanh, (cosh * cosh).recip())
     }
-    fn powf(self, exponent: Self) -> Self {
+    fn powi(self, exponent: i32) -> Self {
+        let slope = match exponent {
+            0 => 0.0,
+            _ => f64::from(exponent) * self.value.powi(exponent.saturating_sub(1)),
+        };
+        self.chain(self.value.powi(exponent), slope)
+    }
+    fn powf(self, exponent: impl Into<Self>) -> Self {
+        let exponent: Self = exponent.into();
         let power = self.value.powf(exponent.value);
-        let slope = exponent.value * self.value.powf(exponent.value - 1.0);
-        self.chain_with(power, slope, exponent, power * self.value.ln())
+        let slope = if exponent.value == 0.0 { 0.0 } else { exponent.value * self.value.powf(exponent.value - 1.0) };
+        if exponent.partials.iter().all(|partial| *partial == 0.0) {
+            // Without the logarithm, which a base that is not positive has not.
+            self.chain(power, slope)
+        } else {
+            self.chain_with(power, slope, exponent, power * self.value.ln())
+        }
     }
     fn atan2(self, x: Self) -> Self {
         // y′ x − x′ y over x² + y², in units of the larger of the two, whose squares neither over- nor underflow.

@@ -74,6 +74,19 @@ impl Parameter {
     }
 }
 
+/// An unbounded pure number with this name, which is its symbol too.
+///
+/// ```
+/// use fmm_model::Parameter;
+///
+/// assert_eq!(Parameter::from("ratio"), Parameter::new("ratio", "ratio", "1"));
+/// ```
+impl From<&'static str> for Parameter {
+    fn from(name: &'static str) -> Self {
+        Self::new(name, name, "1")
+    }
+}
+
 impl std::fmt::Display for Parameter {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{} {} ({})", self.name, self.symbol, self.unit)

@@ -1,15 +1,19 @@
 //! The number type in which a formula is written once: plain, or carrying derivatives.
 
 use std::fmt::Debug;
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// What a formula of FMM needs of its number type.
 ///
 /// A law or an engine written over `Scalar` gives its value at `f64` and its exact gradient at [`Dual`](crate::Dual), from
-/// the same lines. The trait is deliberately small: the arithmetic, with `f64` on the right, and the functions
-/// that friction laws and linear oscillators use. A general trait such as num-dual's `DualNum` would put its
-/// forty methods and its version number into every signature of a user's own law, and its division, x·(1/y), does not
-/// keep the promise below.
+/// the same lines. The trait is deliberately small: the arithmetic, comparisons of values, and the functions that formulas
+/// of mechanics and of budgets use. A general trait such as num-dual's `DualNum` would put its forty methods and its
+/// version number into every signature of a user's own law, and its division, x·(1/y), does not keep the promise below.
+///
+/// Arithmetic takes a plain number on either side: `x * 2.0` everywhere, `2.0 * x` where the type is named, as in a
+/// closure over `Dual<2>`. In a function generic in `D: Scalar` the language knows `2.0 * x` only if it is told so,
+/// `where f64: Mul<D, Output = D>`; a bound of the trait itself would make it take every product of two plain numbers in
+/// such a function for one of these.
 ///
 /// An implementor promises that `value` of each operation is, to the last bit, the `f64` operation on the `value`s, so
 /// that branches taken on values, exact ties among them, are the same for every number type.
@@ -40,6 +44,16 @@ pub trait Scalar:
     + Sub<f64, Output = Self>
     + Mul<f64, Output = Self>
     + Div<f64, Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+    + AddAssign<f64>
+    + SubAssign<f64>
+    + MulAssign<f64>
+    + DivAssign<f64>
+    + PartialOrd
+    + PartialOrd<f64>
 {
     /// How many directions of derivative the number carries; 0 for `f64`.
     const DIRECTIONS: usize;
@@ -62,12 +76,42 @@ pub trait Scalar:
     fn sqrt(self) -> Self;
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
+    /// Sine.
+    #[must_use]
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+    /// Cosine.
+    #[must_use]
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+    /// Tangent.
+    #[must_use]
+    fn tan(self) -> Self;
+    /// The angle in (−π/2, π/2) with this tangent.
+    #[must_use]
+    fn atan(self) -> Self;
+    /// Decimal logarithm.
+    #[must_use]
+    fn log10(self) -> Self;
     /// Hyperbolic tangent.
     #[must_use]
     fn tanh(self) -> Self;
-    /// Power with an exponent that may itself be a parameter, for a positive base.
+    /// Whole power, of a base of either sign.
     #[must_use]
-    fn powf(self, exponent: Self) -> Self;
+    fn powi(self, exponent: i32) -> Self;
+    /// Power with an exponent that is a number or itself a parameter, the latter for a positive base.
+    ///
+    /// ```
+    /// use fmm_model::{Dual, Scalar};
+    ///
+    /// let x = Dual::<1>::variable(4.0, 0);
+    /// assert_eq!((x.powf(1.5).value(), x.powf(1.5).partial(0)), (8.0, 3.0));
+    /// assert_eq!(x.powf(x).value(), 256.0);
+    /// ```
+    #[must_use]
+    fn powf(self, exponent: impl Into<Self>) -> Self;
     /// The angle of the point (`x`, `self`) in (−π, π].
     #[must_use]
     fn atan2(self, x: Self) -> Self;
@@ -102,11 +146,29 @@ impl Scalar for f64 {
     fn sin_cos(self) -> (Self, Self) {
         f64::sin_cos(self)
     }
+    fn sin(self) -> Self {
+        f64::sin(self)
+    }
+    fn cos(self) -> Self {
+        f64::cos(self)
+    }
+    fn tan(self) -> Self {
+        f64::tan(self)
+    }
+    fn atan(self) -> Self {
+        f64::atan(self)
+    }
+    fn log10(self) -> Self {
+        f64::log10(self)
+    }
     fn tanh(self) -> Self {
         f64::tanh(self)
     }
-    fn powf(self, exponent: Self) -> Self {
-        f64::powf(self, exponent)
+    fn powi(self, exponent: i32) -> Self {
+        f64::powi(self, exponent)
+    }
+    fn powf(self, exponent: impl Into<Self>) -> Self {
+        f64::powf(self, exponent.into())
     }
     fn atan2(self, x: Self) -> Self {
         f64::atan2(self, x)
@@ -120,7 +182,16 @@ mod tests {
 
     fn all_functions<D: Scalar>(x: D, y: D) -> D {
         let (sin, cos) = (x * 0.7).sin_cos();
-        x.exp() * sin + (y.ln() - cos) / x.sqrt() + x.powf(y) * y.atan2(x) + (y - 0.3).tanh()
+        let mut sum = x.exp() * sin + (y.ln() - cos) / x.sqrt() + x.powf(y) * y.atan2(x) + (y - 0.3).tanh();
+        sum += x.sin() * y.cos() - (x * 0.4).tan();
+        sum += 0.5;
+        sum -= y.atan() / x.log10();
+        sum -= x.powf(2.5);
+        sum *= (x - y).powi(3);
+        sum *= 0.125;
+        sum /= y.powi(-2);
+        sum /= 3.0;
+        sum
     }
 
     /// Central differences of step h carry an error of about h² plus ε/h: 1e-9 for h = 1e-5 and slopes near 10.
@@ -144,6 +215,36 @@ mod tests {
         check::<f64>(0);
         check::<Dual<1>>(1);
         check::<Dual<2>>(2);
+    }
+
+    #[test]
+    fn plain_numbers_stand_on_either_side() {
+        let x = Dual::<1>::variable(4.0, 0);
+        let all = [2.0 + x, 2.0 - x, 2.0 * x, 2.0 / x];
+        assert_eq!(all.map(Scalar::value), [6.0, -2.0, 8.0, 0.5]);
+        assert_eq!(all.map(|y| y.partial(0)), [1.0, -1.0, 2.0, -0.125]);
+        assert!(x > 3.0 && x <= 4.0 && x == 4.0 && x < Dual::from(5.0) && x == Dual::from(4.0));
+        fn doubled<D: Scalar>(x: D) -> D
+        where
+            f64: Mul<D, Output = D>,
+        {
+            2.0 * x
+        }
+        assert_eq!(doubled(x).partial(0), doubled(1.0));
+    }
+
+    #[test]
+    fn powers_of_numbers_that_are_not_positive_have_their_derivatives() {
+        let at = |value| Dual::<1>::variable(value, 0);
+        assert_eq!((at(-3.0).powi(3).value(), at(-3.0).powi(3).partial(0)), (-27.0, 27.0));
+        assert_eq!(
+            (at(0.0).powi(0).partial(0), at(0.0).powi(1).partial(0), at(0.0).powi(2).partial(0)),
+            (0.0, 1.0, 0.0)
+        );
+        assert_eq!((at(0.0).powf(2.0).value(), at(0.0).powf(2.0).partial(0)), (0.0, 0.0));
+        assert_eq!((at(-2.0).powf(2.0).value(), at(-2.0).powf(2.0).partial(0)), (4.0, -4.0));
+        assert_eq!(at(0.0).powf(0.0).partial(0), 0.0);
+        assert_eq!(at(-2.0).powi(i32::MIN).value(), f64::powi(-2.0, i32::MIN));
     }
 
     #[test]

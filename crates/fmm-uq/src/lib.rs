@@ -40,7 +40,8 @@
 //! | what if a trial takes a second? | [`QuasiMonteCarlo`]; or many machines and [`Partial`] results | [`QuasiMonteCarlo`]: more than 64 dimensions, models with kinks |
 //! | several results together? | [`Propagation`], [`OutputSample::ellipsoid`], [`OutputSample::rectangle`] | |
 //!
-//! Write a model once, generic in its number: `f64` for trials, [`Taylor`] for exact derivatives.
+//! Write a model once, generic in its number: `f64` for trials, [`Taylor`] for exact derivatives. A closure has one number
+//! type: write it over [`Taylor`], and give trials [`at_values`] of it.
 //!
 //! # Units and conventions
 //!
@@ -83,6 +84,7 @@
 mod adaptive;
 mod allowed_failures;
 mod arc_sine;
+mod at_values;
 #[cfg(feature = "serde")]
 mod bits;
 mod block;
@@ -131,6 +133,7 @@ mod validation;
 mod ziggurat;
 
 pub use adaptive::{Adaptive, IntervalKind};
+pub use at_values::at_values;
 pub use budget::{Budget, Contribution};
 pub use coverage::coverage_factor;
 pub use distribution::Distribution;

@@ -1,6 +1,7 @@
 //! A number that carries its Taylor expansion along.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::cmp::Ordering;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use fmm_model::Scalar;
 
@@ -17,8 +18,8 @@ const PRODUCTS: [(usize, usize, usize); 35] = products();
 /// ```
 ///
 /// It is what a model is evaluated in for its sensitivities, its curvature and the second-order terms of the GUM, pair
-/// by pair of inputs. [`Scalar`] holds its functions; the arithmetic is with itself and with `f64` on the
-/// right. Its values are those of `f64` to the last bit.
+/// by pair of inputs. [`Scalar`] holds its functions; the arithmetic is with itself and with `f64`. Its values are those of
+/// `f64` to the last bit, and comparisons are those of values.
 ///
 /// ```
 /// use fmm_uq::{Scalar, Taylor};
@@ -29,7 +30,7 @@ const PRODUCTS: [(usize, usize, usize); 35] = products();
 /// assert_eq!((f.value(), f.partial(0), f.partial(1)), (18.0, 12.0, 9.0));
 /// assert_eq!((f.coefficient(2, 0), f.coefficient(1, 1)), (2.0, 6.0));
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Taylor {
     coefficients: [f64; 10],
 }
@@ -187,6 +188,61 @@ impl Div<f64> for Taylor {
     }
 }
 
+macro_rules! with_plain_numbers {
+    ($($trait:ident $method:ident $assign:ident $assign_method:ident),*) => {$(
+        impl $trait<Taylor> for f64 {
+            type Output = Taylor;
+            fn $method(self, other: Taylor) -> Taylor {
+                Taylor::from(self).$method(other)
+            }
+        }
+
+        impl $assign for Taylor {
+            fn $assign_method(&mut self, other: Self) {
+                *self = self.$method(other);
+            }
+        }
+
+        impl $assign<f64> for Taylor {
+            fn $assign_method(&mut self, other: f64) {
+                *self = self.$method(other);
+            }
+        }
+    )*};
+}
+
+with_plain_numbers!(
+    Add add AddAssign add_assign,
+    Sub sub SubAssign sub_assign,
+    Mul mul MulAssign mul_assign,
+    Div div DivAssign div_assign
+);
+
+/// By values alone: branches are those of plain numbers.
+impl PartialEq for Taylor {
+    fn eq(&self, other: &Self) -> bool {
+        self.value() == other.value()
+    }
+}
+
+impl PartialOrd for Taylor {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        self.value().partial_cmp(&other.value())
+    }
+}
+
+impl PartialEq<f64> for Taylor {
+    fn eq(&self, other: &f64) -> bool {
+        self.value() == *other
+    }
+}
+
+impl PartialOrd<f64> for Taylor {
+    fn partial_cmp(&self, other: &f64) -> Option<Ordering> {
+        self.value().partial_cmp(other)
+    }
+}
+
 impl Scalar for Taylor {
     const DIRECTIONS: usize = 2;
 
@@ -215,13 +271,37 @@ impl Scalar for Taylor {
         let (sin, cos) = self.value().sin_cos();
         (self.compose(sin, [cos, -sin / 2.0, -cos / 6.0]), self.compose(cos, [-sin, -cos / 2.0, sin / 6.0]))
     }
+    fn tan(self) -> Self {
+        let t = self.value().tan();
+        let slope = 1.0 + t * t;
+        self.compose(t, [slope, t * slope, slope * (1.0 + 3.0 * t * t) / 3.0])
+    }
+    fn atan(self) -> Self {
+        let x = self.value();
+        let slope = (1.0 + x * x).recip();
+        self.compose(x.atan(), [slope, -x * slope * slope, (3.0 * x * x - 1.0) * slope * slope * slope / 3.0])
+    }
+    fn log10(self) -> Self {
+        let mut logarithm = self.ln() / std::f64::consts::LN_10;
+        logarithm.coefficients[0] = self.value().log10();
+        logarithm
+    }
     fn tanh(self) -> Self {
         let t = self.value().tanh();
         let cosh = self.value().cosh();
         let slope = (cosh * cosh).recip();
         self.compose(t, [slope, -t * slope, slope * (3.0 * t * t - 1.0) / 3.0])
     }
-    fn powf(self, exponent: Self) -> Self {
+    fn powi(self, exponent: i32) -> Self {
+        let (x, p) = (self.value(), f64::from(exponent));
+        // Down from the exponent, of which none is left where the factor is zero.
+        let power = |less: i32| x.powi(exponent.saturating_sub(less));
+        let series =
+            [term(power(1), p), term(power(2), p * (p - 1.0) / 2.0), term(power(3), p * (p - 1.0) * (p - 2.0) / 6.0)];
+        self.compose(x.powi(exponent), series)
+    }
+    fn powf(self, exponent: impl Into<Self>) -> Self {
+        let exponent: Self = exponent.into();
         let (x, p) = (self.value(), exponent.value());
         let value = x.powf(p);
         if exponent.coefficients[1..].iter().all(|&c| c == 0.0) {

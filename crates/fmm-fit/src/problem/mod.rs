@@ -2,6 +2,7 @@
 
 mod automatic;
 pub(crate) mod block;
+mod formula;
 pub(crate) mod forward;
 mod held;
 mod joint;
@@ -11,6 +12,7 @@ mod weighted;
 
 pub use automatic::{Automatic, Model};
 pub use block::Block;
+pub use formula::{Formula, curve, curve_fit, fit};
 pub use held::Held;
 pub use joint::{Joint, JointPart};
 pub use joint_error::JointError;

@@ -116,6 +116,14 @@ pub enum FitError {
         /// The value given.
         value: f64,
     },
+    /// There is not one abscissa per ordinate.
+    #[error("there are {abscissae} abscissae for {ordinates} ordinates; give one for each")]
+    DataLength {
+        /// Number of abscissae given.
+        abscissae: usize,
+        /// Number of ordinates given.
+        ordinates: usize,
+    },
     /// There is not one standard uncertainty per residual.
     #[error("{uncertainties} standard uncertainties were given for {residuals} residuals; give one for each")]
     UncertaintyCount {

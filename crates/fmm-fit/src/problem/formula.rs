@@ -1,0 +1,229 @@
+//! A problem out of a closure, with exact derivatives.
+
+use fmm_model::{Dual, Parameter, Scalar};
+
+use crate::{EvaluationError, Fit, FitError, Options, Residuals, solve};
+
+/// Residuals that a closure gives in numbers that carry the derivatives by all `N` parameters along.
+///
+/// [`fit`] and [`curve_fit`] make one and solve it; by itself it takes options, weights, losses and a place in a joint
+/// problem. A closure that fails says so by a residual that is not finite; a type that implements
+/// [`Model`](crate::Model) can say why.
+#[derive(Debug, Clone)]
+pub struct Formula<F, const N: usize> {
+    parameters: [Parameter; N],
+    count: usize,
+    residuals: F,
+}
+
+impl<F: Fn([Dual<N>; N], &mut [Dual<N>]), const N: usize> Formula<F, N> {
+    /// The problem of these parameters (a name alone makes an unbounded pure number) and `count` residuals, all of which
+    /// the closure fills, model minus data.
+    pub fn new(parameters: [impl Into<Parameter>; N], count: usize, residuals: F) -> Self {
+        Self { parameters: parameters.map(Into::into), count, residuals }
+    }
+
+    fn evaluate(&self, p: &[f64], variable: impl Fn(f64, usize) -> Dual<N>) -> Vec<Dual<N>> {
+        let variables = std::array::from_fn(|j| variable(p[j], j));
+        let mut carried = vec![Dual::from(0.0); self.count];
+        (self.residuals)(variables, &mut carried);
+        carried
+    }
+}
+
+impl<F: Fn([Dual<N>; N], &mut [Dual<N>]), const N: usize> Residuals for Formula<F, N> {
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+    fn len(&self) -> usize {
+        self.count
+    }
+    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        let carried = self.evaluate(p, |value, _| Dual::from(value));
+        residuals.iter_mut().zip(&carried).for_each(|(out, r)| *out = r.value());
+        Ok(())
+    }
+    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
+        self.residuals_and_jacobian(p, &mut [], jacobian)
+    }
+    fn residuals_and_jacobian(
+        &self,
+        p: &[f64],
+        residuals: &mut [f64],
+        jacobian: &mut [f64],
+    ) -> Result<bool, EvaluationError> {
+        let carried = self.evaluate(p, Dual::variable);
+        residuals.iter_mut().zip(&carried).for_each(|(out, r)| *out = r.value());
+        if self.count > 0 {
+            for (j, column) in jacobian.chunks_exact_mut(self.count).enumerate() {
+                column.iter_mut().zip(&carried).for_each(|(element, r)| *element = r.partial(j));
+            }
+        }
+        Ok(true)
+    }
+    /// A closure over one number type costs the same with and without derivatives.
+    fn is_cheaper_combined(&self) -> bool {
+        true
+    }
+    fn fills_fixed_columns(&self) -> bool {
+        true
+    }
+}
+
+/// The problem of a curve through data, rᵢ = f(xᵢ, θ) − yᵢ, for [`Weighted`](crate::Weighted), options or a loss.
+///
+/// ```
+/// use fmm_fit::{Options, Weighted, curve, solve};
+///
+/// // A line through two readings of different uncertainty and one of none too many.
+/// let line = curve(&[0.0, 1.0, 2.0], &[1.0, 3.1, 5.0], ["offset", "slope"], |x, [a, b]| a + b * x)?;
+/// let fit = solve(&Weighted::new(line, vec![0.1, 0.5, 0.1])?, &[0.0, 1.0], &Options::default())?;
+/// assert!((fit.values()[1] - 2.0).abs() < 1e-9);
+/// # Ok::<(), fmm_fit::FitError>(())
+/// ```
+///
+/// # Errors
+/// [`FitError::DataLength`] unless there is one abscissa per ordinate.
+pub fn curve<'a, X: Copy, const N: usize>(
+    x: &'a [X],
+    y: &'a [f64],
+    parameters: [impl Into<Parameter>; N],
+    model: impl Fn(X, [Dual<N>; N]) -> Dual<N> + 'a,
+) -> Result<Formula<impl Fn([Dual<N>; N], &mut [Dual<N>]) + 'a, N>, FitError> {
+    if x.len() != y.len() {
+        return Err(FitError::DataLength { abscissae: x.len(), ordinates: y.len() });
+    }
+    Ok(Formula::new(parameters, y.len(), move |p: [Dual<N>; N], residuals: &mut [Dual<N>]| {
+        for ((r, x), y) in residuals.iter_mut().zip(x).zip(y) {
+            *r = model(*x, p) - *y;
+        }
+    }))
+}
+
+/// Fits a curve y = f(x, θ) to data, with exact derivatives, from a start value for each parameter.
+///
+/// The abscissa may be of any type that can be copied, such as `[f64; 2]` for two predictors. A parameter is a name, or a
+/// [`Parameter`] with symbol, unit and bounds.
+///
+/// ```
+/// use fmm_fit::{Scalar, curve_fit};
+///
+/// let (t, x) = ([0.0, 10.0, 20.0, 30.0], [80.1, 48.4, 29.5, 17.8]);
+/// let fit = curve_fit(&t, &x, [("amplitude", 50.0), ("rate", 0.01)], |t, [a, b]| a * (-b * t).exp())?;
+/// assert!(fit.outcome().is_success() && fit.has_exact_jacobian());
+/// assert!((fit.values()[1] - 0.0501).abs() < 1e-4);
+/// # Ok::<(), fmm_fit::FitError>(())
+/// ```
+///
+/// [`Scalar`] brings the functions, such as `exp`, into scope.
+///
+/// # Errors
+/// [`FitError::DataLength`], and as for [`solve`].
+pub fn curve_fit<X: Copy, const N: usize>(
+    x: &[X],
+    y: &[f64],
+    start: [(impl Into<Parameter>, f64); N],
+    model: impl Fn(X, [Dual<N>; N]) -> Dual<N>,
+) -> Result<Fit, FitError> {
+    let values = start.each_ref().map(|(_, value)| *value);
+    solve(&curve(x, y, start.map(|(parameter, _)| parameter), model)?, &values, &Options::default())
+}
+
+/// Fits `count` residuals that a closure fills, with exact derivatives, from a start value for each parameter.
+///
+/// ```
+/// use fmm_fit::{Bounds, Parameter, fit};
+///
+/// // Rosenbrock's valley, with a bound across it.
+/// let x = Parameter::new("x", "x", "1").bounded(Bounds::UNBOUNDED.at_most(0.5));
+/// let y = Parameter::from("y");
+/// let fit = fit([(x, -1.2), (y, 1.0)], 2, |[x, y], residuals| {
+///     residuals[0] = 10.0 * (y - x * x);
+///     residuals[1] = 1.0 - x;
+/// })?;
+/// assert!(fit.outcome().is_success());
+/// assert_eq!(fit.values()[0], 0.5);
+/// assert!((fit.values()[1] - 0.25).abs() < 1e-12);
+/// # Ok::<(), fmm_fit::FitError>(())
+/// ```
+///
+/// # Errors
+/// As for [`solve`].
+pub fn fit<const N: usize>(
+    start: [(impl Into<Parameter>, f64); N],
+    count: usize,
+    residuals: impl Fn([Dual<N>; N], &mut [Dual<N>]),
+) -> Result<Fit, FitError> {
+    let values = start.each_ref().map(|(_, value)| *value);
+    let formula = Formula::new(start.map(|(parameter, _)| parameter), count, residuals);
+    solve(&formula, &values, &Options::default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Automatic, Model};
+
+    struct Decay([Parameter; 3]);
+
+    fn decay<S: Scalar>(t: f64, p: [S; 3]) -> S {
+        p[0] * (-(p[1] * t)).exp() + p[2]
+    }
+
+    fn data() -> (Vec<f64>, Vec<f64>) {
+        let t = |i: u32| 0.1 * f64::from(i);
+        let y = |i: u32| decay(t(i), [2.0, 0.7, 0.3]) + 0.01 * (f64::from(i * 37 % 11) - 5.0);
+        ((0..40).map(t).collect(), (0..40).map(y).collect())
+    }
+
+    impl Model for Decay {
+        fn parameters(&self) -> &[Parameter] {
+            &self.0
+        }
+        fn len(&self) -> usize {
+            40
+        }
+        fn residuals<S: Scalar>(&self, p: &[S], residuals: &mut [S]) -> Result<(), EvaluationError> {
+            let (t, y) = data();
+            for ((r, t), y) in residuals.iter_mut().zip(t).zip(y) {
+                *r = decay(t, [p[0], p[1], p[2]]) - y;
+            }
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_closure_gives_the_fit_of_a_model() {
+        let (t, y) = data();
+        let start = [("a", 1.0), ("b", 1.0), ("c", 0.1)];
+        let model = Decay(start.map(|(name, _)| Parameter::from(name)));
+        let expected = solve(&Automatic::<_, 3>::new(model), &[1.0, 1.0, 0.1], &Options::default()).unwrap();
+        let by_curve = curve_fit(&t, &y, start, decay::<Dual<3>>).unwrap();
+        let by_residuals = fit(start, 40, |p, residuals| {
+            for ((r, t), y) in residuals.iter_mut().zip(&t).zip(&y) {
+                *r = decay(*t, p) - *y;
+            }
+        })
+        .unwrap();
+        for found in [by_curve, by_residuals] {
+            assert!(found.outcome().is_success() && found.has_exact_jacobian());
+            assert_eq!(found.values(), expected.values());
+            assert_eq!(found.residuals(), expected.residuals());
+        }
+        let refused = curve_fit(&t[1..], &y, start, decay::<Dual<3>>).unwrap_err();
+        assert_eq!(refused.to_string(), "there are 39 abscissae for 40 ordinates; give one for each");
+        let missing = curve_fit(&t, &y, [("a", 1.0), ("b", 1.0), ("c", f64::NAN)], decay::<Dual<3>>).unwrap_err();
+        assert!(missing.to_string().contains("start value of c"), "{missing}");
+    }
+
+    #[test]
+    fn an_abscissa_may_have_several_numbers_and_a_formula_no_residual() {
+        let x = [[0.0, 1.0], [1.0, 0.0], [1.0, 1.0], [2.0, 1.0]];
+        let plane = curve_fit(&x, &[3.0, 2.0, 5.0, 7.0], [("a", 0.0), ("b", 0.0)], |x, [a, b]| a * x[0] + b * x[1]);
+        let plane = plane.unwrap();
+        assert!((plane.values()[0] - 2.0).abs() < 1e-12 && (plane.values()[1] - 3.0).abs() < 1e-12);
+        assert!(matches!(fit([("a", 1.0)], 0, |_, _| {}), Err(FitError::TooFewResiduals { .. })));
+        let fixed = Parameter::from("a").bounded(fmm_model::Bounds::new(1.0, 1.0).unwrap());
+        assert!(fit([(fixed, 1.0)], 0, |_, _| {}).is_ok());
+    }
+}
