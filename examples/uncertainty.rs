@@ -152,7 +152,7 @@ fn gauge_block() -> Result<String, Box<dyn Error>> {
         digits: 2,
         published: ["838 32 [745, 931]", "u = 34 (GUM, H.1.7)", "838 36 [745, 932]"],
     };
-    // The tolerance itself, as in the guide; a fifth of it takes thirty million trials.
+    // The tolerance itself, as in the guide; a fifth of it takes a hundred times as many trials.
     let rule = Adaptive::to_digits(report.digits)?.with_interval(IntervalKind::Shortest, report.level)?;
     let trials = MonteCarlo::adaptive(&length_inputs(true)?, rule).run(length)?;
     report.write(&budget, &trials)

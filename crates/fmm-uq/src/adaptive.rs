@@ -2,7 +2,8 @@
 
 use crate::block::BLOCK_TRIALS;
 use crate::coverage::{coverage_factor, valid_level};
-use crate::output_sample::{shortest, symmetric};
+use crate::output_sample::symmetric;
+use crate::settling::Settling;
 use crate::tolerance::{numerical_tolerance, valid_digits};
 use crate::{Moments, UncertaintyError};
 
@@ -28,6 +29,11 @@ pub enum IntervalKind {
 /// ```text
 /// s_z² = Σ (z_h − z̄)²/(h (h − 1)),   stop when 2 s_z ≤ δ for all four z      (JCGM 101:2008, 7.9.4)
 /// ```
+///
+/// What is stated are the ends of the interval of all trials. Those of a symmetric interval scatter as s_z says; those
+/// of a shortest interval settle only as M^(−1/3), and are judged by the scatter of batches that grow with the run.
+/// They take more trials, some fifteen times as many for a normal result to two digits, and a flat density, of which
+/// all intervals are equally short, ends in [`UncertaintyError::NotStable`].
 ///
 /// At least ten sequences are made: two may agree by chance. The stop succeeds in about nine of ten runs, since it waits
 /// for a favourable estimate of s_z; [`Adaptive::two_stage`] takes s_z from the first sequences alone and
@@ -115,6 +121,15 @@ impl Adaptive {
         self.most_trials
     }
 
+    /// What all figures must be stable to for an output of this uncertainty (unit of the output).
+    fn tolerance(&self, standard_uncertainty: f64) -> Result<f64, UncertaintyError> {
+        let tolerance = match self.target {
+            Target::Digits(digits) => numerical_tolerance(standard_uncertainty, digits)?,
+            Target::Tolerance(tolerance) => tolerance,
+        };
+        Ok(self.share * tolerance)
+    }
+
     /// Blocks of a sequence.
     pub(crate) fn blocks_of_sequence(&self) -> u64 {
         let trials = (100.0 / (1.0 - self.level)).ceil().max(1e4);
@@ -126,73 +141,124 @@ impl Adaptive {
 #[derive(Debug, Clone)]
 pub(crate) struct Stability {
     rule: Adaptive,
-    /// Estimate, uncertainty and both ends by sequence, for every output.
-    figures: Vec<[Vec<f64>; 4]>,
-    /// Number, mean and sum of squares of all trials so far, for every output.
-    pooled: Vec<(f64, f64, f64)>,
+    /// Number of values after all sequences so far.
+    values: usize,
+    outputs: Vec<Figures>,
     /// Sequences to be made in all, once the first of two stages has shown it.
     planned: Option<usize>,
 }
 
-impl Stability {
-    pub(crate) const fn new(rule: Adaptive) -> Self {
-        Self { rule, figures: Vec::new(), pooled: Vec::new(), planned: None }
+/// The figures of one output.
+#[derive(Debug, Clone)]
+struct Figures {
+    /// Estimate, uncertainty and, of a symmetric interval, both ends by sequence.
+    averaged: Vec<Vec<f64>>,
+    /// Ends of a shortest interval.
+    settling: Option<Settling>,
+    /// Number, mean and sum of squares of all trials so far.
+    pooled: (f64, f64, f64),
+}
+
+impl Figures {
+    fn new(rule: &Adaptive) -> Self {
+        let (averaged, settling) = match rule.kind {
+            IntervalKind::Symmetric => (4, None),
+            IntervalKind::Shortest => (2, Some(Settling::new(rule.level))),
+        };
+        Self { averaged: vec![Vec::new(); averaged], settling, pooled: (0.0, 0.0, 0.0) }
     }
 
-    /// Takes in the next sequence, by output, and says whether it is the last one.
-    pub(crate) fn add(&mut self, sequence: &[Vec<f64>]) -> Result<bool, UncertaintyError> {
-        self.figures.resize(sequence.len(), Default::default());
-        self.pooled.resize(sequence.len(), (0.0, 0.0, 0.0));
-        for (column, (figures, pooled)) in sequence.iter().zip(self.figures.iter_mut().zip(&mut self.pooled)) {
-            let interval = match self.rule.kind {
-                IntervalKind::Symmetric => symmetric(column, self.rule.level)?,
-                IntervalKind::Shortest => shortest(column, self.rule.level)?,
-            };
-            let moments = Moments::of_values(column);
-            let u = moments.standard_deviation().unwrap_or(0.0);
-            for (figure, value) in figures.iter_mut().zip([moments.mean(), u, interval.low, interval.high]) {
-                figure.push(value);
-            }
-            let (n, mean, squares) = *pooled;
-            let (more, difference) = (moments.count() as f64, moments.mean() - mean);
-            let all = n + more;
-            *pooled = (
-                all,
-                mean + difference * (more / all),
-                squares + moments.sum_of_squares() + difference * difference * (n * (more / all)),
-            );
+    /// Takes in the next sequence: all values of the output, of which those from `start` on are new.
+    fn add(&mut self, values: &[f64], start: usize, level: f64) -> Result<(), UncertaintyError> {
+        let sequence = &values[start..];
+        let moments = Moments::of_values(sequence);
+        let mut figures = vec![moments.mean(), moments.standard_deviation().unwrap_or(0.0)];
+        if let Some(settling) = &mut self.settling {
+            settling.add(values)?;
+        } else {
+            let interval = symmetric(sequence, level)?;
+            figures.extend([interval.low, interval.high]);
         }
+        for (list, figure) in self.averaged.iter_mut().zip(figures) {
+            list.push(figure);
+        }
+        let (n, mean, squares) = self.pooled;
+        let (more, difference) = (moments.count() as f64, moments.mean() - mean);
+        let all = n + more;
+        self.pooled = (
+            all,
+            mean + difference * (more / all),
+            squares + moments.sum_of_squares() + difference * difference * (n * (more / all)),
+        );
+        Ok(())
+    }
+
+    /// u(y) of all trials so far (unit of the output).
+    fn uncertainty(&self) -> f64 {
+        let (n, _, squares) = self.pooled;
+        (squares / (n - 1.0)).sqrt()
+    }
+}
+
+impl Stability {
+    pub(crate) const fn new(rule: Adaptive) -> Self {
+        Self { rule, values: 0, outputs: Vec::new(), planned: None }
+    }
+
+    /// Takes in the next sequence, given all values so far by output, and says whether it is the last one.
+    pub(crate) fn add(&mut self, columns: &[Vec<f64>]) -> Result<bool, UncertaintyError> {
+        let values = columns.first().map_or(0, Vec::len);
+        if values == self.values {
+            return Err(UncertaintyError::NoSuccess);
+        }
+        self.outputs.resize_with(columns.len(), || Figures::new(&self.rule));
+        for (column, figures) in columns.iter().zip(&mut self.outputs) {
+            figures.add(column, self.values, self.rule.level)?;
+        }
+        self.values = values;
         self.decide()
     }
 
     fn decide(&mut self) -> Result<bool, UncertaintyError> {
-        let count = self.figures.first().map_or(0, |figures| figures[0].len());
-        let Some(first) = self.rule.first_stage else {
-            return Ok(count >= FEWEST_SEQUENCES && self.needed(2.0)? <= count as f64);
+        let count = self.outputs.first().map_or(0, |figures| figures.averaged[0].len());
+        let averages_stand = if let Some(first) = self.rule.first_stage {
+            if count == first {
+                let factor = coverage_factor(0.95, (first - 1) as f64)?;
+                self.planned = Some(self.needed(factor)?.max(first as f64) as usize);
+            }
+            self.planned.is_some_and(|planned| count >= planned)
+        } else {
+            count >= FEWEST_SEQUENCES && self.needed(2.0)? <= count as f64
         };
-        if count == first {
-            let factor = coverage_factor(0.95, (first - 1) as f64)?;
-            self.planned = Some(self.needed(factor)?.max(first as f64) as usize);
+        Ok(averages_stand && self.settled()?)
+    }
+
+    /// Whether the ends of all shortest intervals stand.
+    fn settled(&self) -> Result<bool, UncertaintyError> {
+        for figures in &self.outputs {
+            let u = figures.uncertainty();
+            if let Some(settling) = figures.settling.as_ref().filter(|_| u > 0.0)
+                && !(settling.doubt()? <= self.rule.tolerance(u)?)
+            {
+                return Ok(false);
+            }
         }
-        Ok(self.planned.is_some_and(|planned| count >= planned))
+        Ok(true)
     }
 
     /// Sequences after which k s_z ≤ δ, if the spread between sequences stays what it is: whole, and the most for any
-    /// figure of any output.
+    /// averaged figure of any output.
     fn needed(&self, factor: f64) -> Result<f64, UncertaintyError> {
         let mut most = 0.0_f64;
-        for (figures, &(n, _, squares)) in self.figures.iter().zip(&self.pooled) {
-            let u = (squares / (n - 1.0)).sqrt();
+        for figures in &self.outputs {
+            let u = figures.uncertainty();
             if u == 0.0 {
                 continue;
             }
-            let tolerance = match self.rule.target {
-                Target::Digits(digits) => numerical_tolerance(u, digits)?,
-                Target::Tolerance(tolerance) => tolerance,
-            };
-            for figure in figures {
+            let tolerance = self.rule.tolerance(u)?;
+            for figure in &figures.averaged {
                 let spread = Moments::of_values(figure).standard_deviation().unwrap_or(f64::INFINITY);
-                most = most.max((factor * spread / (self.rule.share * tolerance)).powi(2));
+                most = most.max((factor * spread / tolerance).powi(2));
             }
         }
         // A shade more than whole is whole: rounding must not cost a sequence.

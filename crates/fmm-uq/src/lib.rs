@@ -121,6 +121,7 @@ mod run;
 mod sampler;
 mod second_order;
 mod sensitivity;
+mod settling;
 mod sobol_directions;
 mod sobol_sequence;
 mod stream;

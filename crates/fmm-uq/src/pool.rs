@@ -25,6 +25,11 @@ impl Pool {
         self.trials
     }
 
+    /// The values by output.
+    pub(crate) fn columns(&self) -> &[Vec<f64>] {
+        &self.columns
+    }
+
     pub(crate) const fn failures(&self) -> &Failures {
         &self.failures
     }

@@ -45,7 +45,7 @@ impl Sequences {
     /// Takes in the blocks of the next sequence and says whether it is the last one.
     fn add(&mut self, blocks: &[Block]) -> Result<bool, UncertaintyError> {
         self.pool.add(blocks)?;
-        if self.stability.add(&columns(blocks)?)? {
+        if self.stability.add(self.pool.columns())? {
             return Ok(true);
         }
         let trials = self.pool.trials();
@@ -244,16 +244,6 @@ fn blocks_at_once() -> u64 {
     return if threads() == 1 { 1 } else { BLOCKS_OF_THREAD * threads() };
     #[cfg(not(feature = "rayon"))]
     1
-}
-
-/// The values of some blocks by output.
-fn columns(blocks: &[Block]) -> Result<Vec<Vec<f64>>, UncertaintyError> {
-    let outputs = blocks.iter().map(|block| block.outputs).find(|&n| n != 0).ok_or(UncertaintyError::NoSuccess)?;
-    let column = |output: usize| {
-        let values = blocks.iter().flat_map(|block| block.values.iter().skip(output).step_by(outputs));
-        values.copied().collect()
-    };
-    Ok((0..outputs).map(column).collect())
 }
 
 fn threads() -> u64 {

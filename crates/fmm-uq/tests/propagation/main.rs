@@ -1,5 +1,6 @@
 //! Budgets and Monte Carlo against the guides' own examples, certified data and exact figures, and what they refuse.
 
+mod adaptive;
 mod annex_h;
 mod clause9;
 mod dependence;
