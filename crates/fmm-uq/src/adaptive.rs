@@ -32,7 +32,7 @@ pub enum IntervalKind {
 ///
 /// What is stated are the ends of the interval of all trials. Those of a symmetric interval scatter as s_z says; those
 /// of a shortest interval settle only as M^(−1/3), and are judged by the scatter of batches that grow with the run.
-/// They take more trials, some fifteen times as many for a normal result to two digits, and a flat density, of which
+/// They take more trials, eight times as many in the guide's examples, and a flat density, of which
 /// all intervals are equally short, ends in [`UncertaintyError::NotStable`].
 ///
 /// At least ten sequences are made: two may agree by chance. The stop succeeds in about nine of ten runs, since it waits
@@ -110,7 +110,8 @@ impl Adaptive {
         self
     }
 
-    /// The same with another largest number of trials.
+    /// The same with another largest number of trials, which a run never exceeds: it ends with the last whole sequence
+    /// that fits.
     #[must_use]
     pub const fn with_most_trials(mut self, trials: u64) -> Self {
         self.most_trials = trials;
@@ -119,6 +120,15 @@ impl Adaptive {
 
     pub(crate) const fn most_trials(&self) -> u64 {
         self.most_trials
+    }
+
+    pub(crate) fn trials_of_sequence(&self) -> u64 {
+        self.blocks_of_sequence().saturating_mul(BLOCK_TRIALS as u64)
+    }
+
+    /// Trials before the first decision.
+    pub(crate) fn fewest_trials(&self) -> u64 {
+        self.trials_of_sequence().saturating_mul(self.first_stage.unwrap_or(FEWEST_SEQUENCES) as u64)
     }
 
     /// What all figures must be stable to for an output of this uncertainty (unit of the output).

@@ -26,6 +26,11 @@ impl ArcSine {
     }
 
     /// A random point of the unit disc has a random phase, and the cosine of twice that needs no cosine.
+    /// The smallest and the largest value.
+    pub(crate) fn limits(&self) -> (f64, f64) {
+        (self.centre - self.amplitude, self.centre + self.amplitude)
+    }
+
     pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
         loop {
             let (x, y) = (rng.random::<f64>(), rng.random::<f64>());

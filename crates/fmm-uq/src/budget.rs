@@ -81,6 +81,11 @@ impl Budget {
                 return Err(UncertaintyError::SensitivityNotFinite { input, sensitivity, at });
             }
         }
+        let acts = |(i, c): (usize, &f64)| *c != 0.0 && budget.inputs.as_slice()[i].standard_uncertainty() > 0.0;
+        let largest = (0..budget.sensitivities.len()).map(|i| budget.signed(i).abs()).fold(0.0, f64::max);
+        if largest < f64::MIN_POSITIVE && budget.sensitivities.iter().enumerate().any(acts) {
+            return Err(UncertaintyError::TooSmall { of: "the result".to_owned() });
+        }
         budget.standard_uncertainty = budget.combined();
         if budget.standard_uncertainty.is_finite() {
             Ok(budget)

@@ -33,6 +33,12 @@ impl CurvilinearTrapezoid {
     }
 
     /// The half width is drawn first, then the place within it (JCGM 101:2008, 6.4.3.4).
+    /// The smallest and the largest value.
+    pub(crate) fn limits(&self) -> (f64, f64) {
+        let reach = self.half_width + self.inexactness;
+        (self.centre - reach, self.centre + reach)
+    }
+
     pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
         let (first, second): (f64, f64) = (rng.random(), rng.random());
         let half_width = self.half_width + self.inexactness * (2.0 * first - 1.0);

@@ -13,6 +13,14 @@ pub(crate) struct Expansion {
     pub(crate) abb: f64,
 }
 
+impl Expansion {
+    /// The same with the output in another unit.
+    pub(crate) fn in_units_of(self, unit: f64) -> Self {
+        let Self { a, aa, aaa, ab, aab, abb } = self;
+        Self { a: a / unit, aa: aa / unit, aaa: aaa / unit, ab: ab / unit, aab: aab / unit, abb: abb / unit }
+    }
+}
+
 /// Values of the outputs, and the sensitivities of each to every input.
 pub(crate) struct Slopes {
     pub(crate) values: Vec<f64>,
@@ -23,6 +31,8 @@ pub(crate) struct Slopes {
 pub(crate) trait Derivatives {
     /// First derivatives with respect to every input.
     fn slopes(&self) -> Result<Slopes, UncertaintyError>;
+    /// The outputs for any values of the inputs; none where the model fails.
+    fn outputs_at(&self, x: &[f64]) -> Option<Vec<f64>>;
     /// Derivatives up to the third order along two directions, for every output; along the first alone if there is
     /// no second.
     fn expand(&self, first: &[f64], second: Option<&[f64]>) -> Result<Vec<Expansion>, UncertaintyError>;

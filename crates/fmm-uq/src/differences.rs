@@ -38,10 +38,10 @@ where
     }
 }
 
-/// The same outputs, if there are as many as `expected`.
-fn as_many(outputs: Vec<f64>, expected: usize) -> Result<Vec<f64>, UncertaintyError> {
-    let found = outputs.len();
-    if found == expected { Ok(outputs) } else { Err(UncertaintyError::OutputCount { expected, found }) }
+/// The same outputs, if there are as many as the `first` time.
+fn as_many(outputs: Vec<f64>, first: usize) -> Result<Vec<f64>, UncertaintyError> {
+    let again = outputs.len();
+    if again == first { Ok(outputs) } else { Err(UncertaintyError::OutputCountChanged { first, again }) }
 }
 
 impl<F, R> Derivatives for Differences<'_, F>
@@ -77,6 +77,12 @@ where
             }
         }
         Ok(Slopes { values, sensitivities })
+    }
+
+    fn outputs_at(&self, x: &[f64]) -> Option<Vec<f64>> {
+        let mut outputs = Vec::new();
+        (self.model)(x).append_to(&mut outputs).ok()?;
+        Some(outputs)
     }
 
     /// With Z(h) = (f(h) − f(−h))/2h for the whole and the half step, exact for models up to the fourth order:

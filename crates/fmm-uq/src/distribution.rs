@@ -2,11 +2,11 @@
 
 mod values;
 
-use crate::UncertaintyError;
 use crate::arc_sine::ArcSine;
 use crate::curvilinear_trapezoid::CurvilinearTrapezoid;
 use crate::empirical::Empirical;
 use crate::trapezoid::Trapezoid;
+use crate::{Moments, UncertaintyError};
 
 /// A probability distribution: those of JCGM 101:2008, Table 1, a constant, and the empirical one.
 ///
@@ -122,7 +122,7 @@ impl Distribution {
     /// t_ν(x, s²): Student's t, shifted to x and scaled by s (JCGM 101:2008, 6.4.9). ν = ∞ gives the normal.
     ///
     /// For n observations x is their mean, s their standard deviation over √n, and ν = n − 1; for an expanded
-    /// uncertainty U with coverage factor k, s is U/k. Below ν = 3 it has no standard deviation.
+    /// uncertainty U with coverage factor k, s is U/k. The standard deviation is s √(ν/(ν − 2)), and infinite for ν ≤ 2.
     ///
     /// # Errors
     /// [`UncertaintyError::ParameterOutOfRange`] unless x is finite and s positive and finite;
@@ -162,7 +162,7 @@ impl Distribution {
     ///
     /// # Errors
     /// [`UncertaintyError::TooFewObservations`] for none; [`UncertaintyError::ParameterOutOfRange`] if one is not
-    /// finite.
+    /// finite; [`UncertaintyError::TooSmall`].
     pub fn empirical(values: &[f64]) -> Result<Self, UncertaintyError> {
         if values.is_empty() {
             return Err(UncertaintyError::TooFewObservations { found: 0, needed: 1 });
@@ -170,6 +170,7 @@ impl Distribution {
         for &value in values {
             finite("value of an empirical distribution", value)?;
         }
+        Moments::of_values(values).require_squares(values, "the values of an empirical distribution")?;
         let empirical = Empirical::new(values.to_vec());
         finite("standard deviation of an empirical distribution", empirical.standard_deviation())?;
         Ok(Shape::Empirical(empirical).into())
@@ -208,6 +209,20 @@ impl Distribution {
             Shape::Exponential { mean } => *mean,
             Shape::Gamma { shape, scale, .. } => shape.sqrt() * scale,
             Shape::Empirical(shape) => shape.standard_deviation(),
+        }
+    }
+
+    /// The smallest and the largest value possible.
+    pub(crate) fn limits(&self) -> (f64, f64) {
+        match &self.shape {
+            Shape::Constant(value) => (*value, *value),
+            Shape::Rectangular { lower, upper } => (*lower, *upper),
+            Shape::CurvilinearTrapezoid(shape) => shape.limits(),
+            Shape::Trapezoid(shape) => shape.limits(),
+            Shape::ArcSine(shape) => shape.limits(),
+            Shape::Normal { .. } | Shape::StudentT { .. } => (f64::NEG_INFINITY, f64::INFINITY),
+            Shape::Exponential { .. } | Shape::Gamma { .. } => (0.0, f64::INFINITY),
+            Shape::Empirical(shape) => shape.limits(),
         }
     }
 

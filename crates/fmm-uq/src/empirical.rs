@@ -32,6 +32,11 @@ impl Empirical {
         self.standard_deviation
     }
 
+    /// The smallest and the largest value.
+    pub(crate) fn limits(&self) -> (f64, f64) {
+        (self.sorted[0], self.sorted[self.sorted.len() - 1])
+    }
+
     pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
         self.sorted[rng.random_range(0..self.sorted.len())]
     }

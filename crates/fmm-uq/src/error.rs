@@ -209,6 +209,45 @@ pub enum UncertaintyError {
         /// How many there are.
         found: usize,
     },
+    /// A model whose number of outputs is not always the same.
+    #[error("the model gives {first} outputs, then {again}; their number must not change")]
+    OutputCountChanged {
+        /// How many it gave.
+        first: usize,
+        /// How many it gave another time.
+        again: usize,
+    },
+    /// Trials of an input that has no variance, so that the standard deviation of their results is a matter of chance.
+    #[error(
+        "Student's t of {degrees_of_freedom} degrees of freedom, which {input} has, has no standard deviation, and so has \
+         none to state of the result; an interval can be stated"
+    )]
+    NoVariance {
+        /// Which input.
+        input: String,
+        /// Its degrees of freedom (1).
+        degrees_of_freedom: f64,
+    },
+    /// Trials of an input that has no mean, so that the mean of their results is a matter of chance.
+    #[error(
+        "Student's t of {degrees_of_freedom} degrees of freedom, which {input} has, has no mean, and so has none to state of \
+         the result; an interval can be stated"
+    )]
+    NoMean {
+        /// Which input.
+        input: String,
+        /// Its degrees of freedom (1).
+        degrees_of_freedom: f64,
+    },
+    /// A spread so small that it would count as none.
+    #[error("the spread of {of} is so small that its square is no number any more; take a smaller unit")]
+    TooSmall {
+        /// What spreads.
+        of: String,
+    },
+    /// An output that does not vary has no variance to share among inputs.
+    #[error("the output does not vary, so that there is no variance to share among the inputs")]
+    ConstantOutput,
     /// Second-order terms that were not asked for, are not finite, or make the variance negative.
     #[error("there is no uncertainty to second order: it was not asked for, or the model cannot be expanded that far")]
     NoSecondOrder,
@@ -261,6 +300,16 @@ pub enum UncertaintyError {
     NotStable {
         /// How many trials were made.
         trials: u64,
+    },
+    /// An adaptive run that may not make the trials that its first decision takes.
+    #[error(
+        "the first decision takes {needed} trials, but at most {allowed} are allowed; lower the level, or allow more"
+    )]
+    TooFewTrialsAllowed {
+        /// How many are allowed.
+        allowed: u64,
+        /// How many are needed.
+        needed: u64,
     },
     /// Partial results of different runs.
     #[error("partial results belong together only if their {what} agree, but one has {first} and another {second}")]

@@ -39,7 +39,7 @@ where
         let mut known = self.values.borrow_mut();
         let known = known.get_or_insert_with(|| values.clone());
         if known.len() != values.len() {
-            return Err(UncertaintyError::OutputCount { expected: known.len(), found: values.len() });
+            return Err(UncertaintyError::OutputCountChanged { first: known.len(), again: values.len() });
         }
         if let Some((&first, &again)) = known.iter().zip(&values).find(|(first, again)| first != again) {
             return Err(UncertaintyError::ModelNotRepeatable { first, again, at: self.here() });
@@ -73,6 +73,13 @@ where
             slopes.values = outputs.iter().map(|y| y.value()).collect();
         }
         Ok(slopes)
+    }
+
+    fn outputs_at(&self, x: &[f64]) -> Option<Vec<f64>> {
+        let x: Vec<Taylor> = x.iter().map(|&value| Taylor::from(value)).collect();
+        let mut outputs = Vec::new();
+        (self.model)(&x).append_to(&mut outputs).ok()?;
+        Some(outputs.iter().map(|y| y.value()).collect())
     }
 
     fn expand(&self, first: &[f64], second: Option<&[f64]>) -> Result<Vec<Expansion>, UncertaintyError> {

@@ -40,6 +40,9 @@ impl Budget {
     /// correlated with another outside its ensemble, both with a contribution; and if u(y) is zero although
     /// inputs are uncertain. Correlation among inputs of infinite degrees of freedom does no harm.
     pub fn effective_degrees_of_freedom(&self) -> Option<f64> {
+        if self.standard_uncertainty() == 0.0 && self.linearisation() != Linearisation::ZeroUncertainty {
+            return Some(f64::INFINITY);
+        }
         let inputs = self.inputs().as_slice();
         let ensembles = self.inputs().ensembles();
         let ensemble = |i: usize| ensembles.iter().position(|e| e.members.contains(&i));

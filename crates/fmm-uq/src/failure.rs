@@ -19,7 +19,7 @@ pub enum FailureKind {
         /// Position of the first such output.
         output: usize,
     },
-    /// The model gave another number of outputs than before.
+    /// The model gave another number of outputs than before, or none at all.
     OutputCount {
         /// How many it gave.
         found: usize,
@@ -33,6 +33,7 @@ impl fmt::Display for FailureKind {
         match self {
             Self::Error(message) => f.write_str(message),
             Self::NotFinite { output } => write!(f, "output {output} is not finite"),
+            Self::OutputCount { found: 0 } => f.write_str("the model gave no output"),
             Self::OutputCount { found } => write!(f, "the number of outputs changed to {found}"),
             Self::Other => f.write_str("other failures"),
         }

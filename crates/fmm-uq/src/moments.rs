@@ -1,5 +1,7 @@
 //! Mean and spread of many values, to the digits that they carry.
 
+use crate::UncertaintyError;
+
 /// Values that are summed before their sums are: rounding then grows with the root of the number of blocks.
 const BLOCK: usize = 1000;
 /// Sums that run side by side in a block, in a fixed order.
@@ -29,10 +31,27 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// The moments of `values`; none if there are no values or the moments are not finite.
+    /// The moments of `values`; none if there are no values, or the moments are not finite or too small for a number.
     pub fn of(values: &[f64]) -> Option<Self> {
-        let moments = Self::of_values(values);
-        (!values.is_empty() && moments.mean.is_finite() && moments.sum_of_squares.is_finite()).then_some(moments)
+        let moments = Self::of_values(values).if_finite()?;
+        (!values.is_empty() && !moments.lost(values)).then_some(moments)
+    }
+
+    /// The same if it is finite.
+    pub(crate) fn if_finite(self) -> Option<Self> {
+        (self.mean.is_finite() && self.sum_of_squares.is_finite()).then_some(self)
+    }
+
+    /// Whether the values differ, but by so little that their squares have lost digits.
+    fn lost(&self, values: &[f64]) -> bool {
+        // A square keeps its digits above this, and a mean of them does.
+        let smallest = f64::MIN_POSITIVE / f64::EPSILON * self.count as f64;
+        self.sum_of_squares < smallest && values.iter().any(|value| *value != values[0])
+    }
+
+    /// Refuses values `of` something of which the squares are lost.
+    pub(crate) fn require_squares(&self, values: &[f64], of: &str) -> Result<(), UncertaintyError> {
+        if self.lost(values) { Err(UncertaintyError::TooSmall { of: of.to_owned() }) } else { Ok(()) }
     }
 
     /// The moments of values of which the caller knows that they are fit for it.

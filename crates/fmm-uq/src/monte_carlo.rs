@@ -5,6 +5,7 @@ use std::ops::{ControlFlow, Range};
 use crate::adaptive::Adaptive;
 use crate::allowed_failures::AllowedFailures;
 use crate::block::{BLOCK_TRIALS, Block};
+use crate::heavy_tail::HeavyTail;
 use crate::run::Plan;
 use crate::sampler::Sampler;
 use crate::{Inputs, Outcome, OutputSample, Partial, UncertaintyError};
@@ -37,7 +38,9 @@ use crate::{Inputs, Outcome, OutputSample, Partial, UncertaintyError};
 /// ```
 #[derive(Clone)]
 pub struct MonteCarlo<'a> {
+    pub(crate) inputs: Inputs,
     pub(crate) sampler: Sampler,
+    pub(crate) heavy_tail: Option<HeavyTail>,
     pub(crate) fingerprint: u64,
     pub(crate) seed: u64,
     pub(crate) plan: Plan,
@@ -75,24 +78,26 @@ impl<'a> MonteCarlo<'a> {
         const MOST: u64 = 1 << 53;
         match trials {
             0 => Err(UncertaintyError::NoTrials),
-            1..=MOST => Ok(Self::with_plan(inputs, Plan::Fixed(trials))),
+            1..=MOST => Ok(Self::with_plan(inputs.clone(), Plan::Fixed(trials))),
             _ => Err(UncertaintyError::TooManyTrials { trials, most: MOST }),
         }
     }
 
     /// As many trials as it takes for stable results.
     pub fn adaptive(inputs: &Inputs, rule: Adaptive) -> Self {
-        Self::with_plan(inputs, Plan::Adaptive(rule))
+        Self::with_plan(inputs.clone(), Plan::Adaptive(rule))
     }
 
-    fn with_plan(inputs: &Inputs, plan: Plan) -> Self {
-        let (sampler, fingerprint) = (Sampler::new(inputs), inputs.fingerprint());
-        Self { sampler, fingerprint, seed: 0, plan, allowed_failures: AllowedFailures::default(), watch: None }
+    fn with_plan(inputs: Inputs, plan: Plan) -> Self {
+        let (sampler, heavy_tail, fingerprint) = (Sampler::new(&inputs), HeavyTail::of(&inputs), inputs.fingerprint());
+        let (allowed_failures, watch) = (AllowedFailures::default(), None);
+        Self { inputs, sampler, heavy_tail, fingerprint, seed: 0, plan, allowed_failures, watch }
     }
 
     /// The same run of other inputs.
-    pub(crate) fn with_inputs(&self, inputs: &Inputs) -> Self {
-        Self { sampler: Sampler::new(inputs), fingerprint: inputs.fingerprint(), ..self.clone() }
+    pub(crate) fn with_inputs(&self, inputs: Inputs) -> Self {
+        let (seed, allowed_failures, watch) = (self.seed, self.allowed_failures, self.watch);
+        Self { seed, allowed_failures, watch, ..Self::with_plan(inputs, self.plan) }
     }
 
     /// The same with another seed, and so with other random numbers.
@@ -123,9 +128,13 @@ impl<'a> MonteCarlo<'a> {
     ///
     /// # Errors
     /// [`UncertaintyError::TooManyFailures`] as soon as that is certain and none may fail;
-    /// [`UncertaintyError::NoSuccess`]; [`UncertaintyError::Cancelled`]; for an adaptive run
-    /// [`UncertaintyError::NotStable`] at its largest number of trials; [`UncertaintyError::LayoutMismatch`] if the
-    /// number of outputs changes; [`UncertaintyError::UncertaintyOutOfRange`] if the squares of the values overflow.
+    /// [`UncertaintyError::NoSuccess`]; [`UncertaintyError::Cancelled`]; [`UncertaintyError::OutputCountChanged`];
+    /// [`UncertaintyError::UncertaintyOutOfRange`] if the squares of the values overflow. For an adaptive run also [`UncertaintyError::NotStable`] at its
+    /// largest number of trials, [`UncertaintyError::TooFewTrialsAllowed`], and [`UncertaintyError::NoVariance`] if an
+    /// input has Student's t of ν ≤ 2.
+    ///
+    /// # Panics
+    /// If the model does: a panic ends the run and passes through. What may fail should give back an error.
     pub fn run<R: Outcome<f64>>(&self, model: impl Fn(&[f64]) -> R + Sync) -> Result<OutputSample, UncertaintyError> {
         self.run_plan(&model)
     }
@@ -135,6 +144,9 @@ impl<'a> MonteCarlo<'a> {
     /// # Errors
     /// Those of [`MonteCarlo::run`] but for what only the whole can tell: no success, and too many failures
     /// where some are allowed.
+    ///
+    /// # Panics
+    /// If the model does.
     pub fn run_blocks<R: Outcome<f64>>(
         &self,
         blocks: Range<u64>,

@@ -33,7 +33,7 @@ impl Observations {
     ///
     /// # Errors
     /// [`UncertaintyError::TooFewObservations`]; [`UncertaintyError::ObservationNotFinite`], also if the squares of
-    /// the values overflow.
+    /// the values overflow; [`UncertaintyError::TooSmall`].
     pub fn new(values: &[f64]) -> Result<Self, UncertaintyError> {
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
             return Err(UncertaintyError::ObservationNotFinite { index, value: values[index] });
@@ -43,7 +43,8 @@ impl Observations {
             return Err(too_few);
         }
         let overflow = UncertaintyError::ObservationNotFinite { index: 0, value: values[0] };
-        let moments = Moments::of(values).ok_or(overflow)?;
+        let moments = Moments::of_values(values).if_finite().ok_or(overflow)?;
+        moments.require_squares(values, "the observations")?;
         let standard_deviation = moments.standard_deviation().ok_or(too_few)?;
         Ok(Self { values: values.to_vec(), moments, standard_deviation })
     }

@@ -1,5 +1,6 @@
 //! What the trials of a Monte Carlo gave.
 
+use crate::heavy_tail::HeavyTail;
 use crate::order_statistics::{largest, ranked, smallest};
 use crate::{Failures, Interval, Moments, UncertaintyError};
 
@@ -22,11 +23,17 @@ pub struct OutputSample {
     moments: Vec<Moments>,
     trials: u64,
     failures: Failures,
+    heavy_tail: Option<HeavyTail>,
 }
 
 impl OutputSample {
     /// The sample of given columns of equal lengths.
-    pub(crate) fn new(columns: Vec<Vec<f64>>, trials: u64, failures: Failures) -> Result<Self, UncertaintyError> {
+    pub(crate) fn new(
+        columns: Vec<Vec<f64>>,
+        trials: u64,
+        failures: Failures,
+        heavy_tail: Option<HeavyTail>,
+    ) -> Result<Self, UncertaintyError> {
         let mut moments = Vec::with_capacity(columns.len());
         for column in &columns {
             let overflow = || UncertaintyError::UncertaintyOutOfRange {
@@ -37,9 +44,9 @@ impl OutputSample {
             if column.is_empty() {
                 return Err(UncertaintyError::NoSuccess);
             }
-            moments.push(Moments::of(column).ok_or_else(overflow)?);
+            moments.push(Moments::of_values(column).if_finite().ok_or_else(overflow)?);
         }
-        Ok(Self { columns, moments, trials, failures })
+        Ok(Self { columns, moments, trials, failures, heavy_tail })
     }
 
     /// Number of trials, failed ones included.
@@ -78,17 +85,24 @@ impl OutputSample {
     /// y, mean of the values (unit of the output).
     ///
     /// # Errors
-    /// [`UncertaintyError::NoSuchOutput`].
+    /// [`UncertaintyError::NoSuchOutput`]; [`UncertaintyError::NoMean`] if an input has Student's t of ν = 1, of which the
+    /// mean is a matter of chance.
     pub fn estimate(&self, output: usize) -> Result<f64, UncertaintyError> {
+        HeavyTail::require_mean(self.heavy_tail.as_ref())?;
         Ok(self.moments(output)?.mean())
     }
 
     /// u(y), standard deviation of the values (unit of the output).
     ///
     /// # Errors
-    /// [`UncertaintyError::NoSuchOutput`]; [`UncertaintyError::TooFewObservations`] for a single trial.
+    /// [`UncertaintyError::NoSuchOutput`]; [`UncertaintyError::TooFewObservations`] for a single trial;
+    /// [`UncertaintyError::TooSmall`] for values whose squares vanish;
+    /// [`UncertaintyError::NoVariance`] if an input has Student's t of ν ≤ 2, such as the mean of two or three
+    /// observations. Of a model that bounds such an input, [`OutputSample::moments`] has the deviation nevertheless.
     pub fn standard_uncertainty(&self, output: usize) -> Result<f64, UncertaintyError> {
         let moments = self.moments(output)?;
+        HeavyTail::require_variance(self.heavy_tail.as_ref())?;
+        moments.require_squares(self.values(output)?, "the result")?;
         let too_few = UncertaintyError::TooFewObservations { found: moments.count(), needed: 2 };
         moments.standard_deviation().ok_or(too_few)
     }

@@ -1,6 +1,7 @@
 //! Blocks of trials put together.
 
 use crate::block::Block;
+use crate::heavy_tail::HeavyTail;
 use crate::{Failures, OutputSample, UncertaintyError};
 
 /// Values of an output that room is made for at once; more of them are given room as they come.
@@ -49,9 +50,9 @@ impl Pool {
                     let _ = column.try_reserve_exact(self.expected.min(ROOM) as usize);
                 }
             }
-            let (first, second) = (self.columns.len() as u64, block.outputs as u64);
-            if first != second {
-                return Err(UncertaintyError::LayoutMismatch { what: "numbers of outputs", first, second });
+            let (first, again) = (self.columns.len(), block.outputs);
+            if first != again {
+                return Err(UncertaintyError::OutputCountChanged { first, again });
             }
             if let [column] = self.columns.as_mut_slice() {
                 column.extend_from_slice(&block.values);
@@ -65,10 +66,10 @@ impl Pool {
     }
 
     /// The sample of all of them.
-    pub(crate) fn close(self) -> Result<OutputSample, UncertaintyError> {
+    pub(crate) fn close(self, heavy_tail: Option<HeavyTail>) -> Result<OutputSample, UncertaintyError> {
         if self.columns.is_empty() {
             return Err(UncertaintyError::NoSuccess);
         }
-        OutputSample::new(self.columns, self.trials, self.failures)
+        OutputSample::new(self.columns, self.trials, self.failures, heavy_tail)
     }
 }

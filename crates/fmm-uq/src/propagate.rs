@@ -35,6 +35,9 @@ use crate::{Budget, Inputs, Outcome, Propagation, Taylor, UncertaintyError};
 ///
 /// # Errors
 /// Those of [`Gum::propagate`]; [`UncertaintyError::OutputCount`] unless there is one output.
+///
+/// # Panics
+/// If the model does.
 pub fn propagate<R: Outcome<Taylor>>(
     inputs: &Inputs,
     model: impl Fn(&[Taylor]) -> R,
@@ -77,7 +80,7 @@ impl<'a> Gum<'a> {
     }
 
     /// The same without second-order terms: [`Linearisation::Unchecked`], and for n inputs n/2 evaluations of
-    /// Taylor numbers instead of about n²/2, or 2n differences instead of about 7n²/2.
+    /// Taylor numbers instead of about n²/2 + 2n, or 2n differences instead of about 7n²/2.
     #[must_use]
     pub const fn first_order_only(mut self) -> Self {
         self.curvature = false;
@@ -90,8 +93,12 @@ impl<'a> Gum<'a> {
     /// [`UncertaintyError::ModelFailed`] with the model's own error as its source,
     /// [`UncertaintyError::ResultNotFinite`], [`UncertaintyError::SensitivityNotFinite`],
     /// [`UncertaintyError::ModelNotRepeatable`], each with the values of the inputs;
-    /// [`UncertaintyError::OutputCount`] if the number of outputs changes or is zero; and
-    /// [`UncertaintyError::UncertaintyOutOfRange`] if the contributions are finite but their sum overflows.
+    /// [`UncertaintyError::OutputCount`] if there is no output, [`UncertaintyError::OutputCountChanged`] if their number
+    /// changes; and, of contributions that are finite, [`UncertaintyError::UncertaintyOutOfRange`] if their sum overflows
+    /// and [`UncertaintyError::TooSmall`] if they all vanish though inputs and slopes do not.
+    ///
+    /// # Panics
+    /// If the model does.
     pub fn propagate<R: Outcome<Taylor>>(
         &self,
         model: impl Fn(&[Taylor]) -> R,
@@ -107,6 +114,9 @@ impl<'a> Gum<'a> {
     ///
     /// # Errors
     /// Those of [`Gum::propagate`], also at the points one standard uncertainty away.
+    ///
+    /// # Panics
+    /// If the model does.
     pub fn propagate_by_differences<R: Outcome<f64>>(
         &self,
         model: impl Fn(&[f64]) -> R,
@@ -121,15 +131,17 @@ impl<'a> Gum<'a> {
             return Err(UncertaintyError::OutputCount { expected: 1, found: 0 });
         }
         let mut budgets = Vec::with_capacity(count);
-        for (value, sensitivities) in slopes.values.into_iter().zip(slopes.sensitivities) {
-            budgets.push(Budget::new(self.inputs.clone(), value, sensitivities)?);
+        for (&value, sensitivities) in slopes.values.iter().zip(&slopes.sensitivities) {
+            budgets.push(Budget::new(self.inputs.clone(), value, sensitivities.clone())?);
         }
-        let curvature = if self.curvature { Some(second_order(self.inputs, model, count)?) } else { None };
+        let expansion = (slopes.values.as_slice(), slopes.sensitivities.as_slice());
+        let curvature =
+            if self.curvature { Some(second_order(self.inputs, model, &budgets, expansion)?) } else { None };
         let vary = self.inputs.as_slice().iter().any(|input| input.standard_uncertainty() > 0.0);
         for (k, budget) in budgets.iter_mut().enumerate() {
-            let terms = curvature.as_ref().and_then(|terms| terms[k]);
-            let verdict = Linearisation::judge(budget.standard_uncertainty(), vary, self.curvature, terms);
-            budget.set_curvature(terms, verdict);
+            let curvature = curvature.as_ref().map(|outputs| outputs[k]);
+            let verdict = Linearisation::judge(budget.standard_uncertainty(), vary, curvature);
+            budget.set_curvature(curvature.and_then(|curvature| curvature.terms), verdict);
         }
         Ok(Propagation::new(budgets))
     }
@@ -179,7 +191,7 @@ mod tests {
         let error = Gum::new(&inputs).propagate_by_differences(|x| x[0] + next()).unwrap_err();
         assert!(matches!(error, UncertaintyError::ModelNotRepeatable { .. }), "{error}");
         let error = Gum::new(&inputs).propagate(|_| vec![Taylor::from(1.0); next() as usize]).unwrap_err();
-        assert!(matches!(error, UncertaintyError::OutputCount { .. }), "{error}");
+        assert!(matches!(error, UncertaintyError::OutputCountChanged { .. }), "{error}");
     }
 
     #[test]

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::allowed_failures::AllowedFailures;
 use crate::failure::Failure;
+use crate::heavy_tail::HeavyTail;
 use crate::order_statistics::ranked;
 use crate::sampler::Sampler;
 use crate::sobol_sequence::{SobolSequence, mix};
@@ -32,6 +33,7 @@ use crate::{FailureKind, Failures, Inputs, Moments, Outcome, OutputSample, Uncer
 #[derive(Debug, Clone)]
 pub struct QuasiMonteCarlo {
     sampler: Sampler,
+    heavy_tail: Option<HeavyTail>,
     points: u32,
     scramblings: usize,
     seed: u64,
@@ -62,7 +64,8 @@ impl QuasiMonteCarlo {
         if !(8..=65_536).contains(&scramblings) {
             return refuse("number of scramblings", scramblings as f64, "between 8 and 65536");
         }
-        Ok(Self { sampler, points, scramblings, seed: 0, allowed_failures: AllowedFailures::default() })
+        let (heavy_tail, allowed_failures) = (HeavyTail::of(inputs), AllowedFailures::default());
+        Ok(Self { sampler, heavy_tail, points, scramblings, seed: 0, allowed_failures })
     }
 
     /// The same with another seed, and so with other scramblings.
@@ -84,8 +87,11 @@ impl QuasiMonteCarlo {
     /// Evaluates the model at all points.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooManyFailures`], [`UncertaintyError::NoSuccess`],
+    /// [`UncertaintyError::TooManyFailures`]; [`UncertaintyError::NoSuccess`]; [`UncertaintyError::OutputCountChanged`];
     /// [`UncertaintyError::UncertaintyOutOfRange`] if the squares of the values overflow.
+    ///
+    /// # Panics
+    /// If the model does.
     pub fn run<R: Outcome<f64>>(&self, model: impl Fn(&[f64]) -> R + Sync) -> Result<QuasiSample, UncertaintyError> {
         let one = |scrambling: usize| self.run_one(scrambling as u64, &model);
         #[cfg(feature = "rayon")]
@@ -102,11 +108,14 @@ impl QuasiMonteCarlo {
         let trials = u64::from(self.points) * self.scramblings as u64;
         self.allowed_failures.check(&failures, trials)?;
         let outputs = parts.iter().map(Vec::len).max().unwrap_or(0);
-        if parts.iter().any(|part| part.len() != outputs || part.is_empty()) {
+        if parts.iter().any(Vec::is_empty) {
             return Err(UncertaintyError::NoSuccess);
         }
+        if let Some(other) = parts.iter().find(|part| part.len() != outputs) {
+            return Err(UncertaintyError::OutputCountChanged { first: outputs, again: other.len() });
+        }
         let column = |output: usize| parts.iter().flat_map(|part| &part[output]).copied().collect();
-        let sample = OutputSample::new((0..outputs).map(column).collect(), trials, failures)?;
+        let sample = OutputSample::new((0..outputs).map(column).collect(), trials, failures, self.heavy_tail.clone())?;
         Ok(QuasiSample { sample, parts })
     }
 
@@ -158,8 +167,9 @@ impl QuasiSample {
     /// Standard errors of y and of u(y) (unit of the output), from the scatter of the scramblings.
     ///
     /// # Errors
-    /// [`UncertaintyError::NoSuchOutput`].
+    /// Those of [`OutputSample::standard_uncertainty`].
     pub fn standard_errors(&self, output: usize) -> Result<[f64; 2], UncertaintyError> {
+        self.sample.standard_uncertainty(output)?;
         let deviation = |m: &Moments| m.standard_deviation().unwrap_or(0.0);
         let moments: Vec<Moments> = self.columns(output)?.map(Moments::of_values).collect();
         let figures =

@@ -29,7 +29,7 @@ impl OutputSample {
     /// u(y_i, y_j), covariance of two outputs (product of their units).
     ///
     /// # Errors
-    /// [`UncertaintyError::NoSuchOutput`]; [`UncertaintyError::TooFewObservations`] for a single trial.
+    /// Those of [`OutputSample::standard_uncertainty`].
     pub fn covariance(&self, i: usize, j: usize) -> Result<f64, UncertaintyError> {
         let own = self.standard_uncertainty(i)?.powi(2);
         if i == j {

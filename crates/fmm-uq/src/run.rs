@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use crate::adaptive::{Adaptive, Stability};
 use crate::block::{BLOCK_TRIALS, Block};
+use crate::heavy_tail::HeavyTail;
 use crate::pool::Pool;
 use crate::{Failures, MonteCarlo, Outcome, OutputSample, Partial, Progress, UncertaintyError};
 
@@ -38,8 +39,13 @@ struct Sequences {
 }
 
 impl Sequences {
-    fn new(rule: Adaptive) -> Self {
-        Self { rule, stability: Stability::new(rule), pool: Pool::new(0) }
+    fn new(rule: Adaptive, heavy_tail: Option<&HeavyTail>) -> Result<Self, UncertaintyError> {
+        HeavyTail::require_variance(heavy_tail)?;
+        let (allowed, needed) = (rule.most_trials(), rule.fewest_trials());
+        if allowed < needed {
+            return Err(UncertaintyError::TooFewTrialsAllowed { allowed, needed });
+        }
+        Ok(Self { rule, stability: Stability::new(rule), pool: Pool::new(0) })
     }
 
     /// Takes in the blocks of the next sequence and says whether it is the last one.
@@ -48,8 +54,12 @@ impl Sequences {
         if self.stability.add(self.pool.columns())? {
             return Ok(true);
         }
-        let trials = self.pool.trials();
-        if trials >= self.rule.most_trials() { Err(UncertaintyError::NotStable { trials }) } else { Ok(false) }
+        if self.left() == 0 { Err(UncertaintyError::NotStable { trials: self.pool.trials() }) } else { Ok(false) }
+    }
+
+    /// Sequences that may still be made.
+    fn left(&self) -> u64 {
+        self.rule.most_trials().saturating_sub(self.pool.trials()) / self.rule.trials_of_sequence()
     }
 }
 
@@ -66,12 +76,13 @@ impl MonteCarlo<'_> {
             }
             Plan::Adaptive(rule) => rule,
         };
-        let (state, mut sequences) = (State::new(), Sequences::new(rule));
+        let (state, mut sequences) = (State::new(), Sequences::new(rule, self.heavy_tail.as_ref())?);
         let length = rule.blocks_of_sequence();
         // Several sequences at a time where one would leave threads idle; those after the stop are dropped.
-        let at_once = length * (4 * threads()).div_ceil(length);
+        let most_at_once = (4 * threads()).div_ceil(length);
         let mut start = 0;
         loop {
+            let at_once = length * most_at_once.min(sequences.left());
             for sequence in self.run_group(&state, start..start + at_once, model)?.chunks(length as usize) {
                 if sequences.add(sequence)? {
                     return self.close(sequences.pool);
@@ -106,7 +117,7 @@ impl MonteCarlo<'_> {
                 self.close(pool)
             }
             Plan::Adaptive(rule) => {
-                let mut sequences = Sequences::new(rule);
+                let mut sequences = Sequences::new(rule, self.heavy_tail.as_ref())?;
                 for sequence in present.chunks_exact(rule.blocks_of_sequence() as usize) {
                     if sequences.add(sequence)? {
                         return self.close(sequences.pool);
@@ -131,6 +142,12 @@ impl MonteCarlo<'_> {
             all.extend(blocks);
             Ok(())
         })?;
+        let mut outputs = all.iter().map(|block: &Block| block.outputs).filter(|&outputs| outputs != 0);
+        if let Some(first) = outputs.next()
+            && let Some(again) = outputs.find(|&again| again != first)
+        {
+            return Err(UncertaintyError::OutputCountChanged { first, again });
+        }
         Partial::assemble(self.seed, self.fingerprint, all)
     }
 
@@ -210,7 +227,7 @@ impl MonteCarlo<'_> {
 
     fn close(&self, pool: Pool) -> Result<OutputSample, UncertaintyError> {
         self.refuse_failures(pool.failures(), pool.trials())?;
-        pool.close()
+        pool.close(self.heavy_tail.clone())
     }
 
     fn refuse_failures(&self, failures: &Failures, trials: u64) -> Result<(), UncertaintyError> {

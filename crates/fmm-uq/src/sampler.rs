@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use rand::Rng;
 use rand_distr::{ChiSquared, Distribution as _, StandardNormal};
-use statrs::distribution::{ChiSquared as ChiSquaredLaw, ContinuousCDF, Normal};
+use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::distribution::Shape;
 use crate::factor::correlation_root;
+use crate::gamma::gamma_quantile;
 use crate::ziggurat::Ziggurat;
 use crate::{Distribution, Inputs};
 
@@ -135,9 +136,8 @@ impl Sampler {
         }
         let (normal, chi) = rest.split_at(self.dependent.len());
         let scores: Vec<f64> = normal.iter().map(|&u| Normal::standard().inverse_cdf(u)).collect();
-        let stretch = |(&(nu, _), &u): (&(f64, ChiSquared<f64>), &f64)| {
-            ChiSquaredLaw::new(nu).map_or(f64::NAN, |law| (nu / law.inverse_cdf(u)).sqrt())
-        };
+        // Chi-squared is twice a gamma variate of half the degrees of freedom.
+        let stretch = |(&(nu, _), &u): (&(f64, ChiSquared<f64>), &f64)| (0.5 * nu / gamma_quantile(0.5 * nu, u)).sqrt();
         let stretches: Vec<f64> = self.ensembles.iter().zip(chi).map(stretch).collect();
         self.combine(&scores, &stretches, row);
     }

@@ -1,8 +1,9 @@
 //! What the curvature of a model does to its result.
 
 use crate::derivatives::{Derivatives, Expansion};
+use crate::excursion::{Departure, Excursion};
 use crate::factor::correlation_root;
-use crate::{Input, Inputs, UncertaintyError};
+use crate::{Budget, Input, Inputs, UncertaintyError};
 
 /// The second-order terms of the GUM.
 ///
@@ -25,17 +26,31 @@ pub struct SecondOrder {
     pub standard_uncertainty: f64,
 }
 
-/// The second-order terms of every output; none where they are not finite or make a variance negative.
+/// What curvature is known of an output.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Curvature {
+    /// The second-order terms; none where they are not finite, make a variance negative, or are not those of the model
+    /// within the uncertainties of its inputs.
+    pub(crate) terms: Option<SecondOrder>,
+    /// Whether the output stands still though its inputs move and its slopes do not vanish: what they do cancels.
+    pub(crate) cancels: bool,
+}
+
+/// The curvature of every output.
 pub(crate) fn second_order(
     inputs: &Inputs,
     model: &impl Derivatives,
-    outputs: usize,
-) -> Result<Vec<Option<SecondOrder>>, UncertaintyError> {
+    budgets: &[Budget],
+    (values, sensitivities): (&[f64], &[Vec<f64>]),
+) -> Result<Vec<Curvature>, UncertaintyError> {
     let directions = directions(inputs);
-    let mut sums = vec![Sums::default(); outputs];
+    let mut sums: Vec<Sums> = budgets.iter().map(|budget| Sums::new(budget.standard_uncertainty())).collect();
     let mut along = Vec::with_capacity(directions.len());
+    let excursion = Excursion::new(inputs, model, values, sensitivities);
+    let (mut departures, mut asked) = (vec![Departure::default(); budgets.len()], true);
     for direction in &directions {
         let own = model.expand(direction, None)?;
+        asked &= excursion.along(direction, &own, &mut departures);
         for (sums, e) in sums.iter_mut().zip(&own) {
             sums.alone(e);
         }
@@ -49,7 +64,16 @@ pub(crate) fn second_order(
             }
         }
     }
-    Ok(sums.into_iter().map(Sums::finish).collect())
+    let flat = budgets.iter().any(|budget| budget.standard_uncertainty() == 0.0);
+    asked &= !flat || excursion.together(&directions, &mut departures);
+    let finish = |(k, sums): (usize, Sums)| {
+        let (u, departure) = (budgets[k].standard_uncertainty(), departures[k]);
+        let terms = sums.finish(excursion.rounding(k)).filter(|_| asked && departure.is_tolerable(u));
+        let slopes = (0..inputs.as_slice().len()).any(|i| budgets[k].signed(i) != 0.0);
+        let still = asked && departure.moved == 0.0 && terms.is_some_and(|terms| terms.size() <= excursion.rounding(k));
+        Curvature { terms, cancels: u == 0.0 && slopes && still }
+    };
+    Ok(sums.into_iter().enumerate().map(finish).collect())
 }
 
 /// The columns of D that are not zero, in units of the inputs.
@@ -61,8 +85,17 @@ fn directions(inputs: &Inputs) -> Vec<Vec<f64>> {
     all.iter().map(|&m| column(m)).filter(|column| column.iter().any(|&step| step != 0.0)).collect()
 }
 
-#[derive(Clone, Default)]
+impl SecondOrder {
+    /// The larger of both (unit of the result).
+    fn size(self) -> f64 {
+        self.correction.abs().max(self.standard_uncertainty)
+    }
+}
+
+#[derive(Clone)]
 struct Sums {
+    /// A power of two near the uncertainty, in units of which variances are summed lest they vanish.
+    unit: f64,
     correction: f64,
     variance: f64,
     /// Sum of the magnitudes, against which a sum that cancels is nothing but rounding.
@@ -70,7 +103,14 @@ struct Sums {
 }
 
 impl Sums {
+    fn new(standard_uncertainty: f64) -> Self {
+        let usual = (1e-100..1e100).contains(&standard_uncertainty) || standard_uncertainty == 0.0;
+        let unit = if usual { 1.0 } else { standard_uncertainty.log2().floor().exp2() };
+        Self { unit, correction: 0.0, variance: 0.0, size: 0.0 }
+    }
+
     fn alone(&mut self, e: &Expansion) {
+        let e = e.in_units_of(self.unit);
         self.correction += 0.5 * e.aa;
         self.add(e.a * e.a);
         self.add(0.5 * e.aa * e.aa);
@@ -78,6 +118,7 @@ impl Sums {
     }
 
     fn together(&mut self, e: &Expansion, first: f64, second: f64) {
+        let (e, first, second) = (e.in_units_of(self.unit), first / self.unit, second / self.unit);
         self.add(e.ab * e.ab);
         self.add(first * e.abb);
         self.add(second * e.aab);
@@ -88,9 +129,11 @@ impl Sums {
         self.size += term.abs();
     }
 
-    fn finish(self) -> Option<SecondOrder> {
-        let negative = self.variance < -1e-12 * self.size;
-        let terms = SecondOrder { correction: self.correction, standard_uncertainty: self.variance.max(0.0).sqrt() };
+    /// The sums, if they are possible; `rounding` is what rounding may do to the output.
+    fn finish(self, rounding: f64) -> Option<SecondOrder> {
+        let negative = self.variance < -1e-12 * self.size - (rounding / self.unit).powi(2);
+        let (correction, u) = (self.unit * self.correction, self.unit * self.variance.max(0.0).sqrt());
+        let terms = SecondOrder { correction, standard_uncertainty: u };
         (!negative && self.size.is_finite() && terms.correction.is_finite()).then_some(terms)
     }
 }

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::allowed_failures::AllowedFailures;
 use crate::block::BLOCK_TRIALS;
+use crate::heavy_tail::HeavyTail;
 use crate::sampler::Sampler;
 use crate::stream::Stream;
 use crate::{Inputs, Moments, MonteCarlo, Outcome, OutputSample, UncertaintyError};
@@ -45,8 +46,13 @@ pub struct VarianceShare {
 /// # Errors
 /// [`UncertaintyError::CorrelatedInputs`]: shares of a variance need independent inputs.
 /// [`UncertaintyError::OptionOutOfRange`] for fewer than 10 blocks of 1000 trials, from which the errors come, or a share
-/// outside [0, 1); [`UncertaintyError::TooManyTrials`]; [`UncertaintyError::RowsFailed`];
-/// [`UncertaintyError::NoSuccess`], also if the output does not vary.
+/// outside [0, 1); [`UncertaintyError::TooManyTrials`]; [`UncertaintyError::RowsFailed`]; [`UncertaintyError::NoSuccess`];
+/// [`UncertaintyError::ConstantOutput`]; [`UncertaintyError::NoVariance`] if an input has Student's t of ν ≤ 2;
+/// [`UncertaintyError::UncertaintyOutOfRange`] if the squares of the values overflow, [`UncertaintyError::TooSmall`] if they
+/// vanish.
+///
+/// # Panics
+/// If the model does.
 ///
 /// # References
 /// A. Saltelli, P. Annoni, I. Azzini, F. Campolongo, M. Ratto, S. Tarantola, "Variance based sensitivity analysis of model
@@ -62,6 +68,7 @@ pub fn variance_shares<R: Outcome<f64>>(
     if let Some((first, second)) = inputs.dependent_pair() {
         return Err(UncertaintyError::CorrelatedInputs { first, second });
     }
+    HeavyTail::require_variance(HeavyTail::of(inputs).as_ref())?;
     let blocks = trials.div_ceil(BLOCK_TRIALS as u64);
     if blocks < 10 {
         return refuse("number of trials for variance shares", trials as f64, "at least 10000");
@@ -81,8 +88,20 @@ pub fn variance_shares<R: Outcome<f64>>(
         return Err(UncertaintyError::RowsFailed { failed, rows: all, allowed: allowed_failures.share() });
     }
     let base: Vec<f64> = rows.iter().flat_map(|r| r.a.iter().chain(&r.b)).copied().collect();
-    let moments = Moments::of(&base).filter(|moments| moments.sum_of_squares() > 0.0);
-    let moments = moments.ok_or(UncertaintyError::NoSuccess)?;
+    if base.is_empty() {
+        return Err(UncertaintyError::NoSuccess);
+    }
+    let moments = Moments::of_values(&base);
+    moments.require_squares(&base, "the output")?;
+    let overflow = || UncertaintyError::UncertaintyOutOfRange {
+        input: "the output".to_owned(),
+        value: f64::INFINITY,
+        unit: "(its unit)".to_owned(),
+    };
+    let moments = moments.if_finite().ok_or_else(overflow)?;
+    if moments.sum_of_squares() == 0.0 {
+        return Err(UncertaintyError::ConstantOutput);
+    }
     let variance = moments.sum_of_squares() / base.len() as f64;
     let names = inputs.as_slice().iter().enumerate();
     let share = |(i, input): (usize, &crate::Input)| {
@@ -156,21 +175,23 @@ impl Rows {
 }
 
 impl MonteCarlo<'_> {
-    /// The run repeated with one input uncertain at a time and all others held at their estimates, in the order
-    /// of the inputs.
+    /// The run repeated with one of its inputs uncertain at a time and all others held at their estimates, in the order
+    /// of the inputs, each with its name.
     ///
     /// What an input does together with others is not in it; [`variance_shares`] has that.
     ///
     /// # Errors
     /// Those of [`MonteCarlo::run`].
+    ///
+    /// # Panics
+    /// If the model does.
     pub fn run_one_at_a_time<R: Outcome<f64>>(
         &self,
-        inputs: &Inputs,
         model: impl Fn(&[f64]) -> R + Sync,
     ) -> Result<Vec<(String, OutputSample)>, UncertaintyError> {
-        let names = inputs.as_slice().iter().enumerate();
+        let names = self.inputs.as_slice().iter().enumerate();
         let run = |(i, input): (usize, &crate::Input)| {
-            let alone = self.with_inputs(&inputs.only(i));
+            let alone = self.with_inputs(self.inputs.only(i));
             Ok((input.name().to_owned(), alone.run_plan(&model)?))
         };
         names.map(run).collect()

@@ -33,7 +33,7 @@ impl fmt::Display for Budget {
             Linearisation::Adequate | Linearisation::Unchecked => Ok(()),
             Linearisation::ZeroUncertainty => writeln!(
                 f,
-                "warning: u is zero although inputs are uncertain; the linear approximation cannot see them"
+                "warning: u is zero although inputs are uncertain; the linear approximation cannot see what they do"
             ),
             Linearisation::UncertaintyDiffers(terms) => {
                 writeln!(
@@ -46,7 +46,7 @@ impl fmt::Display for Budget {
                 writeln!(f, "warning: the model is curved and moves the estimate by {}{unit}", digits(terms.correction))
             }
             Linearisation::NotExpandable => {
-                writeln!(f, "warning: the model is curved beyond the reach of second-order terms")
+                writeln!(f, "warning: within the uncertainties of its inputs the model is not what its derivatives say")
             }
         }
     }

@@ -27,6 +27,11 @@ impl Trapezoid {
         self.base.hypot(self.top) / 6f64.sqrt()
     }
 
+    /// The smallest and the largest value.
+    pub(crate) fn limits(&self) -> (f64, f64) {
+        (self.centre - self.base, self.centre + self.base)
+    }
+
     pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
         let (first, second): (f64, f64) = (rng.random(), rng.random());
         self.centre + (self.base + self.top) * (first - 0.5) + (self.base - self.top) * (second - 0.5)

@@ -2,9 +2,10 @@
 
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution as _, Exp1, StandardNormal};
-use statrs::distribution::{Continuous, ContinuousCDF, Gamma, Normal};
+use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::{Distribution, Shape};
+use crate::gamma::gamma_quantile;
 use crate::{UncertaintyError, student};
 
 impl Distribution {
@@ -73,16 +74,4 @@ fn each(values: &mut [f64], stride: usize, mut draw: impl FnMut() -> f64) {
     for value in values.iter_mut().step_by(stride) {
         *value = draw();
     }
-}
-
-/// The quantile of the gamma distribution of unit scale, to the digits of its distribution function.
-fn gamma_quantile(shape: f64, probability: f64) -> f64 {
-    let Ok(unit) = Gamma::new(shape, 1.0) else { return f64::NAN };
-    let near = unit.inverse_cdf(probability);
-    // The search ends at a fixed tolerance; two of Newton's steps, in the smaller tail, take it to rounding.
-    (0..2).fold(near, |x, _| {
-        let error = if probability < 0.5 { unit.cdf(x) - probability } else { (1.0 - probability) - unit.sf(x) };
-        let next = x - error / unit.pdf(x);
-        if next > 0.0 && next.is_finite() { next } else { x }
-    })
 }

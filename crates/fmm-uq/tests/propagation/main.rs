@@ -5,6 +5,7 @@ mod annex_h;
 mod clause9;
 mod dependence;
 mod distributions;
+mod limits;
 mod nist;
 mod polar;
 mod sensitivity;

@@ -69,7 +69,7 @@ fn one_at_a_time() {
     let inputs = Inputs::new([Input::new("a", 1.0, 0.3, "m").unwrap(), Input::new("b", 2.0, 0.4, "m").unwrap()]);
     let inputs = inputs.unwrap().with_correlations(&[("a", "b", 0.9)]).unwrap();
     let run = MonteCarlo::new(&inputs, 100_000).unwrap();
-    let alone = run.run_one_at_a_time(&inputs, |x| x[0] + x[1]).unwrap();
+    let alone = run.run_one_at_a_time(|x| x[0] + x[1]).unwrap();
     for ((name, sample), (expected, u)) in alone.iter().zip([("a", 0.3), ("b", 0.4)]) {
         assert_eq!(name, expected);
         let [_, error] = sample.standard_errors(0).unwrap();

@@ -23,7 +23,7 @@ fn model(x: &[f64]) -> [f64; 2] {
 fn bits(sample: &OutputSample) -> Vec<u64> {
     let values = (0..sample.outputs()).flat_map(|j| sample.values(j).unwrap());
     let figures = (0..sample.outputs())
-        .flat_map(|j| [sample.estimate(j).unwrap(), sample.standard_uncertainty(j).unwrap()])
+        .flat_map(|j| [sample.estimate(j).unwrap(), sample.moments(j).unwrap().standard_deviation().unwrap()])
         .collect::<Vec<_>>();
     values.chain(&figures).map(|x| x.to_bits()).collect()
 }
