@@ -1,68 +1,17 @@
 //! The stick-slip automaton: modes, guards and transitions, the same for every engine of sliding laws.
 
-use fmm_friction::{Affine, SlidingLaw};
 use fmm_model::{Oscillator, Restoring, Scalar};
 
 use crate::curve::{Curve, Wave};
 use crate::drive::{Drive, Piece};
 use crate::first_zero::{ROUNDING, SEARCH_BUDGET, first_zero};
+use crate::levels::Levels;
 use crate::recorder::Recorder;
 use crate::work::Power;
 use crate::{Direction, Event, EventKind, Mode, Scenario, SimulationError, State};
 
-/// Friction levels of a law as the automaton asks for them.
-pub(crate) trait Levels<D> {
-    /// Coefficient while the speed grows, and the only one unless there are two branches.
-    fn gaining(&self, speed: D) -> D;
-    /// Coefficient while the speed falls.
-    fn losing(&self, speed: D) -> D;
-    fn breakaway(&self) -> D;
-    fn has_branches(&self) -> bool;
-}
-
 /// How exactly an engine finds the load at which the acceleration vanishes, relative to the friction force.
 const ON_BOUND: f64 = 1e-9;
-
-/// A [`SlidingLaw`] as levels.
-pub(crate) struct Sliding<'a, L>(pub(crate) &'a L);
-
-impl<D: Scalar, L: SlidingLaw<D>> Levels<D> for Sliding<'_, L> {
-    fn gaining(&self, speed: D) -> D {
-        self.0.coefficient(speed)
-    }
-    fn losing(&self, speed: D) -> D {
-        self.0.coefficient_losing_speed(speed)
-    }
-    fn breakaway(&self) -> D {
-        self.0.breakaway()
-    }
-    fn has_branches(&self) -> bool {
-        self.0.depends_on_acceleration()
-    }
-}
-
-/// The two branches of a piecewise linear law as levels.
-#[derive(Clone, Copy)]
-pub(crate) struct Branches<D> {
-    pub(crate) gaining: Affine<D>,
-    pub(crate) losing: Affine<D>,
-    pub(crate) differ: bool,
-}
-
-impl<D: Scalar> Levels<D> for Branches<D> {
-    fn gaining(&self, speed: D) -> D {
-        self.gaining.coefficient(speed)
-    }
-    fn losing(&self, speed: D) -> D {
-        self.losing.coefficient(speed)
-    }
-    fn breakaway(&self) -> D {
-        self.gaining.breakaway
-    }
-    fn has_branches(&self) -> bool {
-        self.differ
-    }
-}
 
 /// Which branch of the law a sliding contact is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -252,13 +201,24 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                     index += 1;
                     let before = std::mem::replace(&mut piece, drive.piece(index));
                     let Some((next, load)) = self.after_jump(mode, &before, &piece, time, state) else { continue };
-                    (if next == Mode::Stick { EventKind::Stop } else { EventKind::BranchChange }, next, load)
+                    let kind = match (mode, next) {
+                        (Mode::Stick, _) => EventKind::Breakaway,
+                        (_, Mode::Stick) => EventKind::Stop,
+                        _ => EventKind::BranchChange,
+                    };
+                    (kind, next, load)
                 }
                 Ending::RelativeRest if mode == Mode::Stick => {
                     let load = self.load(&piece, time, state.position, state.velocity).now().value();
                     (EventKind::Breakaway, next, load)
                 }
                 Ending::RelativeRest => {
+                    state.velocity = self.belt;
+                    let (next, load) = self.mode(&piece, time, state);
+                    (if next == Mode::Stick { EventKind::Stop } else { EventKind::Reversal }, next, load)
+                }
+                // Nor is a speed constant that is none: such a branch ends as one that reaches rest.
+                Ending::SteadySpeed if self.has_no_speed(mode, state) => {
                     state.velocity = self.belt;
                     let (next, load) = self.mode(&piece, time, state);
                     (if next == Mode::Stick { EventKind::Stop } else { EventKind::Reversal }, next, load)
@@ -274,8 +234,10 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         }
     }
 
-    /// Where a contact goes whose branch does not agree any more with its acceleration, as the force has jumped from one
-    /// piece to the next.
+    /// Where a contact goes that cannot go on as it did, as the force has jumped from one piece to the next: one that holds
+    /// may slide at once, and one that slides may be on a branch that does not agree any more with its acceleration.
+    ///
+    /// Nothing but the time of the jump decides when that is, so that no level has a part in it.
     fn after_jump(
         &self,
         mode: Mode,
@@ -284,12 +246,17 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         time: D,
         state: State<D>,
     ) -> Option<(Mode, f64)> {
-        let direction = mode.direction().filter(|_| self.levels.has_branches())?;
+        if mode != Mode::Stick && !self.levels.has_branches() {
+            return None;
+        }
         let load = self.load(piece, time, state.position, state.velocity);
         let jump = piece.force(time.value()).value() - before.force(time.value()).value();
         if jump.abs() <= rounding(self.oscillator, &load, time, state) {
             return None;
         }
+        let Some(direction) = mode.direction() else {
+            return Some(self.mode(piece, time, state)).filter(|(next, _)| *next != Mode::Stick);
+        };
         let drive = load.now().value() * direction.sign();
         let (gaining, losing) = self.branch_forces((state.velocity - self.belt).abs());
         let agrees = match mode {
@@ -298,6 +265,12 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             _ => (losing.value()..=gaining.value()).contains(&drive),
         };
         (!agrees).then(|| self.mode(piece, time, state))
+    }
+
+    /// Whether a contact that slides in `mode` has lost its speed, or rounding has taken it beyond.
+    fn has_no_speed(&self, mode: Mode, state: State<D>) -> bool {
+        let relative = (state.velocity - self.belt).value();
+        mode.direction().is_some_and(|direction| relative * direction.sign() <= 0.0)
     }
 
     /// Where a contact goes whose acceleration has become zero on a branch.
@@ -343,10 +316,9 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         let now = plain.at(0.0);
         for (bound, sign) in [(above, 1.0), (below, -1.0)] {
             let excess = sign * now - bound.value();
-            // A steady phase begins on a bound, as exactly as the engine has found it; a contact that has just been found to
-            // hold does so although rounding may put the load beyond the level.
-            let exactness = if steady.is_some() { ON_BOUND } else { 4.0 * f64::EPSILON };
-            let slack = excess > 0.0 && excess <= exactness * bound.value().abs();
+            // A contact that has been found to hold does so although rounding may put the load beyond the level; a steady
+            // phase begins on a bound, as exactly as the engine has found it.
+            let slack = excess > 0.0 && (steady.is_none() || excess <= ON_BOUND * bound.value().abs());
             let bound = if slack { bound + excess } else { bound };
             // What is out of reach need not be searched for.
             if bound.value() - sign * plain.constant > reach && span.is_finite() {

@@ -75,6 +75,8 @@
 //! [`fmm-friction`](https://docs.rs/fmm-friction) has the laws, [`fmm-model`](https://docs.rs/fmm-model) the machine;
 //! [`fmm-identify`](https://docs.rs/fmm-identify) fits motions to records. There are no features.
 
+#[cfg(test)]
+mod agreement;
 mod automaton;
 mod bristle;
 mod curve;
@@ -89,6 +91,7 @@ mod exact;
 mod excitation;
 mod first_zero;
 mod fixed_step;
+mod levels;
 mod moreau;
 mod prescribed;
 mod recorder;

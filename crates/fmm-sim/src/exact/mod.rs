@@ -8,8 +8,9 @@ mod swing;
 use fmm_friction::{Affine, PiecewiseLinearLaw};
 use fmm_model::{Restoring, Scalar};
 
-use crate::automaton::{Branches, Contact};
+use crate::automaton::Contact;
 use crate::drive::Drive;
+use crate::levels::Branches;
 use crate::recorder::Recorder;
 use crate::{Engine, Sampling, Scenario, SimulationError, Trajectory};
 use elements::Yielding;

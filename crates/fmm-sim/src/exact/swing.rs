@@ -5,11 +5,12 @@ use fmm_model::{Oscillator, Scalar};
 
 use super::powers::Powers;
 use super::response::respond;
-use crate::automaton::{Branch, Branches, Ended, Ending, Phase, Slide, crossing, load, rounding};
+use crate::automaton::{Branch, Ended, Ending, Phase, Slide, crossing, load, rounding};
 use crate::curve::Curve;
 use crate::decay::Decay;
 use crate::drive::Drive;
 use crate::first_zero::{SEARCH_BUDGET, first_zero};
+use crate::levels::Branches;
 use crate::recorder::Recorder;
 use crate::work::Power;
 use crate::{Sampling, Scenario, SimulationError, State};

@@ -6,8 +6,9 @@ mod step;
 use fmm_friction::SlidingLaw;
 use fmm_model::Scalar;
 
-use crate::automaton::{Contact, Sliding};
+use crate::automaton::Contact;
 use crate::drive::Drive;
+use crate::levels::Sliding;
 use crate::recorder::Recorder;
 use crate::{Engine, Sampling, Scenario, SimulationError, Trajectory};
 use slide::Integrator;

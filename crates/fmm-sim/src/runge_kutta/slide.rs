@@ -4,8 +4,9 @@ use fmm_friction::SlidingLaw;
 use fmm_model::{Oscillator, Scalar};
 
 use super::step::{Step, first_zero_within};
-use crate::automaton::{Branch, Ended, Ending, Phase, Slide, load};
+use crate::automaton::{Branch, Ended, Ending, Phase, Slide, load, rounding};
 use crate::drive::Drive;
+use crate::first_zero::ROUNDING;
 use crate::recorder::Recorder;
 use crate::within::{COEFFICIENTS, Within};
 use crate::work::Power;
@@ -19,6 +20,9 @@ const WEAK: f64 = 1e-2;
 
 /// Attempts at landing on an event; Newton's method needs two or three.
 const LANDINGS: usize = 12;
+
+/// How far below zero the acceleration of a step must dip, in units of its error in the velocity over its length.
+const DIP: f64 = 10.0;
 
 /// What counts as the error of a step that has found an event and not landed on it: the next will be half as long.
 const NOT_LANDED: f64 = 256.0;
@@ -132,9 +136,20 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
     /// The value at the end of `step` of the guard that `ending` stands for, positive before the event.
     fn guard(&self, phase: &Phase<D>, step: &Step<D>, ending: Ending, armed: bool) -> D {
         match ending {
-            Ending::SteadySpeed => step.last_acceleration() * Self::gain(phase),
+            Ending::SteadySpeed => {
+                let time = phase.time.value().max(phase.piece.start);
+                step.last_acceleration() * Self::gain(phase) + self.noise(phase, time, step.end)
+            }
             _ => self.spare_speed(phase, step.end.velocity, armed),
         }
+    }
+
+    /// Rounding of an acceleration (m/s²): what is less is zero, or a motion that tends to a constant speed would go from
+    /// branch to branch for ever.
+    fn noise(&self, phase: &Phase<D>, time: f64, state: State<D>) -> f64 {
+        let load = load(self.oscillator, phase.piece, D::from(time), state);
+        let friction = self.friction(phase, state.velocity).value().abs();
+        (rounding(self.oscillator, &load, D::from(time), state) + ROUNDING * friction) * self.per_mass.value()
     }
 
     /// The rate of the guard at the end of a step that begins at `time`, if it is zero there.
@@ -163,15 +178,26 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         }
     }
 
+    /// Whether the guard of `ending`, positive at both ends of `step`, may be zero in between.
+    fn may_dip(&self, phase: &Phase<D>, at: &Progress<D>, step: &Step<D>, ending: Ending) -> bool {
+        if ending == Ending::SteadySpeed {
+            // Nothing that the step knows bounds the change of the acceleration.
+            return true;
+        }
+        let sign = phase.direction.sign();
+        let (least, most) = step.range_of_acceleration();
+        let [begin, end] = [at.state.velocity, step.end.velocity].map(|v| self.spare_speed(phase, v, at.armed).value());
+        // Down and up again by half of this at most.
+        least < 0.0 && most > 0.0 && begin.min(end) <= step.length * (if sign > 0.0 { -least } else { most })
+    }
+
     /// The guard that `step` reaches first, and the part of the step at which it does.
     fn reached(&self, phase: &Phase<D>, at: &Progress<D>, step: &mut Step<D>) -> Option<(Ending, f64)> {
         let sign = phase.direction.sign();
         let mut first: Option<(Ending, f64)> = None;
         for &ending in Self::endings(phase) {
             let crossed = self.guard(phase, step, ending, at.armed).value() <= 0.0;
-            let turning =
-                step.first_acceleration().value() * sign < 0.0 && step.last_acceleration().value() * sign > 0.0;
-            if !(crossed || turning && ending == Ending::RelativeRest) {
+            if !(crossed || self.may_dip(phase, at, step, ending)) {
                 continue;
             }
             let velocity = self.within(phase, at.time, step).velocity().map(|coefficient| coefficient.value() * sign);
@@ -181,6 +207,10 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
                 guard = [0.0; COEFFICIENTS];
                 for power in 1..COEFFICIENTS {
                     guard[power - 1] = velocity[power] * power as f64 * sign;
+                }
+                if !crossed {
+                    // A dip within the error of the step is none.
+                    guard[0] += DIP * self.tolerance * self.scale(step.end, step.last_acceleration()).velocity;
                 }
             } else {
                 guard[0] = self.spare_speed(phase, at.state.velocity, at.armed).value();

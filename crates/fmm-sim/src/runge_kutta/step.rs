@@ -32,14 +32,15 @@ impl<D: Scalar> Step<D> {
         Self { begin, end: State { position: end[0], velocity: end[1] }, length, rates }
     }
 
-    /// Acceleration at the beginning.
-    pub(super) fn first_acceleration(&self) -> D {
-        self.rates[1][0]
-    }
-
     /// Acceleration at the end.
     pub(super) fn last_acceleration(&self) -> D {
         self.rates[1][END]
+    }
+
+    /// The least and the greatest acceleration at any stage.
+    pub(super) fn range_of_acceleration(&self) -> (f64, f64) {
+        let stages = self.rates[1][..=END].iter().map(|acceleration| acceleration.value());
+        stages.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), a| (least.min(a), most.max(a)))
     }
 
     /// The local error relative to a motion of the amplitudes `scale`.
