@@ -53,9 +53,14 @@ impl<D: Scalar> Piece<D> {
 
     /// The force at `time` (N).
     pub(crate) fn force(&self, time: f64) -> D {
-        let mut force = self.line(D::from(time)).0;
+        self.force_at(D::from(time))
+    }
+
+    /// The force at a `time` that may have derivatives (N).
+    pub(crate) fn force_at(&self, time: D) -> D {
+        let mut force = self.line(time).0;
         for wave in &self.waves {
-            force = force + wave.amplitude * wave.sin_cos(D::from(time)).1;
+            force = force + wave.amplitude * wave.sin_cos(time).1;
         }
         force
     }

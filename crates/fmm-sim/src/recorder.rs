@@ -110,6 +110,21 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         self.polynomials(end, begin, length, |component| if component == 0 { position } else { velocity })
     }
 
+    /// Writes the derivatives anew of the samples from `first` to the last that is written, `state` giving the state at a
+    /// sample's time.
+    pub(crate) fn partials(&mut self, first: usize, mut state: impl FnMut(f64) -> State<D>) {
+        let channels = self.sampling.channels();
+        for index in first..self.written {
+            let State { position, velocity } = state(self.sampling.time(index));
+            if channels.position() {
+                self.trajectory.position_mut().set_partials(index, position);
+            }
+            if channels.velocity() {
+                self.trajectory.velocity_mut().set_partials(index, velocity);
+            }
+        }
+    }
+
     /// Writes the samples before `end`: polynomials in the time since `origin` in units of `unit` (s), `of` giving the
     /// coefficients for position, velocity and, from 2 on, the internal states.
     pub(crate) fn polynomials<const N: usize>(

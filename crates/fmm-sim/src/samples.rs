@@ -39,6 +39,11 @@ impl<D: Scalar> Samples<D> {
     /// Writes one number, value and partial derivatives, at `index`.
     pub(crate) fn set(&mut self, index: usize, number: D) {
         self.values[index] = number.value();
+        self.set_partials(index, number);
+    }
+
+    /// Writes the partial derivatives of one number at `index`.
+    pub(crate) fn set_partials(&mut self, index: usize, number: D) {
         for direction in 0..D::DIRECTIONS {
             self.partial_mut(direction)[index] = number.partial(direction);
         }

@@ -6,7 +6,24 @@ use crate::State;
 use crate::dormand_prince::{END, Rates, dense_stages, error, errors, nested, step};
 use crate::within::{COEFFICIENTS, Within};
 
+/// Step less the embedded formulas, for position and velocity, in one pair of orders each.
+pub(super) struct DerivativeErrors<D> {
+    length: f64,
+    position: (D, D),
+    velocity: (D, D),
+}
+
+impl<D: Scalar> DerivativeErrors<D> {
+    /// The local error of the derivative in `direction`, as one of the velocity (m/s) of a machine that swings with
+    /// `angular` (rad/s).
+    pub(super) fn of(&self, direction: usize, angular: f64) -> f64 {
+        let norm = |x: D, v: D| (angular * x.partial(direction)).powi(2) + v.partial(direction).powi(2);
+        error(self.length, norm(self.position.0, self.velocity.0), norm(self.position.1, self.velocity.1))
+    }
+}
+
 /// A step taken from `begin` over `length` (s).
+#[derive(Clone)]
 pub(super) struct Step<D> {
     pub(super) begin: State<D>,
     pub(super) end: State<D>,
@@ -51,6 +68,17 @@ impl<D: Scalar> Step<D> {
             0.5 * (x * x + v * v)
         };
         error(self.length, norm(position.0, velocity.0), norm(position.1, velocity.1))
+    }
+
+    /// What the local errors of the derivatives are made of.
+    pub(super) fn derivative_errors(&self) -> DerivativeErrors<D> {
+        DerivativeErrors { length: self.length, position: errors(&self.rates[0]), velocity: errors(&self.rates[1]) }
+    }
+
+    /// Puts another state, and the acceleration there, at the end.
+    pub(super) fn correct(&mut self, end: State<D>, acceleration: D) {
+        self.end = end;
+        (self.rates[0][END], self.rates[1][END]) = (end.velocity, acceleration);
     }
 
     /// The motion within the step, to order 7.

@@ -1,0 +1,123 @@
+//! The derivatives of a step in which the law is steep, with the speed as the independent variable.
+
+use fmm_friction::SlidingLaw;
+use fmm_model::Scalar;
+
+use super::field::Field;
+use super::slide::Progress;
+use super::step::Step;
+use crate::State;
+use crate::automaton::Phase;
+use crate::dormand_prince::{Rates, dense_stages, errors, mean_rate, nested, step};
+
+/// The least acceleration of a step, in units of its greatest, with which the speed is still a measure of time.
+const LEAST: f64 = 0.05;
+
+/// Time and position as functions of the speed, over the speeds of a step.
+///
+/// ```text
+/// dt/dw = 1/(s x″),   dx/dw = x′/(s x″),   x′ = v_b + s w
+/// ```
+///
+/// At a given speed w the friction of neighbouring motions differs by what the parameters change of it, not by its slope,
+/// however steep that is: an infinite slope at rest is no part of these equations at all.
+pub(super) struct BySpeed<D> {
+    /// Speed at the beginning, and by how much it grows (m/s).
+    begin: f64,
+    growth: f64,
+    sign: f64,
+    start: [D; 2],
+    end: [D; 2],
+    nested: [[D; 7]; 2],
+    rates: [Rates<D>; 2],
+    /// Greatest magnitudes of velocity (m/s) and acceleration (m/s²).
+    greatest: [f64; 2],
+}
+
+impl<D: Scalar> BySpeed<D> {
+    /// Follows the motion over `taken`, which begins at `at`; none if its speed turns or hardly changes.
+    pub(super) fn follow<L: SlidingLaw<D>>(
+        field: &Field<D, L>,
+        phase: &Phase<D>,
+        at: &Progress<D>,
+        taken: &Step<D>,
+    ) -> Option<Self> {
+        let sign = phase.direction.sign();
+        let (least, most) = taken.range_of_acceleration();
+        let greatest =
+            [at.state.velocity.value().abs().max(taken.end.velocity.value().abs()), least.abs().max(most.abs())];
+        let [first, last] = [at.state, taken.end].map(|state| field.speed(phase, state.velocity));
+        let (begin, growth) = (first.value(), last.value() - first.value());
+        let steady = least * most > 0.0 && least.abs().min(most.abs()) >= LEAST * greatest[1];
+        if !steady || growth == 0.0 {
+            return None;
+        }
+        // From the time of the step's beginning, which is given, to the speed there.
+        let late = -(first - begin) / (at.acceleration.value() * sign);
+        let start = [late, at.state.position + late * at.state.velocity.value()];
+        let rate = |beyond: f64, now: &[D], stage: usize, rates: &mut [Rates<D>]| {
+            let speed = begin + beyond;
+            let velocity = field.belt + speed * sign;
+            let force = field.is_driven.then(|| phase.piece.force_at(now[0] + at.time));
+            let state = State { position: now[1], velocity };
+            let acceleration = field.balance(phase, at.side, force, state, D::from(speed));
+            let duration = D::from(sign) / acceleration;
+            rates[0][stage] = duration;
+            rates[1][stage] = velocity * duration;
+        };
+        let mut rates = [[D::from(0.0); 16]; 2];
+        let (mut now, mut end) = (start, start);
+        rate(0.0, &start, 0, &mut rates);
+        step(&start, growth, &mut rates, &mut now, &mut end, rate);
+        dense_stages(&start, growth, &mut rates, &mut now, rate);
+        let nested = [0, 1].map(|unknown| nested(&rates[unknown], mean_rate(&rates[unknown]) * growth, growth));
+        Some(Self { begin, growth, sign, start, end, nested, rates, greatest })
+    }
+
+    /// The local error of a derivative in `direction`, as one of the velocity (m/s) of a machine that swings with `angular`
+    /// (rad/s); see [`error`](crate::dormand_prince::error).
+    pub(super) fn error(&self, direction: usize, angular: f64) -> f64 {
+        let [time, position] = [0, 1].map(|unknown| errors(&self.rates[unknown]));
+        let norm = |time: D, position: D| {
+            let (time, position) = (time.partial(direction), position.partial(direction));
+            let [velocity, acceleration] = self.greatest;
+            (angular * position).powi(2) + (angular * velocity * time).powi(2) + (acceleration * time).powi(2)
+        };
+        crate::dormand_prince::error(self.growth.abs(), norm(time.0, position.0), norm(time.1, position.1))
+    }
+
+    /// The `state`, where the acceleration is `acceleration` (m/s²), with the derivatives at a given time.
+    ///
+    /// Next to a steep rest the acceleration changes within the error of a step: that of the state itself makes a time of a
+    /// speed, or a time of an event would not be that of this speed.
+    pub(super) fn derive<L: SlidingLaw<D>>(
+        &self,
+        field: &Field<D, L>,
+        phase: &Phase<D>,
+        state: State<D>,
+        acceleration: f64,
+    ) -> State<D> {
+        let speed = field.speed(phase, state.velocity).value();
+        let part = ((speed - self.begin) / self.growth).clamp(0.0, 1.0);
+        let [time, position] = if part == 1.0 {
+            self.end
+        } else {
+            [0, 1].map(|unknown| {
+                let terms = self.nested[unknown].iter().enumerate().rev();
+                // Times θ for even, times 1 − θ for odd terms.
+                let weigh =
+                    |sum: D, (index, term): (usize, &D)| (sum + *term) * if index % 2 == 0 { part } else { 1.0 - part };
+                self.start[unknown] + terms.fold(D::from(0.0), weigh)
+            })
+        };
+        // From that speed to the given time.
+        let late = -(time - time.value());
+        let derivatives =
+            [position + late * state.velocity.value(), field.belt + speed * self.sign + late * acceleration];
+        let graft = |number: D, value: f64| number - number.value() + value;
+        State {
+            position: graft(derivatives[0], state.position.value()),
+            velocity: graft(derivatives[1], state.velocity.value()),
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The equation of motion on one smooth piece of a law.
+
+use fmm_friction::SlidingLaw;
+use fmm_model::{Oscillator, Scalar};
+
+use super::guard::Guard;
+use crate::automaton::{Branch, Phase, load, rounding};
+use crate::drive::Drive;
+use crate::first_zero::ROUNDING;
+use crate::work::Power;
+use crate::{Scenario, State};
+
+/// The right-hand side of the equation of motion.
+pub(super) struct Field<'a, D, L> {
+    pub(super) oscillator: &'a Oscillator<D>,
+    law: &'a L,
+    normal_load: D,
+    pub(super) belt: D,
+    /// 1/m.
+    pub(super) per_mass: D,
+    /// The damping coefficient, if damping is linear.
+    linear_damping: Option<D>,
+    /// Whether any force acts from outside.
+    pub(super) is_driven: bool,
+    /// The speed at which the contact is caught (m/s), if there is one.
+    pub(super) capture: Option<D>,
+}
+
+/// A side of the capture speed, at which the law may jump: whether the speed has exceeded it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    Below,
+    /// The contact is caught once the speed is down at it again.
+    Above,
+}
+
+impl<'a, D: Scalar, L: SlidingLaw<D>> Field<'a, D, L> {
+    pub(super) fn new(scenario: &'a Scenario<D, L>, drive: &Drive<D>) -> Self {
+        let oscillator = scenario.oscillator();
+        let capture = scenario.law().capture_speed();
+        Self {
+            oscillator,
+            law: scenario.law(),
+            normal_load: scenario.normal_load(),
+            belt: drive.belt(),
+            per_mass: D::from(1.0) / oscillator.mass(),
+            linear_damping: oscillator.damping().is_linear().then(|| oscillator.damping().linear_coefficient()),
+            is_driven: !scenario.excitations().is_empty(),
+            capture: (capture.value() > 0.0).then_some(capture),
+        }
+    }
+
+    /// The sliding speed of a contact with this `velocity` in the direction of `phase`.
+    #[inline]
+    pub(super) fn speed(&self, phase: &Phase<D>, velocity: D) -> D {
+        (velocity - self.belt) * phase.direction.sign()
+    }
+
+    /// The speed less that at which the contact is caught, or for an escape what it lacks.
+    pub(super) fn spare_speed(&self, phase: &Phase<D>, side: Side, velocity: D, guard: Guard) -> D {
+        let speed = self.speed(phase, velocity);
+        match (self.capture, guard) {
+            (Some(capture), Guard::Escape) => capture - speed,
+            (Some(capture), _) if side == Side::Above => speed - capture,
+            _ => speed,
+        }
+    }
+
+    /// The side of the capture speed on which a phase begins.
+    pub(super) fn first_side(&self, phase: &Phase<D>) -> Side {
+        let speed = self.speed(phase, phase.state.velocity).value();
+        match self.capture {
+            Some(capture) if speed > capture.value() => Side::Above,
+            Some(capture) if speed == capture.value() => {
+                let below = self.acceleration(phase, Side::Below, phase.time.value(), phase.state);
+                if below.value() * phase.direction.sign() > 0.0 { Side::Above } else { Side::Below }
+            }
+            _ => Side::Below,
+        }
+    }
+
+    /// Friction force at a sliding `speed`, along the direction of `phase`.
+    ///
+    /// Stages may look past the end of a piece of the law: its curve is turned about its end, which keeps the slope.
+    #[inline]
+    fn friction_at(&self, phase: &Phase<D>, side: Side, speed: D) -> D {
+        let at = |speed| match phase.branch {
+            Branch::Losing => self.law.coefficient_losing_speed(speed),
+            Branch::Only | Branch::Gaining => self.law.coefficient(speed),
+        };
+        let beyond = |end: D| at(end) * 2.0 - at(end * 2.0 - speed);
+        let coefficient = match (self.capture, side) {
+            (Some(capture), Side::Below) if speed.value() > capture.value() => beyond(capture),
+            (Some(capture), Side::Above) if speed.value() <= capture.value() => {
+                beyond(capture + (capture.value().next_up() - capture.value()))
+            }
+            // A law knows no negative speed.
+            _ if speed.value() < 0.0 => at(D::from(0.0)) * 2.0 - at(-speed),
+            _ => at(speed),
+        };
+        self.normal_load * coefficient
+    }
+
+    /// The acceleration at `speed`, which is that of `state`, under `force`.
+    #[inline]
+    pub(super) fn balance(&self, phase: &Phase<D>, side: Side, force: Option<D>, state: State<D>, speed: D) -> D {
+        // The other forms cost as much as everything else here together.
+        let damping = match self.linear_damping {
+            Some(coefficient) => state.velocity * coefficient,
+            None => self.oscillator.damping().force(state.velocity),
+        };
+        let friction = self.friction_at(phase, side, speed) * phase.direction.sign();
+        let mut sum = -friction - damping - self.oscillator.restoring_force(state.position);
+        if let Some(force) = force {
+            sum = sum + force;
+        }
+        sum * self.per_mass
+    }
+
+    #[inline]
+    pub(super) fn acceleration(&self, phase: &Phase<D>, side: Side, time: f64, state: State<D>) -> D {
+        let force = self.is_driven.then(|| phase.piece.force(time));
+        self.balance(phase, side, force, state, self.speed(phase, state.velocity))
+    }
+
+    /// Rounding of an acceleration (m/s²): what is less is zero, or a motion that tends to a constant speed would go from
+    /// branch to branch for ever.
+    pub(super) fn noise(&self, phase: &Phase<D>, side: Side, state: State<D>) -> f64 {
+        let load = load(self.oscillator, phase.piece, phase.time, state);
+        let friction = self.friction_at(phase, side, self.speed(phase, state.velocity)).value().abs();
+        (rounding(self.oscillator, &load, phase.time, state) + ROUNDING * friction) * self.per_mass.value()
+    }
+
+    /// What friction, damping and the forces from outside do at `time`.
+    pub(super) fn power(&self, phase: &Phase<D>, side: Side, time: f64, state: State<D>) -> Power<D> {
+        let speed = self.speed(phase, state.velocity);
+        let friction = self.friction_at(phase, side, speed) * phase.direction.sign();
+        Power {
+            friction: friction * (state.velocity - self.belt),
+            viscous: self.oscillator.damping().force(state.velocity) * state.velocity,
+            external: phase.piece.force(time) * state.velocity - friction * self.belt,
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Derivatives of steps whose values are good, and whose derivatives may not be.
+
+use fmm_friction::SlidingLaw;
+use fmm_model::Scalar;
+
+use super::by_speed::BySpeed;
+use super::field::Field;
+use super::slide::Progress;
+use super::step::Step;
+use crate::State;
+use crate::automaton::Phase;
+
+/// The estimated error from which on derivatives of a step are looked at again, in units of the tolerance and at most: the
+/// estimate is that of formulas of orders 5 and 3, and the error of a step in which the law is smooth is a small part of it.
+const SUSPICIOUS: f64 = 1e5;
+const MOST: f64 = 1e-6;
+
+/// The part of the greatest derivative so far below which none matters.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// Watches the error of derivatives.
+///
+/// The steps are chosen by values alone, so that these are the same with derivatives and without. A steep law parts
+/// neighbouring motions within a fraction of such a step: its derivatives are then found with the speed as the independent
+/// variable.
+pub(super) struct Refiner {
+    allowed: f64,
+    /// ω₀ (rad/s), which makes a velocity of a position.
+    angular: f64,
+    /// The greatest derivative so far in each direction, as one of the velocity.
+    greatest: Vec<f64>,
+}
+
+impl Refiner {
+    pub(super) fn new(directions: usize, tolerance: f64, angular: f64) -> Self {
+        Self { allowed: (SUSPICIOUS * tolerance).min(MOST), angular, greatest: vec![0.0; directions] }
+    }
+
+    /// Puts the derivatives at the end of `step`, which begins at `at`, right, and gives those within; none if the step has
+    /// good ones, or if its speed is no measure of time.
+    pub(super) fn refine<D: Scalar, L: SlidingLaw<D>>(
+        &mut self,
+        field: &Field<D, L>,
+        phase: &Phase<D>,
+        at: &Progress<D>,
+        step: &mut Step<D>,
+    ) -> Option<BySpeed<D>> {
+        if D::DIRECTIONS == 0 {
+            return None;
+        }
+        let errors = step.derivative_errors();
+        let error = self.greatest_error(at.state, step, |direction| errors.of(direction, self.angular));
+        for direction in 0..D::DIRECTIONS {
+            // A maximum leaves out what is not a number.
+            let size = self.size(at.state, step, direction);
+            self.greatest[direction] = self.greatest[direction].max(if size.is_finite() { size } else { 0.0 });
+        }
+        if error <= self.allowed {
+            return None;
+        }
+        let motion = BySpeed::follow(field, phase, at, step)?;
+        if error <= self.greatest_error(at.state, step, |direction| motion.error(direction, self.angular)) {
+            return None;
+        }
+        let end = motion.derive(field, phase, step.end, step.last_acceleration().value());
+        let acceleration = field.acceleration(phase, at.side, at.time + step.length, end);
+        step.correct(end, acceleration - acceleration.value() + step.last_acceleration().value());
+        Some(motion)
+    }
+
+    /// The size of a derivative over a step from `begin`, as one of the velocity.
+    fn size<D: Scalar>(&self, begin: State<D>, step: &Step<D>, direction: usize) -> f64 {
+        let of = |state: State<D>| {
+            state.velocity.partial(direction).abs() + self.angular * state.position.partial(direction).abs()
+        };
+        of(begin).max(of(step.end))
+    }
+
+    /// The greatest error of a derivative, relative to it, where `of` gives it as one of the velocity.
+    fn greatest_error<D: Scalar>(&self, begin: State<D>, step: &Step<D>, of: impl Fn(usize) -> f64) -> f64 {
+        (0..D::DIRECTIONS).fold(0.0, |worst, direction| {
+            let error = of(direction);
+            if error == 0.0 {
+                return worst;
+            }
+            let error = error / self.size(begin, step, direction).max(NEGLIGIBLE * self.greatest[direction]);
+            // What is not a number is worse than all.
+            if error <= worst { worst } else { error }
+        })
+    }
+}
