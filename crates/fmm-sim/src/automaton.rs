@@ -196,7 +196,12 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             };
             (time, state) = (ended.time, ended.state);
             let (kind, next, load) = match ended.ending {
-                Ending::Limit if last => return Ok(()),
+                Ending::Limit if last => {
+                    let rests = mode == Mode::Stick
+                        && holds_for_good(self.oscillator, drive, index, time, state, self.static_force.value());
+                    recorder.trajectory.set_rests(rests);
+                    return Ok(());
+                }
                 Ending::Limit => {
                     index += 1;
                     let before = std::mem::replace(&mut piece, drive.piece(index));
@@ -365,13 +370,61 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     }
 }
 
+/// Whether a contact that holds in `state` at `time`, in the piece of this `index`, is at rest and no force to come exceeds its
+/// `level` (N).
+pub(crate) fn holds_for_good<D: Scalar>(
+    oscillator: &Oscillator<D>,
+    drive: &Drive<D>,
+    index: usize,
+    time: D,
+    state: State<D>,
+    level: f64,
+) -> bool {
+    // What takes the contact along loads the spring.
+    if state.velocity.value() != 0.0 {
+        return false;
+    }
+    let holds = |piece: &Piece<D>, begin: D| {
+        let load = load(oscillator, piece, begin, state).plain_without_decay();
+        let level = level + level * 4.0 * f64::EPSILON + rounding(oscillator, &load, begin, state);
+        let span = piece.end - begin.value();
+        let (begin, end) = if span.is_finite() {
+            (load.constant, load.constant + load.slope * span)
+        } else if load.slope == 0.0 {
+            (load.constant, load.constant)
+        } else {
+            return false;
+        };
+        // Waves of one frequency are one wave; those of several meet sooner or later.
+        let mut waves: Vec<Wave<f64>> = Vec::new();
+        for wave in load.waves {
+            match waves.iter_mut().find(|other| other.angular == wave.angular) {
+                Some(other) => (other.cosine, other.sine) = (other.cosine + wave.cosine, other.sine + wave.sine),
+                None => waves.push(wave),
+            }
+        }
+        let reach = waves.iter().map(|wave| wave.cosine.hypot(wave.sine)).sum::<f64>();
+        begin.abs().max(end.abs()) + reach <= level
+    };
+    (index..drive.pieces()).all(|later| {
+        let piece = drive.piece(later);
+        let begin = if later == index { time } else { D::from(piece.start) };
+        holds(&piece, begin)
+    })
+}
+
 /// A time (s) within which a curve with these waves varies little.
 fn scale<D: Scalar>(curve: &Curve<D>) -> f64 {
     curve.waves.iter().map(|wave| 1.0 / wave.angular.value()).fold(f64::MAX, f64::min)
 }
 
 /// Rounding (N) that `load` carries, the load at `state` and `time`: that of its terms, and of the time itself.
-pub(crate) fn rounding<D: Scalar>(oscillator: &Oscillator<D>, load: &Curve<D>, time: D, state: State<D>) -> f64 {
+pub(crate) fn rounding<D: Scalar, E: Scalar>(
+    oscillator: &Oscillator<D>,
+    load: &Curve<E>,
+    time: D,
+    state: State<D>,
+) -> f64 {
     let spring = 2.0 * oscillator.restoring_force(state.position).value().abs();
     let (mut force, mut rate) = (load.constant.value().abs() + spring, load.slope.value().abs());
     for wave in &load.waves {

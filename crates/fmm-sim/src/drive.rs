@@ -114,8 +114,8 @@ impl<'a, D: Scalar> Drive<'a, D> {
         })
     }
 
-    #[cfg(test)]
-    fn pieces(&self) -> usize {
+    /// Number of pieces.
+    pub(crate) fn pieces(&self) -> usize {
         self.knots.len()
     }
 

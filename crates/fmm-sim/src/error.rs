@@ -9,15 +9,21 @@ pub enum SimulationError {
     /// A load, time, position or velocity that cannot be.
     #[error(transparent)]
     Quantity(#[from] ModelError),
-    /// More samples than memory addresses allow, or none.
+    /// No samples, or more than have exact times.
     #[error(
-        "the number of samples must be at least 1 and their last time finite, but {count} samples were asked for at {interval} s"
+        "the number of samples must lie between 1 and 2^53 and their last time be finite, but {count} samples were asked for at {interval} s"
     )]
     Sampling {
         /// How many samples were asked for.
         count: usize,
         /// Their interval (s).
         interval: f64,
+    },
+    /// More samples than there is memory for.
+    #[error("there is no memory for {count} samples; keep fewer channels or simulate window by window")]
+    Memory {
+        /// How many samples were asked for.
+        count: usize,
     },
     /// Sample times that do not ascend from zero.
     #[error("sample times must be finite and ascend from 0, but time {index} is {time} s after {before} s")]

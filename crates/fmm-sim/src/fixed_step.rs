@@ -1,5 +1,8 @@
 //! What methods of fixed step share: events on the grid, and the force at times that ascend.
 
+use fmm_model::Oscillator;
+
+use crate::automaton::holds_for_good;
 use crate::drive::{Drive, Piece};
 use crate::{Event, EventKind, Mode, State};
 
@@ -37,6 +40,11 @@ pub(crate) struct PieceAt<'a> {
 impl<'a> PieceAt<'a> {
     pub(crate) fn new(drive: &'a Drive<'a, f64>) -> Self {
         Self { drive, piece: drive.piece(0), index: 0 }
+    }
+
+    /// Whether a contact of `oscillator` that holds in `state` at `time` under the `level` (N) does so for good.
+    pub(crate) fn holds_for_good(&self, oscillator: &Oscillator, time: f64, state: State, level: f64) -> bool {
+        holds_for_good(oscillator, self.drive, self.index, time, state, level)
     }
 
     pub(crate) fn force(&mut self, time: f64) -> f64 {

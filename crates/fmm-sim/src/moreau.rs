@@ -60,8 +60,7 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Moreau {
                 what: "a law that depends on the acceleration",
             });
         }
-        trajectory.reset("moreau", 0, sampling);
-        trajectory.without_work();
+        trajectory.reset("moreau", 0, false, sampling)?;
         let drive = Drive::new(scenario.excitations(), oscillator.mass());
         let (belt, mut pieces) = (drive.belt(), PieceAt::new(&drive));
         let (mass, stiffness) = (oscillator.mass(), oscillator.stiffness());
@@ -141,6 +140,9 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Moreau {
         if let Some(stop) = stopped {
             trajectory.push(stop);
         }
+        let state = State { position: x, velocity: v };
+        let rests = mode == Mode::Stick && pieces.holds_for_good(oscillator, sampling.end(), state, static_level);
+        trajectory.set_rests(rests);
         Ok(())
     }
 }

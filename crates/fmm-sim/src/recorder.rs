@@ -31,9 +31,9 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         states: usize,
         sampling: &'a Sampling,
         trajectory: &'a mut Trajectory<D>,
-    ) -> Self {
-        trajectory.reset(engine, states, sampling);
-        Self { sampling, trajectory, written: 0, work: Work::none(), worked: 0, pieces: PIECE_BUDGET }
+    ) -> Result<Self, SimulationError> {
+        trajectory.reset(engine, states, true, sampling)?;
+        Ok(Self { sampling, trajectory, written: 0, work: Work::none(), worked: 0, pieces: PIECE_BUDGET })
     }
 
     pub(crate) fn push(&mut self, event: Event<D>) -> Result<(), SimulationError> {

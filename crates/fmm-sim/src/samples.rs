@@ -4,6 +4,8 @@ use std::marker::PhantomData;
 
 use fmm_model::{Scalar, widest};
 
+use crate::SimulationError;
+
 /// The samples of one quantity: one value each, and one column of partial derivatives per direction of the
 /// number type `D`.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,11 +21,17 @@ impl<D: Scalar> Samples<D> {
     }
 
     /// Makes room for `count` samples, all zero.
-    pub(crate) fn reset(&mut self, count: usize) {
-        self.values.clear();
-        self.values.resize(count, 0.0);
-        self.partials.clear();
-        self.partials.resize(count * D::DIRECTIONS, 0.0);
+    ///
+    /// # Errors
+    /// [`SimulationError::Memory`] if there is no such room.
+    pub(crate) fn reset(&mut self, count: usize) -> Result<(), SimulationError> {
+        let partials = count.checked_mul(D::DIRECTIONS).ok_or(SimulationError::Memory { count })?;
+        for (column, length) in [(&mut self.values, count), (&mut self.partials, partials)] {
+            column.clear();
+            column.try_reserve_exact(length).map_err(|_| SimulationError::Memory { count })?;
+            column.resize(length, 0.0);
+        }
+        Ok(())
     }
 
     pub(crate) fn values_mut(&mut self) -> &mut [f64] {

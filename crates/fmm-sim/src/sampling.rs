@@ -30,6 +30,9 @@ impl Channels {
     }
 }
 
+/// An index beyond this is no exact number, and so is no time.
+const MOST_SAMPLES: usize = 1 << 53;
+
 /// The sample times of a run, counted from the initial state at t = 0.
 ///
 /// Uniform times are `t_i = i · interval` for `i` from `first` to `first + count − 1`. Any window of a long record can
@@ -55,10 +58,10 @@ impl Sampling {
     ///
     /// # Errors
     /// [`SimulationError::Quantity`] if the interval is not positive and finite, [`SimulationError::Sampling`] if
-    /// there is no sample or the last sample time is not finite.
+    /// there is no sample, there are more than 2⁵³, or the last sample time is not finite.
     pub fn uniform(interval: f64, count: usize) -> Result<Self, SimulationError> {
         ModelError::require_positive("sampling interval", interval, "s")?;
-        if count == 0 || !(interval * count as f64).is_finite() {
+        if count == 0 || count > MOST_SAMPLES || !(interval * count as f64).is_finite() {
             return Err(SimulationError::Sampling { count, interval });
         }
         Ok(Self { grid: Grid::Uniform { interval }, first: 0, count, channels: Channels::Both, work: false })

@@ -51,8 +51,7 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
         trajectory: &mut Trajectory<f64>,
     ) -> Result<(), SimulationError> {
         let step = sampling.interval().ok_or(SimulationError::NotUniform)?;
-        trajectory.reset("thesis", 0, sampling);
-        trajectory.without_work();
+        trajectory.reset("thesis", 0, false, sampling)?;
         let (oscillator, law, load) = (scenario.oscillator(), scenario.law(), scenario.normal_load());
         let drive = Drive::new(scenario.excitations(), oscillator.mass());
         if drive.has_belt() {
@@ -139,6 +138,13 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
                 return Err(SimulationError::NotFinite { time: (index + 1) as f64 * step });
             }
         }
+        let level = match self.level {
+            StaticLevel::Breakaway => static_level,
+            StaticLevel::AtSpeed => law.coefficient(0.0) * load,
+        };
+        let state = State { position: x, velocity: v };
+        let rests = mode == Mode::Stick && pieces.holds_for_good(oscillator, sampling.end(), state, level);
+        trajectory.set_rests(rests);
         Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use fmm_model::Scalar;
 
 use crate::sampling::{Channels, Sampling};
-use crate::{Event, EventKind, Samples, Work};
+use crate::{Event, EventKind, Mode, Samples, SimulationError, Work};
 
 /// A simulated motion: sampled position and velocity, and the events that shaped it.
 ///
@@ -17,6 +17,7 @@ pub struct Trajectory<D = f64> {
     states: Vec<Samples<D>>,
     work: [Samples<D>; 3],
     engine: &'static str,
+    rests: bool,
 }
 
 impl<D: Scalar> Default for Trajectory<D> {
@@ -35,30 +36,40 @@ impl<D: Scalar> Trajectory<D> {
             states: Vec::new(),
             work: [Samples::new(), Samples::new(), Samples::new()],
             engine: "",
+            rests: false,
         }
     }
 
-    /// Forgets everything and makes room for the samples asked for.
-    pub(crate) fn reset(&mut self, engine: &'static str, states: usize, sampling: &Sampling) {
+    /// Forgets everything and makes room for the samples asked for; for `work` only if the engine keeps account of it.
+    ///
+    /// # Errors
+    /// [`SimulationError::Memory`] if there is no such room.
+    pub(crate) fn reset(
+        &mut self,
+        engine: &'static str,
+        states: usize,
+        work: bool,
+        sampling: &Sampling,
+    ) -> Result<(), SimulationError> {
         self.engine = engine;
+        self.rests = false;
         let count = |wanted: bool| if wanted { sampling.count() } else { 0 };
-        self.position.reset(count(sampling.channels().position()));
-        self.velocity.reset(count(sampling.channels().velocity()));
+        self.position.reset(count(sampling.channels().position()))?;
+        self.velocity.reset(count(sampling.channels().velocity()))?;
         self.events.clear();
         self.states.resize_with(states, Samples::new);
         for state in &mut self.states {
-            state.reset(sampling.count());
+            state.reset(sampling.count())?;
         }
-        for work in &mut self.work {
-            work.reset(count(sampling.wants_work()));
+        for samples in &mut self.work {
+            samples.reset(count(work && sampling.wants_work()))?;
         }
+        Ok(())
     }
 
-    /// Forgets the work, which the engine does not keep account of.
-    pub(crate) fn without_work(&mut self) {
-        for work in &mut self.work {
-            work.reset(0);
-        }
+    /// Notes whether the contact, which holds at the last sample, holds for good.
+    pub(crate) fn set_rests(&mut self, rests: bool) {
+        self.rests = rests;
     }
 
     pub(crate) fn state_mut(&mut self, index: usize) -> &mut Samples<D> {
@@ -127,8 +138,11 @@ impl<D: Scalar> Trajectory<D> {
     }
 
     /// The event with which the motion ended for good, if it did before the last sample.
+    ///
+    /// A contact that holds on a counterface that moves is not at rest, nor is one that the force will break away after the last
+    /// sample. Under several waves of different frequencies the latter is what their amplitudes together could do.
     pub fn rest(&self) -> Option<&Event<D>> {
-        self.events.last().filter(|event| event.next == crate::Mode::Stick)
+        self.events.last().filter(|event| self.rests && event.next == Mode::Stick)
     }
 
     /// How many times the velocity reached zero.

@@ -123,7 +123,7 @@ impl<D: Scalar, L: BristleLaw<D>> Engine<D, L> for Bristle {
         let oscillator = scenario.oscillator();
         let drive = Drive::new(scenario.excitations(), oscillator.mass());
         let field = Field::new(oscillator, scenario.law(), scenario.normal_load(), drive.belt());
-        let recorder = Recorder::new("bristle", scenario.law().states(), sampling, trajectory);
+        let recorder = Recorder::new("bristle", scenario.law().states(), sampling, trajectory)?;
         Run::new(field, scenario.initial(), self.tolerance, recorder).run(&drive).map(|_| ())
     }
 }

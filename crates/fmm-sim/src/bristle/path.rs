@@ -30,7 +30,7 @@ pub(crate) fn follow<D: Scalar, L: BristleLaw<D>>(
     let mut scratch = Trajectory::new();
     // Nothing is sampled; the recorder counts the events.
     let sampling = Sampling::at([f64::MAX])?;
-    let recorder = Recorder::new("bristle", law.states(), &sampling, &mut scratch);
+    let recorder = Recorder::new("bristle", law.states(), &sampling, &mut scratch)?;
     let start = State { position: path.first().copied().unwrap_or(D::from(0.0)), velocity: speed };
     let mut run = Run::new(field, start, TOLERANCE, recorder);
     let mut direction = None;

@@ -77,7 +77,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         let grazing = direction.is_none() && self.rest_has_derivatives(&piece);
         self.go(direction);
         self.push_here(EventKind::Start, &piece, grazing)?;
-        for index in 1.. {
+        let mut index = 0;
+        loop {
             let limit = piece.end.min(end);
             while self.time < limit {
                 if self.resting {
@@ -89,6 +90,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             if piece.end > end {
                 break;
             }
+            index += 1;
             piece = drive.piece(index);
             self.collocation.forget();
             if self.resting
@@ -100,6 +102,13 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         }
         // The samples at the end itself hold the state after an event there.
         self.write(f64::INFINITY)?;
+        let rests = self.resting
+            && (index + 1..drive.pieces()).all(|later| {
+                let piece = drive.piece(later);
+                self.time = piece.start;
+                self.departure(&piece).is_none()
+            });
+        self.recorder.trajectory.set_rests(rests);
         Ok(self.steps)
     }
 

@@ -79,7 +79,11 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
                     self.deflections[element] = level / stiffness * self.direction.sign();
                     self.push(EventKind::Yield(element), grazing, recorder)?;
                 }
-                None if last => return Ok(()),
+                None if last => {
+                    let rests = self.at_rest && self.holds_for_good(index);
+                    recorder.trajectory.set_rests(rests);
+                    return Ok(());
+                }
                 None => {
                     index += 1;
                     piece = self.drive.piece(index);
@@ -143,6 +147,16 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
             Some((value, _)) => self.direction = Direction::of(value),
             None => self.at_rest = true,
         }
+    }
+
+    /// Whether nothing moves under any force after the piece of this `index` either.
+    fn holds_for_good(&mut self, index: usize) -> bool {
+        (index + 1..self.drive.pieces()).all(|later| {
+            let piece = self.drive.piece(later);
+            self.time = D::from(piece.start);
+            self.turn(&piece);
+            self.at_rest
+        })
     }
 
     fn push(&self, kind: EventKind, grazing: bool, recorder: &mut Recorder<D>) -> Result<(), SimulationError> {

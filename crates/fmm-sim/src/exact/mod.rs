@@ -70,7 +70,7 @@ impl<D: Scalar, L: PiecewiseLinearLaw<D>> Engine<D, L> for Exact {
             if [level, slope, breakaway].iter().any(|number| number.value() != 0.0) {
                 return Err(SimulationError::NotSupported { engine: "exact", what: "elements beside a sliding level" });
             }
-            let mut recorder = Recorder::new("exact", elements, sampling, trajectory);
+            let mut recorder = Recorder::new("exact", elements, sampling, trajectory)?;
             return Yielding::new(scenario, &drive).run(&mut recorder);
         }
         let (gaining, losing) = (scenario.law().affine(), scenario.law().affine_losing_speed());
@@ -78,7 +78,7 @@ impl<D: Scalar, L: PiecewiseLinearLaw<D>> Engine<D, L> for Exact {
         let contact = Contact::new(scenario, branches, &drive)?;
         let flows = Flows::new(scenario, branches, sampling)?;
         let mut swing = Swing::new(scenario, &flows, &drive);
-        let mut recorder = Recorder::new("exact", 0, sampling, trajectory);
+        let mut recorder = Recorder::new("exact", 0, sampling, trajectory)?;
         contact.run(scenario.initial(), &drive, &mut swing, &mut recorder)
     }
 }

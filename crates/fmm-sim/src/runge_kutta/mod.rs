@@ -86,7 +86,7 @@ impl<D: Scalar, L: SlidingLaw<D>> Engine<D, L> for RungeKutta {
         let drive = Drive::new(scenario.excitations(), scenario.oscillator().mass());
         let contact = Contact::new(scenario, Sliding(scenario.law()), &drive)?;
         let mut integrator = Integrator::new(scenario, &drive, self.tolerance, sampling.end());
-        let mut recorder = Recorder::new("runge_kutta", 0, sampling, trajectory);
+        let mut recorder = Recorder::new("runge_kutta", 0, sampling, trajectory)?;
         contact.run(scenario.initial(), &drive, &mut integrator, &mut recorder)
     }
 }

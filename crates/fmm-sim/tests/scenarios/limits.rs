@@ -1,0 +1,39 @@
+//! Numbers of samples that no memory holds are errors, not panics.
+
+use fmm_friction::{Coulomb, Dahl};
+use fmm_model::{Dual, Oscillator};
+use fmm_sim::{Bristle, Engine, Exact, Moreau, RungeKutta, Sampling, Scenario, SimulationError, Thesis};
+
+#[test]
+fn counts_beyond_exact_times_are_refused() {
+    for count in [usize::MAX, usize::MAX / 2, (1 << 53) + 1] {
+        let refused = Sampling::uniform(1e-3, count);
+        assert!(matches!(refused, Err(SimulationError::Sampling { .. })), "{count}: {refused:?}");
+    }
+}
+
+#[test]
+fn samples_beyond_memory_are_an_error() {
+    let scenario = Scenario::new(Oscillator::new(1.0, 100.0).unwrap(), Coulomb::new(0.1).unwrap(), 1.0).unwrap();
+    let bristles = Scenario::new(Oscillator::new(1.0, 100.0).unwrap(), Dahl::new(0.1, 1e4, 1.0).unwrap(), 1.0).unwrap();
+    let sampling = Sampling::uniform(1e-3, 1_000_000_000_000_000).unwrap();
+    let outcomes = [
+        Exact.run(&scenario, &sampling),
+        RungeKutta::default().run(&scenario, &sampling),
+        Thesis::A3.run(&scenario, &sampling),
+        Moreau::default().run(&scenario, &sampling),
+        Bristle::default().run(&bristles, &sampling),
+    ];
+    for outcome in outcomes {
+        assert!(matches!(outcome, Err(SimulationError::Memory { count: 1_000_000_000_000_000 })), "{outcome:?}");
+    }
+    // A short part of a long grid is what it was.
+    let window = sampling.window(1000..1003).unwrap();
+    assert_eq!(Exact.run(&scenario, &window).unwrap().position().values().len(), 3);
+    // Columns of derivatives count.
+    let number = |value: f64| Dual::<64>::from(value);
+    let machine = Oscillator::new(number(1.0), number(100.0)).unwrap();
+    let scenario = Scenario::new(machine, Coulomb::new(number(0.1)).unwrap(), number(1.0)).unwrap();
+    let outcome = Exact.run(&scenario, &Sampling::uniform(1e-3, 1 << 53).unwrap());
+    assert!(matches!(outcome, Err(SimulationError::Memory { .. })));
+}
