@@ -27,13 +27,14 @@ pub struct Oscillator<D = f64> {
 }
 
 impl<D: Scalar> Oscillator<D> {
-    /// An undamped oscillator of `mass` (kg) and `stiffness` (N/m).
+    /// An undamped oscillator of `mass` (kg) and `stiffness` (N/m); a stiffness of zero is a mass without a spring.
     ///
     /// # Errors
-    /// [`ModelError::NotPositive`] if either is zero, negative or not finite.
+    /// [`ModelError::NotPositive`] if the mass is zero, negative or not finite, [`ModelError::Negative`] if the stiffness is
+    /// negative or not finite.
     pub fn new(mass: D, stiffness: D) -> Result<Self, ModelError> {
         ModelError::require_positive("mass", mass.value(), "kg")?;
-        ModelError::require_positive("stiffness", stiffness.value(), "N/m")?;
+        ModelError::require_not_negative("stiffness", stiffness.value(), "N/m")?;
         Ok(Self { mass, stiffness, damping: Damping::none(), restoring: Restoring::Linear })
     }
 
@@ -111,8 +112,12 @@ impl<D: Scalar> Oscillator<D> {
         self.natural_angular_frequency() / (2.0 * PI)
     }
 
-    /// ζ = c₁/(2√(k m)), ratio of the linear damping to critical damping (1).
+    /// ζ = c₁/(2√(k m)), ratio of the linear damping to critical damping (1); without a spring infinite, and zero without
+    /// damping.
     pub fn damping_ratio(&self) -> D {
+        if self.stiffness.value() == 0.0 && self.damping.linear_coefficient().value() == 0.0 {
+            return D::from(0.0);
+        }
         self.damping.linear_coefficient() / ((self.stiffness * self.mass).sqrt() * 2.0)
     }
 
@@ -166,6 +171,19 @@ mod tests {
         assert_eq!(machine.logarithmic_decrement(), None);
     }
 
+    /// A mass without a spring is a machine that does not swing.
+    #[test]
+    fn a_mass_needs_no_spring() {
+        let block = Oscillator::new(2.0, 0.0).unwrap();
+        assert_eq!(
+            (block.natural_frequency(), block.restoring_force(3.0), block.potential_energy(3.0)),
+            (0.0, 0.0, 0.0)
+        );
+        assert_eq!((block.damping_ratio(), block.damped_frequency(), block.logarithmic_decrement()), (0.0, None, None));
+        let damped = block.with_damping(Damping::linear(0.1).unwrap());
+        assert_eq!((damped.damping_ratio(), damped.damped_frequency()), (f64::INFINITY, None));
+    }
+
     #[test]
     fn natural_frequency_has_its_derivatives() {
         let machine = Oscillator::new(Dual::<2>::variable(10.391, 0), Dual::variable(1982.0, 1)).unwrap();
@@ -178,7 +196,7 @@ mod tests {
     fn impossible_machines_are_refused() {
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(Oscillator::new(bad, 1982.0).is_err());
-            assert!(Oscillator::new(10.0, bad).is_err());
+            assert!(bad == 0.0 || Oscillator::new(10.0, bad).is_err());
             assert!(Oscillator::<f64>::per_unit_mass(bad).is_err());
         }
         let message = Oscillator::new(-1.0, 1982.0).unwrap_err().to_string();

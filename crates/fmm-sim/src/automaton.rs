@@ -139,7 +139,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         let sliding = (self.levels.gaining(D::from(0.0)) * self.normal_load).value();
         let load = load.now().value();
         match self.oscillator.restoring() {
-            Restoring::Linear => {
+            Restoring::Linear if self.oscillator.stiffness().value() > 0.0 => {
                 let (stiffness, position) = (self.oscillator.stiffness().value(), state.position.value());
                 let outside = load + stiffness * position;
                 ((outside - sliding * direction.sign()) / stiffness - position) * direction.sign() > 0.0

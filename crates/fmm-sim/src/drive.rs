@@ -37,6 +37,11 @@ pub(crate) struct Piece<D> {
 }
 
 impl<D: Scalar> Piece<D> {
+    /// A force (N) at time 0 that grows by `slope` (N/s) for ever.
+    pub(crate) fn line_from_zero(force: D, slope: D) -> Self {
+        Self { start: 0.0, end: f64::INFINITY, force, slope, waves: Vec::new() }
+    }
+
     /// Straight part of the force at `time` (N), and its slope (N/s).
     pub(crate) fn line(&self, time: D) -> (D, D) {
         (self.force + self.slope * (time - self.start), self.slope)

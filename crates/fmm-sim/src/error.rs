@@ -54,6 +54,22 @@ pub enum SimulationError {
         /// Frequency of the wave (rad/s).
         angular_frequency: f64,
     },
+    /// The spring is too weak, beside the forces that act and the time that passes, for the closed form to keep nine digits.
+    #[error(
+        "a spring of {stiffness} N/m is too weak for the closed form, which would be a small difference of large numbers; take an engine that integrates"
+    )]
+    WeakSpring {
+        /// Its stiffness (N/m).
+        stiffness: f64,
+    },
+    /// A law with internal state that is not odd in velocity and state together, as such laws promise to be.
+    #[error(
+        "the law is not odd: at {velocity} m/s it is not the mirror image of what it is at the opposite velocity and state; a contact cannot tell directions apart"
+    )]
+    NotOdd {
+        /// Velocity at which it was seen (m/s).
+        velocity: f64,
+    },
     /// The law and the engine, or a property of the scenario, do not go together.
     #[error("the {engine} engine cannot take {what}")]
     NotSupported {

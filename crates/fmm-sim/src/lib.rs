@@ -28,7 +28,7 @@
 //!
 //! | engine | for | how | not for |
 //! |---|---|---|---|
-//! | [`Exact`] | piecewise linear laws on a linear machine | closed form between events; event times in closed form or by steps that provably miss none | nonlinear damping, a pendulum, resonance without damping |
+//! | [`Exact`] | piecewise linear laws on a linear machine | closed form between events; event times in closed form or by steps that provably miss none | nonlinear damping, a pendulum, resonance without damping, no spring or next to none |
 //! | [`RungeKutta`] | any law of the sliding speed, any machine | order 8 from event to event, landing on each, to a tolerance | what [`Exact`] can do |
 //! | [`Bristle`] | laws with internal state | an L-stable collocation method, landing on every zero of the velocity and every yield | [`MaxwellSlip`](fmm_friction::MaxwellSlip) on a linear machine, which [`Exact`] can do |
 //! | [`Moreau`] | cross-check | time stepping of the set-valued law, of first order | fits: no derivatives |
@@ -113,7 +113,7 @@ pub use event::{Direction, Event, EventKind, Mode};
 pub use exact::Exact;
 pub use excitation::Excitation;
 pub use moreau::Moreau;
-pub use prescribed::{PathPoint, friction_along};
+pub use prescribed::{Path, PathPoint, friction_along};
 pub use runge_kutta::RungeKutta;
 pub use samples::Samples;
 pub use sampling::{Channels, Sampling};

@@ -197,7 +197,13 @@ mod tests {
                 let stepped = Moreau::default().run(&scenario, &sampling).unwrap();
                 let exact = Exact.run(&scenario, &sampling).unwrap();
                 assert_eq!(stepped.half_swings(), exact.half_swings(), "from {start} m at step {step} s");
-                stepped.position().values().iter().zip(exact.position().values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+                stepped
+                    .position()
+                    .values()
+                    .iter()
+                    .zip(exact.position().values())
+                    .map(|(a, b)| (a - b).abs())
+                    .fold(0.0, f64::max)
             };
             let offs = [4e-3, 1e-3, 2.5e-4].map(off);
             assert!(offs[2] < 3e-5 && offs[2] < 0.25 * offs[0], "from {start} m: {offs:?} m");

@@ -3,8 +3,8 @@
 use fmm_friction::BristleLaw;
 use fmm_model::{ModelError, Scalar};
 
-use crate::SimulationError;
 use crate::bristle;
+use crate::{SimulationError, State};
 
 /// The contact at one point of a path.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,46 +17,146 @@ pub struct PathPoint<D = f64> {
     pub states: Vec<D>,
 }
 
-/// Friction of a `law` with internal state under `normal_load` (N) along straight lines from each position of `path` (m) to
-/// the next, at constant `speed` (m/s). Bristles are not deflected at the first position.
+/// A motion that something outside prescribes, whatever the forces are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path<D = f64> {
+    pub(crate) first: Option<D>,
+    pub(crate) legs: Vec<Leg<D>>,
+}
+
+/// From one point of a path to the next: acceleration grows in proportion to time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Leg<D> {
+    pub(crate) duration: D,
+    pub(crate) begin: State<D>,
+    pub(crate) end: State<D>,
+    /// Acceleration at the beginning (m/s²) and its slope (m/s³).
+    pub(crate) acceleration: D,
+    pub(crate) jerk: D,
+}
+
+impl<D: Scalar> Path<D> {
+    /// Straight lines from each of `positions` (m) to the next at constant `speed` (m/s); the velocity jumps where the direction
+    /// changes.
+    ///
+    /// # Errors
+    /// [`SimulationError::Quantity`] if the speed is not positive or a number not finite.
+    pub fn at_speed(positions: &[D], speed: D) -> Result<Self, SimulationError> {
+        ModelError::require_positive("speed", speed.value(), "m/s")?;
+        for position in positions {
+            ModelError::require_finite("position", position.value(), "m")?;
+        }
+        let zero = D::from(0.0);
+        let leg = |pair: &[D]| {
+            let displacement = pair[1] - pair[0];
+            let sign = if displacement.value() < 0.0 { -1.0 } else { 1.0 };
+            let moves = displacement.value() != 0.0;
+            let velocity = if moves { speed * sign } else { zero };
+            Leg {
+                duration: if moves { displacement * sign / speed } else { zero },
+                begin: State { position: pair[0], velocity },
+                end: State { position: pair[1], velocity },
+                acceleration: zero,
+                jerk: zero,
+            }
+        };
+        Ok(Self { first: positions.first().copied(), legs: positions.windows(2).map(leg).collect() })
+    }
+
+    /// A motion through `states` (m, m/s) at `times` (s): the cubic between each two of them that has their positions and
+    /// velocities. Between samples h (s) apart of a smooth motion it is off by up to h⁴/384 times the fourth derivative. Two states
+    /// at the same time make the velocity jump.
+    ///
+    /// ```
+    /// use fmm_friction::LuGre;
+    /// use fmm_sim::{Path, State, friction_along};
+    ///
+    /// // One swing of 1 mm at 1 Hz, in 200 steps.
+    /// let times: Vec<f64> = (0..=200).map(|i| f64::from(i) / 200.0).collect();
+    /// let turn = std::f64::consts::TAU;
+    /// let state = |t: &f64| State { position: 1e-3 * (turn * t).sin(), velocity: 1e-3 * turn * (turn * t).cos() };
+    /// let states: Vec<_> = times.iter().map(state).collect();
+    /// let law = LuGre::new(0.2, 0.25, 1e-3, 2.0, 1e5, 300.0, 0.1)?;
+    /// let points = friction_along(&law, 10.0, &Path::through(&times, &states)?)?;
+    /// // On the way back, at full speed, friction of steady sliding acts the other way: 2 N and σ₂ v N = 6.3 mN.
+    /// assert!((points[100].force + 2.006_283).abs() < 1e-5, "{} N", points[100].force);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SimulationError::Times`] if the times do not ascend from 0 or there are not as many as states,
+    /// [`SimulationError::Quantity`] if a number is not finite or the position jumps.
+    pub fn through(times: &[D], states: &[State<D>]) -> Result<Self, SimulationError> {
+        let mut before = 0.0;
+        for (index, time) in times.iter().map(|time| time.value()).enumerate() {
+            if !(time.is_finite() && time >= before) || index >= states.len() {
+                return Err(SimulationError::Times { index, time, before });
+            }
+            before = time;
+        }
+        if states.len() > times.len() {
+            return Err(SimulationError::Times { index: times.len(), time: f64::NAN, before });
+        }
+        for State { position, velocity } in states {
+            ModelError::require_finite("position", position.value(), "m")?;
+            ModelError::require_finite("velocity", velocity.value(), "m/s")?;
+        }
+        let mut legs = Vec::with_capacity(times.len().saturating_sub(1));
+        for (times, states) in times.windows(2).zip(states.windows(2)) {
+            let (duration, [begin, end]) = (times[1] - times[0], [states[0], states[1]]);
+            let rise = end.position - begin.position;
+            let zero = D::from(0.0);
+            let (mut acceleration, mut jerk) = (zero, zero);
+            if duration.value() > 0.0 {
+                // x = x₀ + v₀ τ + a τ²/2 + j τ³/6 with the position and velocity of the end at its time.
+                let lack = rise - begin.velocity * duration;
+                let gain = end.velocity - begin.velocity;
+                acceleration = (lack * 3.0 - gain * duration) * 2.0 / (duration * duration);
+                jerk = (gain * duration - lack * 2.0) * 6.0 / (duration * duration * duration);
+            } else if rise.value() != 0.0 {
+                ModelError::require_finite("velocity of a jump", f64::INFINITY, "m/s")?;
+            }
+            ModelError::require_finite("acceleration", acceleration.value(), "m/s²")?;
+            ModelError::require_finite("jerk", jerk.value(), "m/s³")?;
+            legs.push(Leg { duration, begin, end, acceleration, jerk });
+        }
+        Ok(Self { first: states.first().map(|state| state.position), legs })
+    }
+}
+
+/// Friction of a `law` with internal state under `normal_load` (N) along a `path`: one entry for each of its points. Bristles are
+/// not deflected at the first.
 ///
 /// Laws such as [`Dahl`](fmm_friction::Dahl), [`BoucWen`](fmm_friction::BoucWen) and
-/// [`MaxwellSlip`](fmm_friction::MaxwellSlip) depend on the path only, so that any speed gives the quasi-static loop. Forces
-/// and states are good to about 1e-12; at a dual number they have their derivatives, those in positions and speed included.
+/// [`MaxwellSlip`](fmm_friction::MaxwellSlip) depend on the positions only, so that any speed gives the quasi-static loop. Forces
+/// and states are good to about 1e-12; at a dual number they have their derivatives, those in positions, velocities and times
+/// included.
 ///
 /// ```
 /// use fmm_friction::Dahl;
-/// use fmm_sim::friction_along;
+/// use fmm_sim::{Path, friction_along};
 ///
 /// // Out and back: on the way out F = μ N (1 − exp(−σ x/μ)), and at the end of the way back the loop is open.
-/// let points = friction_along(&Dahl::new(0.25, 1e4, 1.0)?, 7.0, &[0.0, 2e-5, 0.0], 1e-3)?;
+/// let path = Path::at_speed(&[0.0, 2e-5, 0.0], 1e-3)?;
+/// let points = friction_along(&Dahl::new(0.25, 1e4, 1.0)?, 7.0, &path)?;
 /// assert!((points[1].force - 1.75 * (1.0 - (-0.8f64).exp())).abs() < 1e-12);
 /// assert!(points[2].force < -0.5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// [`SimulationError::Quantity`] if the load is negative, the speed not positive or a number not finite, and what an
-/// integration can end with ([`Bristle`](crate::Bristle)).
+/// [`SimulationError::Quantity`] if the load is negative or not finite, and what an integration can end with
+/// ([`Bristle`](crate::Bristle)).
 pub fn friction_along<D: Scalar, L: BristleLaw<D>>(
     law: &L,
     normal_load: D,
-    path: &[D],
-    speed: D,
+    path: &Path<D>,
 ) -> Result<Vec<PathPoint<D>>, SimulationError> {
     ModelError::require_not_negative("normal load", normal_load.value(), "N")?;
-    ModelError::require_positive("speed", speed.value(), "m/s")?;
-    for position in path {
-        ModelError::require_finite("position", position.value(), "m")?;
-    }
-    let mut points = Vec::with_capacity(path.len());
-    let mut positions = path.iter();
-    bristle::follow(law, normal_load, path, speed, |force, states| {
-        points.extend(positions.next().map(|position| PathPoint {
-            position: *position,
-            force,
-            states: states.to_vec(),
-        }));
+    let mut points = Vec::with_capacity(path.legs.len() + 1);
+    let mut positions = path.first.into_iter().chain(path.legs.iter().map(|leg| leg.end.position));
+    bristle::follow(law, normal_load, path, |force, states| {
+        points.extend(positions.next().map(|position| PathPoint { position, force, states: states.to_vec() }));
     })?;
     Ok(points)
 }

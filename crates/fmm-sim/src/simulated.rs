@@ -126,9 +126,9 @@ fn exact_where_possible<D: Scalar, L: PiecewiseLinearLaw<D> + SlidingLaw<D>>(
         return integrated(scenario, sampling, tolerance, trajectory);
     }
     match Exact.run_into(scenario, sampling, trajectory) {
-        Err(SimulationError::NotLinear { .. } | SimulationError::Resonance { .. }) => {
-            integrated(scenario, sampling, tolerance, trajectory)
-        }
+        Err(
+            SimulationError::NotLinear { .. } | SimulationError::Resonance { .. } | SimulationError::WeakSpring { .. },
+        ) => integrated(scenario, sampling, tolerance, trajectory),
         other => other,
     }
 }

@@ -59,11 +59,12 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
         }
         let (mass, damping) = (oscillator.mass(), oscillator.damping());
         let static_level = law.breakaway() * load;
-        if !(static_level / oscillator.stiffness()).is_finite() {
+        let hold = static_level / oscillator.stiffness();
+        let sprung = oscillator.stiffness() > 0.0;
+        if !(static_level.is_finite() && (hold.is_finite() || !sprung)) {
             return Err(SimulationError::NotFinite { time: 0.0 });
         }
-        let hold = static_level / oscillator.stiffness();
-        let literal = oscillator.is_linear() && scenario.excitations().is_empty();
+        let literal = sprung && oscillator.is_linear() && scenario.excitations().is_empty();
         // The appendix compares positions in A3 to A5, which rounds differently from comparing forces.
         let holds = |x: f64, v: f64, balance: f64| match self.level {
             StaticLevel::Breakaway if literal => x < hold && x > -hold,

@@ -33,7 +33,8 @@ pub(super) struct Field<'a, D, L> {
     pub(super) normal_load: D,
     pub(super) belt: D,
     pub(super) law: &'a L,
-    /// Whether something outside keeps the velocity constant, whatever the forces are.
+    /// Whether something outside prescribes the acceleration, which then stands in the place of the force (N), whatever the
+    /// forces of machine and contact are.
     pub(super) guided: bool,
     /// 1/m.
     per_mass: D,
@@ -60,7 +61,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
             guided: false,
             per_mass: D::from(1.0) / oscillator.mass(),
             linear_damping: oscillator.damping().is_linear().then(|| oscillator.damping().linear_coefficient()),
-            bends: Self::corners(law, oscillator.natural_angular_frequency().value()),
+            bends: Self::corners(law, per_second(oscillator)),
             mirrored: zeros.clone(),
             below: vec![false; zeros.len()],
             saturated: vec![false; zeros.len()],
@@ -187,7 +188,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
         };
         let balance = (force - damping - self.oscillator.restoring_force(x) - friction) * self.per_mass;
         rates[0] = v;
-        rates[1] = if self.guided { D::from(0.0) } else { balance };
+        rates[1] = if self.guided { force } else { balance };
         for (rate, z) in rates[2..].iter_mut().zip(&self.rate) {
             *rate = *z * branch.direction.sign();
         }
@@ -261,6 +262,12 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
             jacobian[size..2 * size].fill(0.0);
         }
     }
+}
+
+/// What makes a speed of a deflection (1/s): the machine's frequency; any without a spring.
+fn per_second<D: Scalar>(oscillator: &Oscillator<D>) -> f64 {
+    let natural = oscillator.natural_angular_frequency().value();
+    if natural > 0.0 { natural } else { 1.0 }
 }
 
 /// A difference quotient.

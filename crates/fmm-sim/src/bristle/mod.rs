@@ -10,6 +10,7 @@ mod guards_of_step;
 mod lu;
 mod modes;
 mod motion;
+mod odd;
 mod pace;
 mod passage;
 mod path;
@@ -120,6 +121,7 @@ impl<D: Scalar, L: BristleLaw<D>> Engine<D, L> for Bristle {
         sampling: &Sampling,
         trajectory: &mut Trajectory<D>,
     ) -> Result<(), SimulationError> {
+        odd::require_odd(scenario.law())?;
         let oscillator = scenario.oscillator();
         let drive = Drive::new(scenario.excitations(), oscillator.mass());
         let field = Field::new(oscillator, scenario.law(), scenario.normal_load(), drive.belt());

@@ -23,6 +23,9 @@ const MOST_ATTEMPTS: usize = 100;
 /// A step that ends this near to a zero of a guard, in units of the step, is corrected from there.
 const NEAR: f64 = 0.99;
 
+/// ω₀ t over the sampled time t below which the spring does not shape the motion.
+const WEAK: f64 = 1e-2;
+
 /// A simulation under way.
 pub(super) struct Run<'a, D, L> {
     pub(super) field: Field<'a, D, L>,
@@ -243,7 +246,12 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
     /// Angular frequency (rad/s) of the machine, or of the fastest wave.
     fn slow(&self, piece: &Piece<D>) -> f64 {
         let waves = piece.waves().iter().map(|wave| wave.angular.value());
-        waves.fold(self.field.oscillator.natural_angular_frequency().value(), f64::max)
+        waves.fold(self.angular(), f64::max)
+    }
+
+    /// Angular frequency (rad/s) of the machine, or of what turns little within the sampled time if that is faster.
+    fn angular(&self) -> f64 {
+        self.field.oscillator.natural_angular_frequency().value().max(WEAK / self.recorder.sampling.end())
     }
 
     fn count_step(&mut self) -> Result<(), SimulationError> {
@@ -261,7 +269,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         let size = self.field.size();
         let mut jacobian = vec![0.0; size * size];
         let begin = &self.step.begin;
-        let angular = self.field.oscillator.natural_angular_frequency().value();
+        let angular = self.angular();
         let bristles = self.field.law.bound(0).value().abs() * angular;
         let speed = begin[1].value().abs().max(angular * begin[0].value().abs()).max(bristles);
         self.field.jacobian(self.branch, begin, speed, &mut jacobian);

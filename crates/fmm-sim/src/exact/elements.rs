@@ -3,6 +3,7 @@
 use fmm_friction::{Element, PiecewiseLinearLaw, Regime};
 use fmm_model::Scalar;
 
+use super::cancellation::Cancellation;
 use super::response::respond;
 use crate::automaton::crossing;
 use crate::curve::{Curve, Wave};
@@ -30,6 +31,7 @@ pub(super) struct Yielding<'a, D, L> {
     time: D,
     state: State<D>,
     budget: usize,
+    digits: Cancellation,
 }
 
 /// What ends a stretch of motion in one regime.
@@ -55,6 +57,7 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
             time: D::from(0.0),
             state: scenario.initial(),
             budget: SEARCH_BUDGET,
+            digits: Cancellation::default(),
         }
     }
 
@@ -82,7 +85,7 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
                 None if last => {
                     let rests = self.at_rest && self.holds_for_good(index);
                     recorder.trajectory.set_rests(rests);
-                    return Ok(());
+                    return self.digits.check(self.scenario.oscillator(), end);
                 }
                 None => {
                     index += 1;
@@ -240,6 +243,7 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
         let stop = if event.is_none() && last { f64::INFINITY } else { time.value() };
         self.record(&path, piece, &plain, stop, limit.min(time.value()), recorder)?;
         let next = path.state(time - self.time);
+        self.digits.note(&path, time.value() - begin, self.state, next);
         let moved = self.moved(next.position, time);
         self.deflections = moved;
         (self.time, self.state, self.noise) = (time, next, None);

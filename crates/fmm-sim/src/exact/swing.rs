@@ -3,6 +3,7 @@
 use fmm_friction::Affine;
 use fmm_model::{Oscillator, Scalar};
 
+use super::cancellation::Cancellation;
 use super::powers::Powers;
 use super::response::respond;
 use crate::automaton::{Branch, Ended, Ending, Phase, Slide, crossing, load, rounding};
@@ -15,6 +16,9 @@ use crate::recorder::Recorder;
 use crate::work::Power;
 use crate::{Sampling, Scenario, SimulationError, State};
 
+/// Parts of the last phase at which it is looked how far the motion goes.
+const INSIDE: [f64; 3] = [0.23, 0.51, 0.83];
+
 /// Follows phases of sliding for the exact engine.
 pub(super) struct Swing<'a, D> {
     oscillator: &'a Oscillator<D>,
@@ -26,6 +30,7 @@ pub(super) struct Swing<'a, D> {
     /// keeps the rounding of a sum out of later event times.
     rhythm: Option<(D, u32)>,
     budget: usize,
+    digits: Cancellation,
 }
 
 /// The linear machine on each branch of the law.
@@ -89,7 +94,13 @@ impl<'a, D: Scalar> Swing<'a, D> {
             flows,
             rhythm: None,
             budget: SEARCH_BUDGET,
+            digits: Cancellation::default(),
         }
+    }
+
+    /// How many digits the motion has kept.
+    pub(super) const fn digits(&self) -> &Cancellation {
+        &self.digits
     }
 
     /// The position from the beginning of `phase` on.
@@ -179,10 +190,19 @@ impl<D: Scalar> Slide<D> for Swing<'_, D> {
         write(&path, flow.powers.as_ref(), phase.time, end, recorder)?;
         self.write_work(&path, flow, phase, end.min(phase.limit), recorder)?;
         if let Some((ending, time, state, grazing)) = found {
+            self.digits.note(&path, time.value() - phase.time.value(), phase.state, state);
             return Ok(Ended { ending, time, state, grazing });
         }
         let time = D::from(phase.limit);
-        let state = if phase.last { phase.state } else { path.state(time - phase.time) };
+        let state = path.state(time - phase.time);
+        let elapsed = phase.limit - phase.time.value();
+        self.digits.note(&path, elapsed, phase.state, state);
+        if phase.last {
+            // A motion that nothing has divided may be far away in between.
+            for part in INSIDE {
+                self.digits.reaches(path.state(D::from(part * elapsed)));
+            }
+        }
         Ok(Ended { ending: Ending::Limit, time, state, grazing: false })
     }
 }

@@ -58,6 +58,8 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         // A spring too weak to matter within the sampled time gives no scale.
         let natural = oscillator.natural_angular_frequency().value();
         let angular = if end > 0.0 { natural.max(WEAK / end) } else { natural };
+        // Where there is neither a spring nor a time, nothing moves.
+        let angular = if angular > 0.0 { angular } else { 1.0 };
         let static_force = (scenario.law().breakaway() * scenario.normal_load()).value();
         let held = static_force / (oscillator.mass().value() * angular * angular);
         Self {

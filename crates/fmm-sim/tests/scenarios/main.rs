@@ -1,4 +1,7 @@
 //! Scenarios as a user writes them: what each promises, and what is refused.
 
+mod contracts;
 mod limits;
+mod paths;
 mod rest;
+mod weak_springs;
