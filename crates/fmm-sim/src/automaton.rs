@@ -122,7 +122,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         let held = self.static_force.value();
         let rate = resting.slope_now().value();
         // What an exact comparison would decide by rounding is decided by where the load is going.
-        let rounding = if resting.is_free() { 0.0 } else { rounding(self.oscillator, &resting, time, state) };
+        let rounding = if resting.is_plainly_free() { 0.0 } else { rounding(self.oscillator, &resting, time, state) };
         let direction = Direction::of(if load.abs() <= rounding { rate } else { load });
         let growing = rate * direction.sign() > 0.0;
         let slips = if (load.abs() - held).abs() <= rounding {
@@ -415,7 +415,7 @@ pub(crate) fn holds_for_good<D: Scalar>(
 
 /// A time (s) within which a curve with these waves varies little.
 fn scale<D: Scalar>(curve: &Curve<D>) -> f64 {
-    curve.waves.iter().map(|wave| 1.0 / wave.angular.value()).fold(f64::MAX, f64::min)
+    curve.frequencies().map(f64::recip).fold(f64::MAX, f64::min)
 }
 
 /// Rounding (N) that `load` carries, the load at `state` and `time`: that of its terms, and of the time itself.

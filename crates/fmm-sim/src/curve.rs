@@ -64,9 +64,21 @@ impl<'a, D: Scalar> Curve<'a, D> {
         self
     }
 
-    /// Whether it has no part but a constant and a decay.
+    /// Whether it has no part but a constant and a decay, in its derivatives neither.
     pub(crate) fn is_free(&self) -> bool {
-        self.waves.is_empty() && self.slope.value() == 0.0
+        let level = || (0..D::DIRECTIONS).all(|direction| self.slope.partial(direction) == 0.0);
+        self.waves.is_empty() && self.slope.value() == 0.0 && level()
+    }
+
+    /// Whether the curve without derivatives has no part but a constant and a decay.
+    pub(crate) fn is_plainly_free(&self) -> bool {
+        self.frequencies().next().is_none() && self.slope.value() == 0.0
+    }
+
+    /// Angular frequencies (rad/s) of the waves that there are, those that exist in derivatives only left out.
+    pub(crate) fn frequencies(&self) -> impl Iterator<Item = f64> {
+        let is_there = |wave: &&Wave<D>| wave.cosine.value() != 0.0 || wave.sine.value() != 0.0;
+        self.waves.iter().filter(is_there).map(|wave| wave.angular.value())
     }
 
     /// The free decay and its state at τ = 0.

@@ -51,6 +51,12 @@ impl<D: Scalar> Piece<D> {
         &self.waves
     }
 
+    /// Angular frequencies (rad/s) of the waves that there are, those that exist in derivatives only left out: steps must not
+    /// depend on them.
+    pub(crate) fn frequencies(&self) -> impl Iterator<Item = f64> {
+        self.waves.iter().filter(|wave| wave.amplitude.value() != 0.0).map(|wave| wave.angular.value())
+    }
+
     /// Whether there is no force at all.
     pub(crate) fn is_free(&self) -> bool {
         self.waves.is_empty() && self.slope.value() == 0.0 && self.force.value() == 0.0

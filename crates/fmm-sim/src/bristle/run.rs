@@ -245,8 +245,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
 
     /// Angular frequency (rad/s) of the machine, or of the fastest wave.
     fn slow(&self, piece: &Piece<D>) -> f64 {
-        let waves = piece.waves().iter().map(|wave| wave.angular.value());
-        waves.fold(self.angular(), f64::max)
+        piece.frequencies().fold(self.angular(), f64::max)
     }
 
     /// Angular frequency (rad/s) of the machine, or of what turns little within the sampled time if that is faster.

@@ -274,8 +274,7 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
             }
         }
         recorder.samples(stop, |time| path.state(-self.time + time))?;
-        let waves = path.waves.iter().map(|wave| wave.angular.value());
-        let frequency = waves.fold(plain.natural() + 2.0 * plain.rate(), f64::max);
+        let frequency = path.frequencies().fold(plain.natural() + 2.0 * plain.rate(), f64::max);
         let oscillator = self.scenario.oscillator();
         recorder.work(self.time.value(), end, 1.0 / frequency, |time| {
             let State { position, velocity } = path.state(-self.time + time);

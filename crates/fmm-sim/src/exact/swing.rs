@@ -130,6 +130,24 @@ impl<'a, D: Scalar> Swing<'a, D> {
         Some((time, centre + decay.position_at_zero_velocity(free, duration)))
     }
 
+    /// How a free phase ends at `rest`, a time and a position whose derivatives do not know of forces that exist in derivatives
+    /// only.
+    fn rest_under_derivatives(
+        &self,
+        phase: &Phase<D>,
+        path: &Curve<D>,
+        (time, position): (D, D),
+    ) -> (Ending, D, State<D>, bool) {
+        if path.is_free() {
+            return (Ending::RelativeRest, time, State { position, velocity: self.belt }, false);
+        }
+        let guard = path.derivative().scaled(D::from(phase.direction.sign()), D::from(0.0));
+        let (time, grazing) = crossing(&guard, phase.time, time.value());
+        let there = path.state(time - phase.time).position;
+        let state = State { position: there - there.value() + position.value(), velocity: self.belt };
+        (Ending::RelativeRest, time, state, grazing)
+    }
+
     /// The first guard that the motion along `position` reaches before the limit of `phase`, with its time.
     fn first_guard(
         &mut self,
@@ -176,12 +194,12 @@ impl<D: Scalar> Slide<D> for Swing<'_, D> {
     fn slide(&mut self, phase: &Phase<D>, recorder: &mut Recorder<D>) -> Result<Ended<D>, SimulationError> {
         let flow = self.flows.on(phase.branch);
         let path = self.position(flow, phase)?;
-        let undisturbed = path.is_free() && !self.has_belt && phase.branch == Branch::Only;
+        let undisturbed = path.is_plainly_free() && !self.has_belt && phase.branch == Branch::Only;
         let found = match path.free() {
             Some((decay, free)) if undisturbed => self
                 .next_rest(phase, path.constant, decay, free)
                 .filter(|(time, _)| time.value() <= phase.limit)
-                .map(|(time, position)| (Ending::RelativeRest, time, State { position, velocity: self.belt }, false)),
+                .map(|rest| self.rest_under_derivatives(phase, &path, rest)),
             _ => self
                 .first_guard(phase, &path, &flow.plain)?
                 .map(|(ending, time, grazing)| (ending, time, path.state(time - phase.time), grazing)),
@@ -219,8 +237,7 @@ impl<D: Scalar> Swing<'_, D> {
         if !recorder.sampling.wants_work() {
             return Ok(());
         }
-        let waves = path.waves.iter().map(|wave| wave.angular.value());
-        let frequency = waves.fold(flow.plain.natural() + 2.0 * flow.plain.rate(), f64::max);
+        let frequency = path.frequencies().fold(flow.plain.natural() + 2.0 * flow.plain.rate(), f64::max);
         recorder.work(phase.time.value(), end, 1.0 / frequency, |time| {
             let velocity = path.state(-phase.time + time).velocity;
             let relative = velocity - self.belt;

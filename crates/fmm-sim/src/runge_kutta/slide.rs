@@ -276,7 +276,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
 
     /// The longest step that resolves the machine and every wave (s).
     fn longest(&self, phase: &Phase<D>) -> f64 {
-        1.0 / phase.piece.waves().iter().map(|wave| wave.angular.value()).fold(self.angular, f64::max)
+        1.0 / phase.piece.frequencies().fold(self.angular, f64::max)
     }
 }
 
