@@ -183,6 +183,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         let (mut time, mut state) = (D::from(0.0), initial);
         let (mut mode, load) = self.mode(&piece, time, state);
         recorder.push(self.event(EventKind::Start, time, state, mode, load, false))?;
+        self.push(mode, drive, index, &mut state);
         let end = recorder.sampling.end();
         loop {
             let (limit, last) = (piece.end.min(end), piece.end > end);
@@ -205,7 +206,13 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                 Ending::Limit => {
                     index += 1;
                     let before = std::mem::replace(&mut piece, drive.piece(index));
+                    self.push(mode, drive, index, &mut state);
                     let Some((next, load)) = self.after_jump(mode, &before, &piece, time, state) else { continue };
+                    if let Some(late) = drive.time_of_jump(index).filter(|_| mode == Mode::Stick) {
+                        // What a jump breaks away it does at its own time, whatever the level is.
+                        time = late + piece.start;
+                        state.position = state.position + state.velocity * late;
+                    }
                     let kind = match (mode, next) {
                         (Mode::Stick, _) => EventKind::Breakaway,
                         (_, Mode::Stick) => EventKind::Stop,
@@ -236,6 +243,14 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             };
             mode = next;
             recorder.push(self.event(kind, time, state, mode, load, ended.grazing))?;
+        }
+    }
+
+    /// Gives a body that slides what a force has given it that jumps, at the beginning of the piece of this `index`, at a time with
+    /// derivatives.
+    fn push(&self, mode: Mode, drive: &Drive<D>, index: usize, state: &mut State<D>) {
+        if matches!(mode, Mode::Slip(_) | Mode::Gaining(_) | Mode::Losing(_)) {
+            state.velocity = state.velocity + drive.impulse_of_jumps(index) / self.oscillator.mass();
         }
     }
 

@@ -14,7 +14,7 @@ pub(crate) struct Harmonic<D> {
     pub(crate) angular: D,
     pub(crate) phase: D,
     /// Beginning of a pulse (s): the angle of a short pulse a long time after the start would be mostly rounding.
-    since: f64,
+    since: D,
 }
 
 impl<D: Scalar> Harmonic<D> {
@@ -89,21 +89,21 @@ impl<'a, D: Scalar> Drive<'a, D> {
     pub(crate) fn new(excitations: &'a [Excitation<D>], mass: D) -> Self {
         let mut knots = vec![0.0];
         for Excitation { source, delay } in excitations {
+            let delay = delay.value();
             match source {
                 Source::SampledForce { interval, values } => {
-                    let at = |index: usize| values.get(index).copied().unwrap_or(0.0);
                     for index in 0..values.len() {
                         // A sample on the line through its neighbours is none; a record's quiet parts cost nothing.
                         let straight = index > 0
                             && index + 1 < values.len()
-                            && at(index + 1) - at(index) == at(index) - at(index - 1);
+                            && is_straight(values[index - 1], values[index], values[index + 1]);
                         if !straight {
                             knots.push(delay + index as f64 * interval);
                         }
                     }
                 }
-                Source::HalfSine { duration, .. } => knots.extend([*delay, delay + duration.value()]),
-                Source::Ramp { .. } => knots.push(*delay),
+                Source::HalfSine { duration, .. } => knots.extend([delay, delay + duration.value()]),
+                Source::Ramp { .. } => knots.push(delay),
                 Source::Harmonic { .. } | Source::Base { .. } | Source::Belt { .. } => {}
             }
         }
@@ -125,6 +125,43 @@ impl<'a, D: Scalar> Drive<'a, D> {
         })
     }
 
+    /// The forces (N) that jump at the beginning of the piece of this `index`, each with the derivatives of its time (s), whose
+    /// value is zero.
+    fn jumps(&self, index: usize) -> impl Iterator<Item = (D, D)> {
+        let time = self.knots[index];
+        self.excitations
+            .iter()
+            .flat_map(move |Excitation { source, delay }| {
+                let Source::SampledForce { interval, values } = source else { return [None, None] };
+                let last = delay.value() + values.len().saturating_sub(1) as f64 * interval;
+                let at = |knot: f64, force: Option<D>| {
+                    force
+                        .filter(|force| knot == time && force.value() != 0.0)
+                        .map(|force| (force, *delay - delay.value()))
+                };
+                // A single sample has no duration.
+                let values = if values.len() > 1 { &values[..] } else { &[] };
+                [at(delay.value(), values.first().copied()), at(last, values.last().map(|force| -*force))]
+            })
+            .flatten()
+    }
+
+    /// The impulse (N s), zero but for its derivatives, that a moving body has gained by the beginning of the piece of this `index`
+    /// because a force has jumped at a time which has derivatives.
+    pub(crate) fn impulse_of_jumps(&self, index: usize) -> D {
+        let zero = D::from(0.0);
+        if D::DIRECTIONS == 0 {
+            return zero;
+        }
+        self.jumps(index).fold(zero, |sum, (force, late)| sum - late * force.value())
+    }
+
+    /// The derivatives of the time at which the force jumps at the beginning of the piece of this `index`, their value being zero;
+    /// none if it does not jump.
+    pub(crate) fn time_of_jump(&self, index: usize) -> Option<D> {
+        self.jumps(index).max_by(|a, b| a.0.value().abs().total_cmp(&b.0.value().abs())).map(|(_, late)| late)
+    }
+
     /// Number of pieces.
     pub(crate) fn pieces(&self) -> usize {
         self.knots.len()
@@ -138,32 +175,35 @@ impl<'a, D: Scalar> Drive<'a, D> {
         let zero = D::from(0.0);
         let mut piece = Piece { start, end, force: zero, slope: zero, waves: Vec::new() };
         for Excitation { source, delay } in self.excitations {
-            let begun = start >= *delay;
+            let begun = start >= delay.value();
+            // How much later it is in derivatives.
+            let late = *delay - delay.value();
             match source {
                 Source::SampledForce { interval, values } => {
-                    let position = (middle - delay) / interval;
+                    let position = (middle - delay.value()) / interval;
                     if position > 0.0 && position < values.len().saturating_sub(1) as f64 {
                         // From knot to knot, so that rounding of a knot's time does not move the force there.
-                        let at = |time: f64| interpolated(values, *interval, *delay, time);
-                        piece.force = piece.force + at(start);
-                        piece.slope = piece.slope + (at(end) - at(start)) / (end - start);
+                        let at = |time: f64| interpolated(values, *interval, delay.value(), time);
+                        let slope = (at(end) - at(start)) / (end - start);
+                        piece.force = piece.force + at(start) - slope * late;
+                        piece.slope = piece.slope + slope;
                     }
                 }
-                Source::HalfSine { peak, duration } if begun && middle < delay + duration.value() => {
+                Source::HalfSine { peak, duration } if begun && middle < (*delay + *duration).value() => {
                     let (angular, phase) = (D::from(PI) / *duration, D::from(-FRAC_PI_2));
                     piece.waves.push(Harmonic { amplitude: *peak, angular, phase, since: *delay });
                 }
                 Source::Ramp { rate } if begun => {
-                    piece.force = piece.force + *rate * (start - delay);
+                    piece.force = piece.force + *rate * (-*delay + start);
                     piece.slope = piece.slope + *rate;
                 }
                 Source::Harmonic { amplitude, angular, phase } => {
                     let (amplitude, angular, phase) = (*amplitude, *angular, *phase);
-                    piece.waves.push(Harmonic { amplitude, angular, phase, since: 0.0 });
+                    piece.waves.push(Harmonic { amplitude, angular, phase, since: zero });
                 }
                 Source::Base { amplitude, angular, phase } => {
                     let amplitude = self.mass * *amplitude * *angular * *angular;
-                    piece.waves.push(Harmonic { amplitude, angular: *angular, phase: *phase, since: 0.0 });
+                    piece.waves.push(Harmonic { amplitude, angular: *angular, phase: *phase, since: zero });
                 }
                 Source::HalfSine { .. } | Source::Ramp { .. } | Source::Belt { .. } => {}
             }
@@ -173,8 +213,15 @@ impl<'a, D: Scalar> Drive<'a, D> {
     }
 }
 
+/// Whether three samples lie on a line, with their derivatives.
+fn is_straight<D: Scalar>(before: D, here: D, after: D) -> bool {
+    let bend = |before: f64, here: f64, after: f64| after - here != here - before;
+    !bend(before.value(), here.value(), after.value())
+        && !(0..D::DIRECTIONS).any(|d| bend(before.partial(d), here.partial(d), after.partial(d)))
+}
+
 /// The sampled force (N) at `time`, which lies between its first and its last sample; exactly a sample at its own time.
-fn interpolated(values: &[f64], interval: f64, delay: f64, time: f64) -> f64 {
+fn interpolated<D: Scalar>(values: &[D], interval: f64, delay: f64, time: f64) -> D {
     let position = ((time - delay) / interval).max(0.0);
     let nearest = position.round() as usize;
     if nearest < values.len() && delay + nearest as f64 * interval == time {

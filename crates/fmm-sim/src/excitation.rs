@@ -14,13 +14,13 @@ use crate::SimulationError;
 pub struct Excitation<D = f64> {
     pub(crate) source: Source<D>,
     /// When it begins (s); only for those that begin.
-    pub(crate) delay: f64,
+    pub(crate) delay: D,
 }
 
 /// The mathematics of an excitation.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Source<D> {
-    SampledForce { interval: f64, values: Arc<[f64]> },
+    SampledForce { interval: f64, values: Arc<[D]> },
     HalfSine { peak: D, duration: D },
     Ramp { rate: D },
     Harmonic { amplitude: D, angular: D, phase: D },
@@ -30,22 +30,24 @@ pub(crate) enum Source<D> {
 
 impl<D: Scalar> Excitation<D> {
     fn of(source: Source<D>) -> Self {
-        Self { source, delay: 0.0 }
+        Self { source, delay: D::from(0.0) }
     }
 
     /// A measured force: `values` (N), one every `interval` (s) from t = 0 on, straight lines between them
     /// (first-order hold), and no force after the last.
+    ///
+    /// Values that are dual numbers carry their derivatives into the motion.
     ///
     /// Holding each value until the next instead would shift a hammer pulse by half an interval and lose part of its
     /// impulse.
     ///
     /// # Errors
     /// [`SimulationError::Quantity`] if the interval is not positive or a value is not finite.
-    pub fn sampled_force(interval: f64, values: impl Into<Arc<[f64]>>) -> Result<Self, SimulationError> {
+    pub fn sampled_force(interval: f64, values: impl Into<Arc<[D]>>) -> Result<Self, SimulationError> {
         let values = values.into();
         ModelError::require_positive("interval of the sampled force", interval, "s")?;
         for value in values.iter() {
-            ModelError::require_finite("sampled force", *value, "N")?;
+            ModelError::require_finite("sampled force", value.value(), "N")?;
         }
         Ok(Self::of(Source::SampledForce { interval, values }))
     }
@@ -103,13 +105,13 @@ impl<D: Scalar> Excitation<D> {
         Ok(Self::of(Source::Belt { velocity }))
     }
 
-    /// The same sampled force, half sine or ramp, begun `delay` (s) later. Harmonic motion and a belt have no
-    /// beginning and stay as they are.
+    /// The same sampled force, half sine or ramp, begun `delay` (s) later, with the derivatives of the delay. Harmonic motion and a
+    /// belt have no beginning and stay as they are.
     ///
     /// # Errors
     /// [`SimulationError::Quantity`] if the delay is negative or not finite.
-    pub fn delayed(mut self, delay: f64) -> Result<Self, SimulationError> {
-        ModelError::require_not_negative("delay", delay, "s")?;
+    pub fn delayed(mut self, delay: D) -> Result<Self, SimulationError> {
+        ModelError::require_not_negative("delay", delay.value(), "s")?;
         self.delay = delay;
         Ok(self)
     }

@@ -1,5 +1,7 @@
 //! What a law says of a blow: its motion simulated, seen as samples and lines, with derivatives.
 
+use std::sync::Arc;
+
 use fmm_fit::EvaluationError;
 use fmm_model::{Damping, Dual, Oscillator, Scalar};
 use fmm_sim::{Channels, Excitation, Sampling, Simulated, Trajectory};
@@ -106,12 +108,13 @@ impl ImpactProblem<'_> {
         let oscillator = Oscillator::new(of_machine(0), of_machine(1))?.with_damping(Damping::linear(of_machine(2))?);
         let law: Vec<D> = (LAW..layout.shared).map(|index| variable(p[index], index - LAW + MACHINE)).collect();
         let trial = &self.trials()[trial];
+        let force: Arc<[D]> = trial.force().iter().map(|force| D::from(*force)).collect();
         let scenario = Motion {
             oscillator,
             law: self.law().values(&law),
             normal_load: of_machine(3),
             initial: [D::from(0.0); 2],
-            force: Some(Excitation::sampled_force(trial.interval(), trial.shared_force())?),
+            force: Some(Excitation::sampled_force(trial.interval(), force)?),
         };
         let (motion, all) = (trial.motion().len(), trial.velocity().len() - trial.begin());
         let sampling = Sampling::uniform(trial.interval(), all)?.keeping(Channels::Velocity);

@@ -183,10 +183,6 @@ impl ImpactTrial {
     pub(crate) fn hits(&self) -> &[Range<usize>] {
         &self.hits
     }
-
-    pub(crate) fn shared_force(&self) -> Arc<[f64]> {
-        Arc::clone(&self.force)
-    }
 }
 
 /// That the two records are a force and a velocity, in SI units, sampled at the same times.

@@ -80,6 +80,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         let grazing = direction.is_none() && self.rest_has_derivatives(&piece);
         self.go(direction);
         self.push_here(EventKind::Start, &piece, grazing)?;
+        self.jump(drive, 0);
         let mut index = 0;
         loop {
             let limit = piece.end.min(end);
@@ -102,6 +103,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                 self.go(Some(direction));
                 self.push_here(EventKind::Breakaway, &piece, false)?;
             }
+            self.jump(drive, index);
         }
         // The samples at the end itself hold the state after an event there.
         self.write(f64::INFINITY)?;
@@ -113,6 +115,14 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             });
         self.recorder.trajectory.set_rests(rests);
         Ok(self.steps)
+    }
+
+    /// Takes what a force has given that jumps, at the beginning of the piece of this `index`, at a time with derivatives.
+    fn jump(&mut self, drive: &Drive<D>, index: usize) {
+        if !self.resting {
+            let gained = drive.impulse_of_jumps(index) / self.field.oscillator.mass();
+            self.step.begin[1] = self.step.begin[1] + gained;
+        }
     }
 
     /// Sets the direction of the motion to come, or rest.

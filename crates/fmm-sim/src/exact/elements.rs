@@ -66,6 +66,7 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
         let (mut index, mut piece) = (0, self.drive.piece(0));
         self.turn(&piece);
         self.push(EventKind::Start, false, recorder)?;
+        self.jump(index);
         let end = recorder.sampling.end();
         loop {
             let (limit, last) = (piece.end.min(end), piece.end > end);
@@ -96,6 +97,7 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
                             self.push(EventKind::Breakaway, false, recorder)?;
                         }
                     }
+                    self.jump(index);
                 }
             }
         }
@@ -149,6 +151,14 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
         match candidates.into_iter().zip(sizes).find(decides) {
             Some((value, _)) => self.direction = Direction::of(value),
             None => self.at_rest = true,
+        }
+    }
+
+    /// Takes what a force has given that jumps, at the beginning of the piece of this `index`, at a time with derivatives.
+    fn jump(&mut self, index: usize) {
+        if !self.at_rest {
+            let gained = self.drive.impulse_of_jumps(index) / self.scenario.oscillator().mass();
+            self.state.velocity = self.state.velocity + gained;
         }
     }
 

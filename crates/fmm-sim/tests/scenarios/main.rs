@@ -1,6 +1,7 @@
 //! Scenarios as a user writes them: what each promises, and what is refused.
 
 mod contracts;
+mod derivatives;
 mod duals;
 mod limits;
 mod paths;
