@@ -38,6 +38,14 @@ pub enum LawError {
         /// The value given for it.
         lesser_value: f64,
     },
+    /// A condition between the parameters of a law does not hold; for laws of one's own.
+    #[error("the parameters of the law {law} must satisfy {condition}")]
+    Condition {
+        /// Name of the law.
+        law: &'static str,
+        /// The condition, with the values that break it if they help.
+        condition: String,
+    },
     /// Shape parameters of a hysteresis loop that would create energy or grow without bound.
     #[error("a Bouc-Wen loop needs −β < γ ≤ β, but β = {beta} and γ = {gamma}")]
     NotDissipative {

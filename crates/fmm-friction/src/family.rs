@@ -182,7 +182,7 @@ pub trait LawFamily: 'static {
     ///
     /// # Errors
     /// [`LawError`] if the number of values is not that of [`PARAMETERS`](Self::PARAMETERS), or if a value is
-    /// not finite, out of bounds, or contradicts another.
+    /// not finite, out of bounds, or contradicts another ([`LawError::Condition`] unless another variant fits).
     fn at<D: Scalar>(values: &[D]) -> Result<Self::At<D>, LawError>;
 
     /// The `values` one by one, exactly as many as the law has parameters and each within its bounds: how
@@ -203,6 +203,37 @@ pub trait LawFamily: 'static {
     fn checked<const N: usize, D: Scalar>(values: &[D]) -> Result<[D; N], LawError> {
         checked(Self::PARAMETERS, exactly(Self::NAME, values)?)
     }
+}
+
+/// A law at one number type: which type that is, and the family that it is a member of.
+///
+/// It lets a function that takes a law know its family, and a scenario with its law have one number type, so that
+/// `Coulomb::new(Dual::from(0.2))` needs no annotation. A family of one's own says it in three lines:
+///
+/// ```
+/// # use fmm_friction::{Coulomb, FamilyMember, LawError, LawFamily, LawParameter};
+/// # use fmm_model::Scalar;
+/// # #[derive(Debug, Clone)]
+/// # struct Sticky<D = f64>(Coulomb<D>);
+/// # impl LawFamily for Sticky {
+/// #     const NAME: &'static str = "sticky";
+/// #     const PARAMETERS: &'static [LawParameter] = Coulomb::PARAMETERS;
+/// #     type At<D: Scalar> = Sticky<D>;
+/// #     fn at<D: Scalar>(values: &[D]) -> Result<Sticky<D>, LawError> {
+/// #         Coulomb::at(values).map(Sticky)
+/// #     }
+/// # }
+/// impl<D: Scalar> FamilyMember for Sticky<D> {
+///     type Number = D;
+///     type Family = Sticky;
+/// }
+/// ```
+pub trait FamilyMember: Sized {
+    /// The number type.
+    type Number: Scalar;
+
+    /// The family, whose member at this number type the law is.
+    type Family: LawFamily<At<Self::Number> = Self>;
 }
 
 /// Takes exactly as many values as the law has parameters.
@@ -275,6 +306,11 @@ macro_rules! law_family {
                 let [$($field),+] = $crate::family::exactly(Self::NAME, values)?;
                 $law::$new($($field),+)
             }
+        }
+
+        impl<D: Scalar> $crate::FamilyMember for $law<D> {
+            type Number = D;
+            type Family = $law;
         }
     };
 }

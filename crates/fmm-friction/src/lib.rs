@@ -109,7 +109,7 @@ pub use coulomb_viscous::CoulombViscous;
 pub use dahl::Dahl;
 pub use error::LawError;
 pub use exponential_pair::ExponentialPair;
-pub use family::{LawFamily, LawParameter, Role, SpecialCase};
+pub use family::{FamilyMember, LawFamily, LawParameter, Role, SpecialCase};
 pub use gms::Gms;
 pub use hyperbolic::Hyperbolic;
 pub use karnopp::Karnopp;

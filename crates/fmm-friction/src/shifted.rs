@@ -2,7 +2,7 @@
 
 use fmm_model::Scalar;
 
-use crate::{LawError, LawFamily, LawParameter, MakkarDixon, SlidingLaw};
+use crate::{FamilyMember, LawError, LawFamily, LawParameter, MakkarDixon, SlidingLaw};
 
 /// A law whose curve over the speed rises to a Stribeck peak and bends while it falls.
 pub trait Inflected {
@@ -70,6 +70,11 @@ impl<D: Scalar, L: Inflected<Number = D> + SlidingLaw<D>> SlidingLaw<D> for Shif
     fn breakaway(&self) -> D {
         self.coefficient(D::from(0.0))
     }
+}
+
+impl<D: Scalar> FamilyMember for Shifted<MakkarDixon<D>> {
+    type Number = D;
+    type Family = Shifted<MakkarDixon>;
 }
 
 impl LawFamily for Shifted<MakkarDixon> {

@@ -129,21 +129,22 @@ impl<'a, D: Scalar> Drive<'a, D> {
     /// value is zero.
     fn jumps(&self, index: usize) -> impl Iterator<Item = (D, D)> {
         let time = self.knots[index];
-        self.excitations
-            .iter()
-            .flat_map(move |Excitation { source, delay }| {
-                let Source::SampledForce { interval, values } = source else { return [None, None] };
-                let last = delay.value() + values.len().saturating_sub(1) as f64 * interval;
-                let at = |knot: f64, force: Option<D>| {
-                    force
-                        .filter(|force| knot == time && force.value() != 0.0)
-                        .map(|force| (force, *delay - delay.value()))
-                };
+        let of = move |Excitation { source, delay }: &Excitation<D>| {
+            let at = |knot: f64, force: Option<D>| {
+                let force = force.filter(|force| knot == time && force.value() != 0.0);
+                force.map(|force| (force, *delay - delay.value()))
+            };
+            match source {
                 // A single sample has no duration.
-                let values = if values.len() > 1 { &values[..] } else { &[] };
-                [at(delay.value(), values.first().copied()), at(last, values.last().map(|force| -*force))]
-            })
-            .flatten()
+                Source::SampledForce { interval, values } if values.len() > 1 => {
+                    let last = delay.value() + (values.len() - 1) as f64 * interval;
+                    [at(delay.value(), values.first().copied()), at(last, values.last().map(|force| -*force))]
+                }
+                Source::Ramp { force, .. } => [at(delay.value(), Some(*force)), None],
+                _ => [None, None],
+            }
+        };
+        self.excitations.iter().flat_map(of).flatten()
     }
 
     /// The impulse (N s), zero but for its derivatives, that a moving body has gained by the beginning of the piece of this `index`
@@ -193,8 +194,8 @@ impl<'a, D: Scalar> Drive<'a, D> {
                     let (angular, phase) = (D::from(PI) / *duration, D::from(-FRAC_PI_2));
                     piece.waves.push(Harmonic { amplitude: *peak, angular, phase, since: *delay });
                 }
-                Source::Ramp { rate } if begun => {
-                    piece.force = piece.force + *rate * (-*delay + start);
+                Source::Ramp { force, rate } if begun => {
+                    piece.force = piece.force + *force + *rate * (-*delay + start);
                     piece.slope = piece.slope + *rate;
                 }
                 Source::Harmonic { amplitude, angular, phase } => {

@@ -22,7 +22,7 @@ pub struct Excitation<D = f64> {
 pub(crate) enum Source<D> {
     SampledForce { interval: f64, values: Arc<[D]> },
     HalfSine { peak: D, duration: D },
-    Ramp { rate: D },
+    Ramp { force: D, rate: D },
     Harmonic { amplitude: D, angular: D, phase: D },
     Base { amplitude: D, angular: D, phase: D },
     Belt { velocity: D },
@@ -62,13 +62,55 @@ impl<D: Scalar> Excitation<D> {
         Ok(Self::of(Source::HalfSine { peak, duration }))
     }
 
+    /// A constant `force` (N): a weight on an incline, a bias, a spring that is prestressed.
+    ///
+    /// # Errors
+    /// [`SimulationError::Quantity`] if the force is not finite.
+    pub fn constant(force: D) -> Result<Self, SimulationError> {
+        ModelError::require_finite("constant force", force.value(), "N")?;
+        Ok(Self::of(Source::Ramp { force, rate: D::from(0.0) }))
+    }
+
+    /// A force that is a function of time, `force` giving it (N) at t = 0, `interval`, 2 `interval`, … up to `duration` (s): straight
+    /// lines between these times, which are off by up to `interval`²/8 times the curvature of the force, and no force after the
+    /// last.
+    ///
+    /// ```
+    /// use fmm_friction::Coulomb;
+    /// use fmm_model::Oscillator;
+    /// use fmm_sim::{Excitation, Sampling, Scenario, simulate};
+    ///
+    /// // A sweep from 1 Hz upwards over 2 s.
+    /// let sweep = Excitation::function(1e-4, 2.0, |t| 5.0 * (6.283 * t * (1.0 + t)).sin())?;
+    /// let scenario = Scenario::new(Oscillator::new(1.0, 400.0)?, Coulomb::new(0.1)?, 10.0)?.driven_by(sweep);
+    /// let motion = simulate(&scenario, &Sampling::uniform(1e-3, 2000)?)?;
+    /// assert!(motion.half_swings() > 5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`sampled_force`](Self::sampled_force), and [`SimulationError::Sampling`] if there are more times than there is memory
+    /// for.
+    pub fn function(interval: f64, duration: f64, force: impl FnMut(f64) -> D) -> Result<Self, SimulationError> {
+        ModelError::require_positive("interval of the force", interval, "s")?;
+        ModelError::require_positive("duration of the force", duration, "s")?;
+        let count = (duration / interval).round() as usize;
+        let mut values = Vec::new();
+        let refused = SimulationError::Sampling { count, interval };
+        if values.try_reserve_exact(count.saturating_add(1)).is_err() {
+            return Err(refused);
+        }
+        values.extend((0..=count).map(|index| index as f64 * interval).map(force));
+        Self::sampled_force(interval, values)
+    }
+
     /// A force that grows from zero by `rate` (N/s).
     ///
     /// # Errors
     /// [`SimulationError::Quantity`] if the rate is not finite.
     pub fn ramp(rate: D) -> Result<Self, SimulationError> {
         ModelError::require_finite("rate of the force", rate.value(), "N/s")?;
-        Ok(Self::of(Source::Ramp { rate }))
+        Ok(Self::of(Source::Ramp { force: D::from(0.0), rate }))
     }
 
     /// A harmonic force, `amplitude` · cos(`angular_frequency` t + `phase`) (N, rad/s, rad).
@@ -105,7 +147,7 @@ impl<D: Scalar> Excitation<D> {
         Ok(Self::of(Source::Belt { velocity }))
     }
 
-    /// The same sampled force, half sine or ramp, begun `delay` (s) later, with the derivatives of the delay. Harmonic motion and a
+    /// The same sampled or constant force, function, half sine or ramp, begun `delay` (s) later, with the derivatives of the delay. Harmonic motion and a
     /// belt have no beginning and stay as they are.
     ///
     /// # Errors

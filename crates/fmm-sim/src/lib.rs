@@ -34,10 +34,41 @@
 //! | [`Moreau`] | cross-check | time stepping of the set-valued law, of first order | fits: no derivatives |
 //! | [`Thesis`] | reproduction of the thesis only | the appendix' semi-implicit Euler, branch for branch | fits: its sum of squares jumps |
 //!
-//! The first three give exact gradients in every input, through every event. Which engine suits a family of laws when
-//! nobody chooses is said by [`Simulated`]; [`Trajectory::engine`] says which one ran. What acts from outside is an
+//! The first three give exact gradients in every input, through every event. [`simulate`] takes the engine that suits the law
+//! ([`Simulated`]); [`Trajectory::engine`] says which one ran. What acts from outside is an
 //! [`Excitation`], several of which add up; a release or a push is an initial state. The [`Work`] done by friction, damping
 //! and excitation comes along on request. A contact whose motion is given has no need of an engine: [`friction_along`].
+//!
+//! # How to write it
+//!
+//! | machine | scenario |
+//! |---|---|
+//! | a bias force, a prestressed spring | [`Excitation::constant`]; x still counts from where the spring is free of force |
+//! | an incline of angle β | [`Excitation::constant`] of m g sin β, normal load m g cos β |
+//! | a vertical machine | the same with β = 90°, and the load that presses the contact |
+//! | two contacts of one law in parallel | one contact, its normal load the sum of both |
+//! | two contacts of levels μ₁ and μ₂ under N₁ and N₂ | one law with the sum of the forces and a load of 1: `Coulomb::new(μ₁ N₁ + μ₂ N₂)`, or a [`SlidingLaw`](fmm_friction::SlidingLaw) of one's own that adds two |
+//! | a contact beside an oil film, c N s/m | [`Damping::linear`](fmm_model::Damping::linear) of the machine, as long as the counterface stands still |
+//! | two bristle contacts | elements of one [`MaxwellSlip`](fmm_friction::MaxwellSlip), or a [`BristleLaw`](fmm_friction::BristleLaw) of one's own with the states of both |
+//! | a block without a spring | a stiffness of zero |
+//! | a spring pulled at its other end with velocity v | [`Excitation::ramp`] of k v |
+//! | any force over time | [`Excitation::function`], or [`Excitation::sampled_force`] |
+//!
+//! ```
+//! use fmm_friction::CoulombStatic;
+//! use fmm_model::Oscillator;
+//! use fmm_sim::{Excitation, Sampling, Scenario, simulate};
+//!
+//! // 2 kg on an incline of 30° with 0.3 and 0.4, on a spring of 500 N/m that is free of force at the start.
+//! let (weight, angle) = (2.0 * 9.81, 30f64.to_radians());
+//! let law = CoulombStatic::new(0.3, 0.4)?;
+//! let scenario = Scenario::new(Oscillator::new(2.0, 500.0)?, law, weight * angle.cos())?
+//!     .driven_by(Excitation::constant(weight * angle.sin())?);
+//! let rest = *simulate(&scenario, &Sampling::uniform(1e-3, 2000)?)?.rest().expect("friction holds it");
+//! // It slides to 2 (m g sin β − μ N)/k and stays.
+//! assert!((rest.position - 2.0 * (weight * angle.sin() - 0.3 * weight * angle.cos()) / 500.0).abs() < 1e-15);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! # Units and conventions
 //!
@@ -118,7 +149,7 @@ pub use runge_kutta::RungeKutta;
 pub use samples::Samples;
 pub use sampling::{Channels, Sampling};
 pub use scenario::{Scenario, State};
-pub use simulated::Simulated;
+pub use simulated::{Simulated, simulate};
 pub use thesis::Thesis;
 pub use trajectory::Trajectory;
 pub use work::Work;

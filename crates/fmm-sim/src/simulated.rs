@@ -2,14 +2,14 @@
 
 use fmm_friction::{
     AccelerationCoulomb, Berger, BoucWen, BristleLaw, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair,
-    Hyperbolic, Karnopp, LawFamily, LuGre, MakkarDixon, PiecewiseLinearLaw, PowerLaw, RegularisedStribeck, Shifted,
-    SlidingLaw, Stribeck, StribeckLorentzian, Viscous,
+    FamilyMember, Hyperbolic, Karnopp, LawFamily, LuGre, MakkarDixon, PiecewiseLinearLaw, PowerLaw,
+    RegularisedStribeck, Shifted, SlidingLaw, Stribeck, StribeckLorentzian, Viscous,
 };
 use fmm_model::Scalar;
 
 use crate::{Bristle, Engine, Exact, RungeKutta, Sampling, Scenario, SimulationError, Trajectory};
 
-/// A family of laws together with the engine that suits it, at every number type: what "auto" means.
+/// A family of laws together with the engine that suits it, at every number type: what [`simulate`] takes.
 ///
 /// | law | machine and force | engine |
 /// |---|---|---|
@@ -97,6 +97,38 @@ pub trait Simulated: LawFamily {
         let _ = (law, speed, losing);
         None
     }
+}
+
+/// Simulates `scenario` with the engine that suits its law ([`Simulated`]).
+///
+/// ```
+/// use fmm_friction::Stribeck;
+/// use fmm_model::{Dual, Oscillator, Scalar};
+/// use fmm_sim::{Sampling, Scenario, simulate};
+///
+/// // The derivative in the static coefficient; all other numbers follow from the one that is said to have two directions.
+/// let machine = Oscillator::new(Dual::<2>::from(10.0), Dual::from(2000.0))?;
+/// let law = Stribeck::new(Dual::from(0.1), Dual::variable(0.15, 0), Dual::from(0.02), Dual::from(1.0), Dual::from(0.0))?;
+/// let scenario = Scenario::new(machine, law, Dual::from(10.0))?.starting_at(Dual::from(0.01), Dual::from(0.0))?;
+/// let motion = simulate(&scenario, &Sampling::uniform(1e-3, 3000)?)?;
+/// assert_eq!(motion.engine(), "runge_kutta");
+/// let rest = motion.rest().expect("friction stops it");
+/// assert!(rest.position.partial(0).abs() > 1e-4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`Engine::run_into`].
+pub fn simulate<L>(
+    scenario: &Scenario<L::Number, L>,
+    sampling: &Sampling,
+) -> Result<Trajectory<L::Number>, SimulationError>
+where
+    L: FamilyMember<Family: Simulated>,
+{
+    let mut trajectory = Trajectory::new();
+    L::Family::simulate_into(scenario, sampling, &mut trajectory)?;
+    Ok(trajectory)
 }
 
 /// Friction coefficient (1) of a law of the sliding `speed` (m/s).

@@ -18,6 +18,7 @@ pub struct Trajectory<D = f64> {
     work: [Samples<D>; 3],
     engine: &'static str,
     rests: bool,
+    sampling: Option<Sampling>,
 }
 
 impl<D: Scalar> Default for Trajectory<D> {
@@ -37,6 +38,7 @@ impl<D: Scalar> Trajectory<D> {
             work: [Samples::new(), Samples::new(), Samples::new()],
             engine: "",
             rests: false,
+            sampling: None,
         }
     }
 
@@ -53,6 +55,7 @@ impl<D: Scalar> Trajectory<D> {
     ) -> Result<(), SimulationError> {
         self.engine = engine;
         self.rests = false;
+        self.sampling = Some(sampling.clone());
         let count = |wanted: bool| if wanted { sampling.count() } else { 0 };
         self.position.reset(count(sampling.channels().position()))?;
         self.velocity.reset(count(sampling.channels().velocity()))?;
@@ -102,6 +105,12 @@ impl<D: Scalar> Trajectory<D> {
         if channels.velocity() {
             self.velocity.set(index, velocity);
         }
+    }
+
+    /// Time of each sample (s).
+    pub fn times(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
+        let sampling = self.sampling.as_ref();
+        (0..sampling.map_or(0, Sampling::count)).map(move |index| sampling.map_or(0.0, |sampling| sampling.time(index)))
     }
 
     /// Sampled position (m); empty if it was not asked for.

@@ -29,6 +29,12 @@ fn jumps<D: Scalar>([value, delay]: [D; 2]) -> Vec<Excitation<D>> {
     vec![sampled(&[value, D::from(7.0), D::from(5.0)], delay)]
 }
 
+/// Constant forces that begin at once and later.
+fn steps<D: Scalar>([value, delay]: [D; 2]) -> Vec<Excitation<D>> {
+    let constant = |force| Excitation::constant(force).unwrap();
+    vec![constant(value), constant(D::from(-9.0)).delayed(delay).unwrap()]
+}
+
 fn shapes<D: Scalar>([first, second]: [D; 2]) -> Vec<Excitation<D>> {
     vec![
         Excitation::half_sine(D::from(20.0), D::from(0.1)).unwrap().delayed(second).unwrap(),
@@ -49,6 +55,7 @@ macro_rules! check {
         for (case, forces, dual_forces) in [
             ("pulse", pulse as fn([f64; 2]) -> _, pulse as fn([Dual<2>; 2]) -> _),
             ("jumps", jumps, jumps),
+            ("steps", steps, steps),
             ("shapes", shapes, shapes),
             ("nothing", nothing, nothing),
         ] {

@@ -3,6 +3,7 @@
 mod contracts;
 mod derivatives;
 mod duals;
+mod hands;
 mod limits;
 mod paths;
 mod rest;
