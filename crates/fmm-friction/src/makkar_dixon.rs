@@ -97,7 +97,7 @@ impl<D: Scalar> MakkarDixon<D> {
         let level = tanh_slopes(self.level_rise, speed);
         let mut slopes =
             [0, 1, 2].map(|order| self.difference * (rise[order] - fall[order]) + self.level * level[order]);
-        slopes[0] = slopes[0] + self.viscous;
+        slopes[0] += self.viscous;
         slopes
     }
 

@@ -202,7 +202,7 @@ impl Inputs<'_> {
             let (parameter, role) = (law_parameter.parameter(), law_parameter.role());
             let mut value = law_value(i);
             if let (Role::LevelAbove, Some(level)) = (role, level) {
-                value = value + level;
+                value += level;
                 if self.machine.scale() != Scale::Unknown {
                     derived.push((
                         named(parameter, "friction_per_mass", self.acceleration).bounded(parameter.bounds()),

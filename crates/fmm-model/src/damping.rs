@@ -190,7 +190,7 @@ fn mean_of_sine_power<D: Scalar>(power: D) -> D {
         let weight = PI / 2.0 * u.cosh() / inner.cosh().powi(2);
         let sine = angle.sin();
         if sine > 0.0 {
-            sum = sum + (power * sine.ln()).exp() * weight;
+            sum += (power * sine.ln()).exp() * weight;
         }
     }
     sum * (step / 2.0)

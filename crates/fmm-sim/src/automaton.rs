@@ -211,7 +211,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                     if let Some(late) = drive.time_of_jump(index).filter(|_| mode == Mode::Stick) {
                         // What a jump breaks away it does at its own time, whatever the level is.
                         time = late + piece.start;
-                        state.position = state.position + state.velocity * late;
+                        state.position += state.velocity * late;
                     }
                     let kind = match (mode, next) {
                         (Mode::Stick, _) => EventKind::Breakaway,
@@ -250,7 +250,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     /// derivatives.
     fn push(&self, mode: Mode, drive: &Drive<D>, index: usize, state: &mut State<D>) {
         if matches!(mode, Mode::Slip(_) | Mode::Gaining(_) | Mode::Losing(_)) {
-            state.velocity = state.velocity + drive.impulse_of_jumps(index) / self.oscillator.mass();
+            state.velocity += drive.impulse_of_jumps(index) / self.oscillator.mass();
         }
     }
 
@@ -459,7 +459,7 @@ pub(crate) fn load<D: Scalar>(
 ) -> Curve<'static, D> {
     let State { position, velocity } = state;
     let mut load = Curve::force(piece, time);
-    load.constant = load.constant - oscillator.damping().force(velocity);
+    load.constant -= oscillator.damping().force(velocity);
     match oscillator.restoring() {
         Restoring::Sine { length } if velocity.value() != 0.0 => {
             // −k ℓ sin((x + v τ)/ℓ) is a wave.
@@ -470,10 +470,10 @@ pub(crate) fn load<D: Scalar>(
             load.waves.push(Wave { angular, cosine: -(force * sin), sine: -(force * cos) * sign });
         }
         Restoring::Linear if velocity.value() != 0.0 => {
-            load.constant = load.constant - oscillator.stiffness() * position;
-            load.slope = load.slope - oscillator.stiffness() * velocity;
+            load.constant -= oscillator.stiffness() * position;
+            load.slope -= oscillator.stiffness() * velocity;
         }
-        _ => load.constant = load.constant - oscillator.restoring_force(position),
+        _ => load.constant -= oscillator.restoring_force(position),
     }
     load
 }

@@ -106,7 +106,7 @@ impl<'a, D: Scalar> Curve<'a, D> {
             value = value + wave.cosine * cos + wave.sine * sin;
         }
         if let Some((decay, state)) = self.decay {
-            value = value + decay.advance(state, elapsed).position;
+            value += decay.advance(state, elapsed).position;
         }
         value
     }
@@ -125,7 +125,7 @@ impl<'a, D: Scalar> Curve<'a, D> {
         for wave in &self.waves {
             let (sin, cos) = (wave.angular * elapsed).sin_cos();
             state.position = state.position + wave.cosine * cos + wave.sine * sin;
-            state.velocity = state.velocity + (wave.sine * cos - wave.cosine * sin) * wave.angular;
+            state.velocity += (wave.sine * cos - wave.cosine * sin) * wave.angular;
         }
         state
     }
@@ -148,10 +148,10 @@ impl<'a, D: Scalar> Curve<'a, D> {
     /// `factor` times the curve plus `shift`.
     pub(crate) fn scaled(mut self, factor: D, shift: D) -> Self {
         self.constant = self.constant * factor + shift;
-        self.slope = self.slope * factor;
+        self.slope *= factor;
         for wave in &mut self.waves {
-            wave.cosine = wave.cosine * factor;
-            wave.sine = wave.sine * factor;
+            wave.cosine *= factor;
+            wave.sine *= factor;
         }
         self.decay = self.decay.map(|(decay, state)| {
             (decay, State { position: state.position * factor, velocity: state.velocity * factor })

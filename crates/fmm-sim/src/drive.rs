@@ -71,7 +71,7 @@ impl<D: Scalar> Piece<D> {
     pub(crate) fn force_at(&self, time: D) -> D {
         let mut force = self.line(time).0;
         for wave in &self.waves {
-            force = force + wave.amplitude * wave.sin_cos(time).1;
+            force += wave.amplitude * wave.sin_cos(time).1;
         }
         force
     }
@@ -187,7 +187,7 @@ impl<'a, D: Scalar> Drive<'a, D> {
                         let at = |time: f64| interpolated(values, *interval, delay.value(), time);
                         let slope = (at(end) - at(start)) / (end - start);
                         piece.force = piece.force + at(start) - slope * late;
-                        piece.slope = piece.slope + slope;
+                        piece.slope += slope;
                     }
                 }
                 Source::HalfSine { peak, duration } if begun && middle < (*delay + *duration).value() => {
@@ -196,7 +196,7 @@ impl<'a, D: Scalar> Drive<'a, D> {
                 }
                 Source::Ramp { force, rate } if begun => {
                     piece.force = piece.force + *force + *rate * (-*delay + start);
-                    piece.slope = piece.slope + *rate;
+                    piece.slope += *rate;
                 }
                 Source::Harmonic { amplitude, angular, phase } => {
                     let (amplitude, angular, phase) = (*amplitude, *angular, *phase);

@@ -52,13 +52,13 @@ fn expand<D: Scalar>(start: D, nested: [D; 7]) -> [D; COEFFICIENTS] {
     let zero = D::from(0.0);
     let mut powers = [zero; COEFFICIENTS];
     for (index, term) in nested.into_iter().enumerate().rev() {
-        powers[0] = powers[0] + term;
+        powers[0] += term;
         // Times θ for even, times 1 − θ for odd terms.
         for i in (0..COEFFICIENTS).rev() {
             let shifted = if i > 0 { powers[i - 1] } else { zero };
             powers[i] = if index % 2 == 0 { shifted } else { powers[i] - shifted };
         }
     }
-    powers[0] = powers[0] + start;
+    powers[0] += start;
     powers
 }

@@ -74,9 +74,9 @@ impl<D: Scalar> Work<D> {
             let start = begin + piece as f64 * step;
             for (node, weight) in NODES {
                 let power = power(start + node * step);
-                self.friction = self.friction + power.friction * (weight * step);
-                self.viscous = self.viscous + power.viscous * (weight * step);
-                self.external = self.external + power.external * (weight * step);
+                self.friction += power.friction * (weight * step);
+                self.viscous += power.viscous * (weight * step);
+                self.external += power.external * (weight * step);
             }
         }
         Ok(())

@@ -64,21 +64,18 @@ pub(super) fn header(
         return Ok(found);
     }
     let named = last.checked_sub(1).and_then(fitting).filter(|named| are_units(&names) && are_names(named, separator));
-    match named {
-        Some(bare) => {
-            for (name, unit) in bare.iter().zip(&names) {
-                // An oscilloscope states the increment of its first column there.
-                if let Some((value, _)) = number::parse(unit.as_bytes(), separator) {
-                    found.stated.push((format!("{} {name}", bare[0]), value));
-                }
+    if let Some(bare) = named {
+        for (name, unit) in bare.iter().zip(&names) {
+            // An oscilloscope states the increment of its first column there.
+            if let Some((value, _)) = number::parse(unit.as_bytes(), separator) {
+                found.stated.push((format!("{} {name}", bare[0]), value));
             }
-            found.names = bare.iter().zip(&names).map(|(name, unit)| with_unit(name, unit)).collect();
-            found.bare = bare;
         }
-        None => {
-            found.bare = names;
-            found.names.clone_from(&found.bare);
-        }
+        found.names = bare.iter().zip(&names).map(|(name, unit)| with_unit(name, unit)).collect();
+        found.bare = bare;
+    } else {
+        found.bare = names;
+        found.names.clone_from(&found.bare);
     }
     Ok(found)
 }

@@ -60,7 +60,7 @@ impl Variables {
             let name = format!("{prefix}{name}");
             match group.attrs() {
                 Ok(attributes) if attributes.contains_key("MATLAB_sparse") => {
-                    self.file.others.push((name, Kind::Sparse))
+                    self.file.others.push((name, Kind::Sparse));
                 }
                 Ok(_) if depth == DEEPEST => self.file.damaged.push((name, "its groups are too deep".into())),
                 Ok(_) => match self.add(&group, &format!("{name}."), depth + 1) {

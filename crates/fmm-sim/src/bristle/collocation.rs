@@ -185,7 +185,7 @@ impl<D: Scalar> Collocation<D> {
             for (residual, rate) in residual.iter_mut().zip(rates) {
                 *residual = *rate - *residual * per_second;
                 if !values {
-                    *residual = *residual - residual.value();
+                    *residual -= residual.value();
                 }
             }
             *modes = product(&TO_MODES_COLUMNS, &residual);
@@ -196,7 +196,7 @@ impl<D: Scalar> Collocation<D> {
         {
             *residual = product(&FROM_MODES_COLUMNS, modes);
             for (increment, change) in increments.iter_mut().zip(residual) {
-                *increment = *increment + *change;
+                *increment += *change;
             }
         }
     }

@@ -66,7 +66,7 @@ impl Factors {
         for row in 0..size {
             let mut sum = right[row];
             for (factor, known) in self.entries[row * size..row * size + row].iter().zip(&right[..row]) {
-                sum = sum - *known * *factor;
+                sum -= *known * *factor;
             }
             right[row] = sum;
         }
@@ -74,7 +74,7 @@ impl Factors {
             let mut sum = right[row];
             let upper = &self.entries[row * size + row + 1..(row + 1) * size];
             for (factor, known) in upper.iter().zip(&right[row + 1..]) {
-                sum = sum - *known * *factor;
+                sum -= *known * *factor;
             }
             right[row] = sum * self.entries[row * size + row];
         }

@@ -99,7 +99,7 @@ impl<D: Scalar> Modes<D> {
         for (right, modes) in right.iter_mut().zip(&*others) {
             *right = modes[0];
         }
-        right[0] = right[0] + positions[0] * (spring * inverse);
+        right[0] += positions[0] * (spring * inverse);
         real.solve(&mut right[..rest]);
         positions[0] = (positions[0] + right[0]) * inverse;
         for (modes, right) in others.iter_mut().zip(&*right) {
@@ -116,8 +116,8 @@ impl<D: Scalar> Modes<D> {
                 right[rest + index] = modes[two];
             }
             let (first, second) = divide(positions[one], positions[two]);
-            right[0] = right[0] + first * spring;
-            right[rest] = right[rest] + second * spring;
+            right[0] += first * spring;
+            right[rest] += second * spring;
             factors.solve(right);
             (positions[one], positions[two]) = divide(positions[one] + right[0], positions[two] + right[rest]);
             for (index, modes) in others.iter_mut().enumerate() {

@@ -84,9 +84,9 @@ impl<D: Scalar> Motion<D> {
             self.moved[component] = self.moved(component);
         }
         for (y, increments) in self.begin.iter_mut().zip(&self.increments) {
-            *y = *y + increments[STAGES - 1];
+            *y += increments[STAGES - 1];
             if part != 0.0 {
-                *y = *y + dot(&INVERSE[STAGES - 1], increments) * part;
+                *y += dot(&INVERSE[STAGES - 1], increments) * part;
             }
         }
     }
@@ -102,7 +102,7 @@ impl<D: Scalar> Motion<D> {
     /// The coefficients of a component in powers of 2τ − 1.
     pub(super) fn centred(&self, component: usize) -> [D; STAGES + 1] {
         let mut coefficients = product(&CENTRED_COLUMNS, &self.increments[component]);
-        coefficients[0] = coefficients[0] + self.begin[component];
+        coefficients[0] += self.begin[component];
         coefficients
     }
 

@@ -34,7 +34,7 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
             }
             Guard::Corner(component) => {
                 let y = &mut self.step.begin[component];
-                *y = *y - y.value();
+                *y -= y.value();
                 Ok(())
             }
         }
@@ -52,7 +52,7 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
                 self.field.rates(piece.force(self.time), self.branch, &self.step.begin, &mut self.after);
             }
             for ((y, before), after) in self.step.begin.iter_mut().zip(&self.before).zip(&self.after) {
-                *y = *y + (*before - *after) * shift;
+                *y += (*before - *after) * shift;
             }
         }
         self.push(kind, piece, State { position: x, velocity }, shift, grazing)

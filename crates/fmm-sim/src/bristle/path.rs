@@ -55,7 +55,7 @@ pub(crate) fn follow<D: Scalar, L: BristleLaw<D>>(
         let force = piece.force(duration);
         run.field.rates(force, run.branch, &run.step.begin, &mut run.before);
         for (y, rate) in run.step.begin.iter_mut().zip(&run.before) {
-            *y = *y + *rate * (leg.duration - duration);
+            *y += *rate * (leg.duration - duration);
         }
         before = if duration > 0.0 { run.branch.direction.sign() * f64::from(u8::from(!run.resting)) } else { before };
         let force = run.field.friction(run.branch, &run.step.begin);

@@ -174,7 +174,7 @@ pub(super) type Stages<D> = [D; STAGES];
 pub(super) fn dot<D: Scalar>(factors: &[f64; STAGES], values: &Stages<D>) -> D {
     let mut sum = values[0] * factors[0];
     for index in 1..STAGES {
-        sum = sum + values[index] * factors[index];
+        sum += values[index] * factors[index];
     }
     sum
 }
@@ -207,7 +207,7 @@ pub(super) fn product<D: Scalar, const ROWS: usize>(matrix: &Columns<ROWS>, valu
     let mut product = matrix[0].map(|factor| values[0] * factor);
     for (column, value) in matrix.iter().zip(values).skip(1) {
         for (sum, factor) in product.iter_mut().zip(column) {
-            *sum = *sum + *value * *factor;
+            *sum += *value * *factor;
         }
     }
     product

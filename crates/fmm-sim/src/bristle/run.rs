@@ -121,7 +121,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
     fn jump(&mut self, drive: &Drive<D>, index: usize) {
         if !self.resting {
             let gained = drive.impulse_of_jumps(index) / self.field.oscillator.mass();
-            self.step.begin[1] = self.step.begin[1] + gained;
+            self.step.begin[1] += gained;
         }
     }
 

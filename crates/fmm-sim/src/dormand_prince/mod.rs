@@ -24,7 +24,7 @@ fn sum<D: Scalar, const N: usize>(weights: &Weights<N>, rates: &Rates<D>) -> D {
     let (first, weight) = weights[0];
     let mut sum = rates[first] * weight;
     for (stage, weight) in &weights[1..] {
-        sum = sum + rates[*stage] * *weight;
+        sum += rates[*stage] * *weight;
     }
     sum
 }

@@ -158,7 +158,7 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
     fn jump(&mut self, index: usize) {
         if !self.at_rest {
             let gained = self.drive.impulse_of_jumps(index) / self.scenario.oscillator().mass();
-            self.state.velocity = self.state.velocity + gained;
+            self.state.velocity += gained;
         }
     }
 
@@ -201,12 +201,12 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
         let (mut stiffness, mut forced) = (oscillator.stiffness(), Curve::force(piece, self.time));
         for (index, (element, deflection)) in self.elements.iter().zip(&self.deflections).enumerate() {
             if self.regime.slides(index) {
-                forced.constant = forced.constant - load * element.level * sign;
+                forced.constant -= load * element.level * sign;
             } else {
                 let spring = load * element.stiffness;
-                stiffness = stiffness + spring;
-                forced.constant = forced.constant - spring * (*deflection - self.state.position);
-                forced.slope = forced.slope + spring * self.belt;
+                stiffness += spring;
+                forced.constant -= spring * (*deflection - self.state.position);
+                forced.slope += spring * self.belt;
             }
         }
         let decay = Decay::new(damping / (mass * 2.0), stiffness / mass);
@@ -224,7 +224,7 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
                     let slope = element.stiffness * -sign;
                     let mut reserve =
                         path.clone().scaled(slope, element.level + slope * (*deflection - self.state.position));
-                    reserve.slope = reserve.slope - slope * self.belt;
+                    reserve.slope -= slope * self.belt;
                     guards.push((Guard::Yield(index), reserve));
                 }
             }

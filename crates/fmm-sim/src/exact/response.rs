@@ -25,11 +25,11 @@ pub(super) fn respond<'a, D: Scalar>(
 ) -> Result<Curve<'a, D>, SimulationError> {
     let mut forced = force;
     if forced.is_free() {
-        forced.constant = forced.constant / stiffness;
+        forced.constant /= stiffness;
         let free = State { position: state.position - forced.constant, velocity: state.velocity };
         return Ok(forced.decaying(decay, free));
     }
-    forced.slope = forced.slope / stiffness;
+    forced.slope /= stiffness;
     forced.constant = (forced.constant - damping * forced.slope) / stiffness;
     for wave in &mut forced.waves {
         let spring = stiffness - mass * wave.angular * wave.angular;

@@ -108,9 +108,9 @@ impl<'a, D: Scalar> Swing<'a, D> {
         let (mass, stiffness) = (self.oscillator.mass(), self.oscillator.stiffness());
         let mut forced = Curve::force(phase.piece, phase.time);
         let sliding = self.normal_load * flow.friction.level;
-        forced.constant = forced.constant - sliding * phase.direction.sign();
+        forced.constant -= sliding * phase.direction.sign();
         if self.has_belt {
-            forced.constant = forced.constant + self.normal_load * flow.friction.slope * self.belt;
+            forced.constant += self.normal_load * flow.friction.slope * self.belt;
         }
         let damping = flow.decay.rate() * mass * 2.0;
         respond(forced, mass, damping, stiffness, &flow.decay, phase.state)

@@ -112,7 +112,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Field<'a, D, L> {
         let friction = self.friction_at(phase, side, speed) * phase.direction.sign();
         let mut sum = -friction - damping - self.oscillator.restoring_force(state.position);
         if let Some(force) = force {
-            sum = sum + force;
+            sum += force;
         }
         sum * self.per_mass
     }
