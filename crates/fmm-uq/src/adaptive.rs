@@ -14,6 +14,7 @@ const VALIDATION: f64 = 0.2;
 
 /// Which of the intervals of a given coverage probability.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum IntervalKind {
     /// Equal probabilities on both sides.
@@ -132,7 +133,7 @@ impl Adaptive {
     }
 
     /// What all figures must be stable to for an output of this uncertainty (unit of the output).
-    fn tolerance(&self, standard_uncertainty: f64) -> Result<f64, UncertaintyError> {
+    pub(crate) fn tolerance(&self, standard_uncertainty: f64) -> Result<f64, UncertaintyError> {
         let tolerance = match self.target {
             Target::Digits(digits) => numerical_tolerance(standard_uncertainty, digits)?,
             Target::Tolerance(tolerance) => tolerance,

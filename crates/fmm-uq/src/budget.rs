@@ -1,5 +1,8 @@
 //! The uncertainty of a result and where it comes from.
 
+#[cfg(feature = "serde")]
+mod document;
+
 use crate::derivatives::place;
 use crate::{Input, Inputs, Linearisation, SecondOrder, UncertaintyError};
 
@@ -13,7 +16,8 @@ use crate::{Input, Inputs, Linearisation, SecondOrder, UncertaintyError};
 /// | c_i, c_i u_i | [`Budget::contributions`] | sensitivity and signed contribution of each input |
 /// | U | [`Budget::expanded`] | half width of an interval of given coverage probability |
 ///
-/// It prints as a table, with a line of warning where the [`Linearisation`] is suspect.
+/// It prints as a table with the [`Statement`](crate::Statement) for 95 % below, and a line of warning where the
+/// [`Linearisation`] is suspect; [`Budget::to_csv`] has all digits.
 ///
 /// ```
 /// use fmm_uq::{Input, Inputs, propagate};
@@ -24,11 +28,12 @@ use crate::{Input, Inputs, Linearisation, SecondOrder, UncertaintyError};
 /// ])?;
 /// let budget = propagate(&inputs, |x| x[0] / x[1])?.named("friction_coefficient", "1");
 /// assert_eq!(budget.to_string(), "\
-/// friction_coefficient = 0.25, u = 0.00496, ν_eff = 14.4
+/// quantity  estimate  unit  distribution  type  divisor     u  ν         c  unit of c    |c| u   share
+/// force         1.75  N     t             B           1  0.03  8    0.1429  1/N        0.00429  74.6 %
+/// load             7  N     normal        B           1  0.07  ∞  -0.03571  1/N         0.0025  25.4 %
 ///
-/// input  value     u  unit  ν  sensitivity    |c| u   share
-/// force   1.75  0.03     N  8       0.1429  0.00429  74.6 %
-/// load       7  0.07     N  ∞     -0.03571   0.0025  25.4 %
+/// friction_coefficient = 0.2500, u = 0.0050
+/// U = 0.0106 (k = 2.14, 95 %, ν_eff = 14.4)
 /// ");
 /// # Ok::<(), fmm_uq::UncertaintyError>(())
 /// ```

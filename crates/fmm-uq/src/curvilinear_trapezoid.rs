@@ -33,6 +33,11 @@ impl CurvilinearTrapezoid {
     }
 
     /// The half width is drawn first, then the place within it (JCGM 101:2008, 6.4.3.4).
+    /// d.
+    pub(crate) const fn inexactness(&self) -> f64 {
+        self.inexactness
+    }
+
     /// The smallest and the largest value.
     pub(crate) fn limits(&self) -> (f64, f64) {
         let reach = self.half_width + self.inexactness;

@@ -1,5 +1,6 @@
 //! What is known about a quantity, as a probability distribution.
 
+mod text;
 mod values;
 
 use crate::arc_sine::ArcSine;
@@ -31,6 +32,8 @@ use crate::{Moments, UncertaintyError};
 /// assert_eq!((limits.mean(), limits.quantile(0.975)?), (1.0, 2.9));
 /// assert!((limits.standard_deviation() - 2.0 / 3f64.sqrt()).abs() < 1e-15);
 /// assert!(Distribution::rectangular(3.0, -1.0).is_err());
+/// assert_eq!(limits.to_string(), "R(-1, 3)");
+/// assert!((limits.divisor() - 3f64.sqrt()).abs() < 1e-15);
 /// # Ok::<(), fmm_uq::UncertaintyError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]

@@ -32,6 +32,10 @@ impl Empirical {
         self.standard_deviation
     }
 
+    pub(crate) fn count(&self) -> usize {
+        self.sorted.len()
+    }
+
     /// The smallest and the largest value.
     pub(crate) fn limits(&self) -> (f64, f64) {
         (self.sorted[0], self.sorted[self.sorted.len() - 1])

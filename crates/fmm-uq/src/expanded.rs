@@ -1,9 +1,13 @@
 //! From a budget to a coverage interval.
 
+use std::fmt;
+
+use crate::rounding::{Rounding, degrees, percent};
 use crate::{Budget, Interval, Linearisation, UncertaintyError, coverage_factor};
 
 /// A symmetric coverage interval y ± U.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Expanded {
     /// p, coverage probability (1).
@@ -16,6 +20,16 @@ pub struct Expanded {
     pub degrees_of_freedom: f64,
     /// y, centre of the interval (unit of the result).
     pub estimate: f64,
+}
+
+impl fmt::Display for Expanded {
+    /// "838 ± 93 (k = 2.92, 99 %, ν = 16)", to the second digit of u.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rounding = Rounding::of(self.uncertainty / self.coverage_factor);
+        let [y, expanded] = [self.estimate, self.uncertainty].map(|value| rounding.number(value));
+        let (k, level, nu) = (self.coverage_factor, percent(self.level), degrees(self.degrees_of_freedom));
+        write!(f, "{y} ± {expanded} (k = {k:.2}, {level}, ν = {nu})")
+    }
 }
 
 impl Expanded {

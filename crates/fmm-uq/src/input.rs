@@ -1,7 +1,7 @@
 //! One input quantity of a measurement.
 
 use crate::distribution::Shape;
-use crate::{Distribution, Observations, UncertaintyError};
+use crate::{Distribution, Evaluation, Observations, UncertaintyError};
 
 /// An input quantity: its estimate, the standard uncertainty of that, and how well the uncertainty is known.
 ///
@@ -31,6 +31,7 @@ pub struct Input {
     unit: String,
     degrees_of_freedom: f64,
     distribution: Distribution,
+    evaluation: Evaluation,
 }
 
 impl Input {
@@ -60,7 +61,8 @@ impl Input {
         } else {
             Shape::Normal { mean: value, standard_deviation: standard_uncertainty }.into()
         };
-        Ok(Self { name, value, standard_uncertainty, unit, degrees_of_freedom: f64::INFINITY, distribution })
+        let (degrees_of_freedom, evaluation) = (f64::INFINITY, Evaluation::TypeB);
+        Ok(Self { name, value, standard_uncertainty, unit, degrees_of_freedom, distribution, evaluation })
     }
 
     /// An input of the given distribution, with its mean, standard uncertainty and degrees of freedom.
@@ -96,7 +98,16 @@ impl Input {
         unit: impl Into<String>,
     ) -> Result<Self, UncertaintyError> {
         Self::new(name, observations.mean(), observations.standard_uncertainty(), unit)?
+            .evaluated_as(Evaluation::TypeA)
             .with_degrees_of_freedom(observations.degrees_of_freedom())
+    }
+
+    /// The same input with its uncertainty of type A or B, which a budget shows: B unless it is the
+    /// [mean of observations](Input::mean_of).
+    #[must_use]
+    pub const fn evaluated_as(mut self, evaluation: Evaluation) -> Self {
+        self.evaluation = evaluation;
+        self
     }
 
     /// The same input with ν degrees of freedom, which need not be whole.
@@ -119,7 +130,8 @@ impl Input {
     pub(crate) fn held(&self) -> Self {
         let (name, unit) = (self.name.clone(), self.unit.clone());
         let (distribution, degrees_of_freedom) = (Shape::Constant(self.value).into(), f64::INFINITY);
-        Self { name, value: self.value, standard_uncertainty: 0.0, unit, degrees_of_freedom, distribution }
+        let evaluation = self.evaluation;
+        Self { name, value: self.value, standard_uncertainty: 0.0, unit, degrees_of_freedom, distribution, evaluation }
     }
 
     pub(crate) fn is_normal_or_t(&self) -> bool {
@@ -149,6 +161,11 @@ impl Input {
     /// ν, degrees of freedom of the standard uncertainty (1), at least 1, possibly infinite.
     pub const fn degrees_of_freedom(&self) -> f64 {
         self.degrees_of_freedom
+    }
+
+    /// Whether the uncertainty comes from observations (type A) or from elsewhere (type B).
+    pub const fn evaluation(&self) -> Evaluation {
+        self.evaluation
     }
 
     /// What a Monte Carlo draws from.

@@ -94,6 +94,14 @@ impl<'a> MonteCarlo<'a> {
         Self { inputs, sampler, heavy_tail, fingerprint, seed: 0, plan, allowed_failures, watch }
     }
 
+    /// What an adaptive run goes by.
+    pub(crate) const fn rule(&self) -> Option<Adaptive> {
+        match self.plan {
+            Plan::Adaptive(rule) => Some(rule),
+            Plan::Fixed(_) => None,
+        }
+    }
+
     /// The same run of other inputs.
     pub(crate) fn with_inputs(&self, inputs: Inputs) -> Self {
         let (seed, allowed_failures, watch) = (self.seed, self.allowed_failures, self.watch);

@@ -2,33 +2,44 @@
 
 use std::fmt;
 
-use crate::{Budget, Linearisation};
+use crate::rounding::{Rounding, degrees, significant, suffix};
+use crate::{Budget, Contribution, Linearisation};
 
 /// Significant digits of uncertainties and shares, and of a value down to its uncertainty.
 const DIGITS: i32 = 3;
 /// Significant digits of a sensitivity, which carries no uncertainty of its own to round it by.
 const SENSITIVITY_DIGITS: i32 = 4;
+/// Coverage probability of the statement below a printed budget; [`Budget::statement`] has others.
+const LEVEL: f64 = 0.95;
+/// Columns that hold words, which begin on the left.
+const WORDS: [usize; 5] = [0, 2, 3, 4, 9];
+
+/// What stands above the columns.
+const HEADER: [&str; 12] =
+    ["quantity", "estimate", "unit", "distribution", "type", "divisor", "u", "ν", "c", "unit of c", "|c| u", "share"];
 
 impl fmt::Display for Budget {
-    /// The result on one line, then the inputs as an aligned table, then their correlations and any warning.
+    /// The inputs as an aligned table, their correlations, the result with its expanded uncertainty at 95 %, and any
+    /// warning.
     ///
     /// Values are rounded where their uncertainty is, so that the table never shows more than is known.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let unit = if matches!(self.unit(), "" | "1") { String::new() } else { format!(" {}", self.unit()) };
-        let (estimate, uncertainty) = (self.estimate(), self.standard_uncertainty());
-        let value = rounded_by(estimate, uncertainty);
-        write!(f, "{} = {value}{unit}, u = {}{unit}", self.name(), rounded(uncertainty, DIGITS))?;
-        match self.effective_degrees_of_freedom() {
-            Some(nu) => writeln!(f, ", ν_eff = {}\n", degrees(nu))?,
-            None => writeln!(f, ", ν_eff undefined\n")?,
-        }
         self.table(f)?;
         let inputs = self.inputs().as_slice();
         for (i, j) in self.inputs().correlated_pairs() {
-            let coefficient = rounded(self.inputs().correlation_at(i, j), DIGITS);
+            let coefficient = significant(self.inputs().correlation_at(i, j), DIGITS);
             writeln!(f, "r({}, {}) = {coefficient}", inputs[i].name(), inputs[j].name())?;
         }
-        let digits = |value| rounded(value, DIGITS);
+        writeln!(f)?;
+        let unit = suffix(self.unit());
+        if let Ok(statement) = self.statement(LEVEL) {
+            writeln!(f, "{statement}")?;
+        } else {
+            let rounding = Rounding::of(self.standard_uncertainty());
+            let [y, u] = [self.estimate(), self.standard_uncertainty()].map(|value| rounding.number(value));
+            writeln!(f, "{} = {y}{unit}, u = {u}{unit}\nno U: ν_eff undefined", self.name())?;
+        }
+        let digits = |value| significant(value, DIGITS);
         match self.linearisation() {
             Linearisation::Adequate | Linearisation::Unchecked => Ok(()),
             Linearisation::ZeroUncertainty => writeln!(
@@ -53,63 +64,133 @@ impl fmt::Display for Budget {
 }
 
 impl Budget {
-    fn table(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let header = ["input", "value", "u", "unit", "ν", "sensitivity", "|c| u", "share"].map(str::to_owned);
-        let rows = self.contributions().map(|row| {
-            [
-                row.input.name().to_owned(),
-                rounded_by(row.input.value(), row.input.standard_uncertainty()),
-                rounded(row.input.standard_uncertainty(), DIGITS),
-                row.input.unit().to_owned(),
-                degrees(row.input.degrees_of_freedom()),
-                rounded(row.sensitivity, SENSITIVITY_DIGITS),
-                rounded(row.uncertainty, DIGITS),
-                format!("{:.1} %", 100.0 * row.share),
-            ]
-        });
-        let lines: Vec<[String; 8]> = std::iter::once(header).chain(rows).collect();
-        let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
-        let widths: [usize; 8] = std::array::from_fn(width);
-        for line in &lines {
-            write!(f, "{:<width$}", line[0], width = widths[0])?;
-            for (cell, width) in line.iter().zip(widths).skip(1) {
-                write!(f, "  {cell:>width$}")?;
+    /// The budget as comma-separated values, with a row of headings, one row for each input and one for the result.
+    ///
+    /// Numbers have all their digits and shares are parts of 1; infinite degrees of freedom are `inf`. Names and units
+    /// are quoted where they need it. The last row has y, its unit, u(y) and ν_eff in the columns of the same meaning.
+    ///
+    /// ```
+    /// use fmm_uq::{Input, Inputs, propagate};
+    ///
+    /// let inputs = Inputs::new([Input::new("mass, dry", 2.0, 0.5, "kg")?])?;
+    /// let budget = propagate(&inputs, |x| x[0] * 4.0)?.named("force", "N");
+    /// assert_eq!(budget.to_csv(), "\
+    /// quantity,estimate,unit,distribution,type,divisor,u,nu,c,unit of c,|c| u,share
+    /// \"mass, dry\",2,kg,normal,B,1,0.5,inf,4,N/kg,2,1
+    /// force,8,N,,,,2,inf,,,,
+    /// ");
+    /// # Ok::<(), fmm_uq::UncertaintyError>(())
+    /// ```
+    pub fn to_csv(&self) -> String {
+        let mut text = HEADER.join(",").replace('ν', "nu");
+        for row in self.contributions() {
+            let input = row.input;
+            let numbers = [row.sensitivity, row.uncertainty, row.share].map(|value| value.to_string());
+            let [sensitivity, contribution, share] = numbers;
+            let cells = [
+                quoted(input.name()),
+                input.value().to_string(),
+                quoted(input.unit()),
+                input.distribution().name().to_owned(),
+                input.evaluation().to_string(),
+                input.distribution().divisor().to_string(),
+                input.standard_uncertainty().to_string(),
+                input.degrees_of_freedom().to_string(),
+                sensitivity,
+                quoted(&self.unit_of_sensitivity(input.unit())),
+                contribution,
+                share,
+            ];
+            text.push('\n');
+            text.push_str(&cells.join(","));
+        }
+        let nu = self.effective_degrees_of_freedom().map_or_else(String::new, |nu| nu.to_string());
+        let (name, unit) = (quoted(self.name()), quoted(self.unit()));
+        text + &format!("\n{name},{},{unit},,,,{},{nu},,,,\n", self.estimate(), self.standard_uncertainty())
+    }
+
+    /// Unit of the result by that of an input.
+    pub(crate) fn unit_of_sensitivity(&self, input: &str) -> String {
+        let one = |unit: &str| matches!(unit, "" | "1");
+        match (self.unit(), input) {
+            (y, x) if one(x) && one(y) => "1".to_owned(),
+            (y, x) if one(x) => y.to_owned(),
+            (y, x) if y == x => "1".to_owned(),
+            (y, x) => {
+                let above = if one(y) { "1" } else { y };
+                let composed = x.contains(|sign: char| "/·* ".contains(sign));
+                if composed { format!("{above}/({x})") } else { format!("{above}/{x}") }
             }
-            writeln!(f)?;
+        }
+    }
+
+    fn table(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rows = self.contributions().map(|row| self.cells(&row));
+        let lines: Vec<[String; 12]> = std::iter::once(HEADER.map(str::to_owned)).chain(rows).collect();
+        let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
+        let widths: [usize; 12] = std::array::from_fn(width);
+        for line in &lines {
+            let mut text = String::new();
+            for (column, (cell, width)) in line.iter().zip(widths).enumerate() {
+                let gap = if column == 0 { "" } else { "  " };
+                text += &if WORDS.contains(&column) {
+                    format!("{gap}{cell:<width$}")
+                } else {
+                    format!("{gap}{cell:>width$}")
+                };
+            }
+            writeln!(f, "{}", text.trim_end())?;
         }
         Ok(())
     }
+
+    fn cells(&self, row: &Contribution<'_>) -> [String; 12] {
+        let input = row.input;
+        [
+            input.name().to_owned(),
+            rounded_by(input.value(), input.standard_uncertainty()),
+            input.unit().to_owned(),
+            input.distribution().name().to_owned(),
+            input.evaluation().to_string(),
+            divisor(input.distribution().divisor()),
+            significant(input.standard_uncertainty(), DIGITS),
+            degrees(input.degrees_of_freedom()),
+            significant(row.sensitivity, SENSITIVITY_DIGITS),
+            self.unit_of_sensitivity(input.unit()),
+            significant(row.uncertainty, DIGITS),
+            format!("{:.1} %", 100.0 * row.share),
+        ]
+    }
 }
 
-fn degrees(nu: f64) -> String {
-    if nu.is_infinite() { "∞".to_owned() } else { rounded(nu, DIGITS) }
+/// "√3" where a divisor is the root of a small whole number.
+fn divisor(value: f64) -> String {
+    let square = (value * value).round();
+    if value != value.round() && (2.0..=24.0).contains(&square) && (square.sqrt() / value - 1.0).abs() < 1e-12 {
+        format!("√{square}")
+    } else {
+        significant(value, SENSITIVITY_DIGITS)
+    }
+}
+
+/// A cell of a table of comma-separated values.
+fn quoted(text: &str) -> String {
+    if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
 /// `value` down to the last significant digit of its `uncertainty`; with ten digits if that is zero.
 fn rounded_by(value: f64, uncertainty: f64) -> String {
     if value == 0.0 || uncertainty == 0.0 {
-        return rounded(value, 10);
+        return significant(value, 10);
     }
     let digits = value.abs().log10().floor() - uncertainty.log10().floor() + f64::from(DIGITS);
-    rounded(value, (digits as i32).clamp(1, 15))
-}
-
-/// `value` to `digits` significant digits without trailing zeros, with an exponent where it would be long.
-fn rounded(value: f64, digits: i32) -> String {
-    let decimals = usize::try_from(digits - 1).unwrap_or(0);
-    let near: f64 = format!("{value:.decimals$e}").parse().unwrap_or(value);
-    if near == 0.0 {
-        "0".to_owned()
-    } else if (1e-3..1e9).contains(&near.abs()) {
-        format!("{near}")
-    } else {
-        format!("{near:e}")
-    }
+    significant(value, (digits as i32).clamp(1, 15))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Input, Inputs, propagate};
 
     #[test]
     fn numbers_are_rounded_by_their_uncertainty() {
@@ -122,11 +203,18 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_short() {
-        assert_eq!(rounded(-0.0, 3), "0");
-        assert_eq!(rounded(-575.0072, 4), "-575");
-        assert_eq!(rounded(1.234e-7, 3), "1.23e-7");
-        assert_eq!(degrees(f64::INFINITY), "∞");
-        assert_eq!(degrees(16.656), "16.7");
+    fn divisors_are_roots_where_they_are() {
+        assert_eq!([3_f64.sqrt(), 1.0, 24_f64.sqrt(), 1.7, 2.0].map(divisor), ["√3", "1", "√24", "1.7", "2"]);
+    }
+
+    #[test]
+    fn sensitivities_have_the_unit_of_a_quotient() {
+        let inputs = Inputs::new([Input::new("a", 1.0, 0.1, "m").unwrap()]).unwrap();
+        let unit = |result: &str, input: &str| {
+            propagate(&inputs, |x| x[0]).unwrap().named("y", result).unit_of_sensitivity(input)
+        };
+        assert_eq!(unit("mg", "kg/m³"), "mg/(kg/m³)");
+        assert_eq!(unit("1", "N"), "1/N");
+        assert_eq!([unit("N", "N"), unit("N", "1"), unit("", "1")], ["1", "N", "1"]);
     }
 }

@@ -27,6 +27,16 @@ impl Trapezoid {
         self.base.hypot(self.top) / 6f64.sqrt()
     }
 
+    /// Whether there is no top.
+    pub(crate) const fn is_triangle(&self) -> bool {
+        self.top == 0.0
+    }
+
+    /// β.
+    pub(crate) fn ratio(&self) -> f64 {
+        self.top / self.base
+    }
+
     /// The smallest and the largest value.
     pub(crate) fn limits(&self) -> (f64, f64) {
         (self.centre - self.base, self.centre + self.base)

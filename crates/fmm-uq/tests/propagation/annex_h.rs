@@ -58,15 +58,16 @@ fn gauge_block_degrees_of_freedom_and_expanded_uncertainty() {
 #[test]
 fn gauge_block_as_a_table() {
     let expected = "\
-length = 50000838 nm, u = 31.7 nm, ν_eff = 16.7
+quantity  estimate  unit  distribution  type  divisor       u     ν        c  unit of c  |c| u   share
+l_S       50000623  nm    t             B           1      25    18        1  1             25  62.2 %
+d              215  nm    t             B           1     9.7  25.6        1  1            9.7   9.4 %
+α_S        1.15e-5  1/K   normal        B           1  1.2e-6     ∞        0  nm/(1/K)       0   0.0 %
+θ             -0.1  K     normal        B           1    0.41     ∞        0  nm/K           0   0.0 %
+δα               0  1/K   t             B           1  5.8e-7    50  5000000  nm/(1/K)     2.9   0.8 %
+δθ               0  K     t             B           1   0.029     2     -575  nm/K        16.7  27.7 %
 
-input     value       u  unit     ν  sensitivity  |c| u   share
-l_S    50000623      25    nm    18            1     25  62.2 %
-d           215     9.7    nm  25.6            1    9.7   9.4 %
-α_S     1.15e-5  1.2e-6   1/K     ∞            0      0   0.0 %
-θ          -0.1    0.41     K     ∞            0      0   0.0 %
-δα            0  5.8e-7   1/K    50      5000000    2.9   0.8 %
-δθ            0   0.029     K     2         -575   16.7  27.7 %
+length = 50000838 nm, u = 32 nm
+U = 67 nm (k = 2.12, 95 %, ν_eff = 16.7)
 warning: the model is curved; to second order u = 33.9 nm
 ";
     assert_eq!(gauge_block().to_string(), expected);

@@ -8,6 +8,7 @@ mod distributions;
 mod limits;
 mod nist;
 mod polar;
+mod print;
 mod sensitivity;
 mod streams;
 mod thesis;

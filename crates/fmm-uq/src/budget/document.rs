@@ -1,0 +1,89 @@
+//! A budget for other programs.
+
+use serde::{Serialize, Serializer};
+
+use super::{Budget, Contribution};
+use crate::Input;
+
+/// A budget as it is written; what is infinite or unknown is none.
+#[derive(Serialize)]
+struct Document<'a> {
+    name: &'a str,
+    unit: &'a str,
+    estimate: f64,
+    standard_uncertainty: f64,
+    effective_degrees_of_freedom: Option<f64>,
+    contributions: Vec<Row<'a>>,
+    correlations: Vec<Correlation<'a>>,
+    suspect: bool,
+}
+
+#[derive(Serialize)]
+struct Row<'a> {
+    quantity: &'a str,
+    estimate: f64,
+    unit: &'a str,
+    distribution: String,
+    #[serde(rename = "type")]
+    evaluation: String,
+    divisor: f64,
+    standard_uncertainty: f64,
+    degrees_of_freedom: Option<f64>,
+    sensitivity: f64,
+    sensitivity_unit: String,
+    contribution: f64,
+    share: f64,
+}
+
+#[derive(Serialize)]
+struct Correlation<'a> {
+    first: &'a str,
+    second: &'a str,
+    coefficient: f64,
+}
+
+/// A number for a document, which has no infinite ones.
+fn finite(value: f64) -> Option<f64> {
+    Some(value).filter(|value| value.is_finite())
+}
+
+impl<'a> Row<'a> {
+    fn new(budget: &Budget, row: Contribution<'a>) -> Self {
+        let input = row.input;
+        Self {
+            quantity: input.name(),
+            estimate: input.value(),
+            unit: input.unit(),
+            distribution: input.distribution().to_string(),
+            evaluation: input.evaluation().to_string(),
+            divisor: input.distribution().divisor(),
+            standard_uncertainty: input.standard_uncertainty(),
+            degrees_of_freedom: finite(input.degrees_of_freedom()),
+            sensitivity: row.sensitivity,
+            sensitivity_unit: budget.unit_of_sensitivity(input.unit()),
+            contribution: row.uncertainty,
+            share: row.share,
+        }
+    }
+}
+
+impl Serialize for Budget {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let names: Vec<&str> = self.inputs().as_slice().iter().map(Input::name).collect();
+        let correlation = |(i, j): (usize, usize)| {
+            let coefficient = self.inputs().correlation_at(i, j);
+            Correlation { first: names[i], second: names[j], coefficient }
+        };
+        let document = Document {
+            name: self.name(),
+            unit: self.unit(),
+            estimate: self.estimate(),
+            standard_uncertainty: self.standard_uncertainty(),
+            effective_degrees_of_freedom: self.effective_degrees_of_freedom().and_then(finite),
+            contributions: self.contributions().map(|row| Row::new(self, row)).collect(),
+            correlations: self.inputs().correlated_pairs().map(correlation).collect(),
+            suspect: self.linearisation().is_suspect(),
+        };
+        document.serialize(serializer)
+    }
+}
