@@ -4,12 +4,15 @@ mod text;
 mod values;
 
 use crate::arc_sine::ArcSine;
+use crate::beta::Beta;
 use crate::curvilinear_trapezoid::CurvilinearTrapezoid;
 use crate::empirical::Empirical;
 use crate::trapezoid::Trapezoid;
+use crate::triangle::Triangle;
+use crate::truncated_normal::TruncatedNormal;
 use crate::{Moments, UncertaintyError};
 
-/// A probability distribution: those of JCGM 101:2008, Table 1, a constant, and the empirical one.
+/// A probability distribution: those of JCGM 101:2008, Table 1, and what else quantities are known by.
 ///
 /// | constructor | known is |
 /// |---|---|
@@ -23,6 +26,11 @@ use crate::{Moments, UncertaintyError};
 /// | [`Distribution::student_t`] | mean and standard deviation of a few observations; an expanded uncertainty with ν |
 /// | [`Distribution::exponential`] | mean of a quantity that cannot be negative |
 /// | [`Distribution::gamma`] | a count of events |
+/// | [`Distribution::asymmetric_triangle`] | limits, and the most probable value between them |
+/// | [`Distribution::beta`] | limits, and two shapes |
+/// | [`Distribution::truncated_normal`] | estimate and standard uncertainty, and limits |
+/// | [`Distribution::log_normal`] | a positive quantity, known to a factor |
+/// | [`Distribution::poisson`] | the mean number of events, which then are counted |
 /// | [`Distribution::empirical`] | values |
 ///
 /// ```
@@ -53,6 +61,11 @@ pub(crate) enum Shape {
     StudentT { mean: f64, scale: f64, degrees_of_freedom: f64, unit: rand_distr::StudentT<f64> },
     Exponential { mean: f64 },
     Gamma { shape: f64, scale: f64, sampler: rand_distr::Gamma<f64> },
+    Triangle(Triangle),
+    Beta(Beta),
+    TruncatedNormal(TruncatedNormal),
+    LogNormal { median: f64, deviation: f64 },
+    Poisson { mean: f64, sampler: rand_distr::Poisson<f64> },
     Empirical(Empirical),
 }
 
@@ -140,6 +153,98 @@ impl Distribution {
         Ok(Shape::StudentT { mean, scale, degrees_of_freedom: nu, unit }.into())
     }
 
+    /// Student's t of given mean and standard deviation, instead of its scale s = u √((ν − 2)/ν).
+    ///
+    /// The GUM counts degrees of freedom apart: it takes s for the standard uncertainty of this distribution.
+    ///
+    /// # Errors
+    /// Those of [`Distribution::student_t`]; [`UncertaintyError::ParameterOutOfRange`] for ν ≤ 2, which has no standard
+    /// deviation.
+    pub fn student_t_of_deviation(
+        mean: f64,
+        standard_deviation: f64,
+        degrees_of_freedom: f64,
+    ) -> Result<Self, UncertaintyError> {
+        let nu = UncertaintyError::require_degrees_of_freedom("a t-distribution", degrees_of_freedom)?;
+        require(nu > 2.0, "degrees of freedom of a standard deviation", nu, "above 2")?;
+        let ratio = if nu.is_infinite() { 1.0 } else { ((nu - 2.0) / nu).sqrt() };
+        Self::student_t(mean, positive("standard deviation", standard_deviation)? * ratio, nu)
+    }
+
+    /// T(a, m, b): a triangle between two limits with its top at the mode m, which may be at a limit.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::LimitsOutOfOrder`]; [`UncertaintyError::ParameterOutOfRange`] unless a ≤ m ≤ b.
+    pub fn asymmetric_triangle(lower: f64, mode: f64, upper: f64) -> Result<Self, UncertaintyError> {
+        let (lower, upper) = limits(lower, upper)?;
+        let mode = require((lower..=upper).contains(&mode), "mode of a triangle", mode, "between its limits")?;
+        Ok(Shape::Triangle(Triangle::new(lower, mode, upper)).into())
+    }
+
+    /// Beta(α, β) on [a, b], with density proportional to (x − a)^(α−1) (b − x)^(β−1).
+    ///
+    /// # Errors
+    /// [`UncertaintyError::LimitsOutOfOrder`]; [`UncertaintyError::ParameterOutOfRange`] unless both shapes are positive and
+    /// finite.
+    pub fn beta(first_shape: f64, second_shape: f64, lower: f64, upper: f64) -> Result<Self, UncertaintyError> {
+        let name = "shape of a beta distribution";
+        let shapes = (positive(name, first_shape)?, positive(name, second_shape)?);
+        let beta = Beta::new(shapes, limits(lower, upper)?).ok_or_else(|| refused(name, first_shape))?;
+        Ok(Shape::Beta(beta).into())
+    }
+
+    /// N(x, u²) of which only what lies between two limits is possible; one of them may be infinite.
+    ///
+    /// Its mean and standard deviation are those between the limits, not x and u.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::LimitsOutOfOrder`] unless a < b; [`UncertaintyError::ParameterOutOfRange`] unless x is finite and
+    /// u positive and finite, and if the limits leave no more than some 1e-290 of the distribution.
+    pub fn truncated_normal(
+        mean: f64,
+        standard_deviation: f64,
+        lower: f64,
+        upper: f64,
+    ) -> Result<Self, UncertaintyError> {
+        let (mean, u) = (finite("mean", mean)?, positive("standard deviation", standard_deviation)?);
+        if !(lower < upper) {
+            return Err(UncertaintyError::LimitsOutOfOrder { lower, upper });
+        }
+        let (parameter, must_be) = ("mean of a truncated normal distribution", "nearer to its limits");
+        let none = UncertaintyError::ParameterOutOfRange { parameter, value: mean, must_be };
+        Ok(Shape::TruncatedNormal(TruncatedNormal::new(mean, u, (lower, upper)).ok_or(none)?).into())
+    }
+
+    /// A positive quantity whose logarithm is normal: ln(x/m) has the standard deviation σ, so that a σ of 0.1 is a factor of
+    /// about 1.1.
+    ///
+    /// ```text
+    /// E = m e^(σ²/2),   u = E √(e^(σ²) − 1)
+    /// ```
+    ///
+    /// # Errors
+    /// [`UncertaintyError::ParameterOutOfRange`] unless median m and σ are positive and finite, and so are E and u.
+    pub fn log_normal(median: f64, deviation_of_logarithm: f64) -> Result<Self, UncertaintyError> {
+        let median = positive("median of a log-normal distribution", median)?;
+        let deviation = positive("standard deviation of a logarithm", deviation_of_logarithm)?;
+        let distribution = Self::from(Shape::LogNormal { median, deviation });
+        positive("standard deviation of a log-normal distribution", distribution.standard_deviation())?;
+        Ok(distribution)
+    }
+
+    /// The number of events that are counted where λ are expected: whole numbers of variance λ.
+    ///
+    /// What q counted events say of λ is [`Distribution::gamma`] of shape q + 1.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::ParameterOutOfRange`] unless λ is positive and at most 1e15, where numbers are still whole.
+    pub fn poisson(mean: f64) -> Result<Self, UncertaintyError> {
+        let name = "mean of a Poisson distribution";
+        let mean = require(mean > 0.0 && mean <= 1e15, name, mean, "positive and at most 1e15")?;
+        let sampler = rand_distr::Poisson::new(mean).map_err(|_| refused(name, mean))?;
+        Ok(Shape::Poisson { mean, sampler }.into())
+    }
+
     /// Ex(1/x): a quantity that cannot be negative and of which no more than an estimate x is known
     /// (JCGM 101:2008, 6.4.10).
     ///
@@ -187,7 +292,14 @@ impl Distribution {
             Shape::CurvilinearTrapezoid(shape) => shape.mean(),
             Shape::Trapezoid(shape) => shape.mean(),
             Shape::ArcSine(shape) => shape.mean(),
-            Shape::Normal { mean, .. } | Shape::StudentT { mean, .. } | Shape::Exponential { mean } => *mean,
+            Shape::Normal { mean, .. }
+            | Shape::StudentT { mean, .. }
+            | Shape::Exponential { mean }
+            | Shape::Poisson { mean, .. } => *mean,
+            Shape::Triangle(shape) => shape.mean(),
+            Shape::Beta(shape) => shape.mean(),
+            Shape::TruncatedNormal(shape) => shape.mean(),
+            Shape::LogNormal { median, deviation } => median * (0.5 * deviation * deviation).exp(),
             Shape::Gamma { shape, scale, .. } => shape * scale,
             Shape::Empirical(shape) => shape.mean(),
         }
@@ -210,6 +322,11 @@ impl Distribution {
                 }
             }
             Shape::Exponential { mean } => *mean,
+            Shape::Triangle(shape) => shape.standard_deviation(),
+            Shape::Beta(shape) => shape.standard_deviation(),
+            Shape::TruncatedNormal(shape) => shape.standard_deviation(),
+            Shape::LogNormal { deviation, .. } => self.mean() * (deviation * deviation).exp_m1().sqrt(),
+            Shape::Poisson { mean, .. } => mean.sqrt(),
             Shape::Gamma { shape, scale, .. } => shape.sqrt() * scale,
             Shape::Empirical(shape) => shape.standard_deviation(),
         }
@@ -224,7 +341,12 @@ impl Distribution {
             Shape::Trapezoid(shape) => shape.limits(),
             Shape::ArcSine(shape) => shape.limits(),
             Shape::Normal { .. } | Shape::StudentT { .. } => (f64::NEG_INFINITY, f64::INFINITY),
-            Shape::Exponential { .. } | Shape::Gamma { .. } => (0.0, f64::INFINITY),
+            Shape::Exponential { .. } | Shape::Gamma { .. } | Shape::LogNormal { .. } | Shape::Poisson { .. } => {
+                (0.0, f64::INFINITY)
+            }
+            Shape::Triangle(shape) => (shape.parameters().0, shape.parameters().2),
+            Shape::Beta(shape) => shape.limits(),
+            Shape::TruncatedNormal(shape) => shape.limits(),
             Shape::Empirical(shape) => shape.limits(),
         }
     }

@@ -38,7 +38,8 @@
 //! | was the GUM good enough? | [`validate`], with [`Adaptive::for_validation`] | |
 //! | which input matters? | [`Budget::contributions`]; with interactions [`variance_shares`] (Sobol'); [`MonteCarlo::run_one_at_a_time`] | [`variance_shares`]: correlated inputs |
 //! | what if a trial takes a second? | [`QuasiMonteCarlo`]; or many machines and [`Partial`] results | [`QuasiMonteCarlo`]: more than 64 dimensions, models with kinks |
-//! | several results together? | [`Propagation`], [`OutputSample::ellipsoid`], [`OutputSample::rectangle`] | |
+//! | how is a result stated? | a [`Budget`] prints; [`Budget::statement`], [`MonteCarlo::statement`], [`Budget::to_csv`] | |
+//! | several results together? | [`Propagation`] with its regions, [`OutputSample::ellipsoid`], [`OutputSample::rectangle`] | |
 //!
 //! Write a model once, generic in its number: `f64` for trials, [`Taylor`] for exact derivatives. A closure has one number
 //! type: write it over [`Taylor`], and give trials [`at_values`] of it.
@@ -62,7 +63,7 @@
 //!
 //! | | for n inputs, M trials | on a Xeon at 2.8 GHz |
 //! |---|---|---|
-//! | [`propagate`] | n²/2 evaluations of [`Taylor`] numbers, n/2 for the first order alone | 4.5 µs for four inputs |
+//! | [`propagate`] | n²/2 + 2n evaluations of [`Taylor`] numbers, n/2 for the first order alone | 4.5 µs for four inputs |
 //! | [`MonteCarlo`] | M evaluations and n M draws; 8 bytes a value | 29 ns a trial of four normal inputs |
 //! | intervals | M values put in order | 2 ns a trial; the shortest 4 to 8 ns |
 //! | [`variance_shares`] | M (n + 2) evaluations | 21 ns each |
@@ -72,7 +73,7 @@
 //! Both are off by default.
 //!
 //! * `rayon`: blocks of trials on all threads of the current pool, with the same bits.
-//! * `serde`: [`Partial`] results, failures, intervals and histograms as text.
+//! * `serde`: [`Partial`] results, failures, intervals, histograms, statements and budgets as text.
 //!
 //! # Neighbours
 //!
@@ -85,6 +86,7 @@ mod adaptive;
 mod allowed_failures;
 mod arc_sine;
 mod at_values;
+mod beta;
 #[cfg(feature = "serde")]
 mod bits;
 mod block;
@@ -108,6 +110,7 @@ mod histogram;
 mod input;
 mod inputs;
 mod interval;
+mod linear_region;
 mod linearisation;
 mod moments;
 mod monte_carlo;
@@ -136,6 +139,8 @@ mod table;
 mod taylor;
 mod tolerance;
 mod trapezoid;
+mod triangle;
+mod truncated_normal;
 mod validation;
 mod ziggurat;
 

@@ -1,7 +1,7 @@
 //! Numbers as they are stated: to the digits that their uncertainty leaves them.
 
 /// Significant digits of a stated uncertainty (JCGM 100:2008, 7.2.6: at most two).
-const STATED: usize = 2;
+const STATED: u8 = 2;
 
 /// The decimal place that a result is rounded to: that of the second digit of its standard uncertainty.
 ///
@@ -19,9 +19,9 @@ impl Rounding {
             return Self { last: None };
         }
         // The exponent is that of the rounded number: 0.996 is 1.0.
-        let text = format!("{standard_uncertainty:.*e}", STATED - 1);
+        let text = format!("{standard_uncertainty:.*e}", usize::from(STATED) - 1);
         let exponent = text.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
-        Self { last: exponent.map(|exponent| exponent + 1 - STATED as i32) }
+        Self { last: exponent.map(|exponent| exponent + 1 - i32::from(STATED)) }
     }
 
     /// A number rounded to the place, with zeros up to it.

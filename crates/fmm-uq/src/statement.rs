@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::rounding::{Rounding, degrees, percent, suffix};
+use crate::rounding::{Rounding, degrees, percent, significant, suffix};
 use crate::{Budget, Interval, IntervalKind, MonteCarlo, OutputSample, UncertaintyError};
 
 /// The result of a budget with its expanded uncertainty.
@@ -180,12 +180,10 @@ impl fmt::Display for TrialStatement {
             write!(f, "{} of them failed, ", self.failed)?;
         }
         write!(f, "seed {}, ", self.seed)?;
-        match self.tolerance {
-            Some(tolerance) => write!(f, "stable to {}{unit}", crate::rounding::significant(tolerance, 3)),
-            None => {
-                let [y, u] = self.standard_errors.map(|error| crate::rounding::significant(error, 2));
-                write!(f, "standard errors of y and u {y}{unit} and {u}{unit}")
-            }
+        if let Some(tolerance) = self.tolerance {
+            return write!(f, "stable to {}{unit}", significant(tolerance, 3));
         }
+        let [y, u] = self.standard_errors.map(|error| significant(error, 2));
+        write!(f, "standard errors of y and u {y}{unit} and {u}{unit}")
     }
 }

@@ -130,16 +130,11 @@ impl Budget {
         let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
         let widths: [usize; 12] = std::array::from_fn(width);
         for line in &lines {
-            let mut text = String::new();
-            for (column, (cell, width)) in line.iter().zip(widths).enumerate() {
-                let gap = if column == 0 { "" } else { "  " };
-                text += &if WORDS.contains(&column) {
-                    format!("{gap}{cell:<width$}")
-                } else {
-                    format!("{gap}{cell:>width$}")
-                };
-            }
-            writeln!(f, "{}", text.trim_end())?;
+            let pad = |(column, (cell, &width)): (usize, (&String, &usize))| {
+                if WORDS.contains(&column) { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+            };
+            let cells: Vec<String> = line.iter().zip(&widths).enumerate().map(pad).collect();
+            writeln!(f, "{}", cells.join("  ").trim_end())?;
         }
         Ok(())
     }

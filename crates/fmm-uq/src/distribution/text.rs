@@ -19,6 +19,11 @@ impl Distribution {
             Shape::StudentT { .. } => "t",
             Shape::Exponential { .. } => "exponential",
             Shape::Gamma { .. } => "gamma",
+            Shape::Triangle(_) => "triangular",
+            Shape::Beta(_) => "beta",
+            Shape::TruncatedNormal(_) => "truncated normal",
+            Shape::LogNormal { .. } => "log-normal",
+            Shape::Poisson { .. } => "Poisson",
             Shape::Empirical(_) => "empirical",
         }
     }
@@ -59,6 +64,18 @@ impl fmt::Display for Distribution {
             }
             Shape::Exponential { mean } => write!(f, "Ex(1/{})", short(*mean)),
             Shape::Gamma { shape, scale, .. } => write!(f, "G({}, {})", short(*shape), short(*scale)),
+            Shape::Triangle(shape) => write!(f, "T({low}, {}, {high})", short(shape.parameters().1)),
+            Shape::Beta(shape) => {
+                write!(f, "Beta({}, {}) on [{low}, {high}]", short(shape.shapes().0), short(shape.shapes().1))
+            }
+            Shape::TruncatedNormal(shape) => {
+                let (mean, u) = shape.parameters();
+                write!(f, "N({}, {}²) on [{low}, {high}]", short(mean), short(u))
+            }
+            Shape::LogNormal { median, deviation } => {
+                write!(f, "LN({}, {}²)", short(*median), short(*deviation))
+            }
+            Shape::Poisson { mean, .. } => write!(f, "Poisson({})", short(*mean)),
             Shape::Empirical(shape) => write!(f, "empirical of {} values", shape.count()),
         }
     }

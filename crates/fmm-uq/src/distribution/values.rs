@@ -3,6 +3,7 @@
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution as _, Exp1, StandardNormal};
 use statrs::distribution::{ContinuousCDF, Normal};
+use statrs::function::gamma::gamma_ur;
 
 use super::{Distribution, Shape};
 use crate::gamma::gamma_quantile;
@@ -33,6 +34,13 @@ impl Distribution {
             }
             Shape::Exponential { mean } => -mean * (-probability).ln_1p(),
             Shape::Gamma { shape, scale, .. } => scale * gamma_quantile(*shape, probability),
+            Shape::Triangle(shape) => shape.quantile(probability),
+            Shape::Beta(shape) => shape.quantile(probability),
+            Shape::TruncatedNormal(shape) => shape.quantile(probability),
+            Shape::LogNormal { median, deviation } => {
+                median * (deviation * Normal::standard().inverse_cdf(probability)).exp()
+            }
+            Shape::Poisson { mean, .. } => poisson_quantile(*mean, probability),
             Shape::Empirical(shape) => shape.quantile(probability),
         }
     }
@@ -64,6 +72,14 @@ impl Distribution {
                 mean * e
             }),
             Shape::Gamma { sampler, .. } => each(values, stride, || sampler.sample(rng)),
+            Shape::Triangle(shape) => each(values, stride, || shape.sample(rng)),
+            Shape::Beta(shape) => each(values, stride, || shape.sample(rng)),
+            Shape::TruncatedNormal(shape) => each(values, stride, || shape.sample(rng)),
+            Shape::LogNormal { median, deviation } => each(values, stride, || {
+                let z: f64 = StandardNormal.sample(rng);
+                median * (deviation * z).exp()
+            }),
+            Shape::Poisson { sampler, .. } => each(values, stride, || sampler.sample(rng)),
             Shape::Empirical(shape) => each(values, stride, || shape.sample(rng)),
         }
     }
@@ -74,4 +90,27 @@ fn each(values: &mut [f64], stride: usize, mut draw: impl FnMut() -> f64) {
     for value in values.iter_mut().step_by(stride) {
         *value = draw();
     }
+}
+
+/// The smallest number of events of which as many or fewer have at least the given probability, Q(k + 1, λ).
+fn poisson_quantile(mean: f64, probability: f64) -> f64 {
+    let reaches = |count: f64| gamma_ur(count + 1.0, mean) >= probability;
+    // Twice as far from the mean each time, until it is between, and then halves.
+    let (mut below, mut above, mut step) = (mean.floor(), mean.floor(), mean.sqrt().ceil());
+    while !reaches(above) {
+        (below, above, step) = (above, above + step, 2.0 * step);
+    }
+    while below >= 0.0 && reaches(below) {
+        (above, below, step) = (below, below - step, 2.0 * step);
+    }
+    let mut below = below.max(-1.0);
+    while above - below > 1.0 {
+        let middle = (0.5 * (below + above)).floor();
+        if reaches(middle) {
+            above = middle;
+        } else {
+            below = middle;
+        }
+    }
+    above
 }

@@ -6,6 +6,7 @@ mod clause9;
 mod dependence;
 mod distributions;
 mod limits;
+mod more_distributions;
 mod nist;
 mod polar;
 mod print;

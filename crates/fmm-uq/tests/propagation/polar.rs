@@ -65,3 +65,51 @@ fn regions_of_normal_outputs() {
     assert!(twice.ellipsoid(0.95).is_err() && twice.rectangle(0.95).is_ok());
     assert!((twice.correlation(0, 1).unwrap() - 1.0).abs() < 1e-12);
 }
+
+/// Regions of the linear approximation hold the share of trials that they are stated for.
+#[test]
+fn linear_regions_hold_their_share() {
+    let model = |x: &[f64]| [x[0] + 2.0 * x[1], x[0] - x[1] + 3.0];
+    let two = |nu: f64| {
+        let inputs = Inputs::new(["a", "b"].map(|name| Input::new(name, 1.0, 0.1, "m").unwrap())).unwrap();
+        let inputs = inputs.with_correlations(&[("a", "b", 0.4)]).unwrap();
+        if nu.is_finite() { inputs.with_ensemble(&["a", "b"], nu).unwrap() } else { inputs }
+    };
+    for nu in [f64::INFINITY, 5.0] {
+        let inputs = two(nu);
+        let linear = Gum::new(&inputs).propagate_by_differences(model).unwrap();
+        let trials = MonteCarlo::new(&inputs, 400_000).unwrap().run(model).unwrap();
+        let (ellipsoid, rectangle) = (linear.ellipsoid(0.95).unwrap(), linear.rectangle(0.95).unwrap());
+        let determinant = {
+            let c = &ellipsoid.covariance;
+            c[0][0] * c[1][1] - c[0][1] * c[1][0]
+        };
+        let inside = |row: [f64; 2], region: &fmm_uq::Region, elliptic: bool| {
+            let d = [row[0] - region.centre[0], row[1] - region.centre[1]];
+            let (c, u, k) = (&region.covariance, &region.standard_uncertainties, region.coverage_factor);
+            if elliptic {
+                let square = c[1][1] * d[0] * d[0] - 2.0 * c[0][1] * d[0] * d[1] + c[0][0] * d[1] * d[1];
+                square / determinant <= k * k
+            } else {
+                d[0].abs() <= k * u[0] && d[1].abs() <= k * u[1]
+            }
+        };
+        let pairs: Vec<[f64; 2]> =
+            trials.values(0).unwrap().iter().zip(trials.values(1).unwrap()).map(|(a, b)| [*a, *b]).collect();
+        let share = |region: &fmm_uq::Region, elliptic: bool| {
+            pairs.iter().filter(|pair| inside(**pair, region, elliptic)).count() as f64 / pairs.len() as f64
+        };
+        // Five standard deviations of a share of 400 000.
+        let found = share(&ellipsoid, true);
+        assert!((found - 0.95).abs() < 0.0018, "ν {nu}: the ellipsoid holds {found}");
+        let found = share(&rectangle, false);
+        assert!((0.95 - 0.0018..0.97).contains(&found), "ν {nu}: the rectangle holds {found}");
+    }
+    // 5.991 is the 95 % quantile of χ² with two degrees of freedom, −2 ln 0.05.
+    let linear = Gum::new(&two(f64::INFINITY)).propagate_by_differences(model).unwrap();
+    let k = linear.ellipsoid(0.95).unwrap().coverage_factor;
+    assert!((k * k / (-2.0 * 0.05f64.ln()) - 1.0).abs() < 1e-9, "{k}");
+    let same = Gum::new(&two(f64::INFINITY)).propagate_by_differences(|x| [x[0], 2.0 * x[0]]).unwrap();
+    assert!(matches!(same.ellipsoid(0.95), Err(fmm_uq::UncertaintyError::SingularCovariance)));
+    assert!(same.rectangle(0.95).is_ok() && same.rectangle(1.0).is_err());
+}
