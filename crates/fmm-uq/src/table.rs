@@ -118,8 +118,13 @@ impl Budget {
             (y, x) if y == x => "1".to_owned(),
             (y, x) => {
                 let above = if one(y) { "1" } else { y };
-                let composed = x.contains(|sign: char| "/·* ".contains(sign));
-                if composed { format!("{above}/({x})") } else { format!("{above}/{x}") }
+                let composed = |unit: &str| unit.contains(|sign: char| "/·* ".contains(sign));
+                match x.strip_prefix("1/") {
+                    Some(below) if !composed(below) && one(y) => below.to_owned(),
+                    Some(below) if !composed(below) => format!("{above}·{below}"),
+                    _ if composed(x) => format!("{above}/({x})"),
+                    _ => format!("{above}/{x}"),
+                }
             }
         }
     }
@@ -209,7 +214,7 @@ mod tests {
             propagate(&inputs, |x| x[0]).unwrap().named("y", result).unit_of_sensitivity(input)
         };
         assert_eq!(unit("mg", "kg/m³"), "mg/(kg/m³)");
-        assert_eq!(unit("1", "N"), "1/N");
+        assert_eq!([unit("1", "N"), unit("nm", "1/K"), unit("1", "1/K")], ["1/N", "nm·K", "K"]);
         assert_eq!([unit("N", "N"), unit("N", "1"), unit("", "1")], ["1", "N", "1"]);
     }
 }

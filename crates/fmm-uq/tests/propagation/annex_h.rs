@@ -61,9 +61,9 @@ fn gauge_block_as_a_table() {
 quantity  estimate  unit  distribution  type  divisor       u     ν        c  unit of c  |c| u   share
 l_S       50000623  nm    t             B           1      25    18        1  1             25  62.2 %
 d              215  nm    t             B           1     9.7  25.6        1  1            9.7   9.4 %
-α_S        1.15e-5  1/K   normal        B           1  1.2e-6     ∞        0  nm/(1/K)       0   0.0 %
+α_S        1.15e-5  1/K   normal        B           1  1.2e-6     ∞        0  nm·K           0   0.0 %
 θ             -0.1  K     normal        B           1    0.41     ∞        0  nm/K           0   0.0 %
-δα               0  1/K   t             B           1  5.8e-7    50  5000000  nm/(1/K)     2.9   0.8 %
+δα               0  1/K   t             B           1  5.8e-7    50  5000000  nm·K         2.9   0.8 %
 δθ               0  K     t             B           1   0.029     2     -575  nm/K        16.7  27.7 %
 
 length = 50000838 nm, u = 32 nm

@@ -36,7 +36,7 @@ standard          40  mm    normal        B           1    0.001  ∞         1 
 resolution         0  mm    rectangular   B          √3  2.89e-4  ∞         1  1          2.89e-4   2.1 %
 alignment          0  mm    triangular    B          √6  8.16e-4  ∞         1  1          8.16e-4  16.8 %
 cycle              0  K     arc sine      B          √2    0.354  ∞  5.754e-4  mm/K       2.03e-4   1.0 %
-expansion    1.15e-5  1/K   normal        A           1     1e-6  ∞         0  mm/(1/K)         0   0.0 %
+expansion    1.15e-5  1/K   normal        A           1     1e-6  ∞         0  mm·K             0   0.0 %
 
 length = 50.0310 mm, u = 0.0020 mm
 U = 0.0044 mm (k = 2.23, 95 %, ν_eff = 10)
