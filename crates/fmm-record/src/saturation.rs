@@ -23,6 +23,10 @@ pub struct Saturation {
 /// motion that comes to rest at its extreme, and rest at either end of the record do not. What is lost must be more
 /// than 0.1 % of the range of the record.
 ///
+/// Tops of one or two samples, as fast motion has, are cut off if three or more of them lie exactly on the extreme, although
+/// their neighbours lie below it by ways that differ by more than noise, the resolution and 1 % of the range explain: tops
+/// that are equal by themselves are so in a steady motion, whose neighbours are equal as well.
+///
 /// ```
 /// use fmm_record::saturation;
 ///
@@ -58,10 +62,17 @@ fn cut_off(values: &[f64], level: f64, tolerance: f64, visible: f64) -> usize {
     let on_level = |value: &f64| (value - level).abs() <= rounding;
     let mut count = 0;
     let mut end = 0;
+    let mut tops = Tops::default();
     for run in values.chunk_by(|a, b| on_level(a) == on_level(b)) {
         let start = end;
         end += run.len();
-        if run.len() < SHORTEST || !on_level(&run[0]) {
+        if !on_level(&run[0]) {
+            continue;
+        }
+        if run.len() < SHORTEST {
+            if let (Some(before), Some(after)) = (start.checked_sub(1).map(|index| values[index]), values.get(end)) {
+                tops.add(run.len(), (f64::midpoint(before, *after) - level).abs());
+            }
             continue;
         }
         let far = run.len().div_ceil(2).max(2);
@@ -79,7 +90,31 @@ fn cut_off(values: &[f64], level: f64, tolerance: f64, visible: f64) -> usize {
             count += run.len();
         }
     }
-    count
+    count + if tops.are_cut(tolerance.max(10.0 * visible)) { tops.samples } else { 0 }
+}
+
+/// Tops of one or two samples that lie exactly on one level.
+#[derive(Default)]
+struct Tops {
+    count: usize,
+    samples: usize,
+    /// The least and the greatest of the ways from the level to the mean of the two neighbours of a top.
+    ways: Option<(f64, f64)>,
+}
+
+impl Tops {
+    fn add(&mut self, samples: usize, way: f64) {
+        self.count += 1;
+        self.samples += samples;
+        let (least, greatest) = self.ways.unwrap_or((way, way));
+        self.ways = Some((least.min(way), greatest.max(way)));
+    }
+
+    /// Whether the motion beside them differs by more than `alike`, which that at their tops then does as well.
+    fn are_cut(&self, alike: f64) -> bool {
+        const FEWEST: usize = 3;
+        self.count >= FEWEST && self.ways.is_some_and(|(least, greatest)| greatest - least > alike)
+    }
 }
 
 #[cfg(test)]
@@ -99,6 +134,53 @@ mod tests {
                 assert_eq!((found.upper, found.lower), (Some(0.8), None));
                 // Noise breaks the ends of the runs up.
                 assert!(found.samples as f64 > 0.9 * true_count as f64, "{} of {true_count}", found.samples);
+            }
+        }
+    }
+
+    /// Measured responses to hammer blows, of so high frequencies that most tops that are cut have one sample or two.
+    #[cfg(feature = "mat")]
+    #[test]
+    fn cut_responses_to_blows_are_found() {
+        for hit in 1..=3 {
+            let path = format!("{}/../../examples/data/hammer_{hit}.mat", env!("CARGO_MANIFEST_DIR"));
+            let record = crate::mat::read(path).unwrap().channel("acceleration").unwrap().record;
+            assert_eq!(saturation(record.values()), None, "hit {hit}");
+            let peak = record.values().iter().fold(0.0, |peak: f64, value| peak.max(value.abs()));
+            // As measured, and by a converter of 12 bits.
+            for values in [record.values().to_vec(), quantised(&record, peak / 2048.0).into_values()] {
+                assert_eq!(saturation(&values), None, "hit {hit}");
+                for fraction in [0.7, 0.5] {
+                    let limit = fraction * peak;
+                    let cut: Vec<f64> = values.iter().map(|value| value.clamp(-limit, limit)).collect();
+                    let found = saturation(&cut).unwrap_or_else(|| panic!("hit {hit}, {fraction} of its peak"));
+                    assert_eq!((found.upper, found.lower), (Some(limit), Some(-limit)), "hit {hit}, {fraction}");
+                    let true_count = cut.iter().filter(|value| value.abs() == limit).count();
+                    assert!(found.samples as f64 > 0.9 * true_count as f64, "{} of {true_count}", found.samples);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn tops_that_are_equal_by_themselves_are_not_cut() {
+        use std::f64::consts::TAU;
+        // Steady, with whole and with half numbers of samples a period, alone and with a harmonic, and by a converter.
+        for period in [5.0, 8.0, 10.5, 20.0, 33.3] {
+            let wave = |t: f64| (TAU * t / period).sin() + 0.3 * (2.0 * TAU * t / period + 0.4).sin();
+            let decay = |t: f64| (1.0 - 1e-5 * t) * (TAU * t / period).sin();
+            for step in [1e-9, 1e-3, 0.02] {
+                for noise in [0.0, 0.3 * step] {
+                    for motion in [&wave as &dyn Fn(f64) -> f64, &decay] {
+                        let record = sampled(1.0, 20_000.0, Quantity::Velocity, noise, motion);
+                        let values = quantised(&record, step);
+                        assert_eq!(
+                            saturation(values.values()),
+                            None,
+                            "{period} samples a period, step {step}, noise {noise}"
+                        );
+                    }
+                }
             }
         }
     }

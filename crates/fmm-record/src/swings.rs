@@ -1,6 +1,7 @@
 //! The swings of an oscillation: its peaks and the crossings of its centre, with sub-sample resolution.
 
 use crate::harmonic::Harmonic;
+use crate::record::mean;
 use crate::spikes::without_spikes;
 use crate::turning::turning_points;
 use crate::{Quantity, Record, noise, quantisation_step};
@@ -78,7 +79,7 @@ impl Swings {
         let mut turning = &turning[..];
         let mut fitted = fit_peaks(&values, turning);
         // The length of a half swing beside a rest, where noise may turn more than once, is none: all is fitted again.
-        while fitted.len() > 1 && !begins_moving(&fitted) {
+        while fitted.len() > 1 && (!begins_moving(&fitted) || begins_held(&values, &fitted)) {
             turning = &turning[1..];
             fitted = fit_peaks(&values, turning);
         }
@@ -230,6 +231,24 @@ fn begins_moving(fitted: &[Fitted]) -> bool {
         _ => true,
     };
     first.turns() && far
+}
+
+/// Whether the first turning point lies where something is held until it is released, as noise turns anywhere in that: where
+/// the values before it are near it, which in a swing come from the other side, and after a blow from the centre; or
+/// those on the way to the next one, which in a swing have left it by a half to the whole of its height.
+fn begins_held(values: &[f64], fitted: &[Fitted]) -> bool {
+    let [first, second, ..] = fitted else { return false };
+    let half = second.at - first.at;
+    let centre = centre(fitted, 0);
+    // Height of the mean over a part of the way from one half swing before to the next turning point.
+    let height = |from: f64, to: f64| {
+        let (from, to) = ((first.at + from * half).max(0.0), first.at + to * half);
+        let is_enough = to - from >= (0.25 * half).max(1.0);
+        is_enough
+            .then(|| (mean(&values[from as usize..(to as usize).min(values.len())]) - centre) / (first.value - centre))
+    };
+    height(-1.0, -0.25).is_some_and(|before| (before - 1.0).abs() < 0.5)
+        || height(0.25, 0.5).is_some_and(|after| after > 0.75)
 }
 
 /// Centre of the oscillation between peaks `k` and `k + 1`.
@@ -409,5 +428,44 @@ mod tests {
             let record = Record::sampled(1.0, vec![1.0; length], Quantity::Velocity, "m/s").unwrap();
             assert_eq!(Swings::of(&record), Swings::default());
         }
+    }
+
+    /// Rest with noise before a release or before a blow; what turns in it is no swing.
+    #[test]
+    fn rest_before_a_motion_has_no_peaks() {
+        const TRIALS: u32 = 500;
+        let mut random = crate::synthetic::Noise::new(17);
+        let mut early = Vec::new();
+        for trial in 0..TRIALS {
+            let frequency = 0.5 + 6.0 * random.uniform();
+            let begin = 0.3 + 2.0 * random.uniform();
+            let decay =
+                CoulombDecay { frequency, amplitude: 1.0, deadband: 0.01 + 0.03 * random.uniform(), release: begin };
+            let (w, damping) = (std::f64::consts::TAU * frequency, 0.005 + 0.02 * random.uniform());
+            let rate = frequency * 10f64.powf(1.2 + 1.3 * random.uniform());
+            let noise = 10f64.powf(-3.5 + 3.0 * random.uniform());
+            let step = (noise * 10f64.powf(-1.0 + 2.0 * random.uniform())).min(0.2);
+            let ringing = |t: f64| if t < begin { 0.0 } else { (-damping * w * (t - begin)).exp() };
+            let motions: [(&str, Quantity, &dyn Fn(f64) -> f64); 4] = [
+                ("displacement after a release", Quantity::Displacement, &|t| decay.state(t).0),
+                ("velocity after a release", Quantity::Velocity, &|t| decay.state(t).1 / w),
+                ("displacement after a blow", Quantity::Displacement, &|t| ringing(t) * (w * (t - begin)).sin()),
+                ("velocity after a blow", Quantity::Velocity, &|t| ringing(t) * (w * (t - begin)).cos()),
+            ];
+            for (name, quantity, motion) in motions {
+                let duration = begin + 20.0 / frequency;
+                let record = crate::synthetic::sampled_by(&mut random, rate, duration, quantity, noise, motion);
+                let record = if trial % 2 == 0 { record } else { quantised(&record, step) };
+                let swings = Swings::of(&record);
+                let Some(first) = swings.peaks().first().map(|peak| peak.time) else { continue };
+                // What jumps at the blow may be the first turning point, a sample early.
+                if first < begin - 0.05 / frequency - 1.5 / rate {
+                    early.push(format!(
+                        "trial {trial}, {name}: {first} s for {begin} s, {frequency} Hz at {rate} Hz, noise {noise}, step {step}"
+                    ));
+                }
+            }
+        }
+        assert!(early.is_empty(), "{} of {}:\n{}", early.len(), 4 * TRIALS, early.join("\n"));
     }
 }

@@ -196,14 +196,19 @@ impl Recorded {
 }
 
 /// A record of `f` over `duration` (s) at `rate` (Hz), plus `offset` and noise.
-pub(crate) fn sampled(
+pub(crate) fn sampled(rate: f64, duration: f64, quantity: Quantity, noise: f64, f: impl FnMut(f64) -> f64) -> Record {
+    sampled_by(&mut Noise::new(7), rate, duration, quantity, noise, f)
+}
+
+/// The same with noise of one's own.
+pub(crate) fn sampled_by(
+    random: &mut Noise,
     rate: f64,
     duration: f64,
     quantity: Quantity,
     noise: f64,
     mut f: impl FnMut(f64) -> f64,
 ) -> Record {
-    let mut random = Noise::new(7);
     let count = (rate * duration) as u32;
     let values = (0..count).map(|i| f(f64::from(i) / rate) + noise * random.normal()).collect();
     Record::sampled(rate, values, quantity, "1").unwrap()
