@@ -118,7 +118,11 @@
 //!
 //! # Features
 //!
-//! `rayon`, off by default: [`MultiStart`] on all threads of the current pool, with the same result.
+//! Both are off by default.
+//!
+//! * `rayon`: [`MultiStart`] on all threads of the current pool, with the same result.
+//! * `serde`: [`Minimizer`] and [`BoundedLevenbergMarquardt`] can be stored between two steps, argmin's checkpoints among
+//!   them, and taken up again by `Minimizer::resume`.
 //!
 //! # Neighbours
 //!

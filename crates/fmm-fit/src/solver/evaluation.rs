@@ -7,6 +7,7 @@ use crate::solver::triangle::Triangle;
 use crate::{FitError, NonFinite, Residuals};
 
 /// Where the derivatives come from.
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Scheme {
     /// The problem gives them.

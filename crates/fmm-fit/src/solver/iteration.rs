@@ -93,7 +93,7 @@ impl Minimizer {
         refined
     }
 
-    fn rank_threshold(&self) -> f64 {
+    pub(crate) fn rank_threshold(&self) -> f64 {
         self.evaluator.scheme.rank_threshold(self.current.residuals.len())
     }
 
@@ -206,7 +206,7 @@ impl Minimizer {
 
     /// Residuals and derivatives at current values that had both before. If that was by the shorter steps of forward
     /// differences and the longer ones leave what the model can do, the shorter ones come back.
-    fn evaluate_again<P: Residuals + ?Sized>(&mut self, problem: &P) {
+    pub(crate) fn evaluate_again<P: Residuals + ?Sized>(&mut self, problem: &P) {
         self.evaluator.residuals(problem, &mut self.current);
         if !self.evaluator.factor(problem, &mut self.current) && self.evaluator.scheme == Scheme::Central {
             self.evaluator.scheme = Scheme::Forward;

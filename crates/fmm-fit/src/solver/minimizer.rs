@@ -4,6 +4,8 @@ use std::time::Instant;
 
 use fmm_model::Parameter;
 
+#[cfg(feature = "serde")]
+use crate::solver::checkpoint::Checkpoint;
 use crate::solver::evaluation::{Evaluator, Point, Scheme};
 use crate::solver::non_finite::worst;
 use crate::solver::triangle::Triangle;
@@ -52,10 +54,12 @@ const SMALLEST_RESIDUAL: f64 = 1e-138;
 /// }
 /// # Ok::<(), fmm_fit::FitError>(())
 /// ```
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "Checkpoint", into = "Checkpoint"))]
 #[derive(Debug, Clone, Default)]
 pub struct Minimizer {
     pub(crate) options: Options,
-    parameters: Vec<Parameter>,
+    pub(crate) parameters: Vec<Parameter>,
     pub(crate) start: Vec<f64>,
     pub(crate) current: Point,
     pub(crate) trial: Point,
@@ -70,8 +74,12 @@ pub struct Minimizer {
     pub(crate) doubts: Vec<JacobianDoubt>,
     pub(crate) iterations: usize,
     pub(crate) began: Option<Instant>,
+    /// What a stored fit has that waits for its problem.
+    #[cfg(feature = "serde")]
+    pub(crate) stored: Option<Box<Checkpoint>>,
 }
 
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) enum Phase {
     #[default]
@@ -80,6 +88,7 @@ pub(crate) enum Phase {
     /// Sharpening after a search that ended with `reason`; `level` is the norm to lower.
     Polish {
         reason: Outcome,
+        #[cfg_attr(feature = "serde", serde(with = "crate::solver::bits"))]
         level: f64,
         left: usize,
     },
@@ -87,9 +96,12 @@ pub(crate) enum Phase {
 }
 
 /// Where a search ended that is not to be trusted, and how.
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[derive(Debug, Clone)]
 pub(crate) struct Attempt {
+    #[cfg_attr(feature = "serde", serde(with = "crate::solver::bits"))]
     pub(crate) sum_of_squares: f64,
+    #[cfg_attr(feature = "serde", serde(with = "crate::solver::bits"))]
     pub(crate) values: Vec<f64>,
     pub(crate) reason: Outcome,
 }
@@ -199,6 +211,10 @@ impl Minimizer {
     /// Checks the start and evaluates it.
     pub(crate) fn begin<P: Residuals + ?Sized>(&mut self, problem: &P, start: &[f64]) -> Result<(), FitError> {
         self.phase = Phase::Idle;
+        #[cfg(feature = "serde")]
+        {
+            self.stored = None;
+        }
         self.options.validate()?;
         let parameters = problem.parameters();
         if self.parameters != parameters {

@@ -1,7 +1,11 @@
 //! How it is fitted: a trust region in a box, on a factor of the Jacobian.
 
 mod argmin_solver;
+#[cfg(feature = "serde")]
+mod bits;
 mod box_least_squares;
+#[cfg(feature = "serde")]
+mod checkpoint;
 mod curvature;
 pub(crate) mod differences;
 mod error;

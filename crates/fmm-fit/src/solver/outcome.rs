@@ -11,6 +11,7 @@ use std::fmt;
 /// assert!(!Outcome::Stalled.is_success());
 /// assert!(Outcome::MaxIterations.to_string().contains("raise the limit"));
 /// ```
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Outcome {

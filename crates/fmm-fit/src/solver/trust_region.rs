@@ -25,7 +25,7 @@ const ROUNDING: f64 = 1e-13;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TrustRegion {
     pub(crate) radius: f64,
-    scaling: Vec<f64>,
+    pub(crate) scaling: Vec<f64>,
     model: Triangle,
     damped: Triangle,
     boxed: BoxLeastSquares,
