@@ -217,6 +217,13 @@ mod tests {
         check::<Dual<2>>(2);
     }
 
+    fn doubled<D: Scalar>(x: D) -> D
+    where
+        f64: Mul<D, Output = D>,
+    {
+        2.0 * x
+    }
+
     #[test]
     fn plain_numbers_stand_on_either_side() {
         let x = Dual::<1>::variable(4.0, 0);
@@ -224,12 +231,6 @@ mod tests {
         assert_eq!(all.map(Scalar::value), [6.0, -2.0, 8.0, 0.5]);
         assert_eq!(all.map(|y| y.partial(0)), [1.0, -1.0, 2.0, -0.125]);
         assert!(x > 3.0 && x <= 4.0 && x == 4.0 && x < Dual::from(5.0) && x == Dual::from(4.0));
-        fn doubled<D: Scalar>(x: D) -> D
-        where
-            f64: Mul<D, Output = D>,
-        {
-            2.0 * x
-        }
         assert_eq!(doubled(x).partial(0), doubled(1.0));
     }
 

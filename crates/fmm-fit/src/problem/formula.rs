@@ -84,6 +84,7 @@ impl<F: Fn([Dual<N>; N], &mut [Dual<N>]), const N: usize> Residuals for Formula<
 ///
 /// # Errors
 /// [`FitError::DataLength`] unless there is one abscissa per ordinate.
+#[expect(clippy::type_complexity, reason = "the type of a closure has no name")]
 pub fn curve<'a, X: Copy, const N: usize>(
     x: &'a [X],
     y: &'a [f64],

@@ -209,7 +209,14 @@ impl NullDirection {
     fn write_changes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let parts = (0..self.names.len()).filter(|&j| self.components[j].abs() > self.noise);
         let changes: Vec<String> = parts
-            .map(|j| if self.is_relative[j] { format!("{} by {:+.3} %", self.names[j], self.components[j]) } else { format!("{} by {:+.3e}", self.names[j], 0.01 * self.changes[j]) })
+            .map(|j| {
+                let name = &self.names[j];
+                if self.is_relative[j] {
+                    format!("{name} by {:+.3} %", self.components[j])
+                } else {
+                    format!("{name} by {:+.3e}", 0.01 * self.changes[j])
+                }
+            })
             .collect();
         let changes: Vec<&str> = changes.iter().map(String::as_str).collect();
         write!(f, "the residuals stay the same when {} change together", enumerate(&changes))

@@ -117,6 +117,21 @@ fn a_tiny_start_is_a_start() {
     }
 }
 
+/// Residuals that can be zero.
+struct Zero([Parameter; 1]);
+impl Residuals for Zero {
+    fn parameters(&self) -> &[Parameter] {
+        &self.0
+    }
+    fn len(&self) -> usize {
+        2
+    }
+    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        residuals.fill(p[0] - 1.0);
+        Ok(())
+    }
+}
+
 #[test]
 fn residuals_whose_squares_underflow_are_refused() {
     let usual = solve(&Decay::new(1.0), &[1.0, 0.1], &Options::default()).unwrap();
@@ -136,19 +151,6 @@ fn residuals_whose_squares_underflow_are_refused() {
         }
     }
     // Nothing at all is left of exact residuals, which is no underflow.
-    struct Zero([Parameter; 1]);
-    impl Residuals for Zero {
-        fn parameters(&self) -> &[Parameter] {
-            &self.0
-        }
-        fn len(&self) -> usize {
-            2
-        }
-        fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-            residuals.fill(p[0] - 1.0);
-            Ok(())
-        }
-    }
     let fit = solve(&Zero([Parameter::new("x", "x", "1")]), &[1.0], &Options::default());
     assert_eq!(fit.unwrap().outcome(), Outcome::AtNoiseFloor);
     let refused: Option<FitError> = solve(&Decay::new(1e-160), &[1e-160, 0.1], &Options::default()).err();
