@@ -34,8 +34,9 @@
 //! | [`Moreau`] | cross-check | time stepping of the set-valued law, of first order | fits: no derivatives |
 //! | [`Thesis`] | reproduction of the thesis only | the appendix' semi-implicit Euler, branch for branch | fits: its sum of squares jumps |
 //!
-//! The first three give exact gradients in every input, through every event. [`simulate`] takes the engine that suits the law
-//! ([`Simulated`]); [`Trajectory::engine`] says which one ran. What acts from outside is an
+//! The first three give gradients in every input, through every event: [`Exact`] to rounding, the others as well as their pages
+//! say. [`simulate`] takes the engine that suits the law ([`Simulated`]); [`Trajectory::engine`] says which one ran. What acts
+//! from outside is an
 //! [`Excitation`], several of which add up; a release or a push is an initial state. The [`Work`] done by friction, damping
 //! and excitation comes along on request. A contact whose motion is given has no need of an engine: [`friction_along`].
 //!

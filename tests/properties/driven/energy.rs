@@ -4,10 +4,7 @@ use fmm_model::{Oscillator, Restoring};
 use fmm_sim::RungeKutta;
 
 use super::contact::Family;
-use super::setup::{Setup, Solver, setups};
-
-/// Random setups of each family.
-const SETS: usize = 1000;
+use super::setup::{Setup, Solver, draws, setups};
 
 /// The greatest imbalance of a motion over its samples, relative to the energies and works in play.
 fn imbalance(setup: &Setup, solver: Solver) -> f64 {
@@ -43,7 +40,7 @@ fn imbalance(setup: &Setup, solver: Solver) -> f64 {
 /// The worst imbalance of many setups of a family, and which it is.
 fn worst(seed: u64, family: Family, linear: bool, solver: Solver) -> (f64, String) {
     let mut worst = (0.0, String::new());
-    for setup in setups(seed, family, linear, SETS) {
+    for setup in setups(seed, family, linear, draws(1000)) {
         let error = imbalance(&setup, solver);
         if error > worst.0 {
             worst = (error, setup.to_string());

@@ -15,8 +15,8 @@ const STEP: f64 = 1e-2;
 /// Motions that change more than this often as much as their numbers are left to the agreement of the engines.
 const LIVELIEST: f64 = 30.0;
 
-/// Laws with a slope at rest that is infinite or makes the machine stiff: the steps keep the error of the motion, but not that
-/// of derivatives, which vary faster. Their relative error was 1.3e-2 at worst.
+/// Laws that are steep without a corner, so that a contact hardly moves at last: its speed is no measure of time, and the steps
+/// keep the error of the motion, but not that of derivatives, which vary faster. Their relative error was 1.3e-2 at worst.
 const STEEP: f64 = 5e-2;
 
 /// The motion with derivatives, and what is needed to judge them.
@@ -180,7 +180,5 @@ fn exact_derivatives_are_those_of_the_motion() {
 
 #[test]
 fn stepped_derivatives_are_those_of_the_motion() {
-    // Karnopp's friction jumps at the speed of its dead zone, which is no event, so that its derivatives leave the jump out.
-    let families: Vec<_> = Family::SLIDING.iter().copied().filter(|family| *family != Family::Karnopp).collect();
-    check(Solver::RungeKutta(RungeKutta::default()), &families, false, 40);
+    check(Solver::RungeKutta(RungeKutta::default()), Family::SLIDING, false, 40);
 }

@@ -52,6 +52,11 @@ pub(crate) enum Solver {
 /// Derivatives in every number of a setup.
 pub(crate) type Gradient = Dual<24>;
 
+/// How many setups of a family to draw: `usual` unless the environment variable `FMM_DRAWS` says how many.
+pub(crate) fn draws(usual: usize) -> usize {
+    std::env::var("FMM_DRAWS").map_or(usual, |count| count.parse().expect("FMM_DRAWS is a number"))
+}
+
 /// `count` random setups of a family, the same for the same seed; with `linear`, those that have a closed form.
 pub(crate) fn setups(seed: u64, family: Family, linear: bool, count: usize) -> impl Iterator<Item = Setup> {
     let mut random = ChaCha8Rng::seed_from_u64(seed.wrapping_mul(1000) + family as u64);
@@ -180,14 +185,9 @@ impl Setup {
         self.causes.iter().flat_map(knots).collect()
     }
 
-    /// Whether the slope of the law at rest is infinite or steeper than any other.
+    /// Whether the slope of the law at rest is steeper than any other, but not infinite.
     pub(crate) fn is_steep(&self) -> bool {
-        match self.family {
-            Family::Stribeck => self.law[3] < 1.0,
-            Family::PowerLaw => self.law[1] < 1.0,
-            Family::MakkarDixon | Family::RegularisedStribeck => true,
-            _ => false,
-        }
+        matches!(self.family, Family::MakkarDixon | Family::RegularisedStribeck)
     }
 
     /// ω₀ (rad/s).
