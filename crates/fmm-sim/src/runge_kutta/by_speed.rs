@@ -30,6 +30,8 @@ pub(super) struct BySpeed<D> {
     end: [D; 2],
     nested: [[D; 7]; 2],
     rates: [Rates<D>; 2],
+    /// Directions in which these derivatives are better than those of the step.
+    better: Vec<bool>,
     /// Greatest magnitudes of velocity (m/s) and acceleration (m/s²).
     greatest: [f64; 2],
 }
@@ -71,7 +73,7 @@ impl<D: Scalar> BySpeed<D> {
         step(&start, growth, &mut rates, &mut now, &mut end, rate);
         dense_stages(&start, growth, &mut rates, &mut now, rate);
         let nested = [0, 1].map(|unknown| nested(&rates[unknown], mean_rate(&rates[unknown]) * growth, growth));
-        Some(Self { begin, growth, sign, start, end, nested, rates, greatest })
+        Some(Self { begin, growth, sign, start, end, nested, rates, better: Vec::new(), greatest })
     }
 
     /// The local error of a derivative in `direction`, as one of the velocity (m/s) of a machine that swings with `angular`
@@ -86,7 +88,12 @@ impl<D: Scalar> BySpeed<D> {
         crate::dormand_prince::error(self.growth.abs(), norm(time.0, position.0), norm(time.1, position.1))
     }
 
-    /// The `state`, where the acceleration is `acceleration` (m/s²), with the derivatives at a given time.
+    /// Lets these derivatives replace those of the step in the directions in which they are `better`.
+    pub(super) fn replace(&mut self, better: Vec<bool>) {
+        self.better = better;
+    }
+
+    /// The `state`, where the acceleration is `acceleration` (m/s²), with these derivatives where they are better, at a given time.
     ///
     /// Next to a steep rest the acceleration changes within the error of a step: that of the state itself makes a time of a
     /// speed, or a time of an event would not be that of this speed.
@@ -114,10 +121,19 @@ impl<D: Scalar> BySpeed<D> {
         let late = -(time - time.value());
         let derivatives =
             [position + late * state.velocity.value(), field.belt + speed * self.sign + late * acceleration];
-        let graft = |number: D, value: f64| number - number.value() + value;
         State {
-            position: graft(derivatives[0], state.position.value()),
-            velocity: graft(derivatives[1], state.velocity.value()),
+            position: self.graft(derivatives[0], state.position),
+            velocity: self.graft(derivatives[1], state.velocity),
         }
+    }
+
+    /// One number with the derivatives of another where these are better.
+    fn graft(&self, derivatives: D, number: D) -> D {
+        let mut graft = D::from(number.value());
+        for (direction, better) in self.better.iter().enumerate() {
+            let from = if *better { derivatives } else { number };
+            graft = graft + D::variable(0.0, direction) * from.partial(direction);
+        }
+        graft
     }
 }

@@ -49,19 +49,27 @@ impl Refiner {
             return None;
         }
         let errors = step.derivative_errors();
-        let error = self.greatest_error(at.state, step, |direction| errors.of(direction, self.angular));
-        for direction in 0..D::DIRECTIONS {
-            // A maximum leaves out what is not a number.
-            let size = self.size(at.state, step, direction);
-            self.greatest[direction] = self.greatest[direction].max(if size.is_finite() { size } else { 0.0 });
+        let mut sizes = vec![0.0; D::DIRECTIONS];
+        for (direction, size) in sizes.iter_mut().enumerate() {
+            let now = self.size(at.state, step, direction);
+            // What is not finite is no size.
+            let greatest = &mut self.greatest[direction];
+            *greatest = greatest.max(if now.is_finite() { now } else { 0.0 });
+            *size = now.max(NEGLIGIBLE * *greatest);
         }
-        if error <= self.allowed {
+        let error = |direction: usize| errors.of(direction, self.angular);
+        let good = |direction: usize| error(direction) <= self.allowed * sizes[direction];
+        if (0..D::DIRECTIONS).all(good) {
             return None;
         }
-        let motion = BySpeed::follow(field, phase, at, step)?;
-        if error <= self.greatest_error(at.state, step, |direction| motion.error(direction, self.angular)) {
+        let mut motion = BySpeed::follow(field, phase, at, step)?;
+        // One form may be better in one direction and worse in another.
+        let better = |direction| !(error(direction) <= motion.error(direction, self.angular));
+        let better: Vec<_> = (0..D::DIRECTIONS).map(better).collect();
+        if !better.contains(&true) {
             return None;
         }
+        motion.replace(better);
         let end = motion.derive(field, phase, step.end, step.last_acceleration().value());
         let acceleration = field.acceleration(phase, at.side, at.time + step.length, end);
         step.correct(end, acceleration - acceleration.value() + step.last_acceleration().value());
@@ -74,18 +82,5 @@ impl Refiner {
             state.velocity.partial(direction).abs() + self.angular * state.position.partial(direction).abs()
         };
         of(begin).max(of(step.end))
-    }
-
-    /// The greatest error of a derivative, relative to it, where `of` gives it as one of the velocity.
-    fn greatest_error<D: Scalar>(&self, begin: State<D>, step: &Step<D>, of: impl Fn(usize) -> f64) -> f64 {
-        (0..D::DIRECTIONS).fold(0.0, |worst, direction| {
-            let error = of(direction);
-            if error == 0.0 {
-                return worst;
-            }
-            let error = error / self.size(begin, step, direction).max(NEGLIGIBLE * self.greatest[direction]);
-            // What is not a number is worse than all.
-            if error <= worst { worst } else { error }
-        })
     }
 }
