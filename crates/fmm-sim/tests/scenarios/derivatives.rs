@@ -66,10 +66,10 @@ macro_rules! check {
                 }
                 let sampling = Sampling::uniform(0.0371, 12).unwrap();
                 let at = |inputs: [f64; 2]| -> Trajectory {
-                    $engine.run(&scenario($law.unwrap(), (forces, start), inputs), &sampling).unwrap()
+                    $engine.run(&scenario($law, (forces, start), inputs), &sampling).unwrap()
                 };
                 let inputs = [Dual::variable(8.0, 0), Dual::variable(0.07, 1)];
-                let law = $law.unwrap();
+                let law = $law;
                 let motion = $engine.run(&scenario(law, (dual_forces, start), inputs), &sampling).unwrap();
                 for (direction, step) in [(0, 1e-4), (1, 1e-6)] {
                     let moved = |sign: f64| {
@@ -99,16 +99,24 @@ macro_rules! check {
     };
 }
 
+fn law<F: LawFamily, D: Scalar, const N: usize>(values: [f64; N]) -> F::At<D> {
+    F::at(&values.map(D::from)).unwrap()
+}
+
+fn elements<D: Scalar>() -> MaxwellSlip<D> {
+    MaxwellSlip::new(&[(500.0, 0.1), (200.0, 0.1)].map(|(stiffness, level)| (D::from(stiffness), D::from(level))))
+        .unwrap()
+}
+
 #[test]
 fn of_the_closed_form() {
-    check!(Exact, "exact", CoulombStatic::at(&[0.2.into(), 0.3.into()]), 1e-5);
-    check!(Exact, "elements", MaxwellSlip::new(&[(500.0.into(), 0.1.into()), (200.0.into(), 0.1.into())]), 1e-5);
+    check!(Exact, "exact", law::<CoulombStatic, _, _>([0.2, 0.3]), 1e-5);
+    check!(Exact, "elements", elements(), 1e-5);
 }
 
 #[test]
 fn of_the_integrators() {
-    check!(RungeKutta::default(), "runge_kutta", CoulombStatic::at(&[0.2.into(), 0.3.into()]), 1e-5);
-    let stribeck = [0.2, 0.3, 0.1, 1.0, 0.05];
-    check!(RungeKutta::default(), "stribeck", Stribeck::at(&stribeck.map(Into::into)), 1e-5);
-    check!(Bristle::default(), "dahl", Dahl::at(&[0.2.into(), 500.0.into(), 1.0.into()]), 1e-4);
+    check!(RungeKutta::default(), "runge_kutta", law::<CoulombStatic, _, _>([0.2, 0.3]), 1e-5);
+    check!(RungeKutta::default(), "stribeck", law::<Stribeck, _, _>([0.2, 0.3, 0.1, 1.0, 0.05]), 1e-5);
+    check!(Bristle::default(), "dahl", law::<Dahl, _, _>([0.2, 500.0, 1.0]), 1e-4);
 }
