@@ -173,13 +173,13 @@ impl Cause {
     fn excitation<D: Scalar>(&self) -> Result<Excitation<D>, SimulationError> {
         let number = |signed: Signed| D::from(signed.value());
         let later = |excitation: Excitation<D>, delay: Option<Number>| match delay {
-            Some(delay) => excitation.delayed(delay.value()),
+            Some(delay) => excitation.delayed(D::from(delay.value())),
             None => Ok(excitation),
         };
         match *self {
             Self::Sampled { interval, values, count, delay } => {
                 let values = &values[..usize::from(count) % 6];
-                let values: Vec<f64> = values.iter().map(|value| value.value()).collect();
+                let values: Vec<D> = values.iter().map(|value| D::from(value.value())).collect();
                 later(Excitation::sampled_force(interval.positive(), values)?, delay)
             }
             Self::HalfSine { peak, duration, delay } => {

@@ -229,11 +229,15 @@ impl Cause {
 
     fn excitation<D: Scalar>(&self, number: &mut impl FnMut(&'static str, f64) -> D) -> Excitation<D> {
         match *self {
-            Self::Sampled { interval, ref values } => Excitation::sampled_force(interval, values.clone()),
-            Self::HalfSine { peak, duration, delay } => {
-                Excitation::half_sine(number("peak", peak), number("duration", duration)).unwrap().delayed(delay)
+            Self::Sampled { interval, ref values } => {
+                Excitation::sampled_force(interval, values.iter().map(|force| D::from(*force)).collect::<Vec<_>>())
             }
-            Self::Ramp { rate, delay } => Excitation::ramp(number("rate", rate)).unwrap().delayed(delay),
+            Self::HalfSine { peak, duration, delay } => {
+                Excitation::half_sine(number("peak", peak), number("duration", duration))
+                    .unwrap()
+                    .delayed(D::from(delay))
+            }
+            Self::Ramp { rate, delay } => Excitation::ramp(number("rate", rate)).unwrap().delayed(D::from(delay)),
             Self::Harmonic { amplitude, angular, phase } => {
                 Excitation::harmonic(number("amplitude", amplitude), number("Ω", angular), number("φ", phase))
             }
