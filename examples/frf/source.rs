@@ -131,7 +131,13 @@ fn matlab_names(file: &MatFile) -> Vec<String> {
     let names = arrays.flat_map(|array| match array.dimensions() {
         [rows, columns] if *rows > 1 && *columns > 1 => {
             let is_wide = rows < columns;
-            let series = |number| if is_wide { mat::Channel::row(array.name(), number) } else { mat::Channel::column(array.name(), number) };
+            let series = |number| {
+                if is_wide {
+                    mat::Channel::row(array.name(), number)
+                } else {
+                    mat::Channel::column(array.name(), number)
+                }
+            };
             (1..=*if is_wide { rows } else { columns }).map(|number| series(number).to_string()).collect()
         }
         _ => vec![array.name().to_owned()],

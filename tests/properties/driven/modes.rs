@@ -29,7 +29,7 @@ pub(crate) fn samples_follow_the_modes(setup: &Setup, sampling: &Sampling, motio
         let (time, relative) = (sampling.time(index), velocity - belt);
         let current = events.iter().rposition(|event| event.time <= time).expect("the start is an event");
         let mode = events[current].next;
-        let along = relative * mode.direction().map_or(0.0, |direction| direction.sign());
+        let along = relative * mode.direction().map_or(0.0, fmm_sim::Direction::sign);
         let holds = match mode {
             Mode::Stick => relative.abs() <= slack,
             _ => along >= -slack,

@@ -58,8 +58,7 @@ fn preamble(lines: &[Line]) -> (usize, Option<Separator>) {
     }
     let first = lines.first().map_or(&b""[..], |line| &line.text);
     match first.strip_prefix(b"sep=").or_else(|| first.strip_prefix(b"SEP=")) {
-        Some(&[sign]) => (1, Some(Separator::Sign(sign))),
-        // A separator that spreadsheets put behind the line as behind every other.
+        // Spreadsheets put a separator behind this line as behind every other.
         Some(&[sign, ..]) => (1, Some(Separator::Sign(sign))),
         _ => (0, None),
     }

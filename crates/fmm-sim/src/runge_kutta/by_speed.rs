@@ -132,7 +132,7 @@ impl<D: Scalar> BySpeed<D> {
         let mut graft = D::from(number.value());
         for (direction, better) in self.better.iter().enumerate() {
             let from = if *better { derivatives } else { number };
-            graft = graft + D::variable(0.0, direction) * from.partial(direction);
+            graft += D::variable(0.0, direction) * from.partial(direction);
         }
         graft
     }

@@ -29,9 +29,8 @@ impl Guard {
     pub(super) fn sign<D>(self, phase: &Phase<D>) -> f64 {
         let along = phase.direction.sign();
         match self {
-            Self::Rest => along,
             Self::Steady if phase.branch == Branch::Losing => -along,
-            Self::Steady => along,
+            Self::Rest | Self::Steady => along,
             Self::Escape => -along,
         }
     }
