@@ -26,6 +26,7 @@ use std::process::ExitCode;
 use analysis::{Analysis, Window};
 use clap::{Parser, ValueEnum};
 use fmm_frf::{FrequencyResponse, ResponseForm};
+use fmm_record::Quantity;
 use serde_json::json;
 use trials::{Choice, Trial};
 
@@ -43,7 +44,7 @@ struct Arguments {
     /// The channel with the response
     #[arg(long, value_name = "NAME|INDEX")]
     response: Option<String>,
-    /// What the response is; velocity for files, and acceleration for the bundled records
+    /// What the response is, if neither the file nor the name of the channel says it
     #[arg(long, value_enum)]
     quantity: Option<Measured>,
     /// Factor that turns the force into N; needed if the file states another unit
@@ -76,13 +77,27 @@ enum Measured {
     Acceleration,
 }
 
-impl Measured {
-    fn form(self) -> ResponseForm {
-        match self {
-            Self::Displacement => ResponseForm::Receptance,
-            Self::Velocity => ResponseForm::Mobility,
-            Self::Acceleration => ResponseForm::Accelerance,
+impl From<Measured> for Quantity {
+    fn from(measured: Measured) -> Self {
+        match measured {
+            Measured::Displacement => Self::Displacement,
+            Measured::Velocity => Self::Velocity,
+            Measured::Acceleration => Self::Acceleration,
         }
+    }
+}
+
+/// The form of the response that all trials have.
+fn form(trials: &[Trial]) -> Result<ResponseForm, Box<dyn Error>> {
+    let quantity = trials.first().map_or(Quantity::Other, |trial| trial.response.quantity());
+    if let Some(other) = trials.iter().find(|trial| trial.response.quantity() != quantity) {
+        return Err(format!("{}: a {}, where others are a {quantity}", other.name, other.response.quantity()).into());
+    }
+    match quantity {
+        Quantity::Displacement => Ok(ResponseForm::Receptance),
+        Quantity::Velocity => Ok(ResponseForm::Mobility),
+        Quantity::Acceleration => Ok(ResponseForm::Accelerance),
+        other => Err(format!("a response that is a {other} has no form").into()),
     }
 }
 
@@ -164,20 +179,18 @@ fn document(trials: &[Trial], analysis: &Analysis) -> serde_json::Value {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let is_bundled = arguments.files.is_empty();
-    let files = if is_bundled { trials::bundled() } else { arguments.files.clone() };
-    let measured = arguments.quantity.unwrap_or(if is_bundled { Measured::Acceleration } else { Measured::Velocity });
+    let files = if arguments.files.is_empty() { trials::bundled() } else { arguments.files.clone() };
     let choice = Choice {
         force: arguments.force.as_deref(),
         response: arguments.response.as_deref(),
-        quantity: measured.form().quantity(),
+        quantity: arguments.quantity.map(Quantity::from),
         force_scale: arguments.force_scale,
         response_scale: arguments.response_scale,
         rate: arguments.rate,
     };
     let read = |path: &PathBuf| choice.read(path).map_err(|error| format!("{}: {error}", path.display()));
     let trials = files.iter().map(read).collect::<Result<Vec<Trial>, _>>()?;
-    let analysis = Analysis::of(&trials, measured.form(), arguments.window, arguments.exponential_end)?;
+    let analysis = Analysis::of(&trials, form(&trials)?, arguments.window, arguments.exponential_end)?;
     let text = if arguments.json { document(&trials, &analysis).to_string() } else { report(&trials, &analysis)? };
     match writeln!(std::io::stdout(), "{}", text.trim_end()) {
         // Whoever reads may stop reading.

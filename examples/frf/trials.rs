@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use fmm_record::{Quantity, Reading, Record, Unit};
+use fmm_record::{Label, Quantity, Reading, Record};
 
 use super::source::{Offer, Source};
 
@@ -22,7 +22,8 @@ pub(crate) struct Trial {
 pub(crate) struct Choice<'a> {
     pub(crate) force: Option<&'a str>,
     pub(crate) response: Option<&'a str>,
-    pub(crate) quantity: Quantity,
+    /// What the response measured; without it, what the file or the name of the channel says.
+    pub(crate) quantity: Option<Quantity>,
     /// From what the file holds to SI units; without a factor it must be in these.
     pub(crate) force_scale: Option<f64>,
     pub(crate) response_scale: Option<f64>,
@@ -39,22 +40,24 @@ impl Choice<'_> {
     /// Reads the two channels of a file.
     pub(crate) fn read(&self, path: &Path) -> Result<Trial, Box<dyn Error>> {
         let source = Source::open(path, self.rate)?;
-        let (force, response) = self.channels(&source.offers()?)?;
-        let (force, response) = (source.read(&force, Quantity::Force)?, source.read(&response, self.quantity)?);
+        let (force, response, quantity) = self.channels(&source.offers()?)?;
+        let (force, response) = (source.read(&force, Quantity::Force)?, source.read(&response, quantity)?);
         let origin = format!("{} and {}; the sampling rate was {}", force.channel, response.channel, force.sampling);
         let name = path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into());
         Ok(Trial {
             name,
             origin,
             force: in_si(&force, Quantity::Force, self.force_scale, "--force-scale")?,
-            response: in_si(&response, self.quantity, self.response_scale, "--response-scale")?,
+            response: in_si(&response, quantity, self.response_scale, "--response-scale")?,
             warnings: source.warnings(),
         })
     }
 
-    /// The keys of the two channels: as given by name or number, else the first that is said to measure it, else the first
-    /// that is called so, else the first free one of which it is not known.
-    fn channels(&self, offers: &[Offer]) -> Result<(String, String), Box<dyn Error>> {
+    /// The keys of the two channels, and what the response measured.
+    ///
+    /// A channel is as given by name or number, else the first that is said to measure it, else the first that is called so,
+    /// else the first free one of which it is not known; but a response of which nothing is known is refused.
+    fn channels(&self, offers: &[Offer]) -> Result<(String, String, Quantity), Box<dyn Error>> {
         let all = || offers.iter().map(|offer| &offer.name[..]).collect::<Vec<_>>().join(", ");
         let given = |choice: &str| {
             if let Ok(index) = choice.parse::<usize>() {
@@ -81,12 +84,37 @@ impl Choice<'_> {
             })
         };
         let force = self.force.map_or_else(|| found(Quantity::Force, None), given)?;
-        let response = self.response.map_or_else(|| found(self.quantity, Some(&force)), given)?;
+        let is_motion = |offer: &&Offer| offer.key != force && offer.told().is_some_and(|told| told != Quantity::Force);
+        let moves = || offers.iter().find(is_motion).map(|offer| offer.key.clone());
+        let silent = || {
+            format!("no channel says what the response measured; give --quantity; there are, counted from 0: {}", all())
+        };
+        let response = match (self.response, self.quantity) {
+            (Some(choice), _) => given(choice)?,
+            (None, Some(quantity)) => found(quantity, Some(&force))?,
+            (None, None) => moves().ok_or_else(silent)?,
+        };
         if force == response {
             let name = offers.iter().find(|offer| offer.key == force).map_or(&force, |offer| &offer.name);
             return Err(format!("channel {name} cannot be both force and response").into());
         }
-        Ok((force, response))
+        let told = || Label::of(&response).quantity().filter(is_of_motion);
+        let offered = || offers.iter().find(|offer| offer.key == response).and_then(Offer::told);
+        let quantity = self.quantity.or_else(|| offered().or_else(told)).ok_or_else(silent)?;
+        Ok((force, response, quantity))
+    }
+}
+
+/// Whether a response can be such a quantity.
+fn is_of_motion(quantity: &Quantity) -> bool {
+    matches!(quantity, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration)
+}
+
+impl Offer {
+    /// The motion, or the force, that the file or the name of the channel says it measured.
+    fn told(&self) -> Option<Quantity> {
+        let told = self.quantity.or_else(|| Label::of(&self.name).quantity());
+        told.filter(|told| is_of_motion(told) || *told == Quantity::Force)
     }
 }
 
@@ -96,9 +124,10 @@ fn in_si(reading: &Reading, quantity: Quantity, scale: Option<f64>, option: &str
     if found != quantity {
         return Err(format!("the file says that {channel} is a {found}, and no {quantity}").into());
     }
-    let (unit, stated) = (unit(quantity), reading.record.unit());
-    let is_si = stated.trim().is_empty()
-        || stated.parse().is_ok_and(|stated: Unit| stated.si() == unit && stated.factor() == 1.0);
+    let (unit, label) = (unit(quantity), Label::from(reading));
+    let stated = label.unit().map(ToString::to_string).or_else(|| label.unknown_unit().map(str::to_owned));
+    let is_si = stated.is_none() || label.unit().is_some_and(|stated| stated.si() == unit && stated.factor() == 1.0);
+    let stated = stated.unwrap_or_default();
     if scale.is_none() && !is_si {
         return Err(
             format!("{channel} is in \"{stated}\"; give the factor that turns it into {unit} as {option}").into()

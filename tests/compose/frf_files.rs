@@ -24,13 +24,13 @@ use trials::{Choice, Trial};
 const ACCELERATION: Choice<'_> = Choice {
     force: None,
     response: None,
-    quantity: Quantity::Acceleration,
+    quantity: Some(Quantity::Acceleration),
     force_scale: None,
     response_scale: None,
     rate: None,
 };
 
-const VELOCITY: Choice<'_> = Choice { quantity: Quantity::Velocity, ..ACCELERATION };
+const VELOCITY: Choice<'_> = Choice { quantity: Some(Quantity::Velocity), ..ACCELERATION };
 
 /// A new folder for the files of a test.
 fn folder(name: &str) -> PathBuf {
@@ -215,6 +215,33 @@ fn channels_that_are_not_there_or_not_what_they_should_be() {
     ] {
         assert_eq!(refusal(&choice, path), expected);
     }
+}
+
+/// Nobody is told that an acceleration is a mobility: what the response measured is said by somebody, or refused.
+#[test]
+fn a_response_is_what_its_channel_says_or_refused() {
+    const SILENT: Choice<'_> = Choice { quantity: None, ..ACCELERATION };
+    for path in trials::bundled() {
+        assert_eq!(read(&SILENT, &path).response.quantity(), Quantity::Acceleration);
+    }
+    let folder = folder("silent");
+    let path = folder.join("x.npy");
+    std::fs::write(&path, npy("(3, 4)", &[0.0, 0.5, 1.0, 1.5, 0.0, 1.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0])).unwrap();
+    for choice in [SILENT, Choice { force: Some("0"), response: Some("1"), ..SILENT }] {
+        let refused = refusal(&choice, &path);
+        assert!(refused.starts_with("no channel says what the response measured; give --quantity"), "{refused}");
+    }
+    assert_eq!(read(&ACCELERATION, &path).response.quantity(), Quantity::Acceleration);
+    let text = |header: &str| {
+        let path = folder.join("x.csv");
+        std::fs::write(&path, format!("{header}\n0.0,0,1\n0.1,5,2\n0.2,1,3\n")).unwrap();
+        path
+    };
+    let trial = read(&SILENT, &text("t [s],F [N],a [m/s^2]"));
+    assert_eq!((trial.response.quantity(), trial.response.values()), (Quantity::Acceleration, &[1.0, 2.0, 3.0][..]));
+    assert_eq!(read(&SILENT, &text("t,hammer force,gyro velocity")).response.quantity(), Quantity::Velocity);
+    let refused = refusal(&SILENT, &text("t [s],F [N],a [g]"));
+    assert!(refused.ends_with("give the factor that turns it into m/s² as --response-scale"), "{refused}");
 }
 
 #[test]

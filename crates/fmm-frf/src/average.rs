@@ -270,13 +270,13 @@ impl TrialAverage {
         }
         self.lines(|line| {
             let scatter = match estimator {
-                Estimator::MeanOfRatios => self.ratios()?.variance(line, self.weights.0),
+                Estimator::MeanOfRatios => self.ratios()?.variance(line, self.weights.0).sqrt(),
                 other => {
                     let at = |undefined: Undefined| undefined.at(self.frequencies[line]);
                     other.scatter(&self.line(line)).map_err(at)?
                 }
             };
-            Ok((scatter / (2.0 * freedom)).sqrt())
+            Ok(scatter / (2.0 * freedom).sqrt())
         })
     }
 

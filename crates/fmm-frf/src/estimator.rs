@@ -90,12 +90,13 @@ impl Estimator {
         let Spectra { force, response, cross } = *spectra;
         match self {
             Self::H1 | Self::MeanOfRatios => cross / force,
-            Self::H2 => response / cross.conj(),
+            // Not divided as complex numbers, whose squares may overflow.
+            Self::H2 => cross / cross.norm() * (response / cross.norm()),
             Self::Hv => cross / cross.norm() * (response / force).sqrt(),
         }
     }
 
-    /// |H|²(1/γ² − 1) of the estimate at one line.
+    /// |H| √(1/γ² − 1) of the estimate at one line: the root, as squares may overflow.
     pub(crate) fn scatter(self, spectra: &Spectra) -> Result<f64, Undefined> {
         let estimate = self.of(spectra)?;
         if spectra.response == 0.0 {
@@ -104,8 +105,8 @@ impl Estimator {
         let coherence = spectra.coherence()?;
         // For H1 written without a division by γ², which may be zero.
         Ok(match self {
-            Self::H1 | Self::MeanOfRatios => spectra.response / spectra.force * (1.0 - coherence),
-            Self::H2 | Self::Hv => estimate.norm_sqr() * (1.0 - coherence) / coherence,
+            Self::H1 | Self::MeanOfRatios => (spectra.response / spectra.force).sqrt() * (1.0 - coherence).sqrt(),
+            Self::H2 | Self::Hv => estimate.norm() * ((1.0 - coherence) / coherence).sqrt(),
         })
     }
 }
@@ -124,8 +125,25 @@ mod tests {
         {
             let found = estimator.of(&spectra).unwrap().norm_sqr();
             assert!((found - square).abs() < 1e-14 * square, "{estimator:?}: |H|² = {found}");
-            let found = estimator.scatter(&spectra).unwrap();
+            let found = estimator.scatter(&spectra).unwrap().powi(2);
             assert!((found - scatter).abs() < 1e-14 * scatter, "{estimator:?}: a scatter of {found}");
+        }
+    }
+
+    /// Responses of 1e150, whose squares are the largest numbers that there are.
+    #[test]
+    fn estimates_and_scatter_of_huge_responses() {
+        for size in [1e-150, 1e150] {
+            let cross = Complex64::new(2.0 * size, 2.0 * size);
+            let spectra = Spectra { force: 4.0, response: 8.0 * size * size, cross };
+            for (estimator, magnitude, scatter) in
+                [(Estimator::H1, 0.5, 1.5), (Estimator::H2, 8.0, 24.0), (Estimator::Hv, 2.0, 6.0)]
+            {
+                let (found, expected) = (estimator.of(&spectra).unwrap().norm() / size, f64::sqrt(magnitude));
+                assert!((found / expected - 1.0).abs() < 1e-14, "{estimator:?}, {size}: |H| = {found}");
+                let (found, expected) = (estimator.scatter(&spectra).unwrap() / size, f64::sqrt(scatter));
+                assert!((found / expected - 1.0).abs() < 1e-14, "{estimator:?}, {size}: a scatter of {found}");
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 
 use crate::RecordError;
 use crate::label::{is_remark, without_groups};
+use crate::reading::seconds_in;
 use crate::word::words;
 
 /// What a name says of time.
@@ -22,15 +23,6 @@ enum Written {
     Seconds(f64),
     /// Something else where a unit belongs.
     Other(String),
-}
-
-/// How a series came to be taken for time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Choice {
-    /// By the caller or by its name.
-    Called,
-    /// As it stands first and increases uniformly.
-    ByNature,
 }
 
 /// Words for time.
@@ -75,6 +67,7 @@ const COUNTERS: [&str; 26] = [
 
 impl Clock {
     /// What is said where there is no name.
+    #[cfg(any(feature = "mat", feature = "npy"))]
     pub(crate) fn nameless() -> Self {
         Self { is_time: false, is_counter: false, unit: Written::Nothing }
     }
@@ -105,6 +98,7 @@ impl Clock {
     }
 
     /// Whether a series that is not called time may be it.
+    #[cfg(feature = "csv")]
     pub(crate) fn may_be_time(&self) -> bool {
         self.is_time || self.is_counter || !matches!(self.unit, Written::Other(_))
     }
@@ -114,14 +108,15 @@ impl Clock {
         self.unit == Written::Nothing && are_whole(numbers)
     }
 
-    /// Brings the time stamps of the series called `name` to seconds.
+    /// Brings the time stamps of the series called `name` to seconds; `by_nature` tells that nobody called it time, but that it
+    /// increases uniformly.
     ///
     /// # Errors
     /// [`RecordError::TimeUnit`] if something else is written where the unit belongs, [`RecordError::Counter`] if they
     /// count samples: by their name, or as whole numbers of which nobody said that they are time.
-    pub(crate) fn to_seconds(&self, name: &str, choice: Choice, times: &mut [f64]) -> Result<(), RecordError> {
+    pub(crate) fn to_seconds(&self, name: &str, by_nature: bool, times: &mut [f64]) -> Result<(), RecordError> {
         // A stamp of a computer is a whole number of whatever its clock counts.
-        let is_vague = choice == Choice::ByNature || (self.is_time && name.to_lowercase().contains("stamp"));
+        let is_vague = by_nature || (self.is_time && name.to_lowercase().contains("stamp"));
         match &self.unit {
             Written::Other(unit) if !self.is_counter => {
                 return Err(RecordError::TimeUnit { name: name.into(), unit: unit.clone() });
@@ -175,21 +170,6 @@ fn unit_of_time(name: &str) -> (String, Written, bool) {
     (bare, Written::Nothing, false)
 }
 
-/// How many seconds a unit of time has; no unit means seconds.
-pub(crate) fn seconds_in(unit: &str) -> Option<f64> {
-    const UNITS: [(&[&str], f64); 7] = [
-        (&["", "s", "sec", "secs", "second", "seconds", "sekunde", "sekunden"], 1.0),
-        (&["ms", "msec", "msecs", "milli", "millis", "millisec", "millisecs", "millisecond", "milliseconds"], 1e-3),
-        (&["us", "usec", "usecs", "micro", "micros", "microsec", "microsecs", "microsecond", "microseconds"], 1e-6),
-        (&["ns", "nsec", "nsecs", "nano", "nanos", "nanosec", "nanosecond", "nanoseconds"], 1e-9),
-        (&["min", "mins", "minute", "minutes", "minuten"], 60.0),
-        (&["h", "hr", "hrs", "hour", "hours", "std", "stunden"], 3600.0),
-        (&["d", "day", "days", "tage"], 86_400.0),
-    ];
-    let plain = unit.trim().trim_end_matches('.').to_lowercase().replace(['µ', 'μ'], "u");
-    UNITS.iter().find(|(spellings, _)| spellings.contains(&&*plain)).map(|(_, seconds)| *seconds)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -197,7 +177,7 @@ mod tests {
     fn seconds(name: &str) -> Option<f64> {
         let clock = Clock::of(name);
         let mut times = [0.0, 0.5];
-        clock.is_time.then(|| clock.to_seconds(name, Choice::Called, &mut times).ok().map(|()| 2.0 * times[1]))?
+        clock.is_time.then(|| clock.to_seconds(name, false, &mut times).ok().map(|()| 2.0 * times[1]))?
     }
 
     #[test]

@@ -80,7 +80,7 @@ pub mod npy;
 pub mod uff;
 
 mod calculus;
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
 mod clock;
 mod error;
 mod fourier;

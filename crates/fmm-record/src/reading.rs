@@ -145,6 +145,21 @@ impl std::fmt::Display for Column {
     }
 }
 
+/// How many seconds a unit of time has; no unit means seconds.
+pub(crate) fn seconds_in(unit: &str) -> Option<f64> {
+    const UNITS: [(&[&str], f64); 7] = [
+        (&["", "s", "sec", "secs", "second", "seconds", "sekunde", "sekunden"], 1.0),
+        (&["ms", "msec", "msecs", "milli", "millis", "millisec", "millisecs", "millisecond", "milliseconds"], 1e-3),
+        (&["us", "usec", "usecs", "micro", "micros", "microsec", "microsecs", "microsecond", "microseconds"], 1e-6),
+        (&["ns", "nsec", "nsecs", "nano", "nanos", "nanosec", "nanosecond", "nanoseconds"], 1e-9),
+        (&["min", "mins", "minute", "minutes", "minuten"], 60.0),
+        (&["h", "hr", "hrs", "hour", "hours", "std", "stunden"], 3600.0),
+        (&["d", "day", "days", "tage"], 86_400.0),
+    ];
+    let plain = unit.trim().trim_end_matches('.').to_lowercase().replace(['µ', 'μ'], "u");
+    UNITS.iter().find(|(spellings, _)| spellings.contains(&&*plain)).map(|(_, seconds)| *seconds)
+}
+
 /// Names for an error that lists them.
 #[cfg(any(feature = "csv", feature = "uff"))]
 pub(crate) fn quoted(names: &[String]) -> String {

@@ -140,6 +140,7 @@ impl Resampling {
         // Rounding must not drop a sample at the end.
         let count = ((end - start) * rate + 1e-6).floor() + 1.0;
         if count > MOST_SAMPLES {
+            // As many as can be counted.
             let length = count as usize;
             return Err(RecordError::TimeOutOfRange { start, interval: rate.recip(), length });
         }

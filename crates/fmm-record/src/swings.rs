@@ -433,6 +433,7 @@ mod tests {
     /// Rest with noise before a release or before a blow; what turns in it is no swing.
     #[test]
     fn rest_before_a_motion_has_no_peaks() {
+        type Motion<'a> = (&'a str, Quantity, &'a dyn Fn(f64) -> f64);
         const TRIALS: u32 = 500;
         let mut random = crate::synthetic::Noise::new(17);
         let mut early = Vec::new();
@@ -446,7 +447,7 @@ mod tests {
             let noise = 10f64.powf(-3.5 + 3.0 * random.uniform());
             let step = (noise * 10f64.powf(-1.0 + 2.0 * random.uniform())).min(0.2);
             let ringing = |t: f64| if t < begin { 0.0 } else { (-damping * w * (t - begin)).exp() };
-            let motions: [(&str, Quantity, &dyn Fn(f64) -> f64); 4] = [
+            let motions: [Motion<'_>; 4] = [
                 ("displacement after a release", Quantity::Displacement, &|t| decay.state(t).0),
                 ("velocity after a release", Quantity::Velocity, &|t| decay.state(t).1 / w),
                 ("displacement after a blow", Quantity::Displacement, &|t| ringing(t) * (w * (t - begin)).sin()),

@@ -6,7 +6,8 @@ use super::layout::{Kind, Row};
 use super::lines::Line;
 use super::number;
 use crate::Unit;
-use crate::clock::{Clock, seconds_in};
+use crate::clock::Clock;
+use crate::reading::seconds_in;
 
 /// What stands above a table.
 #[derive(Debug, Default)]
@@ -64,19 +65,19 @@ pub(super) fn header(
         return Ok(found);
     }
     let named = last.checked_sub(1).and_then(fitting).filter(|named| are_units(&names) && are_names(named, separator));
-    if let Some(bare) = named {
-        for (name, unit) in bare.iter().zip(&names) {
-            // An oscilloscope states the increment of its first column there.
-            if let Some((value, _)) = number::parse(unit.as_bytes(), separator) {
-                found.stated.push((format!("{} {name}", bare[0]), value));
-            }
-        }
-        found.names = bare.iter().zip(&names).map(|(name, unit)| with_unit(name, unit)).collect();
-        found.bare = bare;
-    } else {
+    found.bare = named.unwrap_or_default();
+    if found.bare.is_empty() {
         found.bare = names;
         found.names.clone_from(&found.bare);
+        return Ok(found);
     }
+    for (name, unit) in found.bare.iter().zip(&names) {
+        // An oscilloscope states the increment of its first column there.
+        if let Some((value, _)) = number::parse(unit.as_bytes(), separator) {
+            found.stated.push((format!("{} {name}", found.bare[0]), value));
+        }
+    }
+    found.names = found.bare.iter().zip(&names).map(|(name, unit)| with_unit(name, unit)).collect();
     Ok(found)
 }
 

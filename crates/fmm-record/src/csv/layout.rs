@@ -58,7 +58,7 @@ fn preamble(lines: &[Line]) -> (usize, Option<Separator>) {
     }
     let first = lines.first().map_or(&b""[..], |line| &line.text);
     match first.strip_prefix(b"sep=").or_else(|| first.strip_prefix(b"SEP=")) {
-        // Spreadsheets put a separator behind this line as behind every other.
+        // Behind it may be separators, as some spreadsheets put them behind every line.
         Some(&[sign, ..]) => (1, Some(Separator::Sign(sign))),
         _ => (0, None),
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::CsvError;
 use super::table::Table;
-use crate::clock::{Choice, Clock};
+use crate::clock::Clock;
 use crate::reading::{builder_of_choices, timed};
 use crate::stated::stated;
 use crate::{Column, Quantity, Reading, Record, RecordError, Resampling, Sampling, UniformTimes};
@@ -99,7 +99,7 @@ impl CsvReader {
             }
             (Some(time), Some(channel), None) => {
                 let [times, values] = table.read_columns([time, channel])?;
-                Series::of(channel, [values]).timed(time, Choice::Called, times)
+                Series::of(channel, [values]).timed(time, false, times)
             }
             (None, Some(second), rate) if may_be_time && !is_settled && second != first => {
                 let both = table.read_columns([first, second])?;
@@ -163,8 +163,8 @@ impl CsvReader {
         let (quantity, unit) = (self.quantity, self.unit.clone());
         let (record, sampling) = match (scale, &time) {
             (Some(Scale::Rate(rate, sampling)), _) => (Record::sampled(rate, values, quantity, unit)?, sampling),
-            (Some(Scale::Times(choice, mut times)), Some(name)) => {
-                Clock::of(name).to_seconds(name, choice, &mut times)?;
+            (Some(Scale::Times(by_nature, mut times)), Some(name)) => {
+                Clock::of(name).to_seconds(name, by_nature, &mut times)?;
                 let (record, sampling) = timed(name.clone(), &times, values, self.resampling)?;
                 (record.with_quantity(quantity).with_unit(unit), sampling)
             }
@@ -208,7 +208,7 @@ fn by_nature(
             true => Series::of(second, [values]).at(rate),
             false => Series::of(first, [times]).at(rate),
         }),
-        _ if is_time => Ok(Series::of(second, [values]).timed(first, Choice::ByNature, times)),
+        _ if is_time => Ok(Series::of(second, [values]).timed(first, true, times)),
         _ if counts => Err(RecordError::Counter { name: columns[first].clone() }.into()),
         _ => Err(CsvError::NoRate { available: columns.to_vec() }),
     }
@@ -224,7 +224,8 @@ struct Series {
 
 enum Scale {
     Rate(f64, Sampling),
-    Times(Choice, Vec<f64>),
+    /// Time stamps, and whether they are such by nature only.
+    Times(bool, Vec<f64>),
 }
 
 impl Series {
@@ -236,8 +237,8 @@ impl Series {
         Self { scale: Some(Scale::Rate(rate, sampling)), ..self }
     }
 
-    fn timed(self, time: usize, choice: Choice, times: Vec<f64>) -> Self {
-        Self { time: Some(time), scale: Some(Scale::Times(choice, times)), ..self }
+    fn timed(self, time: usize, by_nature: bool, times: Vec<f64>) -> Self {
+        Self { time: Some(time), scale: Some(Scale::Times(by_nature, times)), ..self }
     }
 
     fn beside(self, time: usize) -> Self {

@@ -378,12 +378,13 @@ fn decimal_commas_without_another_separator() {
 fn a_file_cut_off_within_its_last_number_is_refused() {
     let rows = |format: fn(f64) -> String| -> String {
         let value = |i: u32| (f64::from(i) * 0.7).sin();
-        (0..40).map(|i| format!("{:.3};{}\n", f64::from(i) / 1e3, format(value(i)))).collect()
+        let row = |i: u32| format!("{:.3};{}\n", f64::from(i) / 1e3, format(value(i)));
+        (0..40).map(row).collect()
     };
     let formats: [fn(f64) -> String; 4] = [
         |value| format!("{value:.4}"),
         |value| format!("{value:.5e}"),
-        |value| format!("{:.3}", value).replace('.', ","),
+        |value| format!("{value:.3}").replace('.', ","),
         |value| format!("{:+06}", (value * 1e4) as i32),
     ];
     for format in formats {
@@ -400,7 +401,8 @@ fn a_file_cut_off_within_its_last_number_is_refused() {
 
 #[test]
 fn a_stray_quote_costs_no_memory_and_no_rows() {
-    let rows: String = (0..1000).map(|i| format!("{:.3},{}\n", f64::from(i) / 1e3, i % 7)).collect();
+    let row = |i: u32| format!("{:.3},{}\n", f64::from(i) / 1e3, i % 7);
+    let rows: String = (0..1000).map(row).collect();
     let text = format!("t,\"v\n{rows}");
     let reading = read_text(&text).unwrap();
     assert_eq!((reading.record.len(), &reading.channel[..]), (1000, "\"v"));
@@ -421,8 +423,9 @@ fn no_row_is_lost_above_the_first() {
 #[test]
 fn a_record_whose_times_are_not_uniform_is_resampled() {
     let wave = |t: f64| (20.0 * t).sin();
-    let time = |i: u32| f64::from(i) / 200.0 + if i % 3 == 0 { 6e-4 } else { 0.0 };
-    let text: String = (0..600).map(|i| format!("{:.6},{:.9}\n", 1e3 * time(i), wave(time(i)))).collect();
+    let time = |i: u32| f64::from(i) / 200.0 + if i.is_multiple_of(3) { 6e-4 } else { 0.0 };
+    let row = |i: u32| format!("{:.6},{:.9}\n", 1e3 * time(i), wave(time(i)));
+    let text: String = (0..600).map(row).collect();
     let text = format!("t [ms],v\n{text}");
     let error = read_text(&text).unwrap_err().to_string();
     assert!(error.contains("resample the record"), "{error}");

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::channel::Series;
 use super::{Array, Channel, MatError, MatFile};
-use crate::clock::{Choice, Clock, are_whole};
+use crate::clock::{Clock, are_whole};
 use crate::reading::{builder_of_choices, timed};
 use crate::stated::stated;
 use crate::{Quantity, Reading, Record, Resampling, Sampling, UniformTimes};
@@ -70,7 +70,7 @@ impl MatReader {
             // The name of a matrix is not that of its first series.
             let is_whole = time.series == Series::Whole;
             let clock = if is_whole { Clock::of(leaf(&time.variable)) } else { Clock::nameless() };
-            clock.to_seconds(&time.to_string(), Choice::Called, &mut times)?;
+            clock.to_seconds(&time.to_string(), false, &mut times)?;
             let (record, sampling) = timed(time.to_string(), &times, values, self.resampling)?;
             (record.with_quantity(self.quantity).with_unit(unit), sampling)
         } else if let Some((rate, sampling)) = stated(scalars(file, array))? {

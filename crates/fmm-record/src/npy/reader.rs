@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{Channel, NpyArray, NpyError, NpyFile, Series};
-use crate::clock::{Choice, Clock, are_whole};
+use crate::clock::{Clock, are_whole};
 use crate::reading::{builder_of_choices, timed};
 use crate::stated::stated;
 use crate::{Quantity, Reading, Record, Resampling, Sampling, UniformTimes};
@@ -67,7 +67,7 @@ impl NpyReader {
             let mut times = numbers(file, time)?;
             // The name of a matrix is not that of its first series.
             let clock = if time.series == Series::Whole { Clock::of(&time.array) } else { Clock::nameless() };
-            clock.to_seconds(&time.to_string(), Choice::Called, &mut times)?;
+            clock.to_seconds(&time.to_string(), false, &mut times)?;
             let (record, sampling) = timed(time.to_string(), &times, values, self.resampling)?;
             (record.with_quantity(self.quantity).with_unit(unit), sampling)
         } else if let Some((rate, sampling)) = stated(scalars)? {

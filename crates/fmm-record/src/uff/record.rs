@@ -1,7 +1,7 @@
 //! Between data sets and records.
 
 use super::{Abscissa, DataSet, DataType, FunctionType, Ordinate, UffError, UffFile};
-use crate::clock::seconds_in;
+use crate::reading::seconds_in;
 use crate::sampling::whole_hertz;
 use crate::{Column, Reading, Record, Sampling};
 
