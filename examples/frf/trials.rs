@@ -98,7 +98,7 @@ impl Choice<'_> {
             let name = offers.iter().find(|offer| offer.key == force).map_or(&force, |offer| &offer.name);
             return Err(format!("channel {name} cannot be both force and response").into());
         }
-        let told = || Label::of(&response).quantity().filter(is_of_motion);
+        let told = || Label::of(&response).quantity().filter(|told| is_of_motion(*told));
         let offered = || offers.iter().find(|offer| offer.key == response).and_then(Offer::told);
         let quantity = self.quantity.or_else(|| offered().or_else(told)).ok_or_else(silent)?;
         Ok((force, response, quantity))
@@ -106,7 +106,7 @@ impl Choice<'_> {
 }
 
 /// Whether a response can be such a quantity.
-fn is_of_motion(quantity: &Quantity) -> bool {
+fn is_of_motion(quantity: Quantity) -> bool {
     matches!(quantity, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration)
 }
 
@@ -114,7 +114,7 @@ impl Offer {
     /// The motion, or the force, that the file or the name of the channel says it measured.
     fn told(&self) -> Option<Quantity> {
         let told = self.quantity.or_else(|| Label::of(&self.name).quantity());
-        told.filter(|told| is_of_motion(told) || *told == Quantity::Force)
+        told.filter(|told| is_of_motion(*told) || *told == Quantity::Force)
     }
 }
 
