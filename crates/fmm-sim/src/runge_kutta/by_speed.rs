@@ -129,11 +129,9 @@ impl<D: Scalar> BySpeed<D> {
 
     /// One number with the derivatives of another where these are better.
     fn graft(&self, derivatives: D, number: D) -> D {
-        let mut graft = D::from(number.value());
-        for (direction, better) in self.better.iter().enumerate() {
+        self.better.iter().enumerate().fold(D::from(number.value()), |sum, (direction, better)| {
             let from = if *better { derivatives } else { number };
-            graft += D::variable(0.0, direction) * from.partial(direction);
-        }
-        graft
+            sum + D::variable(0.0, direction) * from.partial(direction)
+        })
     }
 }
