@@ -89,7 +89,8 @@ fn no_level_moves_a_jump() {
     let variable = |value, direction| Numbers::variable(value, direction);
     let law = CoulombStatic::new(variable(0.1, 0), variable(0.2, 1)).unwrap();
     let machine = Oscillator::new(Numbers::from(1.0), variable(100.0, 2)).unwrap();
-    let force = Excitation::sampled_force(0.5, vec![5.0, 6.0, 7.0]).unwrap().delayed(1.0).unwrap();
+    let forces = [5.0, 6.0, 7.0].map(Numbers::from).to_vec();
+    let force = Excitation::sampled_force(0.5, forces).unwrap().delayed(Numbers::from(1.0)).unwrap();
     let scenario = Scenario::new(machine, law, Numbers::from(10.0)).unwrap().driven_by(force);
     let sampling = Sampling::uniform(0.01, 301).unwrap();
     for motion in [Exact.run(&scenario, &sampling), RungeKutta::default().run(&scenario, &sampling)] {

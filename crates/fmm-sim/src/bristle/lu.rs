@@ -93,7 +93,7 @@ mod tests {
         let mut right = [Dual::from(0.0); 3];
         for (right, row) in right.iter_mut().zip(rows) {
             for (factor, known) in row.iter().zip(expected) {
-                *right = *right + known * *factor;
+                *right += known * *factor;
             }
         }
         let mut factors = Factors::default();
