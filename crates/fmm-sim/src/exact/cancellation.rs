@@ -8,6 +8,9 @@ use crate::{SimulationError, State};
 /// What rounding may make of the greatest position or velocity, relative to it.
 const LOST: f64 = 1e-9;
 
+/// ω₀ t over the sampled time t below which the spring does not shape the motion.
+const WEAK: f64 = 1e-2;
+
 /// Rounding of the terms of all stretches of a motion, and how far the motion has gone.
 ///
 /// A stretch under a force f on a spring k has terms of f/k and ḟ/k, which cancel as long as the spring has not turned the motion
@@ -54,15 +57,26 @@ impl Cancellation {
         }
     }
 
-    /// That enough digits are left at `end` (s) of a motion of `oscillator`.
+    /// That enough digits are left at `end` (s) of a motion of `oscillator`, relative to the motion or to what the force `held` (N) at
+    /// rest would move it by, if that is more.
     ///
     /// # Errors
     /// [`SimulationError::WeakSpring`].
-    pub(super) fn check<D: Scalar>(&self, oscillator: &Oscillator<D>, end: f64) -> Result<(), SimulationError> {
+    pub(super) fn check<D: Scalar>(
+        &self,
+        oscillator: &Oscillator<D>,
+        held: D,
+        end: f64,
+    ) -> Result<(), SimulationError> {
+        // A spring that turns the motion round bounds what is lost.
+        if !(end > 0.0 && oscillator.natural_angular_frequency().value() * end < WEAK) {
+            return Ok(());
+        }
         let drift = end.min(oscillator.natural_angular_frequency().value().recip());
         let position = f64::EPSILON * self.position.sqrt().hypot(self.velocity.sqrt() * drift);
         let velocity = f64::EPSILON * self.velocity.sqrt();
         let [far, fast] = self.reached;
+        let far = far.max(held.value() / oscillator.mass().value() * drift * drift);
         // A position as small as its rounding may still belong to a motion that is not.
         let far = far.max(fast * drift);
         if position > LOST * far || velocity > LOST * fast.max(far / drift) {

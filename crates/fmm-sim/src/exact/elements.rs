@@ -86,7 +86,8 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
                 None if last => {
                     let rests = self.at_rest && self.holds_for_good(index);
                     recorder.trajectory.set_rests(rests);
-                    return self.digits.check(self.scenario.oscillator(), end);
+                    let level = self.elements.iter().fold(D::from(0.0), |sum, element| sum + element.level);
+                    return self.digits.check(self.scenario.oscillator(), level * self.scenario.normal_load(), end);
                 }
                 None => {
                     index += 1;

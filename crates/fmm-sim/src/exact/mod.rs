@@ -87,7 +87,8 @@ impl<D: Scalar, L: PiecewiseLinearLaw<D>> Engine<D, L> for Exact {
         let mut swing = Swing::new(scenario, &flows, &drive);
         let mut recorder = Recorder::new("exact", 0, sampling, trajectory)?;
         contact.run(scenario.initial(), &drive, &mut swing, &mut recorder)?;
-        swing.digits().check(oscillator, sampling.end())
+        let held = scenario.normal_load() * branches.gaining.breakaway;
+        swing.digits().check(oscillator, held, sampling.end())
     }
 }
 
