@@ -2,7 +2,7 @@
 
 use fmm_friction::CoulombStatic;
 use fmm_model::{Damping, Oscillator};
-use fmm_sim::{Engine, EventKind, Exact, Excitation, RungeKutta, Sampling, Scenario};
+use fmm_sim::{Engine, EventKind, Exact, Excitation, RungeKutta, Sampling, Scenario, SimulationError};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -39,19 +39,25 @@ fn causes(random: &mut ChaCha8Rng, peak: f64, time: f64, frequency: f64) -> Vec<
     }
 }
 
-/// Whether the contact breaks away on either engine before `end`, seen by no sample in between.
-fn breaks_away(level: f64, causes: &[Excitation], machine: Oscillator, end: f64) -> [bool; 2] {
+/// Whether the contact breaks away on either engine before `end`, seen by no sample in between; none where an engine says that
+/// the spring is too weak for it.
+fn breaks_away(level: f64, causes: &[Excitation], machine: Oscillator, end: f64) -> [Option<bool>; 2] {
     let law = CoulombStatic::new(0.5 * level, level).unwrap();
     let start = Scenario::new(machine, law, 1.0).unwrap();
     let scenario = causes.iter().cloned().fold(start, Scenario::driven_by);
     let sampling = Sampling::at(vec![end]).unwrap();
     let motions = [Exact.run(&scenario, &sampling), RungeKutta::default().run(&scenario, &sampling)];
-    motions.map(|motion| motion.unwrap().events().iter().any(|event| event.kind == EventKind::Breakaway))
+    motions.map(|motion| match motion {
+        Ok(motion) => Some(motion.events().iter().any(|event| event.kind == EventKind::Breakaway)),
+        Err(SimulationError::WeakSpring { .. }) => None,
+        Err(error) => panic!("{error}"),
+    })
 }
 
 #[test]
 fn a_hair_decides_whether_a_contact_breaks_away() {
     let mut random = ChaCha8Rng::seed_from_u64(101);
+    let mut refused = 0;
     for _ in 0..4000 {
         let (level, frequency) = (log_uniform(&mut random, -1.0, 1.0), log_uniform(&mut random, -1.0, 3.0));
         let (mass, natural) = (log_uniform(&mut random, -3.0, 3.0), 6.3 * log_uniform(&mut random, -1.0, 3.0));
@@ -62,13 +68,16 @@ fn a_hair_decides_whether_a_contact_breaks_away() {
         let seed = random.random::<u64>();
         for (peak, breaks) in [(level + HAIR, true), (level - HAIR, false)] {
             let causes = causes(&mut ChaCha8Rng::seed_from_u64(seed), peak, time, frequency);
-            let got = breaks_away(level, &causes, machine, end);
+            let [exact, stepped] = breaks_away(level, &causes, machine, end);
+            refused += usize::from(exact.is_none());
             assert_eq!(
-                got, [breaks; 2],
+                [exact.unwrap_or(breaks), stepped.expect("steps need no spring")],
+                [breaks; 2],
                 "exact and stepped: a peak of {peak} N at {time} s under {causes:?} on a level of {level} N, {machine:?}"
             );
         }
     }
+    assert!(refused < 80, "{refused} of 8000 refused");
 }
 
 /// A small fast wave shakes a slow one: reversals, stops and breakaways by the dozen.
