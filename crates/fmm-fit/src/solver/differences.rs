@@ -166,7 +166,8 @@ impl Evaluator {
 
     /// Whether rounding would change the residuals by as much.
     fn is_hidden(&self, point: &Point, j: usize, slope: &Slope) -> bool {
-        if slope.largest_change() > ROUNDING * point.sum_of_squares.sqrt() {
+        let is_empty = point.residuals.is_empty();
+        if is_empty || slope.largest_change() > ROUNDING * point.sum_of_squares.sqrt() {
             return false;
         }
         // Few residuals may be so large that they hide what the step does to all others.

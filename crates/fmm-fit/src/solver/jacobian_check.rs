@@ -5,6 +5,7 @@ use std::fmt;
 use fmm_model::Rounded;
 
 use crate::solver::evaluation::{Evaluator, Point, Scheme};
+use crate::solver::minimizer::{check_parameters, check_start};
 use crate::{FitError, Residuals};
 
 /// The relative difference between a column of derivatives and differences that is no error of the latter.
@@ -81,7 +82,8 @@ impl fmt::Display for JacobianDoubt {
 /// [`FitError`] if a fit could not begin at `values`.
 pub fn check_jacobian<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Result<Vec<JacobianDoubt>, FitError> {
     let parameters = problem.parameters();
-    crate::solver::minimizer::check_start(parameters, values)?;
+    check_parameters(parameters)?;
+    check_start(parameters, values)?;
     let mut evaluator = Evaluator::default();
     let bounds = parameters.iter().map(|parameter| (parameter.bounds().lower(), parameter.bounds().upper()));
     evaluator.begin(problem, bounds, values)?;
@@ -90,18 +92,20 @@ pub fn check_jacobian<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Res
     if !is_known || evaluator.scheme != Scheme::Exact {
         return Ok(Vec::new());
     }
-    let given = evaluator.jacobian.clone();
+    let column = |evaluator: &Evaluator, j: usize| -> Vec<f64> {
+        let columns = evaluator.structure.columns_of(j);
+        columns.flat_map(|column| evaluator.jacobian[column.elements].iter().copied()).collect()
+    };
     let mut doubts = Vec::new();
     for j in evaluator.free.clone() {
-        let places: Vec<(usize, usize)> =
-            evaluator.structure.columns_of(j).flat_map(|column| column.rows.zip(column.elements)).collect();
+        // Differences overwrite the derivatives in their place; no parameter needs those of another.
+        let own = column(&evaluator, j);
         evaluator.scratch.resize(point.residuals.len(), 0.0);
         evaluator.probe.clone_from(&point.values);
         evaluator.scheme = Scheme::Central;
         evaluator.difference(problem, &point, j);
         let step = evaluator.scheme.relative_step() * evaluator.magnitude(point.values[j], j);
-        let central: Vec<f64> = places.iter().map(|&(_, element)| evaluator.jacobian[element]).collect();
-        let own: Vec<f64> = places.iter().map(|&(_, element)| given[element]).collect();
+        let central = column(&evaluator, j);
         let rounding = ROUNDING * point.sum_of_squares.sqrt() / step;
         let doubt = distance(&own, &central);
         if doubt <= DIFFERENT * norm(&own).max(norm(&central)) + rounding || doubt.is_nan() {
@@ -109,13 +113,14 @@ pub fn check_jacobian<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Res
         }
         evaluator.scheme = Scheme::Forward;
         evaluator.difference(problem, &point, j);
-        let forward: Vec<f64> = places.iter().map(|&(_, element)| evaluator.jacobian[element]).collect();
+        let forward = column(&evaluator, j);
         if distance(&forward, &central) <= SMOOTH * doubt {
             let error = |k: usize| (own[k] - central[k]).abs();
-            let worst = (0..places.len()).fold(0, |worst, k| if error(k) > error(worst) { k } else { worst });
+            let worst = (0..own.len()).fold(0, |worst, k| if error(k) > error(worst) { k } else { worst });
+            let residual = evaluator.structure.columns_of(j).flat_map(|column| column.rows).nth(worst);
             doubts.push(JacobianDoubt {
                 parameter: parameters[j].name().to_owned(),
-                residual: places[worst].0,
+                residual: residual.unwrap_or(worst),
                 derivative: own[worst],
                 difference: central[worst],
             });

@@ -270,7 +270,7 @@ impl Minimizer {
     }
 }
 
-fn check_parameters(parameters: &[Parameter]) -> Result<(), FitError> {
+pub(crate) fn check_parameters(parameters: &[Parameter]) -> Result<(), FitError> {
     for (j, parameter) in parameters.iter().enumerate() {
         let (name, bounds) = (parameter.name(), parameter.bounds());
         if bounds.is_empty() {

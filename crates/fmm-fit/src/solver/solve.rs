@@ -52,10 +52,10 @@ pub fn solve_observed<P: Residuals + ?Sized>(
     mut observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, FitError> {
     let mut minimizer = Minimizer::new(options.clone());
+    // Before the fit has its own buffers.
+    let doubts = if options.jacobian_check { check_jacobian(problem, start)? } else { Vec::new() };
     minimizer.begin(problem, start)?;
-    if options.jacobian_check {
-        minimizer.doubts = check_jacobian(problem, start)?;
-    }
+    minimizer.doubts = doubts;
     let mut outcome = minimizer.outcome();
     while outcome.is_none() {
         outcome = minimizer.iterate(problem);
