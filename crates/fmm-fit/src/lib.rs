@@ -93,7 +93,7 @@
 //!
 //! # Units and conventions
 //!
-//! Values are in the unit of their [`Parameter`](fmm_model::Parameter). The sum of squares is Σ r², without a half; a
+//! Values are in the unit of their [`Parameter`]. The sum of squares is Σ r², without a half; a
 //! [`RobustFit::cost`] is half of its sum, as in SciPy. Jacobians are stored column by column.
 //!
 //! # Guarantees
