@@ -24,7 +24,7 @@ use rand_distr::{Distribution, StandardNormal};
 use ratio::{median, print_ratio};
 
 /// Friction coefficient, position and velocity of a ring-down of 1501 velocities at 1 kHz, the workload of the thesis.
-struct RingDown {
+struct Experiment {
     parameters: [Parameter; 3],
     sampling: Sampling,
     data: Vec<f64>,
@@ -39,7 +39,7 @@ fn scenario<D: Scalar>(p: &[D; 3]) -> Result<Scenario<D, Coulomb<D>>, Evaluation
     Ok(Scenario::new(machine, Coulomb::at(&[p[0]])?, number(7.2))?.starting_at(p[1], p[2])?)
 }
 
-impl RingDown {
+impl Experiment {
     fn new() -> Self {
         let sampling = Sampling::uniform(1e-3, 1501).expect("valid").keeping(Channels::Velocity);
         let motion = Exact.run(&scenario(&[0.15, 0.0, 0.101]).expect("valid"), &sampling).expect("valid");
@@ -52,7 +52,7 @@ impl RingDown {
     }
 }
 
-impl Residuals for RingDown {
+impl Residuals for Experiment {
     fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
@@ -80,7 +80,7 @@ impl Residuals for RingDown {
 
 /// What a fit asked of its problem: the values, and whether for derivatives.
 struct Recorded<'a> {
-    problem: &'a RingDown,
+    problem: &'a Experiment,
     calls: RefCell<Vec<(Vec<f64>, bool)>>,
 }
 
@@ -102,7 +102,7 @@ impl Residuals for Recorded<'_> {
 }
 
 fn solver(criterion: &mut Criterion) {
-    let problem = RingDown::new();
+    let problem = Experiment::new();
     let start = [0.3, 1e-3, 0.09];
     let mut minimizer = Minimizer::new(Options::default());
     let recorded = Recorded { problem: &problem, calls: RefCell::default() };

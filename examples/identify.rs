@@ -21,7 +21,7 @@ use std::time::Duration;
 use clap::{Parser, ValueEnum};
 use figure::{Layer, Panel, Role};
 use fmm_fit::{Options, Progress};
-use fmm_identify::{Candidate, Comparison, Known, Machine, Preparation, RingDown, Search};
+use fmm_identify::{Candidate, Comparison, Known, Machine, Preparation, Experiment, Search};
 use fmm_identify::{compare_observed, search_observed};
 use fmm_model::Restoring;
 use fmm_record::{Column, Quantity, Record, Request, Unit};
@@ -229,7 +229,7 @@ fn searched(arguments: &Arguments) -> Result<Search, Box<dyn Error>> {
 }
 
 /// Fits all candidates while a line on standard error shows how far they are.
-fn identify(arguments: &Arguments, decay: &RingDown) -> Result<Comparison, Box<dyn Error>> {
+fn identify(arguments: &Arguments, decay: &Experiment) -> Result<Comparison, Box<dyn Error>> {
     let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {msg}")?);
     bar.enable_steady_tick(Duration::from_millis(100));
     let decays = std::slice::from_ref(decay);
@@ -250,7 +250,7 @@ fn identify(arguments: &Arguments, decay: &RingDown) -> Result<Comparison, Box<d
 }
 
 /// Draws the record with the preferred fit, the decay of its amplitude, and the residuals.
-fn draw(folder: &Path, decay: &RingDown, comparison: &Comparison) -> Result<(), Box<dyn Error>> {
+fn draw(folder: &Path, decay: &Experiment, comparison: &Comparison) -> Result<(), Box<dyn Error>> {
     let preferred = comparison.preferred();
     let record = decay.record();
     let model = preferred.model(std::slice::from_ref(decay), 0).ok_or("the fitted motion cannot be drawn")?;
@@ -303,7 +303,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if let Some(folder) = &arguments.figures {
         std::fs::create_dir_all(folder).map_err(|error| format!("cannot create {}: {error}", folder.display()))?;
     }
-    let decay = RingDown::prepare(&input.record, &preparation)?;
+    let decay = Experiment::ring_down(&input.record, &preparation)?;
     let comparison = identify(arguments, &decay)?;
     let report = if arguments.json {
         serde_json::to_string_pretty(&comparison)?

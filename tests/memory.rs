@@ -1,7 +1,7 @@
 //! Ten million samples: the whole job in bounded memory.
 
 use fmm_friction::CoulombViscous;
-use fmm_identify::{Machine, Preparation, RingDown, identify};
+use fmm_identify::{Machine, Preparation, Experiment, identify};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Channels, Engine, Exact, Sampling, Scenario};
@@ -38,7 +38,7 @@ fn ten_million_samples() {
     drop(motion);
     let record = Record::new(0.0, interval, values, Quantity::Velocity, "m/s").unwrap();
 
-    let decay = RingDown::prepare(&record, &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
     let found = identify::<CoulombViscous>(&Machine::per_unit_mass(), &[decay]).unwrap();
     for (name, truth) in [("natural_frequency_hz", 2.0), ("friction_per_mass", 0.1), ("damping_per_mass", 0.05)] {
         let finding = found.finding(name).unwrap();

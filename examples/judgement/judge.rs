@@ -2,14 +2,14 @@
 
 use fmm_identify::search;
 use fmm_identify::{
-    Comparison, Finding, Identification, IdentifyError, Machine, Preparation, RingDown, Search, Warning,
+    Comparison, Finding, Identification, IdentifyError, Machine, Preparation, Experiment, Search, Warning,
 };
 
 use super::law::Law;
 use super::{Case, Levels, Truth};
 
 /// The default judgement. This is the one place that knows how it is asked for.
-fn default_judgement(machine: &Machine, decays: &[RingDown]) -> Result<Comparison, IdentifyError> {
+fn default_judgement(machine: &Machine, decays: &[Experiment]) -> Result<Comparison, IdentifyError> {
     search(machine, decays, &Search::default().on_threads(1))
 }
 
@@ -98,7 +98,7 @@ pub(crate) struct Verdict {
 
 /// Prepares and judges the record of `case`.
 pub(crate) fn judge(case: &Case) -> Result<Verdict, IdentifyError> {
-    let decay = RingDown::prepare(&case.record, &Preparation::default())?;
+    let decay = Experiment::ring_down(&case.record, &Preparation::default())?;
     let comparison = default_judgement(&case.machine, &[decay])?;
     let preferred = comparison.preferred();
     let mut warnings: Vec<String> = comparison.warnings().iter().map(kind).collect();

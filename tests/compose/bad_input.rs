@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use fmm_fit::{FitError, Options, Residuals, solve};
 use fmm_friction::{Coulomb, CoulombViscous, Viscous};
 use fmm_identify::{
-    Identification, IdentifyError, Known, Machine, Offset, Preparation, RingDown, RingDownProblem, Warning, identify,
+    Identification, IdentifyError, Known, Machine, Offset, Preparation, Experiment, Problem, Warning, identify,
 };
 use fmm_model::ModelError;
 use fmm_record::csv::{CsvError, CsvReader};
@@ -32,8 +32,8 @@ fn vibration(count: usize) -> Vec<f64> {
     white(NOISE, 1, count).into_iter().enumerate().map(at).collect()
 }
 
-fn prepare(values: Vec<f64>) -> Result<RingDown, IdentifyError> {
-    RingDown::prepare(&record(values), &Preparation::default())
+fn prepare(values: Vec<f64>) -> Result<Experiment, IdentifyError> {
+    Experiment::ring_down(&record(values), &Preparation::default())
 }
 
 fn identified(values: Vec<f64>) -> Identification {
@@ -92,8 +92,8 @@ fn records_in_which_nothing_moves() {
     assert!(matches!(prepare(vec![0.0; 3]), Err(IdentifyError::TooShort { samples: 3, .. })));
     assert!(matches!(prepare(white(NOISE, 1, 5000)), Err(IdentifyError::TooFewHalfSwings { .. })));
     let force = Record::new(0.0, 1.0, vec![0.0; 99], Quantity::Force, "N").unwrap();
-    let error = RingDown::prepare(&force, &Preparation::default()).unwrap_err();
-    assert!(matches!(error, IdentifyError::Quantity { quantity: Quantity::Force }), "{error}");
+    let error = Experiment::ring_down(&force, &Preparation::default()).unwrap_err();
+    assert!(matches!(error, IdentifyError::Quantity { quantity: Quantity::Force, .. }), "{error}");
 }
 
 /// Two half swings are the least; two or three are fitted with a warning.
@@ -162,7 +162,7 @@ fn machines_that_cannot_be() {
 #[test]
 fn a_start_outside_the_bounds() {
     let decay = prepare(vibration(4000)).unwrap();
-    let problem = RingDownProblem::new::<Viscous>(Machine::per_unit_mass(), std::slice::from_ref(&decay)).unwrap();
+    let problem = Problem::new::<Viscous>(Machine::per_unit_mass(), std::slice::from_ref(&decay)).unwrap();
     let start = [2.0, -0.5, 0.0, 0.1, 0.0];
     assert_eq!(problem.parameters().len(), start.len());
     let error = solve(&problem, &start, &Options::default()).unwrap_err();
@@ -173,7 +173,7 @@ fn a_start_outside_the_bounds() {
 #[test]
 fn records_that_do_not_belong_together() {
     let velocity = prepare(vibration(4000)).unwrap();
-    let volts = RingDown::prepare(&fork(), &Preparation::default()).unwrap();
+    let volts = Experiment::ring_down(&fork(), &Preparation::default()).unwrap();
     let error = identify::<Coulomb>(&Machine::per_unit_mass(), &[velocity, volts]).unwrap_err();
     assert!(matches!(error, IdentifyError::MixedRecords { .. }), "{error}");
     assert!(matches!(identify::<Coulomb>(&Machine::per_unit_mass(), &[]), Err(IdentifyError::NoRecord)));
@@ -209,20 +209,20 @@ fn spikes_are_left_out() {
 #[test]
 fn the_offset_of_a_rest_needs_a_rest() {
     let rest = Preparation::default().offset(Offset::Rest);
-    let decay = RingDown::prepare(&release(22e-3, 2e-4, 5), &rest).unwrap();
-    let fitted = RingDown::prepare(&release(22e-3, 2e-4, 5), &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&release(22e-3, 2e-4, 5), &rest).unwrap();
+    let fitted = Experiment::ring_down(&release(22e-3, 2e-4, 5), &Preparation::default()).unwrap();
     let held = decay.summary().held_offset.expect("held");
     let found = identify::<CoulombViscous>(&Machine::per_unit_mass(), &[fitted]).unwrap();
     let offset = found.finding("offset").unwrap().value();
     assert!((held - offset).abs() < 5e-5, "held at {held} m/s, fitted {offset} m/s");
-    let error = RingDown::prepare(&record(vibration(4000)), &rest).unwrap_err();
+    let error = Experiment::ring_down(&record(vibration(4000)), &rest).unwrap_err();
     assert!(matches!(error, IdentifyError::NoRest), "{error}");
 }
 
 /// A record that begins at rest is used from its first peak on.
 #[test]
 fn rest_before_the_release_is_not_fitted() {
-    let decay = RingDown::prepare(&release(22e-3, 2e-4, 5), &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&release(22e-3, 2e-4, 5), &Preparation::default()).unwrap();
     let release = decay.summary().release.expect("a release");
     assert!((release - 1.0).abs() < 0.06, "released at {release} s");
     // A quarter period after the release, 0.114 s.

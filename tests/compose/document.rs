@@ -1,13 +1,13 @@
 //! The JSON document that other programs read.
 
-use fmm_identify::{Candidate, Known, Machine, Preparation, RingDown, compare};
+use fmm_identify::{Candidate, Known, Machine, Preparation, Experiment, compare};
 use serde_json::Value;
 
 use crate::measurement::{LOAD, MASS, release};
 use crate::real_records::fork;
 
 fn document(record: &fmm_record::Record, machine: &Machine) -> Value {
-    let decay = RingDown::prepare(record, &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(record, &Preparation::default()).unwrap();
     serde_json::to_value(compare(machine, &[decay], &Candidate::standard()).unwrap()).unwrap()
 }
 

@@ -4,7 +4,7 @@ use fmm_friction::{
     AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombViscous, Dahl, ExponentialPair, Hyperbolic, Karnopp, LuGre,
     MakkarDixon, PowerLaw, RegularisedStribeck, Stribeck, StribeckLorentzian, Viscous,
 };
-use fmm_identify::{Comparison, Identification, Machine, Preparation, RingDown, Search, search};
+use fmm_identify::{Comparison, Identification, Machine, Preparation, Experiment, Search, search};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Sampling, Scenario, Simulated, Trajectory};
@@ -25,7 +25,7 @@ fn searched<F: Simulated>(values: &[f64], noise: f64) -> Comparison {
     };
     let values = motion.velocity().values().iter().map(&mut noisy).collect();
     let record = Record::new(0.0, 1e-3, values, Quantity::Velocity, "m/s").unwrap();
-    let decay = RingDown::prepare(&record, &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
     search(&Machine::per_unit_mass(), &[decay], &Search::default()).unwrap()
 }
 

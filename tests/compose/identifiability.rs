@@ -1,7 +1,7 @@
 //! What a free vibration cannot tell.
 
 use fmm_friction::{Coulomb, CoulombStatic, CoulombViscous, Viscous};
-use fmm_identify::{Identification, Known, Machine, Offset, Preparation, RingDown, Warning, identify};
+use fmm_identify::{Identification, Known, Machine, Offset, Preparation, Experiment, Warning, identify};
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -18,7 +18,7 @@ fn without_friction() -> Record {
 /// Mass, stiffness and damping may be scaled together: one direction is missing, and no mass is invented.
 #[test]
 fn mass_stiffness_and_damping_are_not_separable() {
-    let decay = RingDown::prepare(&without_friction(), &Preparation::default().offset(Offset::Fixed(0.0))).unwrap();
+    let decay = Experiment::ring_down(&without_friction(), &Preparation::default().offset(Offset::Fixed(0.0))).unwrap();
     let found = identify::<Viscous>(&Machine::unknown(), &[decay]).unwrap();
     let names: Vec<_> = found.fit().estimates().iter().map(|estimate| estimate.name().to_owned()).collect();
     assert_eq!(names, ["mass", "stiffness", "damping", "initial_position", "initial_velocity"]);
@@ -40,7 +40,7 @@ fn mass_stiffness_and_damping_are_not_separable() {
 
 #[test]
 fn a_known_mass_makes_them_separable() {
-    let decay = RingDown::prepare(&without_friction(), &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&without_friction(), &Preparation::default()).unwrap();
     let machine = Machine::of_mass(Known::new(MASS, 0.01).unwrap()).unwrap();
     let found = identify::<Viscous>(&machine, std::slice::from_ref(&decay)).unwrap();
     let stiffness = found.finding("stiffness").unwrap();
@@ -59,7 +59,7 @@ fn a_known_mass_makes_them_separable() {
 /// of plain Coulomb friction.
 #[test]
 fn the_static_level_is_held() {
-    let decay = RingDown::prepare(&release(15e-3, 2e-4, 3), &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&release(15e-3, 2e-4, 3), &Preparation::default()).unwrap();
     let decays = std::slice::from_ref(&decay);
     let found = identify::<CoulombStatic>(&Machine::per_unit_mass(), decays).unwrap();
     let coulomb = identify::<Coulomb>(&Machine::per_unit_mass(), decays).unwrap();
@@ -82,7 +82,7 @@ fn a_bound_does_not_make_the_others_certain() {
         let noise = crate::measurement::white(2e-4, seed, velocity.len());
         let noisy = velocity.iter().zip(noise).map(|(v, noise)| v + noise).collect();
         let record = Record::new(0.0, 1e-3, noisy, Quantity::Velocity, "m/s").unwrap();
-        let decays = [RingDown::prepare(&record, &Preparation::default()).unwrap()];
+        let decays = [Experiment::ring_down(&record, &Preparation::default()).unwrap()];
         let both = identify::<CoulombViscous>(&Machine::per_unit_mass(), &decays).unwrap();
         let alone = identify::<Coulomb>(&Machine::per_unit_mass(), &decays).unwrap();
         let u = |found: &Identification| found.finding("friction_per_mass").unwrap().uncertainty().unwrap();
@@ -98,7 +98,7 @@ fn inputs_from_elsewhere_enter_the_uncertainty() {
     let exact = |value| Known::exact(value).unwrap();
     let relative = |machine: &Machine, gain: f64| {
         let preparation = Preparation::default().gain_uncertainty(gain);
-        let decay = RingDown::prepare(&release(22e-3, 2e-4, 3), &preparation).unwrap();
+        let decay = Experiment::ring_down(&release(22e-3, 2e-4, 3), &preparation).unwrap();
         let found = identify::<Coulomb>(machine, &[decay]).unwrap();
         let relative = |name: &str| {
             let finding = found.finding(name).unwrap();

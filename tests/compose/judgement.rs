@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use fmm_identify::{
-    Candidate, Comparison, Finding, Identification, IdentifyError, Known, Machine, Preparation, RingDown, Search,
+    Candidate, Comparison, Finding, Identification, IdentifyError, Known, Machine, Preparation, Experiment, Search,
     Warning, compare, search,
 };
 use fmm_model::Restoring;
@@ -26,7 +26,7 @@ fn machine() -> Machine {
 }
 
 fn judged(name: &str, quantity: Quantity, unit: &str) -> Comparison {
-    let decay = RingDown::prepare(&record(name, quantity, unit), &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&record(name, quantity, unit), &Preparation::default()).unwrap();
     search(&machine(), &[decay], &Search::default()).unwrap()
 }
 
@@ -106,14 +106,14 @@ fn the_first_of_two_releases_is_used() {
 }
 
 /// Every `stride`-th sample of a small pendulum with presliding.
-fn pendulum(stride: usize) -> (Machine, RingDown) {
+fn pendulum(stride: usize) -> (Machine, Experiment) {
     let reader = csv::CsvReader::default().channel(Column::Name("encoder_counts".to_owned()));
     let reader = reader.time(Column::Name("t_s".to_owned())).quantity(Quantity::Displacement).unit("1");
     let record = reader.read(path("small_pendulum_10khz.csv")).unwrap().record.scaled(1.570_796_3e-4, "rad").unwrap();
     let values = record.values().iter().copied().step_by(stride).collect();
     let record =
         Record::new(record.start(), record.interval() * stride as f64, values, Quantity::Displacement, "rad").unwrap();
-    let decay = RingDown::prepare(&record, &Preparation::default().from(0.35)).unwrap();
+    let decay = Experiment::ring_down(&record, &Preparation::default().from(0.35)).unwrap();
     (Machine::per_unit_mass().with_restoring(Restoring::sine(1.0).unwrap()), decay)
 }
 
@@ -154,7 +154,7 @@ fn presliding_is_seen_however_often_it_is_sampled() {
 /// What is held of one law is not held of the others, and a search that has no time reports what it has.
 #[test]
 fn a_search_holds_by_law_and_ends_in_time() {
-    let decay = RingDown::prepare(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
     let holding = Search::default().holding(Some("stribeck"), "exponent", 1.0);
     let comparison = search(&machine(), std::slice::from_ref(&decay), &holding).unwrap();
     assert!(comparison.identifications().iter().any(|found| found.law() == "stribeck, exponent = 1"), "{comparison}");
@@ -173,7 +173,7 @@ fn a_search_holds_by_law_and_ends_in_time() {
 /// What is held under the name that a fit gives it is held of every law that has it, in all stages.
 #[test]
 fn a_search_holds_by_the_names_of_fits() {
-    let decay = RingDown::prepare(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
     let holding = Search::default().holding(None, "damping_per_mass", 0.1);
     let comparison = search(&machine(), &[decay], &holding).unwrap();
     assert!(comparison.identifications().len() > 10, "{comparison}");
@@ -186,7 +186,7 @@ fn a_search_holds_by_the_names_of_fits() {
 /// The result is the same on any number of threads.
 #[test]
 fn threads_change_nothing() {
-    let decay = RingDown::prepare(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
     let on = |threads: usize| {
         search(&machine(), std::slice::from_ref(&decay), &Search::default().on_threads(threads)).unwrap().to_string()
     };

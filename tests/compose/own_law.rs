@@ -1,7 +1,7 @@
 //! A friction law of one's own, written outside the crates: simulated, differentiated, fitted and compared.
 
 use fmm_friction::{Affine, LawError, LawFamily, LawParameter, PiecewiseLinearLaw, Role, SlidingLaw};
-use fmm_identify::{Candidate, Machine, Preparation, RingDown, compare};
+use fmm_identify::{Candidate, Machine, Preparation, Experiment, compare};
 use fmm_model::{Bounds, Oscillator, Parameter, Scalar};
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario, Simulated, SimulationError, Trajectory};
@@ -60,7 +60,7 @@ fn is_identified_and_preferred_to_what_it_is_not() {
     let values = motion.velocity().values().iter().zip(noise).map(|(v, noise)| v + noise).collect();
     let record = Record::new(0.0, 1e-3, values, Quantity::Velocity, "m/s").unwrap();
 
-    let decay = RingDown::prepare(&record, &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
     let [viscous, coulomb, _] = Candidate::standard();
     let candidates = [viscous, coulomb, Candidate::of::<Rising>()];
     let comparison = compare(&Machine::per_unit_mass(), &[decay], &candidates).unwrap();

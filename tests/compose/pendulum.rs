@@ -3,14 +3,14 @@
 use std::sync::LazyLock;
 
 use fmm_friction::{Berger, Coulomb};
-use fmm_identify::{Candidate, Comparison, Identification, Machine, Preparation, RingDown, Terms, Warning, compare};
+use fmm_identify::{Candidate, Comparison, Identification, Machine, Preparation, Experiment, Terms, Warning, compare};
 use fmm_model::Restoring;
 
 use crate::real_records::pendulum;
 
 /// The 55 s of a pendulum by five models, from what anybody would try first to the one that holds.
 static COMPARISON: LazyLock<Comparison> = LazyLock::new(|| {
-    let decay = RingDown::prepare(&pendulum(), &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&pendulum(), &Preparation::default()).unwrap();
     let machine = Machine::per_unit_mass().with_restoring(Restoring::sine(1.0).unwrap());
     let drag = || Terms::default().with_quadratic_damping();
     let candidates = [

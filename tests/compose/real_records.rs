@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use fmm_identify::{Candidate, Comparison, Identification, Machine, Preparation, RingDown, Warning, compare};
+use fmm_identify::{Candidate, Comparison, Identification, Machine, Preparation, Experiment, Warning, compare};
 use fmm_record::{Column, Quantity, Record, csv, mat};
 
 pub(crate) fn data(name: &str) -> PathBuf {
@@ -26,7 +26,7 @@ pub(crate) fn pendulum() -> Record {
 }
 
 fn by_all_laws(record: &Record) -> Comparison {
-    let decay = RingDown::prepare(record, &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(record, &Preparation::default()).unwrap();
     compare(&Machine::per_unit_mass(), &[decay], &Candidate::standard()).unwrap()
 }
 

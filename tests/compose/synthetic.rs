@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use fmm_friction::{Coulomb, CoulombViscous};
-use fmm_identify::{Candidate, Identification, Known, Machine, Preparation, RingDown, compare, identify};
+use fmm_identify::{Candidate, Identification, Known, Machine, Preparation, Experiment, compare, identify};
 
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{Quantity, Record};
@@ -20,8 +20,8 @@ fn machine() -> Machine {
     Machine::of_mass(known(MASS)).unwrap().with_normal_load(known(LOAD)).unwrap()
 }
 
-fn prepared(position: f64, seed: u64) -> RingDown {
-    RingDown::prepare(&release(position, NOISE, seed), &Preparation::default()).unwrap()
+fn prepared(position: f64, seed: u64) -> Experiment {
+    Experiment::ring_down(&release(position, NOISE, seed), &Preparation::default()).unwrap()
 }
 
 fn mu(found: &Identification) -> (f64, f64) {
@@ -96,7 +96,7 @@ fn displacements_that_stop_off_centre() {
         let noise = white(1e-5, 1, 2000);
         let values = motion.position().values().iter().zip(noise).map(|(x, noise)| 0.3 + x + noise).collect();
         let record = Record::new(0.0, 1e-3, values, Quantity::Displacement, "m").unwrap();
-        let decay = RingDown::prepare(&record, &Preparation::default()).unwrap();
+        let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
         let found = identify::<Coulomb>(&machine, &[decay]).unwrap();
         let (value, u) = mu(&found);
         assert!((value - MU).abs() < 4.0 * u && u < 1e-3 * MU, "released at {position} m: μ = {value} ± {u}\n{found}");
@@ -129,7 +129,7 @@ fn displacements_do_not_end_one_half_swing_off() {
         let noise = white(NOISE, 1, count);
         let values = motion.position().values().iter().zip(noise).map(|(x, noise)| x + noise).collect();
         let record = Record::new(0.0, interval, values, Quantity::Displacement, "m").unwrap();
-        let decay = RingDown::prepare(&record, &Preparation::default()).unwrap();
+        let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
         let found = identify::<CoulombViscous>(&Machine::per_unit_mass(), &[decay]).unwrap();
         // Noise of n samples has an rms within 3/√(2n) of its standard deviation.
         let excess = found.rms_residual() / NOISE - 1.0;

@@ -14,7 +14,7 @@ use crate::fit_stages::Near;
 use crate::identification::identify_by;
 use crate::law::Law;
 use crate::layout::Layout;
-use crate::{Identification, IdentifyError, Machine, RingDown, Terms};
+use crate::{Identification, IdentifyError, Machine, Experiment, Terms};
 
 /// An observer of trial steps that may end the fit.
 pub(crate) type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
@@ -176,7 +176,7 @@ impl Candidate {
     pub(crate) fn identify(
         &self,
         machine: &Machine,
-        decays: &[RingDown],
+        decays: &[Experiment],
         options: &Options,
         observer: &mut Observer<'_>,
     ) -> Result<Identification, IdentifyError> {
@@ -187,7 +187,7 @@ impl Candidate {
     pub(crate) fn identify_near(
         &self,
         machine: &Machine,
-        decays: &[RingDown],
+        decays: &[Experiment],
         near: Option<&Near<'_>>,
         options: &Options,
         observer: &mut Observer<'_>,
@@ -204,7 +204,7 @@ impl Candidate {
     ///
     /// # Errors
     /// [`IdentifyError::NoRecord`], and as [`Layout::of`].
-    pub(crate) fn parameters(&self, machine: &Machine, decays: &[RingDown]) -> Result<Vec<String>, IdentifyError> {
+    pub(crate) fn parameters(&self, machine: &Machine, decays: &[Experiment]) -> Result<Vec<String>, IdentifyError> {
         if decays.is_empty() {
             return Err(IdentifyError::NoRecord);
         }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use fmm_fit::{Options, Progress, f_tail};
 
 use crate::judgement::{Judgement, shortcomings};
-use crate::{Candidate, Identification, IdentifyError, Machine, RecordSummary, RingDown, Sign, Warning};
+use crate::{Candidate, Identification, IdentifyError, Machine, RecordSummary, Experiment, Sign, Warning};
 
 /// A law and the more general one that it was tested against.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +45,7 @@ pub struct Comparison {
 ///
 /// # Errors
 /// [`IdentifyError`] as for [`identify`](crate::identify), and [`IdentifyError::NoCandidate`].
-pub fn compare(machine: &Machine, decays: &[RingDown], candidates: &[Candidate]) -> Result<Comparison, IdentifyError> {
+pub fn compare(machine: &Machine, decays: &[Experiment], candidates: &[Candidate]) -> Result<Comparison, IdentifyError> {
     compare_observed(machine, decays, candidates, &Options::default(), |_, _| ControlFlow::Continue(()))
 }
 
@@ -55,12 +55,12 @@ pub fn compare(machine: &Machine, decays: &[RingDown], candidates: &[Candidate])
 /// As for [`compare`].
 pub fn compare_observed(
     machine: &Machine,
-    decays: &[RingDown],
+    decays: &[Experiment],
     candidates: &[Candidate],
     options: &Options,
     mut observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Comparison, IdentifyError> {
-    let mut fit = |decays: &[RingDown]| {
+    let mut fit = |decays: &[Experiment]| {
         let fitted = candidates.iter().map(|candidate| {
             let name = candidate.name();
             let mut observe = |progress: &Progress<'_>| observer(&name, progress);
@@ -92,7 +92,7 @@ pub(crate) fn closest<'a>(identifications: impl IntoIterator<Item = &'a Identifi
 impl Comparison {
     /// The comparison of `candidates` by their `identifications` from `decays`.
     pub(crate) fn of(
-        decays: &[RingDown],
+        decays: &[Experiment],
         candidates: &[Candidate],
         mut identifications: Vec<Identification>,
     ) -> Result<Self, IdentifyError> {

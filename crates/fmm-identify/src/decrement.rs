@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use fmm_record::Quantity;
 
-use crate::{Estimated, IdentifyError, RingDown};
+use crate::{Estimated, IdentifyError, Experiment};
 
 /// What one cycle lost, read both as damping and as friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,7 +45,7 @@ const FEWEST: usize = 4;
 ///
 /// ```
 /// use fmm_friction::Viscous;
-/// use fmm_identify::{Preparation, RingDown, decrements};
+/// use fmm_identify::{Preparation, Experiment, decrements};
 /// # use fmm_model::Oscillator;
 /// # use fmm_record::{Quantity, Record};
 /// # use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -54,7 +54,7 @@ const FEWEST: usize = 4;
 /// # let scenario = Scenario::new(Oscillator::per_unit_mass(2.0)?, Viscous::new(0.05)?, 1.0)?;
 /// # let motion = Exact.run(&scenario.starting_at(0.02, 0.0)?, &Sampling::uniform(1e-3, 10_000)?)?;
 /// # let record = Record::new(0.0, 1e-3, motion.velocity().values().to_vec(), Quantity::Velocity, "m/s")?;
-/// let decay = RingDown::prepare(&record, &Preparation::default())?;
+/// let decay = Experiment::ring_down(&record, &Preparation::default())?;
 /// let cycles = decrements(&decay)?;
 /// assert!(cycles.iter().all(|cycle| (cycle.damping.value / 0.05 - 1.0).abs() < 1e-3));
 /// // Dry friction would not grow weaker from cycle to cycle: e^(−0.025 · 7.5) = 0.83.
@@ -69,7 +69,7 @@ const FEWEST: usize = 4;
 /// use std::f64::consts::PI;
 ///
 /// use fmm_fit::{StraightLine, Weighting};
-/// use fmm_identify::{Preparation, RingDown, decrements};
+/// use fmm_identify::{Preparation, Experiment, decrements};
 /// use fmm_model::{Damping, Oscillator};
 /// # use fmm_friction::Coulomb;
 /// # use fmm_record::{Quantity, Record};
@@ -80,7 +80,7 @@ const FEWEST: usize = 4;
 /// # let scenario = Scenario::new(machine, Coulomb::new(0.0)?, 0.0)?.starting_at(0.0, 0.25)?;
 /// # let motion = RungeKutta::new(1e-11)?.run(&scenario, &Sampling::uniform(1e-3, 30_000)?)?;
 /// # let record = Record::new(0.0, 1e-3, motion.velocity().values().to_vec(), Quantity::Velocity, "m/s")?;
-/// let cycles = decrements(&RingDown::prepare(&record, &Preparation::default())?)?;
+/// let cycles = decrements(&Experiment::ring_down(&record, &Preparation::default())?)?;
 /// let velocity: Vec<f64> = cycles.iter().map(|cycle| cycle.peak_velocity).collect();
 /// let damping: Vec<f64> = cycles.iter().map(|cycle| 10.391 * cycle.damping.value).collect();
 /// let line = StraightLine::fit(&velocity, &damping, Weighting::Equal)?;
@@ -91,7 +91,8 @@ const FEWEST: usize = 4;
 ///
 /// # Errors
 /// [`IdentifyError::TooFewHalfSwings`] below four, [`IdentifyError::Amplitude`] where turning points do not alternate.
-pub fn decrements(decay: &RingDown) -> Result<Vec<Decrement>, IdentifyError> {
+pub fn decrements(decay: &Experiment) -> Result<Vec<Decrement>, IdentifyError> {
+    decay.require_free("the decrement")?;
     let peaks = decay.peaks();
     if peaks.len() < FEWEST {
         return Err(IdentifyError::TooFewHalfSwings { found: peaks.len(), needed: FEWEST });
@@ -127,7 +128,7 @@ pub fn decrements(decay: &RingDown) -> Result<Vec<Decrement>, IdentifyError> {
     Ok(starts.map(decrement).collect())
 }
 
-impl RingDown {
+impl Experiment {
     /// Standard deviation of what cannot be fitted: white noise and the rounding of the converter, in the unit of the
     /// record.
     pub(crate) fn white_noise(&self) -> f64 {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::nuisance::Nuisance;
-use crate::{Identification, RecordSummary, RingDown, Warning};
+use crate::{Identification, RecordSummary, Experiment, Warning};
 
 /// A factor of the uncertainties that is worth a word.
 const NOTABLE: f64 = 1.1;
@@ -24,7 +24,7 @@ impl Warning {
     }
 
     /// What the noise of the records is like, as the residuals of `identification` show it, and whether a slow drift was fitted.
-    pub(crate) fn of_noise(identification: &Identification, decays: &[RingDown]) -> Vec<Self> {
+    pub(crate) fn of_noise(identification: &Identification, decays: &[Experiment]) -> Vec<Self> {
         let mut warnings = Vec::new();
         let unit = || decays.first().map_or_else(String::new, |decay| decay.record().unit().to_owned());
         if decays.iter().any(|decay| decay.nuisances().iter().any(|part| matches!(part, Nuisance::Drift(_)))) {

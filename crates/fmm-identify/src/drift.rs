@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use fmm_fit::f_tail;
 
 use crate::nuisance::{DRIFT, Nuisance};
-use crate::problem::RingDownProblem;
-use crate::{Identification, RingDown};
+use crate::problem::Problem;
+use crate::{Identification, Experiment};
 
 /// The chance that noise alone looks like a drift.
 const CHANCE: f64 = 1e-3;
@@ -26,9 +26,9 @@ const BETWEEN: [f64; 6] = [1.5, 2.5, 3.5, 4.5, 5.5, 6.5];
 /// has as much of either.
 pub(crate) fn with_drift(
     found: &Identification,
-    problem: &RingDownProblem<'_>,
-    decays: &[RingDown],
-) -> Option<Vec<RingDown>> {
+    problem: &Problem<'_>,
+    decays: &[Experiment],
+) -> Option<Vec<Experiment>> {
     if !found.structure().is_noisy() {
         return None;
     }
@@ -74,8 +74,8 @@ pub(crate) fn with_drift(
 }
 
 /// The `decays` with the disturbances that `found` was fitted with, which may be more than they carry.
-pub(crate) fn as_fitted(decays: &[RingDown], disturbances: &[Vec<Nuisance>]) -> Vec<RingDown> {
-    let further = |(decay, all): (&RingDown, &Vec<Nuisance>)| {
+pub(crate) fn as_fitted(decays: &[Experiment], disturbances: &[Vec<Nuisance>]) -> Vec<Experiment> {
+    let further = |(decay, all): (&Experiment, &Vec<Nuisance>)| {
         let missing = all.iter().skip(decay.nuisances().len()).copied().collect();
         decay.clone().beside(missing)
     };

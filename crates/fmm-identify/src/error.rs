@@ -12,10 +12,53 @@ pub enum IdentifyError {
     #[error("there is no record to identify; give at least one ring-down")]
     NoRecord,
     /// The record is not a displacement or a velocity.
-    #[error("a ring-down must be a displacement or a velocity, but the record is: {quantity}")]
+    #[error("{subject} must be {needed}, but the record is: {quantity}")]
     Quantity {
+        /// What was to be done with the record.
+        subject: &'static str,
+        /// What it takes.
+        needed: &'static str,
         /// What the record is.
         quantity: Quantity,
+    },
+    /// What was given as a drive is none.
+    #[error("the drive of an experiment must be {expected}, but is: {found}")]
+    Drive {
+        /// What it may be.
+        expected: &'static str,
+        /// What it is.
+        found: String,
+    },
+    /// The drive is not known during the whole record.
+    #[error("the drive is known from {known_from} s to {known_to} s, but the response lasts from {start} s to {end} s; crop the response")]
+    DriveTooShort {
+        /// Beginning of the drive (s).
+        known_from: f64,
+        /// Its end (s).
+        known_to: f64,
+        /// Beginning of the response (s).
+        start: f64,
+        /// Its end (s).
+        end: f64,
+    },
+    /// A force moves a mass, of which nothing is known.
+    #[error("a measured force tells the mass: give Machine::unknown() to find mass and stiffness, or a mass or a stiffness that is known")]
+    ForceWithoutScale,
+    /// The estimator works on free vibrations.
+    #[error("{estimator} needs a free vibration, but the record is that of a driven one")]
+    FreeVibrationNeeded {
+        /// Which estimator.
+        estimator: &'static str,
+    },
+    /// A number that describes an experiment cannot be.
+    #[error("{subject} must be {allowed}, not {value}")]
+    NotAllowed {
+        /// What was given.
+        subject: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it may be.
+        allowed: &'static str,
     },
     /// No law was given to compare.
     #[error("there is no law to compare; give at least one candidate")]

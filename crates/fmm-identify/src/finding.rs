@@ -201,9 +201,11 @@ impl Inputs<'_> {
         for (i, law_parameter) in self.family.fitted().enumerate() {
             let (parameter, role) = (law_parameter.parameter(), law_parameter.role());
             let mut value = law_value(i);
-            if let (Role::LevelAbove, Some(level)) = (role, level) {
+            if let (Role::LevelAbove | Role::Breakaway, Some(level)) = (role, level) {
                 value += level;
-                if self.machine.scale() != Scale::Unknown {
+                if self.machine.scale() == Scale::Unknown {
+                    derived.push((named(parameter, "friction_force", "N").bounded(parameter.bounds()), value));
+                } else {
                     derived.push((
                         named(parameter, "friction_per_mass", self.acceleration).bounded(parameter.bounds()),
                         value / gain,

@@ -6,7 +6,7 @@ use fmm_fit::{Fit, Options, Outcome, Progress, Residuals, solve_observed};
 use fmm_friction::CoulombViscous;
 use fmm_model::Restoring;
 
-use crate::problem::RingDownProblem;
+use crate::problem::Problem;
 use crate::{Identification, IdentifyError, Sign};
 
 /// A fit by Coulomb and viscous friction to begin another one near, and what its residuals ask for.
@@ -28,7 +28,7 @@ const BEGINNINGS: [f64; 2] = [0.125, 0.4];
 /// The best end of the fits from all start values. Displacements are first fitted up to their last peak, and from
 /// there as a whole. Laws with more than a level and a viscous part continue the fit of one that has just these.
 pub(crate) fn fit_in_stages(
-    problem: &RingDownProblem<'_>,
+    problem: &Problem<'_>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
@@ -44,12 +44,12 @@ pub(crate) fn fit_in_stages(
 /// The best end of the fits from the starts near a simple fit, or near one by another law, with few of the samples first. The latter
 /// is given up if it stays worse than the simple fit.
 pub(crate) fn fit_near(
-    problem: &RingDownProblem<'_>,
+    problem: &Problem<'_>,
     near: &Near<'_>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
-    let simple = RingDownProblem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
+    let simple = Problem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
     let mut starts = problem.near(&simple, near.simple.fit().values(), near.signs);
     let beside: Vec<Vec<f64>> =
         near.others.iter().filter_map(|other| problem.beside(other, &near.others, &starts)).collect();
@@ -78,7 +78,7 @@ pub(crate) fn fit_near(
 }
 
 /// Those of `starts` with the smallest sums of squares, at most `count`.
-fn lowest(problem: &RingDownProblem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec<f64>> {
+fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec<f64>> {
     if starts.len() <= count {
         return starts;
     }
@@ -94,14 +94,14 @@ fn lowest(problem: &RingDownProblem<'_>, starts: Vec<Vec<f64>>, count: usize) ->
 
 /// The best end of the fits from everything that may be a start.
 fn fit_in_search(
-    problem: &RingDownProblem<'_>,
+    problem: &Problem<'_>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
     if !problem.is_elaborate() {
         return fit_simple(problem, options, observer);
     }
-    let simple = RingDownProblem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
+    let simple = Problem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
     let known = fit_simple(&simple, options, observer)?;
     let mut starts = problem.continued(&simple, known.values());
     starts.extend(problem.starts().into_iter().next());
@@ -110,7 +110,7 @@ fn fit_in_search(
 
 /// The best end of the fits from start values that the records show.
 fn fit_simple(
-    problem: &RingDownProblem<'_>,
+    problem: &Problem<'_>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use fmm_record::{Quantity, Record, Swings};
 
-use crate::{IdentifyError, RingDown};
+use crate::{IdentifyError, Experiment};
 
 /// Shortest piece of a half swing at an end of the record that is worth having, in half swings.
 const SHORTEST: f64 = 0.25;
@@ -14,7 +14,7 @@ const SHORTEST: f64 = 0.25;
 /// They are the crossings of a velocity and the peaks of a displacement. The first interval may begin within a half
 /// swing, at the first sample. The last half swing of a velocity ends half a period after it began, as every half
 /// swing on a linear spring does, dry friction or not.
-pub(crate) fn reversals(decay: &RingDown) -> Vec<f64> {
+pub(crate) fn reversals(decay: &Experiment) -> Vec<f64> {
     let record = decay.record();
     let is_displacement = record.quantity() == Quantity::Displacement;
     let mut times: Vec<f64> = if is_displacement {
@@ -51,7 +51,7 @@ pub(crate) fn check_reversals(record: &Record, times: &[f64]) -> Result<(), Iden
 }
 
 /// The values of a ring-down with straight lines over the samples that are left out.
-pub(crate) fn bridged(decay: &RingDown) -> Vec<f64> {
+pub(crate) fn bridged(decay: &Experiment) -> Vec<f64> {
     let mut values = decay.record().values().to_vec();
     let ends = |kept: &Range<usize>| (kept.start, kept.end - 1);
     for pair in decay.kept().windows(2) {

@@ -7,17 +7,18 @@ use fmm_friction::Role;
 use fmm_sim::{Event, EventKind, Simulated, Trajectory};
 
 use crate::drift::{as_fitted, with_drift};
+use crate::experiment::scaled;
 use crate::finding::{Finding, findings};
 use crate::fit_stages::{Near, fit_in_stages, fit_near};
 use crate::law::Law;
 use crate::layout::{Layout, named};
 use crate::nuisance::Nuisance;
-use crate::problem::RingDownProblem;
+use crate::problem::Problem;
 use crate::residual_noise::ResidualNoise;
 use crate::residual_structure::{Covariance, ResidualStructure};
 use crate::tangent::Tangent;
 use crate::terms::LINEAR;
-use crate::{IdentifyError, Machine, RingDown, Terms, Warning};
+use crate::{Drive, Experiment, IdentifyError, Machine, Terms, Warning};
 
 /// How the fitted motion of one record ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,7 +98,7 @@ pub struct Identification {
 ///
 /// ```
 /// use fmm_friction::CoulombViscous;
-/// use fmm_identify::{Machine, Preparation, RingDown, identify};
+/// use fmm_identify::{Machine, Preparation, Experiment, identify};
 /// use fmm_record::{Quantity, Record};
 /// # use fmm_model::Oscillator;
 /// # use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -108,14 +109,14 @@ pub struct Identification {
 /// # let velocity = motion.velocity().values().to_vec();
 /// let record = Record::new(0.0, 1e-3, velocity, Quantity::Velocity, "m/s")?;
 ///
-/// let decay = RingDown::prepare(&record, &Preparation::default())?;
+/// let decay = Experiment::ring_down(&record, &Preparation::default())?;
 /// let found = identify::<CoulombViscous>(&Machine::per_unit_mass(), &[decay])?;
 /// assert!((found.finding("friction_per_mass").unwrap().value() - 0.3).abs() < 1e-9);
 /// assert!((found.finding("damping_per_mass").unwrap().value() - 0.05).abs() < 1e-8);
 /// println!("{found}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn identify<F: Simulated>(machine: &Machine, decays: &[RingDown]) -> Result<Identification, IdentifyError> {
+pub fn identify<F: Simulated>(machine: &Machine, decays: &[Experiment]) -> Result<Identification, IdentifyError> {
     identify_with::<F>(machine, &Terms::NONE, decays)
 }
 
@@ -126,7 +127,7 @@ pub fn identify<F: Simulated>(machine: &Machine, decays: &[RingDown]) -> Result<
 pub fn identify_with<F: Simulated>(
     machine: &Machine,
     terms: &Terms,
-    decays: &[RingDown],
+    decays: &[Experiment],
 ) -> Result<Identification, IdentifyError> {
     identify_observed::<F>(machine, terms, decays, &Options::default(), &mut |_| ControlFlow::Continue(()))
 }
@@ -138,7 +139,7 @@ pub fn identify_with<F: Simulated>(
 pub fn identify_observed<F: Simulated>(
     machine: &Machine,
     terms: &Terms,
-    decays: &[RingDown],
+    decays: &[Experiment],
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Identification, IdentifyError> {
@@ -150,12 +151,12 @@ pub(crate) fn identify_by(
     law: Law,
     machine: &Machine,
     terms: &Terms,
-    decays: &[RingDown],
+    decays: &[Experiment],
     near: Option<&Near<'_>>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Identification, IdentifyError> {
-    let problem = RingDownProblem::of(law, *machine, terms.clone(), decays)?;
+    let problem = Problem::of(law, *machine, terms.clone(), decays)?;
     let fit = match near {
         Some(near) => fit_near(&problem.clone().bending_in_sight(), near, options, observer)?,
         None => fit_in_stages(&problem, options, observer)?,
@@ -165,15 +166,18 @@ pub(crate) fn identify_by(
     let failure = |error: EvaluationError| IdentifyError::Simulation { law: law.name, message: error.to_string() };
     let structure = ResidualStructure::of(&fit, decays);
     let covariance = Covariance::of(&problem, &fit, &structure).map_err(failure)?;
-    let mut found = findings(machine, problem.layout(), &fit, &covariance, gain);
-    if let Some(moved) = machine.with_damping_moved() {
+    // What a force does depends on the mass: its uncertainty is propagated by fits, not by the scale of the results.
+    let has_force = decays.iter().any(|decay| decay.drive().is_some_and(Drive::is_force));
+    let stated = |machine: &Machine| if has_force { machine.with_exact_scale() } else { *machine };
+    let mut found = findings(&stated(machine), problem.layout(), &fit, &covariance, gain);
+    for moved in machine.with_inputs_moved(has_force) {
         let mut ends = Vec::new();
         for machine in moved {
-            let problem = RingDownProblem::of(law, machine, terms.clone(), decays)?;
+            let problem = Problem::of(law, machine, terms.clone(), decays)?;
             let fit = solve_observed(&problem, fit.values(), options, |progress| observer(progress))
                 .map_err(|source| IdentifyError::Fit { law: law.name, source })?;
             let covariance = Covariance::of(&problem, &fit, &structure).map_err(failure)?;
-            ends.push(findings(&machine, problem.layout(), &fit, &covariance, gain));
+            ends.push(findings(&stated(&machine), problem.layout(), &fit, &covariance, gain));
         }
         add_in_quadrature(&mut found, &ends[0], &ends[1]);
     }
@@ -181,11 +185,12 @@ pub(crate) fn identify_by(
     let mut motions = Vec::with_capacity(decays.len());
     for (record, decay) in decays.iter().enumerate() {
         let trajectory = problem.events(record, fit.values()).map_err(failure)?;
-        motions.push(FittedMotion::of_events(decay.record().start(), decay.record().interval(), &trajectory));
+        let start = decay.record().start() - decay.sensor().delay();
+        motions.push(FittedMotion::of_events(start, decay.record().interval(), &trajectory));
     }
     let mut identification = Identification {
         law: terms.name(law.name),
-        family: law,
+        family: problem.layout().family,
         friction_at_rest: friction_at_rest(problem.layout(), fit.values()),
         terms: terms.clone(),
         machine: *machine,
@@ -193,14 +198,14 @@ pub(crate) fn identify_by(
         disturbances: decays.iter().map(|decay| decay.nuisances().to_vec()).collect(),
         pull_at_bound: pull_at_bound(&problem, &fit, &covariance),
         covariance,
-        amplitude: decays.iter().map(|decay| decay.summary().amplitudes.0).fold(0.0, f64::max),
+        amplitude: scaled(decays).map(|(decay, weight)| weight * decay.summary().amplitudes.0).fold(0.0, f64::max),
         fit,
         findings: found,
         motions,
         warnings: Vec::new(),
     };
     identification.warnings = Warning::of(&identification, decays);
-    let held = law.parameters.iter().filter(|parameter| parameter.role() == Role::Breakaway);
+    let held = problem.layout().family.held_breakaway();
     identification
         .warnings
         .extend(held.map(|held| Warning::StaticLevelHeld { parameter: held.parameter().name().to_owned() }));
@@ -208,7 +213,7 @@ pub(crate) fn identify_by(
 }
 
 /// By how many standard uncertainties the linear damping would leave the bound that it lies on; none if it lies on none.
-fn pull_at_bound(problem: &RingDownProblem<'_>, fit: &Fit, covariance: &Covariance) -> Option<f64> {
+fn pull_at_bound(problem: &Problem<'_>, fit: &Fit, covariance: &Covariance) -> Option<f64> {
     let index = fit.estimates().iter().position(|estimate| estimate.name() == LINEAR)?;
     fit.estimates()[index].status().is_at_bound().then_some(())?;
     let step = -Tangent::of(problem, fit)?.step(index, fit.residuals());
@@ -313,12 +318,12 @@ impl Identification {
 
     /// What the law says for every sample of record number `record` of `decays`, which must be those of the
     /// identification; none for another number.
-    pub fn model(&self, decays: &[RingDown], record: usize) -> Option<Vec<f64>> {
+    pub fn model(&self, decays: &[Experiment], record: usize) -> Option<Vec<f64>> {
         if record >= decays.len() || decays.len() != self.motions.len() {
             return None;
         }
         let decays = as_fitted(decays, &self.disturbances);
-        let problem = RingDownProblem::of(self.family, self.machine, self.terms.clone(), &decays).ok()?;
+        let problem = Problem::of(self.family, self.machine, self.terms.clone(), &decays).ok()?;
         problem.model(record, self.fit.values()).ok()
     }
 
@@ -332,8 +337,8 @@ impl Identification {
     }
 
     /// The `decays` with slow drift to be fitted beside their motion, if the residuals of this fit show any.
-    pub(crate) fn with_drift(&self, decays: &[RingDown]) -> Option<Vec<RingDown>> {
-        let problem = RingDownProblem::of(self.family, self.machine, self.terms.clone(), decays).ok()?;
+    pub(crate) fn with_drift(&self, decays: &[Experiment]) -> Option<Vec<Experiment>> {
+        let problem = Problem::of(self.family, self.machine, self.terms.clone(), decays).ok()?;
         with_drift(self, &problem, decays)
     }
 
@@ -364,7 +369,7 @@ impl Identification {
     }
 
     /// What the parameters of this fit to `problem` can follow, those on a bound included; none if the derivatives cannot be had.
-    pub(crate) fn tangent(&self, problem: &RingDownProblem<'_>) -> Option<Tangent> {
+    pub(crate) fn tangent(&self, problem: &Problem<'_>) -> Option<Tangent> {
         Tangent::of(problem, &self.fit)
     }
 
@@ -415,7 +420,7 @@ impl Identification {
         };
         let unit = sliding.parameter().unit();
         let at_rest =
-            self.family.fitted().filter(|parameter| matches!(parameter.role(), Role::LevelAbove | Role::Excess));
+            self.family.fitted().filter(|parameter| matches!(parameter.role(), Role::LevelAbove | Role::Excess | Role::Breakaway));
         let at_rest = at_rest.filter_map(|parameter| {
             let quantities = ["mu", "friction_force", "friction_per_mass"];
             let names = quantities.map(|quantity| named(parameter.parameter(), quantity, "").name().to_owned());

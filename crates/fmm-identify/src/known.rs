@@ -49,6 +49,11 @@ impl Known {
         self.uncertainty
     }
 
+    /// The same value without uncertainty.
+    pub(crate) const fn exactly(self) -> Self {
+        Self { uncertainty: 0.0, ..self }
+    }
+
     /// The same uncertainty about another value.
     pub(crate) const fn moved_to(self, value: f64) -> Self {
         Self { value, ..self }

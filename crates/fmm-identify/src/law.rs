@@ -52,6 +52,8 @@ pub(crate) struct Law {
     pub(crate) special_cases: &'static [SpecialCase],
     pub(crate) plain: Simulate<f64>,
     pub(crate) with_derivatives: Simulate<Dual<DIRECTIONS>>,
+    /// Whether static levels of their own are fitted.
+    fits_breakaway: bool,
     steady: fn(&[f64], f64, bool) -> Option<f64>,
 }
 
@@ -64,6 +66,7 @@ impl Law {
             special_cases: F::SPECIAL_CASES,
             plain: Motion::simulate::<F>,
             with_derivatives: Motion::simulate::<F>,
+            fits_breakaway: false,
             steady: steady::<F>,
         }
     }
@@ -74,10 +77,22 @@ impl Law {
         (self.steady)(&self.values(fitted), speed, losing)
     }
 
-    /// The parameters that a record is fitted by: all but static levels, on which the motion depends only in where it stops.
-    /// They are held at the sliding level that precedes them.
+    /// The same law with its static level fitted, as what it lies above the sliding level by.
+    pub(crate) const fn with_breakaway(self) -> Self {
+        Self { fits_breakaway: true, ..self }
+    }
+
+    /// The static level that is held; none if it is fitted or has none of its own.
+    pub(crate) fn held_breakaway(&self) -> impl Iterator<Item = &'static LawParameter> + use<> {
+        let is_held = !self.fits_breakaway;
+        self.parameters.iter().filter(move |parameter| is_held && parameter.role() == Role::Breakaway)
+    }
+
+    /// The parameters that records are fitted by: of ring-downs all but static levels, on which the motion depends only in where it
+    /// stops. They are held at the sliding level.
     pub(crate) fn fitted(&self) -> impl Iterator<Item = &'static LawParameter> + use<> {
-        self.parameters.iter().filter(|parameter| parameter.role() != Role::Breakaway)
+        let is_all = self.fits_breakaway;
+        self.parameters.iter().filter(move |parameter| is_all || parameter.role() != Role::Breakaway)
     }
 
     /// The place of its sliding level among the [`fitted`](Self::fitted) parameters: of several levels the one that is called so, or
@@ -125,8 +140,8 @@ impl Law {
         let level = self.level().map_or(D::from(0.0), |level| fitted[level]);
         let mut values = fitted.iter();
         let value = |parameter: &LawParameter| match parameter.role() {
-            Role::Breakaway => Some(level),
-            Role::LevelAbove => values.next().map(|excess| level + *excess),
+            Role::Breakaway if !self.fits_breakaway => Some(level),
+            Role::Breakaway | Role::LevelAbove => values.next().map(|excess| level + *excess),
             _ => values.next().copied(),
         };
         self.parameters.iter().filter_map(value).collect()

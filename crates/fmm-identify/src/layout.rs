@@ -9,10 +9,11 @@ use fmm_model::{Bounds, Damping, Oscillator, Parameter, Restoring, Scalar};
 use fmm_record::Quantity;
 
 use crate::dimension::{is_force, power_of_gain};
+use crate::experiment::reference;
 use crate::law::{Law, Motion};
 use crate::machine::Scale;
 use crate::terms::LINEAR;
-use crate::{IdentifyError, Machine, RingDown, Terms};
+use crate::{Experiment, IdentifyError, Machine, Terms};
 
 /// Order of the parameters: oscillator, damping beside the law, law, then for each record its initial state and, unless it
 /// is fixed, its offset.
@@ -35,12 +36,15 @@ impl Layout {
         family: Law,
         machine: &Machine,
         terms: &Terms,
-        decays: &[RingDown],
+        decays: &[Experiment],
     ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
         if terms.has_linear_damping() && family.has_slope() {
             return Err(IdentifyError::TwoDampings { law: family.name });
         }
-        let units = Units::of(&decays[0]);
+        let reference = reference(decays);
+        let is_driven = decays.iter().any(|decay| decay.drive().is_some());
+        let family = if is_driven { family.with_breakaway() } else { family };
+        let units = Units::of(reference);
         let unknown_scale = machine.scale() == Scale::Unknown;
         let mut parameters = if unknown_scale {
             vec![
@@ -48,7 +52,7 @@ impl Layout {
                 Parameter::new("stiffness", "k", "N/m").bounded(Bounds::POSITIVE),
             ]
         } else {
-            let bounds = decays[0].frequency_bounds();
+            let bounds = reference.frequency_bounds();
             vec![Parameter::new("natural_frequency_hz", "f₀", "Hz").bounded(bounds)]
         };
         let oscillator = parameters.len();
@@ -72,6 +76,10 @@ impl Layout {
             let disturbances = decay.nuisances().iter().enumerate();
             parameters
                 .extend(disturbances.map(|(at, nuisance)| nuisance.parameter(at, &number, decay.record().unit())));
+            if decay.sensor().has_free_corner() {
+                let corner = Parameter::named(of_record("sensor_corner_hz"), "f_c", "Hz");
+                parameters.push(corner.bounded(decay.corner_bounds()));
+            }
         }
         for (name, value) in terms.held() {
             let known = || parameters.iter().map(Parameter::name).collect::<Vec<_>>().join(", ");
@@ -94,8 +102,13 @@ impl Layout {
     }
 
     /// Index of the first disturbance of record number `record`, which is `decay`.
-    pub(crate) fn nuisance(&self, record: usize, decay: &RingDown) -> usize {
+    pub(crate) fn nuisance(&self, record: usize, decay: &Experiment) -> usize {
         self.own[record] + 2 + usize::from(decay.fixed_offset().is_none())
+    }
+
+    /// Index of the corner frequency of the sensor of record number `record`, which is `decay`, if it is fitted.
+    pub(crate) fn corner(&self, record: usize, decay: &Experiment) -> Option<usize> {
+        decay.sensor().has_free_corner().then(|| self.nuisance(record, decay) + decay.nuisances().len())
     }
 
     /// Index of parameter `direction` of record `record` among all parameters.
@@ -116,11 +129,12 @@ impl Layout {
         }
     }
 
-    /// The motion of one record, of the shared `values` with its initial position and velocity behind them.
+    /// The motion of one `experiment`, of the shared `values` with its initial position and velocity behind them.
     pub(crate) fn motion<D: Scalar>(
         &self,
         machine: &Machine,
         terms: &Terms,
+        experiment: &Experiment,
         values: &[D],
     ) -> Result<Motion<D>, EvaluationError> {
         let known_damping = D::from(machine.damping().map_or(0.0, |damping| damping.value()));
@@ -134,8 +148,21 @@ impl Layout {
         };
         let mut beside = values[self.oscillator..self.law].iter().copied();
         let linear = if terms.has_linear_damping() { beside.next() } else { None };
-        let quadratic = beside.next().unwrap_or(D::from(0.0));
-        let damping = linear.map_or(damping, |linear| damping + linear);
+        let quadratic = beside.next().unwrap_or(D::from(0.0)) * oscillator.mass();
+        let damping = linear.map_or(damping, |linear| damping + linear * oscillator.mass());
+        let force = match experiment.driven_values() {
+            None => None,
+            Some((drive, sampled)) => {
+                let is_relative = !drive.is_force() || machine.scale() == Scale::Unknown;
+                let of_mass = mass(machine.scale(), values[0]).filter(|_| !is_relative);
+                let factor = match of_mass {
+                    Some(mass) => D::from(1.0) / mass,
+                    None if drive.is_force() => D::from(1.0),
+                    None => oscillator.mass(),
+                };
+                Some(drive.excitation(sampled, factor)?)
+            }
+        };
         let restoring = match machine.restoring() {
             Restoring::Sine { length } => Restoring::sine(D::from(length))?,
             _ => Restoring::Linear,
@@ -143,9 +170,9 @@ impl Layout {
         Ok(Motion {
             oscillator: oscillator.with_damping(Damping::of_any_sign(damping, quadratic)?).with_restoring(restoring),
             law: self.family.values(&values[self.law..self.shared]),
-            normal_load: D::from(1.0),
+            normal_load: D::from(experiment.load_factor()),
             initial: [values[self.shared], values[self.shared + 1]],
-            force: None,
+            force,
         })
     }
 }
@@ -195,7 +222,7 @@ impl Units {
         let renamed = match (law_parameter.role(), parameter.unit()) {
             (Role::Slope, _) if unknown_scale => Parameter::new("damping", "c", "N s/m"),
             (Role::Slope, _) => Parameter::new(LINEAR, "c/m", "1/s"),
-            (Role::LevelAbove, _) => {
+            (Role::LevelAbove | Role::Breakaway, _) => {
                 let name = parameter.name().replace("coefficient", "excess_coefficient");
                 named(&Parameter::named(name, parameter.symbol().to_owned(), "1"), quantity, force)
             }
@@ -231,10 +258,18 @@ impl Units {
         }
     }
 
-    fn of(decay: &RingDown) -> Self {
+    pub(crate) fn of(decay: &Experiment) -> Self {
         let unit = decay.record().unit();
         if decay.record().quantity() == Quantity::Displacement {
             return Self { position: unit.into(), velocity: format!("{unit}/s"), acceleration: format!("{unit}/s²") };
+        }
+        if decay.record().quantity() == Quantity::Acceleration {
+            return match unit.strip_suffix("/s²").or_else(|| unit.strip_suffix("/s^2")) {
+                Some(base) => Self { position: base.into(), velocity: format!("{base}/s"), acceleration: unit.into() },
+                None => {
+                    Self { position: format!("{unit} s²"), velocity: format!("{unit} s"), acceleration: unit.into() }
+                }
+            };
         }
         match unit.strip_suffix("/s") {
             Some(base) => Self { position: base.into(), velocity: unit.into(), acceleration: format!("{base}/s²") },

@@ -1,13 +1,13 @@
 //! Friction parameters out of measured ring-downs and hammer blows, with their uncertainty and what the record could not
 //! tell.
 //!
-//! A [`Record`](fmm_record::Record) of a freely vibrating machine is prepared ([`RingDown`]), what is known of the machine
+//! A [`Record`](fmm_record::Record) of a freely vibrating machine is prepared ([`Experiment`]), what is known of the machine
 //! is stated ([`Machine`]), and as many laws as it asks for ([`search`]), several ([`compare`]) or one ([`identify`]) are fitted to it by simulating the motion
 //! exactly, through every reversal and stop.
 //!
 //! ```
 //! use fmm_friction::CoulombViscous;
-//! use fmm_identify::{Known, Machine, Preparation, RingDown, identify};
+//! use fmm_identify::{Known, Machine, Preparation, Experiment, identify};
 //! use fmm_model::Oscillator;
 //! use fmm_record::{Quantity, Record};
 //! use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -18,7 +18,7 @@
 //! let velocity = Exact.run(&scenario, &Sampling::uniform(1e-3, 1500)?)?.velocity().values().to_vec();
 //!
 //! let record = Record::new(0.0, 1e-3, velocity, Quantity::Velocity, "m/s")?;
-//! let decay = RingDown::prepare(&record, &Preparation::default())?;
+//! let decay = Experiment::ring_down(&record, &Preparation::default())?;
 //! let machine = Machine::of_mass(Known::new(10.391, 0.005)?)?.with_normal_load(Known::new(14.0, 0.014)?)?;
 //! let found = identify::<CoulombViscous>(&machine, &[decay])?;
 //!
@@ -56,7 +56,7 @@
 //!
 //! # Guarantees
 //!
-//! * Nothing is smoothed, and what was left out (rest before the release, spikes) is in the [summary](RingDown::summary)
+//! * Nothing is smoothed, and what was left out (rest before the release, spikes) is in the [summary](Experiment::summary)
 //!   and in the warnings.
 //! * Parameters that the record does not tell apart have no uncertainty, but a warning that names them. A static level of
 //!   its own is held, and a warning says so.
@@ -116,10 +116,11 @@ mod problem;
 mod report;
 mod residual_noise;
 mod residual_structure;
-mod ring_down;
+mod experiment;
 mod search;
 #[cfg(feature = "serde")]
 mod serialised;
+mod sight;
 mod sign;
 mod tangent;
 mod terms;
@@ -147,8 +148,8 @@ pub use known::Known;
 pub use machine::{Machine, Scale};
 pub use machine_problem::MachineProblem;
 pub use preparation::{Offset, Preparation, RecordSummary};
-pub use problem::RingDownProblem;
-pub use ring_down::RingDown;
+pub use problem::Problem;
+pub use experiment::{Drive, Experiment, Sensor};
 pub use search::{Search, search, search_observed};
 pub use sign::{Addition, Sign};
 pub use terms::Terms;

@@ -127,12 +127,34 @@ impl Machine {
         self.normal_load
     }
 
-    /// The same machine with its known damping moved to the ends of its standard uncertainty, the lower one cut at
-    /// zero; none if there is no uncertainty to pass on.
-    pub(crate) fn with_damping_moved(&self) -> Option<[Self; 2]> {
-        let damping = self.damping.filter(|damping| damping.uncertainty() > 0.0)?;
-        let (value, u) = (damping.value(), damping.uncertainty());
-        let moved = |value: f64| Self { damping: Some(damping.moved_to(value)), ..*self };
-        Some([moved((value - u).max(0.0)), moved(value + u)])
+    /// The same machine with each known input on which a fit depends moved to the ends of its standard uncertainty: its damping, the
+    /// lower end cut at zero, and its scale if a measured force acts on it. Inputs without an uncertainty are left out.
+    pub(crate) fn with_inputs_moved(&self, has_force: bool) -> Vec<[Self; 2]> {
+        let ends = |known: Known| [(known.value() - known.uncertainty()).max(0.0), known.value() + known.uncertainty()];
+        let uncertain = |known: &Known| known.uncertainty() > 0.0;
+        let damping = self.damping.filter(uncertain).map(|damping| {
+            ends(damping).map(|value| Self { damping: Some(damping.moved_to(value)), ..*self })
+        });
+        let scale = match self.scale {
+            Scale::Mass(mass) if has_force && uncertain(&mass) => {
+                Some(ends(mass).map(|value| Self { scale: Scale::Mass(mass.moved_to(value)), ..*self }))
+            }
+            Scale::Stiffness(stiffness) if has_force && uncertain(&stiffness) => {
+                Some(ends(stiffness).map(|value| Self { scale: Scale::Stiffness(stiffness.moved_to(value)), ..*self }))
+            }
+            _ => None,
+        };
+        damping.into_iter().chain(scale).collect()
+    }
+
+    /// The same machine with a scale without uncertainty.
+    pub(crate) fn with_exact_scale(&self) -> Self {
+        let exact = |known: Known| known.exactly();
+        let scale = match self.scale {
+            Scale::Mass(mass) => Scale::Mass(exact(mass)),
+            Scale::Stiffness(stiffness) => Scale::Stiffness(exact(stiffness)),
+            other => other,
+        };
+        Self { scale, ..*self }
     }
 }

@@ -14,7 +14,7 @@ use crate::pool::Pool;
 /// The residuals "model less record" of one record, as a function of the machine, the law and the initial state.
 ///
 /// Each of these has a value; what is not [`free`](Self::free) keeps it in a fit, and is an input of its
-/// [`Sensitivity`](fmm_fit::Sensitivity) and [`Refit`](fmm_fit::Refit). Where [`RingDownProblem`](crate::RingDownProblem)
+/// [`Sensitivity`](fmm_fit::Sensitivity) and [`Refit`](fmm_fit::Refit). Where [`Problem`](crate::Problem)
 /// finds all that a record shows, this one asks what a coefficient of friction becomes if mass, stiffness, damping and
 /// load are others: the fit of the thesis' chapter 5.3.
 ///
@@ -108,7 +108,7 @@ impl<F: Simulated> MachineProblem<F> {
         let channels = match quantity {
             Quantity::Displacement => Channels::Position,
             Quantity::Velocity => Channels::Velocity,
-            _ => return Err(IdentifyError::Quantity { quantity }),
+            _ => return Err(IdentifyError::Quantity { subject: "the record of a machine problem", needed: "a displacement or a velocity", quantity }),
         };
         let sampling = Sampling::uniform(record.interval(), record.len())
             .map_err(|error| IdentifyError::Simulation { law: F::NAME, message: error.to_string() })?

@@ -117,6 +117,8 @@ pub struct RecordSummary {
     pub further_releases: Vec<f64>,
     /// Another mode that vibrates beside the one that is fitted.
     pub second_mode: Option<SecondMode>,
+    /// Whether the motion is driven; what is seen in a free vibration is then none.
+    pub is_driven: bool,
 }
 
 /// A step of the converter that exceeds the noise by this factor rounds it away.

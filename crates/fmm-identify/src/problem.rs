@@ -4,12 +4,14 @@ use std::ops::Range;
 
 use fmm_fit::{Block, EvaluationError, Fit, Residuals};
 use fmm_model::{Parameter, Scalar};
-use fmm_record::Quantity;
-use fmm_sim::{Channels, Samples, Sampling, Simulated, Trajectory};
+use fmm_sim::{Channels, Sampling, Simulated, Trajectory};
 
+use crate::experiment::{Drive, scaled};
 use crate::law::{DIRECTIONS, Law, Simulate};
-use crate::layout::Layout;
-use crate::{IdentifyError, Machine, RingDown, Terms};
+use crate::layout::{Layout, Units};
+use crate::machine::Scale;
+use crate::sight::{Seen, Sight};
+use crate::{IdentifyError, Machine, Experiment, Terms};
 
 mod parts;
 mod starts;
@@ -22,24 +24,26 @@ mod starts;
 ///
 /// Anything that takes [`Residuals`] can be applied to it; [`identify`](crate::identify) is what most want.
 #[derive(Debug, Clone)]
-pub struct RingDownProblem<'a> {
+pub struct Problem<'a> {
     machine: Machine,
     terms: Terms,
-    decays: &'a [RingDown],
+    decays: &'a [Experiment],
     parameters: Vec<Parameter>,
     layout: Layout,
     blocks: Vec<Block>,
+    /// By what the residuals of each record are multiplied.
+    weights: Vec<f64>,
 }
 
 /// Samples simulated at a time: memory beyond the solver's own stays below 4 MB however long the record.
 const WINDOW: usize = 1 << 16;
 
-impl<'a> RingDownProblem<'a> {
+impl<'a> Problem<'a> {
     /// The problem of `decays` on `machine` by a law of family `F`.
     ///
     /// # Errors
     /// [`IdentifyError::NoRecord`] and [`IdentifyError::MixedRecords`].
-    pub fn new<F: Simulated>(machine: Machine, decays: &'a [RingDown]) -> Result<Self, IdentifyError> {
+    pub fn new<F: Simulated>(machine: Machine, decays: &'a [Experiment]) -> Result<Self, IdentifyError> {
         Self::with_terms::<F>(machine, Terms::NONE, decays)
     }
 
@@ -51,20 +55,26 @@ impl<'a> RingDownProblem<'a> {
     pub fn with_terms<F: Simulated>(
         machine: Machine,
         terms: Terms,
-        decays: &'a [RingDown],
+        decays: &'a [Experiment],
     ) -> Result<Self, IdentifyError> {
         Self::of(Law::of::<F>(), machine, terms, decays)
     }
 
-    pub(crate) fn of(law: Law, machine: Machine, terms: Terms, decays: &'a [RingDown]) -> Result<Self, IdentifyError> {
-        let describe = |decay: &RingDown| format!("{} in {}", decay.record().quantity(), decay.record().unit());
+    pub(crate) fn of(law: Law, machine: Machine, terms: Terms, decays: &'a [Experiment]) -> Result<Self, IdentifyError> {
+        let describe = |decay: &Experiment| format!("{} in {}", decay.record().quantity(), decay.record().unit());
         let first = decays.first().ok_or(IdentifyError::NoRecord)?;
-        if let Some(other) = decays.iter().find(|decay| describe(decay) != describe(first)) {
+        let length = |decay: &Experiment| Units::of(decay).position;
+        if let Some(other) = decays.iter().find(|decay| length(decay) != length(first)) {
             return Err(IdentifyError::MixedRecords { first: describe(first), other: describe(other) });
+        }
+        let has_force = decays.iter().any(|decay| decay.drive().is_some_and(Drive::is_force));
+        if has_force && machine.scale() == Scale::PerUnitMass {
+            return Err(IdentifyError::ForceWithoutScale);
         }
         let (layout, parameters) = Layout::of(law, &machine, &terms, decays)?;
         let blocks = blocks(&layout, decays);
-        Ok(Self { machine, terms, decays, parameters, layout, blocks })
+        let weights = scaled(decays).map(|(_, weight)| weight).collect();
+        Ok(Self { machine, terms, decays, parameters, layout, blocks, weights })
     }
 
     fn law(&self) -> &Law {
@@ -80,7 +90,7 @@ impl<'a> RingDownProblem<'a> {
         &self.machine
     }
 
-    pub(crate) fn decays(&self) -> &'a [RingDown] {
+    pub(crate) fn decays(&self) -> &'a [Experiment] {
         self.decays
     }
 
@@ -108,22 +118,23 @@ impl<'a> RingDownProblem<'a> {
         p: &[f64],
         first: usize,
         ranges: &[Range<usize>],
-        mut visit: impl FnMut(usize, Range<usize>, Range<usize>, &Samples<D>),
+        mut visit: impl FnMut(usize, Range<usize>, Range<usize>, &Seen<'_, D>),
     ) -> Result<(), EvaluationError> {
         let (Some(first_range), Some(last_range)) = (ranges.first(), ranges.last()) else { return Ok(()) };
         let decay = &self.decays[record];
-        let motion = self.layout.motion(&self.machine, &self.terms, &self.values::<D>(record, p, first))?;
-        let displacement = decay.record().quantity() == Quantity::Displacement;
-        let channels = if displacement { Channels::Position } else { Channels::Velocity };
-        let sampling = Sampling::uniform(decay.record().interval(), decay.record().len())?.keeping(channels);
+        let motion = self.layout.motion(&self.machine, &self.terms, decay, &self.values::<D>(record, p, first))?;
+        let mut sight = Sight::of(decay, self.corner(record, p));
+        let sampling = Sampling::uniform(decay.record().interval(), decay.record().len())?.keeping(sight.channels());
         let mut trajectory = Trajectory::new();
         let mut before = 0;
-        let (mut next, mut start) = (0, first_range.start);
+        // A filter sees all samples in turn.
+        let (mut next, mut start) = (0, if sight.is_filtered() { 0 } else { first_range.start });
         while start < last_range.end {
             let end = last_range.end.min(start + WINDOW);
             let Some(window) = sampling.window(start..end) else { break };
             simulate(&motion, &window, &mut trajectory)?;
-            let simulated = if displacement { trajectory.position() } else { trajectory.velocity() };
+            let seen = sight.see(&trajectory);
+            let simulated = &seen;
             while let Some(range) = ranges.get(next) {
                 let samples = range.start.max(start)..range.end.min(end);
                 if !samples.is_empty() {
@@ -144,7 +155,8 @@ impl<'a> RingDownProblem<'a> {
 
     /// The events of `record` up to its end.
     pub(crate) fn events(&self, record: usize, p: &[f64]) -> Result<Trajectory, EvaluationError> {
-        let motion = self.layout.motion(&self.machine, &self.terms, &self.values::<f64>(record, p, 0))?;
+        let values = self.values::<f64>(record, p, 0);
+        let motion = self.layout.motion(&self.machine, &self.terms, &self.decays[record], &values)?;
         let mut trajectory = Trajectory::new();
         let ends = Sampling::uniform(self.decays[record].record().duration(), 2)?.keeping(Channels::Position);
         (self.law().plain)(&motion, &ends, &mut trajectory)?;
@@ -175,15 +187,30 @@ impl<'a> RingDownProblem<'a> {
     }
 
     /// That the motion follows the parameter at `index`, of this `value`, less steeply than any that can be fitted.
-    fn require_smooth(&self, index: usize, value: f64, derivatives: &[f64]) -> Result<(), EvaluationError> {
+    fn require_smooth(
+        &self,
+        record: usize,
+        index: usize,
+        value: f64,
+        derivatives: &[f64],
+    ) -> Result<(), EvaluationError> {
         /// Amplitudes by which a relative change of one would move the motion. The phase of ten million periods moves by as much.
         const STEEP: f64 = 1e8;
-        let most = STEEP * self.decays[0].summary().amplitudes.0;
+        let most = STEEP * self.decays[record].summary().amplitudes.0;
         if derivatives.iter().all(|derivative| (derivative * value).abs() <= most) {
             return Ok(());
         }
         let name = self.parameters[index].name();
         Err(EvaluationError::message(format!("the motion changes with {name} by leaps near {value:e}")))
+    }
+
+    /// Corner frequency (Hz) of the sensor of `record`, if it has a filter.
+    fn corner(&self, record: usize, p: &[f64]) -> Option<f64> {
+        let decay = &self.decays[record];
+        match self.layout.corner(record, decay) {
+            Some(index) => Some(p[index]),
+            None => decay.sensor().first_corner(decay.guess().frequency()),
+        }
     }
 
     fn offset(&self, record: usize, p: &[f64]) -> f64 {
@@ -237,7 +264,7 @@ impl<'a> RingDownProblem<'a> {
         let mut signal: Vec<f64> = fit.residuals()[rows]
             .iter()
             .zip(measured)
-            .map(|(residual, measured)| residual + measured - offset)
+            .map(|(residual, measured)| residual / self.weights[record] + measured - offset)
             .collect();
         for (size, shape) in self.disturbances(record, fit.values()) {
             let kept = decay.kept().iter().flat_map(|range| &shape[range.clone()]);
@@ -275,24 +302,29 @@ impl<'a> RingDownProblem<'a> {
             let shape = &shape[samples.clone()];
             residuals[base..].iter_mut().zip(shape).for_each(|(out, shape)| *out += size * shape);
         }
+        let weight = self.weights[record];
+        if weight != 1.0 {
+            residuals[base..base + simulated.len()].iter_mut().for_each(|out| *out *= weight);
+        }
     }
 }
 
 /// One block per record: the parameters of its motion and its offset.
-fn blocks(layout: &Layout, decays: &[RingDown]) -> Vec<Block> {
-    let block = |(record, decay): (usize, &RingDown)| {
+fn blocks(layout: &Layout, decays: &[Experiment]) -> Vec<Block> {
+    let block = |(record, decay): (usize, &Experiment)| {
         let mut parameters: Vec<usize> = (0..layout.directions()).map(|j| layout.index(record, j)).collect();
         if decay.fixed_offset().is_none() {
             parameters.push(layout.own[record] + 2);
         }
         let first = layout.nuisance(record, decay);
         parameters.extend(first..first + decay.nuisances().len());
+        parameters.extend(layout.corner(record, decay));
         Block::new(decay.summary().samples, parameters)
     };
     decays.iter().enumerate().map(block).collect()
 }
 
-impl Residuals for RingDownProblem<'_> {
+impl Residuals for Problem<'_> {
     fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
@@ -345,6 +377,10 @@ impl Residuals for RingDownProblem<'_> {
                             let values = &simulated.values()[inside.clone()];
                             self.write_residuals(record, base + before, p, samples, values, residuals);
                         }
+                        if let (0, Some(by_corner)) = (first, simulated.by_corner()) {
+                            let start = elements + (self.blocks[record].parameters().len() - 1) * rows + before;
+                            jacobian[start..start + inside.len()].copy_from_slice(&by_corner[inside.clone()]);
+                        }
                         for direction in 0..carried {
                             let Some(partial) = simulated.partial(direction) else { continue };
                             let start = elements + (first + direction) * rows + before;
@@ -355,7 +391,7 @@ impl Residuals for RingDownProblem<'_> {
                 for direction in first..first + carried {
                     let index = self.layout.index(record, direction);
                     let column = &jacobian[elements + direction * rows..][..rows];
-                    self.require_smooth(index, p[index], column)?;
+                    self.require_smooth(record, index, p[index], column)?;
                 }
             }
             if self.decays[record].fixed_offset().is_none() {
@@ -369,7 +405,12 @@ impl Residuals for RingDownProblem<'_> {
                 let kept = decay.kept().iter().flat_map(|range| &shape[range.clone()]);
                 jacobian[start..start + rows].iter_mut().zip(kept).for_each(|(out, shape)| *out = *shape);
             }
-            elements += rows * self.blocks[record].parameters().len();
+            let end = elements + rows * self.blocks[record].parameters().len();
+            let weight = self.weights[record];
+            if weight != 1.0 {
+                jacobian[elements..end].iter_mut().for_each(|element| *element *= weight);
+            }
+            elements = end;
         }
         Ok(true)
     }
@@ -383,6 +424,7 @@ impl Residuals for RingDownProblem<'_> {
 mod tests {
     use fmm_friction::{CoulombViscous, Stribeck};
     use fmm_model::Oscillator;
+    use fmm_record::Quantity;
     use fmm_record::Record;
     use fmm_sim::{Engine, Exact, Scenario};
 
@@ -390,7 +432,7 @@ mod tests {
     use crate::Preparation;
 
     /// Two velocity records of a machine of 2 Hz, c/m = 0.05 1/s, F/m = 0.3 m/s², of different length.
-    fn decays() -> Vec<RingDown> {
+    fn decays() -> Vec<Experiment> {
         [(0.02, 2000), (0.025, 2300)]
             .map(|(position, samples)| {
                 let law = CoulombViscous::new(0.3, 0.05).unwrap();
@@ -400,7 +442,7 @@ mod tests {
                 let noise = |i: usize| 1e-4 * (((i * 7919) % 1009) as f64 / 1009.0 - 0.5);
                 let values = motion.velocity().values().iter().enumerate().map(|(i, v)| v + noise(i)).collect();
                 let record = Record::new(0.0, 1e-3, values, Quantity::Velocity, "m/s").unwrap();
-                RingDown::prepare(&record, &Preparation::default()).unwrap()
+                Experiment::ring_down(&record, &Preparation::default()).unwrap()
             })
             .to_vec()
     }
@@ -408,7 +450,7 @@ mod tests {
     #[test]
     fn derivatives_of_joint_records_are_those_of_differences() {
         let decays = decays();
-        let problem = RingDownProblem::new::<CoulombViscous>(Machine::per_unit_mass(), &decays).unwrap();
+        let problem = Problem::new::<CoulombViscous>(Machine::per_unit_mass(), &decays).unwrap();
         // Off the bounds, so that differences have room.
         let p: Vec<f64> = problem.starts()[0].iter().map(|value| value + 1e-3).collect();
         let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
@@ -447,7 +489,7 @@ mod tests {
         let decays = &decays()[..1];
         let other = crate::identify::<CoulombViscous>(&Machine::per_unit_mass(), decays).unwrap();
         let machine = Machine::per_unit_mass();
-        let problem = RingDownProblem::new::<Stribeck>(machine, decays).unwrap();
+        let problem = Problem::new::<Stribeck>(machine, decays).unwrap();
         let start = problem.beside(&other, &[&other], &problem.starts()).unwrap();
         let law = problem.layout().law..problem.layout().shared;
         let steady = |speed: f64| problem.law().steady(&start[law.clone()], speed, true).unwrap();

@@ -2,9 +2,10 @@
 
 use fmm_fit::{EvaluationError, Fit, autocorrelation_time};
 
-use crate::RingDown;
+use crate::Experiment;
 use crate::correlation::are_correlated;
-use crate::problem::RingDownProblem;
+use crate::experiment::scaled;
+use crate::problem::Problem;
 use crate::residual_noise::{ResidualNoise, Series};
 use crate::tangent::inverse_of_products;
 
@@ -25,13 +26,11 @@ pub(crate) struct ResidualStructure {
 const EXCESS: f64 = 1.5;
 
 impl ResidualStructure {
-    pub(crate) fn of(fit: &Fit, decays: &[RingDown]) -> Self {
-        let summaries = || decays.iter().map(RingDown::summary);
-        let rounding = summaries().map(|summary| 1e-9 * summary.amplitudes.0).fold(0.0, f64::max);
+    pub(crate) fn of(fit: &Fit, decays: &[Experiment]) -> Self {
+        let rounding =
+            scaled(decays).map(|(decay, weight)| 1e-9 * weight * decay.summary().amplitudes.0).fold(0.0, f64::max);
         // A converter step counts as the noise of its rounding.
-        let noise = summaries()
-            .map(|summary| summary.noise.hypot(summary.resolution.unwrap_or(0.0) / 12f64.sqrt()))
-            .fold(rounding, f64::max);
+        let noise = scaled(decays).map(|(decay, weight)| weight * decay.white_noise()).fold(rounding, f64::max);
         let count = fit.residuals().len() as f64;
         Self {
             residual: (fit.sum_of_squares() / count).sqrt(),
@@ -78,7 +77,7 @@ pub(crate) struct Covariance {
 
 impl Covariance {
     pub(crate) fn of(
-        problem: &RingDownProblem<'_>,
+        problem: &Problem<'_>,
         fit: &Fit,
         structure: &ResidualStructure,
     ) -> Result<Self, EvaluationError> {
@@ -128,7 +127,7 @@ impl Covariance {
     }
 
     fn noise(
-        problem: &RingDownProblem<'_>,
+        problem: &Problem<'_>,
         fit: &Fit,
         structure: &ResidualStructure,
         columns: &[Vec<f64>],

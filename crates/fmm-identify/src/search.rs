@@ -11,7 +11,7 @@ use crate::comparison::{closest, explains};
 use crate::fit_stages::Near;
 use crate::judgement::{Judgement, shortcomings};
 use crate::sign::{Addition, Sign, signs};
-use crate::{Candidate, Comparison, Identification, IdentifyError, Machine, RingDown, Warning};
+use crate::{Candidate, Comparison, Identification, IdentifyError, Machine, Experiment, Warning};
 
 /// How laws are searched for. The default tries as many as the record asks for, on two threads.
 ///
@@ -59,7 +59,7 @@ impl Search {
     }
 
     /// The candidate of this name, with what is held.
-    fn candidate(&self, name: &str, machine: &Machine, decays: &[RingDown]) -> Result<Candidate, IdentifyError> {
+    fn candidate(&self, name: &str, machine: &Machine, decays: &[Experiment]) -> Result<Candidate, IdentifyError> {
         let (name, own) = name.split_once(',').unwrap_or((name, ""));
         let mut candidate = Candidate::named(name)?;
         if let Some((parameter, value)) = own.split_once('=') {
@@ -79,7 +79,7 @@ impl Search {
     }
 
     /// That each parameter that is held is one of some law that may be tried.
-    fn require_known(&self, machine: &Machine, decays: &[RingDown]) -> Result<(), IdentifyError> {
+    fn require_known(&self, machine: &Machine, decays: &[Experiment]) -> Result<(), IdentifyError> {
         let mut known = Vec::new();
         for name in
             SIMPLE.iter().chain(&OF_SPEED).chain(&OF_SPEED_FURTHER).chain(&WITH_STATE).chain(&WITH_STATE_FURTHER)
@@ -140,7 +140,7 @@ const WITH_STATE_FURTHER: [&str; 2] = ["lugre,exponent=2", "bouc_wen+linear,ampl
 ///
 /// # Errors
 /// [`IdentifyError`] as for [`identify`](crate::identify), and for a parameter that no law has.
-pub fn search(machine: &Machine, decays: &[RingDown], search: &Search) -> Result<Comparison, IdentifyError> {
+pub fn search(machine: &Machine, decays: &[Experiment], search: &Search) -> Result<Comparison, IdentifyError> {
     search_observed(machine, decays, search, &Options::default(), |_, _| ControlFlow::Continue(()))
 }
 
@@ -150,7 +150,7 @@ pub fn search(machine: &Machine, decays: &[RingDown], search: &Search) -> Result
 /// As for [`search`].
 pub fn search_observed(
     machine: &Machine,
-    decays: &[RingDown],
+    decays: &[Experiment],
     search: &Search,
     options: &Options,
     observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
@@ -295,7 +295,7 @@ fn preslides(found: &Identification) -> bool {
 
 struct Run<'a, F> {
     machine: &'a Machine,
-    decays: &'a [RingDown],
+    decays: &'a [Experiment],
     search: &'a Search,
     options: &'a Options,
     observer: &'a Mutex<F>,

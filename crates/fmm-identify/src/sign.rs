@@ -7,10 +7,11 @@ use fmm_fit::{EvaluationError, Residuals};
 use fmm_friction::{Berger, CoulombViscous, Dahl};
 use fmm_model::{ModelError, Restoring};
 
+use crate::experiment::reference;
 use crate::law::Law;
-use crate::problem::RingDownProblem;
+use crate::problem::Problem;
 use crate::tangent::Tangent;
-use crate::{Identification, IdentifyError, RingDown, Terms};
+use crate::{Identification, IdentifyError, Experiment, Terms};
 
 /// An addition to Coulomb and viscous friction on a linear spring.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,9 +79,9 @@ const STEP: f64 = 0.01;
 /// ```
 ///
 /// m(a₀) is the motion with a small addition, d what of its change no parameter of the simple law can follow (a score test).
-pub(crate) fn signs(base: &Identification, decays: &[RingDown]) -> Result<Vec<Sign>, IdentifyError> {
+pub(crate) fn signs(base: &Identification, decays: &[Experiment]) -> Result<Vec<Sign>, IdentifyError> {
     let machine = *base.machine();
-    let problem = RingDownProblem::with_terms::<CoulombViscous>(machine, base.terms().clone(), decays)?;
+    let problem = Problem::with_terms::<CoulombViscous>(machine, base.terms().clone(), decays)?;
     let layout = problem.layout();
     if layout.oscillator != 1 || !base.terms().is_plain() {
         return Ok(Vec::new());
@@ -88,11 +89,11 @@ pub(crate) fn signs(base: &Identification, decays: &[RingDown]) -> Result<Vec<Si
     let values = base.fit().values();
     let (frequency, friction, damping) = (values[0], values[1], values[2]);
     let own = &values[layout.shared..];
-    let (length, speed) = decays[0].scales();
+    let (length, speed) = reference(decays).scales();
     // Of a machine without friction the level with the same losses.
     let level = friction.max(0.25 * PI * 0.5 * damping * speed).max(f64::MIN_POSITIVE);
     let linear = Terms::NONE.with_linear_damping();
-    let residuals = |problem: &RingDownProblem<'_>, shared: &[f64]| -> Result<Vec<f64>, EvaluationError> {
+    let residuals = |problem: &Problem<'_>, shared: &[f64]| -> Result<Vec<f64>, EvaluationError> {
         let values: Vec<f64> = shared.iter().chain(own).copied().collect();
         let mut residuals = vec![0.0; problem.len()];
         problem.residuals(&values, &mut residuals)?;
@@ -100,19 +101,19 @@ pub(crate) fn signs(base: &Identification, decays: &[RingDown]) -> Result<Vec<Si
     };
     let mut changes: Vec<(Addition, Vec<f64>)> = Vec::new();
     for share in FALLS {
-        let berger = RingDownProblem::of(Law::of::<Berger>(), machine, linear.clone(), decays)?;
+        let berger = Problem::of(Law::of::<Berger>(), machine, linear.clone(), decays)?;
         let shared = [frequency, damping, friction, STEP * level, 1.0 / (share * speed)];
         if let Ok(changed) = residuals(&berger, &shared) {
             changes.push((Addition::FallsWithSpeed(share), changed));
         }
     }
     let quadratic =
-        RingDownProblem::of(Law::of::<CoulombViscous>(), machine, Terms::NONE.with_quadratic_damping(), decays)?;
+        Problem::of(Law::of::<CoulombViscous>(), machine, Terms::NONE.with_quadratic_damping(), decays)?;
     if let Ok(changed) = residuals(&quadratic, &[frequency, STEP * level / (speed * speed), friction, damping]) {
         changes.push((Addition::QuadraticDamping, changed));
     }
     if friction > 0.0 {
-        let dahl = RingDownProblem::of(Law::of::<Dahl>(), machine, linear, decays)?;
+        let dahl = Problem::of(Law::of::<Dahl>(), machine, linear, decays)?;
         if let Ok(changed) = residuals(&dahl, &[frequency, damping, friction, friction / (STEP * length), 1.0]) {
             changes.push((Addition::Presliding, changed));
         }
@@ -121,7 +122,7 @@ pub(crate) fn signs(base: &Identification, decays: &[RingDown]) -> Result<Vec<Si
         let softened = |length: f64| -> Result<_, ModelError> { Ok(machine.with_restoring(Restoring::sine(length)?)) };
         // The sine of x/L loses x²/6L² of the stiffness.
         let softened = softened(length / (6.0 * STEP).sqrt())?;
-        let softened = RingDownProblem::of(Law::of::<CoulombViscous>(), softened, Terms::NONE, decays)?;
+        let softened = Problem::of(Law::of::<CoulombViscous>(), softened, Terms::NONE, decays)?;
         if let Ok(changed) = residuals(&softened, &values[..layout.shared]) {
             changes.push((Addition::SofteningSpring, changed));
         }

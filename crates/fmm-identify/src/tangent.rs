@@ -2,7 +2,7 @@
 
 use fmm_fit::Fit;
 
-use crate::problem::RingDownProblem;
+use crate::problem::Problem;
 
 /// The derivatives of all residuals by the parameters that a fit determines, those on a bound included.
 #[derive(Debug, Clone)]
@@ -16,7 +16,7 @@ pub(crate) struct Tangent {
 
 impl Tangent {
     /// That of `fit`, which is one to `problem`; none if the derivatives cannot be had.
-    pub(crate) fn of(problem: &RingDownProblem<'_>, fit: &Fit) -> Option<Self> {
+    pub(crate) fn of(problem: &Problem<'_>, fit: &Fit) -> Option<Self> {
         let known: Vec<usize> = (0..fit.values().len()).filter(|i| fit.relaxed_covariance(*i, *i).is_some()).collect();
         let columns = problem.columns(fit.values(), &known).ok()?;
         let inverse = inverse_of_products(&columns);

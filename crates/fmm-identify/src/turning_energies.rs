@@ -6,7 +6,7 @@ use fmm_model::{ModelError, Oscillator};
 use fmm_record::{Quantity, Record, noise};
 
 use crate::half_swings::{bridged, check_reversals, reversals};
-use crate::{Estimated, IdentifyError, RingDown};
+use crate::{Estimated, IdentifyError, Experiment};
 
 /// What one half swing lost.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,7 +70,7 @@ pub fn half_swing_losses(
 ///
 /// ```
 /// use fmm_friction::Coulomb;
-/// use fmm_identify::{Preparation, RingDown, half_swing_losses_of};
+/// use fmm_identify::{Preparation, Experiment, half_swing_losses_of};
 /// use fmm_model::Oscillator;
 /// use fmm_record::{Quantity, Record};
 /// use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -79,7 +79,7 @@ pub fn half_swing_losses(
 /// let scenario = Scenario::new(machine, Coulomb::new(0.1)?, 1.0)?.starting_at(0.02, 0.0)?;
 /// let motion = Exact.run(&scenario, &Sampling::uniform(1e-3, 4000)?)?;
 /// let values = motion.velocity().values().iter().map(|v| v + 0.003).collect();
-/// let decay = RingDown::prepare(&Record::new(0.0, 1e-3, values, Quantity::Velocity, "m/s")?, &Preparation::default())?;
+/// let decay = Experiment::ring_down(&Record::new(0.0, 1e-3, values, Quantity::Velocity, "m/s")?, &Preparation::default())?;
 ///
 /// for half_swing in half_swing_losses_of(&decay, &machine)? {
 ///     assert!((half_swing.friction.value / 0.1 - 1.0).abs() < 0.02, "{half_swing:?}");
@@ -89,7 +89,8 @@ pub fn half_swing_losses(
 ///
 /// # Errors
 /// [`IdentifyError::TooFewHalfSwings`] if the centre cannot be found.
-pub fn half_swing_losses_of(decay: &RingDown, oscillator: &Oscillator) -> Result<Vec<HalfSwing>, IdentifyError> {
+pub fn half_swing_losses_of(decay: &Experiment, oscillator: &Oscillator) -> Result<Vec<HalfSwing>, IdentifyError> {
+    decay.require_free("the energy of turning points")?;
     let record = decay.record();
     if record.quantity() == Quantity::Displacement {
         let (offset, centre) = match decay.fixed_offset() {
@@ -210,7 +211,7 @@ fn integrated(
 }
 
 /// Turning points of a displacement; the work of the damping is that of a sine.
-fn measured(decay: &RingDown, offset: f64, oscillator: &Oscillator) -> Vec<Turn> {
+fn measured(decay: &Experiment, offset: f64, oscillator: &Oscillator) -> Vec<Turn> {
     let peaks = decay.peaks();
     let turn = |(i, &(time, value)): (usize, &(f64, f64))| {
         let damped = peaks.get(i + 1).map_or(0.0, |&(end, next)| {

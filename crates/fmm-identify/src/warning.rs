@@ -8,7 +8,7 @@ use fmm_model::Restoring;
 
 use crate::machine::Scale;
 use crate::terms::{LINEAR, QUADRATIC};
-use crate::{FittedMotion, Identification, Machine, RecordSummary, RingDown};
+use crate::{FittedMotion, Identification, Machine, RecordSummary, Experiment};
 
 /// Something that limits what the record can tell, or that was done to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -253,7 +253,7 @@ const NARROW: f64 = 5e-3;
 
 impl Warning {
     /// Everything that limits `identification` of `decays`.
-    pub(crate) fn of(identification: &Identification, decays: &[RingDown]) -> Vec<Self> {
+    pub(crate) fn of(identification: &Identification, decays: &[Experiment]) -> Vec<Self> {
         let mut warnings = Vec::new();
         let machine = identification.machine();
         match (machine.scale(), machine.normal_load()) {
@@ -270,7 +270,7 @@ impl Warning {
         warnings.extend(Self::of_noise(identification, decays));
         let unit = decays.first().map_or("", |decay| decay.record().unit());
         let is_scaled = matches!(machine.scale(), Scale::Mass(_) | Scale::Stiffness(_));
-        if is_scaled && !matches!(unit, "m" | "m/s") {
+        if is_scaled && !matches!(unit, "m" | "m/s" | "m/s²") {
             warnings.push(Self::NotSi { unit: unit.to_owned() });
         }
         warnings.extend(Self::of_narrow_stop(identification.motions()));
@@ -286,10 +286,10 @@ impl Warning {
     fn of_record(summary: &RecordSummary, machine: &Machine, warnings: &mut Vec<Self>) {
         let (first, last) = summary.amplitudes;
         // Two turning points give one amplitude.
-        if last >= first && summary.half_swings > 2 {
+        if last >= first && summary.half_swings > 2 && !summary.is_driven {
             warnings.push(Self::NoDecay);
         }
-        if summary.half_swings < ENOUGH_HALF_SWINGS {
+        if summary.half_swings < ENOUGH_HALF_SWINGS && !summary.is_driven {
             warnings.push(Self::FewHalfSwings { count: summary.half_swings });
         }
         // A pendulum that is taken for one has such a period.
@@ -351,7 +351,7 @@ impl Warning {
         }
     }
 
-    fn of_residuals(identification: &Identification, decays: &[RingDown], warnings: &mut Vec<Self>) {
+    fn of_residuals(identification: &Identification, decays: &[Experiment], warnings: &mut Vec<Self>) {
         let structure = identification.structure();
         if structure.is_structured() {
             warnings.push(Self::StructuredResiduals {

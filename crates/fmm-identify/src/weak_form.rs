@@ -8,7 +8,7 @@ use fmm_record::{Quantity, Record, noise, quantisation_step};
 
 use crate::half_swings::{bridged, check_reversals, reversals};
 use crate::weak_equations::{Equations, Motion};
-use crate::{Estimated, IdentifyError, RingDown};
+use crate::{Estimated, IdentifyError, Experiment};
 
 /// Friction and damping without a derivative of the record, without smoothing and without a simulation.
 ///
@@ -38,7 +38,7 @@ use crate::{Estimated, IdentifyError, RingDown};
 /// | few half swings | five unknowns need at least that many; hold those that are known |
 ///
 /// ```
-/// use fmm_identify::{Preparation, RingDown, WeakForm};
+/// use fmm_identify::{Preparation, Experiment, WeakForm};
 /// # use fmm_friction::CoulombViscous;
 /// # use fmm_model::Oscillator;
 /// # use fmm_record::{Quantity, Record};
@@ -48,7 +48,7 @@ use crate::{Estimated, IdentifyError, RingDown};
 /// # let scenario = Scenario::new(Oscillator::per_unit_mass(2.0)?, CoulombViscous::new(0.1, 0.05)?, 1.0)?;
 /// # let motion = Exact.run(&scenario.starting_at(0.02, 0.0)?, &Sampling::uniform(1e-3, 4000)?)?;
 /// # let record = Record::new(0.0, 1e-3, motion.velocity().values().to_vec(), Quantity::Velocity, "m/s")?;
-/// let decay = RingDown::prepare(&record, &Preparation::default())?;
+/// let decay = Experiment::ring_down(&record, &Preparation::default())?;
 /// let found = WeakForm::default().estimate(&decay)?;
 /// assert!((found.friction.value / 0.1 - 1.0).abs() < 1e-3);
 /// assert!((found.damping.value / 0.05 - 1.0).abs() < 1e-2);
@@ -148,7 +148,8 @@ impl WeakForm {
     /// # Errors
     /// [`IdentifyError::TooFewHalfSwings`] if there are fewer equations than unknowns, [`IdentifyError::Undetermined`] if
     /// they do not tell them apart, [`IdentifyError::VelocityNeeded`] for quadratic damping of a displacement.
-    pub fn estimate(&self, decay: &RingDown) -> Result<WeakFormEstimate, IdentifyError> {
+    pub fn estimate(&self, decay: &Experiment) -> Result<WeakFormEstimate, IdentifyError> {
+        decay.require_free("the weak form")?;
         self.solve(decay.record(), &bridged(decay), &reversals(decay), decay.fixed_offset(), decay.white_noise())
     }
 
@@ -165,7 +166,7 @@ impl WeakForm {
     ) -> Result<WeakFormEstimate, IdentifyError> {
         let quantity = record.quantity();
         if !matches!(quantity, Quantity::Displacement | Quantity::Velocity) {
-            return Err(IdentifyError::Quantity { quantity });
+            return Err(IdentifyError::Quantity { subject: "a record for the weak form", needed: "a displacement or a velocity", quantity });
         }
         check_reversals(record, reversals)?;
         let offset = offset.map(|offset| ModelError::require_finite("offset", offset, "in the unit of the record"));

@@ -7,7 +7,7 @@ use fmm_model::{Bounds, Dual, Parameter, Scalar};
 use fmm_record::Quantity;
 
 use crate::free_vibration::FreeVibration;
-use crate::{Estimated, IdentifyError, RingDown};
+use crate::{Estimated, IdentifyError, Experiment};
 
 /// The viscous fit over one window.
 #[derive(Debug, Clone)]
@@ -47,7 +47,7 @@ pub struct WindowFit {
 /// use std::f64::consts::PI;
 ///
 /// use fmm_fit::{StraightLine, Weighting};
-/// use fmm_identify::{Preparation, RingDown, Windows};
+/// use fmm_identify::{Preparation, Experiment, Windows};
 /// use fmm_model::{Damping, Oscillator};
 /// # use fmm_friction::Coulomb;
 /// # use fmm_record::{Quantity, Record};
@@ -58,7 +58,7 @@ pub struct WindowFit {
 /// # let scenario = Scenario::new(machine, Coulomb::new(0.0)?, 0.0)?.starting_at(0.0, 0.25)?;
 /// # let motion = RungeKutta::new(1e-11)?.run(&scenario, &Sampling::uniform(1e-3, 6000)?)?;
 /// # let record = Record::new(0.0, 1e-3, motion.velocity().values().to_vec(), Quantity::Velocity, "m/s")?;
-/// let decay = RingDown::prepare(&record, &Preparation::default())?;
+/// let decay = Experiment::ring_down(&record, &Preparation::default())?;
 /// let windows = Windows::default().fit(&decay)?;
 /// assert_eq!(windows.len(), 2);
 /// for window in &windows {
@@ -121,7 +121,8 @@ impl Windows {
     ///
     /// # Errors
     /// [`IdentifyError::TooFewHalfSwings`] if it does not hold one window, [`IdentifyError::Fit`] if a fit cannot begin.
-    pub fn fit(&self, decay: &RingDown) -> Result<Vec<WindowFit>, IdentifyError> {
+    pub fn fit(&self, decay: &Experiment) -> Result<Vec<WindowFit>, IdentifyError> {
+        decay.require_free("the fit of windows")?;
         let (peaks, half_swings) = (decay.peaks(), self.cycles.saturating_mul(2));
         if peaks.len() <= half_swings {
             return Err(IdentifyError::TooFewHalfSwings { found: peaks.len(), needed: half_swings.saturating_add(1) });
@@ -132,7 +133,7 @@ impl Windows {
     }
 
     /// Fits the window that begins at peak `start`.
-    fn fit_one(&self, decay: &RingDown, start: usize) -> Result<WindowFit, IdentifyError> {
+    fn fit_one(&self, decay: &Experiment, start: usize) -> Result<WindowFit, IdentifyError> {
         let record = decay.record();
         let peaks = &decay.peaks()[start..=start + 2 * self.cycles];
         let (from, to) = (peaks[0].0, peaks[2 * self.cycles].0);
@@ -185,7 +186,7 @@ const COUNT: usize = 5;
 
 /// Residuals "model less record" of one window.
 struct WindowProblem<'a> {
-    decay: &'a RingDown,
+    decay: &'a Experiment,
     samples: Range<usize>,
     kept: Vec<usize>,
     holds_first_sample: bool,
@@ -193,7 +194,7 @@ struct WindowProblem<'a> {
 }
 
 impl<'a> WindowProblem<'a> {
-    fn new(decay: &'a RingDown, samples: Range<usize>, holds_first_sample: bool) -> Self {
+    fn new(decay: &'a Experiment, samples: Range<usize>, holds_first_sample: bool) -> Self {
         let inside = |index: &usize| samples.contains(index);
         let kept = decay.kept().iter().cloned().flatten().filter(inside).collect();
         let unit = decay.record().unit();

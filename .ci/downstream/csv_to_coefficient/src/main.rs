@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use fmm_fit::ResidualDiagnostics;
 use fmm_frf::{coulomb_impact_duration, peak_receptance_of_coulomb_impact};
 use fmm_friction::CoulombViscous;
-use fmm_identify::{Known, Machine, Preparation, RingDown, identify};
+use fmm_identify::{Known, Machine, Preparation, Experiment, identify};
 use fmm_record::{Quantity, Swings, csv::CsvReader};
 use fmm_uq::{Input, Inputs, propagate};
 
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{}: {} peaks, rate {}\n", reading.channel, swings.peaks().len(), reading.sampling);
 
     // The friction force, as far as the record and the mass determine it.
-    let decay = RingDown::prepare(&reading.record, &Preparation::default())?;
+    let decay = Experiment::ring_down(&reading.record, &Preparation::default())?;
     let machine = Machine::of_mass(Known::new(MASS.0, MASS.1)?)?;
     let found = identify::<CoulombViscous>(&machine, &[decay])?;
     println!("{found}");

@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use fmm_friction::CoulombViscous;
-use fmm_identify::{Known, Machine, Preparation, RingDown, identify};
+use fmm_identify::{Known, Machine, Preparation, Experiment, identify};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let velocity = Exact.run(&scenario, &Sampling::uniform(1e-3, 1500)?)?.velocity().values().to_vec();
     let record = Record::sampled(1000.0, velocity, Quantity::Velocity, "m/s")?;
 
-    let decay = RingDown::prepare(&record, &Preparation::default())?;
+    let decay = Experiment::ring_down(&record, &Preparation::default())?;
     let machine = Machine::of_mass(Known::new(10.391, 0.005)?)?.with_normal_load(Known::new(14.0, 0.014)?)?;
     let found = identify::<CoulombViscous>(&machine, &[decay])?;
     println!("{found}");

@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use fmm_friction::LawFamily;
-use fmm_identify::{Machine, Preparation, RingDown, identify};
+use fmm_identify::{Machine, Preparation, Experiment, identify};
 use fmm_model::{Dual, Oscillator, Scalar};
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, RungeKutta, Sampling, Scenario};
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // A record of it, in steps of 0.1 mm/s, and the parameters back from that.
     let rounded = motion.velocity().values().iter().map(|velocity| (velocity * 1e4).round() * 1e-4).collect();
     let record = Record::sampled(1000.0, rounded, Quantity::Velocity, "m/s")?;
-    let decay = RingDown::prepare(&record, &Preparation::default())?;
+    let decay = Experiment::ring_down(&record, &Preparation::default())?;
     let found = identify::<Logarithmic>(&Machine::per_unit_mass(), &[decay])?;
     println!("{found}");
 

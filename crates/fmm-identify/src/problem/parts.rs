@@ -4,23 +4,24 @@ use fmm_friction::Role;
 use fmm_model::Bounds;
 use fmm_record::Quantity;
 
-use super::{RingDownProblem, blocks};
-use crate::RingDown;
+use super::{Problem, blocks};
+use crate::Experiment;
+use crate::experiment::reference;
 
 /// Samples of a record, and of each of its periods, that are enough to search with.
 const ENOUGH_SAMPLES: usize = 1500;
 const SAMPLES_PER_SWING: f64 = 24.0;
 
-impl RingDownProblem<'_> {
+impl Problem<'_> {
     /// The ring-downs up to a `share` of their duration (1), for a fit in which a small error of the period does not yet add up.
-    pub(crate) fn beginnings(&self, share: f64) -> Vec<RingDown> {
+    pub(crate) fn beginnings(&self, share: f64) -> Vec<Experiment> {
         self.decays.iter().map(|decay| decay.beginning(share)).collect()
     }
 
     /// The ring-downs with so few of their samples that a search among many starts is quick and yet sees every swing; none if
     /// they have no more.
-    pub(crate) fn thinned(&self) -> Option<Vec<RingDown>> {
-        let stride = |decay: &RingDown| {
+    pub(crate) fn thinned(&self) -> Option<Vec<Experiment>> {
+        let stride = |decay: &Experiment| {
             let swings = decay.record().duration() * decay.guess().frequency();
             let enough = ENOUGH_SAMPLES.max((SAMPLES_PER_SWING * swings) as usize);
             decay.record().len() / enough
@@ -30,11 +31,11 @@ impl RingDownProblem<'_> {
     }
 
     /// The ring-downs up to their last peaks, if they are displacements and that leaves something out.
-    pub(crate) fn up_to_last_peaks(&self) -> Option<Vec<RingDown>> {
-        if self.decays[0].record().quantity() != Quantity::Displacement {
+    pub(crate) fn up_to_last_peaks(&self) -> Option<Vec<Experiment>> {
+        if reference(self.decays).record().quantity() != Quantity::Displacement {
             return None;
         }
-        let shortened = self.decays.iter().map(RingDown::up_to_last_peak).collect::<Vec<_>>();
+        let shortened = self.decays.iter().map(Experiment::up_to_last_peak).collect::<Vec<_>>();
         let any = shortened.iter().any(Option::is_some);
         let complete =
             shortened.into_iter().zip(self.decays).map(|(short, whole)| short.unwrap_or_else(|| whole.clone()));
@@ -45,7 +46,7 @@ impl RingDownProblem<'_> {
     /// that leaps, and its motion takes far longer to simulate.
     pub(crate) fn bending_in_sight(mut self) -> Self {
         const SLOWEST: f64 = 1e-4;
-        let slowest = SLOWEST * self.decays[0].scales().1;
+        let slowest = SLOWEST * reference(self.decays).scales().1;
         for (index, law) in self.law().fitted().enumerate() {
             let parameter = &mut self.parameters[self.layout.law + index];
             let bounds = parameter.bounds();
@@ -63,14 +64,15 @@ impl RingDownProblem<'_> {
     }
 
     /// The same problem with other records of the same kind and number.
-    pub(crate) fn with_records<'b>(&self, decays: &'b [RingDown]) -> RingDownProblem<'b> {
-        RingDownProblem {
+    pub(crate) fn with_records<'b>(&self, decays: &'b [Experiment]) -> Problem<'b> {
+        Problem {
             machine: self.machine,
             terms: self.terms.clone(),
             decays,
             parameters: self.parameters.clone(),
             layout: self.layout.clone(),
             blocks: blocks(&self.layout, decays),
+            weights: self.weights.clone(),
         }
     }
 }

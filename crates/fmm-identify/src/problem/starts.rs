@@ -6,16 +6,20 @@ use fmm_fit::Estimate;
 use fmm_friction::Role;
 use fmm_model::Parameter;
 
-use super::RingDownProblem;
+use super::Problem;
 use crate::dimension::{Scales, bends, is_force};
+use crate::experiment::reference;
 use crate::first_guess::Dissipation;
 use crate::friction_curve::FrictionCurve;
 use crate::layout::{Layout, mass_of_stiffness};
 use crate::nuisance::Nuisance;
 use crate::sign::Addition;
-use crate::{Identification, Sign};
+use crate::{Drive, Experiment, Identification, Sign};
 
-impl RingDownProblem<'_> {
+/// What a static level lies above the sliding one by, to begin with (1).
+const FIRST_STATIC_EXCESS: f64 = 0.2;
+
+impl Problem<'_> {
     /// Whether the law or the terms beside it have more to find than levels and a viscous part.
     pub(crate) fn is_elaborate(&self) -> bool {
         self.layout.law > self.layout.oscillator
@@ -27,12 +31,21 @@ impl RingDownProblem<'_> {
     pub(crate) fn starts(&self) -> Vec<Vec<f64>> {
         let has_level = self.law().fitted().any(|parameter| is_force(parameter.role()));
         let has_slope = self.has_linear_damping();
-        let hypotheses = self.decays[0].guess().hypotheses();
+        let reference = reference(self.decays);
+        let hypotheses = match reference.driven_guess() {
+            Some(guess) => guess.hypotheses(),
+            None => reference.guess().hypotheses(),
+        };
         let expressible = |dissipation: &&Dissipation| {
             (has_level || dissipation.friction == 0.0) && (has_slope || dissipation.damping == 0.0)
         };
         let mut starts: Vec<_> =
             hypotheses.iter().filter(expressible).map(|hypothesis| self.start(*hypothesis)).collect();
+        if self.decays.iter().any(|decay| decay.drive().is_some()) {
+            let neutral: Vec<Experiment> = self.decays.iter().map(|decay| decay.clone().begun_neutral()).collect();
+            let problem = self.with_records(&neutral);
+            starts.extend(hypotheses.iter().filter(expressible).map(|hypothesis| problem.start(*hypothesis)));
+        }
         if starts.is_empty() {
             starts.extend(hypotheses.first().map(|hypothesis| self.start(*hypothesis)));
         }
@@ -45,31 +58,43 @@ impl RingDownProblem<'_> {
 
     /// Start values under one hypothesis.
     fn start(&self, dissipation: Dissipation) -> Vec<f64> {
-        let frequency = self.decays[0].natural_frequency(dissipation, &self.machine);
-        // An unknown mass starts at 1 kg; nothing in the record says better.
-        let mut start = match self.layout.oscillator {
-            1 => vec![frequency],
-            _ => vec![1.0, 1.0 / mass_of_stiffness(1.0, frequency)],
+        let reference = reference(self.decays);
+        let frequency = reference
+            .driven_guess()
+            .map_or_else(|| reference.natural_frequency(dissipation, &self.machine), |guess| guess.frequency);
+        // An unknown mass starts at 1 kg unless a force tells it; nothing in a free vibration says better.
+        let told = || self.decays.iter().filter(|decay| decay.drive().is_some_and(Drive::is_force));
+        let mass = told().find_map(|decay| decay.driven_guess()).map_or(1.0, |guess| guess.mass);
+        let (mut start, force_per_mass) = match self.layout.oscillator {
+            1 => (vec![frequency], 1.0),
+            _ => (vec![mass, mass / mass_of_stiffness(1.0, frequency)], mass),
         };
-        self.push_dissipation(dissipation, 1.0, &mut start);
+        let of_law = Dissipation {
+            friction: dissipation.friction * force_per_mass,
+            damping: dissipation.damping * force_per_mass,
+        };
+        self.push_dissipation(of_law, 1.0, &mut start);
         for decay in self.decays {
-            let (position, velocity) = decay.guess().initial_state(dissipation);
+            let (position, velocity) = decay.first_state(dissipation);
             start.extend([position, velocity]);
             if decay.fixed_offset().is_none() {
-                start.push(decay.guess().offset(dissipation));
+                start.push(decay.first_offset(dissipation));
             }
             start.extend(decay.nuisances().iter().map(Nuisance::start));
+            if decay.sensor().has_free_corner() {
+                start.extend(decay.sensor().first_corner(decay.guess().frequency()));
+            }
         }
         self.clamped(&start)
     }
 
     /// Start values that continue a fit of `simple`, which has a level and a viscous part: the same losses, put into the law
     /// in as many ways as it offers.
-    pub(crate) fn continued(&self, simple: &RingDownProblem<'_>, values: &[f64]) -> Vec<Vec<f64>> {
+    pub(crate) fn continued(&self, simple: &Problem<'_>, values: &[f64]) -> Vec<Vec<f64>> {
         let (oscillator, rest) = values.split_at(simple.layout.oscillator);
         let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
         // A damper and Coulomb friction lose the same in a swing if F = π/4 c V.
-        let as_friction = dissipation.friction + 0.25 * PI * dissipation.damping * 0.5 * self.decays[0].scales().1;
+        let as_friction = dissipation.friction + 0.25 * PI * dissipation.damping * 0.5 * reference(self.decays).scales().1;
         let all_friction = Dissipation { friction: as_friction, damping: 0.0 };
         let half = Dissipation { friction: as_friction, damping: 0.5 * dissipation.damping };
         let mut starts = Vec::new();
@@ -88,7 +113,7 @@ impl RingDownProblem<'_> {
 
     /// Start values near a fit of `simple`, with what its residuals ask for: friction that falls over the speeds of the plainest
     /// signs, by as much as they say; and the same losses without it.
-    pub(crate) fn near(&self, simple: &RingDownProblem<'_>, values: &[f64], signs: &[Sign]) -> Vec<Vec<f64>> {
+    pub(crate) fn near(&self, simple: &Problem<'_>, values: &[f64], signs: &[Sign]) -> Vec<Vec<f64>> {
         if simple.layout.oscillator != 1 || !self.is_elaborate() {
             return self.starts();
         }
@@ -134,7 +159,7 @@ impl RingDownProblem<'_> {
         }
         let fitted = other.fit();
         let (layout, _) = Layout::of(other.family(), &self.machine, other.terms(), self.decays).ok()?;
-        let curve = FrictionCurve::of(&layout, other.terms(), fitted.values(), self.decays[0].scales().1)?;
+        let curve = FrictionCurve::of(&layout, other.terms(), fitted.values(), reference(self.decays).scales().1)?;
         let own = &fitted.values()[layout.shared..];
         let of_that_name = |(value, parameter): (&f64, &Parameter)| {
             let mut estimates = std::iter::once(&other).chain(others).flat_map(|other| other.fit().estimates());
@@ -162,7 +187,7 @@ impl RingDownProblem<'_> {
         excess: Option<f64>,
         start: &mut Vec<f64>,
     ) {
-        let (length, speed) = self.decays[0].scales();
+        let (length, speed) = reference(self.decays).scales();
         let Dissipation { friction, damping } = dissipation;
         if self.terms.has_linear_damping() {
             start.push(damping);
@@ -173,6 +198,7 @@ impl RingDownProblem<'_> {
         let scales = Scales { length, speed, friction, damping, sharpness };
         start.extend(self.law().fitted().map(|parameter| match (parameter.role(), excess) {
             (Role::Excess | Role::LevelAbove, Some(excess)) => excess * friction,
+            (Role::Breakaway, _) => FIRST_STATIC_EXCESS * friction,
             (Role::Level, Some(_)) if parameter.parameter().unit() == "1" => friction,
             _ => scales.typical(parameter),
         }));

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use fmm_friction::Coulomb;
-use fmm_identify::{Preparation, RingDown, ThesisDecrement, decrements};
+use fmm_identify::{Preparation, Experiment, ThesisDecrement, decrements};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -40,7 +40,7 @@ fn fitted_peaks_give_the_same_line_with_less_scatter() {
     let motion = free(0.5148, (0.01, 0.0), 80.0);
     for (noise, tolerance, scatter) in [(0.0, 1e-3, 2e-4), (1e-5, 3e-3, 1e-3), (1e-4, 0.02, 1e-2)] {
         let record = velocity(noisy(motion.velocity().values(), noise, 1));
-        let decay = RingDown::prepare(&record, &Preparation::default()).unwrap();
+        let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
         let cycles = decrements(&decay).unwrap();
         let points: Vec<_> = cycles.iter().map(|cycle| (cycle.peak_velocity, MASS * cycle.damping.value)).collect();
         let (intercept, slope, found) = line(&points);
@@ -61,7 +61,7 @@ fn uncertainties_are_those_that_happen() {
         (motion.position().values(), Quantity::Displacement, 1e-5),
     ] {
         let record = velocity(noisy(values, noise, 5)).with_quantity(quantity).with_unit("m");
-        let cycles = decrements(&RingDown::prepare(&record, &Preparation::default()).unwrap()).unwrap();
+        let cycles = decrements(&Experiment::ring_down(&record, &Preparation::default()).unwrap()).unwrap();
         let pulls: Vec<f64> =
             cycles.iter().map(|cycle| (cycle.damping.value - 0.2005 / MASS) / cycle.damping.uncertainty).collect();
         let (mean, deviation) = statistics(&pulls);
@@ -82,7 +82,7 @@ fn differences_give_dry_friction() {
         (motion.position().values(), Quantity::Displacement, "m"),
     ] {
         let record = Record::new(0.0, 1e-3, noisy(values, 1e-6, 2), quantity, unit).unwrap();
-        let cycles = decrements(&RingDown::prepare(&record, &Preparation::default()).unwrap()).unwrap();
+        let cycles = decrements(&Experiment::ring_down(&record, &Preparation::default()).unwrap()).unwrap();
         let moving: Vec<_> = cycles.iter().filter(|cycle| cycle.peak_velocity > 0.03).collect();
         assert!(moving.len() > 8, "{} cycles", moving.len());
         for cycle in moving {

@@ -1,7 +1,7 @@
 //! Chapter 6 of the thesis: energy rates and turning points, with the figures of the verification.
 
 use fmm_friction::Coulomb;
-use fmm_identify::{EnergyMethod, EnergyRates, Preparation, RingDown, half_swing_losses, half_swing_losses_of};
+use fmm_identify::{EnergyMethod, EnergyRates, Preparation, Experiment, half_swing_losses, half_swing_losses_of};
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{EndRule, Quantity, Record, Smoothing};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -122,7 +122,7 @@ fn half_swings_of_a_prepared_record() {
     ] {
         let values = noisy(values, 1e-6, 1).iter().map(|value| value + 0.003).collect();
         let record = Record::new(0.0, 1e-3, values, quantity, unit).unwrap();
-        let decay = RingDown::prepare(&record, &Preparation::default()).unwrap();
+        let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
         let losses = half_swing_losses_of(&decay, &machine).unwrap();
         assert!(losses.len() >= 6, "{quantity}: {} half swings", losses.len());
         for half_swing in &losses[1..losses.len() - 1] {

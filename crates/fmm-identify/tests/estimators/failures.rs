@@ -1,7 +1,7 @@
 //! What the estimators cannot take is refused with an error that says why.
 
 use fmm_identify::{
-    EnergyMethod, IdentifyError, Preparation, RingDown, WeakForm, Windows, decrements, half_swing_losses,
+    EnergyMethod, IdentifyError, Preparation, Experiment, WeakForm, Windows, decrements, half_swing_losses,
     half_swing_losses_of,
 };
 use fmm_model::Oscillator;
@@ -9,9 +9,9 @@ use fmm_record::{Quantity, Record, Smoothing};
 
 use crate::measurement::{free, velocity};
 
-fn prepared(values: Vec<f64>, quantity: Quantity) -> RingDown {
+fn prepared(values: Vec<f64>, quantity: Quantity) -> Experiment {
     let record = Record::new(0.0, 1e-3, values, quantity, "m/s").unwrap();
-    RingDown::prepare(&record, &Preparation::default()).unwrap()
+    Experiment::ring_down(&record, &Preparation::default()).unwrap()
 }
 
 /// A few half swings of a sine, without any damping or noise.
@@ -62,7 +62,7 @@ fn no_noise_and_no_loss() {
 fn wrong_quantities() {
     let force = velocity(sine(8.0)).with_quantity(Quantity::Force);
     let weak = WeakForm::default().estimate_between(&force, &[0.25, 0.5, 0.75], None);
-    assert!(matches!(weak, Err(IdentifyError::Quantity { quantity: Quantity::Force })));
+    assert!(matches!(weak, Err(IdentifyError::Quantity { quantity: Quantity::Force, .. })));
     let displacement = prepared(sine(8.0), Quantity::Displacement);
     let quadratic = WeakForm::default().with_quadratic_damping().estimate(&displacement);
     assert!(matches!(quadratic, Err(IdentifyError::VelocityNeeded { quantity: Quantity::Displacement, .. })));

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::path::PathBuf;
 
-use fmm_identify::{Preparation, RingDown, WeakForm, Windows, decrements, half_swing_losses_of};
+use fmm_identify::{Preparation, Experiment, WeakForm, Windows, decrements, half_swing_losses_of};
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{Quantity, Record, mat};
 
@@ -20,8 +20,8 @@ fn fork() -> Record {
     reader.read(path).unwrap().record
 }
 
-fn prepared() -> RingDown {
-    RingDown::prepare(&fork(), &Preparation::default()).unwrap()
+fn prepared() -> Experiment {
+    Experiment::ring_down(&fork(), &Preparation::default()).unwrap()
 }
 
 /// Within two of the combined standard uncertainties, as the two weigh the record's slow errors differently.

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use fmm_friction::CoulombViscous;
-use fmm_identify::{Preparation, RingDown, WeakForm, WeakFormEstimate};
+use fmm_identify::{Preparation, Experiment, WeakForm, WeakFormEstimate};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -49,7 +49,7 @@ impl Force for fmm_identify::Estimated {
     }
 }
 
-fn swinging(quantity: Quantity, offset: f64, noise: f64, seed: u64) -> RingDown {
+fn swinging(quantity: Quantity, offset: f64, noise: f64, seed: u64) -> Experiment {
     let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), CoulombViscous::new(0.1, 0.05).unwrap(), 1.0);
     let scenario = scenario.unwrap().starting_at(0.02, 0.1).unwrap();
     let motion = Exact.run(&scenario, &Sampling::uniform(1e-3, 4000).unwrap()).unwrap();
@@ -58,7 +58,7 @@ fn swinging(quantity: Quantity, offset: f64, noise: f64, seed: u64) -> RingDown 
         _ => (motion.velocity().values(), "m/s"),
     };
     let values = noisy(values, noise, seed).iter().map(|value| value + offset).collect();
-    RingDown::prepare(&Record::new(3.0, 1e-3, values, quantity, unit).unwrap(), &Preparation::default()).unwrap()
+    Experiment::ring_down(&Record::new(3.0, 1e-3, values, quantity, unit).unwrap(), &Preparation::default()).unwrap()
 }
 
 /// All unknown, offset included, without noise.
@@ -99,7 +99,7 @@ fn uncertainties_are_those_that_happen() {
 fn quadratic_damping_comes_back() {
     let motion = free(0.5148, (0.02, 0.0), 40.0);
     let record = velocity(motion.velocity().values().iter().map(|v| v + 0.002).collect());
-    let decay = RingDown::prepare(&record, &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
     let found = WeakForm::default().with_quadratic_damping().estimate(&decay).unwrap();
     close(MASS * found.quadratic_damping.value, 0.5148, 2e-3, "c₂ (N s²/m²)");
     close(MASS * found.damping.value, 0.2005, 2e-3, "c (N s/m)");
@@ -114,7 +114,7 @@ fn quadratic_damping_comes_back() {
 fn a_misfit_shows() {
     let decay = |noise| {
         let record = velocity(noisy(free(0.5148, (0.02, 0.0), 40.0).velocity().values(), noise, 1));
-        RingDown::prepare(&record, &Preparation::default()).unwrap()
+        Experiment::ring_down(&record, &Preparation::default()).unwrap()
     };
     let (decay, noise) = (decay(1e-5), 1e-5);
     let missing = WeakForm::default().estimate(&decay).unwrap().explained_noise.unwrap();

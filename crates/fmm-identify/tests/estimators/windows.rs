@@ -1,6 +1,6 @@
 //! Five-cycle fits of a machine with quadratic damping: the lines of the thesis and of its appendix A5.
 
-use fmm_identify::{Offset, Preparation, RingDown, WindowFit, Windows};
+use fmm_identify::{Offset, Preparation, Experiment, WindowFit, Windows};
 
 use crate::measurement::{MASS, close, free, line, noisy, statistics, velocity};
 
@@ -12,7 +12,7 @@ const PRINTED: [f64; 9] = [0.222, 0.235, 0.245, 0.256, 0.278, 0.288, 0.299, 0.31
 fn first_windows(quadratic: f64, windows: Windows) -> Vec<WindowFit> {
     let one = |peak: &f64| {
         let record = velocity(free(quadratic, (0.0, *peak), 3.0).velocity().values().to_vec());
-        let decay = RingDown::prepare(&record, &Preparation::default().offset(Offset::Fixed(0.0))).unwrap();
+        let decay = Experiment::ring_down(&record, &Preparation::default().offset(Offset::Fixed(0.0))).unwrap();
         windows.fit(&decay).unwrap().remove(0)
     };
     PEAKS.iter().map(one).collect()
@@ -67,7 +67,7 @@ fn the_middle_of_the_window_has_the_equivalent_damping() {
 fn uncertainties_are_those_that_happen() {
     let motion = free(0.0, (0.02, 0.0), 80.0);
     let record = velocity(noisy(motion.velocity().values(), 2e-4, 3));
-    let decay = RingDown::prepare(&record, &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
     let fits = Windows::default().with_cycles(2).fit(&decay).unwrap();
     assert!((85..=88).contains(&fits.len()), "{} windows", fits.len());
     let pulls: Vec<f64> =
@@ -87,7 +87,7 @@ fn displacements_are_fitted_too() {
     let motion = free(0.0, (0.02, 0.0), 10.0);
     let record = velocity(motion.position().values().iter().map(|x| x + 0.1).collect());
     let record = record.with_quantity(fmm_record::Quantity::Displacement).with_unit("m");
-    let decay = RingDown::prepare(&record, &Preparation::default()).unwrap();
+    let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
     for windows in [Windows::default(), Windows::default().holding_first_sample()] {
         let fits = windows.fit(&decay).unwrap();
         assert!(!fits.is_empty());

@@ -2,7 +2,7 @@
 
 use fmm_fit::{Fit, Options, Residuals, coverage_factor, solve};
 use fmm_friction::{AccelerationCoulomb, Berger, Coulomb, Stribeck};
-use fmm_identify::{Candidate, Identification, Known, Machine, RingDown, RingDownProblem, Terms, compare, identify};
+use fmm_identify::{Candidate, Identification, Known, Machine, Experiment, Problem, Terms, compare, identify};
 use fmm_model::{Damping, Oscillator, Parameter};
 use fmm_sim::Simulated;
 use rand_chacha::ChaCha8Rng;
@@ -39,13 +39,13 @@ fn motions<F: Simulated>(machine: Oscillator, values: &[f64], releases: &[f64]) 
     releases.iter().map(|release| velocity::<F>(machine, values, *release, SAMPLES)).collect()
 }
 
-fn decays(motions: &[Vec<f64>], seed: u64) -> Vec<RingDown> {
+fn decays(motions: &[Vec<f64>], seed: u64) -> Vec<Experiment> {
     motions.iter().enumerate().map(|(i, motion)| noisy(motion, 10_000 * i as u64 + seed)).collect()
 }
 
 /// The fit of law `F` from the true `start`: that it is found from elsewhere is not the question here.
-fn fitted<F: Simulated>(decays: &[RingDown], terms: &Terms, shared: &[f64], releases: &[f64]) -> Fit {
-    let problem = RingDownProblem::with_terms::<F>(Machine::per_unit_mass(), terms.clone(), decays).unwrap();
+fn fitted<F: Simulated>(decays: &[Experiment], terms: &Terms, shared: &[f64], releases: &[f64]) -> Fit {
+    let problem = Problem::with_terms::<F>(Machine::per_unit_mass(), terms.clone(), decays).unwrap();
     let own = releases.iter().flat_map(|release| [*release, 0.0, 0.0]);
     let mut known = shared.iter().copied().chain(own);
     // In a few records noise looks like hum, which has parameters of its own.

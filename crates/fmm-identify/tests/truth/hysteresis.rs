@@ -1,14 +1,14 @@
 //! Two levels fitted to friction that has no hysteresis: by exact simulation they agree, by the thesis' Euler they do not.
 
 use fmm_friction::{AccelerationCoulomb, Berger, Coulomb};
-use fmm_identify::{Candidate, Identification, Machine, RingDown, compare};
+use fmm_identify::{Candidate, Identification, Machine, Experiment, compare};
 use fmm_sim::{Engine, Sampling, Scenario, Simulated, Thesis};
 
 use crate::records::{LOAD, RELEASES, machine, noisy, prepared, velocity};
 
 const SAMPLES: usize = 1500;
 
-fn identified(decay: RingDown) -> Identification {
+fn identified(decay: Experiment) -> Identification {
     let candidates = [Candidate::of::<AccelerationCoulomb>()];
     compare(&Machine::per_unit_mass(), &[decay], &candidates).unwrap().identifications()[0].clone()
 }

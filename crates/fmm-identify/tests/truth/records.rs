@@ -1,7 +1,7 @@
 //! Velocity records of the thesis' machine with a contact of known friction.
 
 use fmm_friction::{LawFamily, Role};
-use fmm_identify::{Preparation, RingDown};
+use fmm_identify::{Preparation, Experiment};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Sampling, Scenario, Simulated, Trajectory};
@@ -33,13 +33,13 @@ pub(crate) fn velocity<F: Simulated>(machine: Oscillator, values: &[f64], releas
     trajectory.velocity().values().to_vec()
 }
 
-pub(crate) fn prepared(velocity: Vec<f64>) -> RingDown {
+pub(crate) fn prepared(velocity: Vec<f64>) -> Experiment {
     let record = Record::new(0.0, INTERVAL, velocity, Quantity::Velocity, "m/s").unwrap();
-    RingDown::prepare(&record, &Preparation::default()).unwrap()
+    Experiment::ring_down(&record, &Preparation::default()).unwrap()
 }
 
 /// The same with white noise of [`NOISE`].
-pub(crate) fn noisy(velocity: &[f64], seed: u64) -> RingDown {
+pub(crate) fn noisy(velocity: &[f64], seed: u64) -> Experiment {
     let noise = Normal::new(0.0, NOISE).unwrap().sample_iter(ChaCha8Rng::seed_from_u64(seed));
     prepared(velocity.iter().zip(noise).map(|(v, noise)| v + noise).collect())
 }

@@ -1,7 +1,7 @@
 //! Section 5.2's logarithmic decrement, as its program A2 codes it and by fitted peaks.
 
 use fmm_fit::{StraightLine, Weighting};
-use fmm_identify::{Preparation, RingDown, ThesisDecrement, decrements};
+use fmm_identify::{Preparation, Experiment, ThesisDecrement, decrements};
 
 use super::simulated::{machine, motion, record};
 use crate::figure::{Layer, Panel, Role, label};
@@ -45,7 +45,7 @@ pub(super) fn of_cycles(chapter: &mut Chapter, settings: &Settings<'_>) -> Found
         let record = record(motion.velocity().values(), noise, settings.seed())?;
         let coded = ThesisDecrement::default().cycles(&record)?;
         let coded = Cycles::new(coded.iter().map(|cycle| (cycle.peak_velocity, A2_MASS * cycle.damping)).collect())?;
-        let peaks = decrements(&RingDown::prepare(&record, &Preparation::default())?)?;
+        let peaks = decrements(&Experiment::ring_down(&record, &Preparation::default())?)?;
         let peaks = peaks.iter().map(|cycle| (cycle.peak_velocity, MACHINE[0] * cycle.damping.value));
         let fitted = Cycles::new(peaks.collect())?;
         let [[line, scatter], [own_line, own_scatter]] = [coded.text()?, fitted.text()?];

@@ -1,7 +1,7 @@
 //! Fits over five cycles and over more: Table 1's damping, Eq. 5.5, and the factor between equivalent and instantaneous.
 
 use fmm_fit::{StraightLine, Weighting};
-use fmm_identify::{Offset, Preparation, RingDown, WindowFit, Windows};
+use fmm_identify::{Offset, Preparation, Experiment, WindowFit, Windows};
 
 use super::regressions::table_1_line;
 use super::simulated::{machine, motion, record, rms};
@@ -32,7 +32,7 @@ impl Column {
         let fit = |velocity: f64| -> Found<WindowFit> {
             let motion = motion(machine(quadratic)?, (0.0, velocity), seconds)?;
             let record = record(motion.velocity().values(), 0.0, 0)?;
-            let decay = RingDown::prepare(&record, &Preparation::default().offset(Offset::Fixed(0.0)))?;
+            let decay = Experiment::ring_down(&record, &Preparation::default().offset(Offset::Fixed(0.0)))?;
             let windows = Windows::default().with_cycles(cycles).holding_first_sample().fit(&decay)?;
             Ok(windows.into_iter().next().ok_or("no window")?)
         };

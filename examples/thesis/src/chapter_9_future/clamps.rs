@@ -2,7 +2,7 @@
 
 use fmm_fit::{StraightLine, Weighting};
 use fmm_friction::{Coulomb, MaxwellSlip};
-use fmm_identify::{Offset, Preparation, RingDown, WindowFit, Windows};
+use fmm_identify::{Offset, Preparation, Experiment, WindowFit, Windows};
 use fmm_model::{Damping, Oscillator};
 use fmm_sim::{Engine as _, Exact, Excitation, Sampling, Scenario};
 
@@ -107,7 +107,7 @@ impl Windowed {
     fn of(machine: Machine, times: u32, length: u32, velocity: &[f64]) -> Found<Self> {
         let mass = f64::from(times) * MACHINE[0];
         let preparation = Preparation::default().offset(Offset::Fixed(0.0)).to(f64::from(length));
-        let decay = RingDown::prepare(&velocity_record(velocity.to_vec())?, &preparation)?;
+        let decay = Experiment::ring_down(&velocity_record(velocity.to_vec())?, &preparation)?;
         let windows = Windows::default().fit(&decay)?;
         let speeds: Vec<f64> = windows.iter().map(|window| window.peak_velocity).collect();
         let line = |of: &dyn Fn(&WindowFit) -> (f64, f64)| -> Found<Option<StraightLine>> {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use fmm_identify::{Comparison, Identification, Machine, Preparation, RingDown, Terms, compare};
+use fmm_identify::{Comparison, Identification, Machine, Preparation, Experiment, Terms, compare};
 use fmm_record::{Quantity, Record, csv, mat};
 
 use super::{candidates, side_by_side};
@@ -40,7 +40,7 @@ pub(super) fn add(chapter: &mut Chapter, settings: &Settings<'_>) -> Found<()> {
     let (mut rows, mut verdicts) = (Vec::new(), Vec::new());
     let compared = |index: usize| -> Found<Comparison> {
         let (one, candidates) = &measured[index];
-        let decay = RingDown::prepare(&one.record, &Preparation::default())?;
+        let decay = Experiment::ring_down(&one.record, &Preparation::default())?;
         Ok(compare(&Machine::per_unit_mass(), &[decay], candidates)?)
     };
     for ((one, _), comparison) in measured.iter().zip(side_by_side(measured.len(), &compared)) {

@@ -2,7 +2,7 @@
 
 use fmm_friction::{Dahl, LuGre};
 use fmm_identify::{
-    Candidate, Comparison, Identification, Known, Machine, Offset, Preparation, RingDown, Terms, compare,
+    Candidate, Comparison, Identification, Known, Machine, Offset, Preparation, Experiment, Terms, compare,
 };
 use fmm_record::Record;
 use fmm_sim::{Sampling, Simulated};
@@ -83,8 +83,8 @@ impl Truth {
         ])
     }
 
-    fn decay(&self) -> Found<RingDown> {
-        Ok(RingDown::prepare(&self.record, &Preparation::default().offset(Offset::Fixed(0.0)))?)
+    fn decay(&self) -> Found<Experiment> {
+        Ok(Experiment::ring_down(&self.record, &Preparation::default().offset(Offset::Fixed(0.0)))?)
     }
 }
 

@@ -1,53 +1,44 @@
-//! A record made ready for identification.
+//! Ring-down: a free vibration after a release.
 
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use fmm_model::{Bounds, ModelError, Restoring};
+use fmm_model::ModelError;
 use fmm_record::{
     OffsetStep, Peak, Quantity, Record, Release, SecondMode, Swings, further_releases, hum, noise, period_change,
     quantisation_step, saturation, spikes, without_lines,
 };
 
-use crate::first_guess::{Dissipation, FirstGuess, Oscillation};
+use super::{Experiment, FEWEST_SAMPLES, Sensor};
+use crate::first_guess::{FirstGuess, Oscillation};
 use crate::nuisance::Nuisance;
 use crate::preparation::COARSE;
-use crate::{IdentifyError, Machine, Offset, Preparation, RecordSummary};
+use crate::{IdentifyError, Offset, Preparation, RecordSummary};
 
-/// A prepared ring-down: the part of a record in which a machine vibrates freely, and what was seen in it.
-///
-/// If the record begins at rest, it is used from the first peak after the release on (of a displacement, from the
-/// first crossing), as whatever held the machine may act on for a while; otherwise from its beginning. If it is released or
-/// pushed again, it is used until shortly before that. Spikes of
-/// one to three samples are left out, and where the steps of a converter exceed the noise, what follows the last turning point. Nothing is smoothed and nothing is subtracted: smoothing would correlate the
-/// noise, and the offset is a parameter. Swings, release, spikes and noise are looked for in the record less its hum.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RingDown {
-    record: Record,
-    kept: Vec<Range<usize>>,
-    guess: FirstGuess,
-    peaks: Vec<(f64, f64)>,
-    nuisances: Vec<Nuisance>,
-    /// The shape of each of them at every sample.
-    shapes: Vec<Vec<f64>>,
-    summary: RecordSummary,
-}
-
-/// Fewest samples that can show two half swings.
-const FEWEST_SAMPLES: usize = 16;
 /// Fewest half swings that show a period.
 const FEWEST_HALF_SWINGS: usize = 2;
 
-impl RingDown {
-    /// Prepares `record`.
+impl Experiment {
+    /// A ring-down: the part of a `record` of displacement, velocity or acceleration in which the machine vibrates freely.
+    ///
+    /// If the record begins at rest, it is used from the first peak after the release on (of a displacement, from the
+    /// first crossing), as whatever held the machine may act on for a while; otherwise from its beginning. If it is released or
+    /// pushed again, it is used until shortly before that. Spikes of one to three samples are left out, and where the steps of a
+    /// converter exceed the noise, what follows the last turning point. Nothing is smoothed and nothing is subtracted: smoothing
+    /// would correlate the noise, and the offset is a parameter. Swings, release, spikes and noise are looked for in the record less
+    /// its hum.
+    ///
+    /// An acceleration jumps where dry friction reverses. It is fitted as it is, but for the samples beside the reversals: no
+    /// accelerometer follows a jump. Its swings are looked for in its integral, less what drifts more slowly than the motion.
     ///
     /// # Errors
-    /// [`IdentifyError`] if the record is neither displacement nor velocity, too short, constant, or shows fewer
-    /// than two half swings, or if the preparation leaves nothing of it.
-    pub fn prepare(record: &Record, preparation: &Preparation) -> Result<Self, IdentifyError> {
+    /// [`IdentifyError`] if the record is no motion, too short, constant, or shows fewer than two half swings, or if the preparation
+    /// leaves nothing of it.
+    pub fn ring_down(record: &Record, preparation: &Preparation) -> Result<Self, IdentifyError> {
         let quantity = record.quantity();
-        if !matches!(quantity, Quantity::Displacement | Quantity::Velocity) {
-            return Err(IdentifyError::Quantity { quantity });
+        if !matches!(quantity, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration) {
+            let (subject, needed) = ("a ring-down", "a displacement, a velocity or an acceleration");
+            return Err(IdentifyError::Quantity { subject, needed, quantity });
         }
         let gain_uncertainty = ModelError::require_not_negative("gain uncertainty", preparation.gain_uncertainty, "")?;
         let (from, to) = (preparation.from.unwrap_or(record.start()), preparation.to.unwrap_or(record.end()));
@@ -62,20 +53,27 @@ impl RingDown {
         // Hum must not be taken for the machine; what is fitted is the record as it was measured.
         let hum = hum(&record);
         let cleaned = without_lines(&record, &hum);
+        let is_acceleration = quantity == Quantity::Acceleration;
+        // What shows the swings: the kinks of a velocity are smaller than the jumps of an acceleration.
+        let seen_of = |record: &Record| if is_acceleration { velocity_of(record) } else { Some(record.clone()) };
+        let few = IdentifyError::TooFewHalfSwings { found: 0, needed: FEWEST_HALF_SWINGS };
         // One motion is fitted, the first.
-        let further = further_releases(&cleaned);
+        let seen = seen_of(&cleaned).ok_or(few)?;
+        let seen_quantity = seen.quantity();
+        let further = further_releases(&seen);
         let until = further.first().map_or(record.end(), |next| next.sound_until);
         let (record, cleaned) = (record.crop(record.start(), until)?, cleaned.crop(record.start(), until)?);
-        let swings = Swings::of(&cleaned);
+        let seen = seen.crop(record.start(), until)?;
+        let swings = Swings::of(&seen);
         let release = Release::of(&cleaned);
         let held_offset = match preparation.offset {
             Offset::Fitted => None,
             Offset::Rest => Some(release.ok_or(IdentifyError::NoRest)?.offset),
             Offset::Fixed(value) => Some(ModelError::require_finite("offset", value, "in the unit of the record")?),
         };
-        let begin = release.map_or(record.start(), |release| beginning(&swings, release.rest_end, quantity));
+        let begin = release.map_or(record.start(), |release| beginning(&swings, release.rest_end, seen_quantity));
         let record = record.crop(begin, record.end())?;
-        let cleaned = cleaned.crop(begin, cleaned.end())?;
+        let (cleaned, seen) = (cleaned.crop(begin, cleaned.end())?, seen.crop(begin, seen.end())?);
 
         let start = record.start();
         let after = |time: f64| time > start - record.interval();
@@ -84,13 +82,17 @@ impl RingDown {
             extrema: peaks.iter().map(|peak| ((peak.time - start).max(0.0), peak.value)).collect(),
             frequency: swings.frequency(),
         };
-        let (times, heights) = swings.turns(quantity);
+        let (times, heights) = swings.turns(seen_quantity);
         let begun = times.iter().take_while(|time| !after(**time)).count();
         let few = IdentifyError::TooFewHalfSwings { found: peaks.len(), needed: FEWEST_HALF_SWINGS };
-        let guess = FirstGuess::of(&oscillation, quantity).ok_or(few)?;
+        let guess = FirstGuess::of(&oscillation, seen_quantity).ok_or(few)?;
 
         let spikes = spikes(&cleaned);
         let mut kept = without(record.len(), spikes.iter().map(|spike| spike.index..spike.index + spike.count));
+        if is_acceleration {
+            let jumps = jumps(&times[begun..], noise(cleaned.values()), &guess, &record);
+            kept = kept.into_iter().flat_map(|range| between(range, &jumps)).collect();
+        }
         let resolution = quantisation_step(record.values());
         let noise = noise(cleaned.values());
         if resolution.is_some_and(|step| step > COARSE * noise) {
@@ -102,6 +104,7 @@ impl RingDown {
             kept.retain(|range| !range.is_empty());
         }
         let amplitudes = guess.amplitudes();
+        let in_record = if is_acceleration { 2.0 * PI * guess.frequency() } else { 1.0 };
         let summary = RecordSummary {
             from: record.start(),
             to: record.end(),
@@ -113,162 +116,35 @@ impl RingDown {
             gain_uncertainty,
             release: release.map(|release| release.rest_end),
             half_swings: peaks.len(),
-            amplitudes: (amplitudes[0], amplitudes[amplitudes.len() - 1]),
+            amplitudes: (in_record * amplitudes[0], in_record * amplitudes[amplitudes.len() - 1]),
             frequency: guess.frequency(),
             noise,
             resolution,
             rest_from: rest_from(&cleaned, resolution.unwrap_or(0.0), guess.frequency()),
             spikes: spikes.iter().map(|spike| spike.count).sum(),
             saturation: saturation(record.values()),
-            offset_step: OffsetStep::of(&cleaned),
+            offset_step: OffsetStep::of(&seen),
             period_change: period_change(&times[begun..], &heights[begun..]),
             hum,
             further_releases: further.iter().map(|release| release.time).collect(),
-            second_mode: SecondMode::of(&cleaned),
+            second_mode: SecondMode::of(&seen),
+            is_driven: false,
         };
         let peaks = peaks.iter().map(|peak| (peak.time, peak.value)).collect();
         let nuisances = Nuisance::of_hum(&summary.hum).collect();
-        Ok(Self { record, kept, guess, peaks, nuisances: Vec::new(), shapes: Vec::new(), summary }.beside(nuisances))
-    }
-
-    /// The same with further disturbances to be fitted beside the motion.
-    pub(crate) fn beside(mut self, nuisances: Vec<Nuisance>) -> Self {
-        let (start, end) = (self.record.start(), self.record.end());
-        for nuisance in nuisances {
-            self.shapes.push(self.record.times().map(|time| nuisance.at(time, start, end)).collect());
-            self.nuisances.push(nuisance);
-        }
-        self
-    }
-
-    /// The disturbances that are fitted beside the motion.
-    pub(crate) fn nuisances(&self) -> &[Nuisance] {
-        &self.nuisances
-    }
-
-    /// The shape of each of them (1) at every sample.
-    pub(crate) fn shapes(&self) -> &[Vec<f64>] {
-        &self.shapes
-    }
-
-    /// The part of the record that is used, as it was measured.
-    pub fn record(&self) -> &Record {
-        &self.record
-    }
-
-    /// What the record is and what was seen in it.
-    pub fn summary(&self) -> &RecordSummary {
-        &self.summary
-    }
-
-    /// Time (s) and value of the turning points, maxima and minima by turns.
-    pub fn peaks(&self) -> &[(f64, f64)] {
-        &self.peaks
-    }
-
-    /// Ranges of samples that are fitted; what lies between them is left out.
-    pub fn kept(&self) -> &[Range<usize>] {
-        &self.kept
-    }
-
-    /// Samples in a row among those that are kept over which the values stay within one step of the converter; none if the steps do
-    /// not exceed the noise.
-    pub(crate) fn stays(&self) -> Vec<Range<usize>> {
-        let Some(step) = self.summary.resolution.filter(|_| self.summary.is_rounded()) else { return Vec::new() };
-        let mut stays: Vec<Range<usize>> = Vec::new();
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        let values = self.kept.iter().flat_map(|range| &self.record.values()[range.clone()]);
-        for (row, value) in values.enumerate() {
-            (low, high) = (low.min(*value), high.max(*value));
-            match stays.last_mut() {
-                Some(stay) if high - low < 1.5 * step => stay.end = row + 1,
-                _ => {
-                    stays.push(row..row + 1);
-                    (low, high) = (*value, *value);
-                }
-            }
-        }
-        stays
-    }
-
-    /// The same ring-down up to its last peak; none if that leaves nothing out or too little.
-    ///
-    /// In the displacement a stop one swing too early or too late shows as a jump, over which no gradient leads. Without
-    /// the end of the motion there is no such jump.
-    pub(crate) fn up_to_last_peak(&self) -> Option<Self> {
-        let (last, _) = *self.peaks.last()?;
-        self.up_to(last)
-    }
-
-    /// The first `share` of the ring-down (1), as much of it as can be fitted.
-    pub(crate) fn beginning(&self, share: f64) -> Self {
-        let end = self.record.start() + share * self.record.duration();
-        // Three periods tell a frequency.
-        let end = end.max(self.record.start() + 3.0 / self.guess.frequency());
-        self.up_to(end).unwrap_or_else(|| self.clone())
-    }
-
-    /// The part up to `end` (s); none if that leaves nothing out or too little.
-    fn up_to(&self, end: f64) -> Option<Self> {
-        let record = self.record.crop(self.record.start(), end).ok()?;
-        let count = record.len();
-        if count < FEWEST_SAMPLES || count == self.record.len() {
-            return None;
-        }
-        let kept: Vec<Range<usize>> = self.kept.iter().map(|range| range.start..range.end.min(count)).collect();
-        let kept: Vec<Range<usize>> = kept.into_iter().filter(|range| !range.is_empty()).collect();
-        let summary =
-            RecordSummary { to: record.end(), samples: kept.iter().map(Range::len).sum(), ..self.summary.clone() };
-        Some(Self { record, kept, summary, ..self.clone() })
-    }
-
-    /// Every `stride`-th sample, for a search that need not see them all.
-    pub(crate) fn thinned(&self, stride: usize) -> Option<Self> {
-        let values: Vec<f64> = self.record.values().iter().copied().step_by(stride).collect();
-        let interval = self.record.interval() * stride as f64;
-        let record =
-            Record::new(self.record.start(), interval, values, self.record.quantity(), self.record.unit()).ok()?;
-        let thin = |range: &Range<usize>| range.start.div_ceil(stride)..range.end.div_ceil(stride);
-        let kept: Vec<Range<usize>> = self.kept.iter().map(thin).filter(|range| !range.is_empty()).collect();
-        let summary = RecordSummary { samples: kept.iter().map(Range::len).sum(), ..self.summary.clone() };
-        let shapes = self.shapes.iter().map(|shape| shape.iter().copied().step_by(stride).collect()).collect();
-        Some(Self { record, kept, shapes, summary, ..self.clone() })
-    }
-
-    /// Largest displacement and velocity of the motion, in the units of the record and its integral or derivative.
-    pub(crate) fn scales(&self) -> (f64, f64) {
-        let (largest, angular) = (self.summary.amplitudes.0, 2.0 * PI * self.guess.frequency());
-        match self.record.quantity() {
-            Quantity::Displacement => (largest, angular * largest),
-            _ => (largest / angular, largest),
-        }
-    }
-
-    /// f₀ (Hz) of small vibrations of an undamped `machine`, given what its contact loses: a pendulum swings more slowly the
-    /// farther it swings, by φ²/16.
-    pub(crate) fn natural_frequency(&self, dissipation: Dissipation, machine: &Machine) -> f64 {
-        let frequency = self.guess.natural_frequency(dissipation);
-        let Restoring::Sine { length } = machine.restoring() else { return frequency };
-        let amplitudes = self.guess.amplitudes();
-        let square = amplitudes.iter().map(|a| a * a).sum::<f64>() / amplitudes.len().max(1) as f64;
-        let unit = self.scales().0 / amplitudes[0] / length;
-        frequency * (1.0 + square * unit * unit / 16.0)
-    }
-
-    pub(crate) fn guess(&self) -> &FirstGuess {
-        &self.guess
-    }
-
-    /// The offset, if it is held.
-    pub(crate) fn fixed_offset(&self) -> Option<f64> {
-        self.summary.held_offset
-    }
-
-    /// Two octaves either way of what the crossings show: wide enough for any law, and no fit that leaves it
-    /// describes this record.
-    pub(crate) fn frequency_bounds(&self) -> Bounds {
-        let frequency = self.guess.frequency();
-        Bounds::new(0.25 * frequency, 4.0 * frequency).unwrap_or(Bounds::POSITIVE)
+        let experiment = Self {
+            record,
+            kept,
+            guess,
+            peaks,
+            nuisances: Vec::new(),
+            shapes: Vec::new(),
+            summary,
+            sensor: Sensor::default(),
+            load_factor: 1.0,
+            driven: None,
+        };
+        Ok(experiment.beside(nuisances))
     }
 }
 
@@ -280,6 +156,70 @@ fn beginning(swings: &Swings, rest_end: f64, quantity: Quantity) -> f64 {
         Box::new(swings.peaks().iter().map(|peak| peak.time))
     };
     candidates.find(|time| *time > rest_end).unwrap_or(rest_end)
+}
+
+/// The velocity of an `acceleration`, less what drifts more slowly than a period; none if nothing swings.
+///
+/// The integral of an offset is a slope, and that of noise a walk: both are in the mean over a period, the motion is not.
+fn velocity_of(acceleration: &Record) -> Option<Record> {
+    let period = acceleration.rate() / Swings::of(acceleration).frequency()?;
+    let velocity = acceleration.shifted(-acceleration.mean()).ok()?.integrate(0.0).ok()?;
+    let values = velocity.values();
+    let half = (0.5 * period).round() as usize;
+    if half == 0 || values.len() < 4 * half {
+        return None;
+    }
+    let mut sums = vec![0.0; values.len() + 1];
+    for (index, value) in values.iter().enumerate() {
+        sums[index + 1] = sums[index] + value;
+    }
+    // The window has the length of a period, its ends count half.
+    let mean = |at: usize| {
+        let inner = sums[at + half] - sums[at + 1 - half];
+        (inner + 0.5 * (values[at - half] + values[at + half])) / (2 * half) as f64
+    };
+    let (first, last) = (half, values.len() - 1 - half);
+    let slope = |from: usize, to: usize| (mean(to) - mean(from)) / (to - from).max(1) as f64;
+    let slopes = (slope(first, (first + 2 * half).min(last)), slope(last.saturating_sub(2 * half).max(first), last));
+    let drift = |at: usize| {
+        if at < first {
+            mean(first) - slopes.0 * (first - at) as f64
+        } else if at > last {
+            mean(last) + slopes.1 * (at - last) as f64
+        } else {
+            mean(at)
+        }
+    };
+    let values = values.iter().enumerate().map(|(at, value)| value - drift(at)).collect();
+    Record::new(velocity.start(), velocity.interval(), values, Quantity::Velocity, velocity.unit()).ok()
+}
+
+/// The samples of an acceleration beside the `times` (s) at which the velocity changes its sign, the stop among them, in order.
+fn jumps(times: &[f64], noise: f64, guess: &FirstGuess, record: &Record) -> Vec<Range<usize>> {
+    /// Samples on either side of a jump, over which a sensor may smear it, and standard deviations of its time.
+    const SAMPLES: f64 = 3.0;
+    const DEVIATIONS: f64 = 4.0;
+    let half_period = 0.5 / guess.frequency();
+    let stop = times.last().map(|last| last + half_period);
+    let angular = 2.0 * PI * guess.frequency();
+    // Of a velocity that was integrated over about a period.
+    let uncertain = noise * (2.0 * half_period * record.interval()).sqrt();
+    let range = |(turn, time): (usize, f64)| {
+        let amplitude = guess.amplitudes().get(turn).or(guess.amplitudes().last()).copied().unwrap_or(f64::INFINITY);
+        let time_uncertain = (uncertain / (angular * amplitude)).min(0.1 * half_period);
+        let reach = SAMPLES + DEVIATIONS * time_uncertain * record.rate();
+        let place = (time - record.start()) * record.rate();
+        let end = (place + reach).floor().max(-1.0) + 1.0;
+        (place - reach).ceil().max(0.0) as usize..(end as usize).min(record.len())
+    };
+    times.iter().copied().chain(stop).enumerate().map(range).filter(|range| !range.is_empty()).collect()
+}
+
+/// The parts of `range` between `holes`, which are in order.
+fn between(range: Range<usize>, holes: &[Range<usize>]) -> Vec<Range<usize>> {
+    let inside = holes.iter().map(|hole| hole.start.clamp(range.start, range.end)..hole.end.clamp(range.start, range.end));
+    let shifted = inside.map(|hole| hole.start - range.start..hole.end - range.start);
+    without(range.len(), shifted).into_iter().map(|part| part.start + range.start..part.end + range.start).collect()
 }
 
 /// When `record` comes to rest (s): from there on its values stay within their noise and a `resolution` for at least half a period of
@@ -302,7 +242,7 @@ fn rest_from(record: &Record, resolution: f64, frequency: f64) -> Option<f64> {
 }
 
 /// The ranges of `0..count` between `holes`, which are in order.
-fn without(count: usize, holes: impl Iterator<Item = Range<usize>>) -> Vec<Range<usize>> {
+pub(super) fn without(count: usize, holes: impl Iterator<Item = Range<usize>>) -> Vec<Range<usize>> {
     let mut kept = Vec::new();
     let mut start = 0;
     for hole in holes {
@@ -344,12 +284,12 @@ mod tests {
     #[test]
     fn hum_changes_neither_swings_nor_release_and_stays_in_the_record() {
         let clean = released(&[0.3]);
-        let expected = RingDown::prepare(&clean, &Preparation::default()).unwrap();
+        let expected = Experiment::ring_down(&clean, &Preparation::default()).unwrap();
         for (frequency, share) in [(50.0, 0.01), (50.0, 0.1), (60.0, 0.3), (100.0, 0.038)] {
             let hum = |t: f64| share * 0.27 * (2.0 * PI * frequency * t + 1.0).sin();
             let values = clean.times().zip(clean.values()).map(|(t, value)| value + hum(t)).collect();
             let record = Record::sampled(1000.0, values, Quantity::Velocity, "m/s").unwrap();
-            let found = RingDown::prepare(&record, &Preparation::default()).unwrap();
+            let found = Experiment::ring_down(&record, &Preparation::default()).unwrap();
             let (found, summary) = (found.record(), found.summary());
             assert_eq!(summary.hum.len(), 1, "{frequency} Hz, {share}: {:?}", summary.hum);
             assert!((summary.hum[0].frequency - frequency).abs() < 0.01, "{frequency} Hz: {:?}", summary.hum);
@@ -363,12 +303,12 @@ mod tests {
     #[test]
     fn only_the_first_of_two_releases_is_used() {
         let record = released(&[0.1, 2.0]);
-        let first = RingDown::prepare(&record, &Preparation::default()).unwrap();
+        let first = Experiment::ring_down(&record, &Preparation::default()).unwrap();
         let summary = first.summary();
         assert!(matches!(summary.further_releases[..], [time] if (time - 2.0).abs() < 0.02), "{summary:?}");
         assert!((1.5..2.0).contains(&summary.to), "{summary}");
         for preparation in [Preparation::default().to(1.9), Preparation::default().from(1.95)] {
-            let one = RingDown::prepare(&record, &preparation).unwrap();
+            let one = Experiment::ring_down(&record, &preparation).unwrap();
             assert_eq!(one.summary().further_releases, []);
             assert_eq!((one.summary().second_mode, one.summary().period_change), (None, None));
         }
@@ -378,10 +318,10 @@ mod tests {
     fn coarse_values_stay_at_a_step_and_the_last_swings_are_left_out() {
         const STEP: f64 = 0.02;
         let clean = released(&[0.3]);
-        assert_eq!(RingDown::prepare(&clean, &Preparation::default()).unwrap().stays(), []);
+        assert_eq!(Experiment::ring_down(&clean, &Preparation::default()).unwrap().stays(), []);
         let values = clean.values().iter().map(|value| (value / STEP).round() * STEP).collect();
         let record = Record::sampled(1000.0, values, Quantity::Velocity, "m/s").unwrap();
-        let coarse = RingDown::prepare(&record, &Preparation::default()).unwrap();
+        let coarse = Experiment::ring_down(&record, &Preparation::default()).unwrap();
         assert!(coarse.summary().is_rounded());
         let kept: Vec<f64> =
             coarse.kept().iter().flat_map(|range| &coarse.record().values()[range.clone()]).copied().collect();
@@ -400,12 +340,12 @@ mod tests {
         assert!(coarse.record().start() + end as f64 * 1e-3 <= last + 1e-9);
     }
 
-    fn file(name: &str, quantity: Quantity) -> RingDown {
+    fn file(name: &str, quantity: Quantity) -> Experiment {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../fmm-record/tests/data").join(name);
         let text = std::fs::read_to_string(path).unwrap();
         let values = text.lines().skip(1).map(|line| line.rsplit(',').next().unwrap().parse().unwrap()).collect();
         let record = Record::sampled(1000.0, values, quantity, "1").unwrap();
-        RingDown::prepare(&record, &Preparation::default()).unwrap()
+        Experiment::ring_down(&record, &Preparation::default()).unwrap()
     }
 
     #[test]

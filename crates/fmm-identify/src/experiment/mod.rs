@@ -1,0 +1,335 @@
+//! Experiments on a machine: what was done to it and the record of its response, made ready for identification.
+
+mod drive;
+mod driven;
+mod ring_down;
+mod sensor;
+
+use std::f64::consts::PI;
+use std::ops::Range;
+
+use fmm_model::{Bounds, Restoring};
+use fmm_record::{Quantity, Record};
+
+pub use drive::Drive;
+pub(crate) use driven::DrivenGuess;
+pub(crate) use sensor::Filter;
+pub use sensor::Sensor;
+
+use crate::first_guess::{Dissipation, FirstGuess};
+use crate::nuisance::Nuisance;
+use crate::{IdentifyError, Machine, RecordSummary};
+
+/// An experiment on a machine: a ring-down ([`ring_down`](Self::ring_down)), or a motion that is driven by a measured force or by a
+/// measured motion of the base ([`driven`](Self::driven)).
+///
+/// Experiments of all kinds are fitted together: they share the machine and the law, and each has its own initial state and offset,
+/// its own normal load ([`with_load_factor`](Self::with_load_factor)) and its own sensor ([`seen_by`](Self::seen_by)).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Experiment {
+    record: Record,
+    kept: Vec<Range<usize>>,
+    guess: FirstGuess,
+    peaks: Vec<(f64, f64)>,
+    nuisances: Vec<Nuisance>,
+    /// The shape of each of them at every sample.
+    shapes: Vec<Vec<f64>>,
+    summary: RecordSummary,
+    sensor: Sensor,
+    /// Normal load over that of the machine.
+    load_factor: f64,
+    driven: Option<Driven>,
+}
+
+/// What drives an experiment, and where a fit of it may begin.
+#[derive(Debug, Clone, PartialEq)]
+struct Driven {
+    drive: Drive,
+    /// The drive from the first sample of the record on.
+    values: Vec<f64>,
+    guess: DrivenGuess,
+}
+
+/// Fewest samples that can show two half swings.
+const FEWEST_SAMPLES: usize = 16;
+
+impl Experiment {
+    /// The same under `factor` times the normal load of the machine.
+    ///
+    /// # Errors
+    /// [`IdentifyError::NotAllowed`] for a factor that is negative or not finite.
+    pub fn with_load_factor(mut self, factor: f64) -> Result<Self, IdentifyError> {
+        if !(factor >= 0.0 && factor.is_finite()) {
+            let subject = "the normal load of an experiment";
+            return Err(IdentifyError::NotAllowed { subject, value: factor, allowed: "a multiple from 0 on" });
+        }
+        self.load_factor = factor;
+        Ok(self)
+    }
+
+    /// The same with the contact lifted: the law is not part of it, the damping of the machine is.
+    #[must_use]
+    pub fn without_contact(self) -> Self {
+        Self { load_factor: 0.0, ..self }
+    }
+
+    /// The same seen by `sensor`. What its filter remembers of the time before the record is left out of the fit.
+    ///
+    /// # Errors
+    /// [`IdentifyError::NotAllowed`] for a corner above half the sampling rate, [`IdentifyError::TooShort`] if the filter leaves nothing.
+    pub fn seen_by(mut self, sensor: Sensor) -> Result<Self, IdentifyError> {
+        let frequency = self.guess.frequency();
+        let limit = 0.5 * self.record.rate();
+        if let Some(value) = sensor.first_corner(frequency).filter(|corner| *corner > limit) {
+            let subject = "the corner frequency of a sensor (Hz)";
+            return Err(IdentifyError::NotAllowed { subject, value, allowed: "below half the sampling rate" });
+        }
+        let settled = (sensor.settling(frequency) * self.record.rate()).ceil() as usize;
+        for range in &mut self.kept {
+            range.start = range.start.max(settled).min(range.end);
+        }
+        self.kept.retain(|range| !range.is_empty());
+        self.summary.samples = self.kept.iter().map(Range::len).sum();
+        if self.summary.samples < FEWEST_SAMPLES {
+            return Err(IdentifyError::TooShort { samples: self.summary.samples, needed: FEWEST_SAMPLES });
+        }
+        self.sensor = sensor;
+        Ok(self)
+    }
+
+    /// Its sensor.
+    pub fn sensor(&self) -> &Sensor {
+        &self.sensor
+    }
+
+    /// Its normal load over that of the machine.
+    pub fn load_factor(&self) -> f64 {
+        self.load_factor
+    }
+
+    /// What drives it; none if it vibrates freely.
+    pub fn drive(&self) -> Option<&Drive> {
+        self.driven.as_ref().map(|driven| &driven.drive)
+    }
+
+    /// The samples of the drive from the first one of the record on, with the drive.
+    pub(crate) fn driven_values(&self) -> Option<(&Drive, &[f64])> {
+        self.driven.as_ref().map(|driven| (&driven.drive, driven.values.as_slice()))
+    }
+
+    /// The same, begun at rest where the spring is free of force if it is driven.
+    pub(crate) fn begun_neutral(mut self) -> Self {
+        if let Some(driven) = &mut self.driven {
+            driven.guess = driven.guess.neutral();
+        }
+        self
+    }
+
+    /// Where a fit of a driven motion may begin.
+    pub(crate) fn driven_guess(&self) -> Option<&DrivenGuess> {
+        self.driven.as_ref().map(|driven| &driven.guess)
+    }
+
+    /// That it is a free vibration whose record is one of position or velocity, as `estimator` needs.
+    pub(crate) fn require_free(&self, estimator: &'static str) -> Result<(), IdentifyError> {
+        if self.driven.is_some() {
+            return Err(IdentifyError::FreeVibrationNeeded { estimator });
+        }
+        let quantity = self.record.quantity();
+        if quantity == Quantity::Acceleration {
+            let needed = "a displacement or a velocity";
+            return Err(IdentifyError::Quantity { subject: estimator, needed, quantity });
+        }
+        Ok(())
+    }
+
+    /// Offset to begin a fit with, given what the contact loses.
+    pub(crate) fn first_offset(&self, dissipation: Dissipation) -> f64 {
+        match (&self.driven, self.record.quantity()) {
+            (Some(driven), _) => driven.guess.offset,
+            (None, Quantity::Acceleration) => self.record.mean(),
+            (None, _) => self.guess.offset(dissipation),
+        }
+    }
+
+    /// Initial position and velocity to begin a fit with, given what the contact loses.
+    pub(crate) fn first_state(&self, dissipation: Dissipation) -> (f64, f64) {
+        self.driven.as_ref().map_or_else(|| self.guess.initial_state(dissipation), |driven| driven.guess.initial)
+    }
+
+    /// Bounds of the corner frequency of the sensor (Hz).
+    pub(crate) fn corner_bounds(&self) -> Bounds {
+        Bounds::new(2.0 * self.guess.frequency(), 0.5 * self.record.rate()).unwrap_or(Bounds::POSITIVE)
+    }
+
+    /// The same with further disturbances to be fitted beside the motion.
+    pub(crate) fn beside(mut self, nuisances: Vec<Nuisance>) -> Self {
+        let (start, end) = (self.record.start(), self.record.end());
+        for nuisance in nuisances {
+            self.shapes.push(self.record.times().map(|time| nuisance.at(time, start, end)).collect());
+            self.nuisances.push(nuisance);
+        }
+        self
+    }
+
+    /// The disturbances that are fitted beside the motion.
+    pub(crate) fn nuisances(&self) -> &[Nuisance] {
+        &self.nuisances
+    }
+
+    /// The shape of each of them (1) at every sample.
+    pub(crate) fn shapes(&self) -> &[Vec<f64>] {
+        &self.shapes
+    }
+
+    /// The part of the record that is used, as it was measured.
+    pub fn record(&self) -> &Record {
+        &self.record
+    }
+
+    /// What the record is and what was seen in it.
+    pub fn summary(&self) -> &RecordSummary {
+        &self.summary
+    }
+
+    /// Time (s) and value of the turning points, maxima and minima by turns.
+    pub fn peaks(&self) -> &[(f64, f64)] {
+        &self.peaks
+    }
+
+    /// Ranges of samples that are fitted; what lies between them is left out.
+    pub fn kept(&self) -> &[Range<usize>] {
+        &self.kept
+    }
+
+    /// Samples in a row among those that are kept over which the values stay within one step of the converter; none if the steps do
+    /// not exceed the noise.
+    pub(crate) fn stays(&self) -> Vec<Range<usize>> {
+        let Some(step) = self.summary.resolution.filter(|_| self.summary.is_rounded()) else { return Vec::new() };
+        let mut stays: Vec<Range<usize>> = Vec::new();
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let values = self.kept.iter().flat_map(|range| &self.record.values()[range.clone()]);
+        for (row, value) in values.enumerate() {
+            (low, high) = (low.min(*value), high.max(*value));
+            match stays.last_mut() {
+                Some(stay) if high - low < 1.5 * step => stay.end = row + 1,
+                _ => {
+                    stays.push(row..row + 1);
+                    (low, high) = (*value, *value);
+                }
+            }
+        }
+        stays
+    }
+
+    /// The same ring-down up to its last peak; none if that leaves nothing out or too little.
+    ///
+    /// In the displacement a stop one swing too early or too late shows as a jump, over which no gradient leads. Without
+    /// the end of the motion there is no such jump.
+    pub(crate) fn up_to_last_peak(&self) -> Option<Self> {
+        let (last, _) = *self.peaks.last()?;
+        self.up_to(last)
+    }
+
+    /// The first `share` of the ring-down (1), as much of it as can be fitted.
+    pub(crate) fn beginning(&self, share: f64) -> Self {
+        let end = self.record.start() + share * self.record.duration();
+        // Three periods tell a frequency.
+        let end = end.max(self.record.start() + 3.0 / self.guess.frequency());
+        self.up_to(end).unwrap_or_else(|| self.clone())
+    }
+
+    /// The part up to `end` (s); none if that leaves nothing out or too little.
+    fn up_to(&self, end: f64) -> Option<Self> {
+        let record = self.record.crop(self.record.start(), end).ok()?;
+        let count = record.len();
+        if count < FEWEST_SAMPLES || count == self.record.len() {
+            return None;
+        }
+        let kept: Vec<Range<usize>> = self.kept.iter().map(|range| range.start..range.end.min(count)).collect();
+        let kept: Vec<Range<usize>> = kept.into_iter().filter(|range| !range.is_empty()).collect();
+        let summary =
+            RecordSummary { to: record.end(), samples: kept.iter().map(Range::len).sum(), ..self.summary.clone() };
+        Some(Self { record, kept, summary, ..self.clone() })
+    }
+
+    /// Every `stride`-th sample, for a search that need not see them all.
+    pub(crate) fn thinned(&self, stride: usize) -> Option<Self> {
+        let values: Vec<f64> = self.record.values().iter().copied().step_by(stride).collect();
+        let interval = self.record.interval() * stride as f64;
+        let record =
+            Record::new(self.record.start(), interval, values, self.record.quantity(), self.record.unit()).ok()?;
+        let thin = |range: &Range<usize>| range.start.div_ceil(stride)..range.end.div_ceil(stride);
+        let kept: Vec<Range<usize>> = self.kept.iter().map(thin).filter(|range| !range.is_empty()).collect();
+        let summary = RecordSummary { samples: kept.iter().map(Range::len).sum(), ..self.summary.clone() };
+        let shapes = self.shapes.iter().map(|shape| shape.iter().copied().step_by(stride).collect()).collect();
+        Some(Self { record, kept, shapes, summary, ..self.clone() })
+    }
+
+    /// Largest displacement and velocity of the motion, in the units of the record and its integral or derivative.
+    pub(crate) fn scales(&self) -> (f64, f64) {
+        let (largest, angular) = (self.summary.amplitudes.0, 2.0 * PI * self.guess.frequency());
+        match self.record.quantity() {
+            Quantity::Displacement => (largest, angular * largest),
+            Quantity::Acceleration => (largest / (angular * angular), largest / angular),
+            _ => (largest / angular, largest),
+        }
+    }
+
+    /// f₀ (Hz) of small vibrations of an undamped `machine`, given what its contact loses: a pendulum swings more slowly the
+    /// farther it swings, by φ²/16.
+    pub(crate) fn natural_frequency(&self, dissipation: Dissipation, machine: &Machine) -> f64 {
+        let frequency = self.guess.natural_frequency(dissipation);
+        let Restoring::Sine { length } = machine.restoring() else { return frequency };
+        let amplitudes = self.guess.amplitudes();
+        let square = amplitudes.iter().map(|a| a * a).sum::<f64>() / amplitudes.len().max(1) as f64;
+        let unit = self.scales().0 / amplitudes[0] / length;
+        frequency * (1.0 + square * unit * unit / 16.0)
+    }
+
+    pub(crate) fn guess(&self) -> &FirstGuess {
+        &self.guess
+    }
+
+    /// The offset, if it is held.
+    pub(crate) fn fixed_offset(&self) -> Option<f64> {
+        self.summary.held_offset
+    }
+
+    /// Two octaves either way of what the crossings of a ring-down show: wide enough for any law, and no fit that leaves it
+    /// describes this record. What drives a machine shows less of it.
+    pub(crate) fn frequency_bounds(&self) -> Bounds {
+        if self.driven.is_some() {
+            return Bounds::POSITIVE;
+        }
+        let frequency = self.guess.frequency();
+        Bounds::new(0.25 * frequency, 4.0 * frequency).unwrap_or(Bounds::POSITIVE)
+    }
+}
+
+/// The experiment that shows the machine best, by which a fit begins: the first ring-down with the contact closed, or else the first
+/// ring-down, or the first of all.
+///
+/// # Panics
+/// Without an experiment, which is refused before.
+pub(crate) fn reference(experiments: &[Experiment]) -> &Experiment {
+    let is_free = |experiment: &&Experiment| experiment.driven.is_none();
+    let is_loaded = |experiment: &&Experiment| is_free(experiment) && experiment.load_factor > 0.0;
+    let all = || experiments.iter();
+    all().find(is_loaded).or_else(|| all().find(is_free)).unwrap_or(&experiments[0])
+}
+
+/// Each experiment with the factor by which its residuals are multiplied (1): the noise of the first over its own, if they are not all
+/// of one quantity and kind, else 1.
+pub(crate) fn scaled(experiments: &[Experiment]) -> impl Iterator<Item = (&Experiment, f64)> {
+    let kind = |experiment: &Experiment| (experiment.record.quantity(), experiment.driven.is_some());
+    // Rounding of doubles is the least noise there is.
+    let noise = |experiment: &Experiment| experiment.white_noise().max(1e-9 * experiment.summary.amplitudes.0);
+    let first = experiments.first();
+    let is_one_kind = experiments.iter().all(|experiment| first.is_some_and(|first| kind(first) == kind(experiment)));
+    let weight = move |experiment: &Experiment| match first {
+        Some(first) if !is_one_kind => noise(first) / noise(experiment),
+        _ => 1.0,
+    };
+    experiments.iter().map(move |experiment| (experiment, weight(experiment)))
+}

@@ -1,0 +1,6 @@
+//! Experiments besides a ring-down seen by a faithful sensor: accelerations, filters, driven motion, and several kinds together.
+
+mod acceleration;
+mod driven;
+mod joint;
+mod simulated;
