@@ -74,7 +74,8 @@
 //! # Units and conventions
 //!
 //! SI units; x = 0 is where the spring is free of force, t = 0 the initial state. Per unit mass, stiffness, damping and
-//! force are those by the mass. A sample at the time of an event holds the state after it.
+//! force are those by the mass. A sample at the time of an event holds the state after it, its acceleration included, which jumps
+//! there: at a reversal by twice the friction force over the mass.
 //!
 //! # Guarantees
 //!
@@ -100,7 +101,7 @@
 //!
 //! While a measured force acts, [`Exact`] goes from sample to sample of the force, 0.3 µs each.
 //! [`run_into`](Engine::run_into) uses the memory of a [`Trajectory`] again; [`Sampling::keeping`] leaves out the channel
-//! that is not wanted.
+//! that is not wanted, or adds the acceleration ([`Channels::All`]).
 //!
 //! # Neighbours
 //!

@@ -17,7 +17,8 @@ use crate::{Direction, Engine, Event, EventKind, Mode, Sampling, Scenario, Simul
 /// with u_free the velocity after a step without friction. Where the static level is above the sliding one, F is the static
 /// level in stick, and a contact whose u would change sign in a step stops if the load does not exceed it. It needs no event
 /// location, and it is the method of contact mechanics with many contacts; but it is of first order wherever the motion turns or stops, and its events
-/// lie on the sampling grid. One step is one sampling interval. The level of a law is that at the speed before the step;
+/// lie on the sampling grid. One step is one sampling interval. Accelerations are those that the state at a sample has, not those
+/// of the impulses. The level of a law is that at the speed before the step;
 /// nonlinear parts of the machine are taken at the beginning of the step. It offers no derivatives.
 ///
 /// # References
@@ -89,6 +90,16 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Moreau {
         for index in 0..sampling.first() + sampling.count() {
             if let Some(sample) = index.checked_sub(sampling.first()) {
                 trajectory.set(sample, sampling.channels(), x, v);
+                if sampling.channels().acceleration() {
+                    let friction = |direction: Direction| direction.sign() * law.coefficient((v - belt).abs()) * load;
+                    let machine = oscillator.restoring_force(x) + oscillator.damping().force(v);
+                    let sliding = |direction| (force - machine - friction(direction)) / mass;
+                    let acceleration = mode.direction().map_or(0.0, sliding);
+                    if !acceleration.is_finite() {
+                        return Err(SimulationError::NotFinite { time: index as f64 * h });
+                    }
+                    trajectory.acceleration_mut().set(sample, acceleration);
+                }
                 if sample + 1 == sampling.count() {
                     break;
                 }

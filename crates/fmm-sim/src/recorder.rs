@@ -81,6 +81,42 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         Ok(())
     }
 
+    /// Writes the accelerations of the samples from `first` to the last that is written, `of` giving that at a sample's time
+    /// and state; they are zero until something is written.
+    pub(crate) fn accelerations(
+        &mut self,
+        first: usize,
+        mut of: impl FnMut(f64, State<D>) -> D,
+    ) -> Result<(), SimulationError> {
+        let of = |time: f64, unknowns: &[D]| of(time, State { position: unknowns[0], velocity: unknowns[1] });
+        self.accelerations_with_states(first, &mut [D::from(0.0); 2], of)
+    }
+
+    /// The same with the internal states: `unknowns` is room for position, velocity and those that `of` needs.
+    pub(crate) fn accelerations_with_states(
+        &mut self,
+        first: usize,
+        unknowns: &mut [D],
+        mut of: impl FnMut(f64, &[D]) -> D,
+    ) -> Result<(), SimulationError> {
+        if !self.sampling.channels().acceleration() {
+            return Ok(());
+        }
+        for index in first..self.written {
+            let motion = [self.trajectory.position(), self.trajectory.velocity()];
+            for (unknown, samples) in unknowns.iter_mut().zip(motion.into_iter().chain(self.trajectory.states())) {
+                *unknown = samples.get(index);
+            }
+            let time = self.sampling.time(index);
+            let acceleration = of(time, unknowns);
+            if !acceleration.value().is_finite() {
+                return Err(SimulationError::NotFinite { time });
+            }
+            self.trajectory.acceleration_mut().set(index, acceleration);
+        }
+        Ok(())
+    }
+
     /// Writes rest at `position` into the samples before `end`; velocities are zero until something else is written.
     pub(crate) fn hold(&mut self, end: f64, position: D) {
         let range = self.written..self.sampling.index_at_or_after(end).max(self.written);

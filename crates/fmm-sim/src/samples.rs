@@ -50,6 +50,14 @@ impl<D: Scalar> Samples<D> {
         self.set_partials(index, number);
     }
 
+    /// The number, value and partial derivatives, at `index`.
+    pub(crate) fn get(&self, index: usize) -> D {
+        let (count, value) = (self.values.len(), D::from(self.values[index]));
+        (0..D::DIRECTIONS).fold(value, |number, direction| {
+            number + D::variable(0.0, direction) * self.partials[direction * count + index]
+        })
+    }
+
     /// Writes the partial derivatives of one number at `index`.
     pub(crate) fn set_partials(&mut self, index: usize, number: D) {
         for direction in 0..D::DIRECTIONS {
@@ -86,6 +94,32 @@ impl<D: Scalar> Samples<D> {
                 for direction in 0..D::DIRECTIONS {
                     let column = &mut self.partial_mut(direction)[range.clone()];
                     fill(column, coefficients.map(|coefficient| coefficient.partial(direction)));
+                }
+            },
+        );
+    }
+
+    /// Writes `constant` plus the sum of the `terms`, samples times a factor, at every index of `range`.
+    pub(crate) fn combine(&mut self, range: std::ops::Range<usize>, constant: D, terms: [(&Self, D); 2]) {
+        let count = self.values.len();
+        widest(
+            #[inline(always)]
+            || {
+                let [(x, by_x), (y, by_y)] = terms;
+                let (x_values, y_values) = (&x.values[range.clone()], &y.values[range.clone()]);
+                let (a, b, c) = (constant.value(), by_x.value(), by_y.value());
+                for ((out, x), y) in self.values[range.clone()].iter_mut().zip(x_values).zip(y_values) {
+                    *out = a + b * x + c * y;
+                }
+                for direction in 0..D::DIRECTIONS {
+                    let column = direction * count + range.start..direction * count + range.end;
+                    let (x_partials, y_partials) = (&x.partials[column.clone()], &y.partials[column.clone()]);
+                    let [a1, b1, c1] = [constant, by_x, by_y].map(|number| number.partial(direction));
+                    let of_x = x_values.iter().zip(x_partials);
+                    let of_y = y_values.iter().zip(y_partials);
+                    for ((out, (x, x1)), (y, y1)) in self.partials[column].iter_mut().zip(of_x).zip(of_y) {
+                        *out = a1 + (b1 * x + b * x1) + (c1 * y + c * y1);
+                    }
                 }
             },
         );

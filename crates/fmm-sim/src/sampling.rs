@@ -16,17 +16,24 @@ pub enum Channels {
     Position,
     /// Velocity only.
     Velocity,
+    /// Position, velocity and acceleration.
+    All,
 }
 
 impl Channels {
     /// Whether positions are kept.
     pub const fn position(self) -> bool {
-        matches!(self, Self::Both | Self::Position)
+        matches!(self, Self::Both | Self::Position | Self::All)
     }
 
     /// Whether velocities are kept.
     pub const fn velocity(self) -> bool {
-        matches!(self, Self::Both | Self::Velocity)
+        matches!(self, Self::Both | Self::Velocity | Self::All)
+    }
+
+    /// Whether accelerations are kept.
+    pub const fn acceleration(self) -> bool {
+        matches!(self, Self::All)
     }
 }
 

@@ -17,7 +17,8 @@ use crate::{Direction, Engine, EventKind, Mode, Sampling, Scenario, SimulationEr
 /// a force is held over it. For a law that depends on the acceleration, that of the step before decides (thesis Eq. 7.3).
 ///
 /// The method is of first order, its stops and reversals snap to the sampling grid, and a least-squares
-/// objective built on it jumps whenever one of them moves by a sample. It therefore offers no derivatives;
+/// objective built on it jumps whenever one of them moves by a sample. It therefore offers no derivatives, and
+/// no accelerations, as it puts the velocity to zero without any;
 /// [`Exact`](crate::Exact) is both faster and free of these errors.
 ///
 /// The load is f − F_k(x). The thesis' Eq. 8.1 takes F_k(x) alone, which would never let a hammer move a machine at rest.
@@ -51,6 +52,9 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
         trajectory: &mut Trajectory<f64>,
     ) -> Result<(), SimulationError> {
         let step = sampling.interval().ok_or(SimulationError::NotUniform)?;
+        if sampling.channels().acceleration() {
+            return Err(SimulationError::NotSupported { engine: "thesis", what: "samples of the acceleration" });
+        }
         trajectory.reset("thesis", 0, false, sampling)?;
         let (oscillator, law, load) = (scenario.oscillator(), scenario.law(), scenario.normal_load());
         let drive = Drive::new(scenario.excitations(), oscillator.mass());

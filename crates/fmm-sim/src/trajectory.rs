@@ -5,7 +5,7 @@ use fmm_model::Scalar;
 use crate::sampling::{Channels, Sampling};
 use crate::{Event, EventKind, Mode, Samples, SimulationError, Work};
 
-/// A simulated motion: sampled position and velocity, and the events that shaped it.
+/// A simulated motion: sampled position, velocity and acceleration, and the events that shaped it.
 ///
 /// Samples at the time of an event hold the state right after it. At a dual number `D` all samples and events
 /// carry their exact partial derivatives, the change of event times included.
@@ -13,6 +13,7 @@ use crate::{Event, EventKind, Mode, Samples, SimulationError, Work};
 pub struct Trajectory<D = f64> {
     position: Samples<D>,
     velocity: Samples<D>,
+    acceleration: Samples<D>,
     events: Vec<Event<D>>,
     states: Vec<Samples<D>>,
     work: [Samples<D>; 3],
@@ -33,6 +34,7 @@ impl<D: Scalar> Trajectory<D> {
         Self {
             position: Samples::new(),
             velocity: Samples::new(),
+            acceleration: Samples::new(),
             events: Vec::new(),
             states: Vec::new(),
             work: [Samples::new(), Samples::new(), Samples::new()],
@@ -59,6 +61,7 @@ impl<D: Scalar> Trajectory<D> {
         let count = |wanted: bool| if wanted { sampling.count() } else { 0 };
         self.position.reset(count(sampling.channels().position()))?;
         self.velocity.reset(count(sampling.channels().velocity()))?;
+        self.acceleration.reset(count(sampling.channels().acceleration()))?;
         self.events.clear();
         self.states.resize_with(states, Samples::new);
         for state in &mut self.states {
@@ -97,6 +100,16 @@ impl<D: Scalar> Trajectory<D> {
         &mut self.velocity
     }
 
+    pub(crate) fn acceleration_mut(&mut self) -> &mut Samples<D> {
+        &mut self.acceleration
+    }
+
+    /// Writes the accelerations `constant` + `per_position` x + `per_velocity` x′ at every index of `range`.
+    pub(crate) fn accelerate(&mut self, range: std::ops::Range<usize>, constant: D, per_position: D, per_velocity: D) {
+        let terms = [(&self.position, per_position), (&self.velocity, per_velocity)];
+        self.acceleration.combine(range, constant, terms);
+    }
+
     /// Writes the state at sample `index` into the channels that are kept.
     pub(crate) fn set(&mut self, index: usize, channels: Channels, position: D, velocity: D) {
         if channels.position() {
@@ -121,6 +134,18 @@ impl<D: Scalar> Trajectory<D> {
     /// Sampled velocity (m/s); empty if it was not asked for.
     pub const fn velocity(&self) -> &Samples<D> {
         &self.velocity
+    }
+
+    /// Sampled acceleration (m/s²), the time derivative of the velocity; empty unless [`Channels::All`] asked for it.
+    ///
+    /// It is the equation of motion at the sampled position and velocity, or its closed form. It jumps where friction does: a
+    /// sample at the time of such an event holds the value after it, and a derivative is that of the smooth piece on which the
+    /// sample lies. While the contact sticks it is zero.
+    ///
+    /// An accelerometer on a machine whose base shakes ([`Excitation::base`](crate::Excitation::base)) feels the acceleration of
+    /// the base as well; this one is relative to the base, as position and velocity are.
+    pub const fn acceleration(&self) -> &Samples<D> {
+        &self.acceleration
     }
 
     /// Sampled internal states of a bristle law, in the law's order; none for other laws.

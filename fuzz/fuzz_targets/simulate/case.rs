@@ -163,7 +163,8 @@ impl Case {
                 Sampling::at(times.to_vec())?
             }
         };
-        let channels = [Channels::Both, Channels::Position, Channels::Velocity][usize::from(self.channels % 3)];
+        let channels =
+            [Channels::Both, Channels::Position, Channels::Velocity, Channels::All][usize::from(self.channels % 4)];
         let sampling = sampling.keeping(channels);
         Ok(if self.channels & 64 == 0 { sampling } else { sampling.with_work() })
     }

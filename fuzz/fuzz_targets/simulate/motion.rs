@@ -13,6 +13,9 @@ pub(crate) fn check<D: Scalar, L>(case: &Case, engine: &impl Engine<D, L>, law: 
     let expected = |kept: bool| if kept { sampling.count() } else { 0 };
     assert_eq!(motion.position().values().len(), expected(sampling.channels().position()), "positions");
     assert_eq!(motion.velocity().values().len(), expected(sampling.channels().velocity()), "velocities");
+    let accelerations = motion.acceleration().values();
+    assert_eq!(accelerations.len(), expected(sampling.channels().acceleration()), "accelerations");
+    assert!(accelerations.iter().all(|acceleration| acceleration.is_finite()), "{motion:?}");
     assert!([motion.position(), motion.velocity()].into_iter().chain(motion.states()).all(is_finite), "{motion:?}");
 
     let events = motion.events();

@@ -176,9 +176,9 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
         self.mirrored_friction(branch, speed) * branch.direction.sign()
     }
 
-    /// Writes (x, v, z)′ at `state` under `force` (N) into `rates`.
+    /// v′ at `state` under `force` (N); the mirrored rates of the bristles are left in `self.rate`.
     #[inline]
-    pub(super) fn rates(&mut self, force: D, branch: Branch, state: &[D], rates: &mut [D]) {
+    pub(super) fn acceleration(&mut self, force: D, branch: Branch, state: &[D]) -> D {
         let friction = self.friction(branch, state);
         let (x, v) = (state[0], state[1]);
         // The other forms of damping cost as much as everything else here together.
@@ -187,8 +187,14 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
             None => self.oscillator.damping().force(v),
         };
         let balance = (force - damping - self.oscillator.restoring_force(x) - friction) * self.per_mass;
-        rates[0] = v;
-        rates[1] = if self.guided { force } else { balance };
+        if self.guided { force } else { balance }
+    }
+
+    /// Writes (x, v, z)′ at `state` under `force` (N) into `rates`.
+    #[inline]
+    pub(super) fn rates(&mut self, force: D, branch: Branch, state: &[D], rates: &mut [D]) {
+        rates[0] = state[1];
+        rates[1] = self.acceleration(force, branch, state);
         for (rate, z) in rates[2..].iter_mut().zip(&self.rate) {
             *rate = *z * branch.direction.sign();
         }

@@ -106,7 +106,12 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             self.jump(drive, index);
         }
         // The samples at the end itself hold the state after an event there.
+        let first = self.recorder.written;
         self.write(f64::INFINITY)?;
+        if !self.resting {
+            self.field.begin(self.branch, &self.step.begin);
+            self.accelerate(first, &piece)?;
+        }
         let rests = self.resting
             && (index + 1..drive.pieces()).all(|later| {
                 let piece = drive.piece(later);
@@ -293,8 +298,9 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         let whole = correction == 0.0 && length == limit - self.time;
         let end = if whole { limit } else { (self.time + length * (1.0 + correction)).min(limit) };
         if self.recorder.has_samples_before(end) {
-            let (half, step) = (0.5 * length, &self.step);
+            let (half, step, first) = (0.5 * length, &self.step, self.recorder.written);
             self.recorder.polynomials(end, self.time + half, half, |component| step.centred(component))?;
+            self.accelerate(first, piece)?;
         }
         let Self { step, field, recorder, branch, time, before, .. } = self;
         recorder.work(*time, end, length, |at| {
@@ -313,6 +319,14 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         self.step.advance(correction);
         self.time = end;
         Ok(())
+    }
+
+    /// Writes the accelerations of the samples from `first` on, which lie on the present branch.
+    fn accelerate(&mut self, first: usize, piece: &Piece<D>) -> Result<(), SimulationError> {
+        let Self { field, recorder, branch, before: state, .. } = self;
+        recorder.accelerations_with_states(first, state, |time, state| {
+            field.acceleration(piece.force(time), *branch, state)
+        })
     }
 
     /// Writes the samples before `end`, at which the state is what it is.

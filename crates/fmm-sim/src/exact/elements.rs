@@ -277,7 +277,8 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
         end: f64,
         recorder: &mut Recorder<D>,
     ) -> Result<(), SimulationError> {
-        for index in recorder.written..recorder.sampling.index_at_or_after(stop) {
+        let first = recorder.written;
+        for index in first..recorder.sampling.index_at_or_after(stop) {
             let time = D::from(recorder.sampling.time(index));
             let deflections = self.moved(path.at(time - self.time), time);
             for (element, deflection) in deflections.into_iter().enumerate() {
@@ -285,6 +286,11 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
             }
         }
         recorder.samples(stop, |time| path.state(-self.time + time))?;
+        let velocity = path.derivative();
+        recorder.accelerations(first, |time, _| {
+            let acceleration = velocity.state(-self.time + time).velocity;
+            if self.at_rest { acceleration - acceleration.value() } else { acceleration }
+        })?;
         let frequency = path.frequencies().fold(plain.natural() + 2.0 * plain.rate(), f64::max);
         let oscillator = self.scenario.oscillator();
         recorder.work(self.time.value(), end, 1.0 / frequency, |time| {

@@ -43,7 +43,8 @@ use swing::{Flows, Swing};
 ///
 /// Guaranteed: no event is missed, events are in order, and their number is at most one million (a typed error
 /// otherwise). Samples within a swing come from a table of powers of exp((−a + iω_d)Δt), anew from the closed
-/// form every 256 samples, so that rounding does not grow along the record.
+/// form every 256 samples, so that rounding does not grow along the record. Accelerations are linear in position and velocity, or
+/// the second derivative of the closed form where elements yield.
 ///
 /// At dual numbers the derivatives are exact, including those of the event times; a derivative does not see
 /// that the *number* of half swings may change, which [`Event::margin`](crate::Event::margin) tells.

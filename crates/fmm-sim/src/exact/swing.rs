@@ -205,7 +205,9 @@ impl<D: Scalar> Slide<D> for Swing<'_, D> {
                 .map(|(ending, time, grazing)| (ending, time, path.state(time - phase.time), grazing)),
         };
         let end = found.as_ref().map_or(phase.samples_end(), |(_, time, _, _)| time.value());
+        let first = recorder.written;
         write(&path, flow.powers.as_ref(), phase.time, end, recorder)?;
+        self.write_accelerations(first, &path, flow, phase, recorder)?;
         self.write_work(&path, flow, phase, end.min(phase.limit), recorder)?;
         if let Some((ending, time, state, grazing)) = found {
             self.digits.note(&path, time.value() - phase.time.value(), phase.state, state);
@@ -226,6 +228,40 @@ impl<D: Scalar> Slide<D> for Swing<'_, D> {
 }
 
 impl<D: Scalar> Swing<'_, D> {
+    /// Writes the accelerations of the samples from `first` on, which lie on `path`: they are linear in position and velocity.
+    fn write_accelerations(
+        &self,
+        first: usize,
+        path: &Curve<D>,
+        flow: &Flow<D>,
+        phase: &Phase<D>,
+        recorder: &mut Recorder<D>,
+    ) -> Result<(), SimulationError> {
+        if !recorder.sampling.channels().acceleration() || first == recorder.written {
+            return Ok(());
+        }
+        let (load, Affine { level, slope, .. }) = (self.normal_load, flow.friction);
+        let mass = self.oscillator.mass();
+        let friction = load * (level * phase.direction.sign() - slope * self.belt);
+        let damping = self.oscillator.damping().linear_coefficient() + load * slope;
+        let steady = if path.is_free() { phase.piece.force(phase.piece.start) } else { D::from(0.0) };
+        let [constant, per_position, per_velocity] =
+            [steady - friction, -self.oscillator.stiffness(), -damping].map(|factor| factor / mass);
+        let range = first..recorder.written;
+        recorder.trajectory.accelerate(range.clone(), constant, per_position, per_velocity);
+        if !path.is_free() {
+            for index in range.clone() {
+                let force = phase.piece.force(recorder.sampling.time(index));
+                recorder.trajectory.acceleration_mut().add(index, force / mass);
+            }
+        }
+        let written = &recorder.trajectory.acceleration().values()[range];
+        if let Some(index) = written.iter().position(|acceleration| !acceleration.is_finite()) {
+            return Err(SimulationError::NotFinite { time: recorder.sampling.time(first + index) });
+        }
+        Ok(())
+    }
+
     fn write_work(
         &self,
         path: &Curve<D>,

@@ -29,6 +29,8 @@ use slide::Integrator;
 /// nothing is integrated; breakaway is found on the load itself, without missing a peak.
 ///
 /// Samples come from the interpolant of order 7. The steps do not depend on them, so that more samples change nothing.
+/// Accelerations are the right-hand side at these samples: good to 3e-13 of the largest where the law is smooth, to 2e-12 with a
+/// slope that is infinite at rest (1e-9 at a tolerance of 1e-10).
 ///
 /// `tolerance` bounds the local error of a step relative to the amplitude of the motion. An acceleration within rounding of the
 /// forces counts as none where a branch of the law hangs on its sign.

@@ -254,6 +254,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         if by_speed.is_some() {
             recorder.partials(first, state);
         }
+        recorder.accelerations(first, |time, state| self.field.acceleration(phase, at.side, time, state))?;
         recorder.work(at.time, end, end - at.time, |time| self.field.power(phase, at.side, time, state(time)))
     }
 
@@ -357,7 +358,9 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
             self.record(phase, &at, &mut step, by_speed.as_ref(), (next, stop), recorder)?;
             at = Progress { time: next, state: step.end, acceleration: step.last_acceleration(), side: at.side };
         }
+        let first = recorder.written;
         recorder.samples(phase.samples_end(), |_| at.state)?;
+        recorder.accelerations(first, |time, state| self.field.acceleration(phase, at.side, time, state))?;
         Ok(Ended { ending: Ending::Limit, time: D::from(phase.limit), state: at.state, grazing: false })
     }
 }

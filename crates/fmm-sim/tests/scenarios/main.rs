@@ -1,5 +1,6 @@
 //! Scenarios as a user writes them: what each promises, and what is refused.
 
+mod accelerations;
 mod contracts;
 mod derivatives;
 mod duals;
