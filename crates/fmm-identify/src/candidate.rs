@@ -14,7 +14,7 @@ use crate::fit_stages::Near;
 use crate::identification::identify_by;
 use crate::law::Law;
 use crate::layout::Layout;
-use crate::{Identification, IdentifyError, Machine, Experiment, Terms};
+use crate::{Experiment, Identification, IdentifyError, Machine, Terms};
 
 /// An observer of trial steps that may end the fit.
 pub(crate) type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;

@@ -4,8 +4,9 @@ use std::ops::ControlFlow;
 
 use fmm_fit::{Options, Progress, f_tail};
 
+use crate::filtering::filtering_sensor;
 use crate::judgement::{Judgement, shortcomings};
-use crate::{Candidate, Identification, IdentifyError, Machine, RecordSummary, Experiment, Sign, Warning};
+use crate::{Candidate, Experiment, Identification, IdentifyError, Machine, RecordSummary, Sign, Warning};
 
 /// A law and the more general one that it was tested against.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +46,11 @@ pub struct Comparison {
 ///
 /// # Errors
 /// [`IdentifyError`] as for [`identify`](crate::identify), and [`IdentifyError::NoCandidate`].
-pub fn compare(machine: &Machine, decays: &[Experiment], candidates: &[Candidate]) -> Result<Comparison, IdentifyError> {
+pub fn compare(
+    machine: &Machine,
+    decays: &[Experiment],
+    candidates: &[Candidate],
+) -> Result<Comparison, IdentifyError> {
     compare_observed(machine, decays, candidates, &Options::default(), |_, _| ControlFlow::Continue(()))
 }
 
@@ -111,6 +116,7 @@ impl Comparison {
         let negative = |warning: &&Warning| matches!(warning, Warning::NegativeDamping { .. });
         warnings.extend(others.flat_map(|(_, found)| found.warnings().iter().filter(negative).cloned()));
         warnings.extend(misled(&identifications, preferred));
+        warnings.extend(filtering_sensor(decays, &identifications, preferred));
         Ok(Self {
             records: decays.iter().map(|decay| decay.summary().clone()).collect(),
             tests: tests(candidates, &identifications),

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use fmm_record::Quantity;
 
-use crate::{Estimated, IdentifyError, Experiment};
+use crate::{Estimated, Experiment, IdentifyError};
 
 /// What one cycle lost, read both as damping and as friction.
 #[derive(Debug, Clone, Copy, PartialEq)]

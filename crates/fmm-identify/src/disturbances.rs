@@ -2,8 +2,10 @@
 
 use std::fmt;
 
+use fmm_model::Rounded;
+
 use crate::nuisance::Nuisance;
-use crate::{Identification, RecordSummary, Experiment, Warning};
+use crate::{Experiment, Identification, RecordSummary, Warning};
 
 /// A factor of the uncertainties that is worth a word.
 const NOTABLE: f64 = 1.1;
@@ -89,6 +91,12 @@ impl Warning {
                 )?;
                 if *inflation > NOTABLE { write!(f, " (by up to a factor of {inflation:.1})") } else { Ok(()) }
             }
+            Self::FilteringSensor { law, corner, uncertainty } => write!(
+                f,
+                "a sensor that filters explains the record as well: by {law} with a low-pass filter of second order at {} Hz, which rounds \
+                 the motion where it reverses and looks like friction; state the filter of the sensor, or let it be fitted",
+                Rounded::new(*corner, Some(*uncertainty))
+            ),
             Self::NotSi { unit } => write!(
                 f,
                 "the record is in {unit}, of which no mass in kg makes a friction force in N, and no normal load a coefficient mu; give \

@@ -6,7 +6,7 @@ use fmm_fit::f_tail;
 
 use crate::nuisance::{DRIFT, Nuisance};
 use crate::problem::Problem;
-use crate::{Identification, Experiment};
+use crate::{Experiment, Identification};
 
 /// The chance that noise alone looks like a drift.
 const CHANCE: f64 = 1e-3;

@@ -30,7 +30,9 @@ pub enum IdentifyError {
         found: String,
     },
     /// The drive is not known during the whole record.
-    #[error("the drive is known from {known_from} s to {known_to} s, but the response lasts from {start} s to {end} s; crop the response")]
+    #[error(
+        "the drive is known from {known_from} s to {known_to} s, but the response lasts from {start} s to {end} s; crop the response"
+    )]
     DriveTooShort {
         /// Beginning of the drive (s).
         known_from: f64,
@@ -42,7 +44,9 @@ pub enum IdentifyError {
         end: f64,
     },
     /// A force moves a mass, of which nothing is known.
-    #[error("a measured force tells the mass: give Machine::unknown() to find mass and stiffness, or a mass or a stiffness that is known")]
+    #[error(
+        "a measured force tells the mass: give Machine::unknown() to find mass and stiffness, or a mass or a stiffness that is known"
+    )]
     ForceWithoutScale,
     /// The estimator works on free vibrations.
     #[error("{estimator} needs a free vibration, but the record is that of a driven one")]

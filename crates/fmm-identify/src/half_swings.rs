@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use fmm_record::{Quantity, Record, Swings};
 
-use crate::{IdentifyError, Experiment};
+use crate::{Experiment, IdentifyError};
 
 /// Shortest piece of a half swing at an end of the record that is worth having, in half swings.
 const SHORTEST: f64 = 0.25;

@@ -419,8 +419,10 @@ impl Identification {
             return ["damping", LINEAR].iter().find_map(|name| self.finding(name)).into_iter().collect();
         };
         let unit = sliding.parameter().unit();
-        let at_rest =
-            self.family.fitted().filter(|parameter| matches!(parameter.role(), Role::LevelAbove | Role::Excess | Role::Breakaway));
+        let at_rest = self
+            .family
+            .fitted()
+            .filter(|parameter| matches!(parameter.role(), Role::LevelAbove | Role::Excess | Role::Breakaway));
         let at_rest = at_rest.filter_map(|parameter| {
             let quantities = ["mu", "friction_force", "friction_per_mass"];
             let names = quantities.map(|quantity| named(parameter.parameter(), quantity, "").name().to_owned());

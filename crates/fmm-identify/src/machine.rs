@@ -132,9 +132,10 @@ impl Machine {
     pub(crate) fn with_inputs_moved(&self, has_force: bool) -> Vec<[Self; 2]> {
         let ends = |known: Known| [(known.value() - known.uncertainty()).max(0.0), known.value() + known.uncertainty()];
         let uncertain = |known: &Known| known.uncertainty() > 0.0;
-        let damping = self.damping.filter(uncertain).map(|damping| {
-            ends(damping).map(|value| Self { damping: Some(damping.moved_to(value)), ..*self })
-        });
+        let damping = self
+            .damping
+            .filter(uncertain)
+            .map(|damping| ends(damping).map(|value| Self { damping: Some(damping.moved_to(value)), ..*self }));
         let scale = match self.scale {
             Scale::Mass(mass) if has_force && uncertain(&mass) => {
                 Some(ends(mass).map(|value| Self { scale: Scale::Mass(mass.moved_to(value)), ..*self }))

@@ -108,7 +108,13 @@ impl<F: Simulated> MachineProblem<F> {
         let channels = match quantity {
             Quantity::Displacement => Channels::Position,
             Quantity::Velocity => Channels::Velocity,
-            _ => return Err(IdentifyError::Quantity { subject: "the record of a machine problem", needed: "a displacement or a velocity", quantity }),
+            _ => {
+                return Err(IdentifyError::Quantity {
+                    subject: "the record of a machine problem",
+                    needed: "a displacement or a velocity",
+                    quantity,
+                });
+            }
         };
         let sampling = Sampling::uniform(record.interval(), record.len())
             .map_err(|error| IdentifyError::Simulation { law: F::NAME, message: error.to_string() })?

@@ -11,7 +11,7 @@ use crate::law::{DIRECTIONS, Law, Simulate};
 use crate::layout::{Layout, Units};
 use crate::machine::Scale;
 use crate::sight::{Seen, Sight};
-use crate::{IdentifyError, Machine, Experiment, Terms};
+use crate::{Experiment, IdentifyError, Machine, Terms};
 
 mod parts;
 mod starts;
@@ -60,7 +60,12 @@ impl<'a> Problem<'a> {
         Self::of(Law::of::<F>(), machine, terms, decays)
     }
 
-    pub(crate) fn of(law: Law, machine: Machine, terms: Terms, decays: &'a [Experiment]) -> Result<Self, IdentifyError> {
+    pub(crate) fn of(
+        law: Law,
+        machine: Machine,
+        terms: Terms,
+        decays: &'a [Experiment],
+    ) -> Result<Self, IdentifyError> {
         let describe = |decay: &Experiment| format!("{} in {}", decay.record().quantity(), decay.record().unit());
         let first = decays.first().ok_or(IdentifyError::NoRecord)?;
         let length = |decay: &Experiment| Units::of(decay).position;

@@ -76,11 +76,7 @@ pub(crate) struct Covariance {
 }
 
 impl Covariance {
-    pub(crate) fn of(
-        problem: &Problem<'_>,
-        fit: &Fit,
-        structure: &ResidualStructure,
-    ) -> Result<Self, EvaluationError> {
+    pub(crate) fn of(problem: &Problem<'_>, fit: &Fit, structure: &ResidualStructure) -> Result<Self, EvaluationError> {
         let count = fit.values().len();
         let plain = |i: usize, j: usize| fit.relaxed_covariance(i, j).or_else(|| fit.covariance(i, j));
         let mut elements: Vec<Option<f64>> = (0..count * count).map(|at| plain(at / count, at % count)).collect();

@@ -11,7 +11,7 @@ use crate::comparison::{closest, explains};
 use crate::fit_stages::Near;
 use crate::judgement::{Judgement, shortcomings};
 use crate::sign::{Addition, Sign, signs};
-use crate::{Candidate, Comparison, Identification, IdentifyError, Machine, Experiment, Warning};
+use crate::{Candidate, Comparison, Experiment, Identification, IdentifyError, Machine, Warning};
 
 /// How laws are searched for. The default tries as many as the record asks for, on two threads.
 ///

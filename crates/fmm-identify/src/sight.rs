@@ -59,7 +59,7 @@ impl Sight {
     pub(crate) fn channels(&self) -> Channels {
         match self.quantity {
             Quantity::Displacement => Channels::Position,
-            Quantity::Acceleration if !self.is_filtered() => Channels::Both,
+            Quantity::Acceleration if !self.is_filtered() => Channels::All,
             _ => Channels::Velocity,
         }
     }
@@ -68,7 +68,7 @@ impl Sight {
     pub(crate) fn see<'s, D: Scalar>(&'s mut self, trajectory: &'s Trajectory<D>) -> Seen<'s, D> {
         let samples = match self.channels() {
             Channels::Position => trajectory.position(),
-            Channels::Both => trajectory.velocity(),
+            Channels::All => trajectory.acceleration(),
             _ => trajectory.velocity(),
         };
         let wants_rate = self.quantity == Quantity::Acceleration;
@@ -89,7 +89,10 @@ impl Sight {
             let [below, above] = columns;
             above.iter_mut().zip(below).for_each(|(above, below)| *above = (*above - *below) / *difference);
         }
-        Seen::Filtered(filtering.columns.as_slice(), filtering.beside.as_ref().map(|beside| beside.columns[1].as_slice()))
+        Seen::Filtered(
+            filtering.columns.as_slice(),
+            filtering.beside.as_ref().map(|beside| beside.columns[1].as_slice()),
+        )
     }
 }
 

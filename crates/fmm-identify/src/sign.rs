@@ -11,7 +11,7 @@ use crate::experiment::reference;
 use crate::law::Law;
 use crate::problem::Problem;
 use crate::tangent::Tangent;
-use crate::{Identification, IdentifyError, Experiment, Terms};
+use crate::{Experiment, Identification, IdentifyError, Terms};
 
 /// An addition to Coulomb and viscous friction on a linear spring.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,8 +107,7 @@ pub(crate) fn signs(base: &Identification, decays: &[Experiment]) -> Result<Vec<
             changes.push((Addition::FallsWithSpeed(share), changed));
         }
     }
-    let quadratic =
-        Problem::of(Law::of::<CoulombViscous>(), machine, Terms::NONE.with_quadratic_damping(), decays)?;
+    let quadratic = Problem::of(Law::of::<CoulombViscous>(), machine, Terms::NONE.with_quadratic_damping(), decays)?;
     if let Ok(changed) = residuals(&quadratic, &[frequency, STEP * level / (speed * speed), friction, damping]) {
         changes.push((Addition::QuadraticDamping, changed));
     }

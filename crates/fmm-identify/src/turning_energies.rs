@@ -6,7 +6,7 @@ use fmm_model::{ModelError, Oscillator};
 use fmm_record::{Quantity, Record, noise};
 
 use crate::half_swings::{bridged, check_reversals, reversals};
-use crate::{Estimated, IdentifyError, Experiment};
+use crate::{Estimated, Experiment, IdentifyError};
 
 /// What one half swing lost.
 #[derive(Debug, Clone, Copy, PartialEq)]

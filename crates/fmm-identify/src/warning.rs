@@ -8,7 +8,7 @@ use fmm_model::Restoring;
 
 use crate::machine::Scale;
 use crate::terms::{LINEAR, QUADRATIC};
-use crate::{FittedMotion, Identification, Machine, RecordSummary, Experiment};
+use crate::{Experiment, FittedMotion, Identification, Machine, RecordSummary};
 
 /// Something that limits what the record can tell, or that was done to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -188,6 +188,15 @@ pub enum Warning {
         time: f64,
         /// Largest factor by which a standard uncertainty exceeds that of white noise (1).
         inflation: f64,
+    },
+    /// A low-pass filter in the sensor, of which nothing was said, explains the record as well.
+    FilteringSensor {
+        /// The simple law that explains it with the filter.
+        law: String,
+        /// Corner frequency of the filter (Hz).
+        corner: f64,
+        /// Its standard uncertainty (Hz).
+        uncertainty: f64,
     },
     /// The record is in a unit of which no mass and no load makes a force or a coefficient.
     NotSi {
@@ -417,6 +426,7 @@ impl fmt::Display for Warning {
             | Self::Drift
             | Self::GrowingNoise { .. }
             | Self::ColouredNoise { .. }
+            | Self::FilteringSensor { .. }
             | Self::NotSi { .. }
             | Self::TimeLimit
             | Self::DependsOnLaw { .. }

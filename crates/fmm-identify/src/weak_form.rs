@@ -8,7 +8,7 @@ use fmm_record::{Quantity, Record, noise, quantisation_step};
 
 use crate::half_swings::{bridged, check_reversals, reversals};
 use crate::weak_equations::{Equations, Motion};
-use crate::{Estimated, IdentifyError, Experiment};
+use crate::{Estimated, Experiment, IdentifyError};
 
 /// Friction and damping without a derivative of the record, without smoothing and without a simulation.
 ///
@@ -166,7 +166,11 @@ impl WeakForm {
     ) -> Result<WeakFormEstimate, IdentifyError> {
         let quantity = record.quantity();
         if !matches!(quantity, Quantity::Displacement | Quantity::Velocity) {
-            return Err(IdentifyError::Quantity { subject: "a record for the weak form", needed: "a displacement or a velocity", quantity });
+            return Err(IdentifyError::Quantity {
+                subject: "a record for the weak form",
+                needed: "a displacement or a velocity",
+                quantity,
+            });
         }
         check_reversals(record, reversals)?;
         let offset = offset.map(|offset| ModelError::require_finite("offset", offset, "in the unit of the record"));

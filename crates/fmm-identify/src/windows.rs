@@ -7,7 +7,7 @@ use fmm_model::{Bounds, Dual, Parameter, Scalar};
 use fmm_record::Quantity;
 
 use crate::free_vibration::FreeVibration;
-use crate::{Estimated, IdentifyError, Experiment};
+use crate::{Estimated, Experiment, IdentifyError};
 
 /// The viscous fit over one window.
 #[derive(Debug, Clone)]

@@ -212,8 +212,7 @@ impl DrivenGuess {
         let velocity = if is_displacement { (values[1] - values[0]) / interval } else { values[0] };
         let most = values.iter().fold(0.0f64, |most, value| most.max((value - values[0]).abs()));
         let speed = if is_displacement { plausible * most } else { most };
-        let (initial, offset) =
-            if is_displacement { (values[0] + shift, -shift) } else { (shift, 0.0) };
+        let (initial, offset) = if is_displacement { (values[0] + shift, -shift) } else { (shift, 0.0) };
         Self {
             mass: if mass > 0.0 { mass } else { 1.0 },
             frequency: angular / TAU,
@@ -259,8 +258,7 @@ fn solved(columns: &[Vec<f64>; 6], tells_mass: bool) -> [f64; 5] {
     };
     let inverse = inverse_of_products(unknowns);
     let order = unknowns.len();
-    let products: Vec<f64> =
-        unknowns.iter().map(|column| column.iter().zip(&rest).map(|(a, b)| a * b).sum()).collect();
+    let products: Vec<f64> = unknowns.iter().map(|column| column.iter().zip(&rest).map(|(a, b)| a * b).sum()).collect();
     let mut found = [1.0; 5];
     for i in 0..order {
         found[known + i] = (0..order).map(|j| inverse[i * order + j] * products[j]).sum();

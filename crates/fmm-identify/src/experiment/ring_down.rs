@@ -160,10 +160,18 @@ fn beginning(swings: &Swings, rest_end: f64, quantity: Quantity) -> f64 {
 
 /// The velocity of an `acceleration`, less what drifts more slowly than a period; none if nothing swings.
 ///
-/// The integral of an offset is a slope, and that of noise a walk: both are in the mean over a period, the motion is not.
+/// Of a record that ends in rest, the rest tells the offset and that the velocity is zero. Otherwise the integral of an offset is a
+/// slope, and that of noise a walk: both are in the mean over a period, the motion is not.
 fn velocity_of(acceleration: &Record) -> Option<Record> {
+    if let Some((offset, rest)) = offset_of_rest(acceleration) {
+        let velocity = acceleration.shifted(offset).ok()?.integrate(0.0).ok()?;
+        let at_rest = velocity.values()[rest];
+        let values = velocity.values().iter().enumerate();
+        let values = values.map(|(at, value)| if at < rest { value - at_rest } else { 0.0 }).collect();
+        return Record::new(velocity.start(), velocity.interval(), values, Quantity::Velocity, velocity.unit()).ok();
+    }
     let period = acceleration.rate() / Swings::of(acceleration).frequency()?;
-    let velocity = acceleration.shifted(-acceleration.mean()).ok()?.integrate(0.0).ok()?;
+    let velocity = acceleration.shifted(acceleration.mean()).ok()?.integrate(0.0).ok()?;
     let values = velocity.values();
     let half = (0.5 * period).round() as usize;
     if half == 0 || values.len() < 4 * half {
@@ -194,6 +202,32 @@ fn velocity_of(acceleration: &Record) -> Option<Record> {
     Record::new(velocity.start(), velocity.interval(), values, Quantity::Velocity, velocity.unit()).ok()
 }
 
+/// Mean of the last eighth of an `acceleration` and the first sample of the rest that it is part of; none if it moves there.
+fn offset_of_rest(acceleration: &Record) -> Option<(f64, usize)> {
+    /// Standard deviations of a mean.
+    const FAR: f64 = 5.0;
+    /// Samples over which a mean shows motion.
+    const FEW: usize = 8;
+    let values = acceleration.values();
+    let rest = &values[values.len() - values.len() / 8..];
+    if rest.len() < FEW {
+        return None;
+    }
+    let largest = values.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
+    let (first, second) = rest.split_at(rest.len() / 2);
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let level = mean(rest);
+    let noise = noise(values).max(1e-9 * largest);
+    let spread = (rest.iter().map(|value| (value - level).powi(2)).sum::<f64>() / rest.len() as f64).sqrt();
+    let moves = (mean(first) - mean(second)).abs() > FAR * noise / (0.25 * rest.len() as f64).sqrt();
+    if moves || spread > 1.5 * noise {
+        return None;
+    }
+    let is_moving = |few: &[f64]| (mean(few) - level).abs() > FAR * noise / (FEW as f64).sqrt();
+    let last = values.windows(FEW).rposition(is_moving)?;
+    Some((level, (last + FEW).min(values.len() - 1)))
+}
+
 /// The samples of an acceleration beside the `times` (s) at which the velocity changes its sign, the stop among them, in order.
 fn jumps(times: &[f64], noise: f64, guess: &FirstGuess, record: &Record) -> Vec<Range<usize>> {
     /// Samples on either side of a jump, over which a sensor may smear it, and standard deviations of its time.
@@ -217,7 +251,8 @@ fn jumps(times: &[f64], noise: f64, guess: &FirstGuess, record: &Record) -> Vec<
 
 /// The parts of `range` between `holes`, which are in order.
 fn between(range: Range<usize>, holes: &[Range<usize>]) -> Vec<Range<usize>> {
-    let inside = holes.iter().map(|hole| hole.start.clamp(range.start, range.end)..hole.end.clamp(range.start, range.end));
+    let inside =
+        holes.iter().map(|hole| hole.start.clamp(range.start, range.end)..hole.end.clamp(range.start, range.end));
     let shifted = inside.map(|hole| hole.start - range.start..hole.end - range.start);
     without(range.len(), shifted).into_iter().map(|part| part.start + range.start..part.end + range.start).collect()
 }

@@ -94,7 +94,8 @@ impl Problem<'_> {
         let (oscillator, rest) = values.split_at(simple.layout.oscillator);
         let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
         // A damper and Coulomb friction lose the same in a swing if F = π/4 c V.
-        let as_friction = dissipation.friction + 0.25 * PI * dissipation.damping * 0.5 * reference(self.decays).scales().1;
+        let as_friction =
+            dissipation.friction + 0.25 * PI * dissipation.damping * 0.5 * reference(self.decays).scales().1;
         let all_friction = Dissipation { friction: as_friction, damping: 0.0 };
         let half = Dissipation { friction: as_friction, damping: 0.5 * dissipation.damping };
         let mut starts = Vec::new();

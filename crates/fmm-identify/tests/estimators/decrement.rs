@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use fmm_friction::Coulomb;
-use fmm_identify::{Preparation, Experiment, ThesisDecrement, decrements};
+use fmm_identify::{Experiment, Preparation, ThesisDecrement, decrements};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};

@@ -1,7 +1,7 @@
 //! Chapter 6 of the thesis: energy rates and turning points, with the figures of the verification.
 
 use fmm_friction::Coulomb;
-use fmm_identify::{EnergyMethod, EnergyRates, Preparation, Experiment, half_swing_losses, half_swing_losses_of};
+use fmm_identify::{EnergyMethod, EnergyRates, Experiment, Preparation, half_swing_losses, half_swing_losses_of};
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{EndRule, Quantity, Record, Smoothing};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};

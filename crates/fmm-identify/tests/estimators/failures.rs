@@ -1,7 +1,7 @@
 //! What the estimators cannot take is refused with an error that says why.
 
 use fmm_identify::{
-    EnergyMethod, IdentifyError, Preparation, Experiment, WeakForm, Windows, decrements, half_swing_losses,
+    EnergyMethod, Experiment, IdentifyError, Preparation, WeakForm, Windows, decrements, half_swing_losses,
     half_swing_losses_of,
 };
 use fmm_model::Oscillator;

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::path::PathBuf;
 
-use fmm_identify::{Preparation, Experiment, WeakForm, Windows, decrements, half_swing_losses_of};
+use fmm_identify::{Experiment, Preparation, WeakForm, Windows, decrements, half_swing_losses_of};
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{Quantity, Record, mat};
 

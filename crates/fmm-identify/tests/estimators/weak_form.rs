@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use fmm_friction::CoulombViscous;
-use fmm_identify::{Preparation, Experiment, WeakForm, WeakFormEstimate};
+use fmm_identify::{Experiment, Preparation, WeakForm, WeakFormEstimate};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};

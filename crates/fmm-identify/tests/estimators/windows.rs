@@ -1,6 +1,6 @@
 //! Five-cycle fits of a machine with quadratic damping: the lines of the thesis and of its appendix A5.
 
-use fmm_identify::{Offset, Preparation, Experiment, WindowFit, Windows};
+use fmm_identify::{Experiment, Offset, Preparation, WindowFit, Windows};
 
 use crate::measurement::{MASS, close, free, line, noisy, statistics, velocity};
 

@@ -1,1 +1,136 @@
-//! Accelerations.
+//! Accelerometer records: the jump at every reversal, the offset of gravity, and sensors that filter.
+
+use std::f64::consts::TAU;
+
+use fmm_friction::{Coulomb, CoulombViscous};
+use fmm_identify::{
+    Candidate, Experiment, Identification, Known, Machine, Preparation, Sensor, Warning, compare, identify,
+};
+use fmm_record::Quantity;
+
+use crate::simulated::{INTERVAL, LOAD, MASS, Motion, SEEDS, record, share_inside};
+
+const COEFFICIENT: f64 = 0.25;
+const SLOPE: f64 = 0.0196;
+const NOISE: f64 = 0.02;
+const SAMPLES: usize = 1500;
+/// What gravity adds along a sensor that is not level (m/s²).
+const GRAVITY: f64 = 0.3;
+
+fn machine() -> Machine {
+    let machine = Machine::of_mass(Known::exact(MASS).unwrap()).unwrap();
+    machine.with_normal_load(Known::exact(LOAD).unwrap()).unwrap()
+}
+
+/// The trajectory of a release with so many samples in an interval of the record.
+fn motion(release: f64, finer: usize) -> fmm_sim::Trajectory {
+    let law = [COEFFICIENT, SLOPE];
+    let (samples, interval) = (SAMPLES * finer, INTERVAL / finer as f64);
+    let motion =
+        Motion { damping: 0.0, law: &law, load: LOAD, initial: (release, 0.0), force: None, samples, interval };
+    motion.of::<CoulombViscous>()
+}
+
+fn accelerometer(values: &[f64], seed: u64) -> Experiment {
+    let shifted: Vec<f64> = values.iter().map(|value| value + GRAVITY).collect();
+    let record = record(&shifted, NOISE, seed, Quantity::Acceleration, "m/s²");
+    Experiment::ring_down(&record, &Preparation::default()).unwrap()
+}
+
+fn fitted(experiment: Experiment) -> Identification {
+    identify::<CoulombViscous>(&machine(), &[experiment]).unwrap()
+}
+
+#[test]
+fn accelerations_of_three_releases_cover() {
+    for release in [8e-3, 15e-3, 22e-3] {
+        let motion = motion(release, 1);
+        let mut offset_inside = 0.0;
+        let share = share_inside(COEFFICIENT, SEEDS, |seed| {
+            let found = fitted(accelerometer(motion.acceleration().values(), seed));
+            let (low, high) = found.interval("offset", 0.95).unwrap();
+            offset_inside += f64::from(u8::from((low..=high).contains(&GRAVITY))) / SEEDS as f64;
+            found.interval("mu", 0.95).unwrap()
+        });
+        println!("{release}: mu {share}, offset {offset_inside}");
+        println!("{}", fitted(accelerometer(motion.acceleration().values(), 1)));
+        assert!((0.92..=0.98).contains(&share), "{release}: {share} of the intervals of mu");
+        assert!((0.92..=0.98).contains(&offset_inside), "{release}: {offset_inside} of the intervals of the offset");
+    }
+    let found = fitted(accelerometer(motion(22e-3, 1).acceleration().values(), 1));
+    let mu = found.finding("mu").unwrap();
+    println!("{found}");
+    assert!((mu.value() / COEFFICIENT - 1.0).abs() < 1e-3 && mu.uncertainty().unwrap() < 1e-3 * COEFFICIENT, "{found}");
+}
+
+/// Corner of the filter (Hz) and delay (s) of a sensor.
+const CORNER: f64 = 44.0;
+const DELAY: f64 = 5e-3;
+const FINER: usize = 20;
+
+/// What a Butterworth filter of second order gives of `values`, by Heun's method on a grid as fine as they are, every `FINER`-th.
+fn filtered(values: &[f64]) -> Vec<f64> {
+    let (angular, interval) = (TAU * CORNER, INTERVAL / FINER as f64);
+    let rate = |[y, v]: [f64; 2], u: f64| [v, angular * angular * (u - y) - 2f64.sqrt() * angular * v];
+    let mut state = [values[0], 0.0];
+    let mut output = vec![state[0]];
+    for (index, pair) in values.windows(2).enumerate() {
+        let first = rate(state, pair[0]);
+        let trial = [state[0] + interval * first[0], state[1] + interval * first[1]];
+        let second = rate(trial, pair[1]);
+        state = [0, 1].map(|at| state[at] + 0.5 * interval * (first[at] + second[at]));
+        if (index + 1) % FINER == 0 {
+            output.push(state[0]);
+        }
+    }
+    output
+}
+
+/// A record that begins within the motion, so that nothing of the release is left in the filter, and that is late.
+fn late(values: &[f64]) -> Vec<f64> {
+    let late = (DELAY / INTERVAL) as usize;
+    filtered(values)[100 - late..SAMPLES - late].to_vec()
+}
+
+#[test]
+fn a_filter_that_is_stated_or_free_is_no_friction() {
+    let sensor = Sensor::default().with_delay(DELAY).unwrap();
+    let (stated, free) = (sensor.with_low_pass(2, CORNER).unwrap(), sensor.with_free_low_pass(2).unwrap());
+    let motion = motion(22e-3, FINER);
+    let late = late(motion.acceleration().values());
+    let stop = motion.rest().unwrap().time - 0.1;
+    for sensor in [stated, free] {
+        let mut last = None;
+        let share = share_inside(COEFFICIENT, 100, |seed| {
+            let found = fitted(accelerometer(&late, seed).seen_by(sensor).unwrap());
+            let interval = found.interval("mu", 0.95).unwrap();
+            last = Some(found);
+            interval
+        });
+        let found = last.unwrap();
+        println!("{found}\n{share}");
+        // Of 100 intervals 95 ± 2.2 % contain the truth by chance alone.
+        assert!((0.89..=1.0).contains(&share), "{sensor:?}: {share} of the intervals of mu\n{found}");
+        assert!((found.motions()[0].stop_time().unwrap() - stop).abs() < 2e-3, "{found} for {stop}");
+        if let Some(corner) = found.finding("sensor_corner_hz") {
+            let (low, high) = corner.interval(0.99).unwrap();
+            assert!((low..=high).contains(&CORNER), "{corner:?}");
+        }
+    }
+}
+
+/// A filter nobody knows of is named.
+#[test]
+fn a_filter_that_is_not_stated_is_named() {
+    let motion = motion(22e-3, FINER);
+    let late = late(motion.acceleration().values());
+    let candidates = [Candidate::of::<Coulomb>(), Candidate::of::<CoulombViscous>()];
+    for seed in 0..10 {
+        let comparison = compare(&machine(), &[accelerometer(&late, seed)], &candidates).unwrap();
+        let is_named = |warning: &Warning| matches!(warning, Warning::FilteringSensor { .. });
+        assert!(comparison.warnings().iter().any(is_named), "{comparison}");
+    }
+    let faithful = accelerometer(self::motion(22e-3, 1).acceleration().values(), 1);
+    let comparison = compare(&machine(), &[faithful], &candidates).unwrap();
+    assert!(!comparison.warnings().iter().any(|warning| warning.to_string().contains("sensor")), "{comparison}");
+}

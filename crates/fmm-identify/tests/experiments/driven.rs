@@ -1,6 +1,5 @@
 //! Driven motion: the law comes back from a measured force or a measured motion of the base.
 
-
 use fmm_friction::CoulombViscous;
 use fmm_identify::{Drive, Experiment, IdentifyError, Known, Machine, Preparation, identify};
 use fmm_record::{Quantity, Record};
@@ -21,7 +20,8 @@ fn force_of_base(amplitude: f64) -> Vec<f64> {
 fn motion(force: &[f64]) -> fmm_sim::Trajectory {
     let law = [COEFFICIENT, SLOPE];
     let (damping, initial) = (0.0, (0.0, 0.0));
-    let motion = Motion { damping, law: &law, load: LOAD, initial, force: Some(force), samples: SAMPLES, interval: INTERVAL };
+    let motion =
+        Motion { damping, law: &law, load: LOAD, initial, force: Some(force), samples: SAMPLES, interval: INTERVAL };
     motion.of::<CoulombViscous>()
 }
 
@@ -62,9 +62,12 @@ fn a_force_tells_the_scale() {
         let experiment = Experiment::driven(&response, drive.clone(), &Preparation::default()).unwrap();
         let found = identify::<CoulombViscous>(&Machine::unknown(), std::slice::from_ref(&experiment)).unwrap();
         println!("{found}");
-        for (name, truth) in
-            [("mass", MASS), ("stiffness", STIFFNESS), ("friction_force", COEFFICIENT * LOAD), ("damping", SLOPE * LOAD)]
-        {
+        for (name, truth) in [
+            ("mass", MASS),
+            ("stiffness", STIFFNESS),
+            ("friction_force", COEFFICIENT * LOAD),
+            ("damping", SLOPE * LOAD),
+        ] {
             let finding = found.finding(name).unwrap();
             let (error, u) = ((finding.value() - truth).abs(), finding.uncertainty().unwrap());
             assert!(error < 3.5 * u && u < 0.1 * truth, "{quantity}: {name} = {} ± {u}", finding.value());

@@ -35,7 +35,7 @@ impl Motion<'_> {
         if let Some(force) = self.force {
             scenario = scenario.driven_by(Excitation::sampled_force(self.interval, force).unwrap());
         }
-        let sampling = Sampling::uniform(self.interval, self.samples).unwrap().keeping(Channels::Both);
+        let sampling = Sampling::uniform(self.interval, self.samples).unwrap().keeping(Channels::All);
         let mut trajectory = Trajectory::new();
         F::simulate_into(&scenario, &sampling, &mut trajectory).unwrap();
         trajectory

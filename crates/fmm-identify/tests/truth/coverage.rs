@@ -2,7 +2,7 @@
 
 use fmm_fit::{Fit, Options, Residuals, coverage_factor, solve};
 use fmm_friction::{AccelerationCoulomb, Berger, Coulomb, Stribeck};
-use fmm_identify::{Candidate, Identification, Known, Machine, Experiment, Problem, Terms, compare, identify};
+use fmm_identify::{Candidate, Experiment, Identification, Known, Machine, Problem, Terms, compare, identify};
 use fmm_model::{Damping, Oscillator, Parameter};
 use fmm_sim::Simulated;
 use rand_chacha::ChaCha8Rng;

@@ -1,7 +1,7 @@
 //! Two levels fitted to friction that has no hysteresis: by exact simulation they agree, by the thesis' Euler they do not.
 
 use fmm_friction::{AccelerationCoulomb, Berger, Coulomb};
-use fmm_identify::{Candidate, Identification, Machine, Experiment, compare};
+use fmm_identify::{Candidate, Experiment, Identification, Machine, compare};
 use fmm_sim::{Engine, Sampling, Scenario, Simulated, Thesis};
 
 use crate::records::{LOAD, RELEASES, machine, noisy, prepared, velocity};

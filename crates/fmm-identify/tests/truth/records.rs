@@ -1,7 +1,7 @@
 //! Velocity records of the thesis' machine with a contact of known friction.
 
 use fmm_friction::{LawFamily, Role};
-use fmm_identify::{Preparation, Experiment};
+use fmm_identify::{Experiment, Preparation};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Sampling, Scenario, Simulated, Trajectory};
