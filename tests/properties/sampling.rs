@@ -81,6 +81,8 @@ fn length_channels_and_used_memory_leave_no_trace() {
         let (positions, velocities) = (keeping(Channels::Position), keeping(Channels::Velocity));
         assert_eq!((positions.position(), velocities.velocity()), (whole.position(), whole.velocity()), "{case}");
         assert!(positions.velocity().values().is_empty() && velocities.position().values().is_empty());
+        let all = keeping(Channels::All);
+        assert_eq!((all.position(), all.velocity()), (whole.position(), whole.velocity()), "{case}");
 
         Exact.run_into(&scenario, &case.sampling(), &mut used).unwrap();
         assert_eq!(used, whole, "{case}");

@@ -101,7 +101,8 @@
 //!
 //! While a measured force acts, [`Exact`] goes from sample to sample of the force, 0.3 µs each.
 //! [`run_into`](Engine::run_into) uses the memory of a [`Trajectory`] again; [`Sampling::keeping`] leaves out the channel
-//! that is not wanted, or adds the acceleration ([`Channels::All`]).
+//! that is not wanted, or adds the acceleration ([`Channels::All`]): 0.6 ns a sample of a free motion with [`Exact`], elsewhere one
+//! evaluation of the force and the law, 15 to 55 ns.
 //!
 //! # Neighbours
 //!

@@ -5,7 +5,7 @@ use fmm_friction::{
     StribeckLorentzian,
 };
 use fmm_model::{Damping, Dual, Oscillator, Restoring, Scalar};
-use fmm_sim::{Bristle, Engine, Exact, Excitation, RungeKutta, Sampling, Scenario, Trajectory};
+use fmm_sim::{Bristle, Channels, Engine, Exact, Excitation, RungeKutta, Sampling, Scenario, Trajectory};
 
 /// A machine, mostly on a belt, under a wave whose amplitude may be zero. `number` makes a value and a direction a number.
 fn scenario<D: Scalar, L>(
@@ -31,6 +31,7 @@ fn scenario<D: Scalar, L>(
 fn compare(plain: &Trajectory, dual: &Trajectory<Dual<10>>, case: &str) {
     assert_eq!(plain.position().values(), dual.position().values(), "{case}");
     assert_eq!(plain.velocity().values(), dual.velocity().values(), "{case}");
+    assert_eq!(plain.acceleration().values(), dual.acceleration().values(), "{case}");
     let times: Vec<f64> = plain.events().iter().map(|event| event.time).collect();
     assert_eq!(times, dual.events().iter().map(|event| event.time.value()).collect::<Vec<_>>(), "{case}");
 }
@@ -47,7 +48,7 @@ impl Draws {
 
 macro_rules! same {
     ($engine:expr, $case:expr, $law:expr, $($parameter:expr),+) => {{
-        let sampling = Sampling::uniform(0.013, 300).unwrap();
+        let sampling = Sampling::uniform(0.013, 300).unwrap().keeping(Channels::All);
         let mut draws = Draws(7);
         for index in 0..24 {
             let mut draw = |least: f64, most: f64| least * (most / least).powf(draws.next());
