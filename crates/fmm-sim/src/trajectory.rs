@@ -3,7 +3,7 @@
 use fmm_model::Scalar;
 
 use crate::sampling::{Channels, Sampling};
-use crate::{Event, EventKind, Mode, Samples, SimulationError, Work};
+use crate::{Direction, Event, EventKind, Mode, Samples, SimulationError, Work};
 
 /// A simulated motion: sampled position, velocity and acceleration, and the events that shaped it.
 ///
@@ -90,6 +90,26 @@ impl<D: Scalar> Trajectory<D> {
 
     pub(crate) fn push(&mut self, event: Event<D>) {
         self.events.push(event);
+    }
+
+    /// Lets the events at `time` (s) that have begun the present swing begin it in this `direction`.
+    pub(crate) fn redirect(&mut self, time: f64, direction: Direction) {
+        for index in (0..self.events.len()).rev() {
+            let before = index.checked_sub(1).map(|before| self.events[before].next);
+            let event = &mut self.events[index];
+            if event.time.value() != time || event.next == Mode::Stick {
+                break;
+            }
+            event.next = Mode::Slip(direction);
+            match event.kind {
+                EventKind::Yield(_) => {}
+                EventKind::Reversal => {
+                    event.grazing |= before == Some(event.next);
+                    break;
+                }
+                _ => break,
+            }
+        }
     }
 
     pub(crate) fn position_mut(&mut self) -> &mut Samples<D> {

@@ -29,7 +29,7 @@ fn scenarios<L: BristleLaw<f64>>(
     law: impl Fn(&mut ChaCha8Rng, &Contact) -> L,
 ) -> impl Iterator<Item = (Setup, Scenario<f64, L>)> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    setups(seed, Family::Coulomb, linear, draws(60)).map(move |setup| {
+    setups(seed, Family::Coulomb, linear, draws(2000)).map(move |setup| {
         let angular = setup.angular();
         let contact = Contact {
             level: setup.law[0],

@@ -209,6 +209,16 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
         self.law.reserve(index, speed, &self.mirrored)
     }
 
+    /// Size of the terms whose difference is the reserve of element `index`, if it holds and can slide: the reserve as it
+    /// is and that without any deflection.
+    pub(super) fn reserve_size(&mut self, index: usize, branch: Branch, state: &[D]) -> Option<f64> {
+        let left = self.reserve(index, branch, state)?.value().abs();
+        let speed = self.mirror(branch, state);
+        self.mirrored.fill(D::from(0.0));
+        let whole = self.law.reserve(index, speed, &self.mirrored)?.value().abs();
+        Some(left + whole)
+    }
+
     /// Sum of the magnitudes of the forces (N) that `rates` adds up, whose rounding the acceleration carries.
     pub(super) fn force_size(&mut self, force: D, branch: Branch, state: &[D]) -> f64 {
         let friction = self.friction(branch, state).value().abs();

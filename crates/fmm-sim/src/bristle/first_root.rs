@@ -9,7 +9,7 @@ const DEPTH: u32 = 44;
 const MOST_SECANTS: usize = 40;
 
 /// The part of a step that begins at zero velocity in which the velocity counts as rising from it.
-const BEGINNING: f64 = 1.0 / 32.0;
+pub(super) const BEGINNING: f64 = 1.0 / 32.0;
 
 /// The first τ in [0, 1] at which the polynomial with these Bernstein coefficients, positive before, reaches zero.
 ///

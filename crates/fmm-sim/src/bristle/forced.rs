@@ -1,11 +1,11 @@
 //! Runs under forces, beside a reference that knows no events: classical Runge-Kutta with steps so short that kinks do not
 //! matter.
 
-use fmm_friction::{BoucWen, BristleLaw, Dahl, LuGre, Regime};
+use fmm_friction::{BoucWen, BristleLaw, Dahl, LuGre, MaxwellSlip, Regime};
 use fmm_model::{Damping, Oscillator};
 
 use super::*;
-use crate::{EventKind, Excitation, Mode, State};
+use crate::{Direction, EventKind, Excitation, Mode, State};
 
 /// x and v at the samples of `sampling`, by `steps` steps of order 4 a sample.
 fn reference<L: BristleLaw<f64>>(scenario: &Scenario<f64, L>, sampling: &Sampling, steps: usize) -> Vec<State> {
@@ -168,4 +168,80 @@ fn a_state_at_its_bound_leaves_it_with_the_speed() {
     let [held, slid] = [29_999, 30_008].map(|index| motion.states()[0].values()[index] * 1e5);
     assert!((held + 0.3).abs() < 1e-6, "a coefficient of {held}");
     assert!((slid + 0.2).abs() < 1e-3, "a coefficient of {slid}");
+}
+
+/// From rest, a push that soon turns round: the first swing takes 2 ms or less, the first step is longer than 0.1 s.
+#[test]
+fn the_first_swing_may_be_the_shortest() {
+    fn check_first<L: BristleLaw<f64> + Clone>(name: &str, law: L) {
+        for push in [1e-3, 1e-4, 1e-5, 1e-7] {
+            let machine = Oscillator::new(1.0, 1.0).unwrap();
+            let force = Excitation::sampled_force(1.0, vec![push, push - 1.0]).unwrap();
+            let scenario = Scenario::new(machine, law.clone(), 1.0).unwrap().driven_by(force);
+            let sampling = Sampling::uniform(1e-3, 1000).unwrap();
+            check(name, &scenario, &sampling, Some(20));
+            let motion = Bristle::default().run(&scenario, &sampling).unwrap();
+            let [start, reversal, ..] = motion.events() else { panic!("{name}: {:?}", motion.events()) };
+            assert_eq!(start.next, Mode::Slip(Direction::Positive), "{name} under {push} N");
+            assert_eq!(
+                (reversal.kind, reversal.next),
+                (EventKind::Reversal, Mode::Slip(Direction::Negative)),
+                "{name}"
+            );
+            // m v = f t − t²/2 N/s, less what the damping of the bristles, below 1 N s/m, does in 2 ms.
+            let time = 2.0 * push;
+            assert!((reversal.time - time).abs() < 2e-3 * time, "{name}: at {}, not {time} s", reversal.time);
+        }
+    }
+    check_first("Dahl", dahl(0.2, 1.0));
+    check_first("LuGre", lugre(0.2, 1.0));
+    check_first("Bouc-Wen", bouc_wen(0.2, 1.0));
+}
+
+/// A force takes a contact to rest and on again; the narrower the bounds between which it just turns it round, the nearer
+/// the velocity comes to touching zero.
+#[test]
+fn a_velocity_that_touches_zero_keeps_its_direction() {
+    let machine = Oscillator::new(1.0, 1.0).unwrap();
+    let sampling = Sampling::uniform(1e-3, 1001).unwrap();
+    let run = |pull: f64| {
+        let force = Excitation::sampled_force(0.25, vec![0.0, -pull, 2.0, 0.0, 0.0]).unwrap();
+        Scenario::new(machine, dahl(0.2, 50.0), 1.0).unwrap().starting_at(0.0, 1.0).unwrap().driven_by(force)
+    };
+    let (mut passes, mut turns, mut touches) = (0.0, 20.0, 0);
+    for _ in 0..60 {
+        let pull = 0.5 * (passes + turns);
+        let scenario = run(pull);
+        check(&format!("a pull of {pull} N"), &scenario, &sampling, None);
+        let motion = Bristle::default().run(&scenario, &sampling).unwrap();
+        let early = motion.events()[1..].iter().filter(|event| event.time < 0.6);
+        let early: Vec<_> = early.filter(|event| event.kind == EventKind::Reversal).collect();
+        if early.iter().any(|event| event.next == Mode::Slip(Direction::Negative)) {
+            turns = pull;
+        } else {
+            touches += early.len();
+            passes = pull;
+        }
+    }
+    assert!(turns - passes < 1e-14, "between {passes} N and {turns} N");
+    assert!(touches > 0, "no velocity touches zero between {passes} N and {turns} N");
+}
+
+/// Elements that slide together when the motion turns come back to sliding at one instant, which rounding splits.
+#[test]
+fn elements_that_turned_together_slide_again_together() {
+    let machine = Oscillator::new(0.01, 100.0).unwrap().with_damping(Damping::linear(2.0).unwrap());
+    let law = MaxwellSlip::new(&[(50.0, 0.1), (15.0, 0.1)]).unwrap();
+    let mut found = 0;
+    for part in 1..=200 {
+        let back = 3.0 - 2e-3 * f64::from(part);
+        let force = Excitation::sampled_force(0.1, vec![0.0, 3.0, back, 5.0, 5.0 + back, 2.0, 3.0]).unwrap();
+        let scenario = Scenario::new(machine, law.clone(), 1.0).unwrap().driven_by(force);
+        let sampling = Sampling::uniform(1e-3, 601).unwrap();
+        check(&format!("back to {back} N"), &scenario, &sampling, None);
+        let motion = Bristle::default().run(&scenario, &sampling).unwrap();
+        let yields: Vec<_> = motion.events().iter().filter(|event| matches!(event.kind, EventKind::Yield(_))).collect();
+        found += yields.windows(2).filter(|pair| (pair[1].time - pair[0].time) < 1e-12).count();
+    }
+    assert!(found > 0, "no elements slide at one instant");
 }

@@ -5,6 +5,7 @@ use fmm_model::Scalar;
 
 use super::first_root::{end_slope, first_root, last_coefficient, next_root};
 use super::guard::{Guard, Landing};
+use super::motion::ROUNDING;
 use super::radau::STAGES;
 use super::run::Run;
 
@@ -51,8 +52,11 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
     /// zeros can be sought on these: a reserve may depend on the velocity in a way that the motion does not.
     pub(super) fn guards_are_smooth(&mut self) -> bool {
         (0..self.field.size() - 2).all(|index| {
-            self.field.reserve(index, self.branch, &self.step.begin).is_none()
-                || last_coefficient(self.guard_polynomial(Guard::Reserve(index))) <= SMOOTH
+            let Some(size) = self.field.reserve_size(index, self.branch, &self.step.begin) else { return true };
+            let coefficients = self.guard_polynomial(Guard::Reserve(index));
+            let most = coefficients.iter().fold(0.0f64, |most, coefficient| most.max(coefficient.abs()));
+            // Where little of the reserve is left, most of it is the rounding of its terms.
+            last_coefficient(coefficients) * most <= SMOOTH * most + ROUNDING * size
         })
     }
 

@@ -20,8 +20,11 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
                 let speed = velocity - self.field.belt;
                 let shift = -(speed - speed.value()) / self.before[1].value();
                 self.step.begin[1] = velocity - velocity.value() + self.field.belt.value();
+                let before = self.branch.direction;
                 let direction = self.departure(piece);
                 self.go(direction);
+                // A velocity that goes on as it came has only touched zero.
+                let grazing = grazing || direction == Some(before);
                 let kind = if direction.is_none() { EventKind::Stop } else { EventKind::Reversal };
                 self.pass(kind, piece, shift, grazing)
             }
@@ -56,6 +59,15 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
             }
         }
         self.push(kind, piece, State { position: x, velocity }, shift, grazing)
+    }
+
+    /// Begins the swing that has just begun in the other direction, and says so at its event.
+    pub(super) fn turn_at_once(&mut self) {
+        let direction = Direction::of(-self.branch.direction.sign());
+        self.branch = Branch { direction, regime: Regime::ALL_HOLD };
+        self.field.release();
+        self.field.begin(self.branch, &self.step.begin);
+        self.recorder.trajectory.redirect(self.time, direction);
     }
 
     /// −g_θ/ġ for the reserve g of element `index`, with ġ from differences along the motion `self.before`.

@@ -6,6 +6,7 @@ use fmm_model::Scalar;
 use super::collocation::Collocation;
 use super::explicit::Explicit;
 use super::field::{Branch, Field};
+use super::first_root::BEGINNING;
 use super::guard::{Approach, Guard, Landing};
 use super::motion::{Motion, Solved, Span};
 use super::pace::Pace;
@@ -159,10 +160,11 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         if length < room && room < 2.0 * length {
             length = 0.5 * room;
         }
+        let whole = length;
         let mut turned = false;
         let mut approach = None;
         for _ in 0..MOST_ATTEMPTS {
-            if self.time + 0.125 * length == self.time && length < room {
+            if length <= self.least(length) && length < room {
                 break;
             }
             self.count_step()?;
@@ -181,18 +183,23 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             }
             let found = if solved.followed { self.first_guard(at_zero) } else { None };
             // What is not accurate enough says nothing about where it begins.
-            let at_once = |tau: f64| tau * length <= 2.0 * f64::EPSILON * (self.time + length);
+            let at_once = |tau: f64| tau * length <= self.least(length);
             let found = found.filter(|(tau, _)| solved.error <= 1.0 || !at_once(*tau));
             if let Some((tau, guard)) = found {
                 if at_once(tau) {
                     if !(at_zero && guard == Guard::Speed) {
                         return self.arrive(guard, piece, false);
                     }
-                    // At the start of a swing the rounding of the load may have hidden its direction.
-                    length *= if turned { 0.1 } else { 1.0 };
-                    turned = !turned;
-                    self.branch.direction = Direction::of(-self.branch.direction.sign());
-                    self.field.begin(self.branch, &self.step.begin);
+                    // The swing may be over before the velocity counts as risen.
+                    length *= BEGINNING;
+                    if length <= self.least(whole) {
+                        if turned {
+                            break;
+                        }
+                        // The rounding of the load has hidden the direction of the swing.
+                        (length, turned) = (whole, true);
+                        self.turn_at_once();
+                    }
                     self.collocation.forget();
                     continue;
                 }
@@ -239,6 +246,12 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             return self.finish(length, 0.0, limit, piece);
         }
         Err(SimulationError::StepTooSmall { tolerance: self.tolerance, time: self.time })
+    }
+
+    /// A time (s) that rounding makes of the end of a step of this `length` (s): no step is shorter, and what lies within
+    /// it is at its beginning.
+    fn least(&self, length: f64) -> f64 {
+        4.0 * f64::EPSILON * (self.time + length)
     }
 
     /// Takes a step by the method of the hour.
