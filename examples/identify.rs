@@ -1,6 +1,6 @@
 //! Friction out of a ring-down record: `cargo run --release --example identify -- FILE`.
 //!
-//! Reads a velocity or displacement record (CSV, TSV, MATLAB v5 to v7 or UFF58), prepares it, fits it by one law or by
+//! Reads a record of displacement, velocity or acceleration (CSV, TSV, MATLAB v5 to v7 or UFF58), prepares it, fits it by one law or by
 //! several, and prints what was found, how sure it is, and what the record could not tell. Without FILE it runs
 //! on the bundled record of a bicycle fork swinging as a pendulum. What a channel measured is told by its unit, or by a word
 //! in its name, or by options; what would be a guess is refused. `--help` lists the options.
@@ -21,7 +21,7 @@ use std::time::Duration;
 use clap::{Parser, ValueEnum};
 use figure::{Layer, Panel, Role};
 use fmm_fit::{Options, Progress};
-use fmm_identify::{Candidate, Comparison, Known, Machine, Preparation, Experiment, Search};
+use fmm_identify::{Candidate, Comparison, Drive, Experiment, Known, Machine, Preparation, Search, Sensor};
 use fmm_identify::{compare_observed, search_observed};
 use fmm_model::Restoring;
 use fmm_record::{Column, Quantity, Record, Request, Unit};
@@ -96,6 +96,20 @@ struct Arguments {
     /// Standard uncertainty of the normal load
     #[arg(long, value_name = "N", requires = "normal_load", default_value_t = 0.0)]
     normal_load_u: f64,
+    /// The channel with the measured force (N) that drives the machine; without it and --base, the machine vibrates freely. Without
+    /// mass and stiffness, both are found
+    #[arg(long, value_name = "NAME|INDEX", conflicts_with = "base")]
+    force: Option<Column>,
+    /// The channel with the measured motion of the base that drives the machine, best its acceleration
+    #[arg(long, value_name = "NAME|INDEX")]
+    base: Option<Column>,
+    /// The sensor filters by a Butterworth low-pass filter of this order, with its corner frequency or, without it, one that is
+    /// fitted
+    #[arg(long, value_name = "ORDER[:HZ]", value_parser = low_pass)]
+    low_pass: Option<(usize, Option<f64>)>,
+    /// The sensor is late by this time
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    delay: f64,
     /// Use the record from this time on
     #[arg(long, value_name = "S")]
     from: Option<f64>,
@@ -114,8 +128,6 @@ struct Arguments {
 enum Measured {
     Velocity,
     Displacement,
-    /// Understood, and answered with what to do.
-    #[value(hide = true)]
     Acceleration,
 }
 
@@ -129,6 +141,15 @@ impl From<Measured> for Quantity {
     }
 }
 
+/// Order and corner frequency (Hz) of a filter.
+fn low_pass(text: &str) -> Result<(usize, Option<f64>), String> {
+    let (order, corner) = text.split_once(':').map_or((text, None), |(order, corner)| (order, Some(corner)));
+    let order =
+        order.trim().parse().map_err(|_| format!("{order:?} is no order; give ORDER or ORDER:HZ, such as 2:44"))?;
+    let corner = corner.map(|corner| corner.trim().parse().map_err(|_| format!("{corner:?} is no frequency in Hz")));
+    Ok((order, corner.transpose()?))
+}
+
 fn read(arguments: &Arguments) -> Result<Input, Box<dyn Error>> {
     let mut request = Request::default();
     if let Some(quantity) = arguments.quantity {
@@ -140,8 +161,13 @@ fn read(arguments: &Arguments) -> Result<Input, Box<dyn Error>> {
     if let Some(scale) = arguments.scale {
         request = request.scale(scale);
     }
-    let choice =
-        Choice { channel: arguments.channel.clone(), time: arguments.time.clone(), rate: arguments.rate, request };
+    let choice = Choice {
+        channel: arguments.channel.clone(),
+        time: arguments.time.clone(),
+        rate: arguments.rate,
+        request,
+        is_drive: false,
+    };
     let input = match &arguments.file {
         Some(file) => choice.read(file)?,
         None => choice.read_bundled()?,
@@ -152,10 +178,41 @@ fn read(arguments: &Arguments) -> Result<Input, Box<dyn Error>> {
     Ok(input)
 }
 
+/// What drives the machine, if something does.
+fn drive(arguments: &Arguments) -> Result<Option<Drive>, Box<dyn Error>> {
+    let (channel, quantity) = match (&arguments.force, &arguments.base) {
+        (Some(channel), _) => (channel, Some(Quantity::Force)),
+        (None, Some(channel)) => (channel, None),
+        (None, None) => return Ok(None),
+    };
+    let file = arguments.file.as_ref().ok_or("the bundled record is one of a free vibration; give a file")?;
+    let request = quantity.map_or_else(Request::default, |quantity| Request::default().quantity(quantity));
+    let (time, rate) = (arguments.time.clone(), arguments.rate);
+    let choice = Choice { channel: Some(channel.clone()), time, rate, request, is_drive: true };
+    let record = choice.read(file)?.record;
+    Ok(Some(if quantity.is_some() { Drive::force(&record)? } else { Drive::base(&record)? }))
+}
+
+/// The experiment of the record, with its drive and its sensor.
+fn experiment(arguments: &Arguments, record: &Record, preparation: &Preparation) -> Result<Experiment, Box<dyn Error>> {
+    let experiment = match drive(arguments)? {
+        Some(drive) => Experiment::driven(record, drive, preparation)?,
+        None => Experiment::ring_down(record, preparation)?,
+    };
+    let mut sensor = Sensor::default().with_delay(arguments.delay)?;
+    sensor = match arguments.low_pass {
+        Some((order, Some(corner))) => sensor.with_low_pass(order, corner)?,
+        Some((order, None)) => sensor.with_free_low_pass(order)?,
+        None => sensor,
+    };
+    Ok(experiment.seen_by(sensor)?)
+}
+
 fn machine(arguments: &Arguments) -> Result<Machine, Box<dyn Error>> {
     let mut machine = match (arguments.mass, arguments.stiffness) {
         (Some(mass), _) => Machine::of_mass(Known::new(mass, arguments.mass_u)?)?,
         (None, Some(stiffness)) => Machine::of_stiffness(Known::new(stiffness, arguments.stiffness_u)?)?,
+        (None, None) if arguments.force.is_some() => Machine::unknown(),
         (None, None) => Machine::per_unit_mass(),
     };
     if let Some(damping) = arguments.damping {
@@ -303,7 +360,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if let Some(folder) = &arguments.figures {
         std::fs::create_dir_all(folder).map_err(|error| format!("cannot create {}: {error}", folder.display()))?;
     }
-    let decay = Experiment::ring_down(&input.record, &preparation)?;
+    let decay = experiment(arguments, &input.record, &preparation)?;
     let comparison = identify(arguments, &decay)?;
     let report = if arguments.json {
         serde_json::to_string_pretty(&comparison)?

@@ -1,7 +1,7 @@
 //! Ten million samples: the whole job in bounded memory.
 
 use fmm_friction::CoulombViscous;
-use fmm_identify::{Machine, Preparation, Experiment, identify};
+use fmm_identify::{Experiment, Machine, Preparation, identify};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Channels, Engine, Exact, Sampling, Scenario};

@@ -27,6 +27,8 @@ pub(crate) struct Choice {
     pub(crate) rate: Option<f64>,
     /// Quantity, unit and scale of the channel.
     pub(crate) request: Request,
+    /// Whether the channel is what drives the machine.
+    pub(crate) is_drive: bool,
 }
 
 fn bundled() -> PathBuf {
@@ -63,11 +65,12 @@ impl Choice {
         warnings: Vec<String>,
     ) -> Result<Input, Box<dyn Error>> {
         let meaning = self.request.meaning(label).map_err(with_remedy)?;
-        if !matches!(meaning.quantity, Quantity::Velocity | Quantity::Displacement) {
-            let remedy = if meaning.quantity == Quantity::Acceleration { "integrate it first, or " } else { "" };
+        let is_motion =
+            matches!(meaning.quantity, Quantity::Velocity | Quantity::Displacement | Quantity::Acceleration);
+        if !is_motion && !self.is_drive {
             return Err(format!(
-                "channel \"{}\" is a record of {}, and friction is fitted to a velocity or a displacement: {remedy}give \
-                 one of these by --channel",
+                "channel \"{}\" is a record of {}, and friction is fitted to a velocity, a displacement or an acceleration: \
+                 give one of these by --channel",
                 label.name(),
                 meaning.quantity
             )
@@ -164,9 +167,9 @@ fn with_remedy(error: MeaningError) -> Box<dyn Error> {
         MeaningError::NoUnit { likely, .. } => {
             format!("give --unit, such as {likely}, and --scale if the numbers are not in it")
         }
-        MeaningError::NoQuantity { .. } => "give --quantity velocity or --quantity displacement".to_owned(),
+        MeaningError::NoQuantity { .. } => "give --quantity velocity, --quantity displacement or --quantity acceleration".to_owned(),
         MeaningError::Nothing { .. } => {
-            "give --quantity velocity or --quantity displacement, and --unit, with --scale if the numbers are not in it"
+            "give --quantity velocity, displacement or acceleration, and --unit, with --scale if the numbers are not in it"
                 .to_owned()
         }
         MeaningError::OtherQuantity { said, .. } => {

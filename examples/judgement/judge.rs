@@ -2,7 +2,7 @@
 
 use fmm_identify::search;
 use fmm_identify::{
-    Comparison, Finding, Identification, IdentifyError, Machine, Preparation, Experiment, Search, Warning,
+    Comparison, Experiment, Finding, Identification, IdentifyError, Machine, Preparation, Search, Warning,
 };
 
 use super::law::Law;

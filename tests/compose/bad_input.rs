@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use fmm_fit::{FitError, Options, Residuals, solve};
 use fmm_friction::{Coulomb, CoulombViscous, Viscous};
 use fmm_identify::{
-    Identification, IdentifyError, Known, Machine, Offset, Preparation, Experiment, Problem, Warning, identify,
+    Experiment, Identification, IdentifyError, Known, Machine, Offset, Preparation, Problem, Warning, identify,
 };
 use fmm_model::ModelError;
 use fmm_record::csv::{CsvError, CsvReader};

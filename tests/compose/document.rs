@@ -1,6 +1,6 @@
 //! The JSON document that other programs read.
 
-use fmm_identify::{Candidate, Known, Machine, Preparation, Experiment, compare};
+use fmm_identify::{Candidate, Experiment, Known, Machine, Preparation, compare};
 use serde_json::Value;
 
 use crate::measurement::{LOAD, MASS, release};

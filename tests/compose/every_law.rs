@@ -4,7 +4,7 @@ use fmm_friction::{
     AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombViscous, Dahl, ExponentialPair, Hyperbolic, Karnopp, LuGre,
     MakkarDixon, PowerLaw, RegularisedStribeck, Stribeck, StribeckLorentzian, Viscous,
 };
-use fmm_identify::{Comparison, Identification, Machine, Preparation, Experiment, Search, search};
+use fmm_identify::{Comparison, Experiment, Identification, Machine, Preparation, Search, search};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Sampling, Scenario, Simulated, Trajectory};

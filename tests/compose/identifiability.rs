@@ -1,7 +1,7 @@
 //! What a free vibration cannot tell.
 
 use fmm_friction::{Coulomb, CoulombStatic, CoulombViscous, Viscous};
-use fmm_identify::{Identification, Known, Machine, Offset, Preparation, Experiment, Warning, identify};
+use fmm_identify::{Experiment, Identification, Known, Machine, Offset, Preparation, Warning, identify};
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};

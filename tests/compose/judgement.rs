@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use fmm_identify::{
-    Candidate, Comparison, Finding, Identification, IdentifyError, Known, Machine, Preparation, Experiment, Search,
+    Candidate, Comparison, Experiment, Finding, Identification, IdentifyError, Known, Machine, Preparation, Search,
     Warning, compare, search,
 };
 use fmm_model::Restoring;
@@ -154,7 +154,8 @@ fn presliding_is_seen_however_often_it_is_sampled() {
 /// What is held of one law is not held of the others, and a search that has no time reports what it has.
 #[test]
 fn a_search_holds_by_law_and_ends_in_time() {
-    let decay = Experiment::ring_down(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
+    let decay =
+        Experiment::ring_down(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
     let holding = Search::default().holding(Some("stribeck"), "exponent", 1.0);
     let comparison = search(&machine(), std::slice::from_ref(&decay), &holding).unwrap();
     assert!(comparison.identifications().iter().any(|found| found.law() == "stribeck, exponent = 1"), "{comparison}");
@@ -173,7 +174,8 @@ fn a_search_holds_by_law_and_ends_in_time() {
 /// What is held under the name that a fit gives it is held of every law that has it, in all stages.
 #[test]
 fn a_search_holds_by_the_names_of_fits() {
-    let decay = Experiment::ring_down(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
+    let decay =
+        Experiment::ring_down(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
     let holding = Search::default().holding(None, "damping_per_mass", 0.1);
     let comparison = search(&machine(), &[decay], &holding).unwrap();
     assert!(comparison.identifications().len() > 10, "{comparison}");
@@ -186,7 +188,8 @@ fn a_search_holds_by_the_names_of_fits() {
 /// The result is the same on any number of threads.
 #[test]
 fn threads_change_nothing() {
-    let decay = Experiment::ring_down(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
+    let decay =
+        Experiment::ring_down(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
     let on = |threads: usize| {
         search(&machine(), std::slice::from_ref(&decay), &Search::default().on_threads(threads)).unwrap().to_string()
     };

@@ -1,7 +1,7 @@
 //! A friction law of one's own, written outside the crates: simulated, differentiated, fitted and compared.
 
 use fmm_friction::{Affine, LawError, LawFamily, LawParameter, PiecewiseLinearLaw, Role, SlidingLaw};
-use fmm_identify::{Candidate, Machine, Preparation, Experiment, compare};
+use fmm_identify::{Candidate, Experiment, Machine, Preparation, compare};
 use fmm_model::{Bounds, Oscillator, Parameter, Scalar};
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario, Simulated, SimulationError, Trajectory};

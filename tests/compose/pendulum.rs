@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use fmm_friction::{Berger, Coulomb};
-use fmm_identify::{Candidate, Comparison, Identification, Machine, Preparation, Experiment, Terms, Warning, compare};
+use fmm_identify::{Candidate, Comparison, Experiment, Identification, Machine, Preparation, Terms, Warning, compare};
 use fmm_model::Restoring;
 
 use crate::real_records::pendulum;

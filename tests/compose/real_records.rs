@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use fmm_identify::{Candidate, Comparison, Identification, Machine, Preparation, Experiment, Warning, compare};
+use fmm_identify::{Candidate, Comparison, Experiment, Identification, Machine, Preparation, Warning, compare};
 use fmm_record::{Column, Quantity, Record, csv, mat};
 
 pub(crate) fn data(name: &str) -> PathBuf {

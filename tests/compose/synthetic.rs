@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use fmm_friction::{Coulomb, CoulombViscous};
-use fmm_identify::{Candidate, Identification, Known, Machine, Preparation, Experiment, compare, identify};
+use fmm_identify::{Candidate, Experiment, Identification, Known, Machine, Preparation, compare, identify};
 
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{Quantity, Record};

@@ -22,6 +22,9 @@ pub(crate) struct Near<'a> {
 /// Iterations after which a law that still fits worse than Coulomb and viscous friction is given up.
 const ENOUGH_TO_BE_BETTER: usize = 30;
 
+/// Starts of a driven motion that are fitted, those nearest to the records.
+const MOST_DRIVEN_STARTS: usize = 2;
+
 /// Shares of a record to which a pendulum is fitted before the whole, as its period depends on the amplitude.
 const BEGINNINGS: [f64; 2] = [0.125, 0.4];
 
@@ -115,6 +118,9 @@ fn fit_simple(
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
     let mut starts = problem.starts();
+    if problem.decays().iter().any(|decay| decay.drive().is_some()) {
+        starts = lowest(problem, starts, MOST_DRIVEN_STARTS);
+    }
     if let Some(swinging) = problem.up_to_last_peaks() {
         let problem = problem.with_records(&swinging);
         if let Ok(fit) = best_fit(&problem, problem.name(), problem.starts(), options, observer) {

@@ -421,18 +421,6 @@ impl fmt::Display for Warning {
                     "the offset jumps by {height:.3e} {unit} near {time:.3} s; fit the parts before and after apart"
                 )
             }
-            Self::Hum { .. }
-            | Self::Rounded { .. }
-            | Self::Drift
-            | Self::GrowingNoise { .. }
-            | Self::ColouredNoise { .. }
-            | Self::FilteringSensor { .. }
-            | Self::NotSi { .. }
-            | Self::TimeLimit
-            | Self::DependsOnLaw { .. }
-            | Self::Undecided
-            | Self::FurtherRelease { .. }
-            | Self::SecondMode { .. } => self.write_of_disturbances(f),
             Self::Spikes { count } => write!(f, "{count} isolated samples far off their neighbours were left out"),
             Self::AtBound { parameter, value } => {
                 write!(
@@ -475,6 +463,7 @@ impl fmt::Display for Warning {
             | Self::SpikesBridged { .. }
             | Self::NotAtRest { .. }
             | Self::InputsNotPropagated { .. } => self.write_of_blows(f),
+            _ => self.write_of_disturbances(f),
         }
     }
 }

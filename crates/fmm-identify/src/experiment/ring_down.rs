@@ -18,6 +18,9 @@ use crate::{IdentifyError, Offset, Preparation, RecordSummary};
 /// Fewest half swings that show a period.
 const FEWEST_HALF_SWINGS: usize = 2;
 
+/// Standard deviations of a walk below which the integral of an acceleration shows no swing.
+const WALKS: f64 = 5.0;
+
 impl Experiment {
     /// A ring-down: the part of a `record` of displacement, velocity or acceleration in which the machine vibrates freely.
     ///
@@ -76,21 +79,21 @@ impl Experiment {
         let (cleaned, seen) = (cleaned.crop(begin, cleaned.end())?, seen.crop(begin, seen.end())?);
 
         let start = record.start();
-        let after = |time: f64| time > start - record.interval();
-        let peaks: Vec<Peak> = swings.peaks().iter().copied().filter(|peak| after(peak.time)).collect();
+        // The integral of noise walks in the rest as well.
+        let walk = WALKS * noise(cleaned.values()) * (record.duration() * record.interval()).sqrt();
+        let swung = Swung::of(&swings, seen_quantity, start - record.interval(), is_acceleration.then_some(walk));
+        let Swung { peaks, times, heights, frequency } = swung;
         let oscillation = Oscillation {
             extrema: peaks.iter().map(|peak| ((peak.time - start).max(0.0), peak.value)).collect(),
-            frequency: swings.frequency(),
+            frequency,
         };
-        let (times, heights) = swings.turns(seen_quantity);
-        let begun = times.iter().take_while(|time| !after(**time)).count();
         let few = IdentifyError::TooFewHalfSwings { found: peaks.len(), needed: FEWEST_HALF_SWINGS };
         let guess = FirstGuess::of(&oscillation, seen_quantity).ok_or(few)?;
 
         let spikes = spikes(&cleaned);
         let mut kept = without(record.len(), spikes.iter().map(|spike| spike.index..spike.index + spike.count));
         if is_acceleration {
-            let jumps = jumps(&times[begun..], noise(cleaned.values()), &guess, &record);
+            let jumps = jumps(&times, noise(cleaned.values()), &guess, &seen);
             kept = kept.into_iter().flat_map(|range| between(range, &jumps)).collect();
         }
         let resolution = quantisation_step(record.values());
@@ -98,10 +101,8 @@ impl Experiment {
         if resolution.is_some_and(|step| step > COARSE * noise) {
             // What swings within a step or two is rounded to another motion.
             let last = peaks.last().map_or(0.0, |peak| (peak.time - start) / record.interval());
-            for range in &mut kept {
-                range.end = range.end.min((last.max(0.0) as usize).max(range.start));
-            }
-            kept.retain(|range| !range.is_empty());
+            kept = kept.into_iter().map(|range| range.start..range.end.min(last.max(0.0) as usize)).collect();
+            kept.retain(|range| range.start < range.end);
         }
         let amplitudes = guess.amplitudes();
         let in_record = if is_acceleration { 2.0 * PI * guess.frequency() } else { 1.0 };
@@ -124,7 +125,7 @@ impl Experiment {
             spikes: spikes.iter().map(|spike| spike.count).sum(),
             saturation: saturation(record.values()),
             offset_step: OffsetStep::of(&seen),
-            period_change: period_change(&times[begun..], &heights[begun..]),
+            period_change: period_change(&times, &heights),
             hum,
             further_releases: further.iter().map(|release| release.time).collect(),
             second_mode: SecondMode::of(&seen),
@@ -145,6 +146,34 @@ impl Experiment {
             driven: None,
         };
         Ok(experiment.beside(nuisances))
+    }
+}
+
+/// What swings after a time: turning points, the times at which the velocity is zero and the heights beside them, and the frequency (Hz).
+struct Swung {
+    peaks: Vec<Peak>,
+    times: Vec<f64>,
+    heights: Vec<f64>,
+    frequency: Option<f64>,
+}
+
+impl Swung {
+    /// The part of `swings` of a `quantity` later than `after` (s), up to the first peak that does not exceed `least`, if that is given.
+    fn of(swings: &Swings, quantity: Quantity, after: f64, least: Option<f64>) -> Self {
+        let mut peaks: Vec<Peak> = swings.peaks().iter().copied().filter(|peak| peak.time > after).collect();
+        let (times, heights) = swings.turns(quantity);
+        let begun = times.iter().take_while(|time| **time <= after).count();
+        let (mut times, mut heights) = (times[begun..].to_vec(), heights[begun..].to_vec());
+        let mut frequency = swings.frequency();
+        let swung = least.map_or(peaks.len(), |least| peaks.iter().take_while(|peak| peak.value.abs() > least).count());
+        if swung < peaks.len() {
+            peaks.truncate(swung);
+            times.truncate(swung.saturating_sub(1));
+            heights.truncate(swung.saturating_sub(1));
+            let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
+            frequency = (times.len() > 1).then(|| 0.5 * (times.len() - 1) as f64 / span);
+        }
+        Self { peaks, times, heights, frequency }
     }
 }
 
@@ -228,25 +257,54 @@ fn offset_of_rest(acceleration: &Record) -> Option<(f64, usize)> {
     Some((level, (last + FEW).min(values.len() - 1)))
 }
 
-/// The samples of an acceleration beside the `times` (s) at which the velocity changes its sign, the stop among them, in order.
-fn jumps(times: &[f64], noise: f64, guess: &FirstGuess, record: &Record) -> Vec<Range<usize>> {
+/// The time (s) at which a `velocity` changes its sign, as near to `time` (s) as it does within a quarter of a half swing; `time` if it
+/// does not. A crossing of the centre of two peaks lies off where the one is much smaller than the other.
+fn zero_near(velocity: &Record, time: f64, guess: &FirstGuess) -> f64 {
+    let place = (time - velocity.start()) * velocity.rate();
+    let reach = 0.125 * velocity.rate() / guess.frequency();
+    let values = velocity.values();
+    let (low, high) = ((place - reach).max(0.0) as usize, ((place + reach).max(0.0) as usize).min(values.len() - 1));
+    let changes = (low..high).filter(|&at| values[at] * values[at + 1] < 0.0);
+    let times = changes.map(|at| at as f64 + values[at] / (values[at] - values[at + 1]));
+    let nearest = times.min_by(|a, b| (a - place).abs().total_cmp(&(b - place).abs()));
+    nearest.map_or(time, |place| velocity.start() + place * velocity.interval())
+}
+
+/// The samples beside the changes of sign of a `velocity` near its `crossings` (s), the release and the stop among them, in order. `noise`
+/// is that of its acceleration.
+fn jumps(crossings: &[f64], noise: f64, guess: &FirstGuess, velocity: &Record) -> Vec<Range<usize>> {
     /// Samples on either side of a jump, over which a sensor may smear it, and standard deviations of its time.
     const SAMPLES: f64 = 3.0;
     const DEVIATIONS: f64 = 4.0;
+    let times: Vec<f64> = crossings.iter().map(|time| zero_near(velocity, *time, guess)).collect();
     let half_period = 0.5 / guess.frequency();
+    // A release at a turning point is one, and so is the stop.
+    let release = times.first().map(|first| first - half_period);
     let stop = times.last().map(|last| last + half_period);
     let angular = 2.0 * PI * guess.frequency();
     // Of a velocity that was integrated over about a period.
-    let uncertain = noise * (2.0 * half_period * record.interval()).sqrt();
+    let uncertain = noise * (2.0 * half_period * velocity.interval()).sqrt();
     let range = |(turn, time): (usize, f64)| {
-        let amplitude = guess.amplitudes().get(turn).or(guess.amplitudes().last()).copied().unwrap_or(f64::INFINITY);
+        let amplitude = guess
+            .amplitudes()
+            .get(turn.saturating_sub(1))
+            .or(guess.amplitudes().last())
+            .copied()
+            .unwrap_or(f64::INFINITY);
         let time_uncertain = (uncertain / (angular * amplitude)).min(0.1 * half_period);
-        let reach = SAMPLES + DEVIATIONS * time_uncertain * record.rate();
-        let place = (time - record.start()) * record.rate();
+        let reach = SAMPLES + DEVIATIONS * time_uncertain * velocity.rate();
+        let place = (time - velocity.start()) * velocity.rate();
         let end = (place + reach).floor().max(-1.0) + 1.0;
-        (place - reach).ceil().max(0.0) as usize..(end as usize).min(record.len())
+        (place - reach).ceil().max(0.0) as usize..(end as usize).min(velocity.len())
     };
-    times.iter().copied().chain(stop).enumerate().map(range).filter(|range| !range.is_empty()).collect()
+    release
+        .into_iter()
+        .chain(times.iter().copied())
+        .chain(stop)
+        .enumerate()
+        .map(range)
+        .filter(|range| !range.is_empty())
+        .collect()
 }
 
 /// The parts of `range` between `holes`, which are in order.

@@ -45,22 +45,20 @@ fn fitted(experiment: Experiment) -> Identification {
 fn accelerations_of_three_releases_cover() {
     for release in [8e-3, 15e-3, 22e-3] {
         let motion = motion(release, 1);
-        let mut offset_inside = 0.0;
+        let (mut offset_inside, mut mean) = (0.0, 0.0);
         let share = share_inside(COEFFICIENT, SEEDS, |seed| {
             let found = fitted(accelerometer(motion.acceleration().values(), seed));
             let (low, high) = found.interval("offset", 0.95).unwrap();
             offset_inside += f64::from(u8::from((low..=high).contains(&GRAVITY))) / SEEDS as f64;
+            mean += found.finding("mu").unwrap().value() / SEEDS as f64;
             found.interval("mu", 0.95).unwrap()
         });
         println!("{release}: mu {share}, offset {offset_inside}");
-        println!("{}", fitted(accelerometer(motion.acceleration().values(), 1)));
         assert!((0.92..=0.98).contains(&share), "{release}: {share} of the intervals of mu");
         assert!((0.92..=0.98).contains(&offset_inside), "{release}: {offset_inside} of the intervals of the offset");
+        // Of one record mu is known to 0.24 % here; no more than a part of that is the same in all.
+        assert!(release < 20e-3 || (mean / COEFFICIENT - 1.0).abs() < 1e-3, "mu is {mean} in the mean");
     }
-    let found = fitted(accelerometer(motion(22e-3, 1).acceleration().values(), 1));
-    let mu = found.finding("mu").unwrap();
-    println!("{found}");
-    assert!((mu.value() / COEFFICIENT - 1.0).abs() < 1e-3 && mu.uncertainty().unwrap() < 1e-3 * COEFFICIENT, "{found}");
 }
 
 /// Corner of the filter (Hz) and delay (s) of a sensor.

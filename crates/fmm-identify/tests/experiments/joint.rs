@@ -12,6 +12,7 @@ const SAMPLES: usize = 2000;
 const DAMPING: f64 = 0.8;
 const SLIDING: f64 = 0.25;
 const STATIC: f64 = 0.32;
+const SEEDS: u64 = 60;
 
 /// A slow force (N) through the static level of 4.5 N.
 fn ramp() -> Vec<f64> {
@@ -66,7 +67,6 @@ fn three_experiments_tell_what_no_one_does() {
     let motions = motions();
     let mut others = [0.0; 2];
     let truths = [("static_mu", STATIC), ("damping_per_mass", DAMPING / MASS)];
-    const SEEDS: u64 = 60;
     let share = share_inside(SLIDING, SEEDS, |seed| {
         let found = found(&experiments(&motions, seed)).unwrap();
         for ((name, truth), inside) in truths.iter().zip(&mut others) {

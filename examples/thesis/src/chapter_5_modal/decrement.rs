@@ -1,7 +1,7 @@
 //! Section 5.2's logarithmic decrement, as its program A2 codes it and by fitted peaks.
 
 use fmm_fit::{StraightLine, Weighting};
-use fmm_identify::{Preparation, Experiment, ThesisDecrement, decrements};
+use fmm_identify::{Experiment, Preparation, ThesisDecrement, decrements};
 
 use super::simulated::{machine, motion, record};
 use crate::figure::{Layer, Panel, Role, label};

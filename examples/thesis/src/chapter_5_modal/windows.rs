@@ -1,7 +1,7 @@
 //! Fits over five cycles and over more: Table 1's damping, Eq. 5.5, and the factor between equivalent and instantaneous.
 
 use fmm_fit::{StraightLine, Weighting};
-use fmm_identify::{Offset, Preparation, Experiment, WindowFit, Windows};
+use fmm_identify::{Experiment, Offset, Preparation, WindowFit, Windows};
 
 use super::regressions::table_1_line;
 use super::simulated::{machine, motion, record, rms};

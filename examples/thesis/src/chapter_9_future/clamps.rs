@@ -2,7 +2,7 @@
 
 use fmm_fit::{StraightLine, Weighting};
 use fmm_friction::{Coulomb, MaxwellSlip};
-use fmm_identify::{Offset, Preparation, Experiment, WindowFit, Windows};
+use fmm_identify::{Experiment, Offset, Preparation, WindowFit, Windows};
 use fmm_model::{Damping, Oscillator};
 use fmm_sim::{Engine as _, Exact, Excitation, Sampling, Scenario};
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use fmm_identify::{Comparison, Identification, Machine, Preparation, Experiment, Terms, compare};
+use fmm_identify::{Comparison, Experiment, Identification, Machine, Preparation, Terms, compare};
 use fmm_record::{Quantity, Record, csv, mat};
 
 use super::{candidates, side_by_side};

@@ -2,7 +2,7 @@
 
 use fmm_friction::{Dahl, LuGre};
 use fmm_identify::{
-    Candidate, Comparison, Identification, Known, Machine, Offset, Preparation, Experiment, Terms, compare,
+    Candidate, Comparison, Experiment, Identification, Known, Machine, Offset, Preparation, Terms, compare,
 };
 use fmm_record::Record;
 use fmm_sim::{Sampling, Simulated};
