@@ -59,9 +59,8 @@ impl Experiment {
         let is_acceleration = quantity == Quantity::Acceleration;
         // What shows the swings: the kinks of a velocity are smaller than the jumps of an acceleration.
         let seen_of = |record: &Record| if is_acceleration { velocity_of(record) } else { Some(record.clone()) };
-        let few = IdentifyError::TooFewHalfSwings { found: 0, needed: FEWEST_HALF_SWINGS };
         // One motion is fitted, the first.
-        let seen = seen_of(&cleaned).ok_or(few)?;
+        let seen = seen_of(&cleaned).ok_or(IdentifyError::TooFewHalfSwings { found: 0, needed: FEWEST_HALF_SWINGS })?;
         let seen_quantity = seen.quantity();
         let further = further_releases(&seen);
         let until = further.first().map_or(record.end(), |next| next.sound_until);
