@@ -3,7 +3,9 @@
 use fmm_friction::{AccelerationCoulomb, CoulombStatic};
 use fmm_model::{Damping, Dual, Oscillator, Scalar};
 
-use crate::{Engine, EventKind, Exact, Excitation, Mode, RungeKutta, Sampling, Scenario, SimulationError, Trajectory};
+use crate::{
+    Direction, Engine, EventKind, Exact, Excitation, Mode, RungeKutta, Sampling, Scenario, SimulationError, Trajectory,
+};
 
 /// Both motions of a machine of 1 kg on 1 N/m let go at `start` (m), damped by `damping` (N s/m), under 1 N on a contact of
 /// these two levels and a `force`.
@@ -102,5 +104,28 @@ fn no_level_moves_a_jump() {
         }
         // The static level has no part in the motion at all.
         assert!(motion.position().partial(1).unwrap().iter().all(|partial| *partial == 0.0), "{}", motion.engine());
+    }
+}
+
+/// A counterface accelerates from rest and takes the machine along until inertia, damping and spring exceed the level: seen
+/// from the counterface, m a + c a t + k a t²/2 = F_s.
+#[test]
+fn an_accelerating_counterface_loses_the_machine_at_a_known_time() {
+    let [mass, damping, stiffness, acceleration, level] = [2.0, 1.5, 50.0, 0.7, 9.0];
+    let interval = 1e-4;
+    let machine = Oscillator::new(mass, stiffness).unwrap().with_damping(Damping::linear(damping).unwrap());
+    let force = |t: f64| -acceleration * (mass + damping * t + 0.5 * stiffness * t * t);
+    let scenario = Scenario::new(machine, CoulombStatic::new(0.6, 0.9).unwrap(), level / 0.9).unwrap();
+    let scenario = scenario.driven_by(Excitation::function(interval, 2.0, force).unwrap());
+    let sampling = Sampling::uniform(1e-3, 1000).unwrap();
+    let rest = level / acceleration - mass;
+    let time = ((damping * damping + 2.0 * stiffness * rest).sqrt() - damping) / stiffness;
+    for motion in [Exact.run(&scenario, &sampling).unwrap(), RungeKutta::default().run(&scenario, &sampling).unwrap()] {
+        let [start, breakaway, ..] = motion.events() else { panic!("it never slides: {:?}", motion.events()) };
+        assert_eq!(start.next, Mode::Stick);
+        assert_eq!((breakaway.kind, breakaway.next), (EventKind::Breakaway, Mode::Slip(Direction::Negative)));
+        // Straight lines are off by interval²/8 times the curvature k a, over the slope of the load.
+        let off = interval * interval / 8.0 * stiffness / (damping + stiffness * time);
+        assert!((breakaway.time - time).abs() <= 1.01 * off, "{} s, not {time} s", breakaway.time);
     }
 }

@@ -70,6 +70,18 @@ pub enum SimulationError {
         /// Velocity at which it was seen (m/s).
         velocity: f64,
     },
+    /// An initial state that the law does not have, or beyond its bound.
+    #[error(
+        "state {index} of the law must begin within ±{bound}, but is {deflection}; a bound of 0 may mean that there is no such state"
+    )]
+    Deflection {
+        /// Which state.
+        index: usize,
+        /// What it was to be, in the law's unit.
+        deflection: f64,
+        /// What its magnitude may be; 0 if there is no such state.
+        bound: f64,
+    },
     /// The law and the engine, or a property of the scenario, do not go together.
     #[error("the {engine} engine cannot take {what}")]
     NotSupported {

@@ -1,5 +1,6 @@
 //! What is simulated: machine, contact and how the motion begins.
 
+use fmm_friction::BristleLaw;
 use fmm_model::{ModelError, Oscillator, Scalar};
 
 use crate::{Excitation, SimulationError};
@@ -32,6 +33,8 @@ pub struct Scenario<D, L> {
     law: L,
     normal_load: D,
     initial: State<D>,
+    /// What the law's states are at t = 0, up to the last that is not zero.
+    deflections: Vec<D>,
     excitations: Vec<Excitation<D>>,
 }
 
@@ -44,7 +47,7 @@ impl<D: Scalar, L> Scenario<D, L> {
         ModelError::require_not_negative("normal load", normal_load.value(), "N")?;
         let zero = D::from(0.0);
         let initial = State { position: zero, velocity: zero };
-        Ok(Self { oscillator, law, normal_load, initial, excitations: Vec::new() })
+        Ok(Self { oscillator, law, normal_load, initial, deflections: Vec::new(), excitations: Vec::new() })
     }
 
     /// The same machine, let go at `position` (m) with `velocity` (m/s).
@@ -88,5 +91,120 @@ impl<D: Scalar, L> Scenario<D, L> {
     /// The state at t = 0.
     pub fn initial(&self) -> State<D> {
         self.initial
+    }
+
+    /// The state of this `index` of a law with internal states at t = 0, in the law's unit; zero unless
+    /// [`with_deflection`](Self::with_deflection) says otherwise.
+    pub fn deflection(&self, index: usize) -> D {
+        self.deflections.get(index).copied().unwrap_or(D::from(0.0))
+    }
+}
+
+impl<D: Scalar, L: BristleLaw<D>> Scenario<D, L> {
+    /// The same machine, let go with the state of this `index` of its law at `deflection`, in the law's unit (m for bristles and
+    /// elements), as an earlier motion has left it.
+    ///
+    /// [`Bristle`](crate::Bristle) takes a state that begins at the bound to which the motion takes it for the bound, with the
+    /// derivatives of that.
+    ///
+    /// ```
+    /// use fmm_friction::Dahl;
+    /// use fmm_model::Oscillator;
+    /// use fmm_sim::{Sampling, Scenario, simulate};
+    ///
+    /// // Bristles of 1 kN/m under 10 N, bent by 0.1 mm against a machine that nothing else moves.
+    /// let scenario = Scenario::new(Oscillator::new(1.0, 0.0)?, Dahl::new(0.1, 100.0, 1.0)?, 10.0)?.with_deflection(0, 1e-4)?;
+    /// let motion = simulate(&scenario, &Sampling::uniform(1e-4, 10)?)?;
+    /// // They push it back with 0.1 N.
+    /// assert!((motion.velocity().values()[1] + 0.1 * 1e-4).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SimulationError::Deflection`] if the law has no such state, or its bound is exceeded.
+    pub fn with_deflection(mut self, index: usize, deflection: D) -> Result<Self, SimulationError> {
+        let bound = if index < self.law.states() { self.law.bound(index).value() } else { 0.0 };
+        if !(index < self.law.states() && deflection.value().is_finite() && deflection.value().abs() <= bound) {
+            return Err(SimulationError::Deflection { index, deflection: deflection.value(), bound });
+        }
+        if self.deflections.len() <= index {
+            self.deflections.resize(index + 1, D::from(0.0));
+        }
+        self.deflections[index] = deflection;
+        Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fmm_friction::{Dahl, MaxwellSlip};
+    use fmm_model::{Dual, Oscillator};
+
+    use super::*;
+    use crate::{Bristle, Engine, EventKind, Exact, Sampling};
+
+    /// Dahl's law with exponent 1 as long as the motion goes on: σ z/μ = 1 − (1 − σ z₀/μ) exp(−σ (x − x₀)/μ).
+    #[test]
+    fn a_deflected_bristle_follows_its_closed_form() {
+        let [coefficient, stiffness] = [0.2, 50.0].map(Dual::<1>::from);
+        let machine = Oscillator::new(Dual::from(1.0), Dual::from(100.0)).unwrap();
+        let law = Dahl::new(coefficient, stiffness, Dual::from(1.0)).unwrap();
+        for begin in [-0.004, -0.001, 0.003, 0.0039] {
+            let begin = Dual::variable(begin, 0);
+            let scenario = Scenario::new(machine, law, Dual::from(5.0)).unwrap();
+            let scenario = scenario.starting_at(Dual::from(-0.05), Dual::from(0.1)).unwrap();
+            let scenario = scenario.with_deflection(0, begin).unwrap();
+            let sampling = Sampling::uniform(1e-3, 1000).unwrap();
+            let motion = Bristle::default().run(&scenario, &sampling).unwrap();
+            let end = motion.events()[1].time.value();
+            let mut compared = 0;
+            for index in (0..1000).take_while(|index| sampling.time(*index) < end) {
+                let (x, z) = (motion.position(), &motion.states()[0]);
+                let partials = |samples: &crate::Samples<Dual<1>>| samples.partial(0).unwrap()[index];
+                let left = (-(x.values()[index] + 0.05) * 250.0).exp();
+                let expected = 0.004 * (1.0 - (1.0 - begin.value() * 250.0) * left);
+                assert!((z.values()[index] - expected).abs() < 1e-9 * 0.004, "{begin:?}, sample {index}");
+                // ∂z/∂z₀ + ∂z/∂x · ∂x/∂z₀
+                let along = (1.0 - begin.value() * 250.0) * left * partials(x);
+                assert!((partials(z) - left - along).abs() < 1e-8, "{begin:?}: {} at {index}", partials(z));
+                compared += 1;
+            }
+            assert!(compared > 100, "{compared} samples");
+        }
+    }
+
+    /// Elements that begin bent, one of them at its bound so that it slides at once.
+    #[test]
+    fn deflected_elements_move_alike_on_both_engines() {
+        let machine = Oscillator::new(1.0, 100.0).unwrap();
+        let law = MaxwellSlip::new(&[(50.0, 0.1), (15.0, 0.1)]).unwrap();
+        for deflections in [[0.002, -0.005], [-0.001, 0.004], [0.0, 0.1 / 15.0], [-0.002, 0.0]] {
+            for velocity in [0.0, 0.3] {
+                let mut scenario =
+                    Scenario::new(machine, law.clone(), 4.0).unwrap().starting_at(0.0, velocity).unwrap();
+                for (index, deflection) in deflections.into_iter().enumerate() {
+                    scenario = scenario.with_deflection(index, deflection).unwrap();
+                }
+                let sampling = Sampling::uniform(1e-3, 1000).unwrap();
+                let exact = Exact.run(&scenario, &sampling).unwrap();
+                let stepped = Bristle::default().run(&scenario, &sampling).unwrap();
+                assert_eq!(exact.events()[0].kind, EventKind::Start);
+                let size = exact.velocity().values().iter().fold(0.0f64, |size, v| size.max(v.abs()));
+                assert!(size > 1e-3, "nothing moves");
+                for (one, other) in exact.velocity().values().iter().zip(stepped.velocity().values()) {
+                    assert!((one - other).abs() < 1e-8 * size, "{deflections:?} m, {velocity} m/s: {one}, {other} m/s");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn deflections_that_cannot_be_are_refused() {
+        let law = Dahl::new(0.2, 50.0, 1.0).unwrap();
+        for (index, deflection) in [(0, 0.005), (0, f64::NAN), (0, f64::NEG_INFINITY), (1, 0.0)] {
+            let scenario = Scenario::new(Oscillator::new(1.0, 100.0).unwrap(), law, 5.0).unwrap();
+            let refused = scenario.with_deflection(index, deflection);
+            assert!(matches!(refused, Err(SimulationError::Deflection { .. })), "{index}: {deflection} m");
+        }
     }
 }

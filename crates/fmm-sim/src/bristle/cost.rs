@@ -16,7 +16,7 @@ fn steps<L: BristleLaw<f64>>(law: L, velocity: f64) -> usize {
     let drive = Drive::new(scenario.excitations(), oscillator.mass());
     let field = Field::new(oscillator, scenario.law(), scenario.normal_load(), drive.belt());
     let recorder = Recorder::new("bristle", scenario.law().states(), &sampling, &mut trajectory).unwrap();
-    let steps = Run::new(field, scenario.initial(), 1e-10, recorder).run(&drive).unwrap();
+    let steps = Run::new(field, beginning(&scenario), 1e-10, recorder).run(&drive).unwrap();
     steps / trajectory.half_swings()
 }
 

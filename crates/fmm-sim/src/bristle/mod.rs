@@ -22,7 +22,7 @@ use fmm_model::Scalar;
 
 use crate::drive::Drive;
 use crate::recorder::Recorder;
-use crate::{Engine, Sampling, Scenario, SimulationError, Trajectory};
+use crate::{Engine, Sampling, Scenario, SimulationError, State, Trajectory};
 use field::Field;
 use run::Run;
 
@@ -31,8 +31,10 @@ pub(crate) use path::follow;
 /// Integrates laws with internal state, however stiff, from kink to kink of the motion.
 ///
 /// ```text
-/// m x″ = f(t) − F_c(x′) − F_k(x) − N μ(u, z, z′),   z′ = r(u, z),   u = x′ − v_b,   z(0) = 0
+/// m x″ = f(t) − F_c(x′) − F_k(x) − N μ(u, z, z′),   z′ = r(u, z),   u = x′ − v_b,   z(0) = z₀
 /// ```
+///
+/// with z₀ zero or what [`Scenario::with_deflection`] says.
 ///
 /// The rates of bristles depend on |u|: they have a kink wherever the relative velocity u passes zero, and jump where an
 /// element of [`MaxwellSlip`](fmm_friction::MaxwellSlip) or [`Gms`](fmm_friction::Gms) begins to slide. Between such events
@@ -127,8 +129,15 @@ impl<D: Scalar, L: BristleLaw<D>> Engine<D, L> for Bristle {
         let drive = Drive::new(scenario.excitations(), oscillator.mass());
         let field = Field::new(oscillator, scenario.law(), scenario.normal_load(), drive.belt());
         let recorder = Recorder::new("bristle", scenario.law().states(), sampling, trajectory)?;
-        Run::new(field, scenario.initial(), self.tolerance, recorder).run(&drive).map(|_| ())
+        Run::new(field, beginning(scenario), self.tolerance, recorder).run(&drive).map(|_| ())
     }
+}
+
+/// x, v and the states of the law at t = 0.
+fn beginning<D: Scalar, L: BristleLaw<D>>(scenario: &Scenario<D, L>) -> Vec<D> {
+    let State { position, velocity } = scenario.initial();
+    let deflections = (0..scenario.law().states()).map(|index| scenario.deflection(index));
+    [position, velocity].into_iter().chain(deflections).collect()
 }
 
 #[cfg(test)]

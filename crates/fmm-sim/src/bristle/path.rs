@@ -8,7 +8,7 @@ use super::odd::require_odd;
 use super::run::Run;
 use crate::drive::Piece;
 use crate::recorder::Recorder;
-use crate::{Direction, Path, Sampling, SimulationError, State, Trajectory};
+use crate::{Direction, Path, Sampling, SimulationError, Trajectory};
 
 /// Well below what a law can be told apart by, and well above rounding.
 const TOLERANCE: f64 = 1e-13;
@@ -31,7 +31,9 @@ pub(crate) fn follow<D: Scalar, L: BristleLaw<D>>(
     let sampling = Sampling::at([f64::MAX])?;
     let recorder = Recorder::new("bristle", law.states(), &sampling, &mut scratch)?;
     let Some(first) = path.first else { return Ok(()) };
-    let mut run = Run::new(field, State { position: first, velocity: zero }, TOLERANCE, recorder);
+    let mut begin = vec![zero; field.size()];
+    begin[0] = first;
+    let mut run = Run::new(field, begin, TOLERANCE, recorder);
     visit(zero, &run.step.begin[2..]);
     let mut before = 0.0;
     for leg in &path.legs {

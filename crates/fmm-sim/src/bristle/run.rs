@@ -50,10 +50,8 @@ pub(super) struct Run<'a, D, L> {
 }
 
 impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
-    pub(super) fn new(field: Field<'a, D, L>, initial: State<D>, tolerance: f64, recorder: Recorder<'a, D>) -> Self {
-        let mut begin = vec![D::from(0.0); field.size()];
-        begin[0] = initial.position;
-        begin[1] = initial.velocity;
+    /// A simulation that begins at `begin`: x, v and the states of the law.
+    pub(super) fn new(field: Field<'a, D, L>, begin: Vec<D>, tolerance: f64, recorder: Recorder<'a, D>) -> Self {
         Self {
             step: Motion::new(begin.clone()),
             collocation: Collocation::new(begin.len()),

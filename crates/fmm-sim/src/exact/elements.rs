@@ -49,7 +49,7 @@ impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
             drive,
             elements,
             belt: drive.belt(),
-            deflections: vec![D::from(0.0); elements.len()],
+            deflections: (0..elements.len()).map(|index| scenario.deflection(index)).collect(),
             regime: Regime::ALL_HOLD,
             direction: Direction::Positive,
             at_rest: false,
