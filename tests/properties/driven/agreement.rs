@@ -37,11 +37,16 @@ impl Reach {
 
 /// Whether rounding may decide an event: a load within 1e-9 of the level, a zero that is only grazed, two events at nearly
 /// the same time.
+///
+/// A load that is a level of zero is exactly so. One that meets a level exactly has come there by symmetry: an undamped contact
+/// that a steady ramp breaks away comes to rest again at the load at which it has broken away, whatever its level of losing speed
+/// is. Another engine is off by the error of its steps.
 pub(crate) fn is_ambiguous<D: Scalar>(setup: &Setup, motion: &Trajectory<D>) -> bool {
     let near = |event: &Event<D>| {
         let decides = matches!(event.kind, EventKind::Start | EventKind::Reversal | EventKind::Stop);
         let margin = (event.load - event.static_level).abs();
-        event.grazing || decides && margin > 0.0 && margin <= 1e-9 * setup.stiffness * setup.length
+        let has_level = margin > 0.0 || event.static_level > 0.0;
+        event.grazing || decides && has_level && margin <= 1e-9 * setup.stiffness * setup.length
     };
     let close = |pair: &[Event<D>]| (pair[1].time.value() - pair[0].time.value()) * setup.angular() < 1e-6;
     motion.events().iter().any(near) || motion.events().windows(2).any(close)
@@ -76,6 +81,9 @@ pub(crate) fn difference(setup: &Setup, exact: &Trajectory<Gradient>, other: &Tr
 /// A run takes some hundred steps, each off by up to the tolerance of 3e-14 and by rounding.
 pub(crate) const AGREEMENT: f64 = 1e-10;
 
+/// The greatest share of ambiguous setups, which is that of the viscous law: motions that die away turn at any small load.
+const AMBIGUOUS: f64 = 0.033;
+
 #[test]
 fn exact_and_stepped_motion_agree() {
     let (engine, sets) = (Solver::RungeKutta(RungeKutta::default()), draws(1000));
@@ -91,7 +99,10 @@ fn exact_and_stepped_motion_agree() {
             assert!(error < AGREEMENT, "{error:e} of what an error of each number would do: {setup}");
             checked += 1;
         }
-        assert!(checked * 20 >= sets * 19, "{family:?}: only {checked} of {sets} are not ambiguous");
+        // Counts scatter by their root.
+        let expected = AMBIGUOUS * sets as f64;
+        let left_out = (sets - checked) as f64;
+        assert!(left_out <= expected + 3.0 * expected.sqrt(), "{family:?}: {left_out} of {sets} are ambiguous");
     }
 }
 
