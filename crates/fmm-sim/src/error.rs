@@ -112,7 +112,7 @@ pub enum SimulationError {
     },
     /// The integration takes more steps than any record needs.
     #[error(
-        "the motion takes more than {budget} steps before {end} s; shorten the sampled time or ask for less accuracy"
+        "the motion takes more than {budget} steps before {end} s; shorten the sampled time or ask for less accuracy, neither of which helps where a contact creeps on a law that is steep at rest"
     )]
     StepBudget {
         /// How many steps are allowed.

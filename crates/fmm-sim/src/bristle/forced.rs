@@ -173,7 +173,7 @@ fn a_state_at_its_bound_leaves_it_with_the_speed() {
 /// From rest, a push that soon turns round: the first swing takes 2 ms or less, the first step is longer than 0.1 s.
 #[test]
 fn the_first_swing_may_be_the_shortest() {
-    fn check_first<L: BristleLaw<f64> + Clone>(name: &str, law: L) {
+    fn check_first<L: BristleLaw<f64> + Clone>(name: &str, law: &L) {
         for push in [1e-3, 1e-4, 1e-5, 1e-7] {
             let machine = Oscillator::new(1.0, 1.0).unwrap();
             let force = Excitation::sampled_force(1.0, vec![push, push - 1.0]).unwrap();
@@ -193,9 +193,9 @@ fn the_first_swing_may_be_the_shortest() {
             assert!((reversal.time - time).abs() < 2e-3 * time, "{name}: at {}, not {time} s", reversal.time);
         }
     }
-    check_first("Dahl", dahl(0.2, 1.0));
-    check_first("LuGre", lugre(0.2, 1.0));
-    check_first("Bouc-Wen", bouc_wen(0.2, 1.0));
+    check_first("Dahl", &dahl(0.2, 1.0));
+    check_first("LuGre", &lugre(0.2, 1.0));
+    check_first("Bouc-Wen", &bouc_wen(0.2, 1.0));
 }
 
 /// A force takes a contact to rest and on again; the narrower the bounds between which it just turns it round, the nearer
