@@ -1,7 +1,7 @@
 //! Friction parameters out of measured ring-downs and hammer blows, with their uncertainty and what the record could not
 //! tell.
 //!
-//! A [`Record`](fmm_record::Record) of a freely vibrating machine is prepared ([`Experiment`]), what is known of the machine
+//! A [`Record`](fmm_record::Record) of a machine that vibrates freely or is driven is prepared ([`Experiment`]), what is known of the machine
 //! is stated ([`Machine`]), and as many laws as it asks for ([`search`]), several ([`compare`]) or one ([`identify`]) are fitted to it by simulating the motion
 //! exactly, through every reversal and stop.
 //!
@@ -41,6 +41,10 @@
 //! | Which law? | [`search`] tries as many as the record asks for, [`compare`] those given, and both say when it does not decide; [`Candidate`] chooses one by its name |
 //! | Damping of the machine beside the law? | known: [`Machine::with_damping`]; to be found: [`identify_with`] and [`Terms`] |
 //! | Several records? | give them together: the law and the frequency are shared, initial states and offsets are not |
+//! | An accelerometer? | its record is a ring-down like any other; a filter of the sensor is stated or fitted, [`Sensor`] |
+//! | A shaker, a motor, a moving base? | [`Experiment::driven`] with the measured [`Drive`] |
+//! | Experiments of several kinds, without contact, under other loads? | one slice: [`Experiment::without_contact`], [`Experiment::with_load_factor`] |
+//! | A static level? | a slow force through the breakaway, [`Experiment::driven`]; a ring-down does not tell it |
 //! | How does damping depend on velocity? | [`decrements`] cycle by cycle, [`Windows`] a few cycles at a time |
 //! | Friction without a simulation? | [`WeakForm`]; [`EnergyMethod`] for its curve, [`half_swing_losses`] per half swing |
 //! | Friction out of hammer blows? | [`ImpactTrial`], [`identify_impact`], to the mobility, the time record or both |
