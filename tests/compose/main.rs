@@ -13,6 +13,7 @@ mod measurement;
 mod own_law;
 mod pendulum;
 mod real_records;
+mod roll;
 mod simulate;
 mod synthetic;
 mod table_3;

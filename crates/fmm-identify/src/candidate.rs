@@ -14,6 +14,7 @@ use crate::fit_stages::Near;
 use crate::identification::identify_by;
 use crate::law::Law;
 use crate::layout::Layout;
+use crate::terms::Term;
 use crate::{Experiment, Identification, IdentifyError, Machine, Terms};
 
 /// An observer of trial steps that may end the fit.
@@ -89,7 +90,8 @@ impl Candidate {
     ///
     /// assert_eq!(Candidate::named("berger + quadratic")?.name(), "berger + quadratic");
     /// assert_eq!(Candidate::named("coulomb+linear+any sign")?.name(), "coulomb + linear of any sign");
-    /// assert!(Candidate::named("coulomb + cubic").is_err());
+    /// assert_eq!(Candidate::named("viscous+cubic_spring")?.name(), "viscous + cubic spring");
+    /// assert!(Candidate::named("coulomb + air").is_err());
     /// # Ok::<(), fmm_identify::IdentifyError>(())
     /// ```
     ///
@@ -104,11 +106,10 @@ impl Candidate {
         let found = found.ok_or_else(|| IdentifyError::UnknownLaw { name: law.to_owned(), known: known() })?;
         let mut terms = Terms::NONE;
         for term in parts {
-            terms = match term {
-                "linear" => terms.with_linear_damping(),
-                "quadratic" => terms.with_quadratic_damping(),
-                "any sign" => terms.with_damping_of_any_sign(),
-                _ => return Err(IdentifyError::UnknownTerm { name: term.to_owned() }),
+            terms = match Term::named(&term.replace('_', " ")) {
+                Some(term) => terms.with(term),
+                None if term == "any sign" => terms.with_damping_of_any_sign(),
+                None => return Err(IdentifyError::UnknownTerm { name: term.to_owned() }),
             };
         }
         Ok(found.with(terms))
@@ -122,14 +123,15 @@ impl Candidate {
     /// Whether this law is a special case of `other`: some values of the parameters of `other` make it this one.
     pub(crate) fn is_nested_in(&self, other: &Self) -> bool {
         let viscous = |candidate: &Self| candidate.law.has_slope() || candidate.terms.has_linear_damping();
-        let damped = viscous(self) <= viscous(other)
-            && self.terms.has_quadratic_damping() <= other.terms.has_quadratic_damping();
+        let further = || Term::ALL.into_iter().filter(|term| *term != Term::LinearDamping);
+        let damped =
+            viscous(self) <= viscous(other) && further().all(|term| self.terms.has(term) <= other.terms.has(term));
         damped
             && self.is_dry_case_of(other)
             && !(self.holds_as(other)
                 && other.is_dry_case_of(self)
                 && viscous(self) == viscous(other)
-                && self.terms.has_quadratic_damping() == other.terms.has_quadratic_damping())
+                && further().all(|term| self.terms.has(term) == other.terms.has(term)))
     }
 
     /// Whether the two are the same but for damping of the machine.
@@ -168,8 +170,7 @@ impl Candidate {
     }
 
     pub(crate) fn parameter_count(&self) -> usize {
-        let terms = [self.terms.has_linear_damping(), self.terms.has_quadratic_damping()];
-        let beside = terms.iter().filter(|term| **term).count();
+        let beside = self.terms.iter().count();
         (self.law.parameters.len() + beside).saturating_sub(self.terms.held().count())
     }
 

@@ -43,6 +43,9 @@ pub enum IdentifyError {
         /// Its end (s).
         end: f64,
     },
+    /// A pendulum has no spring that hardens.
+    #[error("a pendulum has the sine for its restoring force; leave out the pendulum, or the terms of the spring")]
+    TwoSprings,
     /// A force moves a mass, of which nothing is known.
     #[error(
         "a measured force tells the mass: give Machine::unknown() to find mass and stiffness, or a mass or a stiffness that is known"
@@ -154,7 +157,9 @@ pub enum IdentifyError {
         known: String,
     },
     /// A term of this name cannot stand beside a law.
-    #[error("there is no term called {name:?} to put beside a law; the terms are: linear, quadratic, any sign")]
+    #[error(
+        "there is no term called {name:?} to put beside a law; the terms are: linear, quadratic, cubic, cubic spring, quintic spring, any sign"
+    )]
     UnknownTerm {
         /// The name given.
         name: String,

@@ -4,12 +4,12 @@ use fmm_fit::{EstimateStatus, Fit, coverage_factor};
 use fmm_friction::Role;
 use fmm_model::{Bounds, Dual, Parameter, Rounded, Scalar};
 
-use crate::Machine;
 use crate::dimension::is_force;
 use crate::law::{DIRECTIONS, Law};
 use crate::layout::{Layout, mass_of_stiffness, named};
 use crate::machine::Scale;
 use crate::residual_structure::Covariance;
+use crate::{Machine, Terms};
 
 /// Where the value of a finding comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -142,6 +142,9 @@ struct Inputs<'a> {
     machine: &'a Machine,
     shared: &'a [f64],
     family: Law,
+    terms: &'a Terms,
+    /// Unit of a position.
+    position: &'a str,
     /// Index of the first parameter of the law.
     law: usize,
     /// Unit of a force per mass.
@@ -189,6 +192,13 @@ impl Inputs<'_> {
                 Some(mass)
             }
         };
+        if self.machine.scale() != Scale::Unknown {
+            for (place, term) in self.terms.iter().enumerate().filter(|(_, term)| term.is_spring()) {
+                let value = variable(self.shared[1 + place], 1 + place);
+                let per_mass = value / mass_of_stiffness(D::from(1.0), natural_frequency);
+                derived.push((term.stiffness_per_mass(self.position), per_mass));
+            }
+        }
         // With an unknown scale the fitted values are forces already, whatever they are worth.
         let to_force = match self.machine.scale() {
             Scale::Unknown => Some(D::from(1.0)),
@@ -268,7 +278,10 @@ pub(crate) fn findings(
     let shared = &fit.values()[..layout.shared];
     let force = layout.family.fitted().position(|parameter| is_force(parameter.role()));
     let acceleration = force.map_or("", |index| fit.estimates()[layout.law + index].parameter().unit());
-    let inputs = Inputs { machine, shared, family: layout.family, law: layout.law, acceleration, gain_uncertainty };
+    let position = &layout.position;
+    let (family, law) = (layout.family, layout.law);
+    let inputs =
+        Inputs { machine, shared, family, terms: &layout.terms, position, law, acceleration, gain_uncertainty };
     let directions = layout.shared + KNOWN;
     let values = inputs.derived::<f64>(0);
     let mut gradients = vec![vec![0.0; directions]; values.len()];

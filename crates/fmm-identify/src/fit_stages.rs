@@ -101,6 +101,9 @@ fn fit_in_search(
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
+    if problem.has_spring() {
+        return fit_growing(problem, options, observer);
+    }
     if !problem.is_elaborate() {
         return fit_simple(problem, options, observer);
     }
@@ -108,6 +111,25 @@ fn fit_in_search(
     let known = fit_simple(&simple, options, observer)?;
     let mut starts = problem.continued(&simple, known.values());
     starts.extend(problem.starts().into_iter().next());
+    best_fit(problem, problem.name(), starts, options, observer)
+}
+
+/// The best end of fits to ever longer beginnings of the records: where the period depends on the amplitude, a small error of it adds up.
+fn fit_growing(
+    problem: &Problem<'_>,
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, IdentifyError> {
+    let mut starts = problem.starts();
+    for share in BEGINNINGS {
+        let beginning = problem.beginnings(share);
+        let problem = problem.with_records(&beginning);
+        if let Ok(fit) = best_fit(&problem, problem.name(), starts.clone(), options, observer) {
+            starts.insert(0, fit.values().to_vec());
+        }
+    }
+    // From what was found last, and from what was found without.
+    starts.truncate(BEGINNINGS.len() + 1);
     best_fit(problem, problem.name(), starts, options, observer)
 }
 

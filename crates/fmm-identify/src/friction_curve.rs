@@ -5,6 +5,7 @@ use fmm_model::Parameter;
 
 use crate::Terms;
 use crate::layout::Layout;
+use crate::terms::Term;
 
 /// Retarding force per mass over the speed, of a law with the damping beside it, in the units of a record.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,9 +61,9 @@ impl FrictionCurve {
 
 /// Friction per mass of a law in `layout` with `terms` by fitted `values`.
 fn friction(layout: &Layout, terms: &Terms, values: &[f64], speed: f64, losing: bool) -> Option<f64> {
-    let mut beside = values[layout.oscillator..layout.law].iter().copied();
-    let linear = if terms.has_linear_damping() { beside.next() } else { None };
-    let damping = linear.unwrap_or(0.0) + beside.next().unwrap_or(0.0) * speed;
+    let beside = |term: Term| terms.place(term).map_or(0.0, |place| values[layout.oscillator + place]);
+    let further = beside(Term::QuadraticDamping) + beside(Term::CubicDamping) * speed;
+    let damping = beside(Term::LinearDamping) + further * speed;
     let steady = layout.family.steady(&values[layout.law..layout.shared], speed, losing)?;
     Some(steady + damping * speed)
 }

@@ -158,8 +158,8 @@ pub(crate) fn identify_by(
 ) -> Result<Identification, IdentifyError> {
     let problem = Problem::of(law, *machine, terms.clone(), decays)?;
     let fit = match near {
-        Some(near) => fit_near(&problem.clone().bending_in_sight(), near, options, observer)?,
-        None => fit_in_stages(&problem, options, observer)?,
+        Some(near) if !terms.has_spring() => fit_near(&problem.clone().bending_in_sight(), near, options, observer)?,
+        _ => fit_in_stages(&problem, options, observer)?,
     };
     // One instrument for all records; the worst statement counts.
     let gain = decays.iter().map(|decay| decay.summary().gain_uncertainty).fold(0.0, f64::max);

@@ -12,7 +12,7 @@ use crate::dimension::{is_force, power_of_gain};
 use crate::experiment::reference;
 use crate::law::{Law, Motion};
 use crate::machine::Scale;
-use crate::terms::LINEAR;
+use crate::terms::{LINEAR, Term};
 use crate::{Experiment, IdentifyError, Machine, Terms};
 
 /// Order of the parameters: oscillator, damping beside the law, law, then for each record its initial state and, unless it
@@ -22,6 +22,10 @@ pub(crate) struct Layout {
     pub(crate) family: Law,
     /// Parameters of the oscillator.
     pub(crate) oscillator: usize,
+    /// The terms beside the law, whose parameters follow those of the oscillator.
+    pub(crate) terms: Terms,
+    /// Unit of a position.
+    pub(crate) position: String,
     /// Index of the first parameter of the law.
     pub(crate) law: usize,
     /// Parameters of oscillator, damping and law: those that all records share.
@@ -40,6 +44,9 @@ impl Layout {
     ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
         if terms.has_linear_damping() && family.has_slope() {
             return Err(IdentifyError::TwoDampings { law: family.name });
+        }
+        if terms.has_spring() && matches!(machine.restoring(), Restoring::Sine { .. }) {
+            return Err(IdentifyError::TwoSprings);
         }
         let reference = reference(decays);
         let is_driven = decays.iter().any(|decay| decay.drive().is_some());
@@ -93,7 +100,7 @@ impl Layout {
             }
             parameters[index] = parameters[index].clone().bounded(Bounds::new(value, value)?);
         }
-        Ok((Self { family, oscillator, law, shared, own }, parameters))
+        Ok((Self { family, oscillator, terms: terms.clone(), position: units.position, law, shared, own }, parameters))
     }
 
     /// How many parameters the motion of one record depends on: the shared ones and its initial state.
@@ -121,11 +128,11 @@ impl Layout {
         if index >= self.shared {
             return 1.0;
         }
-        // Linear damping does not depend on it, quadratic damping is per length.
         match index.checked_sub(self.law) {
             Some(index) => self.family.fitted().nth(index).map_or(0.0, power_of_gain),
-            None if index + 1 == self.law && index >= self.oscillator => -1.0,
-            None => 0.0,
+            None => index
+                .checked_sub(self.oscillator)
+                .map_or(0.0, |place| self.terms.iter().nth(place).map_or(0.0, Term::power_of_gain)),
         }
     }
 
@@ -146,10 +153,13 @@ impl Layout {
                 (Oscillator::per_unit_mass(values[0])?, known_damping / mass)
             }
         };
-        let mut beside = values[self.oscillator..self.law].iter().copied();
-        let linear = if terms.has_linear_damping() { beside.next() } else { None };
-        let quadratic = beside.next().unwrap_or(D::from(0.0)) * oscillator.mass();
+        let beside = |term: Term| terms.place(term).map(|place| values[self.oscillator + place]);
+        let per_mass = |term: Term| beside(term).map_or(D::from(0.0), |value| value * oscillator.mass());
+        let linear = beside(Term::LinearDamping);
         let damping = linear.map_or(damping, |linear| damping + linear * oscillator.mass());
+        let damping = Damping::of_any_sign(damping, per_mass(Term::QuadraticDamping))?;
+        let damping =
+            if terms.has(Term::CubicDamping) { damping.with_cubic(per_mass(Term::CubicDamping))? } else { damping };
         let force = match experiment.driven_values() {
             None => None,
             Some((drive, sampled)) => {
@@ -163,12 +173,19 @@ impl Layout {
                 Some(drive.excitation(sampled, factor)?)
             }
         };
+        let spring = |term: Term, known: f64| beside(term).map_or(D::from(known), |fitted| fitted + known);
         let restoring = match machine.restoring() {
             Restoring::Sine { length } => Restoring::sine(D::from(length))?,
+            Restoring::Polynomial { cubic, quintic } => {
+                Restoring::polynomial(spring(Term::CubicSpring, cubic), spring(Term::QuinticSpring, quintic))?
+            }
+            _ if terms.has_spring() => {
+                Restoring::polynomial(spring(Term::CubicSpring, 0.0), spring(Term::QuinticSpring, 0.0))?
+            }
             _ => Restoring::Linear,
         };
         Ok(Motion {
-            oscillator: oscillator.with_damping(Damping::of_any_sign(damping, quadratic)?).with_restoring(restoring),
+            oscillator: oscillator.with_damping(damping).with_restoring(restoring),
             law: self.family.values(&values[self.law..self.shared]),
             normal_load: D::from(experiment.load_factor()),
             initial: [values[self.shared], values[self.shared + 1]],

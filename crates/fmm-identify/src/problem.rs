@@ -91,6 +91,11 @@ impl<'a> Problem<'a> {
         self.law().name
     }
 
+    /// Whether terms of the spring are fitted.
+    pub(crate) fn has_spring(&self) -> bool {
+        self.terms.has_spring()
+    }
+
     pub(crate) fn machine(&self) -> &Machine {
         &self.machine
     }

@@ -23,6 +23,7 @@
 //! |---|---|
 //! | frequencies, damping ratio, decrement, energy of mass and spring | [`Oscillator`]; of a record whose mass is not known, [`Oscillator::per_unit_mass`] |
 //! | a pendulum instead of a spring | [`Restoring::Sine`] |
+//! | a spring that hardens or softens | [`Restoring::Polynomial`] |
 //! | damping in powers of the velocity | [`Damping`] |
 //! | a line fitted to damping over *peak* velocities | [`Damping::from_peak_velocity_line`]; taken as a law of the velocity its drag would be 15 % too low |
 //! | stiffness, stress, allowed deflection, parasitic motion of a guide | [`Flexure`], [`LeafSpring`] |

@@ -1,4 +1,4 @@
-//! The force that drives the machine back: a linear spring, or the sine of a pendulum.
+//! Restoring force: a linear spring, one that hardens or softens, or the sine of a pendulum.
 
 use crate::{ModelError, Scalar};
 
@@ -15,6 +15,13 @@ pub enum Restoring<D = f64> {
         /// ℓ, the position that makes one radian (m, or 1 for an angle).
         length: D,
     },
+    /// F = k (x + k₃ x³ + k₅ x⁵), a spring that hardens (positive) or softens (negative).
+    Polynomial {
+        /// k₃ (1/m²).
+        cubic: D,
+        /// k₅ (1/m⁴).
+        quintic: D,
+    },
 }
 
 impl<D: Scalar> Restoring<D> {
@@ -27,11 +34,51 @@ impl<D: Scalar> Restoring<D> {
         Ok(Self::Sine { length })
     }
 
+    /// A spring that hardens or softens, F = k (x + k₃ x³ + k₅ x⁵), of k₃ `cubic` (1/m²) and k₅ `quintic` (1/m⁴). Where the bracket has
+    /// another sign than x it restores nothing; engines refuse a motion that gets there.
+    ///
+    /// # Errors
+    /// [`ModelError::NotFinite`].
+    pub fn polynomial(cubic: D, quintic: D) -> Result<Self, ModelError> {
+        ModelError::require_finite("cubic term of the spring", cubic.value(), "1/m²")?;
+        ModelError::require_finite("quintic term of the spring", quintic.value(), "1/m⁴")?;
+        Ok(Self::Polynomial { cubic, quintic })
+    }
+
+    /// Whether the force at `position` (m) points back to the origin. A pendulum that goes over the top turns on; a spring does not.
+    pub fn restores(&self, position: D) -> bool {
+        match self {
+            Self::Linear | Self::Sine { .. } => true,
+            Self::Polynomial { .. } => position.value() == 0.0 || self.force(position, position).value() > 0.0,
+        }
+    }
+
+    /// The slope of the force (N/m) at `position` (m), and the rate at which it changes (N/m²).
+    pub fn slope(&self, stiffness: D, position: D) -> (D, D) {
+        match self {
+            Self::Linear => (stiffness, D::from(0.0)),
+            Self::Sine { length } => {
+                let (sin, cos) = (position / *length).sin_cos();
+                (stiffness * cos, -(stiffness / *length * sin))
+            }
+            Self::Polynomial { cubic, quintic } => {
+                let square = position * position;
+                let slope = (*quintic * square * 5.0 + *cubic * 3.0) * square + 1.0;
+                let bend = (*quintic * square * 20.0 + *cubic * 6.0) * position;
+                (stiffness * slope, stiffness * bend)
+            }
+        }
+    }
+
     /// The restoring force (N) at `position` (m) of a spring of `stiffness` k (N/m) at the origin.
     pub fn force(&self, stiffness: D, position: D) -> D {
         match self {
             Self::Linear => stiffness * position,
             Self::Sine { length } => stiffness * *length * (position / *length).sin_cos().0,
+            Self::Polynomial { cubic, quintic } => {
+                let square = position * position;
+                stiffness * position * ((*quintic * square + *cubic) * square + 1.0)
+            }
         }
     }
 
@@ -43,6 +90,10 @@ impl<D: Scalar> Restoring<D> {
                 // 1 − cos φ = 2 sin²(φ/2) does not cancel at small angles.
                 let half = (position / *length * 0.5).sin_cos().0;
                 stiffness * *length * *length * half * half * 2.0
+            }
+            Self::Polynomial { cubic, quintic } => {
+                let square = position * position;
+                stiffness * square * ((*quintic * square * (1.0 / 6.0) + *cubic * 0.25) * square + 0.5)
             }
         }
     }
@@ -61,6 +112,18 @@ mod tests {
         let quarter = 0.5 * std::f64::consts::FRAC_PI_2;
         assert!((pendulum.force(8.0, quarter) - 4.0).abs() < 1e-15);
         assert!((pendulum.energy(8.0, quarter) - 2.0).abs() < 1e-15);
+        let polynomial = Restoring::polynomial(-1.0 / 6.0, 1.0 / 120.0).unwrap();
+        let unit = Restoring::sine(1.0).unwrap();
+        // The next terms are x⁷/5040 and its integral.
+        let x: f64 = 0.3;
+        assert!((polynomial.force(8.0, x) - unit.force(8.0, x)).abs() < 8.0 * x.powi(7) / 5000.0);
+        assert!((polynomial.energy(8.0, x) - unit.energy(8.0, x)).abs() < 8.0 * x.powi(8) / 40_000.0);
+        let (slope, bend) = polynomial.slope(8.0, x);
+        let (expected, bends) = unit.slope(8.0, x);
+        assert!((slope - expected).abs() < 8.0 * x.powi(6) / 700.0 && (bend - bends).abs() < 8.0 * x.powi(5) / 100.0);
+        let soft = Restoring::polynomial(-4.0, 0.0).unwrap();
+        assert!(soft.restores(0.4) && !soft.restores(0.6) && soft.restores(0.0) && unit.restores(4.0));
+        assert!(Restoring::polynomial(f64::NAN, 0.0).is_err());
         assert!(Restoring::sine(0.0).is_err() && Restoring::sine(f64::NAN).is_err());
     }
 }

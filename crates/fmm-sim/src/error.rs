@@ -1,6 +1,6 @@
 //! What can be wrong with a simulation.
 
-use fmm_model::ModelError;
+use fmm_model::{ModelError, Oscillator, Scalar};
 
 /// A scenario that cannot be simulated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -45,6 +45,16 @@ pub enum SimulationError {
     NotLinear {
         /// What is not linear.
         found: &'static str,
+    },
+    /// The motion has come to where the spring no longer restores.
+    #[error(
+        "at {time} s the position is {position} m, where the spring pushes away from the origin: its polynomial does not hold so far"
+    )]
+    NotRestoring {
+        /// When (s).
+        time: f64,
+        /// Where (m).
+        position: f64,
     },
     /// A machine that is hardly damped is driven so near its natural frequency that the closed form loses its digits.
     #[error(
@@ -137,6 +147,14 @@ pub enum SimulationError {
 }
 
 impl SimulationError {
+    /// That the spring restores at the `position` (m) reached at `time` (s).
+    pub(crate) fn require_restoring<D: Scalar>(oscillator: &Oscillator<D>, time: f64, position: D) -> Result<(), Self> {
+        if oscillator.restoring().restores(position) {
+            return Ok(());
+        }
+        Err(Self::NotRestoring { time, position: position.value() })
+    }
+
     /// That a relative `tolerance` (1) is one that a method can keep.
     pub(crate) fn require_tolerance(tolerance: f64) -> Result<(), Self> {
         if (1e-15..=1e-2).contains(&tolerance) { Ok(()) } else { Err(Self::Tolerance { tolerance }) }

@@ -14,6 +14,7 @@ use crate::friction_curve::FrictionCurve;
 use crate::layout::{Layout, mass_of_stiffness};
 use crate::nuisance::Nuisance;
 use crate::sign::Addition;
+use crate::terms::Term;
 use crate::{Drive, Experiment, Identification, Sign};
 
 /// What a static level lies above the sliding one by, to begin with (1).
@@ -190,12 +191,12 @@ impl Problem<'_> {
     ) {
         let (length, speed) = reference(self.decays).scales();
         let Dissipation { friction, damping } = dissipation;
-        if self.terms.has_linear_damping() {
-            start.push(damping);
-        }
-        if self.terms.has_quadratic_damping() {
-            start.push(0.1 * (damping + friction / speed) / speed);
-        }
+        start.extend(self.terms.iter().map(|term| match term {
+            Term::LinearDamping => damping,
+            Term::QuadraticDamping => 0.1 * (damping + friction / speed) / speed,
+            Term::CubicDamping => 0.1 * (damping + friction / speed) / (speed * speed),
+            Term::CubicSpring | Term::QuinticSpring => 0.0,
+        }));
         let scales = Scales { length, speed, friction, damping, sharpness };
         start.extend(self.law().fitted().map(|parameter| match (parameter.role(), excess) {
             (Role::Excess | Role::LevelAbove, Some(excess)) => excess * friction,

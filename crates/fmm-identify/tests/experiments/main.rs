@@ -4,3 +4,4 @@ mod acceleration;
 mod driven;
 mod joint;
 mod simulated;
+mod springs;

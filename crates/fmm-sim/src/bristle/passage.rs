@@ -1,7 +1,7 @@
 //! Passing an event: what holds after it, how it shifts with the inputs, and where a contact at rest goes.
 
 use fmm_friction::{BristleLaw, Regime};
-use fmm_model::{Restoring, Scalar};
+use fmm_model::Scalar;
 
 use super::field::Branch;
 use super::guard::Guard;
@@ -107,15 +107,10 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
         if load.abs() > 4.0 * f64::EPSILON * (size + unseen) {
             return Some(Direction::of(load));
         }
-        let (stiffness, x) = (self.field.oscillator.stiffness().value(), begin[0].value());
+        let oscillator = self.field.oscillator;
+        let (slope, bend) = oscillator.restoring().slope(oscillator.stiffness(), begin[0]);
+        let (slope, bend) = (slope.value(), bend.value());
         let belt = self.field.belt.value();
-        let (slope, bend) = match self.field.oscillator.restoring() {
-            Restoring::Sine { length } => {
-                let (sin, cos) = (x / length.value()).sin_cos();
-                (stiffness * cos, -stiffness / length.value() * sin)
-            }
-            _ => (stiffness, 0.0),
-        };
         let rising = Curve::force(piece, D::from(self.time)).derivative();
         let first = rising.plain_jet(0.0);
         for (change, size) in [

@@ -88,6 +88,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
                     self.hold(&piece, limit)?;
                 } else {
                     self.advance(&piece, limit)?;
+                    SimulationError::require_restoring(self.field.oscillator, self.time, self.step.begin[0])?;
                 }
             }
             if piece.end > end {

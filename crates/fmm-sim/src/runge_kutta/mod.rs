@@ -8,7 +8,7 @@ mod slide;
 mod step;
 
 use fmm_friction::SlidingLaw;
-use fmm_model::Scalar;
+use fmm_model::{Restoring, Scalar};
 
 use crate::automaton::Contact;
 use crate::drive::Drive;
@@ -88,6 +88,11 @@ impl<D: Scalar, L: SlidingLaw<D>> Engine<D, L> for RungeKutta {
         trajectory: &mut Trajectory<D>,
     ) -> Result<(), SimulationError> {
         let drive = Drive::new(scenario.excitations(), scenario.oscillator().mass());
+        if drive.has_belt() && matches!(scenario.oscillator().restoring(), Restoring::Polynomial { .. }) {
+            let what =
+                "a spring that hardens or softens on a moving counterface: what holds the mass is no line in time";
+            return Err(SimulationError::NotSupported { engine: "runge_kutta", what });
+        }
         let contact = Contact::new(scenario, Sliding(scenario.law()), &drive)?;
         let mut integrator = Integrator::new(scenario, &drive, self.tolerance, sampling.end());
         let mut recorder = Recorder::new("runge_kutta", 0, sampling, trajectory)?;

@@ -357,6 +357,7 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
             let by_speed = self.refiner.refine(&self.field, phase, &at, &mut step);
             self.record(phase, &at, &mut step, by_speed.as_ref(), (next, stop), recorder)?;
             at = Progress { time: next, state: step.end, acceleration: step.last_acceleration(), side: at.side };
+            SimulationError::require_restoring(self.field.oscillator, at.time, at.state.position)?;
         }
         let first = recorder.written;
         recorder.samples(phase.samples_end(), |_| at.state)?;

@@ -8,4 +8,5 @@ mod hands;
 mod limits;
 mod paths;
 mod rest;
+mod springs;
 mod weak_springs;

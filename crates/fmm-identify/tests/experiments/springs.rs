@@ -1,0 +1,63 @@
+//! Springs that harden or soften, and cubic damping, fitted beside the law.
+
+use fmm_friction::{Coulomb, CoulombViscous};
+use fmm_identify::{Candidate, Experiment, IdentifyError, Machine, Preparation, Terms, identify_with};
+use fmm_model::{Damping, Oscillator, Restoring};
+use fmm_record::Quantity;
+use fmm_sim::{Sampling, Scenario, simulate};
+
+use crate::simulated::{INTERVAL, record};
+
+/// 2 Hz at small amplitude, released at 0.3 rad.
+fn motion(cubic: f64, quintic: f64, damping: Damping) -> Vec<f64> {
+    let machine = Oscillator::per_unit_mass(2.0).unwrap().with_damping(damping);
+    let machine = machine.with_restoring(Restoring::polynomial(cubic, quintic).unwrap());
+    let scenario = Scenario::new(machine, CoulombViscous::new(0.2, 0.1).unwrap(), 1.0).unwrap();
+    let motion = simulate(&scenario.starting_at(0.3, 0.0).unwrap(), &Sampling::uniform(INTERVAL, 6000).unwrap());
+    motion.unwrap().position().values().to_vec()
+}
+
+#[test]
+fn springs_come_back() {
+    let terms = Terms::default().with_cubic_spring().with_quintic_spring();
+    for (cubic, quintic) in [(-3.0, 12.0), (4.0, 0.0), (-1.0, -2.0)] {
+        let motion = motion(cubic, quintic, Damping::none());
+        let record = record(&motion, 1e-4, 5, Quantity::Displacement, "rad");
+        let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+        let found = identify_with::<CoulombViscous>(&Machine::per_unit_mass(), &terms, &[experiment]).unwrap();
+        for (name, truth) in [("cubic_spring", cubic), ("quintic_spring", quintic), ("friction_per_mass", 0.2)] {
+            let finding = found.finding(name).unwrap();
+            let (error, u) = ((finding.value() - truth).abs(), finding.uncertainty().unwrap());
+            assert!(error < 4.0 * u && u < 0.2, "{name} for {truth}:\n{found}");
+        }
+        let ratio = found.finding("cubic_stiffness_per_mass").unwrap().value();
+        let angular = std::f64::consts::TAU * found.finding("natural_frequency_hz").unwrap().value();
+        assert!((ratio / (angular * angular * found.finding("cubic_spring").unwrap().value()) - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn cubic_damping_comes_back() {
+    let motion = motion(0.0, 0.0, Damping::none().with_cubic(0.05).unwrap());
+    let record = record(&motion, 1e-4, 6, Quantity::Displacement, "rad");
+    let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+    let terms = Terms::default().with_cubic_damping();
+    let found = identify_with::<CoulombViscous>(&Machine::per_unit_mass(), &terms, &[experiment]).unwrap();
+    let finding = found.finding("cubic_damping_per_mass").unwrap();
+    let (error, u) = ((finding.value() - 0.05).abs(), finding.uncertainty().unwrap());
+    assert!(error < 4.0 * u && u < 0.01, "{found}");
+}
+
+#[test]
+fn a_pendulum_has_no_further_spring() {
+    let motion = motion(0.0, 0.0, Damping::none());
+    let record = record(&motion, 1e-4, 6, Quantity::Displacement, "rad");
+    let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+    let machine = Machine::per_unit_mass().with_restoring(Restoring::sine(1.0).unwrap());
+    let refused = identify_with::<Coulomb>(&machine, &Terms::default().with_cubic_spring(), &[experiment]);
+    assert!(matches!(refused, Err(IdentifyError::TwoSprings)), "{refused:?}");
+    assert_eq!(
+        Candidate::named("coulomb+cubic_spring+quintic spring").unwrap().name(),
+        "coulomb + cubic spring + quintic spring"
+    );
+}
