@@ -58,8 +58,8 @@ struct Arguments {
     /// but no unit anywhere, SI units are taken
     #[arg(long)]
     unit: Option<Unit>,
-    /// The laws to compare, such as coulomb,berger+quadratic: names with damping of the machine beside them (linear,
-    /// quadratic, any sign), or all (viscous, coulomb and both); without it, as many as the record asks for. An unknown name is
+    /// The laws to compare, such as coulomb,berger+quadratic: names with terms of the machine beside them (linear, quadratic,
+    /// cubic, any sign; cubic spring, quintic spring), or all (viscous, coulomb and both); without it, as many as the record asks for. An unknown name is
     /// answered with the list of laws
     #[arg(long, value_name = "NAME,..|all", value_delimiter = ',')]
     law: Vec<String>,

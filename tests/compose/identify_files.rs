@@ -98,8 +98,8 @@ fn what_no_unit_tells_is_asked_for() {
         ("velocity", "--unit, such as m/s"),
         ("angular_velocity", "--unit, such as rad/s"),
         ("encoder_counts", "--scale and --unit"),
-        ("ch1 [V]", "--quantity velocity or --quantity displacement"),
-        ("v", "--quantity velocity or --quantity displacement, and --unit"),
+        ("ch1 [V]", "--quantity velocity, --quantity displacement or --quantity acceleration"),
+        ("v", "--quantity velocity, displacement or acceleration, and --unit"),
         ("v [knots]", "--unit, such as m/s, and --scale"),
         ("velocity [mm]", "--quantity displacement if the unit is right"),
     ] {

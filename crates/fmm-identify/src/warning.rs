@@ -402,7 +402,8 @@ impl fmt::Display for Warning {
             Self::PeriodDependsOnAmplitude { change } => write!(
                 f,
                 "the period changes by {:+.2} % as the amplitude falls: the amplitude is too large for a linear spring \
-                 (a pendulum, whose restoring force is a sine, or a spring that stiffens); give that force, or use a part of smaller amplitude",
+                 (a pendulum, whose restoring force is a sine, or a spring that hardens or softens); take it for a pendulum, or fit the spring \
+                 (law + cubic spring), or use a part of smaller amplitude",
                 100.0 * change
             ),
             Self::NoDecay => write!(f, "the amplitude does not fall: there is no dissipation to identify"),
