@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use fmm_fit::ResidualDiagnostics;
 use fmm_frf::{coulomb_impact_duration, peak_receptance_of_coulomb_impact};
 use fmm_friction::CoulombViscous;
-use fmm_identify::{Known, Machine, Preparation, Experiment, identify};
+use fmm_identify::{Experiment, Known, Machine, Preparation, identify};
 use fmm_record::{Quantity, Swings, csv::CsvReader};
 use fmm_uq::{Input, Inputs, propagate};
 

@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use fmm_friction::CoulombViscous;
-use fmm_identify::{Known, Machine, Preparation, Experiment, identify};
+use fmm_identify::{Experiment, Known, Machine, Preparation, identify};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};

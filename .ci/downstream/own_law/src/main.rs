@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use fmm_friction::LawFamily;
-use fmm_identify::{Machine, Preparation, Experiment, identify};
+use fmm_identify::{Experiment, Machine, Preparation, identify};
 use fmm_model::{Dual, Oscillator, Scalar};
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, RungeKutta, Sampling, Scenario};
