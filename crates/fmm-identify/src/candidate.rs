@@ -137,7 +137,11 @@ impl Candidate {
     /// Whether the two are the same but for damping of the machine.
     pub(crate) fn differs_by_damping(&self, other: &Self) -> bool {
         let viscous = |candidate: &Self| candidate.law.has_slope() || candidate.terms.has_linear_damping();
-        self.law.dry_name() == other.law.dry_name() && viscous(self) != viscous(other) && self.holds_as(other)
+        let spring = |candidate: &Self| Term::ALL.map(|term| term.is_spring() && candidate.terms.has(term));
+        self.law.dry_name() == other.law.dry_name()
+            && viscous(self) != viscous(other)
+            && spring(self) == spring(other)
+            && self.holds_as(other)
     }
 
     /// Whether both hold the same parameters at the same values.

@@ -81,8 +81,13 @@ impl Search {
     /// That each parameter that is held is one of some law that may be tried.
     fn require_known(&self, machine: &Machine, decays: &[Experiment]) -> Result<(), IdentifyError> {
         let mut known = Vec::new();
-        for name in
-            SIMPLE.iter().chain(&OF_SPEED).chain(&OF_SPEED_FURTHER).chain(&WITH_STATE).chain(&WITH_STATE_FURTHER)
+        for name in SIMPLE
+            .iter()
+            .chain(&OF_SPEED)
+            .chain(&WITH_SPRING)
+            .chain(&OF_SPEED_FURTHER)
+            .chain(&WITH_STATE)
+            .chain(&WITH_STATE_FURTHER)
         {
             let candidate = self.candidate(name, machine, decays)?;
             known.extend(candidate.parameters(machine, decays)?.into_iter().map(|name| (candidate.law_name(), name)));
@@ -118,6 +123,12 @@ const OF_SPEED: [&str; 7] = [
 /// Laws whose friction changes with speed in ways of their own.
 const OF_SPEED_FURTHER: [&str; 6] =
     ["stribeck", "power_law", "exponential_pair+linear", "makkar_dixon", "regularised_stribeck", "karnopp+linear"];
+/// A level and a straight line on a spring that hardens or softens.
+const WITH_SPRING: [&str; 3] = [
+    "coulomb_viscous+cubic spring",
+    "coulomb_viscous+cubic spring+quintic spring",
+    "coulomb_viscous+quadratic+cubic spring+quintic spring",
+];
 /// Presliding over less of the amplitude than this (1) is none that a record shows.
 const LEAST_PRESLIDING: f64 = 2e-3;
 /// Steps of a converter that presliding must exceed to be seen.
@@ -134,7 +145,8 @@ const WITH_STATE_FURTHER: [&str; 2] = ["lugre,exponent=2", "bouc_wen+linear,ampl
 /// Identifies `decays` by as many laws as they ask for.
 ///
 /// First viscous damping, Coulomb friction and both. If the residuals of these show signs of something else, or are alike where they
-/// should be noise, laws whose friction changes with speed; then further families, each begun where its friction over the speed follows
+/// should be noise, laws whose friction changes with speed, and springs that harden or soften if there are signs of one; then further
+/// families, each begun where its friction over the speed follows
 /// that of the best law so far; and laws with presliding if there are signs of that. What was looked for is in [`Comparison::signs`].
 /// Laws that could not be fitted to the end, and that are then far from what others reach, are left out; a warning names them.
 ///
@@ -174,6 +186,11 @@ pub fn search_observed(
     if found.asks_for_more(&signs) {
         let falling = run.fit(run.candidates(&OF_SPEED)?, found.near(&signs, &[], 0).as_ref())?;
         found.add(falling);
+        let is_bent = |sign: &Sign| sign.addition == Addition::SofteningSpring && sign.is_plain();
+        if found.is_structured() && signs.iter().any(is_bent) {
+            let bent = run.fit(run.candidates(&WITH_SPRING)?, found.near(&signs, &[], 0).as_ref())?;
+            found.add(bent);
+        }
         let limited = |most: usize| options.clone().with_max_iterations(most.min(options.max_iterations()));
         let (of_speed, limited_more) = (limited(MOST_ITERATIONS), limited(MOST_ITERATIONS_WITH_STATE));
         let run = Run { options: &of_speed, ..run };
