@@ -25,7 +25,8 @@ const ENOUGH_TO_BE_BETTER: usize = 30;
 /// Starts of a driven motion that are fitted, those nearest to the records.
 const MOST_DRIVEN_STARTS: usize = 2;
 
-/// Shares of a record to which a pendulum is fitted before the whole, as its period depends on the amplitude.
+/// Shares of a record to which a spring that is not linear is fitted before the whole: where the period depends on the amplitude, a small
+/// error of it adds up.
 const BEGINNINGS: [f64; 2] = [0.125, 0.4];
 
 /// The best end of the fits from all start values. Displacements are first fitted up to their last peak, and from
@@ -101,35 +102,13 @@ fn fit_in_search(
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
-    if problem.has_spring() {
-        return fit_growing(problem, options, observer);
-    }
-    if !problem.is_elaborate() {
+    if !problem.is_elaborate() || problem.has_spring() {
         return fit_simple(problem, options, observer);
     }
     let simple = Problem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
     let known = fit_simple(&simple, options, observer)?;
     let mut starts = problem.continued(&simple, known.values());
     starts.extend(problem.starts().into_iter().next());
-    best_fit(problem, problem.name(), starts, options, observer)
-}
-
-/// The best end of fits to ever longer beginnings of the records: where the period depends on the amplitude, a small error of it adds up.
-fn fit_growing(
-    problem: &Problem<'_>,
-    options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
-) -> Result<Fit, IdentifyError> {
-    let mut starts = problem.starts();
-    for share in BEGINNINGS {
-        let beginning = problem.beginnings(share);
-        let problem = problem.with_records(&beginning);
-        if let Ok(fit) = best_fit(&problem, problem.name(), starts.clone(), options, observer) {
-            starts.insert(0, fit.values().to_vec());
-        }
-    }
-    // From what was found last, and from what was found without.
-    starts.truncate(BEGINNINGS.len() + 1);
     best_fit(problem, problem.name(), starts, options, observer)
 }
 
@@ -149,7 +128,7 @@ fn fit_simple(
             starts.push(fit.values().to_vec());
         }
     }
-    if problem.machine().restoring() != Restoring::Linear {
+    if problem.machine().restoring() != Restoring::Linear || problem.has_spring() {
         let mut begun = problem.starts();
         for share in BEGINNINGS {
             let beginning = problem.beginnings(share);

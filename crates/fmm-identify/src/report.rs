@@ -59,7 +59,7 @@ pub(crate) fn write_warnings(f: &mut fmt::Formatter<'_>, warnings: &[Warning]) -
 impl fmt::Display for Identification {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let fit = self.fit();
-        writeln!(f, "Ring-down by the law {}", self.law())?;
+        writeln!(f, "Fit by the law {}", self.law())?;
         writeln!(
             f,
             "  {}; {} samples, rank {} of {}, rms residual {:.4e}",

@@ -49,7 +49,10 @@ impl<D: Scalar> Restoring<D> {
     pub fn restores(&self, position: D) -> bool {
         match self {
             Self::Linear | Self::Sine { .. } => true,
-            Self::Polynomial { .. } => position.value() == 0.0 || self.force(position, position).value() > 0.0,
+            Self::Polynomial { cubic, quintic } => {
+                let square = position.value() * position.value();
+                (quintic.value() * square + cubic.value()) * square > -1.0
+            }
         }
     }
 

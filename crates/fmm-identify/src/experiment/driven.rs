@@ -6,7 +6,7 @@ use std::ops::Range;
 use fmm_model::ModelError;
 use fmm_record::{Quantity, Record, Swings, noise, quantisation_step, saturation, spikes};
 
-use super::{Drive, Driven, Experiment, FEWEST_SAMPLES, ring_down};
+use super::{Drive, Driven, Experiment, ring_down, usable};
 use crate::first_guess::{Dissipation, FirstGuess};
 use crate::tangent::inverse_of_products;
 use crate::{IdentifyError, Offset, Preparation, RecordSummary};
@@ -50,16 +50,8 @@ impl Experiment {
             let (subject, needed) = ("the response of a driven machine", "a displacement or a velocity");
             return Err(IdentifyError::Quantity { subject, needed, quantity });
         }
-        let gain_uncertainty = ModelError::require_not_negative("gain uncertainty", preparation.gain_uncertainty, "")?;
-        let (from, to) = (preparation.from.unwrap_or(response.start()), preparation.to.unwrap_or(response.end()));
-        let record = response.crop(from, to)?;
-        if record.len() < FEWEST_SAMPLES {
-            return Err(IdentifyError::TooShort { samples: record.len(), needed: FEWEST_SAMPLES });
-        }
+        let (record, gain_uncertainty) = usable(response, preparation)?;
         let first = record.values()[0];
-        if record.values().iter().all(|value| *value == first) {
-            return Err(IdentifyError::NoMotion { value: first, unit: record.unit().to_owned() });
-        }
         drive.require_within(record.start(), record.end())?;
         let held_offset = match preparation.offset {
             Offset::Fitted => None,

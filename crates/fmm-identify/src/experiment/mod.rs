@@ -8,7 +8,7 @@ mod sensor;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use fmm_model::{Bounds, Restoring};
+use fmm_model::{Bounds, ModelError, Restoring};
 use fmm_record::{Quantity, Record};
 
 pub use drive::Drive;
@@ -18,7 +18,7 @@ pub use sensor::Sensor;
 
 use crate::first_guess::{Dissipation, FirstGuess};
 use crate::nuisance::Nuisance;
-use crate::{IdentifyError, Machine, RecordSummary};
+use crate::{IdentifyError, Machine, Preparation, RecordSummary};
 
 /// An experiment on a machine: a ring-down ([`ring_down`](Self::ring_down)), or a motion that is driven by a measured force or by a
 /// measured motion of the base ([`driven`](Self::driven)).
@@ -80,7 +80,7 @@ impl Experiment {
     pub fn seen_by(mut self, sensor: Sensor) -> Result<Self, IdentifyError> {
         let frequency = self.guess.frequency();
         let limit = 0.5 * self.record.rate();
-        if let Some(value) = sensor.first_corner(frequency).filter(|corner| *corner > limit) {
+        if let Some(value) = sensor.low_pass().and_then(|(_, corner)| corner).filter(|corner| *corner > limit) {
             let subject = "the corner frequency of a sensor (Hz)";
             return Err(IdentifyError::NotAllowed { subject, value, allowed: "below half the sampling rate" });
         }
@@ -155,6 +155,12 @@ impl Experiment {
     /// Initial position and velocity to begin a fit with, given what the contact loses.
     pub(crate) fn first_state(&self, dissipation: Dissipation) -> (f64, f64) {
         self.driven.as_ref().map_or_else(|| self.guess.initial_state(dissipation), |driven| driven.guess.initial)
+    }
+
+    /// Corner frequency of the sensor (Hz), or where a fit of it begins; none without a filter.
+    pub(crate) fn first_corner(&self) -> Option<f64> {
+        let corner = self.sensor.first_corner(self.guess.frequency())?;
+        Some(if self.sensor.has_free_corner() { self.corner_bounds().clamp(corner) } else { corner })
     }
 
     /// Bounds of the corner frequency of the sensor (Hz).
@@ -332,4 +338,19 @@ pub(crate) fn scaled(experiments: &[Experiment]) -> impl Iterator<Item = (&Exper
         _ => 1.0,
     };
     experiments.iter().map(move |experiment| (experiment, weight(experiment)))
+}
+
+/// The part of a `record` that its `preparation` keeps, and the relative standard uncertainty of its gain (1).
+fn usable(record: &Record, preparation: &Preparation) -> Result<(Record, f64), IdentifyError> {
+    let gain_uncertainty = ModelError::require_not_negative("gain uncertainty", preparation.gain_uncertainty, "")?;
+    let (from, to) = (preparation.from.unwrap_or(record.start()), preparation.to.unwrap_or(record.end()));
+    let record = record.crop(from, to)?;
+    if record.len() < FEWEST_SAMPLES {
+        return Err(IdentifyError::TooShort { samples: record.len(), needed: FEWEST_SAMPLES });
+    }
+    let first = record.values()[0];
+    if record.values().iter().all(|value| *value == first) {
+        return Err(IdentifyError::NoMotion { value: first, unit: record.unit().to_owned() });
+    }
+    Ok((record, gain_uncertainty))
 }

@@ -9,7 +9,7 @@ use fmm_record::{
     quantisation_step, saturation, spikes, without_lines,
 };
 
-use super::{Experiment, FEWEST_SAMPLES, Sensor};
+use super::{Experiment, Sensor, usable};
 use crate::first_guess::{FirstGuess, Oscillation};
 use crate::nuisance::Nuisance;
 use crate::preparation::COARSE;
@@ -43,16 +43,7 @@ impl Experiment {
             let (subject, needed) = ("a ring-down", "a displacement, a velocity or an acceleration");
             return Err(IdentifyError::Quantity { subject, needed, quantity });
         }
-        let gain_uncertainty = ModelError::require_not_negative("gain uncertainty", preparation.gain_uncertainty, "")?;
-        let (from, to) = (preparation.from.unwrap_or(record.start()), preparation.to.unwrap_or(record.end()));
-        let record = record.crop(from, to)?;
-        if record.len() < FEWEST_SAMPLES {
-            return Err(IdentifyError::TooShort { samples: record.len(), needed: FEWEST_SAMPLES });
-        }
-        let first = record.values()[0];
-        if record.values().iter().all(|value| *value == first) {
-            return Err(IdentifyError::NoMotion { value: first, unit: record.unit().to_owned() });
-        }
+        let (record, gain_uncertainty) = usable(record, preparation)?;
         // Hum must not be taken for the machine; what is fitted is the record as it was measured.
         let hum = hum(&record);
         let cleaned = without_lines(&record, &hum);

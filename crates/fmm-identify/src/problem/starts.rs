@@ -82,9 +82,7 @@ impl Problem<'_> {
                 start.push(decay.first_offset(dissipation));
             }
             start.extend(decay.nuisances().iter().map(Nuisance::start));
-            if decay.sensor().has_free_corner() {
-                start.extend(decay.sensor().first_corner(decay.guess().frequency()));
-            }
+            start.extend(decay.first_corner().filter(|_| decay.sensor().has_free_corner()));
         }
         self.clamped(&start)
     }

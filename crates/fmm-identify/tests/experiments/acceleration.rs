@@ -4,11 +4,12 @@ use std::f64::consts::TAU;
 
 use fmm_friction::{Coulomb, CoulombViscous};
 use fmm_identify::{
-    Candidate, Experiment, Identification, Known, Machine, Preparation, Sensor, Warning, compare, identify,
+    Candidate, Experiment, Identification, IdentifyError, Preparation, Sensor, Terms, Warning, compare, identify,
+    identify_with,
 };
-use fmm_record::Quantity;
+use fmm_record::{Quantity, Record};
 
-use crate::simulated::{INTERVAL, LOAD, MASS, Motion, SEEDS, record, share_inside};
+use crate::simulated::{INTERVAL, LOAD, Motion, SEEDS, machine, record, share_inside};
 
 const COEFFICIENT: f64 = 0.25;
 const SLOPE: f64 = 0.0196;
@@ -16,11 +17,6 @@ const NOISE: f64 = 0.02;
 const SAMPLES: usize = 1500;
 /// What gravity adds along a sensor that is not level (m/s²).
 const GRAVITY: f64 = 0.3;
-
-fn machine() -> Machine {
-    let machine = Machine::of_mass(Known::exact(MASS).unwrap()).unwrap();
-    machine.with_normal_load(Known::exact(LOAD).unwrap()).unwrap()
-}
 
 /// The trajectory of a release with so many samples in an interval of the record.
 fn motion(release: f64, finer: usize) -> fmm_sim::Trajectory {
@@ -115,6 +111,38 @@ fn a_filter_that_is_stated_or_free_is_no_friction() {
             assert!((low..=high).contains(&CORNER), "{corner:?}");
         }
     }
+}
+
+/// A free corner begins below half the sampling rate, however few samples a period has; a stated one above is refused.
+#[test]
+fn corners_lie_below_half_the_rate() {
+    let few: Vec<f64> = motion(22e-3, 1).velocity().values().iter().copied().step_by(20).collect();
+    let record = Record::new(0.0, 20.0 * INTERVAL, few, Quantity::Velocity, "m/s").unwrap();
+    let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+    let free = Sensor::default().with_free_low_pass(2).unwrap();
+    let found = fitted(experiment.clone().seen_by(free).unwrap());
+    assert!(found.finding("sensor_corner_hz").unwrap().value() <= 25.0, "{found}");
+    let refused = experiment.seen_by(Sensor::default().with_low_pass(2, 26.0).unwrap());
+    assert!(matches!(refused, Err(IdentifyError::NotAllowed { .. })), "{refused:?}");
+}
+
+/// A gain that is uncertain makes friction uncertain, and neither frequency nor damping, which do not depend on it.
+#[test]
+fn damping_does_not_know_the_gain() {
+    let values = motion(22e-3, 1).velocity().values().to_vec();
+    let record = record(&values, 1e-3, 3, Quantity::Velocity, "m/s");
+    let terms = Terms::default().with_linear_damping();
+    let [known, uncertain] = [0.0, 0.05].map(|u| {
+        let experiment = Experiment::ring_down(&record, &Preparation::default().gain_uncertainty(u)).unwrap();
+        identify_with::<Coulomb>(&machine(), &terms, &[experiment]).unwrap()
+    });
+    let u = |found: &Identification, name: &str| found.finding(name).unwrap().uncertainty().unwrap();
+    for name in ["damping_per_mass", "natural_frequency_hz"] {
+        assert_eq!(u(&known, name), u(&uncertain, name), "{name}");
+    }
+    let friction = uncertain.finding("friction_per_mass").unwrap();
+    let expected = u(&known, "friction_per_mass").hypot(0.05 * friction.value());
+    assert!((friction.uncertainty().unwrap() / expected - 1.0).abs() < 1e-9, "{friction:?}");
 }
 
 /// A filter nobody knows of is named.

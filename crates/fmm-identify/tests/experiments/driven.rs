@@ -4,7 +4,7 @@ use fmm_friction::CoulombViscous;
 use fmm_identify::{Drive, Experiment, IdentifyError, Known, Machine, Preparation, identify};
 use fmm_record::{Quantity, Record};
 
-use crate::simulated::{INTERVAL, LOAD, MASS, Motion, STIFFNESS, record, share_inside};
+use crate::simulated::{INTERVAL, LOAD, MASS, Motion, STIFFNESS, machine, record, share_inside};
 
 const SAMPLES: usize = 3000;
 const COEFFICIENT: f64 = 0.25;
@@ -33,8 +33,7 @@ fn stick_slip_on_a_base_gives_the_law_back() {
     assert!(motion.events().iter().any(|event| event.next == fmm_sim::Mode::Stick), "it sticks");
     let base: Vec<f64> = force.iter().map(|force| -force / MASS).collect();
     let base = Record::new(0.0, INTERVAL, base, Quantity::Acceleration, "m/s²").unwrap();
-    let machine = Machine::of_mass(Known::exact(MASS).unwrap()).unwrap();
-    let machine = machine.with_normal_load(Known::exact(LOAD).unwrap()).unwrap();
+    let machine = machine();
     let mut inside = 0.0;
     let share = share_inside(COEFFICIENT, 200, |seed| {
         let response = record(motion.velocity().values(), 1e-3, seed, Quantity::Velocity, "m/s");
@@ -77,6 +76,31 @@ fn a_force_tells_the_scale() {
     }
 }
 
+/// Half the difference that a mass of ± u makes comes on top of the uncertainty of the fit.
+#[test]
+fn the_mass_is_uncertain_with_the_force() {
+    let force = force_of_base(8e-3);
+    let motion = motion(&force);
+    let drive = Drive::force(&Record::new(0.0, INTERVAL, force, Quantity::Force, "N").unwrap()).unwrap();
+    let response = record(motion.velocity().values(), 1e-3, 7, Quantity::Velocity, "m/s");
+    let experiment = Experiment::driven(&response, drive, &Preparation::default()).unwrap();
+    let of = |mass: f64, u: f64| {
+        let machine = Machine::of_mass(Known::new(mass, u).unwrap()).unwrap();
+        identify::<CoulombViscous>(&machine, std::slice::from_ref(&experiment)).unwrap()
+    };
+    let u = 0.05;
+    let [exact, uncertain] = [0.0, u].map(|u| of(MASS, u));
+    let [below, above] = [MASS - u, MASS + u].map(|mass| of(mass, 0.0));
+    for name in ["friction_force", "stiffness", "damping"] {
+        let value = |found: &fmm_identify::Identification| found.finding(name).unwrap().value();
+        let stated = |found: &fmm_identify::Identification| found.finding(name).unwrap().uncertainty().unwrap();
+        let change = 0.5 * (value(&above) - value(&below));
+        let expected = stated(&exact).hypot(change);
+        assert!((stated(&uncertain) / expected - 1.0).abs() < 1e-6, "{name}: {} for {expected}", stated(&uncertain));
+        assert!(stated(&uncertain) > 1.01 * stated(&exact), "{name} does not see the mass");
+    }
+}
+
 #[test]
 fn drives_that_do_not_fit_are_refused() {
     let force = force_of_base(8e-3);
@@ -89,6 +113,12 @@ fn drives_that_do_not_fit_are_refused() {
     assert!(kept.is_ok(), "{kept:?}");
     let volts = Record::new(0.0, INTERVAL, force, Quantity::Other, "V").unwrap();
     assert!(Drive::force(&volts).is_err() && Drive::base(&volts).is_err());
+    // A force in N moves no radians.
+    let force = Drive::force(&Record::new(0.0, INTERVAL, vec![1.0; SAMPLES], Quantity::Force, "N").unwrap()).unwrap();
+    let angular = response.clone().with_unit("rad/s");
+    let experiment = Experiment::driven(&angular, force, &Preparation::default()).unwrap();
+    let refused = identify::<CoulombViscous>(&Machine::unknown(), &[experiment]);
+    assert!(matches!(refused, Err(IdentifyError::Drive { .. })), "{refused:?}");
     // The driven motion is no decay.
     let whole = Record::new(0.0, INTERVAL, vec![0.0; SAMPLES], Quantity::Acceleration, "m/s²").unwrap();
     let experiment = Experiment::driven(&response, Drive::base(&whole).unwrap(), &Preparation::default()).unwrap();

@@ -1,12 +1,10 @@
 //! Several kinds together: what no single experiment tells apart.
 
 use fmm_friction::CoulombStatic;
-use fmm_identify::{
-    Drive, Experiment, Identification, IdentifyError, Known, Machine, Preparation, Terms, identify, identify_with,
-};
+use fmm_identify::{Drive, Experiment, Identification, IdentifyError, Preparation, Terms, identify, identify_with};
 use fmm_record::{Quantity, Record};
 
-use crate::simulated::{INTERVAL, LOAD, MASS, Motion, record, share_inside};
+use crate::simulated::{INTERVAL, LOAD, MASS, Motion, machine, record, share_inside};
 
 const SAMPLES: usize = 2000;
 const DAMPING: f64 = 0.8;
@@ -50,11 +48,6 @@ fn experiments(motions: &Motions, seed: u64) -> [Experiment; 3] {
         decay(&motions.sliding, 3 * seed + 2),
         Experiment::driven(&response, Drive::force(&force).unwrap(), &Preparation::default()).unwrap(),
     ]
-}
-
-fn machine() -> Machine {
-    let machine = Machine::of_mass(Known::exact(MASS).unwrap()).unwrap();
-    machine.with_normal_load(Known::exact(LOAD).unwrap()).unwrap()
 }
 
 fn found(experiments: &[Experiment]) -> Result<Identification, IdentifyError> {

@@ -1,5 +1,6 @@
 //! Simulated records of the machine of the thesis (T. 3.1), with noise.
 
+use fmm_identify::{Known, Machine};
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Channels, Excitation, Sampling, Scenario, Simulated, Trajectory};
@@ -14,6 +15,12 @@ pub(crate) const INTERVAL: f64 = 1e-3;
 
 /// Of 300 intervals 95 ± 1.3 % contain the truth by chance alone.
 pub(crate) const SEEDS: u64 = 300;
+
+/// What is known of the machine: its mass and the load.
+pub(crate) fn machine() -> Machine {
+    let machine = Machine::of_mass(Known::exact(MASS).unwrap()).unwrap();
+    machine.with_normal_load(Known::exact(LOAD).unwrap()).unwrap()
+}
 
 /// What a machine does, sampled.
 pub(crate) struct Motion<'a> {
