@@ -1,7 +1,10 @@
 //! Several kinds together: what no single experiment tells apart.
 
+use fmm_fit::{Residuals, check_jacobian};
 use fmm_friction::CoulombStatic;
-use fmm_identify::{Drive, Experiment, Identification, IdentifyError, Preparation, Terms, identify, identify_with};
+use fmm_identify::{
+    Drive, Experiment, Identification, IdentifyError, Preparation, Problem, Sensor, Terms, identify, identify_with,
+};
 use fmm_record::{Quantity, Record};
 
 use crate::simulated::{INTERVAL, LOAD, MASS, Motion, machine, record, share_inside};
@@ -116,4 +119,31 @@ fn loads_of_their_own_scale_friction() {
     let volts = Experiment::ring_down(&mixed, &Preparation::default()).unwrap();
     let refused = identify::<fmm_friction::Coulomb>(&machine(), &[experiments[0].clone(), volts]);
     assert!(matches!(refused, Err(IdentifyError::MixedRecords { .. })));
+}
+
+/// Rows of different quantities count by their noise, and their derivatives, that by the corner of a sensor among them, are those of
+/// differences.
+#[test]
+fn rows_are_weighed_and_their_derivatives_are_right() {
+    let [lifted, sliding, pushed] = experiments(&motions(), 2);
+    let sensor = Sensor::default().with_free_low_pass(2).unwrap();
+    let mixed = [sliding.seen_by(sensor).unwrap(), lifted, pushed];
+    let terms = Terms::default().with_linear_damping();
+    let problem = Problem::with_terms::<CoulombStatic>(machine(), terms, &mixed).unwrap();
+    let fit = found(&mixed).unwrap();
+    let mut rows = fit.fit().residuals();
+    let rms = |rows: &[f64]| (rows.iter().map(|row| row * row).sum::<f64>() / rows.len() as f64).sqrt();
+    for experiment in &mixed {
+        let (own, others) = rows.split_at(experiment.summary().samples);
+        assert!((0.9e-3..1.1e-3).contains(&rms(own)), "{} in {}", rms(own), experiment.record().unit());
+        rows = others;
+    }
+    assert!(rows.is_empty());
+    // Off the minimum, where the corner, which an ideal sensor puts far away, rounds the kinks.
+    let corner =
+        problem.parameters().iter().position(|parameter| parameter.name().starts_with("sensor_corner")).unwrap();
+    let mut values = fit.fit().values().to_vec();
+    values[corner] = 30.0;
+    let doubts = check_jacobian(&problem, &values).unwrap();
+    assert!(doubts.is_empty(), "{doubts:?}");
 }
