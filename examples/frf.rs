@@ -12,8 +12,6 @@ mod analysis;
 mod figure;
 #[path = "frf/figures.rs"]
 mod figures;
-#[path = "frf/source.rs"]
-mod source;
 #[path = "frf/trials.rs"]
 mod trials;
 

@@ -3,9 +3,7 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use fmm_record::{Label, Quantity, Reading, Record};
-
-use super::source::{Offer, Source};
+use fmm_record::{Channel, Column, Label, Quantity, Reader, Reading, Record};
 
 /// One blow.
 pub(crate) struct Trial {
@@ -39,9 +37,13 @@ pub(crate) fn bundled() -> Vec<PathBuf> {
 impl Choice<'_> {
     /// Reads the two channels of a file.
     pub(crate) fn read(&self, path: &Path) -> Result<Trial, Box<dyn Error>> {
-        let source = Source::open(path, self.rate)?;
-        let (force, response, quantity) = self.channels(&source.offers()?)?;
-        let (force, response) = (source.read(&force, Quantity::Force)?, source.read(&response, quantity)?);
+        let mut reader = Reader::default();
+        if let Some(rate) = self.rate {
+            reader = reader.rate(rate);
+        }
+        let file = reader.open(path)?;
+        let (force, response, quantity) = self.channels(&file.channels()?)?;
+        let (force, response) = (file.channel(force)?, file.channel(response)?);
         let origin = format!("{} and {}; the sampling rate was {}", force.channel, response.channel, force.sampling);
         let name = path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into());
         Ok(Trial {
@@ -49,33 +51,37 @@ impl Choice<'_> {
             origin,
             force: in_si(&force, Quantity::Force, self.force_scale, "--force-scale")?,
             response: in_si(&response, quantity, self.response_scale, "--response-scale")?,
-            warnings: source.warnings(),
+            warnings: file.warnings(),
         })
     }
 
-    /// The keys of the two channels, and what the response measured.
+    /// The two channels, and what the response measured.
     ///
     /// A channel is as given by name or number, else the first that is said to measure it, else the first that is called so,
     /// else the first free one of which it is not known; but a response of which nothing is known is refused.
-    fn channels(&self, offers: &[Offer]) -> Result<(String, String, Quantity), Box<dyn Error>> {
-        let all = || offers.iter().map(|offer| &offer.name[..]).collect::<Vec<_>>().join(", ");
+    fn channels(&self, offers: &[Channel]) -> Result<(Column, Column, Quantity), Box<dyn Error>> {
+        let all = || offers.iter().map(|offer| offer.label.name()).collect::<Vec<_>>().join(", ");
+        // A spectrum, or a record with faults, is not to be taken unless it is asked for.
+        let is_known = offers.iter().any(|offer| offer.rate.is_some());
+        let is_series = |offer: &Channel| offer.rate.is_some() || !is_known;
         let given = |choice: &str| {
             if let Ok(index) = choice.parse::<usize>() {
-                let offer = offers.get(index).map(|offer| offer.key.clone());
-                return offer
+                return offers
+                    .get(index)
+                    .map(key)
                     .ok_or_else(|| format!("there is no channel {index}; there are, counted from 0: {}", all()));
             }
-            let called: Vec<&Offer> = offers.iter().filter(|offer| offer.name == choice).collect();
+            let called: Vec<&Channel> = offers.iter().filter(|offer| offer.label.name() == choice).collect();
             // What is not on offer may still be another way to write it; if not, the reader says what there is.
-            Ok(if let [offer] = called[..] { offer.key.clone() } else { choice.to_owned() })
+            Ok(if let [offer] = called[..] { key(offer) } else { Column::Name(choice.to_owned()) })
         };
-        let found = |quantity: Quantity, taken: Option<&str>| {
+        let found = |quantity: Quantity, taken: Option<&Column>| {
             let word = quantity.to_string();
-            let free = || offers.iter().filter(|offer| Some(&offer.key[..]) != taken);
-            let measured = free().find(|offer| offer.quantity == Some(quantity));
-            let mut unknown = free().filter(|offer| offer.quantity.is_none());
-            let called = || unknown.clone().find(|offer| offer.name.to_lowercase().contains(&word));
-            let found = measured.or_else(called).or_else(|| unknown.next()).map(|offer| offer.key.clone());
+            let free = || offers.iter().filter(|offer| Some(&key(offer)) != taken);
+            let measured = free().find(|offer| is_series(offer) && offer.label.stated_quantity() == Some(quantity));
+            let mut unknown = free().filter(|offer| is_series(offer) && offer.label.stated_quantity().is_none());
+            let called = || unknown.clone().find(|offer| offer.label.name().to_lowercase().contains(&word));
+            let found = measured.or_else(called).or_else(|| unknown.next()).map(key);
             found.ok_or_else(|| {
                 format!(
                     "which channel is the {word}? Name it, or say with --quantity what the response is; there are: {}",
@@ -84,8 +90,10 @@ impl Choice<'_> {
             })
         };
         let force = self.force.map_or_else(|| found(Quantity::Force, None), given)?;
-        let is_motion = |offer: &&Offer| offer.key != force && offer.told().is_some_and(|told| told != Quantity::Force);
-        let moves = || offers.iter().find(is_motion).map(|offer| offer.key.clone());
+        let is_motion = |offer: &&Channel| {
+            key(offer) != force && is_series(offer) && told(offer).is_some_and(|told| told != Quantity::Force)
+        };
+        let moves = || offers.iter().find(is_motion).map(key);
         let silent = || {
             format!("no channel says what the response measured; give --quantity; there are, counted from 0: {}", all())
         };
@@ -95,12 +103,13 @@ impl Choice<'_> {
             (None, None) => moves().ok_or_else(silent)?,
         };
         if force == response {
-            let name = offers.iter().find(|offer| offer.key == force).map_or(&force, |offer| &offer.name);
+            let name = offers.iter().find(|offer| key(offer) == force).map(|offer| offer.label.name().to_owned());
+            let name = name.or(self.force.map(str::to_owned)).unwrap_or_default();
             return Err(format!("channel {name} cannot be both force and response").into());
         }
-        let told = || Label::of(&response).quantity().filter(|told| is_of_motion(*told));
-        let offered = || offers.iter().find(|offer| offer.key == response).and_then(Offer::told);
-        let quantity = self.quantity.or_else(|| offered().or_else(told)).ok_or_else(silent)?;
+        let written = || self.response.and_then(|name| Label::of(name).quantity()).filter(|told| is_of_motion(*told));
+        let offered = || offers.iter().find(|offer| key(offer) == response).and_then(told);
+        let quantity = self.quantity.or_else(|| offered().or_else(written)).ok_or_else(silent)?;
         Ok((force, response, quantity))
     }
 }
@@ -110,18 +119,22 @@ fn is_of_motion(quantity: Quantity) -> bool {
     matches!(quantity, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration)
 }
 
-impl Offer {
-    /// The motion, or the force, that the file or the name of the channel says it measured.
-    fn told(&self) -> Option<Quantity> {
-        let told = self.quantity.or_else(|| Label::of(&self.name).quantity());
-        told.filter(|told| is_of_motion(*told) || *told == Quantity::Force)
-    }
+/// What reads a channel, as names in Universal Files need not differ.
+fn key(channel: &Channel) -> Column {
+    Column::Index(channel.position)
+}
+
+/// The motion, or the force, that the file or the name of the channel says it measured.
+fn told(channel: &Channel) -> Option<Quantity> {
+    let told = channel.label.stated_quantity().or_else(|| Label::of(channel.label.name()).quantity());
+    told.filter(|told| is_of_motion(*told) || *told == Quantity::Force)
 }
 
 /// The record of a reading in SI units, by the `scale` that its `option` gave.
 fn in_si(reading: &Reading, quantity: Quantity, scale: Option<f64>, option: &str) -> Result<Record, Box<dyn Error>> {
     let (channel, found) = (&reading.channel, reading.record.quantity());
-    if found != quantity {
+    // A file that does not say what it measured leaves it to the caller.
+    if found != quantity && found != Quantity::Other {
         return Err(format!("the file says that {channel} is a {found}, and no {quantity}").into());
     }
     let (unit, label) = (unit(quantity), Label::from(reading));
@@ -133,7 +146,7 @@ fn in_si(reading: &Reading, quantity: Quantity, scale: Option<f64>, option: &str
             format!("{channel} is in \"{stated}\"; give the factor that turns it into {unit} as {option}").into()
         );
     }
-    Ok(reading.record.scaled(scale.unwrap_or(1.0), unit)?)
+    Ok(reading.record.scaled(scale.unwrap_or(1.0), unit)?.with_quantity(quantity))
 }
 
 /// SI unit of a force or a response.

@@ -3,10 +3,7 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use fmm_record::csv::CsvReader;
-use fmm_record::mat::{Channel, MatFile, MatReader};
-use fmm_record::uff::UffFile;
-use fmm_record::{Column, Label, MeaningError, Quantity, Reading, Record, Request};
+use fmm_record::{Column, DataFile, Label, MeaningError, Quantity, Reader, Reading, Record, RecordError, Request};
 
 /// The record to identify, and how it was read.
 pub(crate) struct Input {
@@ -39,21 +36,37 @@ impl Choice {
     /// Reads the record of a bicycle fork that comes with the examples.
     pub(crate) fn read_bundled(&self) -> Result<Input, Box<dyn Error>> {
         let path = bundled();
-        let reading = self.matlab(&path)?;
+        let (reading, _) = self.reading(&path)?;
         // A gyro whose gain was not published.
         let label = Label::from(&reading).with_unit("V").with_quantity(Quantity::Velocity);
         self.input(&path, &label, &reading, Vec::new())
     }
 
-    /// Reads a file, whose format its name tells.
+    /// Reads a file of any format.
     pub(crate) fn read(&self, path: &Path) -> Result<Input, Box<dyn Error>> {
-        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-        let (reading, warnings) = match extension.as_deref() {
-            Some("uff" | "unv") => self.universal(path)?,
-            Some("mat") => (self.matlab(path)?, Vec::new()),
-            _ => (self.text(path)?, Vec::new()),
+        let (reading, file) = self.reading(path)?;
+        self.input(path, &Label::from(&reading), &reading, file.warnings())
+    }
+
+    /// The channel that was named, or else the one that the request tells out, and its file.
+    fn reading(&self, path: &Path) -> Result<(Reading, DataFile), Box<dyn Error>> {
+        let mut reader = Reader::default();
+        if let Some(time) = &self.time {
+            reader = reader.time(time.clone());
+        }
+        if let Some(rate) = self.rate {
+            reader = reader.rate(rate);
+        }
+        let file = reader.open(path)?;
+        let reading = match &self.channel {
+            Some(channel) => file.channel(channel.clone()),
+            None => file.choose(&self.request),
         };
-        self.input(path, &Label::from(&reading), &reading, warnings)
+        let reading = reading.map_err(|error| match error {
+            RecordError::Units(error) => with_remedy(error),
+            error => error.into(),
+        })?;
+        Ok((reading, file))
     }
 
     /// The record with the quantity and the unit that follow from the file and the request.
@@ -81,77 +94,6 @@ impl Choice {
         let origin = format!("{name}, channel {}: {meaning}; the sampling rate was {}", label.name(), reading.sampling);
         let record = reading.record.scaled(meaning.factor, meaning.unit)?.with_quantity(meaning.quantity);
         Ok(Input { record, origin, warnings })
-    }
-
-    fn text(&self, path: &Path) -> Result<Reading, Box<dyn Error>> {
-        let mut reader = CsvReader::default();
-        if let Some(time) = &self.time {
-            reader = reader.time(time.clone());
-        }
-        if let Some(channel) = &self.channel {
-            reader = reader.channel(channel.clone());
-        } else {
-            let channels = reader.channels(path)?;
-            if channels.len() > 1 {
-                let labels: Vec<Label> = channels.iter().map(|(_, name)| Label::of(name)).collect();
-                let chosen = self.request.choose(&labels).map_err(with_remedy)?;
-                reader = reader.channel(channels[chosen].0);
-            }
-        }
-        if let Some(rate) = self.rate {
-            reader = reader.rate(rate);
-        }
-        Ok(reader.read(path)?)
-    }
-
-    fn matlab(&self, path: &Path) -> Result<Reading, Box<dyn Error>> {
-        let file = MatFile::read(path)?;
-        let mut reader = MatReader::default();
-        if let Some(channel) = &self.channel {
-            reader = reader.channel(variable(&file, channel)?);
-        }
-        if let Some(time) = &self.time {
-            reader = reader.time(variable(&file, time)?);
-        }
-        if let Some(rate) = self.rate {
-            reader = reader.rate(rate);
-        }
-        Ok(reader.read_from(&file)?)
-    }
-
-    fn universal(&self, path: &Path) -> Result<(Reading, Vec<String>), Box<dyn Error>> {
-        if self.time.is_some() || self.rate.is_some() {
-            return Err("a Universal File has its own time; leave out --time and --rate".into());
-        }
-        let file = UffFile::read(path)?;
-        let reading = match &self.channel {
-            Some(channel) => file.channel(channel.clone())?,
-            None => file.reading()?,
-        };
-        Ok((reading, file.warnings().iter().map(ToString::to_string).collect()))
-    }
-}
-
-/// A MATLAB channel by the name of its variable, or by number: of the arrays in the file, or, if it has but one
-/// matrix, of the columns of that, or of its rows if these are longer.
-fn variable(file: &MatFile, column: &Column) -> Result<Channel, Box<dyn Error>> {
-    let index = match column {
-        Column::Name(name) => return Ok(Channel::from(name.as_str())),
-        Column::Index(index) => *index,
-    };
-    let arrays: Vec<_> = file.arrays().iter().filter(|array| array.values().len() > 1).collect();
-    if let [array] = arrays[..]
-        && array.dimensions().iter().all(|length| *length > 1)
-    {
-        let is_wide = array.dimensions()[0] < array.dimensions()[1];
-        let name = array.name();
-        return Ok(if is_wide { Channel::row(name, index + 1) } else { Channel::column(name, index + 1) });
-    }
-    match arrays.get(index) {
-        Some(array) => Ok(Channel::variable(array.name())),
-        None => {
-            Err(format!("there is no channel {index}; the file has {} arrays, counted from 0", arrays.len()).into())
-        }
     }
 }
 

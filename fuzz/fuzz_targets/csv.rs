@@ -2,11 +2,11 @@
 
 #![no_main]
 
-use fmm_record::csv::CsvReader;
+use fmm_record::Reader;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
-    for reader in [CsvReader::default(), CsvReader::default().rate(100.0), CsvReader::default().channel(1)] {
+    for reader in [Reader::default(), Reader::default().rate(100.0), Reader::default().channel(1)] {
         if let Ok(reading) = reader.read_from(bytes) {
             assert!(reading.record.values().iter().all(|value| value.is_finite()));
         }

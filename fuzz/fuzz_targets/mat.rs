@@ -2,7 +2,7 @@
 
 #![no_main]
 
-use fmm_record::mat::{MatFile, MatReader};
+use fmm_record::{Array, Reader};
 use libfuzzer_sys::{Corpus, fuzz_target};
 
 /// What HDF5 begins with, here or behind the header of MATLAB.
@@ -13,17 +13,18 @@ fuzz_target!(|bytes: &[u8]| -> Corpus {
     if is_hdf5 {
         return Corpus::Reject;
     }
-    let Ok(file) = MatFile::parse(bytes) else { return Corpus::Keep };
+    let Ok(file) = Reader::default().parse(bytes) else { return Corpus::Keep };
     for array in file.arrays() {
-        let count: usize = array.dimensions().iter().product();
+        let count: usize = array.shape().iter().product();
         assert_eq!(count, array.values().len());
     }
-    let names: Vec<&str> = file.names().collect();
+    let _ = file.channels();
+    let names: Vec<&str> = file.arrays().iter().map(Array::name).collect();
     for name in names.into_iter().take(4) {
         if let Ok(reading) = file.channel(name) {
             assert!(reading.record.values().iter().all(|value| value.is_finite()));
         }
     }
-    let _ = MatReader::default().rate(100.0).read_from(&file);
+    let _ = Reader::default().rate(100.0).read_from(bytes);
     Corpus::Keep
 });

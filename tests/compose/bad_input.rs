@@ -8,9 +8,7 @@ use fmm_identify::{
     Experiment, Identification, IdentifyError, Known, Machine, Offset, Preparation, Problem, Warning, identify,
 };
 use fmm_model::ModelError;
-use fmm_record::csv::{CsvError, CsvReader};
-use fmm_record::mat::{MatError, MatFile};
-use fmm_record::{Quantity, Record, RecordError};
+use fmm_record::{Quantity, Reader, Record, RecordError};
 
 use crate::measurement::{release, white};
 use crate::real_records::{data, fork};
@@ -40,28 +38,23 @@ fn identified(values: Vec<f64>) -> Identification {
     identify::<CoulombViscous>(&Machine::per_unit_mass(), &[prepare(values).unwrap()]).unwrap()
 }
 
-fn csv(text: &str) -> Result<Record, CsvError> {
-    CsvReader::default()
-        .quantity(Quantity::Velocity)
-        .unit("m/s")
-        .read_from(text.as_bytes())
-        .map(|reading| reading.record)
+fn csv(text: &str) -> Result<Record, RecordError> {
+    Reader::default().quantity(Quantity::Velocity).unit("m/s").read_from(text.as_bytes()).map(|reading| reading.record)
 }
 
 #[test]
 fn files_that_are_missing_or_empty() {
-    assert!(matches!(fmm_record::csv::read("no/such/file.csv"), Err(CsvError::Open { .. })));
-    assert!(matches!(MatFile::read("no/such/file.mat"), Err(MatError::Open { .. })));
-    assert!(matches!(csv(""), Err(CsvError::Empty)));
-    assert!(matches!(csv("time,velocity\n"), Err(CsvError::NoRows)));
-    assert!(matches!(MatFile::parse(b""), Err(MatError::NotMat { length: 0 })));
+    let error = fmm_record::open("no/such/file.mat").unwrap_err();
+    assert!(matches!(error, RecordError::Io { .. }) && error.to_string().contains("no/such/file.mat"), "{error}");
+    assert!(csv("").unwrap_err().to_string().contains("empty"));
+    assert!(csv("time,velocity\n").unwrap_err().to_string().contains("no rows"));
 }
 
 #[test]
 fn channels_that_are_not_there() {
-    let error = CsvReader::default().channel("force").read_from("time,velocity\n0,1\n1,2\n".as_bytes()).unwrap_err();
+    let error = Reader::default().channel("force").read_from("time,velocity\n0,1\n1,2\n".as_bytes()).unwrap_err();
     assert_eq!(error.to_string(), "there is no column \"force\"; the file has: \"time\", \"velocity\"");
-    let file = MatFile::read(data("BrowserForkCompoundFirst1.mat")).unwrap();
+    let file = fmm_record::open(data("BrowserForkCompoundFirst1.mat")).unwrap();
     let error = file.channel("force").unwrap_err().to_string();
     assert!(error.contains("\"force\"") && error.contains("data (30000×1)"), "{error}");
 }
@@ -71,16 +64,19 @@ fn times_that_are_not_uniform() {
     let text =
         |times: &[f64]| times.iter().fold("time,velocity\n".to_owned(), |text, time| format!("{text}{time},0.5\n"));
     let error = csv(&text(&[0.0, 0.1, 0.2, 0.35, 0.4, 0.5])).unwrap_err();
-    assert!(matches!(error, CsvError::Record(RecordError::NonUniform { index: 3, .. })), "{error}");
+    assert!(matches!(error, RecordError::TimeAxis { index: Some(3), .. }), "{error}");
+    assert!(error.to_string().starts_with("sampling is not uniform"), "{error}");
     let error = csv(&text(&[0.0, 0.1, 0.1, 0.2])).unwrap_err();
-    assert!(matches!(error, CsvError::Record(RecordError::TimeNotIncreasing { index: 2, .. })), "{error}");
+    assert!(matches!(error, RecordError::TimeAxis { index: Some(2), .. }), "{error}");
+    assert!(error.to_string().starts_with("time must increase"), "{error}");
 }
 
 #[test]
 fn numbers_that_are_not_finite() {
     for bad in ["NaN", "inf", "-inf"] {
         let error = csv(&format!("time,velocity\n0,1\n0.1,{bad}\n0.2,3\n")).unwrap_err();
-        assert!(matches!(error, CsvError::Record(RecordError::NonFinite { index: 1, count: 1, .. })), "{bad}: {error}");
+        assert!(matches!(error, RecordError::Values { index: 1, .. }), "{bad}: {error}");
+        assert!(error.to_string().starts_with("1 of 3 samples"), "{bad}: {error}");
     }
     let error = Record::new(0.0, 1.0, vec![0.0, f64::NAN], Quantity::Velocity, "m/s").unwrap_err();
     assert_eq!(error.to_string(), "1 of 2 samples are not finite; the first is sample 1 (at 1 s)");
@@ -182,14 +178,14 @@ fn records_that_do_not_belong_together() {
 #[test]
 fn matlab_files_that_are_cut_off() {
     let bytes = std::fs::read(data("BrowserForkCompoundFirst1.mat")).unwrap();
-    let error = MatFile::parse(&bytes[..bytes.len() / 2]).unwrap_err();
-    assert!(matches!(error, MatError::Truncated { .. }), "{error}");
+    let error = Reader::default().parse(&bytes[..bytes.len() / 2]).unwrap_err();
+    assert!(matches!(error, RecordError::Damaged { .. }) && error.to_string().contains("cut off"), "{error}");
 
     let mut hdf5 = vec![b' '; 512];
     hdf5[..19].copy_from_slice(b"MATLAB 7.3 MAT-file");
     hdf5.extend_from_slice(b"\x89HDF\r\n\x1a\n");
-    let error = MatFile::parse(&hdf5).unwrap_err();
-    assert!(matches!(error, MatError::Hdf5File { .. }), "{error}");
+    let error = Reader::default().parse(hdf5).unwrap_err();
+    assert!(matches!(error, RecordError::Damaged { .. }) && error.to_string().contains("HDF5"), "{error}");
     assert!(error.to_string().contains("7.3"), "{error}");
 }
 

@@ -4,7 +4,6 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use fmm_frf::ResponseForm;
-use fmm_record::mat::MatFile;
 use fmm_record::uff::{ByteOrder, DataSet, Form, UffFile, write};
 use fmm_record::{Quantity, Record};
 use zip::write::SimpleFileOptions;
@@ -13,8 +12,6 @@ use zip::{CompressionMethod, ZipWriter};
 #[path = "../../examples/frf/analysis.rs"]
 #[expect(dead_code, reason = "the example reports more than is compared here")]
 mod analysis;
-#[path = "../../examples/frf/source.rs"]
-mod source;
 #[path = "../../examples/frf/trials.rs"]
 mod trials;
 
@@ -141,7 +138,7 @@ fn the_same_blows_from_every_format() {
 /// Two programs wrote one measurement: as whole numbers of 1e-4 N and 1e-8 m/s, and its second trial in Universal Files.
 #[test]
 fn a_measurement_in_universal_files() {
-    let measured = MatFile::read(workspace("crates/fmm-frf/tests/data/impact4.mat")).unwrap();
+    let measured = fmm_record::open(workspace("crates/fmm-frf/tests/data/impact4.mat")).unwrap();
     let numbers = |name: &str, unit: f64| -> Vec<f64> {
         measured.array(name).unwrap().values()[..1024].iter().map(|value| value / unit).collect()
     };
@@ -200,7 +197,7 @@ fn channels_that_are_not_there_or_not_what_they_should_be() {
         (
             Choice { rate: Some(512.0), ..VELOCITY },
             &times,
-            "a Universal File states its own sampling; leave --rate out",
+            "a Universal File states its own sampling; leave out the rate and the time",
         ),
         (
             Choice { force: Some("0"), response: Some("mobility H1"), ..VELOCITY },
@@ -264,7 +261,7 @@ fn units_are_not_taken_for_others() {
     assert_eq!((trial.force.values()[2], trial.force.unit()), (2.0, "N"));
 }
 
-/// Each reader is told by the name of the file, and says what is wrong with it.
+/// Each reader is told by the content of the file, and says what is wrong with it.
 #[test]
 fn files_that_are_something_else() {
     let folder = folder("something_else");

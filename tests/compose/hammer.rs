@@ -6,7 +6,7 @@ use fmm_frf::{
     AverageOptions, Background, Baseline, Estimator, Pulse, RationalFit, ResponseForm, TrialAverage, impulse,
     resonances,
 };
-use fmm_record::mat::MatReader;
+use fmm_record::Reader;
 use fmm_record::{Quantity, Record};
 
 use crate::real_records::data;
@@ -16,7 +16,7 @@ fn blows() -> [(Record, Record); 3] {
     [1, 2, 3].map(|hit| {
         let path: PathBuf = data(&format!("hammer_{hit}.mat"));
         let read = |channel: &str, quantity, unit: &str| {
-            MatReader::default().channel(channel).quantity(quantity).unit(unit).read(&path).unwrap().record
+            Reader::default().channel(channel).quantity(quantity).unit(unit).read(&path).unwrap().record
         };
         (read("force", Quantity::Force, "N"), read("acceleration", Quantity::Acceleration, "m/s²"))
     })

@@ -153,5 +153,5 @@ fn universal_files_state_quantity_and_unit() {
     let refused = refusal(&Choice::default(), &universal("pascal.uff", Quantity::Other, "Pa"));
     assert!(refused.starts_with("the unit \"Pa\" of channel") && refused.contains("--unit"), "{refused}");
     let refused = refusal(&Choice { rate: Some(1.0), ..Choice::default() }, &volts);
-    assert!(refused.contains("leave out --time and --rate"), "{refused}");
+    assert!(refused.contains("leave out the rate and the time"), "{refused}");
 }

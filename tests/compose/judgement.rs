@@ -7,7 +7,7 @@ use fmm_identify::{
     Warning, compare, search,
 };
 use fmm_model::Restoring;
-use fmm_record::{Column, Quantity, Record, csv};
+use fmm_record::{Column, Quantity, Reader, Record};
 
 /// The file called `name`, of this folder or of those by which records are tried.
 fn path(name: &str) -> PathBuf {
@@ -17,7 +17,7 @@ fn path(name: &str) -> PathBuf {
 }
 
 fn record(name: &str, quantity: Quantity, unit: &str) -> Record {
-    csv::CsvReader::default().quantity(quantity).unit(unit).read(path(name)).unwrap().record
+    Reader::default().quantity(quantity).unit(unit).read(path(name)).unwrap().record
 }
 
 fn machine() -> Machine {
@@ -107,7 +107,7 @@ fn the_first_of_two_releases_is_used() {
 
 /// Every `stride`-th sample of a small pendulum with presliding.
 fn pendulum(stride: usize) -> (Machine, Experiment) {
-    let reader = csv::CsvReader::default().channel(Column::Name("encoder_counts".to_owned()));
+    let reader = Reader::default().channel(Column::Name("encoder_counts".to_owned()));
     let reader = reader.time(Column::Name("t_s".to_owned())).quantity(Quantity::Displacement).unit("1");
     let record = reader.read(path("small_pendulum_10khz.csv")).unwrap().record.scaled(1.570_796_3e-4, "rad").unwrap();
     let values = record.values().iter().copied().step_by(stride).collect();

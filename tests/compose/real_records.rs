@@ -3,25 +3,25 @@
 use std::path::PathBuf;
 
 use fmm_identify::{Candidate, Comparison, Experiment, Identification, Machine, Preparation, Warning, compare};
-use fmm_record::{Column, Quantity, Record, csv, mat};
+use fmm_record::{Column, Quantity, Reader, Record};
 
 pub(crate) fn data(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("examples/data").join(name)
 }
 
 pub(crate) fn fork() -> Record {
-    let reader = mat::MatReader::default().channel("data").quantity(Quantity::Velocity).unit("V");
+    let reader = Reader::default().channel("data").quantity(Quantity::Velocity).unit("V");
     reader.read(data("BrowserForkCompoundFirst1.mat")).unwrap().record
 }
 
 pub(crate) fn wheel() -> Record {
-    let reader = csv::CsvReader::default().quantity(Quantity::Velocity).unit("rad/s");
+    let reader = Reader::default().quantity(Quantity::Velocity).unit("rad/s");
     reader.read(data("bicycle_wheel_radial_gyro.csv")).unwrap().record
 }
 
 pub(crate) fn pendulum() -> Record {
     let channel = Column::Name("theta_rad".to_owned());
-    let reader = csv::CsvReader::default().channel(channel).quantity(Quantity::Displacement).unit("rad");
+    let reader = Reader::default().channel(channel).quantity(Quantity::Displacement).unit("rad");
     reader.read(data("single_pendulum_55s_1khz.csv")).unwrap().record
 }
 

@@ -25,12 +25,12 @@ impl Record {
     /// ```
     ///
     /// # Errors
-    /// [`RecordError::NoIntegral`] unless this is acceleration or velocity, [`RecordError::Offset`] if `initial` is
-    /// not finite, [`RecordError::NonFinite`] if the integral overflows.
+    /// [`RecordError::Unsupported`] unless this is acceleration or velocity, [`RecordError::Options`] if `initial` is
+    /// not finite, [`RecordError::Values`] if the integral overflows.
     pub fn integrate(&self, initial: f64) -> Result<Self, RecordError> {
         let quantity = self.quantity().integral()?;
         if !initial.is_finite() {
-            return Err(RecordError::Offset { value: initial });
+            return Err(RecordError::options(format!("an initial value must be finite, but is {initial}")));
         }
         let half = 0.5 * self.interval();
         let mut sum = Sum::default();
@@ -60,8 +60,8 @@ impl Record {
     /// `m/s²`, `V s` becomes `V`.
     ///
     /// # Errors
-    /// [`RecordError::NoDerivative`] unless this is displacement or velocity, [`RecordError::TooShort`] below three
-    /// samples, [`RecordError::NonFinite`] if the derivative overflows.
+    /// [`RecordError::Unsupported`] unless this is displacement or velocity, [`RecordError::TooShort`] below three
+    /// samples, [`RecordError::Values`] if the derivative overflows.
     pub fn differentiate(&self) -> Result<Self, RecordError> {
         self.quantity().derivative()?;
         let per_sample = central_differences(self.values())?;
@@ -161,10 +161,16 @@ mod tests {
     #[test]
     fn what_has_no_integral_or_derivative_is_refused() {
         for quantity in [Quantity::Force, Quantity::Other, Quantity::Displacement] {
-            assert_eq!(sampled(quantity, "", |t| t).integrate(0.0), Err(RecordError::NoIntegral { quantity }));
+            let error = sampled(quantity, "", |t| t).integrate(0.0).unwrap_err().to_string();
+            assert_eq!(
+                error,
+                format!("a record of {quantity} cannot be integrated; only acceleration and velocity can")
+            );
         }
         for quantity in [Quantity::Force, Quantity::Other, Quantity::Acceleration] {
-            assert_eq!(sampled(quantity, "", |t| t).differentiate(), Err(RecordError::NoDerivative { quantity }));
+            let error = sampled(quantity, "", |t| t).differentiate().unwrap_err().to_string();
+            let expected = "cannot be differentiated; only displacement and velocity can";
+            assert_eq!(error, format!("a record of {quantity} {expected}"));
         }
         let short = Record::new(0.0, 1.0, vec![1.0, 2.0], Quantity::Velocity, "m/s").unwrap();
         assert!(matches!(short.differentiate(), Err(RecordError::TooShort { needed: 3, length: 2, .. })));

@@ -112,24 +112,32 @@ impl Clock {
     /// increases uniformly.
     ///
     /// # Errors
-    /// [`RecordError::TimeUnit`] if something else is written where the unit belongs, [`RecordError::Counter`] if they
+    /// [`RecordError::TimeAxis`] if something else is written where the unit belongs, or if they
     /// count samples: by their name, or as whole numbers of which nobody said that they are time.
     pub(crate) fn to_seconds(&self, name: &str, by_nature: bool, times: &mut [f64]) -> Result<(), RecordError> {
         // A stamp of a computer is a whole number of whatever its clock counts.
         let is_vague = by_nature || (self.is_time && name.to_lowercase().contains("stamp"));
         match &self.unit {
             Written::Other(unit) if !self.is_counter => {
-                return Err(RecordError::TimeUnit { name: name.into(), unit: unit.clone() });
+                let what = format!(
+                    "the time stamps \"{name}\" are in \"{unit}\", which is no unit of time that is known; give the sampling rate"
+                );
+                return Err(RecordError::time(None, what));
             }
-            _ if self.is_counter => return Err(RecordError::Counter { name: name.into() }),
-            Written::Nothing if is_vague && self.counts(times) => {
-                return Err(RecordError::Counter { name: name.into() });
-            }
+            _ if self.is_counter => return Err(counter(name)),
+            Written::Nothing if is_vague && self.counts(times) => return Err(counter(name)),
             Written::Seconds(scale) if *scale != 1.0 => times.iter_mut().for_each(|time| *time *= scale),
             _ => {}
         }
         Ok(())
     }
+}
+
+/// A series that counts samples and tells no time.
+pub(crate) fn counter(name: &str) -> RecordError {
+    let what =
+        format!("\"{name}\" counts samples and tells no time; give the sampling rate, or time stamps with their unit");
+    RecordError::time(None, what)
 }
 
 /// Whether all numbers are whole, as those that count samples are.

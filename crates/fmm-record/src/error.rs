@@ -1,177 +1,90 @@
-//! What can be wrong with a record or with what is asked of it.
+//! What can be wrong with a file, with a record, or with what is asked of them.
 
-use crate::Quantity;
+use std::error::Error;
+use std::io;
+use std::sync::Arc;
 
-/// A record that cannot be, or an operation that it does not allow.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+use crate::MeaningError;
+
+/// A file that is not read, a record that cannot be, or an operation that it does not allow; each variant is something else
+/// that the caller can do about it.
+///
+/// Lines and byte positions count as in an editor: lines from 1, bytes from 0.
+#[derive(Debug, Clone, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// No samples at all.
-    #[error("a record needs at least one sample, but none were given")]
-    Empty,
-    /// Samples that are infinite or not a number.
-    #[error("{count} of {length} samples are not finite; the first is sample {index} (at {time} s)")]
-    NonFinite {
-        /// Index of the first such sample.
+    /// The system refuses to open, read or write a file: check the path.
+    #[error("cannot {what}: {source}")]
+    Io {
+        /// What it does not do, with the path where it is known.
+        what: String,
+        /// What the system says.
+        source: Arc<io::Error>,
+    },
+    /// A file of another format than was asked for, or of none that is read: convert it, or choose another.
+    #[error("{what}")]
+    UnknownFormat {
+        /// What it is, and what would be read.
+        what: String,
+    },
+    /// A file of a format whose reader was not compiled: add the feature.
+    #[error("{format} is read with the feature \"{feature}\" of fmm-record, which is off{remedy}")]
+    MissingFeature {
+        /// The format of the file.
+        format: &'static str,
+        /// The feature that reads it.
+        feature: &'static str,
+        /// What helps without it.
+        remedy: &'static str,
+    },
+    /// A file, or a variable of one, that contradicts itself or its format: repair it, or leave the variable alone.
+    #[error("{what}")]
+    Damaged {
+        /// The line, in text and Universal Files.
+        line: Option<u64>,
+        /// Which part of the file, and what is wrong with it.
+        what: String,
+        /// What the decoder says, where there is one.
+        source: Option<Arc<dyn Error + Send + Sync>>,
+    },
+    /// Something that is as it should be, but is not read, written or computed: save or choose it in another form.
+    #[error("{what}")]
+    Unsupported {
+        /// What it is, and what would be right.
+        what: String,
+    },
+    /// The file does not have the channel: choose one that it has.
+    #[error("{what}")]
+    NoSuchChannel {
+        /// What was asked for, and what there is.
+        what: String,
+    },
+    /// It is not clear which channel is meant: choose one.
+    #[error("{what}")]
+    WhichChannel {
+        /// Why it is not clear, and what there is to choose from.
+        what: String,
+    },
+    /// The sampling is not known or not uniform: give the rate, name the time, or resample.
+    #[error("{what}")]
+    TimeAxis {
+        /// Index of the first time stamp that is wrong.
+        index: Option<usize>,
+        /// What is wrong, and what would be right.
+        what: String,
+    },
+    /// It is not known what a channel measured, or in which unit: say it.
+    #[error(transparent)]
+    Units(#[from] MeaningError),
+    /// Values that are missing, infinite or too large: look at the data.
+    #[error("{what}")]
+    Values {
+        /// Index of the first of them.
         index: usize,
-        /// Its time (s).
-        time: f64,
-        /// How many such samples there are.
-        count: usize,
-        /// How many samples were given.
-        length: usize,
+        /// How many there are, and what is wrong with them.
+        what: String,
     },
-    /// A sampling interval that is zero, negative or not finite.
-    #[error("the sampling interval must be positive and finite, but is {interval} s")]
-    Interval {
-        /// The interval given (s).
-        interval: f64,
-    },
-    /// A sampling rate that is zero, negative or not finite.
-    #[error("the sampling rate must be positive and finite, but is {rate} Hz")]
-    Rate {
-        /// The rate given (Hz).
-        rate: f64,
-    },
-    /// A start or end that lies too far out for its time stamps to be told apart.
-    #[error("with a start of {start} s and an interval of {interval} s, {length} time stamps cannot be told apart")]
-    TimeOutOfRange {
-        /// Start given (s).
-        start: f64,
-        /// Interval given (s).
-        interval: f64,
-        /// How many samples were given.
-        length: usize,
-    },
-    /// As many times as values are needed.
-    #[error("{times} time stamps were given for {values} values")]
-    LengthMismatch {
-        /// How many time stamps were given.
-        times: usize,
-        /// How many values were given.
-        values: usize,
-    },
-    /// One time stamp, or none, does not give an interval.
-    #[error("{count} time stamps do not give a sampling interval; at least 2 are needed")]
-    TooFewTimes {
-        /// How many time stamps were given.
-        count: usize,
-    },
-    /// A time stamp that is infinite or not a number.
-    #[error("time stamp {index} is {time} s; it must be finite")]
-    TimeNotFinite {
-        /// Index of the time stamp.
-        index: usize,
-        /// The time stamp (s).
-        time: f64,
-    },
-    /// A time stamp that repeats its predecessor or precedes it.
-    #[error("time must increase, but time stamp {index} is {time} s after {previous} s")]
-    TimeNotIncreasing {
-        /// Index of the later time stamp.
-        index: usize,
-        /// The time stamp (s).
-        time: f64,
-        /// Its predecessor (s).
-        previous: f64,
-    },
-    /// Time stamps that do not lie on a uniform grid.
-    #[error(
-        "sampling is not uniform: time stamp {index} is {time} s, but a uniform interval of {interval} s puts it at \
-         {expected} s ({deviation} s off); resample the record, with the band of its motion, or give its rate"
-    )]
-    NonUniform {
-        /// Index of the time stamp.
-        index: usize,
-        /// The time stamp (s).
-        time: f64,
-        /// Where the uniform grid puts it (s).
-        expected: f64,
-        /// `time − expected` (s).
-        deviation: f64,
-        /// The interval of the grid (s).
-        interval: f64,
-    },
-    /// Time stamps in a unit that is not known.
-    #[error(
-        "the time stamps \"{name}\" are in \"{unit}\", which is no unit of time that is known; give the sampling rate"
-    )]
-    TimeUnit {
-        /// Name of the column or variable.
-        name: String,
-        /// What is written as its unit.
-        unit: String,
-    },
-    /// A series that counts samples and tells no time.
-    #[error("\"{name}\" counts samples and tells no time; give the sampling rate, or time stamps with their unit")]
-    Counter {
-        /// Name of the column or variable.
-        name: String,
-    },
-    /// A band that is not positive, or too wide for a rate.
-    #[error(
-        "the band of a motion must be positive and at most 0.45 of the rates, but is {band} Hz at a rate of {rate} Hz"
-    )]
-    Band {
-        /// The band given (Hz).
-        band: f64,
-        /// The rate for which it is too wide (Hz).
-        rate: f64,
-    },
-    /// Time stamps that leave a motion of the band unknown.
-    #[error(
-        "at {time} s, the time stamps are too far apart: a motion of up to {band} Hz is known there with a relative error of \
-         {error} only; give a narrower band, or crop the record"
-    )]
-    Unresolved {
-        /// Where it is known least (s).
-        time: f64,
-        /// Its relative error (1).
-        error: f64,
-        /// The band (Hz).
-        band: f64,
-    },
-    /// A span of time in which the record has no sample.
-    #[error("no sample lies between {from} s and {to} s; the record spans {start} s to {end} s")]
-    NothingLeft {
-        /// Begin of the span asked for (s).
-        from: f64,
-        /// End of the span asked for (s).
-        to: f64,
-        /// First sample of the record (s).
-        start: f64,
-        /// Last sample of the record (s).
-        end: f64,
-    },
-    /// A scale factor that is zero or not finite.
-    #[error("a scale factor must be finite and not zero, but is {factor}")]
-    Factor {
-        /// The factor given.
-        factor: f64,
-    },
-    /// An offset or initial value that is not finite.
-    #[error("an offset or initial value must be finite, but is {value}")]
-    Offset {
-        /// The value given.
-        value: f64,
-    },
-    /// A moving average needs a centre sample.
-    #[error("the span of a moving average must be odd, but is {span}; use {} or {}", span.saturating_sub(1).max(1), span + 1)]
-    EvenSpan {
-        /// The span given.
-        span: usize,
-    },
-    /// A polynomial that a window does not determine, or that no filter needs.
-    #[error(
-        "the degree of a smoothing polynomial must be below its span and at most 8, but is {degree} for {span} samples"
-    )]
-    Degree {
-        /// The degree given.
-        degree: usize,
-        /// The span given.
-        span: usize,
-    },
-    /// Too few samples for the operation.
+    /// Too few samples for the operation: take a longer record.
     #[error("{operation} needs at least {needed} samples, but the record has {length}")]
     TooShort {
         /// What was asked for.
@@ -181,16 +94,103 @@ pub enum RecordError {
         /// How many there are.
         length: usize,
     },
-    /// The quantity has no integral that the crate knows.
-    #[error("a record of {quantity} cannot be integrated; only acceleration and velocity can")]
-    NoIntegral {
-        /// Quantity of the record.
-        quantity: Quantity,
+    /// An option, or a pair of them, that cannot be: give another.
+    #[error("{what}")]
+    Options {
+        /// The option with its value, and what would be right.
+        what: String,
     },
-    /// The quantity has no derivative that the crate knows.
-    #[error("a record of {quantity} cannot be differentiated; only displacement and velocity can")]
-    NoDerivative {
-        /// Quantity of the record.
-        quantity: Quantity,
-    },
+}
+
+impl RecordError {
+    /// What is wrong with the time.
+    pub(crate) fn time(index: Option<usize>, what: String) -> Self {
+        Self::TimeAxis { index, what }
+    }
+
+    /// As many times as values are needed.
+    pub(crate) fn length_mismatch(times: usize, values: usize) -> Self {
+        Self::time(None, format!("{times} time stamps were given for {values} values"))
+    }
+
+    /// One time stamp, or none, does not give an interval.
+    pub(crate) fn too_few_times(count: usize) -> Self {
+        Self::time(None, format!("{count} time stamps do not give a sampling interval; at least 2 are needed"))
+    }
+
+    /// A time stamp (s) that is infinite or not a number.
+    pub(crate) fn time_not_finite(index: usize, time: f64) -> Self {
+        Self::time(Some(index), format!("time stamp {index} is {time} s; it must be finite"))
+    }
+
+    /// A time stamp (s) that repeats its predecessor or precedes it.
+    pub(crate) fn not_increasing(index: usize, time: f64, previous: f64) -> Self {
+        let what = format!("time must increase, but time stamp {index} is {time} s after {previous} s");
+        Self::time(Some(index), what)
+    }
+
+    /// Samples (s) that lie too far out for their time stamps to be told apart.
+    pub(crate) fn times_alike(start: f64, interval: f64, length: usize) -> Self {
+        Self::options(format!(
+            "with a start of {start} s and an interval of {interval} s, {length} time stamps cannot be told apart"
+        ))
+    }
+
+    /// A sampling interval (s) that is zero, negative or not finite.
+    pub(crate) fn interval(interval: f64) -> Self {
+        Self::options(format!("the sampling interval must be positive and finite, but is {interval} s"))
+    }
+
+    /// A sampling rate (Hz) that is zero, negative or not finite.
+    pub(crate) fn rate(rate: f64) -> Self {
+        Self::options(format!("the sampling rate must be positive and finite, but is {rate} Hz"))
+    }
+
+    /// An option that cannot be.
+    pub(crate) fn options(what: impl Into<String>) -> Self {
+        Self::Options { what: what.into() }
+    }
+
+    /// What is not read, written or computed.
+    pub(crate) fn unsupported(what: impl Into<String>) -> Self {
+        Self::Unsupported { what: what.into() }
+    }
+
+    /// Samples that are not finite: `count` of `length`, the first of them at `time` (s).
+    pub(crate) fn not_finite(index: usize, time: f64, count: usize, length: usize) -> Self {
+        let what = format!("{count} of {length} samples are not finite; the first is sample {index} (at {time} s)");
+        Self::Values { index, what }
+    }
+}
+
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
+impl RecordError {
+    /// A file that the system does not open, read or create.
+    pub(crate) fn io(verb: &str, path: &std::path::Path, source: io::Error) -> Self {
+        Self::Io { what: format!("{verb} {}", path.display()), source: Arc::new(source) }
+    }
+
+    /// What is wrong with a file, or with a part of it.
+    #[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
+    pub(crate) fn damaged(what: impl Into<String>) -> Self {
+        Self::Damaged { line: None, what: what.into(), source: None }
+    }
+
+    /// What is wrong on a line.
+    #[cfg(any(feature = "csv", feature = "uff"))]
+    pub(crate) fn on_line(line: u64, what: String) -> Self {
+        Self::Damaged { line: Some(line), what, source: None }
+    }
+
+    /// What a decoder says of a part of a file.
+    #[cfg(any(feature = "mat", feature = "npy"))]
+    pub(crate) fn undecoded(what: &str, source: impl Error + Send + Sync + 'static) -> Self {
+        Self::Damaged { line: None, what: format!("{what}: {source}"), source: Some(Arc::new(source)) }
+    }
+}
+
+/// Whether a result is an error whose message has `text`.
+#[cfg(test)]
+pub(crate) fn says<T>(result: &Result<T, RecordError>, text: &str) -> bool {
+    result.as_ref().is_err_and(|error| error.to_string().contains(text))
 }

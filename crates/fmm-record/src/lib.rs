@@ -28,7 +28,7 @@
 //!
 //! | question | answer |
 //! |---|---|
-//! | what is in this file? | modules `csv`, `mat`, `npy`, `uff`: a `Reading`, the record with the choices that led to it |
+//! | what is in this file? | `open`: channels with units and rates, and a `Reading` of each, the record with the choices that led to it; `Reader` says what the file cannot tell; module `uff` for functions that are no records |
 //! | what did this channel measure, and in which unit? | [`Label`], what the file tells; [`Request`], what you say beside it; [`Meaning`], the answer |
 //! | when does motion begin, and what is the offset? | [`Release`] |
 //! | how does it swing? | [`Swings`]: peaks, crossings, frequency |
@@ -59,7 +59,7 @@
 //!
 //! # Features
 //!
-//! `csv`, `mat` and `uff`, all on by default, are the readers of text, of MATLAB files of versions 5 to 7 and of Universal
+//! A file whose reader is not compiled is refused with the name of the feature. `csv`, `mat` and `uff`, all on by default, are the readers of text, of MATLAB files of versions 5 to 7 and of Universal
 //! Files, which are also written; `hdf5` adds version 7.3 to `mat`, and `npy` reads files of NumPy. Without `csv`, `mat`,
 //! `hdf5` and `npy` the crate has no dependency but `thiserror`.
 //!
@@ -70,14 +70,19 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-#[cfg(feature = "csv")]
-pub mod csv;
-#[cfg(feature = "mat")]
-pub mod mat;
-#[cfg(feature = "npy")]
-pub mod npy;
 #[cfg(feature = "uff")]
 pub mod uff;
+
+#[cfg(any(feature = "mat", feature = "npy"))]
+mod arrays;
+#[cfg(feature = "csv")]
+mod csv;
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
+mod files;
+#[cfg(feature = "mat")]
+mod mat;
+#[cfg(feature = "npy")]
+mod npy;
 
 mod calculus;
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
@@ -121,7 +126,11 @@ mod turning;
 mod unit;
 mod word;
 
+#[cfg(any(feature = "mat", feature = "npy"))]
+pub use arrays::Array;
 pub use error::RecordError;
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
+pub use files::{Channel, DataFile, Format, Reader, open};
 pub use further_release::{FurtherRelease, further_releases};
 pub use hum::{Hum, hum, without_lines};
 pub use label::Label;

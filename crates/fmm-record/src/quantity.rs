@@ -35,24 +35,28 @@ impl Quantity {
     /// The quantity of the integral over time.
     ///
     /// # Errors
-    /// [`RecordError::NoIntegral`] unless this is an acceleration or a velocity.
+    /// [`RecordError::Unsupported`] unless this is an acceleration or a velocity.
     pub fn integral(self) -> Result<Self, RecordError> {
         match self {
             Self::Acceleration => Ok(Self::Velocity),
             Self::Velocity => Ok(Self::Displacement),
-            quantity => Err(RecordError::NoIntegral { quantity }),
+            quantity => Err(RecordError::unsupported(format!(
+                "a record of {quantity} cannot be integrated; only acceleration and velocity can"
+            ))),
         }
     }
 
     /// The quantity of the derivative in time.
     ///
     /// # Errors
-    /// [`RecordError::NoDerivative`] unless this is a displacement or a velocity.
+    /// [`RecordError::Unsupported`] unless this is a displacement or a velocity.
     pub fn derivative(self) -> Result<Self, RecordError> {
         match self {
             Self::Displacement => Ok(Self::Velocity),
             Self::Velocity => Ok(Self::Acceleration),
-            quantity => Err(RecordError::NoDerivative { quantity }),
+            quantity => Err(RecordError::unsupported(format!(
+                "a record of {quantity} cannot be differentiated; only displacement and velocity can"
+            ))),
         }
     }
 }

@@ -23,57 +23,6 @@ pub struct Reading {
     pub sampling: Sampling,
 }
 
-/// The choices that all readers offer, as methods of a builder with fields of these names; `$column` is how a format
-/// names a column.
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
-macro_rules! builder_of_choices {
-    ($column:ty) => {
-        /// The column to read.
-        #[must_use]
-        pub fn channel(mut self, column: impl Into<$column>) -> Self {
-            self.channel = Some(column.into());
-            self
-        }
-
-        /// The column of time stamps, in seconds unless its name tells another unit; one that is not known is an error.
-        #[must_use]
-        pub fn time(mut self, column: impl Into<$column>) -> Self {
-            self.time = Some(column.into());
-            self
-        }
-
-        /// The sampling rate (Hz).
-        #[must_use]
-        pub fn rate(mut self, rate: f64) -> Self {
-            self.rate = Some(rate);
-            self
-        }
-
-        /// Brings the samples to a uniform rate by their time stamps, which need not be uniform.
-        #[must_use]
-        pub fn resampling(mut self, resampling: $crate::Resampling) -> Self {
-            self.resampling = Some(resampling);
-            self
-        }
-
-        /// What the channel measured.
-        #[must_use]
-        pub fn quantity(mut self, quantity: Quantity) -> Self {
-            self.quantity = quantity;
-            self
-        }
-
-        /// Unit of the numbers in the channel.
-        #[must_use]
-        pub fn unit(mut self, unit: impl Into<String>) -> Self {
-            self.unit = unit.into();
-            self
-        }
-    };
-}
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
-pub(crate) use builder_of_choices;
-
 /// The record of `values` at `times` (s) in the series called `name`, resampled if asked for.
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
 pub(crate) fn timed(
@@ -94,7 +43,13 @@ pub(crate) fn timed(
 /// How many bytes the compressed data of one file may expand to, all together: 33 million numbers. A small file can
 /// be made to expand a thousandfold; one that exceeds this limit is refused.
 #[cfg(any(feature = "mat", feature = "npy"))]
-pub const MOST_INFLATED: usize = 1 << 28;
+pub(crate) const MOST_INFLATED: usize = 1 << 28;
+
+/// More than that.
+#[cfg(any(feature = "mat", feature = "npy"))]
+pub(crate) fn too_large() -> RecordError {
+    RecordError::damaged(format!("the variables of the file expand to more than {MOST_INFLATED} bytes"))
+}
 
 /// A column of a table, by name or by position.
 ///

@@ -30,8 +30,8 @@ impl Record {
     /// A record whose first sample is at `start` (s) and whose samples follow each other every `interval` (s).
     ///
     /// # Errors
-    /// [`RecordError::Interval`], [`RecordError::Empty`], [`RecordError::NonFinite`], or
-    /// [`RecordError::TimeOutOfRange`] if `start` is not finite or so large that neighbouring samples would have
+    /// [`RecordError::Values`] if there are none or some are not finite, [`RecordError::Options`] if the interval is not
+    /// positive and finite, or if `start` is not finite or so large that neighbouring samples would have
     /// equal times.
     pub fn new(
         start: f64,
@@ -41,20 +41,21 @@ impl Record {
         unit: impl Into<String>,
     ) -> Result<Self, RecordError> {
         if !(interval > 0.0 && interval.is_finite()) {
-            return Err(RecordError::Interval { interval });
+            return Err(RecordError::interval(interval));
         }
         if values.is_empty() {
-            return Err(RecordError::Empty);
+            let what = "a record needs at least one sample, but none were given".into();
+            return Err(RecordError::Values { index: 0, what });
         }
         let length = values.len();
         let reach = start.abs() + interval * length as f64;
         if !(reach.is_finite() && reach * f64::EPSILON < interval) {
-            return Err(RecordError::TimeOutOfRange { start, interval, length });
+            return Err(RecordError::times_alike(start, interval, length));
         }
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
             let count = values.iter().filter(|value| !value.is_finite()).count();
             let time = start + interval * index as f64;
-            return Err(RecordError::NonFinite { index, time, count, length });
+            return Err(RecordError::not_finite(index, time, count, length));
         }
         Ok(Self { start, interval, values, quantity, unit: unit.into() })
     }
@@ -62,7 +63,7 @@ impl Record {
     /// A record sampled at `rate` (Hz) from time 0 on.
     ///
     /// # Errors
-    /// [`RecordError::Rate`], otherwise as [`Record::new`].
+    /// [`RecordError::Options`] if the rate is not positive and finite, otherwise as [`Record::new`].
     pub fn sampled(
         rate: f64,
         values: Vec<f64>,
@@ -70,7 +71,7 @@ impl Record {
         unit: impl Into<String>,
     ) -> Result<Self, RecordError> {
         if !(rate > 0.0 && rate.is_finite() && rate.recip().is_finite()) {
-            return Err(RecordError::Rate { rate });
+            return Err(RecordError::rate(rate));
         }
         Self::new(0.0, rate.recip(), values, quantity, unit)
     }
@@ -78,7 +79,7 @@ impl Record {
     /// A record of `values` at `times` (s), which must be uniform as [`UniformTimes`] defines it.
     ///
     /// # Errors
-    /// [`RecordError::LengthMismatch`], and as [`UniformTimes::of`] and [`Record::new`].
+    /// [`RecordError::TimeAxis`] if there are not as many times as values, and as [`UniformTimes::of`] and [`Record::new`].
     pub fn from_times(
         times: &[f64],
         values: Vec<f64>,
@@ -86,7 +87,7 @@ impl Record {
         unit: impl Into<String>,
     ) -> Result<Self, RecordError> {
         if times.len() != values.len() {
-            return Err(RecordError::LengthMismatch { times: times.len(), values: values.len() });
+            return Err(RecordError::length_mismatch(times.len(), values.len()));
         }
         let grid = UniformTimes::of(times)?;
         Self::new(grid.start(), grid.interval(), values, quantity, unit)
@@ -179,7 +180,7 @@ impl Record {
     /// The same samples with the first one at `start` (s).
     ///
     /// # Errors
-    /// [`RecordError::TimeOutOfRange`] as in [`Record::new`].
+    /// [`RecordError::Options`] as in [`Record::new`].
     pub fn starting_at(self, start: f64) -> Result<Self, RecordError> {
         Self::new(start, self.interval, self.values, self.quantity, self.unit)
     }
@@ -188,10 +189,14 @@ impl Record {
     /// if it misses an end by no more than 1e-6 of the interval, so that rounding does not drop it.
     ///
     /// # Errors
-    /// [`RecordError::NothingLeft`] if no sample lies there.
+    /// [`RecordError::Options`] if no sample lies there.
     pub fn crop(&self, from: f64, to: f64) -> Result<Self, RecordError> {
         const ROUNDING: f64 = 1e-6;
-        let nothing = RecordError::NothingLeft { from, to, start: self.start, end: self.end() };
+        let nothing = RecordError::options(format!(
+            "no sample lies between {from} s and {to} s; the record spans {} s to {} s",
+            self.start,
+            self.end()
+        ));
         if from.is_nan() || to.is_nan() {
             return Err(nothing);
         }
@@ -218,11 +223,11 @@ impl Record {
     /// Every sample times `factor`, in the new `unit`.
     ///
     /// # Errors
-    /// [`RecordError::Factor`] if the factor is zero or not finite, [`RecordError::NonFinite`] if a product
+    /// [`RecordError::Options`] if the factor is zero or not finite, [`RecordError::Values`] if a product
     /// overflows.
     pub fn scaled(&self, factor: f64, unit: impl Into<String>) -> Result<Self, RecordError> {
         if factor == 0.0 || !factor.is_finite() {
-            return Err(RecordError::Factor { factor });
+            return Err(RecordError::options(format!("a scale factor must be finite and not zero, but is {factor}")));
         }
         let values = self.values.iter().map(|value| value * factor).collect();
         Self::new(self.start, self.interval, values, self.quantity, unit)
@@ -231,10 +236,10 @@ impl Record {
     /// Every sample less `offset` (in the unit of the record).
     ///
     /// # Errors
-    /// [`RecordError::Offset`] if the offset is not finite, [`RecordError::NonFinite`] if a difference overflows.
+    /// [`RecordError::Options`] if the offset is not finite, [`RecordError::Values`] if a difference overflows.
     pub fn shifted(&self, offset: f64) -> Result<Self, RecordError> {
         if !offset.is_finite() {
-            return Err(RecordError::Offset { value: offset });
+            return Err(RecordError::options(format!("an offset must be finite, but is {offset}")));
         }
         let values = self.values.iter().map(|value| value - offset).collect();
         Self::new(self.start, self.interval, values, self.quantity, self.unit.clone())
@@ -261,6 +266,7 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::says;
 
     fn record(values: &[f64]) -> Result<Record, RecordError> {
         Record::new(1.0, 0.5, values.to_vec(), Quantity::Velocity, "m/s")
@@ -268,23 +274,20 @@ mod tests {
 
     #[test]
     fn impossible_records_are_refused() {
-        assert_eq!(record(&[]), Err(RecordError::Empty));
+        assert!(matches!(record(&[]), Err(RecordError::Values { index: 0, .. })));
         let error = record(&[0.0, 1.0, f64::NAN, f64::INFINITY]).unwrap_err();
-        assert_eq!(error, RecordError::NonFinite { index: 2, time: 2.0, count: 2, length: 4 });
+        assert!(matches!(error, RecordError::Values { index: 2, .. }));
         assert_eq!(error.to_string(), "2 of 4 samples are not finite; the first is sample 2 (at 2 s)");
         for interval in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(
                 Record::new(0.0, interval, vec![0.0], Quantity::Other, ""),
-                Err(RecordError::Interval { .. })
+                Err(RecordError::Options { .. })
             ));
         }
         for start in [1e300, f64::NAN, f64::INFINITY] {
-            assert!(matches!(
-                Record::new(start, 1e-3, vec![0.0], Quantity::Other, ""),
-                Err(RecordError::TimeOutOfRange { .. })
-            ));
+            assert!(says(&Record::new(start, 1e-3, vec![0.0], Quantity::Other, ""), "cannot be told apart"));
         }
-        assert!(matches!(Record::sampled(0.0, vec![0.0], Quantity::Other, ""), Err(RecordError::Rate { .. })));
+        assert!(says(&Record::sampled(0.0, vec![0.0], Quantity::Other, ""), "the sampling rate must be positive"));
     }
 
     #[test]
@@ -316,10 +319,10 @@ mod tests {
         assert_eq!(record.scaled(2.0, "V").unwrap().unit(), "V");
         assert_eq!(record.shifted(1.0).unwrap().values(), [0.0, -3.0]);
         for factor in [0.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(record.scaled(factor, "V"), Err(RecordError::Factor { .. })));
+            assert!(says(&record.scaled(factor, "V"), "a scale factor must be finite"));
         }
-        assert!(matches!(record.scaled(1e308, "V"), Err(RecordError::NonFinite { index: 1, .. })));
-        assert!(matches!(record.shifted(f64::NAN), Err(RecordError::Offset { .. })));
+        assert!(says(&record.scaled(1e308, "V"), "not finite; the first is sample"));
+        assert!(says(&record.shifted(f64::NAN), "must be finite, but is"));
     }
 
     #[test]

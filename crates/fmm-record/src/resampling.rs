@@ -80,13 +80,13 @@ impl Resampling {
     /// To `rate` (Hz), for a motion of which nothing lies above `band` (Hz).
     ///
     /// # Errors
-    /// [`RecordError::Rate`], or [`RecordError::Band`] if the band is not positive or above 0.45 of the rate.
+    /// [`RecordError::Options`] if the rate is not positive, or the band not positive or above 0.45 of the rate.
     pub fn new(rate: f64, band: f64) -> Result<Self, RecordError> {
         if !(rate > 0.0 && rate.is_finite() && rate.recip().is_finite()) {
-            return Err(RecordError::Rate { rate });
+            return Err(RecordError::rate(rate));
         }
         if !(band > 0.0 && band <= WIDEST * rate) {
-            return Err(RecordError::Band { band, rate });
+            return Err(band_too_wide(band, rate));
         }
         Ok(Self { rate, band })
     }
@@ -104,14 +104,14 @@ impl Resampling {
     /// Brings `values` at `times` (s), which increase, to the rate. The first sample is at the first of the times.
     ///
     /// # Errors
-    /// [`RecordError::LengthMismatch`]; [`RecordError::TooFewTimes`], [`RecordError::TimeNotFinite`],
-    /// [`RecordError::TimeNotIncreasing`]; [`RecordError::NonFinite`] for values; [`RecordError::Band`] if the band is above
-    /// 0.45 of the mean rate of the samples; [`RecordError::TimeOutOfRange`] for more samples than a memory holds;
-    /// [`RecordError::Unresolved`] where the times are so far apart that a motion of this band is not known by a tenth.
+    /// [`RecordError::TimeAxis`] for times that are not as many as the values, fewer than two, not finite, not increasing, or
+    /// so far apart that a motion of this band is not known by a tenth; [`RecordError::Values`] for values that are not
+    /// finite; [`RecordError::Options`] if the band is above 0.45 of the mean rate of the samples, or for more samples than a
+    /// memory holds.
     pub fn of(&self, times: &[f64], values: &[f64]) -> Result<Resampled, RecordError> {
         let mean_rate = checked(times, values)?;
         if self.band > WIDEST * mean_rate {
-            return Err(RecordError::Band { band: self.band, rate: mean_rate });
+            return Err(band_too_wide(self.band, mean_rate));
         }
         let next = (mean_rate / STEP).max(self.rate);
         let first = self.step(times, values, mean_rate, if next > 1.01 * self.rate { next } else { self.rate })?;
@@ -142,7 +142,7 @@ impl Resampling {
         if count > MOST_SAMPLES {
             // As many as can be counted.
             let length = count as usize;
-            return Err(RecordError::TimeOutOfRange { start, interval: rate.recip(), length });
+            return Err(RecordError::times_alike(start, rate.recip(), length));
         }
         // Sharper edges of the band need longer filters.
         let edge = rate.min(mean_rate) - 2.0 * self.band;
@@ -170,7 +170,12 @@ impl Resampling {
         resampled.error = (squares / count).sqrt();
         if resampled.worst > MOST {
             let Resampled { worst, worst_at, .. } = resampled;
-            return Err(RecordError::Unresolved { time: worst_at, error: worst, band: self.band });
+            let (index, band) = (times.partition_point(|time| *time < worst_at), self.band);
+            let what = format!(
+                "at {worst_at} s, the time stamps are too far apart: a motion of up to {band} Hz is known there with a relative \
+                 error of {worst} only; give a narrower band, or crop the record"
+            );
+            return Err(RecordError::time(Some(index), what));
         }
         Ok(resampled)
     }
@@ -189,23 +194,23 @@ impl Resampled {
 /// The mean rate (Hz) of samples that can be resampled.
 fn checked(times: &[f64], values: &[f64]) -> Result<f64, RecordError> {
     if times.len() != values.len() {
-        return Err(RecordError::LengthMismatch { times: times.len(), values: values.len() });
+        return Err(RecordError::length_mismatch(times.len(), values.len()));
     }
     let (Some(&start), Some(&end), 2..) = (times.first(), times.last(), times.len()) else {
-        return Err(RecordError::TooFewTimes { count: times.len() });
+        return Err(RecordError::too_few_times(times.len()));
     };
     if let Some((index, &time)) = times.iter().enumerate().find(|(_, time)| !time.is_finite()) {
-        return Err(RecordError::TimeNotFinite { index, time });
+        return Err(RecordError::time_not_finite(index, time));
     }
     if let Some(i) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
-        return Err(RecordError::TimeNotIncreasing { index: i + 1, time: times[i + 1], previous: times[i] });
+        return Err(RecordError::not_increasing(i + 1, times[i + 1], times[i]));
     }
     if let Some(index) = values.iter().position(|value| !value.is_finite()) {
         let count = values.iter().filter(|value| !value.is_finite()).count();
-        return Err(RecordError::NonFinite { index, time: times[index], count, length: values.len() });
+        return Err(RecordError::not_finite(index, times[index], count, values.len()));
     }
     let rate = (times.len() - 1) as f64 / (end - start);
-    if rate > 0.0 && rate.is_finite() { Ok(rate) } else { Err(RecordError::Rate { rate }) }
+    if rate > 0.0 && rate.is_finite() { Ok(rate) } else { Err(RecordError::rate(rate)) }
 }
 
 /// The frequencies to be kept, up to the band, and to be suppressed, from the stop to the top (Hz).
@@ -303,9 +308,17 @@ impl Solver {
     }
 }
 
+/// A band (Hz) that is not positive, or too wide for a rate (Hz).
+fn band_too_wide(band: f64, rate: f64) -> RecordError {
+    RecordError::options(format!(
+        "the band of a motion must be positive and at most 0.45 of the rates, but is {band} Hz at a rate of {rate} Hz"
+    ))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::says;
     use crate::synthetic::Noise;
 
     /// A sum of sines of random phases at all frequencies up to `band` (Hz), with a root mean square of 1.
@@ -379,22 +392,26 @@ mod tests {
     #[test]
     fn what_cannot_be_known_is_refused() {
         for (rate, band) in [(100.0, 0.0), (100.0, 46.0), (100.0, f64::NAN), (100.0, -1.0)] {
-            assert!(matches!(Resampling::new(rate, band), Err(RecordError::Band { .. })), "{rate} Hz, {band} Hz");
+            assert!(
+                says(&Resampling::new(rate, band), "the band of a motion must be positive"),
+                "{rate} Hz, {band} Hz"
+            );
         }
         for rate in [0.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(Resampling::new(rate, 1.0), Err(RecordError::Rate { .. })));
+            assert!(says(&Resampling::new(rate, 1.0), "the sampling rate must be positive"));
         }
         let resampling = Resampling::new(100.0, 20.0).unwrap();
         let times: Vec<f64> = (0..400).map(|i| f64::from(i) / 100.0 + if i < 200 { 0.0 } else { 0.2 }).collect();
         let error = resampling.of(&times, &[0.0; 400]).unwrap_err();
-        let RecordError::Unresolved { time, .. } = error else { panic!("{error}") };
+        let RecordError::TimeAxis { index: Some(200), what } = error else { panic!("{error}") };
+        let time: f64 = what.strip_prefix("at ").and_then(|rest| rest.split_once(" s,")).unwrap().0.parse().unwrap();
         assert!((time - 2.1).abs() < 0.1, "the gap is from 1.99 s to 2.2 s, not at {time} s");
-        assert!(matches!(resampling.of(&[0.0, 1.0], &[0.0; 2]), Err(RecordError::Band { .. })));
-        assert!(matches!(resampling.of(&[0.0], &[0.0]), Err(RecordError::TooFewTimes { .. })));
-        assert!(matches!(resampling.of(&[0.0, 0.0], &[0.0; 2]), Err(RecordError::TimeNotIncreasing { .. })));
-        assert!(matches!(resampling.of(&[0.0, 0.01], &[0.0, f64::NAN]), Err(RecordError::NonFinite { index: 1, .. })));
+        assert!(says(&resampling.of(&[0.0, 1.0], &[0.0; 2]), "the band of a motion must be positive"));
+        assert!(says(&resampling.of(&[0.0], &[0.0]), "do not give a sampling interval"));
+        assert!(says(&resampling.of(&[0.0, 0.0], &[0.0; 2]), "time must increase"));
+        assert!(says(&resampling.of(&[0.0, 0.01], &[0.0, f64::NAN]), "not finite; the first is sample"));
         let fine = Resampling::new(1e12, 0.4).unwrap();
-        assert!(matches!(fine.of(&times, &[0.0; 400]), Err(RecordError::TimeOutOfRange { .. })));
+        assert!(says(&fine.of(&times, &[0.0; 400]), "cannot be told apart"));
         assert_eq!(resampling.of(&[0.0, 0.01], &[0.0; 2]).unwrap().values.len(), 2);
     }
 }

@@ -40,21 +40,21 @@ impl UniformTimes {
     /// The grid on which `times` (s) lie.
     ///
     /// # Errors
-    /// [`RecordError::TooFewTimes`], [`RecordError::TimeNotFinite`], [`RecordError::TimeNotIncreasing`] for a
-    /// repeated or decreasing time, or [`RecordError::NonUniform`].
+    /// [`RecordError::TimeAxis`] if there are fewer than two times, or one is not finite, repeated, decreasing or off the grid;
+    /// [`RecordError::Options`] if they span more than a number can hold.
     pub fn of(times: &[f64]) -> Result<Self, RecordError> {
         let (Some(&start), Some(&end), count @ 2..) = (times.first(), times.last(), times.len()) else {
-            return Err(RecordError::TooFewTimes { count: times.len() });
+            return Err(RecordError::too_few_times(times.len()));
         };
         if let Some((index, &time)) = times.iter().enumerate().find(|(_, time)| !time.is_finite()) {
-            return Err(RecordError::TimeNotFinite { index, time });
+            return Err(RecordError::time_not_finite(index, time));
         }
         if times.windows(2).any(|pair| pair[1] <= pair[0]) {
-            return Err(odd_stamp(times, 0.0).unwrap_or(RecordError::Interval { interval: 0.0 }));
+            return Err(odd_stamp(times, 0.0).unwrap_or_else(|| RecordError::interval(0.0)));
         }
         let interval = (end - start) / (count - 1) as f64;
         if !(interval > 0.0 && interval.is_finite()) {
-            return Err(RecordError::Interval { interval });
+            return Err(RecordError::interval(interval));
         }
         let rounding = visible_rounding(times, interval);
         let tolerance = JITTER * interval + rounding;
@@ -64,7 +64,7 @@ impl UniformTimes {
             let deviation = time - expected;
             if deviation.abs() > tolerance || time - previous > 1.5 * interval + rounding {
                 // One gap bends the grid, which all stamps before it then miss.
-                let drifted = RecordError::NonUniform { index, time, expected, deviation, interval };
+                let drifted = not_uniform(index, time, expected, interval);
                 return Err(odd_stamp(times, tolerance).unwrap_or(drifted));
             }
             previous = time;
@@ -95,17 +95,27 @@ fn odd_stamp(times: &[f64], tolerance: f64) -> Option<RecordError> {
     let Some(before) = steps.iter().position(|step| is_odd(*step)) else {
         let before = steps.iter().position(|step| *step <= 0.0)?;
         let (time, previous) = (times[before + 1], times[before]);
-        return Some(RecordError::TimeNotIncreasing { index: before + 1, time, previous });
+        return Some(RecordError::not_increasing(before + 1, time, previous));
     };
     let (index, time, previous) = (before + 1, times[before + 1], times[before]);
     if time <= previous {
-        return Some(RecordError::TimeNotIncreasing { index, time, previous });
+        return Some(RecordError::not_increasing(index, time, previous));
     }
     let (sum, count) =
         steps.iter().filter(|step| !is_odd(**step)).fold((0.0, 0.0), |(sum, count), step| (sum + step, count + 1.0));
     let interval = if count > 0.0 { sum / count } else { usual };
     let expected = previous + interval;
-    Some(RecordError::NonUniform { index, time, expected, deviation: time - expected, interval })
+    Some(not_uniform(index, time, expected, interval))
+}
+
+/// A time stamp (s) off a uniform grid, which would have it at `expected` (s).
+fn not_uniform(index: usize, time: f64, expected: f64, interval: f64) -> RecordError {
+    let deviation = time - expected;
+    let what = format!(
+        "sampling is not uniform: time stamp {index} is {time} s, but a uniform interval of {interval} s puts it at \
+         {expected} s ({deviation} s off); resample the record, with the band of its motion, or give its rate"
+    );
+    RecordError::time(Some(index), what)
 }
 
 /// `interval` (s), or that of the nearest whole number of hertz if it is the same within [`RATE_ROUNDING`].
@@ -213,6 +223,7 @@ impl std::fmt::Display for Sampling {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::says;
 
     fn stamps(rate: f64, decimals: i32, count: u32) -> Vec<f64> {
         let unit = 10f64.powi(decimals);
@@ -253,7 +264,7 @@ mod tests {
                 *time += gap;
             }
             let found = UniformTimes::of(&times);
-            assert!(matches!(found, Err(RecordError::NonUniform { .. })), "{gap} s in {count} stamps: {found:?}");
+            assert!(says(&found, "sampling is not uniform"), "{gap} s in {count} stamps: {found:?}");
         }
     }
 
@@ -262,25 +273,28 @@ mod tests {
         for (rate, decimals, gap) in [(1000.0, 3, 1e-3), (600.0, 3, 0.01), (1000.0, 15, 1e-4)] {
             let mut times = stamps(rate, decimals, 10_000);
             times[3333..].iter_mut().for_each(|time| *time += gap);
-            let Err(RecordError::NonUniform { index, deviation, .. }) = UniformTimes::of(&times) else {
-                panic!("{rate} Hz")
+            let error = UniformTimes::of(&times).unwrap_err();
+            let RecordError::TimeAxis { index: Some(3333), what } = error else {
+                panic!("{rate} Hz with {decimals} decimals: {error}")
             };
-            assert_eq!(index, 3333, "{rate} Hz with {decimals} decimals");
+            let deviation = what.split_once("s (").and_then(|(_, rest)| rest.split_once(" s off")).unwrap().0;
+            let deviation: f64 = deviation.parse().unwrap();
             assert!((deviation - gap).abs() < 0.6e-3, "{deviation} s for {gap} s");
         }
         let error = UniformTimes::of(&[0.0, 1.0, 2.0, 300.0, 4.0, 5.0]).unwrap_err();
-        assert!(matches!(error, RecordError::NonUniform { index: 3, time: 300.0, expected: 3.0, .. }), "{error}");
+        assert!(matches!(error, RecordError::TimeAxis { index: Some(3), .. }));
+        assert!(error.to_string().contains("is 300 s, but a uniform interval of 1 s puts it at 3 s"), "{error}");
         let back = UniformTimes::of(&[0.0, 1.0, 2.0, -7.0, 4.0, 5.0]).unwrap_err();
-        assert_eq!(back, RecordError::TimeNotIncreasing { index: 3, time: -7.0, previous: 2.0 });
+        assert_eq!(back.to_string(), "time must increase, but time stamp 3 is -7 s after 2 s");
     }
 
     #[test]
     fn time_that_does_not_increase_is_its_own_error() {
         let error = UniformTimes::of(&[0.0, 1.0, 1.0, 2.0]).unwrap_err();
-        assert_eq!(error, RecordError::TimeNotIncreasing { index: 2, time: 1.0, previous: 1.0 });
-        assert_eq!(UniformTimes::of(&[0.0]), Err(RecordError::TooFewTimes { count: 1 }));
-        assert!(matches!(UniformTimes::of(&[0.0, f64::NAN, 2.0]), Err(RecordError::TimeNotFinite { index: 1, .. })));
-        assert!(matches!(UniformTimes::of(&[-1.7e308, 1.7e308]), Err(RecordError::Interval { .. })));
+        assert_eq!(error.to_string(), "time must increase, but time stamp 2 is 1 s after 1 s");
+        assert!(says(&UniformTimes::of(&[0.0]), "1 time stamps do not give a sampling interval"));
+        assert!(says(&UniformTimes::of(&[0.0, f64::NAN, 2.0]), "it must be finite"));
+        assert!(says(&UniformTimes::of(&[-1.7e308, 1.7e308]), "the sampling interval must be positive"));
     }
 
     #[test]

@@ -144,7 +144,7 @@ mod tests {
     fn cut_responses_to_blows_are_found() {
         for hit in 1..=3 {
             let path = format!("{}/../../examples/data/hammer_{hit}.mat", env!("CARGO_MANIFEST_DIR"));
-            let record = crate::mat::read(path).unwrap().channel("acceleration").unwrap().record;
+            let record = crate::open(path).unwrap().channel("acceleration").unwrap().record;
             assert_eq!(saturation(record.values()), None, "hit {hit}");
             let peak = record.values().iter().fold(0.0, |peak: f64, value| peak.max(value.abs()));
             // As measured, and by a converter of 12 bits.

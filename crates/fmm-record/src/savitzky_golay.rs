@@ -1,6 +1,7 @@
 //! Smoothing by sliding polynomials.
 
 use crate::RecordError;
+use crate::smooth::even_span;
 
 /// Highest degree: beyond it the polynomials follow noise, and their products lose the digits of a double.
 const HIGHEST_DEGREE: usize = 8;
@@ -22,7 +23,7 @@ const HIGHEST_DEGREE: usize = 8;
 /// ```
 ///
 /// # Errors
-/// [`RecordError::EvenSpan`] if the span is even, [`RecordError::Degree`] if it does not exceed the degree or the degree
+/// [`RecordError::Options`] if the span is even, or if it does not exceed the degree or the degree
 /// exceeds 8, [`RecordError::TooShort`] if there are fewer values than the span.
 ///
 /// # References
@@ -61,10 +62,12 @@ fn filtered(
     at: impl Fn(&[Polynomial], usize) -> Vec<f64>,
 ) -> Result<Vec<f64>, RecordError> {
     if span.is_multiple_of(2) {
-        return Err(RecordError::EvenSpan { span });
+        return Err(even_span(span));
     }
     if degree >= span || degree > HIGHEST_DEGREE {
-        return Err(RecordError::Degree { degree, span });
+        return Err(RecordError::options(format!(
+            "the degree of a smoothing polynomial must be below its span and at most 8, but is {degree} for {span} samples"
+        )));
     }
     if values.len() < span {
         let operation = "a Savitzky-Golay filter of this span";
@@ -136,6 +139,7 @@ fn orthonormal_polynomials(span: usize, degree: usize) -> Vec<Polynomial> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::says;
 
     /// Coefficients of the 1964 paper: (−3, 12, 17, 12, −3)/35 for 5 points and a quadratic or cubic.
     #[test]
@@ -176,9 +180,9 @@ mod tests {
     #[test]
     fn impossible_windows_are_refused() {
         let values = [0.0; 10];
-        assert_eq!(savitzky_golay(&values, 4, 2), Err(RecordError::EvenSpan { span: 4 }));
-        assert_eq!(savitzky_golay(&values, 5, 5), Err(RecordError::Degree { degree: 5, span: 5 }));
-        assert_eq!(savitzky_golay(&values, 99, 9), Err(RecordError::Degree { degree: 9, span: 99 }));
+        assert!(says(&savitzky_golay(&values, 4, 2), "must be odd, but is 4; use 3 or 5"));
+        assert!(says(&savitzky_golay(&values, 5, 5), "at most 8, but is 5 for 5 samples"));
+        assert!(says(&savitzky_golay(&values, 99, 9), "at most 8, but is 9 for 99 samples"));
         assert!(matches!(savitzky_golay(&values, 11, 3), Err(RecordError::TooShort { needed: 11, length: 10, .. })));
     }
 }

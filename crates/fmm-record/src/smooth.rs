@@ -45,10 +45,16 @@ impl EndRule {
 /// ```
 ///
 /// # Errors
-/// [`RecordError::EvenSpan`] if the span is even, 0 included: an even window has no centre. (`smooth` takes the odd
+/// [`RecordError::Options`] if the span is even, 0 included: an even window has no centre. (`smooth` takes the odd
 /// number below, `movmean` a window that is shifted by half a sample.)
 pub fn moving_average(values: &[f64], span: usize, ends: EndRule) -> Result<Vec<f64>, RecordError> {
-    if span.is_multiple_of(2) { Err(RecordError::EvenSpan { span }) } else { Ok(averaged(values, span / 2, ends)) }
+    if span.is_multiple_of(2) { Err(even_span(span)) } else { Ok(averaged(values, span / 2, ends)) }
+}
+
+/// A window without a centre.
+pub(crate) fn even_span(span: usize) -> RecordError {
+    let (below, above) = (span.saturating_sub(1).max(1), span + 1);
+    RecordError::options(format!("the span of a moving average must be odd, but is {span}; use {below} or {above}"))
 }
 
 /// Moving average over `half` samples to either side.
@@ -103,7 +109,7 @@ impl Record {
     /// The record after a [`moving_average`] over `span` samples.
     ///
     /// # Errors
-    /// [`RecordError::EvenSpan`].
+    /// [`RecordError::Options`].
     pub fn smoothed(&self, span: usize, ends: EndRule) -> Result<Self, RecordError> {
         Ok(self.derived(self.start(), moving_average(self.values(), span, ends)?))
     }

@@ -144,7 +144,7 @@ mod tests {
             assert_eq!((slope.quantity(), slope.unit()), (crate::Quantity::Acceleration, "m/s²"));
             assert!(slope.values().iter().all(|slope| (slope - 1.0).abs() < 1e-12), "{slope:?}");
         }
-        assert_eq!(record.differentiate_smoothed_by(&Smoothing::None), record.differentiate());
+        assert_eq!(record.differentiate_smoothed_by(&Smoothing::None).unwrap(), record.differentiate().unwrap());
         let force = record.with_quantity(crate::Quantity::Force);
         assert!(force.differentiate_smoothed_by(&Smoothing::None).is_err());
     }

@@ -1,6 +1,6 @@
 //! The sampling rate, where a scalar beside the data tells it.
 
-use crate::Sampling;
+use crate::{RecordError, Sampling};
 
 /// Names of scalars that hold a rate (Hz), in lower case and without underscores.
 const RATES: [&str; 9] = [
@@ -32,16 +32,10 @@ const INTERVALS: [&str; 10] = [
 /// How far two statements of the rate may differ, relative.
 const AGREEMENT: f64 = 1e-3;
 
-/// Two scalars that tell different rates (Hz).
-pub(crate) struct Conflict {
-    pub(crate) first: String,
-    pub(crate) first_rate: f64,
-    pub(crate) second: String,
-    pub(crate) second_rate: f64,
-}
-
 /// What scalars with their names say about the rate (Hz); none if they say nothing.
-pub(crate) fn stated<'a>(scalars: impl Iterator<Item = (&'a str, f64)>) -> Result<Option<(f64, Sampling)>, Conflict> {
+pub(crate) fn stated<'a>(
+    scalars: impl Iterator<Item = (&'a str, f64)>,
+) -> Result<Option<(f64, Sampling)>, RecordError> {
     let mut found: Option<(f64, Sampling, &str)> = None;
     for (name, value) in scalars {
         // A field is called as its structure is, with its own name behind a point.
@@ -58,8 +52,8 @@ pub(crate) fn stated<'a>(scalars: impl Iterator<Item = (&'a str, f64)>) -> Resul
         };
         match &found {
             Some((first_rate, _, first)) if (rate - first_rate).abs() > AGREEMENT * first_rate.abs() => {
-                let (first, second) = ((*first).into(), name.into());
-                return Err(Conflict { first, first_rate: *first_rate, second, second_rate: rate });
+                let what = format!("\"{first}\" says {first_rate} Hz, but \"{name}\" says {rate} Hz; give the rate");
+                return Err(RecordError::time(None, what));
             }
             Some(_) => {}
             None => found = Some((rate, sampling, name)),

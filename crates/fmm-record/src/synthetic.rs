@@ -239,7 +239,7 @@ pub(crate) fn fork_path() -> std::path::PathBuf {
 /// Free swing of a bicycle fork, gyro voltage, 1 kHz, 30 s.
 #[cfg(feature = "mat")]
 pub(crate) fn fork() -> Record {
-    let file = crate::mat::read(fork_path()).unwrap();
+    let file = crate::open(fork_path()).unwrap();
     Record::sampled(1000.0, file.array("data").unwrap().values().to_vec(), Quantity::Velocity, "V").unwrap()
 }
 

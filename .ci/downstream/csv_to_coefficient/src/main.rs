@@ -9,7 +9,7 @@ use fmm_fit::ResidualDiagnostics;
 use fmm_frf::{coulomb_impact_duration, peak_receptance_of_coulomb_impact};
 use fmm_friction::CoulombViscous;
 use fmm_identify::{Experiment, Known, Machine, Preparation, identify};
-use fmm_record::{Quantity, Swings, csv::CsvReader};
+use fmm_record::{Quantity, Reader, Swings};
 use fmm_uq::{Input, Inputs, propagate};
 
 mod stand_in;
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 
     // The file, and what was found in it.
-    let reading = CsvReader::default().quantity(Quantity::Velocity).unit("m/s").read(&path)?;
+    let reading = Reader::default().quantity(Quantity::Velocity).unit("m/s").read(&path)?;
     let swings = Swings::of(&reading.record);
     println!("{}: {} peaks, rate {}\n", reading.channel, swings.peaks().len(), reading.sampling);
 

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     {
         let rows = record.times().zip(record.values()).map(|(time, velocity)| format!("{time:.3};{velocity:.9}\n"));
         let text = String::from("time;velocity\n") + &rows.collect::<String>();
-        check("CSV", &fmm_record::csv::CsvReader::default().read_from(text.as_bytes())?.record)?;
+        check("CSV", &fmm_record::Reader::default().read_from(text.as_bytes())?.record)?;
     }
     #[cfg(feature = "uff")]
     {
@@ -47,20 +47,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     #[cfg(feature = "mat")]
     {
-        use fmm_record::mat::{MatFile, MatReader};
-
         let file = matlab::version_5("velocity", record.values());
-        check("MATLAB", &MatReader::default().rate(1000.0).read_from(&MatFile::parse(&file)?)?.record)?;
+        check("MATLAB", &fmm_record::Reader::default().rate(1000.0).read_from(file)?.record)?;
     }
     #[cfg(feature = "npy")]
     {
-        use fmm_record::npy::{NpyFile, NpyReader};
-
         let header = format!("{:<117}\n", "{'descr': '<f8', 'fortran_order': False, 'shape': (2000,), }");
         let values = record.values().iter().flat_map(|value| value.to_le_bytes());
         let file: Vec<u8> =
             b"\x93NUMPY\x01\x00\x76\x00".iter().copied().chain(header.into_bytes()).chain(values).collect();
-        check("NumPy", &NpyReader::default().rate(1000.0).read_from(&NpyFile::parse(&file)?)?.record)?;
+        check("NumPy", &fmm_record::Reader::default().rate(1000.0).read_from(file)?.record)?;
     }
     Ok(())
 }

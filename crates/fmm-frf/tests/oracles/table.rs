@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use fmm_frf::{AverageOptions, Complex64, ResponseForm, TrialAverage};
-use fmm_record::mat::MatFile;
+use fmm_record::DataFile;
 
 /// The numbers of a table, row by row, without comments, without the header and from column `first` on.
 pub(crate) fn rows(table: &str, first: usize) -> Vec<Vec<f64>> {
@@ -17,13 +17,13 @@ pub(crate) fn complex(row: &[f64], column: usize) -> Complex64 {
 }
 
 pub(crate) struct Recording {
-    file: MatFile,
+    file: DataFile,
 }
 
 impl Recording {
     pub(crate) fn read(name: &str) -> Self {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name);
-        Self { file: MatFile::read(path).unwrap() }
+        Self { file: fmm_record::open(path).unwrap() }
     }
 
     /// A channel whose whole numbers count `per_unit` to the unit.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use fmm_identify::{Experiment, Preparation, WeakForm, Windows, decrements, half_swing_losses_of};
 use fmm_model::{Damping, Oscillator};
-use fmm_record::{Quantity, Record, mat};
+use fmm_record::{Quantity, Reader, Record};
 
 use crate::measurement::{close, line, statistics};
 
@@ -16,7 +16,7 @@ const FRICTION: (f64, f64) = (0.029_92, 0.000_61);
 
 fn fork() -> Record {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../examples/data/BrowserForkCompoundFirst1.mat");
-    let reader = mat::MatReader::default().channel("data").quantity(Quantity::Velocity).unit("V");
+    let reader = Reader::default().channel("data").quantity(Quantity::Velocity).unit("V");
     reader.read(path).unwrap().record
 }
 

@@ -1,13 +1,13 @@
 //! What stands above a table: the names of its columns, their units, and what is stated of the sampling.
 
-use super::CsvError;
 use super::fields::{Separator, split, text};
 use super::layout::{Kind, Row};
 use super::lines::Line;
 use super::number;
-use crate::Unit;
+use super::table::{not_a_number, ragged};
 use crate::clock::Clock;
 use crate::reading::seconds_in;
+use crate::{RecordError, Unit};
 
 /// What stands above a table.
 #[derive(Debug, Default)]
@@ -27,7 +27,7 @@ pub(super) fn header(
     row: Option<&Line>,
     columns: &[Kind],
     separator: Separator,
-) -> Result<Header, CsvError> {
+) -> Result<Header, RecordError> {
     let width = columns.len();
     let mut found =
         Header { stated: above.iter().filter_map(|line| statement(line, separator)).collect(), ..Header::default() };
@@ -43,8 +43,7 @@ pub(super) fn header(
     let Some(names) = fitting(last) else {
         let fields = Row::of(&above[last], separator).len();
         if let (Some(row), true) = (row, fields > 1) {
-            let sign = if let Separator::Sign(sign) = separator { sign } else { b' ' };
-            return Err(CsvError::Ragged { line: row.number, expected: fields, found: width, separator: sign });
+            return Err(ragged(row.number, fields, width, separator));
         }
         // The end of a preamble.
         found.bare = positions(width);
@@ -57,8 +56,7 @@ pub(super) fn header(
     if first.into_iter().chain(numbers).any(|column| is_number(&column)) {
         // A row without its first number must not be lost; the last line of a preamble has a name there.
         if let (Some(column), Some(line)) = (first.filter(|first| names[*first].is_empty()), above.get(last)) {
-            let column = column.to_string();
-            return Err(CsvError::NotANumber { line: line.number, column, text: String::new() });
+            return Err(not_a_number(line.number, &column.to_string(), ""));
         }
         found.bare = positions(width);
         found.names.clone_from(&found.bare);

@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
-use super::CsvError;
 use super::fields::{Separator, split, text};
 use super::header::{Header, header};
 use super::lines::Line;
 use super::number;
+use super::table::NO_ROWS;
+use crate::RecordError;
 
 /// What a column holds, by the last rows that are known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,11 +31,11 @@ impl Layout {
     ///
     /// The table is what the last of these lines look like. What stands before its first row is a preamble, but for the
     /// names of the columns and a row of units right before it.
-    pub(super) fn of(lines: &[Line], given: Option<Separator>) -> Result<Self, CsvError> {
+    pub(super) fn of(lines: &[Line], given: Option<Separator>) -> Result<Self, RecordError> {
         let (begin, told) = preamble(lines);
         let body = &lines[begin..];
         if body.is_empty() {
-            return Err(CsvError::NoRows);
+            return Err(RecordError::damaged(NO_ROWS));
         }
         let separator = match given.or(told) {
             Some(separator) => separator,
@@ -124,7 +125,7 @@ fn first_row(rows: &[Row], columns: &[Kind], separator: Separator) -> usize {
 
 /// The separator in the last two lines: a semicolon or a tab, where there is one, since a comma beside them is a decimal
 /// comma; blanks between nothing but numbers; else a comma.
-fn likely_separator(lines: &[Line]) -> Result<Separator, CsvError> {
+fn likely_separator(lines: &[Line]) -> Result<Separator, RecordError> {
     let last = || lines.iter().rev().take(2);
     let found = |separator: &u8| last().any(|line| line.text.contains(separator));
     if let Some(sign) = [b';', b'\t'].into_iter().find(found) {
@@ -141,7 +142,7 @@ fn likely_separator(lines: &[Line]) -> Result<Separator, CsvError> {
 }
 
 /// Whether the commas of a table that has no other separator are decimal commas of one column of numbers.
-fn is_decimal_comma(lines: &[Line]) -> Result<bool, CsvError> {
+fn is_decimal_comma(lines: &[Line]) -> Result<bool, RecordError> {
     let numbers: Vec<Comma> = lines.iter().rev().map_while(|line| Comma::of(line.text.trim_ascii())).collect();
     if numbers.len() < lines.len().min(2) {
         return Ok(false);
@@ -158,7 +159,10 @@ fn is_decimal_comma(lines: &[Line]) -> Result<bool, CsvError> {
         return Ok(false);
     }
     let text = lines.first().map(|line| text(line.text.trim_ascii())).unwrap_or_default();
-    Err(CsvError::AmbiguousComma { text })
+    let what = format!(
+        "\"{text}\" may be two whole numbers or one with a decimal comma; give the separator, a comma or another"
+    );
+    Err(RecordError::options(what))
 }
 
 /// A number with at most one comma and no point, which may be two whole numbers.

@@ -1,11 +1,12 @@
 //! The lines of a text file, with their numbers.
 
 use std::io::{BufRead, ErrorKind};
+use std::sync::Arc;
 
-use super::CsvError;
+use crate::RecordError;
 
 /// The longest line that is read (bytes). A file without line ends is refused instead of filling the memory.
-pub const LONGEST_LINE: usize = 1 << 20;
+pub(crate) const LONGEST_LINE: usize = 1 << 20;
 
 /// A line that is neither blank nor a comment.
 #[derive(Debug, Clone, Default)]
@@ -34,12 +35,13 @@ impl<R: BufRead> Lines<R> {
     }
 
     /// Reads the next line that is neither blank nor a comment; false at the end.
-    pub(super) fn next(&mut self, line: &mut Line) -> Result<bool, CsvError> {
+    pub(super) fn next(&mut self, line: &mut Line) -> Result<bool, RecordError> {
         line.comment = None;
         while self.read(line)? {
             if line.number == 1 {
                 if line.text.starts_with(&[0xFF, 0xFE]) || line.text.starts_with(&[0xFE, 0xFF]) {
-                    return Err(CsvError::Utf16);
+                    let what = "the file is UTF-16 text; save it as UTF-8".into();
+                    return Err(RecordError::UnknownFormat { what });
                 }
                 if line.text.starts_with("\u{FEFF}".as_bytes()) {
                     line.text.drain(..3);
@@ -58,14 +60,16 @@ impl<R: BufRead> Lines<R> {
     }
 
     /// Reads the next line, whatever is in it; false at the end.
-    fn read(&mut self, line: &mut Line) -> Result<bool, CsvError> {
+    fn read(&mut self, line: &mut Line) -> Result<bool, RecordError> {
         line.text.clear();
         line.is_ended = false;
         let mut is_any = false;
         while !line.is_ended {
             let buffer = match self.source.fill_buf() {
                 Err(error) if error.kind() == ErrorKind::Interrupted => continue,
-                buffer => buffer?,
+                buffer => {
+                    buffer.map_err(|source| RecordError::Io { what: "read on".into(), source: Arc::new(source) })?
+                }
             };
             // A line feed behind a carriage return belongs to the end of the line before.
             if std::mem::take(&mut self.after_return) && buffer.first() == Some(&b'\n') {
@@ -79,7 +83,9 @@ impl<R: BufRead> Lines<R> {
             let end = buffer.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
             let piece = &buffer[..end.unwrap_or(buffer.len())];
             if line.text.len() + piece.len() > LONGEST_LINE {
-                return Err(CsvError::LineTooLong { line: self.number + 1, limit: LONGEST_LINE });
+                let line = self.number + 1;
+                let what = format!("line {line} is longer than {LONGEST_LINE} bytes; this is not a table of numbers");
+                return Err(RecordError::on_line(line, what));
             }
             line.text.extend_from_slice(piece);
             line.is_ended = end.is_some();

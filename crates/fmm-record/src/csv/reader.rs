@@ -1,76 +1,16 @@
 //! From a table of numbers to a record.
 
-use std::fs::File;
 use std::io::Read;
-use std::path::Path;
 
-use super::CsvError;
 use super::table::Table;
-use crate::clock::Clock;
-use crate::reading::{builder_of_choices, timed};
+use crate::clock::{Clock, counter};
+use crate::reading::{quoted, timed};
 use crate::stated::stated;
-use crate::{Column, Quantity, Reading, Record, RecordError, Resampling, Sampling, UniformTimes};
+use crate::{Quantity, Reader, Reading, Record, RecordError, Sampling, UniformTimes};
 
-/// Reads one channel of a text file.
-///
-/// | what | found by default |
-/// |---|---|
-/// | separator | semicolon or tab if the rows have one, else blanks between nothing but numbers, else comma; what a first line `sep=;` says |
-/// | first row | the first line with as many fields as the last ones have, and numbers where they have numbers |
-/// | names | the line above the first row, with the units of a row of units; or a comment there, if it names the time |
-/// | decimal comma | where it is used throughout and the separator is not a comma; one column of whole numbers with commas is refused if it may be two |
-/// | time | the column called `t`, `time`, `Zeit`, `timestamp` or the like, in seconds unless its name tells another unit (ms, µs, ns, min, h, in any usual spelling); else the first column, if it increases uniformly, but not by whole numbers without a unit |
-/// | channel | the first column that is neither the time nor called a number of samples |
-/// | quantity, unit | [`Quantity::Other`], empty |
-///
-/// Where no column is time, a number above the table that is called an interval or a rate (`Sample Interval`, `Delta_X`) tells
-/// the rate. With a rate, time stamps are not looked at, and the record begins at 0 s.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct CsvReader {
-    separator: Option<u8>,
-    skip: u64,
-    time: Option<Column>,
-    channel: Option<Column>,
-    rate: Option<f64>,
-    resampling: Option<Resampling>,
-    quantity: Quantity,
-    unit: String,
-}
-
-impl CsvReader {
-    /// Passes over the first `lines` lines of the file, which may hold anything.
-    #[must_use]
-    pub fn skip(mut self, lines: u64) -> Self {
-        self.skip = lines;
-        self
-    }
-
-    /// The byte between columns: comma, semicolon, tab, `|` or `:`; a space stands for blanks, as many as there are.
-    #[must_use]
-    pub fn separator(mut self, separator: u8) -> Self {
-        self.separator = Some(separator);
-        self
-    }
-
-    builder_of_choices!(Column);
-
-    /// Reads the file at `path`.
-    ///
-    /// # Errors
-    /// [`CsvError::Open`], otherwise as [`CsvReader::read_from`].
-    pub fn read(&self, path: impl AsRef<Path>) -> Result<Reading, CsvError> {
-        self.read_from(open(path.as_ref())?)
-    }
-
-    /// Reads text from `input`, which is buffered here.
-    ///
-    /// # Errors
-    /// Any [`CsvError`] but [`CsvError::Open`]; infinite or missing numbers (`NaN`, `inf`) are
-    /// [`RecordError::NonFinite`](crate::RecordError::NonFinite).
-    pub fn read_from(&self, input: impl Read) -> Result<Reading, CsvError> {
-        if self.time.is_some() && self.rate.is_some() {
-            return Err(CsvError::TimeAndRate);
-        }
+impl Reader {
+    /// Reads one channel of the text in `input`, which is buffered here.
+    pub(crate) fn read_text(&self, input: impl Read) -> Result<Reading, RecordError> {
         let table = Table::open(input, self.separator, self.skip)?;
         let columns = table.names().to_vec();
         let channel = self.channel.as_ref().map(|column| table.find(column)).transpose()?;
@@ -79,7 +19,8 @@ impl CsvReader {
             None => time_by_name(&columns, channel),
         };
         if let (Some(time), true) = (time, time == channel) {
-            return Err(CsvError::SameColumn { column: columns[time].clone() });
+            let column = &columns[time];
+            return Err(RecordError::options(format!("column \"{column}\" cannot be both the time and the channel")));
         }
         let rate = match self.rate {
             Some(rate) => Some((rate, Sampling::Given { rate })),
@@ -93,7 +34,11 @@ impl CsvReader {
         let may_be_time = Clock::of(&columns[first]).may_be_time();
         let is_settled = channel.is_some() && self.rate.is_some();
         let series = match (time, other, rate) {
-            (Some(time), None, _) => return Err(CsvError::NoChannel { time: columns[time].clone() }),
+            (Some(time), None, _) => {
+                let time = &columns[time];
+                let what = format!("the file has only the time column \"{time}\", and no other to read");
+                return Err(RecordError::NoSuchChannel { what });
+            }
             (Some(time), Some(channel), Some(rate)) => {
                 Series::of(channel, table.read_columns([channel])?).at(rate).beside(time)
             }
@@ -109,33 +54,14 @@ impl CsvReader {
                 let channel = channel.unwrap_or(first);
                 Series::of(channel, table.read_columns([channel])?).at(rate)
             }
-            (None, _, None) => return Err(CsvError::NoRate { available: columns }),
+            (None, _, None) => return Err(no_rate(&columns)),
         };
         self.reading(series, columns)
     }
 
-    /// The columns of the file at `path` that can be the channel, by position counted from 0 and name: all but the time.
-    ///
-    /// ```
-    /// use fmm_record::csv::CsvReader;
-    ///
-    /// let channels = CsvReader::default().channels_from("x,Zeit [ms],v\n1,0,4\n2,1,5\n".as_bytes())?;
-    /// assert_eq!(channels, [(0, "x".to_owned()), (2, "v".to_owned())]);
-    /// # Ok::<(), fmm_record::csv::CsvError>(())
-    /// ```
-    ///
-    /// # Errors
-    /// [`CsvError::Open`], otherwise as [`CsvReader::channels_from`].
-    pub fn channels(&self, path: impl AsRef<Path>) -> Result<Vec<(usize, String)>, CsvError> {
-        self.channels_from(open(path.as_ref())?)
-    }
-
-    /// The columns of text that can be the channel, as [`CsvReader::channels`]. Beyond the header, only what is needed to
-    /// find the time is read.
-    ///
-    /// # Errors
-    /// As [`CsvReader::read_from`], but for errors in columns other than the time.
-    pub fn channels_from(&self, input: impl Read) -> Result<Vec<(usize, String)>, CsvError> {
+    /// The columns of text that can be the channel, by position counted from 0 and name: all but the time. Beyond the header,
+    /// only what is needed to find the time is read.
+    pub(crate) fn text_channels(&self, input: impl Read) -> Result<Vec<(usize, String)>, RecordError> {
         let table = Table::open(input, self.separator, self.skip)?;
         let columns = table.names().to_vec();
         let first = table.first();
@@ -157,25 +83,26 @@ impl CsvReader {
         Ok(columns.into_iter().enumerate().filter(is_channel).collect())
     }
 
-    fn reading(&self, series: Series, columns: Vec<String>) -> Result<Reading, CsvError> {
+    fn reading(&self, series: Series, columns: Vec<String>) -> Result<Reading, RecordError> {
         let Series { time, channel, values, scale } = series;
         let (time, channel) = (time.map(|index| columns[index].clone()), columns[channel].clone());
-        let (quantity, unit) = (self.quantity, self.unit.clone());
         let (record, sampling) = match (scale, &time) {
-            (Some(Scale::Rate(rate, sampling)), _) => (Record::sampled(rate, values, quantity, unit)?, sampling),
+            (Some(Scale::Rate(rate, sampling)), _) => (Record::sampled(rate, values, Quantity::Other, "")?, sampling),
             (Some(Scale::Times(by_nature, mut times)), Some(name)) => {
                 Clock::of(name).to_seconds(name, by_nature, &mut times)?;
-                let (record, sampling) = timed(name.clone(), &times, values, self.resampling)?;
-                (record.with_quantity(quantity).with_unit(unit), sampling)
+                timed(name.clone(), &times, values, self.resampling)?
             }
-            _ => return Err(CsvError::NoRate { available: columns }),
+            _ => return Err(no_rate(&columns)),
         };
         Ok(Reading { record, channel, time, columns, sampling })
     }
 }
 
-fn open(path: &Path) -> Result<File, CsvError> {
-    File::open(path).map_err(|source| CsvError::Open { path: path.into(), source })
+/// Neither a time column nor a rate.
+fn no_rate(columns: &[String]) -> RecordError {
+    let what =
+        format!("the sampling rate is not known: give a time column or a rate; the file has: {}", quoted(columns));
+    RecordError::time(None, what)
 }
 
 /// The first column that is called time, other than the channel; one in a known unit before others.
@@ -196,7 +123,7 @@ fn by_nature(
     [times, values]: [Vec<f64>; 2],
     rate: Option<(f64, Sampling)>,
     is_chosen: bool,
-) -> Result<Series, CsvError> {
+) -> Result<Series, RecordError> {
     let clock = Clock::of(&columns[first]);
     let is_uniform = UniformTimes::of(&times).is_ok();
     let counts = clock.is_counter || (is_uniform && clock.counts(&times));
@@ -209,8 +136,8 @@ fn by_nature(
             false => Series::of(first, [times]).at(rate),
         }),
         _ if is_time => Ok(Series::of(second, [values]).timed(first, true, times)),
-        _ if counts => Err(RecordError::Counter { name: columns[first].clone() }.into()),
-        _ => Err(CsvError::NoRate { available: columns.to_vec() }),
+        _ if counts => Err(counter(&columns[first])),
+        _ => Err(no_rate(columns)),
     }
 }
 

@@ -4,19 +4,38 @@ use std::collections::VecDeque;
 use std::io::{BufReader, Read};
 use std::ops::Range;
 
-use super::CsvError;
 use super::fields::{Separator, split};
 use super::header::Header;
 use super::layout::{Kind, Layout};
 use super::lines::{Line, Lines};
 use super::number::{self, Digits, Mark};
-use crate::Column;
+use crate::reading::quoted;
+use crate::{Column, RecordError};
 
 /// How much of the file its layout is judged by (bytes).
 const HEAD: usize = 1 << 16;
 
 /// Rows that the last one is compared with before it is called cut off.
 const ENOUGH: usize = 8;
+
+/// A header without a table.
+pub(super) const NO_ROWS: &str = "the file has a header but no rows of data below it";
+
+/// A row with more or fewer fields than the first.
+pub(super) fn ragged(line: u64, expected: usize, found: usize, separator: Separator) -> RecordError {
+    let remedy = if separator.leaves_comma() {
+        ""
+    } else {
+        "; if the numbers have decimal commas, save the file with semicolons or tabs between the columns; if lines stand above \
+         the table, skip them"
+    };
+    RecordError::on_line(line, format!("line {line} has {found} fields, but the first row has {expected}{remedy}"))
+}
+
+/// A field that is not a number.
+pub(super) fn not_a_number(line: u64, column: &str, text: &str) -> RecordError {
+    RecordError::on_line(line, format!("line {line}, column \"{column}\": \"{text}\" is not a number"))
+}
 
 /// An open table: the names of its columns are known, its rows are read one by one.
 pub(super) struct Table<R> {
@@ -32,12 +51,15 @@ pub(super) struct Table<R> {
 
 impl<R: Read> Table<R> {
     /// Opens the table behind the first `skip` lines.
-    pub(super) fn open(input: R, separator: Option<u8>, skip: u64) -> Result<Self, CsvError> {
+    pub(super) fn open(input: R, separator: Option<u8>, skip: u64) -> Result<Self, RecordError> {
         let separator = match separator {
             None => None,
             Some(b' ') => Some(Separator::Blanks),
             Some(sign @ (b',' | b';' | b'\t' | b'|' | b':')) => Some(Separator::Sign(sign)),
-            Some(separator) => return Err(CsvError::Separator { separator }),
+            Some(separator) => {
+                let sign = char::from(separator);
+                return Err(RecordError::options(format!("{sign:?} cannot separate columns of numbers")));
+            }
         };
         let mut lines = Lines::new(BufReader::new(input), skip);
         let mut head = Vec::new();
@@ -48,7 +70,7 @@ impl<R: Read> Table<R> {
             head.push(std::mem::take(&mut line));
         }
         if head.is_empty() {
-            return Err(CsvError::Empty);
+            return Err(RecordError::damaged("the file is empty or holds comments only"));
         }
         let Layout { separator, columns, header, first } = Layout::of(&head, separator)?;
         let head = head.into_iter().skip(first).collect();
@@ -77,7 +99,7 @@ impl<R: Read> Table<R> {
     }
 
     /// Position of the column that the caller means.
-    pub(super) fn find(&self, column: &Column) -> Result<usize, CsvError> {
+    pub(super) fn find(&self, column: &Column) -> Result<usize, RecordError> {
         let names = &self.header.names;
         let found = match column {
             Column::Index(index) if *index < names.len() => vec![*index],
@@ -101,13 +123,20 @@ impl<R: Read> Table<R> {
         };
         match found[..] {
             [index] => Ok(index),
-            [] => Err(CsvError::NoSuchColumn { column: column.clone(), available: names.clone() }),
-            _ => Err(CsvError::AmbiguousColumn { column: column.clone(), count: found.len() }),
+            [] => {
+                let what = format!("there is no column {column}; the file has: {}", quoted(names));
+                Err(RecordError::NoSuchChannel { what })
+            }
+            _ => {
+                let count = found.len();
+                let what = format!("{count} columns are called {column}; choose one by its position, counted from 0");
+                Err(RecordError::WhichChannel { what })
+            }
         }
     }
 
     /// Reads the chosen columns of all rows.
-    pub(super) fn read_columns<const N: usize>(mut self, chosen: [usize; N]) -> Result<[Vec<f64>; N], CsvError> {
+    pub(super) fn read_columns<const N: usize>(mut self, chosen: [usize; N]) -> Result<[Vec<f64>; N], RecordError> {
         let mut columns = [const { Vec::new() }; N];
         let last = self.columns.len() - 1;
         let is_last_in_use = chosen.contains(&last);
@@ -121,16 +150,21 @@ impl<R: Read> Table<R> {
                 let digits = Digits::of(self.field(last));
                 let rows = columns.first().map_or(0, Vec::len);
                 if !self.line.is_ended && rows > ENOUGH && least.is_some_and(|least| digits.are_fewer_than(least)) {
-                    return Err(CsvError::Cut { line: self.line.number, text: self.shown(last) });
+                    let (line, text) = (self.line.number, self.shown(last));
+                    let what = format!(
+                        "line {line} ends with \"{text}\" and without a line end, and all other numbers of its column have more \
+                         digits: the file is cut off; if it is not, end its last line"
+                    );
+                    return Err(RecordError::on_line(line, what));
                 }
                 least = Some(least.map_or(digits, |least| least.least(digits)));
             }
         }
-        if columns.iter().any(Vec::is_empty) { Err(CsvError::NoRows) } else { Ok(columns) }
+        if columns.iter().any(Vec::is_empty) { Err(RecordError::damaged(NO_ROWS)) } else { Ok(columns) }
     }
 
     /// Goes to the next row that is not blank; false at the end.
-    fn advance(&mut self) -> Result<bool, CsvError> {
+    fn advance(&mut self) -> Result<bool, RecordError> {
         loop {
             match self.head.pop_front() {
                 Some(line) => self.line = line,
@@ -145,14 +179,13 @@ impl<R: Read> Table<R> {
     }
 
     /// Refuses a row with more or fewer fields than the table has columns; only columns in which nothing is may be missing.
-    fn check_width(&self) -> Result<(), CsvError> {
+    fn check_width(&self) -> Result<(), RecordError> {
         let (expected, found) = (self.columns.len(), self.fields.len());
         let missing_are_blank = || self.columns[found..].iter().all(|kind| *kind == Kind::Blank);
         if found == expected || (found < expected && missing_are_blank()) {
             return Ok(());
         }
-        let separator = if let Separator::Sign(sign) = self.separator { sign } else { b' ' };
-        Err(CsvError::Ragged { line: self.line.number, expected, found, separator })
+        Err(ragged(self.line.number, expected, found, self.separator))
     }
 
     fn field(&self, column: usize) -> &[u8] {
@@ -166,17 +199,21 @@ impl<R: Read> Table<R> {
     }
 
     /// The number in a field of the current row.
-    fn number(&mut self, column: usize) -> Result<f64, CsvError> {
-        let name = || self.header.names[column].clone();
+    fn number(&mut self, column: usize) -> Result<f64, RecordError> {
         let line = self.line.number;
         let Some((value, mark)) = number::parse(self.field(column), self.separator) else {
-            return Err(CsvError::NotANumber { line, column: name(), text: self.shown(column) });
+            return Err(not_a_number(line, &self.header.names[column], &self.shown(column)));
         };
         match (self.mark, mark) {
             (None, _) => self.mark = mark,
             (Some(earlier), Some(mark)) if earlier != mark => {
-                let comma = mark == Mark::Comma;
-                return Err(CsvError::MixedDecimals { line, column: name(), text: self.shown(column), comma });
+                let [this, other] = if mark == Mark::Comma { ["comma", "point"] } else { ["point", "comma"] };
+                let (name, text) = (&self.header.names[column], self.shown(column));
+                let what = format!(
+                    "line {line}, column \"{name}\": \"{text}\" has a decimal {this}, but earlier numbers have a decimal \
+                     {other}; a file must keep to one of them"
+                );
+                return Err(RecordError::on_line(line, what));
             }
             _ => {}
         }

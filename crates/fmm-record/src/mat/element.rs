@@ -5,7 +5,9 @@ use std::io::Read;
 
 use libflate::zlib::Decoder;
 
-use super::{MOST_INFLATED, MatError};
+use crate::RecordError;
+use crate::files::is_matlab_4;
+use crate::reading::{MOST_INFLATED, too_large};
 
 const HEADER: usize = 128;
 pub(super) const MATRIX: u32 = 14;
@@ -41,58 +43,32 @@ impl Endian {
     }
 }
 
-/// Checks the header of the file.
-pub(super) fn endian(file: &[u8]) -> Result<Endian, MatError> {
-    const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
-    // HDF5 allows a user block before its signature; MATLAB puts its own header there.
-    let hdf5_at = |offset: usize| file.get(offset..).is_some_and(|rest| rest.starts_with(HDF5));
-    if file.starts_with(b"MATLAB 7.3") || [0, 512, 1024, 2048].into_iter().any(hdf5_at) {
-        return Err(MatError::Version73);
-    }
-    let not_mat = MatError::NotMat { length: file.len() };
+/// The order of bytes in a file of version 5 to 7, by its header.
+pub(super) fn endian(file: &[u8]) -> Result<Endian, RecordError> {
+    let length = file.len();
     let endian = match file.get(HEADER - 2..HEADER) {
         Some(b"IM") => Endian::Little,
         Some(b"MI") => Endian::Big,
-        _ if is_version_4(file) => return Err(MatError::Version4),
-        _ => return Err(not_mat),
+        _ if is_matlab_4(file) => {
+            let what = "a MATLAB version 4 file; load it in MATLAB and save it with -v7";
+            return Err(RecordError::unsupported(what));
+        }
+        _ => {
+            let what = format!("not a MATLAB file: {length} bytes without the header of one");
+            return Err(RecordError::UnknownFormat { what });
+        }
     };
     match endian.u16([file[HEADER - 4], file[HEADER - 3]]) {
         0x0100 => Ok(endian),
-        0x0200 => Err(MatError::Version73),
-        version => Err(MatError::UnknownVersion { version }),
+        version => {
+            let what = format!("a MATLAB file of unknown version {version:#06x}; save it with -v7");
+            Err(RecordError::unsupported(what))
+        }
     }
 }
 
-/// A version 4 file begins with five numbers: type (decimal digits M, O, P, T), rows, columns, complex or not,
-/// length of the name that follows, with its terminating zero.
-fn is_version_4(file: &[u8]) -> bool {
-    let Some(head) = file.first_chunk::<20>() else { return false };
-    [Endian::Little, Endian::Big].into_iter().any(|endian| {
-        let number = |i: usize| endian.u32([head[4 * i], head[4 * i + 1], head[4 * i + 2], head[4 * i + 3]]);
-        let (kind, complex, name) = (number(0), number(3), number(4) as usize);
-        let digits = kind / 1000 <= 4 && kind / 100 % 10 == 0 && kind / 10 % 10 <= 5 && kind % 10 <= 2;
-        digits && complex <= 1 && (2..=64).contains(&name) && file.get(19 + name) == Some(&0)
-    })
-}
-
-/// The body of an array, as it stands in the file or expanded.
-pub(super) struct Variable<'a> {
-    pub(super) offset: usize,
-    pub(super) body: Cow<'a, [u8]>,
-}
-
-/// A compressed variable that cannot be expanded, and why.
-pub(super) struct Packed {
-    pub(super) offset: usize,
-    pub(super) reason: String,
-}
-
-impl Variable<'_> {
-    /// What it is called as long as its name is not known.
-    pub(super) fn place(&self) -> String {
-        place(self.offset)
-    }
-}
+/// Where a variable begins, and the body of its array, as it stands in the file or expanded; or why it cannot be expanded.
+type Variable<'a> = (usize, Result<Cow<'a, [u8]>, RecordError>);
 
 /// What the variable there is called as long as its name is not known.
 pub(super) fn place(offset: usize) -> String {
@@ -113,62 +89,76 @@ impl<'a> Variables<'a> {
         Self { file, endian, at: HEADER, budget: MOST_INFLATED }
     }
 
-    /// The next variable, or why it cannot be expanded; none at the end of the file.
+    /// The next variable; none at the end of the file.
     ///
     /// # Errors
     /// Those after which it is not known where the next one begins.
-    pub(super) fn next(&mut self) -> Result<Option<Result<Variable<'a>, Packed>>, MatError> {
+    pub(super) fn next(&mut self) -> Result<Option<Variable<'a>>, RecordError> {
         let offset = self.at;
         let rest = self.file.get(offset..).unwrap_or_default();
         if rest.is_empty() {
             return Ok(None);
         }
         let Some((tag, rest)) = rest.split_first_chunk::<8>() else {
-            return Err(MatError::Truncated { offset, promised: 8, present: rest.len() as u64 });
+            return Err(truncated(offset, 8, rest.len()));
         };
         let (code, length) = long_tag(*tag, self.endian);
         if code != MATRIX && code != COMPRESSED {
-            return Err(MatError::UnknownElement { offset, code });
+            return Err(unknown_element(offset, code));
         }
         let Some(content) = rest.get(..length as usize) else {
-            let (promised, present) = (u64::from(length), rest.len() as u64);
-            return Err(MatError::Truncated { offset, promised, present });
+            return Err(truncated(offset, length as usize, rest.len()));
         };
         // Arrays are padded to eight bytes, compressed ones are not; padding may be missing at the end of the file.
         let padded = if code == MATRIX { content.len().next_multiple_of(8) } else { content.len() };
         self.at = offset + tag.len() + padded;
         if code == MATRIX {
-            return Ok(Some(Ok(Variable { offset, body: Cow::Borrowed(content) })));
+            return Ok(Some((offset, Ok(Cow::Borrowed(content)))));
         }
-        let variable = self.inflate(offset, content).map(|body| Variable { offset, body: Cow::Owned(body) });
-        Ok(Some(variable.map_err(|error| Packed { offset, reason: error.to_string() })))
+        Ok(Some((offset, self.inflate(offset, content).map(Cow::Owned))))
     }
 
     /// Expands a compressed variable and takes it off the budget. The tag of the array inside says how long it is;
     /// no more than that is expanded.
-    fn inflate(&mut self, offset: usize, content: &[u8]) -> Result<Vec<u8>, MatError> {
-        let damaged = |error: &dyn std::fmt::Display| MatError::Compression { offset, reason: error.to_string() };
-        let mut decoder = Decoder::new(content).map_err(|error| damaged(&error))?;
+    fn inflate(&mut self, offset: usize, content: &[u8]) -> Result<Vec<u8>, RecordError> {
+        let place = format!("the compressed variable at byte {offset} is damaged");
+        let damaged = |error| RecordError::undecoded(&place, error);
+        let mut decoder = Decoder::new(content).map_err(damaged)?;
         let mut tag = [0; 8];
-        decoder.read_exact(&mut tag).map_err(|error| damaged(&error))?;
+        decoder.read_exact(&mut tag).map_err(damaged)?;
         let (code, length) = long_tag(tag, self.endian);
         if code != MATRIX {
-            return Err(MatError::UnknownElement { offset, code });
+            return Err(unknown_element(offset, code));
         }
         let length = length as usize;
         if length > self.budget {
-            return Err(MatError::TooLarge { limit: MOST_INFLATED });
+            return Err(too_large());
         }
         self.budget -= length;
         let mut body = Vec::new();
-        decoder.by_ref().take(length as u64).read_to_end(&mut body).map_err(|error| damaged(&error))?;
+        decoder.by_ref().take(length as u64).read_to_end(&mut body).map_err(damaged)?;
         if body.len() < length {
-            return Err(MatError::Truncated { offset, promised: length as u64, present: body.len() as u64 });
+            return Err(truncated(offset, length, body.len()));
         }
         // The checksum stands behind the data, and is compared only when the end of the stream is reached.
-        let beyond = std::io::copy(&mut decoder.take(8), &mut std::io::sink()).map_err(|error| damaged(&error))?;
-        if beyond < 8 { Ok(body) } else { Err(damaged(&"data follow the array")) }
+        let beyond = std::io::copy(&mut decoder.take(8), &mut std::io::sink()).map_err(damaged)?;
+        if beyond < 8 { Ok(body) } else { Err(RecordError::damaged(format!("{place}: data follow the array"))) }
     }
+}
+
+/// A variable that ends behind the end of what holds it (bytes).
+fn truncated(offset: usize, promised: usize, present: usize) -> RecordError {
+    let what = format!(
+        "the file is cut off: the variable at byte {offset} promises {promised} bytes, but {present} are there"
+    );
+    RecordError::damaged(what)
+}
+
+/// A variable that is neither an array nor a compressed array.
+fn unknown_element(offset: usize, code: u32) -> RecordError {
+    RecordError::damaged(format!(
+        "the variable at byte {offset} is of type {code}, which is neither an array (14) nor a compressed one (15)"
+    ))
 }
 
 fn long_tag([a, b, c, d, e, f, g, h]: [u8; 8], endian: Endian) -> (u32, u32) {

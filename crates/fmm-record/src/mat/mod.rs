@@ -1,48 +1,42 @@
-//! Records from MATLAB files, versions 5 to 7.3.
+//! Arrays in MATLAB files, versions 5 to 7.3.
 //!
-//! [`MatFile`] holds every real numeric array of a file, fields of structures among them; [`MatReader`] makes a record of
-//! one of them. Arrays of other kinds (text, cells, complex or sparse arrays) are not read, but they are listed, as is what
-//! cannot be read, and asking for one says what it is. Version 7.3, which is HDF5, needs the feature `hdf5`; without it, it is told apart and refused,
-//! as version 4 is. HDF5 files of other programs are read as MATLAB shows them, with the order of dimensions reversed.
-//!
-//! ```no_run
-//! let reading = fmm_record::mat::read("fork.mat")?.channel("data")?;
-//! println!("{}: the rate was {}", reading.channel, reading.sampling);
-//! # Ok::<(), fmm_record::mat::MatError>(())
-//! ```
+//! Fields of structures count as variables, called as MATLAB calls them: `run.v`, `trial(2).v`. Arrays of other kinds (text,
+//! cells, complex or sparse arrays) are not read, but they are listed, as is what cannot be read. HDF5 files of other
+//! programs are read as MATLAB shows them, with the order of dimensions reversed.
 //!
 //! Numbers are decoded by the crate matfile. It is handed one array at a time, whose structure has been checked
 //! here: by itself it stops at damage without a word, drops what it does not know, and refuses a whole file for one
 //! array of 32-bit integers. HDF5 is read by the crate hdf5-pure, behind checks that the file can hold what it promises.
 
-mod array;
-mod channel;
 mod element;
-mod error;
-mod file;
 #[cfg(feature = "hdf5")]
 mod hdf5;
+mod kind;
 mod numbers;
-mod reader;
 #[cfg(test)]
 mod tests;
 #[cfg(all(test, feature = "hdf5"))]
 mod tests_hdf5;
 
-use std::path::Path;
+use crate::RecordError;
+use crate::arrays::{ArrayFile, Notation};
+use element::{Variables, endian, place};
+#[cfg(feature = "hdf5")]
+pub(crate) use hdf5::parse as parse_hdf5;
+use kind::Kind;
+use numbers::add;
 
-pub use array::Array;
-pub use channel::Channel;
-pub use error::MatError;
-pub use file::{Kind, MatFile};
-pub use reader::MatReader;
-
-pub use crate::reading::MOST_INFLATED;
-
-/// Reads all real numeric arrays of a file: [`MatFile::read`].
-///
-/// # Errors
-/// As [`MatFile::read`].
-pub fn read(path: impl AsRef<Path>) -> Result<MatFile, MatError> {
-    MatFile::read(path)
+/// The arrays in the bytes of a file of version 5 to 7. A variable that is damaged by itself is an error only where it is
+/// asked for. A file that is cut off exactly between two variables is a valid file with fewer variables.
+pub(crate) fn parse(bytes: &[u8]) -> Result<ArrayFile, RecordError> {
+    let endian = endian(bytes)?;
+    let mut variables = Variables::new(bytes, endian);
+    let mut file = ArrayFile::new(Notation::Matlab);
+    while let Some((offset, body)) = variables.next()? {
+        match body {
+            Ok(body) => add(&mut file, offset, &body, endian),
+            Err(error) => file.damaged.push((place(offset), error)),
+        }
+    }
+    Ok(file)
 }

@@ -2,8 +2,10 @@
 
 use matfile::NumericData;
 
-use super::element::{Endian, MATRIX, Variable};
-use super::{Array, Kind};
+use super::Kind;
+use super::element::{Endian, MATRIX, place};
+use crate::RecordError;
+use crate::arrays::ArrayFile;
 
 const INT8: u32 = 1;
 const INT32: u32 = 5;
@@ -14,21 +16,12 @@ const COMPLEX: u32 = 0x0800;
 /// Structures within structures that are followed.
 const DEEPEST: usize = 32;
 
-/// What a variable, or a field of one, turned out to be.
-pub(super) enum Content {
-    Real(Array),
-    Other { name: String, kind: Kind },
-    Damaged { name: String, what: &'static str },
-}
-
-/// Takes a variable apart, with the fields of structures as variables of their own: `s.v`, or `s(2).v` where there are
+/// Adds what a variable holds, with the fields of structures as variables of their own: `s.v`, or `s(2).v` where there are
 /// several. Nothing is found in one without a name, as the data that MATLAB keeps for its own objects are.
-pub(super) fn contents(variable: &Variable, endian: Endian) -> Vec<Content> {
-    let mut found = Vec::new();
-    if let Err(what) = take_apart(&variable.body, endian, None, 0, &mut found) {
-        found.push(Content::Damaged { name: variable.place(), what });
+pub(super) fn add(found: &mut ArrayFile, offset: usize, body: &[u8], endian: Endian) {
+    if let Err(what) = take_apart(body, endian, None, 0, found) {
+        found.damaged.push((place(offset), RecordError::damaged(what)));
     }
-    found
 }
 
 /// Takes an array apart; `field` is what it is called in its structure. An error is what is wrong before its name is known.
@@ -37,7 +30,7 @@ fn take_apart(
     endian: Endian,
     field: Option<String>,
     depth: usize,
-    found: &mut Vec<Content>,
+    found: &mut ArrayFile,
 ) -> Result<(), &'static str> {
     let mut parts = Parts { body, endian, at: 0 };
     let flags = parts.next().ok_or("it has no flags")?;
@@ -66,19 +59,19 @@ fn take_apart(
     }
     let kind = kind.or((word & COMPLEX != 0).then_some(Kind::Complex));
     let Some(kind) = kind else {
-        found.push(match numbers(&mut parts, &dimensions, endian) {
-            Ok(values) => Content::Real(Array { name, dimensions, values }),
-            Err(what) => Content::Damaged { name, what },
-        });
+        match numbers(&mut parts, &dimensions, endian) {
+            Ok(values) => found.add(name, dimensions, values),
+            Err(what) => found.damaged.push((name, RecordError::damaged(what))),
+        }
         return Ok(());
     };
     if kind == Kind::Structure
         && let Err(what) = fields(&mut parts, &dimensions, &name, depth, found)
     {
-        found.push(Content::Damaged { name, what });
+        found.damaged.push((name, RecordError::damaged(what)));
         return Ok(());
     }
-    found.push(Content::Other { name, kind });
+    found.others.push((name, kind.to_string()));
     Ok(())
 }
 
@@ -88,7 +81,7 @@ fn fields(
     dimensions: &[usize],
     name: &str,
     depth: usize,
-    found: &mut Vec<Content>,
+    found: &mut ArrayFile,
 ) -> Result<(), &'static str> {
     if depth == DEEPEST {
         return Err("its structures are too deep");
@@ -118,7 +111,7 @@ fn fields(
                 continue;
             }
             if let Err(what) = take_apart(part.data, parts.endian, Some(path.clone()), depth + 1, found) {
-                found.push(Content::Damaged { name: path, what });
+                found.damaged.push((path, RecordError::damaged(what)));
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use super::NpyError;
+use crate::RecordError;
 
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
@@ -77,22 +77,27 @@ impl Number {
 }
 
 /// Reads a header; `name` is that of the array, for errors.
-pub(super) fn read(input: &mut impl Read, name: &str) -> Result<Header, NpyError> {
-    let truncated =
-        |promised: u64, present: usize| NpyError::Truncated { name: name.into(), promised, present: present as u64 };
-    let mut take = |length: u64| -> Result<Vec<u8>, NpyError> {
+pub(super) fn read(input: &mut impl Read, name: &str) -> Result<Header, RecordError> {
+    let mut take = |length: u64| -> Result<Vec<u8>, RecordError> {
         let mut bytes = Vec::new();
-        input.by_ref().take(length).read_to_end(&mut bytes).map_err(|error| NpyError::damaged(&error))?;
-        if (bytes.len() as u64) < length { Err(truncated(length, bytes.len())) } else { Ok(bytes) }
+        input
+            .by_ref()
+            .take(length)
+            .read_to_end(&mut bytes)
+            .map_err(|error| RecordError::undecoded("the decoder says", error))?;
+        if (bytes.len() as u64) < length { Err(truncated(name, length, bytes.len())) } else { Ok(bytes) }
     };
     let start = take(8)?;
     if !start.starts_with(MAGIC) {
-        return Err(NpyError::Header { name: name.into(), what: "it does not begin as an array does" });
+        return Err(damaged(name, "it does not begin as an array does"));
     }
     let length = match start[6] {
         1 => take(2)?.iter().rev().fold(0, |length, byte| length << 8 | u64::from(*byte)),
         2 | 3 => take(4)?.iter().rev().fold(0, |length, byte| length << 8 | u64::from(*byte)),
-        version => return Err(NpyError::Version { name: name.into(), version }),
+        version => {
+            let what = format!("the array \"{name}\" is of version {version} of the format; known are 1 to 3");
+            return Err(RecordError::damaged(what));
+        }
     };
     let text = take(length)?;
     let text = match String::from_utf8(text) {
@@ -100,6 +105,22 @@ pub(super) fn read(input: &mut impl Read, name: &str) -> Result<Header, NpyError
         Err(error) => error.as_bytes().iter().copied().map(char::from).collect(),
     };
     Literal { rest: &text }.header(name)
+}
+
+/// An array that promises more bytes than are there.
+pub(super) fn truncated(name: &str, promised: u64, present: usize) -> RecordError {
+    let what = format!("the array \"{name}\" is cut off: it promises {promised} bytes, but {present} are there");
+    RecordError::damaged(what)
+}
+
+/// A header that contradicts the format.
+fn damaged(name: &str, what: &str) -> RecordError {
+    RecordError::damaged(format!("the header of the array \"{name}\" is damaged: {what}"))
+}
+
+/// Numbers that are not real, or no numbers.
+fn unsupported(descr: &str) -> RecordError {
+    RecordError::unsupported(format!("of type {descr} (real numbers of up to 64 bits are read, but not of 16)"))
 }
 
 /// Goes through the Python literal of a header, a dictionary.
@@ -144,15 +165,15 @@ impl<'a> Literal<'a> {
         Some(numbers)
     }
 
-    fn header(mut self, name: &str) -> Result<Header, NpyError> {
-        let error = |what| NpyError::Header { name: name.into(), what };
+    fn header(mut self, name: &str) -> Result<Header, RecordError> {
+        let error = |what| damaged(name, what);
         let (mut descr, mut fortran, mut shape) = (None, None, None);
         self.take("{").ok_or(error("it is no dictionary"))?;
         while !self.comes("}") {
             let key = self.string().ok_or(error("a key is not text"))?;
             self.take(":").ok_or(error("a key has no value"))?;
             match key {
-                "descr" if self.comes("[") => return Err(NpyError::structure(name)),
+                "descr" if self.comes("[") => return Err(unsupported("[…] (structure)")),
                 "descr" => descr = Some(self.string().ok_or(error("its type is not text"))?),
                 "fortran_order" if self.take("True").is_some() => fortran = Some(true),
                 "fortran_order" if self.take("False").is_some() => fortran = Some(false),
@@ -167,8 +188,7 @@ impl<'a> Literal<'a> {
         let (Some(descr), Some(fortran), Some(shape)) = (descr, fortran, shape) else {
             return Err(error("it needs descr, fortran_order and shape"));
         };
-        let number = Number::of(descr)
-            .ok_or_else(|| NpyError::Unsupported { name: name.into(), descr: descr.chars().take(20).collect() })?;
+        let number = Number::of(descr).ok_or_else(|| unsupported(&descr.chars().take(20).collect::<String>()))?;
         let count = shape.iter().try_fold(1usize, |count, length| count.checked_mul(*length));
         let count = count
             .filter(|count| count.checked_mul(number.width).is_some())
@@ -181,7 +201,7 @@ impl<'a> Literal<'a> {
 mod tests {
     use super::*;
 
-    fn header(text: &str) -> Result<Header, NpyError> {
+    fn header(text: &str) -> Result<Header, RecordError> {
         Literal { rest: text }.header("")
     }
 
@@ -215,13 +235,13 @@ mod tests {
             "{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999999999999,)}",
             "{'descr': '<f8', 'fortran_order': False, 'shape': (4611686018427387904,)}",
         ] {
-            assert!(matches!(header(text), Err(NpyError::Header { .. })), "{text}");
+            assert!(matches!(header(text), Err(RecordError::Damaged { .. })), "{text}");
         }
         for descr in
             ["'<c16'", "'<U5'", "'|O'", "'<f2'", "'<f16'", "'|f8'", "'=f8'", "'<M8[us]'", "''", "'ä'", "[('t', '<f8')]"]
         {
             let text = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': (1,)}}");
-            assert!(matches!(header(&text), Err(NpyError::Unsupported { .. })), "{text}");
+            assert!(matches!(header(&text), Err(RecordError::Unsupported { .. })), "{text}");
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Points as text.
 
+use super::Warning;
 use super::lines::{Lines, is_delimiter};
 use super::number::Numbers;
 use super::points::Points;
 use super::records::{Form, shown};
-use super::{UffError, Warning};
+use crate::RecordError;
 
 /// Reads points up to the delimiter or the end of the file; `begin` is the line at which the data set begins.
 pub(super) fn read(
@@ -12,7 +13,7 @@ pub(super) fn read(
     form: &Form,
     begin: u64,
     warnings: &mut Vec<Warning>,
-) -> Result<Points, UffError> {
+) -> Result<Points, RecordError> {
     let mut points = Points::new(form);
     let needed = form.count.saturating_mul(form.numbers() as u64);
     let mut taken = 0;
@@ -33,7 +34,10 @@ pub(super) fn read(
             match number {
                 _ if cut_off => break,
                 Ok(number) => points.push(number),
-                Err(text) => return Err(UffError::NotANumber { line: line.number, text: shown(text) }),
+                Err(text) => {
+                    let (line, text) = (line.number, shown(text));
+                    return Err(RecordError::on_line(line, format!("line {line}: \"{text}\" is not a number")));
+                }
             }
             taken += 1;
         }

@@ -2,8 +2,9 @@
 
 use super::lines::{Line, Lines, delimiter_at, find_delimiter};
 use super::points::Points;
-use super::records::{Form, shown};
-use super::{ByteOrder, Precision, UffError, Warning};
+use super::records::{Form, shown, wrong_header};
+use super::{ByteOrder, Precision, Warning};
+use crate::RecordError;
 
 /// What the first line of a binary data set says of its bytes.
 pub(super) struct Encoding {
@@ -14,7 +15,7 @@ pub(super) struct Encoding {
 
 impl Encoding {
     /// Reads the line: `58b`, order of bytes, format of numbers, number of lines in the header, number of bytes.
-    pub(super) fn of(line: &Line) -> Result<Self, UffError> {
+    pub(super) fn of(line: &Line) -> Result<Self, RecordError> {
         let text = shown(line.text);
         let mut words = text.split_whitespace().skip(1).map(str::parse::<u64>);
         let mut next = || words.next().and_then(Result::ok);
@@ -23,12 +24,15 @@ impl Encoding {
             Some(2) => ByteOrder::Big,
             _ => {
                 let what = "the order of bytes must be 1 (little end first) or 2 (big end first)";
-                return Err(UffError::Header { line: line.number, what, text });
+                return Err(wrong_header(line.number, what, &text));
             }
         };
         let format = next().unwrap_or_default();
         if !matches!(format, 0 | 2) {
-            return Err(UffError::FloatFormat { line: line.number, format });
+            let line = line.number;
+            return Err(RecordError::unsupported(format!(
+                "line {line}: binary numbers of format {format} (1: VMS, 3: IBM) are not supported, only IEEE 754 (2)"
+            )));
         }
         let stated = words.nth(1).and_then(Result::ok).unwrap_or_default();
         Ok(Self { order, stated })
@@ -109,7 +113,7 @@ pub(super) fn read(
     encoding: &Encoding,
     begin: u64,
     warnings: &mut Vec<Warning>,
-) -> Result<Points, UffError> {
+) -> Result<Points, RecordError> {
     let bytes = lines.rest();
     let order = encoding.order;
     let layouts = Layout::all(form);
@@ -124,7 +128,13 @@ pub(super) fn read(
         let block = &bytes[..delimiter.unwrap_or(bytes.len())];
         let kept = |layout: &Layout| layout.bytes(form.count).map_or(block.len(), |end| end.min(block.len()));
         let plausible = |layout: &&Layout| layouts.len() == 1 || layout.increases(&block[..kept(layout)], order);
-        let layout = layouts.iter().find(plausible).ok_or(UffError::AbscissaWidth { line: begin })?;
+        let layout = layouts.iter().find(plausible).ok_or_else(|| {
+            let what = format!(
+                "the binary data set at line {begin} ends neither as if its abscissae were single nor as if they were double \
+                 numbers, and they increase neither way"
+            );
+            RecordError::on_line(begin, what)
+        })?;
         if delimiter.is_none() {
             warnings.push(Warning::NotClosed { line: begin });
         } else if kept(layout) < block.len() {

@@ -1,7 +1,7 @@
 //! A data set 58: a function of an abscissa.
 
-use super::{Axis, DataType, FunctionType, Header, UffError};
-use crate::Record;
+use super::{Axis, DataType, FunctionType, Header};
+use crate::{Record, RecordError};
 
 /// A function as a data set 58 holds it. It has at least one point, and as many abscissae as ordinates.
 ///
@@ -68,17 +68,20 @@ impl DataSet {
     /// A function in double precision.
     ///
     /// # Errors
-    /// [`UffError::NoPoints`], [`UffError::LengthMismatch`], or [`UffError::Even`] if start or step are not finite.
-    pub fn new(header: Header, abscissa: Abscissa, ordinate: Ordinate) -> Result<Self, UffError> {
+    /// [`RecordError::Values`] without points, [`RecordError::Options`] for other numbers of abscissae than of ordinates, or a
+    /// start or step that are not finite.
+    pub fn new(header: Header, abscissa: Abscissa, ordinate: Ordinate) -> Result<Self, RecordError> {
         if ordinate.is_empty() {
-            return Err(UffError::NoPoints);
+            let what = "a data set needs at least one point, but none were given".into();
+            return Err(RecordError::Values { index: 0, what });
         }
         match &abscissa {
-            Abscissa::Even { start, step } if !(start.is_finite() && step.is_finite()) => {
-                Err(UffError::Even { start: *start, step: *step })
-            }
+            Abscissa::Even { start, step } if !(start.is_finite() && step.is_finite()) => Err(RecordError::options(
+                format!("an even abscissa must be finite, but starts at {start} with a step of {step}"),
+            )),
             Abscissa::Uneven(values) if values.len() != ordinate.len() => {
-                Err(UffError::LengthMismatch { abscissa: values.len(), ordinate: ordinate.len() })
+                let (abscissae, ordinates) = (values.len(), ordinate.len());
+                Err(RecordError::options(format!("{abscissae} abscissae were given for {ordinates} ordinates")))
             }
             _ => Ok(Self { header, abscissa, ordinate, precision: Precision::Double }),
         }

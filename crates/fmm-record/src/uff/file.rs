@@ -5,7 +5,8 @@ use std::path::Path;
 use super::binary::Encoding;
 use super::lines::{Line, Lines, is_delimiter};
 use super::records::shown;
-use super::{Abscissa, DataSet, UffError, Warning, ascii, binary, records};
+use super::{Abscissa, DataSet, Warning, ascii, binary, records};
+use crate::RecordError;
 
 /// All data sets 58 of a Universal File, and what else there is.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,19 +20,19 @@ impl UffFile {
     /// Reads the file at `path`.
     ///
     /// # Errors
-    /// [`UffError::Open`], otherwise as [`UffFile::parse`].
-    pub fn read(path: impl AsRef<Path>) -> Result<Self, UffError> {
+    /// [`RecordError::Io`], otherwise as [`UffFile::parse`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, RecordError> {
         let path = path.as_ref();
-        let bytes = std::fs::read(path).map_err(|source| UffError::Open { path: path.into(), source })?;
+        let bytes = std::fs::read(path).map_err(|source| RecordError::io("read", path, source))?;
         Self::parse(&bytes)
     }
 
     /// Reads the bytes of a file. What is missing at the end of a data set, or of the file, is a [`Warning`].
     ///
     /// # Errors
-    /// [`UffError::NotUff`], [`UffError::NoFunction`], and for a data set that contradicts the format
-    /// [`UffError::Header`], [`UffError::FloatFormat`], [`UffError::NotANumber`] or [`UffError::AbscissaWidth`].
-    pub fn parse(bytes: &[u8]) -> Result<Self, UffError> {
+    /// [`RecordError::UnknownFormat`] for other files and those without any function; for a data set that contradicts the format
+    /// [`RecordError::Damaged`]; [`RecordError::Unsupported`] for binary numbers that are not those of IEEE 754.
+    pub fn parse(bytes: &[u8]) -> Result<Self, RecordError> {
         let mut file = Self { sets: Vec::new(), others: Vec::new(), warnings: Vec::new() };
         let mut lines = Lines::new(bytes);
         let (mut after_delimiter, mut in_stray_text, mut any) = (false, false, false);
@@ -57,13 +58,21 @@ impl UffFile {
             after_delimiter = false;
         }
         match (any, file.sets.is_empty()) {
-            (false, _) => Err(UffError::NotUff { length: bytes.len() }),
+            (false, _) => {
+                let length = bytes.len();
+                let what = format!("not a Universal File: {length} bytes without a data set between lines of -1");
+                Err(RecordError::UnknownFormat { what })
+            }
             (true, true) => {
                 let mut others: Vec<u32> = file.others.iter().map(|(number, _)| *number).collect();
                 others.sort_unstable();
                 others.dedup();
-                let others = others.into_iter().map(|number| number.to_string()).collect();
-                Err(UffError::NoFunction { others, warnings: file.warnings })
+                let others: Vec<String> = others.into_iter().map(|number| number.to_string()).collect();
+                let others =
+                    if others.is_empty() { "and no others".into() } else { format!("only {}", others.join(", ")) };
+                let what = format!("the file has no data set 58 with points, {others}");
+                let what = file.warnings.iter().fold(what, |what, warning| format!("{what}; {warning}"));
+                Err(RecordError::UnknownFormat { what })
             }
             (true, false) => Ok(file),
         }
@@ -90,7 +99,7 @@ impl UffFile {
     }
 
     /// Reads a data set up to the delimiter behind it, of which `line` is the first line.
-    fn take(&mut self, identifier: &Identifier, line: &Line, lines: &mut Lines) -> Result<(), UffError> {
+    fn take(&mut self, identifier: &Identifier, line: &Line, lines: &mut Lines) -> Result<(), RecordError> {
         let begin = line.number;
         let encoding = match identifier {
             Identifier::Function => None,

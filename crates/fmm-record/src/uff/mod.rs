@@ -20,7 +20,7 @@
 //! // The header says 1.95312E-03 s; 512 Hz is the whole number of hertz that reads so.
 //! assert_eq!(file.sets()[0].record()?, record);
 //! assert!(file.warnings().is_empty());
-//! # Ok::<(), fmm_record::uff::UffError>(())
+//! # Ok::<(), fmm_record::RecordError>(())
 //! ```
 //!
 //! # References
@@ -32,7 +32,6 @@ mod ascii;
 mod binary;
 mod codes;
 mod data_set;
-mod error;
 mod file;
 mod header;
 mod lines;
@@ -47,9 +46,10 @@ mod writer;
 
 use std::path::Path;
 
+use crate::RecordError;
+
 pub use codes::{DataType, FunctionType};
 pub use data_set::{Abscissa, DataSet, Ordinate, Precision};
-pub use error::UffError;
 pub use file::UffFile;
 pub use header::{Axis, Freedom, Header};
 pub use warning::Warning;
@@ -59,6 +59,6 @@ pub use writer::{ByteOrder, Form, write, write_to};
 ///
 /// # Errors
 /// As [`UffFile::read`].
-pub fn read(path: impl AsRef<Path>) -> Result<UffFile, UffError> {
+pub fn read(path: impl AsRef<Path>) -> Result<UffFile, RecordError> {
     UffFile::read(path)
 }

@@ -1,9 +1,9 @@
 //! Between data sets and records.
 
-use super::{Abscissa, DataSet, DataType, FunctionType, Ordinate, UffError, UffFile};
-use crate::reading::seconds_in;
+use super::{Abscissa, DataSet, DataType, FunctionType, Ordinate, UffFile};
+use crate::reading::{quoted, seconds_in};
 use crate::sampling::whole_hertz;
-use crate::{Column, Reading, Record, Sampling};
+use crate::{Column, Reading, Record, RecordError, Sampling};
 
 impl DataSet {
     /// The record over time that this is, with the quantity and the unit of its ordinate.
@@ -12,8 +12,9 @@ impl DataSet {
     /// them within [`RATE_ROUNDING`](crate::RATE_ROUNDING), that is the sampling rate.
     ///
     /// # Errors
-    /// [`UffError::NotTime`], [`UffError::Complex`], [`UffError::TimeUnit`], or [`UffError::Record`].
-    pub fn record(&self) -> Result<Record, UffError> {
+    /// [`RecordError::Unsupported`] for a function that is not one of time or not real, [`RecordError::TimeAxis`] for a unit of
+    /// time that is not known, otherwise as [`Record::new`] and [`Record::from_times`].
+    pub fn record(&self) -> Result<Record, RecordError> {
         self.sampled_record().map(|(record, _)| record)
     }
 
@@ -26,14 +27,21 @@ impl DataSet {
         }
     }
 
-    fn sampled_record(&self) -> Result<(Record, Sampling), UffError> {
+    fn sampled_record(&self) -> Result<(Record, Sampling), RecordError> {
         let header = &self.header;
         if !self.is_over_time() {
-            return Err(UffError::NotTime { name: self.name(), function: header.function });
+            let (name, function) = (self.name(), header.function);
+            return Err(RecordError::unsupported(format!("\"{name}\" is no record over time, but a {function}")));
         }
-        let Ordinate::Real(values) = self.ordinate() else { return Err(UffError::Complex { name: self.name() }) };
+        let Ordinate::Real(values) = self.ordinate() else {
+            let name = self.name();
+            return Err(RecordError::unsupported(format!("\"{name}\" has complex values; a record is real")));
+        };
         let unit = &header.abscissa.unit;
-        let second = seconds_in(unit).ok_or_else(|| UffError::TimeUnit { name: self.name(), unit: unit.clone() })?;
+        let second = seconds_in(unit).ok_or_else(|| {
+            let name = self.name();
+            RecordError::time(None, format!("the time axis of \"{name}\" is in \"{unit}\"; known are s, ms, µs and ns"))
+        })?;
         let (values, quantity) = (values.clone(), header.ordinate.data_type.quantity());
         let unit = header.ordinate.unit.clone();
         Ok(match self.abscissa() {
@@ -60,8 +68,8 @@ impl UffFile {
     /// The record in the data set called `channel`, as [`DataSet::name`] calls it, or at that position.
     ///
     /// # Errors
-    /// [`UffError::NoSuchChannel`], [`UffError::AmbiguousChannel`], otherwise as [`DataSet::record`].
-    pub fn channel(&self, channel: impl Into<Column>) -> Result<Reading, UffError> {
+    /// [`RecordError::NoSuchChannel`], [`RecordError::WhichChannel`], otherwise as [`DataSet::record`].
+    pub fn channel(&self, channel: impl Into<Column>) -> Result<Reading, RecordError> {
         let channel = channel.into();
         let found: Vec<usize> = match &channel {
             Column::Index(index) => (0..self.sets().len()).filter(|other| other == index).collect(),
@@ -76,21 +84,31 @@ impl UffFile {
         };
         match found[..] {
             [index] => self.reading_of(index),
-            [] => Err(UffError::NoSuchChannel { channel, available: self.names() }),
-            _ => Err(UffError::AmbiguousChannel { channel, count: found.len() }),
+            [] => {
+                let what = format!("there is no data set {channel}; the file has: {}", quoted(&self.names()));
+                Err(RecordError::NoSuchChannel { what })
+            }
+            _ => {
+                let count = found.len();
+                let what =
+                    format!("{count} data sets are called {channel}; choose one by its position, counted from 0");
+                Err(RecordError::WhichChannel { what })
+            }
         }
     }
 
     /// The only record over time in the file.
     ///
     /// # Errors
-    /// [`UffError::ChooseChannel`] if there are none or several, otherwise as [`DataSet::record`].
-    pub fn reading(&self) -> Result<Reading, UffError> {
+    /// [`RecordError::WhichChannel`] if there are none or several, otherwise as [`DataSet::record`].
+    pub fn reading(&self) -> Result<Reading, RecordError> {
         let over_time: Vec<usize> = (0..self.sets().len()).filter(|index| self.sets()[*index].is_over_time()).collect();
-        match over_time[..] {
-            [index] => self.reading_of(index),
-            _ => Err(UffError::ChooseChannel { times: over_time.len(), available: self.names() }),
+        if let [index] = over_time[..] {
+            return self.reading_of(index);
         }
+        let (count, names) = (over_time.len(), quoted(&self.names()));
+        let what = format!("name the data set; the file has {count} records over time among: {names}");
+        Err(RecordError::WhichChannel { what })
     }
 
     /// The names of all data sets 58, as [`DataSet::name`] calls them.
@@ -98,7 +116,7 @@ impl UffFile {
         self.sets().iter().map(DataSet::name).collect()
     }
 
-    fn reading_of(&self, index: usize) -> Result<Reading, UffError> {
+    fn reading_of(&self, index: usize) -> Result<Reading, RecordError> {
         let set = &self.sets()[index];
         let (record, sampling) = set.sampled_record()?;
         Ok(Reading { record, channel: set.name(), time: None, columns: self.names(), sampling })

@@ -4,7 +4,8 @@ use std::str::FromStr;
 
 use super::lines::{Line, Lines};
 use super::number::Numbers;
-use super::{Axis, DataType, Freedom, FunctionType, Header, Precision, UffError};
+use super::{Axis, DataType, Freedom, FunctionType, Header, Precision};
+use crate::RecordError;
 
 /// Number of lines in a header.
 pub(super) const LINES: usize = 11;
@@ -27,7 +28,7 @@ impl Form {
 }
 
 /// Reads a header; none if the file ends before it does.
-pub(super) fn read(lines: &mut Lines) -> Result<Option<(Header, Form)>, UffError> {
+pub(super) fn read(lines: &mut Lines) -> Result<Option<(Header, Form)>, RecordError> {
     let mut records = Vec::with_capacity(LINES);
     while records.len() < LINES {
         let Some(line) = lines.next().filter(|line| line.ended) else { return Ok(None) };
@@ -71,14 +72,19 @@ struct Record {
     number: u64,
 }
 
+/// A line of a header that contradicts the format.
+pub(super) fn wrong_header(line: u64, what: &str, text: &str) -> RecordError {
+    RecordError::on_line(line, format!("line {line}: {what}, but the line is \"{text}\""))
+}
+
 impl Record {
     fn of(line: &Line) -> Self {
         Self { letters: letters(line.text), number: line.number }
     }
 
-    fn error(&self, what: &'static str) -> UffError {
+    fn error(&self, what: &'static str) -> RecordError {
         let text = self.letters.iter().collect::<String>();
-        UffError::Header { line: self.number, what, text: shown(text.as_bytes()) }
+        wrong_header(self.number, what, &shown(text.as_bytes()))
     }
 
     /// The text in `width` columns from `from` on; empty where it says NONE.
@@ -108,7 +114,7 @@ impl Record {
 
     /// Record 6: what the function is and where it was measured. Some programs keep to no columns; their words are
     /// read if there are as many as fields.
-    fn freedoms(&self, header: &mut Header) -> Result<(), UffError> {
+    fn freedoms(&self, header: &mut Header) -> Result<(), RecordError> {
         let columns = [(0, 5), (5, 10), (15, 5), (20, 10), (41, 10), (51, 4), (66, 10), (76, 4)];
         let by_columns = || Some((self.integers(columns)?, [self.text(31, 10), self.text(56, 10)]));
         let by_words = || {
@@ -131,7 +137,7 @@ impl Record {
     }
 
     /// Record 7: the form of the points, and the value on the z axis.
-    fn form(&self) -> Result<(Form, f64), UffError> {
+    fn form(&self) -> Result<(Form, f64), RecordError> {
         let numbers = |from: usize| -> Option<Vec<f64>> {
             let text: String = self.letters.iter().skip(from).collect();
             Numbers::new(text.as_bytes()).take(6).collect::<Result<_, _>>().ok()
@@ -168,7 +174,7 @@ impl Record {
     }
 
     /// Records 8 to 11: an axis.
-    fn axis(&self) -> Result<Axis, UffError> {
+    fn axis(&self) -> Result<Axis, RecordError> {
         let columns = [(0, 10), (10, 5), (15, 5), (20, 5)];
         let by_columns = || Some((self.integers(columns)?, self.text(26, 20), self.text(47, 20)));
         let by_words = || {

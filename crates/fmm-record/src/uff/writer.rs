@@ -4,7 +4,8 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use super::{Abscissa, Axis, DataSet, Freedom, Ordinate, Precision, UffError};
+use super::{Abscissa, Axis, DataSet, Freedom, Ordinate, Precision};
+use crate::RecordError;
 
 /// Form of the points in a file that is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,13 +29,13 @@ pub enum ByteOrder {
 /// Writes data sets into the file at `path`, which is replaced if it exists; see [`write_to`].
 ///
 /// # Errors
-/// [`UffError::Open`], otherwise as [`write_to`].
-pub fn write(path: impl AsRef<Path>, sets: &[DataSet], form: Form) -> Result<(), UffError> {
+/// [`RecordError::Io`], otherwise as [`write_to`].
+pub fn write(path: impl AsRef<Path>, sets: &[DataSet], form: Form) -> Result<(), RecordError> {
     let path = path.as_ref();
-    let file = File::create(path).map_err(|source| UffError::Open { path: path.into(), source })?;
+    let file = File::create(path).map_err(|source| RecordError::io("create", path, source))?;
     let mut out = BufWriter::new(file);
     write_to(&mut out, sets, form)?;
-    Ok(out.flush()?)
+    out.flush().map_err(interrupted)
 }
 
 /// Writes data sets to `out`, one behind the other.
@@ -44,17 +45,21 @@ pub fn write(path: impl AsRef<Path>, sets: &[DataSet], form: Form) -> Result<(),
 /// abscissa has six digits in text, and is single in bytes.
 ///
 /// # Errors
-/// [`UffError::Text`], [`UffError::Number`], [`UffError::AbscissaDigits`] or [`UffError::BeyondSingle`] for what the
-/// format cannot hold, and [`UffError::Write`].
-pub fn write_to(mut out: impl Write, sets: &[DataSet], form: Form) -> Result<(), UffError> {
+/// [`RecordError::Unsupported`] or [`RecordError::Values`] for what the format cannot hold, and [`RecordError::Io`].
+pub fn write_to(mut out: impl Write, sets: &[DataSet], form: Form) -> Result<(), RecordError> {
     for set in sets {
-        out.write_all(&block(set, form)?)?;
+        out.write_all(&block(set, form)?).map_err(interrupted)?;
     }
     Ok(())
 }
 
+/// Writing that stopped half way.
+fn interrupted(source: std::io::Error) -> RecordError {
+    RecordError::Io { what: "write on".into(), source: std::sync::Arc::new(source) }
+}
+
 /// A data set with its delimiters.
-fn block(set: &DataSet, form: Form) -> Result<Vec<u8>, UffError> {
+fn block(set: &DataSet, form: Form) -> Result<Vec<u8>, RecordError> {
     let points = match form {
         Form::Ascii => text_points(set)?,
         Form::Binary(order) => binary_points(set, order)?,
@@ -75,7 +80,7 @@ fn block(set: &DataSet, form: Form) -> Result<Vec<u8>, UffError> {
 }
 
 /// The eleven lines before the points.
-fn header(set: &DataSet, block: &mut Vec<u8>) -> Result<(), UffError> {
+fn header(set: &DataSet, block: &mut Vec<u8>) -> Result<(), RecordError> {
     let header = &set.header;
     for line in &header.lines {
         block.extend(text("line", line, 80)?);
@@ -126,25 +131,30 @@ fn header(set: &DataSet, block: &mut Vec<u8>) -> Result<(), UffError> {
 }
 
 /// A text in Latin-1, NONE if it is empty.
-fn text(what: &'static str, text: &str, limit: usize) -> Result<Vec<u8>, UffError> {
+fn text(what: &'static str, text: &str, limit: usize) -> Result<Vec<u8>, RecordError> {
     let letters: Option<Vec<u8>> =
         text.chars().map(|letter| u8::try_from(letter).ok().filter(|_| !letter.is_control())).collect();
     match letters.filter(|letters| letters.len() <= limit) {
         Some(letters) if letters.is_empty() => Ok(b"NONE".to_vec()),
         Some(letters) => Ok(letters),
-        None => Err(UffError::Text { what, text: text.to_owned(), limit }),
+        None => Err(RecordError::unsupported(format!(
+            "{what} \"{text}\" cannot be written: it must have at most {limit} characters of Latin-1 on one line"
+        ))),
     }
 }
 
-fn padded(what: &'static str, word: &str, columns: usize) -> Result<Vec<u8>, UffError> {
+fn padded(what: &'static str, word: &str, columns: usize) -> Result<Vec<u8>, RecordError> {
     let mut letters = text(what, word, columns)?;
     letters.resize(columns, b' ');
     Ok(letters)
 }
 
-fn integer(what: &'static str, value: i64, columns: usize) -> Result<Vec<u8>, UffError> {
+fn integer(what: &'static str, value: i64, columns: usize) -> Result<Vec<u8>, RecordError> {
     let field = format!("{value:>columns$}");
-    if field.len() > columns { Err(UffError::Number { what, value, columns }) } else { Ok(field.into_bytes()) }
+    if field.len() <= columns {
+        return Ok(field.into_bytes());
+    }
+    Err(RecordError::unsupported(format!("{what} {value} cannot be written: it has only {columns} columns")))
 }
 
 /// A number with `decimals` behind the point and an exponent of at least two digits, as Fortran writes it.
@@ -160,9 +170,15 @@ fn scientific(value: f64, decimals: usize) -> String {
 }
 
 /// The value in single precision, unless it is lost there.
-fn single(index: usize, value: f64) -> Result<f32, UffError> {
+fn single(index: usize, value: f64) -> Result<f32, RecordError> {
     let single = value as f32;
-    if value.is_finite() && !single.is_finite() { Err(UffError::BeyondSingle { index, value }) } else { Ok(single) }
+    if single.is_finite() || !value.is_finite() {
+        return Ok(single);
+    }
+    let what = format!(
+        "value {index}, {value}, is beyond the range of single precision; write the data set in double precision"
+    );
+    Err(RecordError::Values { index, what })
 }
 
 /// The numbers of all points, each with its index and whether it is an abscissa or a value.
@@ -183,16 +199,22 @@ fn numbers(set: &DataSet) -> impl Iterator<Item = (usize, bool, f64)> {
 }
 
 /// Refuses uneven abscissae that differ, but not after rounding by `rounded`.
-fn told_apart(set: &DataSet, rounded: impl Fn(f64) -> f64) -> Result<(), UffError> {
+fn told_apart(set: &DataSet, rounded: impl Fn(f64) -> f64) -> Result<(), RecordError> {
     let Abscissa::Uneven(values) = set.abscissa() else { return Ok(()) };
     let merged = |pair: &[f64]| pair[0] != pair[1] && rounded(pair[0]) == rounded(pair[1]);
     match values.windows(2).position(merged) {
-        Some(index) => Err(UffError::AbscissaDigits { index, value: values[index] }),
+        Some(index) => {
+            let value = values[index];
+            let what = format!(
+                "abscissa {index}, {value}, cannot be told from its neighbour in the digits that the format has for it"
+            );
+            Err(RecordError::Values { index, what })
+        }
         None => Ok(()),
     }
 }
 
-fn text_points(set: &DataSet) -> Result<Vec<u8>, UffError> {
+fn text_points(set: &DataSet) -> Result<Vec<u8>, RecordError> {
     told_apart(set, |value| scientific(value, 5).parse().unwrap_or(f64::NAN))?;
     let double = set.precision() == Precision::Double;
     let uneven = matches!(set.abscissa(), Abscissa::Uneven(_));
@@ -226,7 +248,7 @@ fn text_points(set: &DataSet) -> Result<Vec<u8>, UffError> {
     Ok(block)
 }
 
-fn binary_points(set: &DataSet, order: ByteOrder) -> Result<Vec<u8>, UffError> {
+fn binary_points(set: &DataSet, order: ByteOrder) -> Result<Vec<u8>, RecordError> {
     told_apart(set, |value| f64::from(value as f32))?;
     let mut block = Vec::new();
     for (index, is_abscissa, value) in numbers(set) {

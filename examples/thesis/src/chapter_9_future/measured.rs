@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use fmm_identify::{Comparison, Experiment, Identification, Machine, Preparation, Terms, compare};
-use fmm_record::{Quantity, Record, csv, mat};
+use fmm_record::{Quantity, Reader, Record};
 
 use super::{candidates, side_by_side};
 use crate::{Chapter, Found, Settings};
@@ -19,13 +19,13 @@ fn path(name: &str) -> PathBuf {
 }
 
 fn wheel() -> Found<Measured> {
-    let reader = csv::CsvReader::default().quantity(Quantity::Velocity).unit("rad/s");
+    let reader = Reader::default().quantity(Quantity::Velocity).unit("rad/s");
     let record = reader.read(path("bicycle_wheel_radial_gyro.csv"))?.record;
     Ok(Measured { name: "bicycle wheel on a torsion bar", record })
 }
 
 fn fork() -> Found<Measured> {
-    let reader = mat::MatReader::default().channel("data").quantity(Quantity::Velocity).unit("V");
+    let reader = Reader::default().channel("data").quantity(Quantity::Velocity).unit("V");
     let record = reader.read(path("BrowserForkCompoundFirst1.mat"))?.record;
     Ok(Measured { name: "bicycle fork as a pendulum", record })
 }

@@ -1,0 +1,279 @@
+//! A file that has been opened: its format, its channels, and their records.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::{Format, Reader};
+#[cfg(any(feature = "mat", feature = "npy"))]
+use crate::{
+    Array,
+    arrays::{ArrayFile, Slice},
+};
+use crate::{Column, Label, Reading, RecordError, Request};
+
+/// How much of a file tells its format (bytes).
+const HEAD: usize = 1 << 16;
+
+/// A file that has been opened: its format, its channels, and their records.
+///
+/// ```
+/// use fmm_record::{Format, Quantity, Reader, Request};
+///
+/// let file = Reader::default().parse("t [ms];x [mm];v [mm/s]\n0;1;5\n2;2;6\n4;1;7\n")?;
+/// assert_eq!(file.format(), Format::Text);
+/// let channels = file.channels()?;
+/// assert_eq!((channels.len(), channels[1].label.name(), channels[1].rate), (2, "v [mm/s]", Some(500.0)));
+/// assert_eq!(channels[1].label.unit().map(|unit| unit.factor()), Some(1e-3));
+///
+/// assert_eq!(file.channel("v [mm/s]")?.record.values(), [5.0, 6.0, 7.0]);
+/// let displacement = file.choose(&Request::default().quantity(Quantity::Displacement))?;
+/// assert_eq!(displacement.channel, "x [mm]");
+/// # Ok::<(), fmm_record::RecordError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct DataFile {
+    reader: Reader,
+    format: Format,
+    content: Content,
+}
+
+#[derive(Debug, Clone)]
+enum Content {
+    /// Text is read when a channel is asked for, as it may be larger than the memory.
+    #[cfg(feature = "csv")]
+    Text(Source),
+    #[cfg(any(feature = "mat", feature = "npy"))]
+    Arrays(ArrayFile),
+    #[cfg(feature = "uff")]
+    Universal(crate::uff::UffFile),
+}
+
+/// Where the text of a file is.
+#[cfg(feature = "csv")]
+#[derive(Debug, Clone)]
+enum Source {
+    Path(std::path::PathBuf),
+    Bytes(Vec<u8>),
+}
+
+#[cfg(feature = "csv")]
+impl Source {
+    fn open(&self) -> Result<Box<dyn Read + '_>, RecordError> {
+        Ok(match self {
+            Self::Path(path) => Box::new(File::open(path).map_err(|source| RecordError::io("read", path, source))?),
+            Self::Bytes(bytes) => Box::new(&bytes[..]),
+        })
+    }
+}
+
+/// A channel that a file offers.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Channel {
+    /// Its name, and what the file tells of its quantity and unit.
+    pub label: Label,
+    /// By what [`DataFile::channel`] reads it, whether or not names are alike. The time counts as well.
+    pub position: usize,
+    /// Its sampling rate (Hz); none if the file does not tell it, or if the channel is no record over time.
+    pub rate: Option<f64>,
+}
+
+impl DataFile {
+    pub(super) fn open(reader: Reader, path: &Path) -> Result<Self, RecordError> {
+        let failed = |source| RecordError::io("read", path, source);
+        let mut file = File::open(path).map_err(failed)?;
+        let mut bytes = Vec::new();
+        file.by_ref().take(HEAD as u64).read_to_end(&mut bytes).map_err(failed)?;
+        #[cfg(feature = "csv")]
+        if matches!(Format::of(&bytes), Ok(Format::Text)) {
+            return Self { reader, format: Format::Text, content: Content::Text(Source::Path(path.into())) }.checked();
+        }
+        file.read_to_end(&mut bytes).map_err(failed)?;
+        Self::parse(reader, bytes)
+    }
+
+    pub(super) fn parse(reader: Reader, bytes: Vec<u8>) -> Result<Self, RecordError> {
+        let format = Format::of(&bytes[..bytes.len().min(HEAD)])?;
+        let content = match format {
+            #[cfg(feature = "csv")]
+            Format::Text => Content::Text(Source::Bytes(bytes)),
+            #[cfg(feature = "mat")]
+            Format::Matlab => Content::Arrays(crate::mat::parse(&bytes)?),
+            #[cfg(feature = "hdf5")]
+            Format::Hdf5 => Content::Arrays(crate::mat::parse_hdf5(&bytes)?),
+            #[cfg(feature = "npy")]
+            Format::Numpy => Content::Arrays(crate::npy::parse(&bytes)?),
+            #[cfg(feature = "uff")]
+            Format::Universal => Content::Universal(crate::uff::UffFile::parse(&bytes)?),
+            #[cfg(not(all(feature = "csv", feature = "hdf5", feature = "npy", feature = "uff")))]
+            _ => return Err(format.missing()),
+        };
+        Self { reader, format, content }.checked()
+    }
+
+    /// Refuses what is said of a format that does not leave it open.
+    fn checked(self) -> Result<Self, RecordError> {
+        let Reader { separator, skip, time, rate, resampling, .. } = &self.reader;
+        let is_universal = self.format == Format::Universal;
+        if is_universal && (time.is_some() || rate.is_some() || resampling.is_some()) {
+            return Err(RecordError::options(
+                "a Universal File states its own sampling; leave out the rate and the time",
+            ));
+        }
+        if self.format != Format::Text && (separator.is_some() || *skip > 0) {
+            let format = self.format;
+            return Err(RecordError::options(format!(
+                "the file is of format {format}, and no text: leave out the separator and the lines to skip"
+            )));
+        }
+        if time.is_some() && rate.is_some() {
+            return Err(RecordError::options("both time stamps and a rate were given; give one of them"));
+        }
+        Ok(self)
+    }
+
+    /// The format, as the content tells it.
+    pub fn format(&self) -> Format {
+        self.format
+    }
+
+    /// What was not as it should be in the file, but did not keep it from being read. Variables that cannot be read are
+    /// named, with the reason.
+    pub fn warnings(&self) -> Vec<String> {
+        match &self.content {
+            #[cfg(feature = "csv")]
+            Content::Text(_) => Vec::new(),
+            #[cfg(any(feature = "mat", feature = "npy"))]
+            Content::Arrays(file) => {
+                let warning = |(name, reason): &(String, RecordError)| format!("{name} cannot be read: {reason}");
+                file.damaged.iter().map(warning).collect()
+            }
+            #[cfg(feature = "uff")]
+            Content::Universal(file) => file.warnings().iter().map(ToString::to_string).collect(),
+        }
+    }
+
+    /// The real numeric arrays of a MATLAB, HDF5 or NumPy file, in the order of the file; none of others.
+    #[cfg(any(feature = "mat", feature = "npy"))]
+    pub fn arrays(&self) -> &[Array] {
+        match &self.content {
+            Content::Arrays(file) => &file.arrays,
+            #[cfg(any(feature = "csv", feature = "uff"))]
+            _ => &[],
+        }
+    }
+
+    /// The array called `name` in a MATLAB, HDF5 or NumPy file.
+    ///
+    /// # Errors
+    /// [`RecordError::NoSuchChannel`], [`RecordError::Unsupported`] if it is no real numeric array, [`RecordError::Damaged`].
+    #[cfg(any(feature = "mat", feature = "npy"))]
+    pub fn array(&self, name: &str) -> Result<&Array, RecordError> {
+        match &self.content {
+            Content::Arrays(file) => file.array(name),
+            #[cfg(any(feature = "csv", feature = "uff"))]
+            _ => {
+                let what = format!("there is no variable \"{name}\"; the file is of format {}", self.format);
+                Err(RecordError::NoSuchChannel { what })
+            }
+        }
+    }
+
+    /// The channels other than time, in the order of the file: columns of text, vectors, rows or columns of matrices
+    /// (whichever are longer), functions of any kind in a Universal File. Numbers that count samples are no channel.
+    ///
+    /// # Errors
+    /// What is wrong with the table of a text file.
+    pub fn channels(&self) -> Result<Vec<Channel>, RecordError> {
+        match &self.content {
+            #[cfg(feature = "csv")]
+            Content::Text(source) => {
+                let columns = self.reader.text_channels(source.open()?)?;
+                // All columns have one time.
+                let first = columns.first().and_then(|(first, _)| self.channel(*first).ok());
+                let rate = first.map(|reading| reading.record.rate());
+                let channel = |(position, name): (usize, String)| Channel { label: Label::of(&name), position, rate };
+                Ok(columns.into_iter().map(channel).collect())
+            }
+            #[cfg(any(feature = "mat", feature = "npy"))]
+            Content::Arrays(file) => {
+                let offers = file.offers();
+                let readings: Vec<Option<Reading>> = (0..offers.len()).map(|at| self.channel(at).ok()).collect();
+                // Time stamps are a channel like any other until another one is read with them.
+                let times: Vec<&String> =
+                    readings.iter().flatten().filter_map(|reading| reading.time.as_ref()).collect();
+                let channel = |(position, (offer, reading)): (usize, (&Slice, &Option<Reading>))| {
+                    let name = offer.written(file.notation);
+                    let is_time = offer.is_called_time() || times.contains(&&name);
+                    let rate = reading.as_ref().map(|reading| reading.record.rate());
+                    (!is_time).then(|| Channel { label: Label::of(&name), position, rate })
+                };
+                Ok(offers.iter().zip(&readings).enumerate().filter_map(channel).collect())
+            }
+            #[cfg(feature = "uff")]
+            Content::Universal(file) => {
+                let channel = |(position, set): (usize, &crate::uff::DataSet)| {
+                    let axis = &set.header.ordinate;
+                    let label = Label::of(&set.name()).with_unit(&axis.unit).with_quantity(axis.data_type.quantity());
+                    Channel { label, position, rate: set.record().ok().map(|record| record.rate()) }
+                };
+                Ok(file.sets().iter().enumerate().map(channel).collect())
+            }
+        }
+    }
+
+    /// The record of a channel, by name or by position.
+    ///
+    /// # Errors
+    /// [`RecordError::NoSuchChannel`], [`RecordError::WhichChannel`], and what is wrong with the channel or its time.
+    pub fn channel(&self, channel: impl Into<Column>) -> Result<Reading, RecordError> {
+        self.read(&self.reader.clone().channel(channel))
+    }
+
+    /// The record of the channel that the reader names, or else of the one that is found by default.
+    ///
+    /// # Errors
+    /// As [`DataFile::channel`].
+    pub fn reading(&self) -> Result<Reading, RecordError> {
+        self.read(&self.reader)
+    }
+
+    /// The record of the channel that is meant: the only one, or else the one that a request tells out by its quantity and
+    /// unit ([`Request::choose`]).
+    ///
+    /// # Errors
+    /// [`RecordError::Units`] if it is not clear which channel is meant, otherwise as [`DataFile::channel`].
+    pub fn choose(&self, request: &Request) -> Result<Reading, RecordError> {
+        let mut channels = self.channels()?;
+        if channels.iter().any(|channel| channel.rate.is_some()) {
+            channels.retain(|channel| channel.rate.is_some());
+        }
+        if channels.len() < 2 {
+            return self.reading();
+        }
+        let labels: Vec<Label> = channels.iter().map(|channel| channel.label.clone()).collect();
+        self.channel(channels[request.choose(&labels)?].position)
+    }
+
+    fn read(&self, reader: &Reader) -> Result<Reading, RecordError> {
+        let mut reading = match &self.content {
+            #[cfg(feature = "csv")]
+            Content::Text(source) => reader.read_text(source.open()?)?,
+            #[cfg(any(feature = "mat", feature = "npy"))]
+            Content::Arrays(file) => file.read(reader)?,
+            #[cfg(feature = "uff")]
+            Content::Universal(file) => match &reader.channel {
+                Some(channel) => file.channel(channel.clone())?,
+                None => file.reading()?,
+            },
+        };
+        if reading.record.quantity() == crate::Quantity::Other {
+            reading.record = reading.record.with_quantity(reader.quantity);
+        }
+        if reading.record.unit().is_empty() {
+            reading.record = reading.record.with_unit(&*reader.unit);
+        }
+        Ok(reading)
+    }
+}

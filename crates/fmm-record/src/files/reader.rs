@@ -1,0 +1,158 @@
+//! What is said of a file beside what it tells itself.
+
+use std::path::Path;
+
+use super::DataFile;
+use crate::{Column, Quantity, Reading, RecordError, Resampling};
+
+/// Opens and reads files of every format. The format is told by the content, the name of the file does not matter; what the
+/// file cannot tell is said here. What its format states itself, or does not have, is refused
+/// ([`RecordError::Options`]).
+///
+/// ```
+/// use fmm_record::{Quantity, Reader};
+///
+/// let text = "# gyro, 500 Hz\ntime;rate\n0,000;1,5\n0,002;1,25\n0,004;0,75\n";
+/// let reading = Reader::default().quantity(Quantity::Velocity).unit("rad/s").read_from(text)?;
+/// assert_eq!(reading.record.values(), [1.5, 1.25, 0.75]);
+/// assert_eq!(reading.record.rate(), 500.0);
+/// assert_eq!(reading.channel, "rate");
+/// assert_eq!(reading.sampling.to_string(), "found from the time stamps in \"time\"");
+/// # Ok::<(), fmm_record::RecordError>(())
+/// ```
+///
+/// # Text
+///
+/// Comma, semicolon or tab separated, or aligned by blanks. Files of LabVIEW (`.lvm`), Tektronix, Rigol, PicoScope and catman
+/// and the `sep=` of Excel need nothing said.
+///
+/// | what | found by default |
+/// |---|---|
+/// | separator | semicolon or tab if the rows have one, else blanks between nothing but numbers, else comma; what a first line `sep=;` says |
+/// | first row | the first line with as many fields as the last ones have, and numbers where they have numbers |
+/// | names | the line above the first row, with the units of a row of units; or a comment there, if it names the time |
+/// | decimal comma | where it is used throughout and the separator is not a comma; one column of whole numbers with commas is refused if it may be two |
+/// | time | the column called `t`, `time`, `Zeit`, `timestamp` or the like, in seconds unless its name tells another unit (ms, µs, ns, min, h, in any usual spelling); else the first column, if it increases uniformly, but not by whole numbers without a unit |
+/// | channel | the first column that is neither the time nor called a number of samples |
+///
+/// Where no column is time, a number above the table that is called an interval or a rate (`Sample Interval`, `Delta_X`) tells
+/// the rate. With a rate, time stamps are not looked at, and the record begins at 0 s.
+///
+/// # MATLAB (versions 5 to 7.3, HDF5) and NumPy (npy, npz)
+///
+/// A channel is written as the program writes it: `data`, `run.v` for a field of a structure; `m(:,2)` for the second column of
+/// a matrix in MATLAB, `m[:,1]` in NumPy; `m(2,:)` and `m[1]` for the second row. The array of an npy file has no name:
+/// `[1]`. A position counts all vectors, and the rows or columns of matrices (whichever are longer), from 0. Where none is
+/// named, the file must have exactly one array that can be it: a vector, or a matrix of time and one more series.
+///
+/// The rate is, in this order: given; from the time stamps given; from the first column or row of the channel's own matrix, if
+/// it increases uniformly and not by whole numbers; from a vector called `t`, `time` or the like of the same length, in the
+/// unit of time that its name tells; from a scalar whose name says rate or interval, such as `fs`, `ActualRate`,
+/// `sample_rate`, `dt`, `Ts`, in any case. What lies in the same structure goes before what lies around it.
+///
+/// # Universal Files
+///
+/// A channel is a data set 58, by its description or its position. Its header states time, quantity and unit.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Reader {
+    pub(crate) separator: Option<u8>,
+    pub(crate) skip: u64,
+    pub(crate) time: Option<Column>,
+    pub(crate) channel: Option<Column>,
+    pub(crate) rate: Option<f64>,
+    pub(crate) resampling: Option<Resampling>,
+    pub(crate) quantity: Quantity,
+    pub(crate) unit: String,
+}
+
+impl Reader {
+    /// Passes over the first `lines` lines of a text, which may hold anything.
+    #[must_use]
+    pub fn skip(mut self, lines: u64) -> Self {
+        self.skip = lines;
+        self
+    }
+
+    /// The byte between columns of a text: comma, semicolon, tab, `|` or `:`; a space stands for blanks, as many as there are.
+    #[must_use]
+    pub fn separator(mut self, separator: u8) -> Self {
+        self.separator = Some(separator);
+        self
+    }
+
+    /// The channel to read.
+    #[must_use]
+    pub fn channel(mut self, column: impl Into<Column>) -> Self {
+        self.channel = Some(column.into());
+        self
+    }
+
+    /// The column of time stamps, in seconds unless its name tells another unit; one that is not known is an error.
+    #[must_use]
+    pub fn time(mut self, column: impl Into<Column>) -> Self {
+        self.time = Some(column.into());
+        self
+    }
+
+    /// The sampling rate (Hz).
+    #[must_use]
+    pub fn rate(mut self, rate: f64) -> Self {
+        self.rate = Some(rate);
+        self
+    }
+
+    /// Brings the samples to a uniform rate by their time stamps, which need not be uniform.
+    #[must_use]
+    pub fn resampling(mut self, resampling: Resampling) -> Self {
+        self.resampling = Some(resampling);
+        self
+    }
+
+    /// What the channel measured, if the file does not state it.
+    #[must_use]
+    pub fn quantity(mut self, quantity: Quantity) -> Self {
+        self.quantity = quantity;
+        self
+    }
+
+    /// Unit of the numbers in the channel, if the file does not state it in a place of its own.
+    #[must_use]
+    pub fn unit(mut self, unit: impl Into<String>) -> Self {
+        self.unit = unit.into();
+        self
+    }
+
+    /// Opens the file at `path`.
+    ///
+    /// # Errors
+    /// [`RecordError::Io`], otherwise as [`Reader::parse`].
+    pub fn open(&self, path: impl AsRef<Path>) -> Result<DataFile, RecordError> {
+        DataFile::open(self.clone(), path.as_ref())
+    }
+
+    /// Opens the bytes of a file.
+    ///
+    /// # Errors
+    /// [`RecordError::UnknownFormat`], [`RecordError::MissingFeature`]; what is wrong with the file as a whole
+    /// ([`RecordError::Damaged`], [`RecordError::Unsupported`]); [`RecordError::Options`] for what is said of a format that
+    /// does not leave it open. What is wrong with a channel is an error only where it is asked for.
+    pub fn parse(&self, bytes: impl Into<Vec<u8>>) -> Result<DataFile, RecordError> {
+        DataFile::parse(self.clone(), bytes.into())
+    }
+
+    /// Reads the channel from the file at `path`: [`Reader::open`] and [`DataFile::reading`].
+    ///
+    /// # Errors
+    /// As those.
+    pub fn read(&self, path: impl AsRef<Path>) -> Result<Reading, RecordError> {
+        self.open(path)?.reading()
+    }
+
+    /// Reads the channel from the bytes of a file: [`Reader::parse`] and [`DataFile::reading`].
+    ///
+    /// # Errors
+    /// As those.
+    pub fn read_from(&self, bytes: impl Into<Vec<u8>>) -> Result<Reading, RecordError> {
+        self.parse(bytes)?.reading()
+    }
+}
