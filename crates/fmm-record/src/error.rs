@@ -1,4 +1,4 @@
-//! What can be wrong with a file, with a record, or with what is asked of them.
+//! Errors of files, of records, and of what is asked of them.
 
 use std::error::Error;
 use std::io;

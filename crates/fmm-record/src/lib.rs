@@ -70,91 +70,50 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-#[cfg(feature = "uff")]
-pub mod uff;
-
-#[cfg(any(feature = "mat", feature = "npy"))]
-mod arrays;
-#[cfg(feature = "csv")]
-mod csv;
+mod calculus;
+mod error;
+mod examination;
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 mod files;
-#[cfg(feature = "mat")]
-mod mat;
-#[cfg(feature = "npy")]
-mod npy;
-
-mod calculus;
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
-mod clock;
-mod error;
-mod fourier;
-mod further_release;
-mod harmonic;
-mod hum;
-mod label;
-mod least_squares;
-mod line_search;
-mod meaning;
-mod noise;
-mod offset_step;
-mod order;
-mod period_change;
-mod quantisation;
+mod numerics;
 mod quantity;
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
-mod reading;
 mod record;
-mod release;
-mod request;
-mod resampling;
 mod sampling;
-mod saturation;
-mod savitzky_golay;
-mod second_mode;
-mod smooth;
-mod smoothing;
-mod spelling;
-mod spikes;
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
-mod stated;
-mod steadiness;
-mod swings;
 #[cfg(test)]
 mod synthetic;
-mod turning;
-mod unit;
-mod word;
+mod units;
 
-#[cfg(any(feature = "mat", feature = "npy"))]
-pub use arrays::Array;
+pub use calculus::resampling::{Resampled, Resampling};
+pub use calculus::savitzky_golay::{savitzky_golay, savitzky_golay_derivative};
+pub use calculus::smooth::{EndRule, moving_average};
+pub use calculus::smoothing::Smoothing;
 pub use error::RecordError;
+pub use examination::further_release::{FurtherRelease, further_releases};
+pub use examination::hum::{Hum, hum, without_lines};
+pub use examination::noise::noise;
+pub use examination::offset_step::OffsetStep;
+pub use examination::period_change::period_change;
+pub use examination::quantisation::quantisation_step;
+pub use examination::release::Release;
+pub use examination::saturation::{Saturation, saturation};
+pub use examination::second_mode::SecondMode;
+pub use examination::spikes::{Spike, spikes};
+pub use examination::swings::{Crossing, Peak, Swings};
+#[cfg(any(feature = "mat", feature = "npy"))]
+pub use files::arrays::Array;
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
+pub use files::reading::{Column, Reading};
+#[cfg(feature = "uff")]
+pub use files::uff;
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 pub use files::{Channel, DataFile, Format, Reader, open};
-pub use further_release::{FurtherRelease, further_releases};
-pub use hum::{Hum, hum, without_lines};
-pub use label::Label;
-pub use meaning::{Meaning, MeaningError};
-pub use noise::noise;
-pub use offset_step::OffsetStep;
-pub use period_change::period_change;
-pub use quantisation::quantisation_step;
 pub use quantity::Quantity;
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
-pub use reading::{Column, Reading};
 pub use record::Record;
-pub use release::Release;
-pub use request::Request;
-pub use resampling::{Resampled, Resampling};
 pub use sampling::{JITTER, RATE_ROUNDING, Sampling, UniformTimes};
-pub use saturation::{Saturation, saturation};
-pub use savitzky_golay::{savitzky_golay, savitzky_golay_derivative};
-pub use second_mode::SecondMode;
-pub use smooth::{EndRule, moving_average};
-pub use smoothing::Smoothing;
-pub use spikes::{Spike, spikes};
-pub use swings::{Crossing, Peak, Swings};
-pub use unit::{Unit, UnknownUnit};
+pub use units::label::Label;
+pub use units::meaning::{Meaning, MeaningError};
+pub use units::request::Request;
+pub use units::unit::{Unit, UnknownUnit};
 
 /// Runs the example of the README.
 #[cfg(all(doctest, feature = "csv"))]

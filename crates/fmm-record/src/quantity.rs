@@ -1,4 +1,4 @@
-//! Which physical quantity a channel measured.
+//! The physical quantity that a channel measured.
 
 use crate::RecordError;
 

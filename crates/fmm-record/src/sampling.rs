@@ -1,4 +1,4 @@
-//! Whether a column of time stamps is uniform, and how a reader found the rate.
+//! The sampling of a record: the uniform grid behind its time stamps, and how the rate was found.
 
 use crate::RecordError;
 

@@ -6,10 +6,9 @@ use std::path::Path;
 
 use super::{Format, Reader};
 #[cfg(any(feature = "mat", feature = "npy"))]
-use crate::{
-    Array,
-    arrays::{ArrayFile, Slice},
-};
+use crate::Array;
+#[cfg(any(feature = "mat", feature = "npy"))]
+use crate::files::arrays::{ArrayFile, Slice};
 use crate::{Column, Label, Reading, RecordError, Request};
 
 /// How much of a file tells its format (bytes).
@@ -46,7 +45,7 @@ enum Content {
     #[cfg(any(feature = "mat", feature = "npy"))]
     Arrays(ArrayFile),
     #[cfg(feature = "uff")]
-    Universal(crate::uff::UffFile),
+    Universal(crate::files::uff::UffFile),
 }
 
 /// Where the text of a file is.
@@ -99,13 +98,13 @@ impl DataFile {
             #[cfg(feature = "csv")]
             Format::Text => Content::Text(Source::Bytes(bytes)),
             #[cfg(feature = "mat")]
-            Format::Matlab => Content::Arrays(crate::mat::parse(&bytes)?),
+            Format::Matlab => Content::Arrays(crate::files::mat::parse(&bytes)?),
             #[cfg(feature = "hdf5")]
-            Format::Hdf5 => Content::Arrays(crate::mat::parse_hdf5(&bytes)?),
+            Format::Hdf5 => Content::Arrays(crate::files::mat::parse_hdf5(&bytes)?),
             #[cfg(feature = "npy")]
-            Format::Numpy => Content::Arrays(crate::npy::parse(&bytes)?),
+            Format::Numpy => Content::Arrays(crate::files::npy::parse(&bytes)?),
             #[cfg(feature = "uff")]
-            Format::Universal => Content::Universal(crate::uff::UffFile::parse(&bytes)?),
+            Format::Universal => Content::Universal(crate::files::uff::UffFile::parse(&bytes)?),
             #[cfg(not(all(feature = "csv", feature = "hdf5", feature = "npy", feature = "uff")))]
             _ => return Err(format.missing()),
         };
@@ -213,7 +212,7 @@ impl DataFile {
             }
             #[cfg(feature = "uff")]
             Content::Universal(file) => {
-                let channel = |(position, set): (usize, &crate::uff::DataSet)| {
+                let channel = |(position, set): (usize, &crate::files::uff::DataSet)| {
                     let axis = &set.header.ordinate;
                     let label = Label::of(&set.name()).with_unit(&axis.unit).with_quantity(axis.data_type.quantity());
                     Channel { label, position, rate: set.record().ok().map(|record| record.rate()) }

@@ -1,10 +1,26 @@
 //! Files of every format, behind one door: [`open`].
 
+#[cfg(any(feature = "mat", feature = "npy"))]
+pub(crate) mod arrays;
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
+pub(crate) mod clock;
+#[cfg(feature = "csv")]
+mod csv;
 mod data_file;
 mod format;
+#[cfg(feature = "mat")]
+mod mat;
+#[cfg(feature = "npy")]
+mod npy;
 mod reader;
+pub(crate) mod reading;
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
+pub(crate) mod stated;
 #[cfg(all(test, feature = "csv", feature = "hdf5", feature = "npy", feature = "uff"))]
 mod tests;
+
+#[cfg(feature = "uff")]
+pub mod uff;
 
 use std::path::Path;
 

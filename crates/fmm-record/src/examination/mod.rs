@@ -1,0 +1,16 @@
+//! What must be known of a record before a model is fitted: rest and release, swings, and what disturbs them.
+
+pub(crate) mod further_release;
+pub(crate) mod harmonic;
+pub(crate) mod hum;
+pub(crate) mod noise;
+pub(crate) mod offset_step;
+pub(crate) mod period_change;
+pub(crate) mod quantisation;
+pub(crate) mod release;
+pub(crate) mod saturation;
+pub(crate) mod second_mode;
+pub(crate) mod spikes;
+pub(crate) mod steadiness;
+pub(crate) mod swings;
+pub(crate) mod turning;

@@ -1,0 +1,143 @@
+//! The noise in a record.
+
+use crate::numerics::order::median;
+
+/// Standard deviation of the white noise in `values`, whatever the motion below it; 0 for fewer than five samples.
+///
+/// Differences of order p suppress a motion that is well sampled and keep white noise of standard deviation σ:
+///
+/// ```text
+/// Δᵖx_i = Σ_k (−1)ᵏ C(p,k) x_{i+k},        var Δᵖx = C(2p,p) σ²
+/// ```
+///
+/// The mean square of third differences is taken in blocks of up to 128, and the median over the blocks, so that
+/// spikes, steps and a short violent beginning do not count. A motion with few samples per period leaks into third
+/// differences; the order is therefore raised, up to ten, as long as that halves the result, which it does not
+/// for noise. Six samples per period or more leave no more than noise.
+///
+/// The noise must be white: low-pass filtered noise is estimated too low. Where most of the record is at rest and
+/// constant to the last bit of a converter, the result is 0; [`quantisation_step`](crate::quantisation_step)
+/// tells the resolution then.
+///
+/// ```
+/// use fmm_record::noise;
+///
+/// // A smooth motion of amplitude 1 with samples alternately 0.001 too high and too low.
+/// let values: Vec<f64> =
+///     (0..2000).map(|i| (f64::from(i) * 0.01).sin() + if i % 2 == 0 { 1e-3 } else { -1e-3 }).collect();
+/// // All of it lies at the highest frequency, where third differences weigh it with 64/20 in power.
+/// assert!((noise(&values) - 1e-3 * 3.2f64.sqrt()).abs() < 2e-5);
+/// ```
+pub fn noise(values: &[f64]) -> f64 {
+    const FIRST: usize = 3;
+    const LAST: usize = 10;
+    /// White noise gives the same at every order; motion that falls by less per order would need too many orders.
+    const WORTHWHILE: f64 = 0.5;
+    let mut estimate = noise_by_differences(values, FIRST);
+    for order in FIRST + 1..=LAST {
+        if values.len() < 4 * order {
+            break;
+        }
+        let next = noise_by_differences(values, order);
+        let worthwhile = next < WORTHWHILE * estimate;
+        estimate = estimate.min(next);
+        if !worthwhile {
+            break;
+        }
+    }
+    estimate
+}
+
+/// The estimate from differences of one order.
+fn noise_by_differences(values: &[f64], order: usize) -> f64 {
+    const BLOCK: usize = 128;
+    const FEWEST_BLOCKS: usize = 3;
+    let Some(count) = values.len().checked_sub(order).filter(|count| *count >= 2) else { return 0.0 };
+    let coefficients = signed_binomials(order);
+    let block = match count {
+        0..48 => count,
+        48..384 => count / FEWEST_BLOCKS,
+        _ => BLOCK,
+    };
+    let gain = binomial(2 * order, order);
+    let mut squares: Vec<f64> = (0..count / block)
+        .map(|k| {
+            let samples = &values[k * block..(k + 1) * block + order];
+            let sum: f64 = samples
+                .windows(order + 1)
+                .map(|window| {
+                    let difference: f64 = window.iter().zip(&coefficients).map(|(x, c)| x * c).sum();
+                    difference * difference
+                })
+                .sum();
+            sum / (block as f64 * gain)
+        })
+        .collect();
+    if squares.len() < FEWEST_BLOCKS {
+        return (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    }
+    // Neighbouring differences are correlated, which leaves fewer degrees of freedom than differences; the median of
+    // a chi-square variable lies below its mean by the Wilson-Hilferty factor.
+    let freedom = block as f64 * gain * gain / binomial(4 * order, 2 * order);
+    let factor = (1.0 - 2.0 / (9.0 * freedom)).powi(3);
+    (median(&mut squares) / factor).sqrt()
+}
+
+fn binomial(n: usize, k: usize) -> f64 {
+    (0..k).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
+}
+
+fn signed_binomials(order: usize) -> Vec<f64> {
+    (0..=order).map(|k| if k % 2 == 0 { binomial(order, k) } else { -binomial(order, k) }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::{Noise, pendulum};
+
+    #[test]
+    fn white_noise_is_found_below_motion_spikes_and_quantisation() {
+        for (rate, sigma) in [(1000.0, 1e-3), (60.0, 1e-3), (1000.0, 0.1), (1000.0, 1e-9)] {
+            let mut random = Noise::new(1);
+            let mut values: Vec<f64> =
+                (0..20_000).map(|i| 5.0 + (6.0 * f64::from(i) / rate).sin() + sigma * random.normal()).collect();
+            for i in (0..20_000).step_by(4000) {
+                values[i] += 100.0 * sigma;
+            }
+            // The median of 156 blocks of 55 degrees of freedom is good to about 1.3/√(2·156·55), 1 %.
+            let ratio = noise(&values) / sigma;
+            assert!((ratio - 1.0).abs() < 0.04, "{rate} Hz, {sigma}: ratio {ratio}");
+        }
+    }
+
+    #[test]
+    fn coarsely_sampled_motion_is_not_noise() {
+        for per_period in [8.0, 12.0, 40.0, 1000.0] {
+            let values: Vec<f64> =
+                (0..4000).map(|i| (std::f64::consts::TAU * f64::from(i) / per_period).sin()).collect();
+            assert!(noise(&values) < 2e-4, "{per_period} samples per period: {}", noise(&values));
+        }
+    }
+
+    #[cfg(feature = "mat")]
+    #[test]
+    fn fork_has_the_noise_that_others_found() {
+        // 3.5 mV is the scatter of its samples about a smooth curve, which contains slow errors as well.
+        let volts = noise(crate::synthetic::fork().values());
+        assert!((2.5e-3..3.7e-3).contains(&volts), "{volts} V");
+    }
+
+    #[test]
+    fn pendulum_is_nearly_free_of_noise() {
+        let radians = noise(pendulum().values());
+        assert!(radians < 1e-4, "{radians} rad");
+    }
+
+    #[test]
+    fn few_or_constant_samples_have_none() {
+        assert_eq!(noise(&[]), 0.0);
+        assert_eq!(noise(&[1.0, 2.0, 4.0, 8.0]), 0.0);
+        assert_eq!(noise(&[3.0; 1000]), 0.0);
+    }
+}

@@ -1,0 +1,339 @@
+//! The rest before a release, and the instant at which motion begins.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use crate::examination::spikes::without_spikes;
+use crate::numerics::order::range;
+use crate::record::mean;
+use crate::{Quantity, Record, noise, quantisation_step};
+
+/// A record that begins at rest and then moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Release {
+    /// The instant at which motion begins, between samples (s).
+    pub rest_end: f64,
+    /// Mean of the record while at rest, in its unit.
+    pub offset: f64,
+    /// Standard deviation of the record while at rest, in its unit; 0 if it is constant to the last bit.
+    pub noise: f64,
+    /// How many samples of rest both were taken from.
+    pub samples: usize,
+}
+
+/// Fewest samples of rest that count as rest.
+const SHORTEST: usize = 20;
+/// How many samples in a row must leave the level of rest on the same side, so that no spike is a release.
+const PERSISTENT: usize = 4;
+
+impl Release {
+    /// Finds the rest that `record` begins with; none if it begins in motion, never moves, or rests for fewer than
+    /// twenty samples.
+    ///
+    /// Motion has begun where four samples in a row lie off the mean of the rest on the same side, by more than a
+    /// band: five standard deviations of its white noise, four of all its noise, 1.5 steps of the converter, 0.5 % of
+    /// half the record's range. A motion near its turning point stays within such a band for a while too. A rest
+    /// must therefore last longer than a sine does that reaches the first extremum of the record in the time that
+    /// the record takes.
+    ///
+    /// The instant is fitted to the rest and the first quarter of the way to that extremum, as an oscillator leaves
+    /// its rest when it is let go: a velocity as sin φ, a displacement as 1 − cos φ, with φ running to the extremum;
+    /// an acceleration leaves in a step. (Force and other quantities are taken like a velocity.)
+    ///
+    /// ```
+    /// use fmm_record::{Quantity, Record, Release};
+    ///
+    /// let velocity = |t: f64| if t < 0.2503 { 0.0 } else { (13.8 * (t - 0.2503)).sin() };
+    /// let values = (0..2000).map(|i| 0.1 + velocity(f64::from(i) * 1e-3)).collect();
+    /// let record = Record::sampled(1000.0, values, Quantity::Velocity, "m/s")?;
+    ///
+    /// let release = Release::of(&record).unwrap();
+    /// assert!((release.rest_end - 0.2503).abs() < 1e-4);
+    /// assert!((release.offset - 0.1).abs() < 1e-12);
+    /// # Ok::<(), fmm_record::RecordError>(())
+    /// ```
+    pub fn of(record: &Record) -> Option<Self> {
+        let values = &*without_spikes(record);
+        let (low, high) = range(values);
+        let beginning = values.get(..SHORTEST)?;
+        let half_range = (high - low) / 2.0;
+        let floor = (1.5 * quantisation_step(values).unwrap_or(0.0)).max(0.005 * half_range);
+        let mut rest = Rest::of(beginning, floor);
+        let mut departure = rest.departure(values)?;
+        // A longer rest knows its level and its noise better.
+        if departure.index >= SHORTEST {
+            rest = Rest::of(&values[..departure.index / 5 * 4], floor);
+            departure = rest.departure(values)?;
+        }
+        let extremum = rest.extremum(values, &departure, 0.1 * half_range);
+        if departure.index < SHORTEST || !rest.outlasts_a_sine(&departure, extremum) {
+            return None;
+        }
+        let onset = rest.onset(values, &departure, extremum, record.quantity());
+        let guard = 1 + departure.index / 50;
+        let samples = (onset.floor().max(0.0) as usize).min(departure.index).saturating_sub(guard).max(SHORTEST - 4);
+        let quiet = &values[..samples];
+        let offset = mean(quiet);
+        Some(Self { rest_end: record.time_at(onset), offset, noise: deviation(quiet, offset), samples })
+    }
+}
+
+/// The level of the rest and the band around it that motion leaves.
+struct Rest {
+    level: f64,
+    band: f64,
+}
+
+/// Where and to which side the band is left.
+struct Departure {
+    index: usize,
+    side: f64,
+}
+
+/// The first extremum of the motion and its distance from the level.
+#[derive(Clone, Copy)]
+struct Extremum {
+    index: usize,
+    height: f64,
+}
+
+impl Rest {
+    /// The level and band of values that are at rest.
+    fn of(quiet: &[f64], floor: f64) -> Self {
+        let scatter = (5.0 * noise(quiet)).max(4.0 * scatter_about_line(quiet));
+        Self { level: mean(quiet), band: floor.max(scatter) }
+    }
+
+    /// Distance from the level, towards `side`.
+    fn off(&self, value: f64, side: f64) -> f64 {
+        side * (value - self.level)
+    }
+
+    fn departure(&self, values: &[f64]) -> Option<Departure> {
+        let side =
+            |value: f64| if (value - self.level).abs() > self.band { (value - self.level).signum() } else { 0.0 };
+        values
+            .windows(PERSISTENT)
+            .position(|window| {
+                let first = side(window[0]);
+                first != 0.0 && window.iter().all(|value| side(*value) == first)
+            })
+            .map(|index| Departure { index, side: side(values[index]) })
+    }
+
+    /// The first extremum after the departure, from which the values return by more than the band, a tenth of the
+    /// way there, and `ripple`.
+    fn extremum(&self, values: &[f64], departure: &Departure, ripple: f64) -> Extremum {
+        let mut best = Extremum { index: departure.index, height: 0.0 };
+        for (index, value) in values.iter().enumerate().skip(departure.index) {
+            let off = self.off(*value, departure.side);
+            if off > best.height {
+                best = Extremum { index, height: off };
+            } else if best.height - off > self.band.max(0.1 * best.height).max(ripple) {
+                break;
+            }
+        }
+        best
+    }
+
+    /// Whether the rest is longer than a sine in motion stays within the band around a turning point.
+    ///
+    /// ```text
+    /// e = (H + band)/2 (1 − cos φ),        φ = π t/T
+    /// ```
+    ///
+    /// A sine that enters the band on the far side, turns at its near side and leaves it again makes an excursion
+    /// e of two bands (some more is allowed for noise), before and after turning. H is the distance to its other
+    /// extremum, which it reaches after T.
+    fn outlasts_a_sine(&self, departure: &Departure, extremum: Extremum) -> bool {
+        const EXCURSION: f64 = 2.5;
+        let part = EXCURSION * self.band / (extremum.height + self.band);
+        if part >= 0.5 {
+            return false;
+        }
+        let phase = (1.0 - 2.0 * part).acos() / PI;
+        let half_swing = (extremum.index - departure.index) as f64 / (1.0 - phase);
+        departure.index as f64 > 2.0 * phase * half_swing
+    }
+
+    /// Where motion begins (samples): the onset of the sine that fits the rest and the first part of the way to the
+    /// first extremum best.
+    fn onset(&self, values: &[f64], departure: &Departure, extremum: Extremum, quantity: Quantity) -> f64 {
+        const PART: f64 = 0.25;
+        let left = departure.index as f64;
+        if quantity == Quantity::Acceleration {
+            return left - 0.5;
+        }
+        let Extremum { index: extremum, height } = extremum;
+        let way = values[departure.index..extremum]
+            .iter()
+            .take_while(|value| self.off(**value, departure.side) < PART * height)
+            .count()
+            .max(PERSISTENT);
+        let end = (departure.index + way).min(values.len());
+        // As much rest again as it may take to leave the band, with a margin.
+        let begin = departure.index.saturating_sub(2 * way + SHORTEST);
+        let off: Vec<f64> = values[begin..end].iter().map(|value| self.off(*value, departure.side)).collect();
+        let turn = (extremum.max(end) - begin) as f64;
+        let shape = |onset: f64, i: usize| {
+            let part = (i as f64 - onset).max(0.0) / (turn - onset);
+            if quantity == Quantity::Displacement { 1.0 - (PI * part).cos() } else { (FRAC_PI_2 * part).sin() }
+        };
+        // What the best factor leaves of the squares; its own value is not needed.
+        let misfit = |onset: f64| {
+            let (mut ff, mut fy) = (0.0, 0.0);
+            for (i, y) in off.iter().enumerate() {
+                let f = shape(onset, i);
+                ff += f * f;
+                fy += f * y;
+            }
+            -fy * fy.abs() / ff
+        };
+        begin as f64 + least(misfit, 0.0, (end - begin) as f64 - 2.0)
+    }
+}
+
+/// Where `f`, which has one minimum between `low` and `high`, is least, to a thousandth of a sample (golden section).
+fn least(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    const RATIO: f64 = 0.618_033_988_749_894_9;
+    const RESOLUTION: f64 = 1e-3;
+    let inner = |low: f64, high: f64| (high - RATIO * (high - low), low + RATIO * (high - low));
+    let (mut a, mut b) = inner(low, high);
+    let (mut at_a, mut at_b) = (f(a), f(b));
+    while high - low > RESOLUTION {
+        if at_a < at_b {
+            (high, b, at_b) = (b, a, at_a);
+            a = inner(low, high).0;
+            at_a = f(a);
+        } else {
+            (low, a, at_a) = (a, b, at_b);
+            b = inner(low, high).1;
+            at_b = f(b);
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Standard deviation about the line of least squares: slow noise counts, a motion that passes through does not.
+fn scatter_about_line(values: &[f64]) -> f64 {
+    let n = values.len() as f64;
+    let (middle, level) = ((n - 1.0) / 2.0, mean(values));
+    let deviations = || values.iter().enumerate().map(|(i, value)| (i as f64 - middle, value - level));
+    let slope = deviations().map(|(i, y)| i * y).sum::<f64>() * 12.0 / (n * (n * n - 1.0));
+    let squares: f64 = deviations().map(|(i, y)| (y - slope * i).powi(2)).sum();
+    (squares / (n - 2.0)).sqrt()
+}
+
+/// Standard deviation about `mean`.
+fn deviation(values: &[f64], mean: f64) -> f64 {
+    let sum: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (sum / values.len().saturating_sub(1).max(1) as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::{CoulombDecay, Recorded, pendulum, pendulum_velocity, quantised, sampled, wheel};
+
+    fn decay(release: f64) -> CoulombDecay {
+        CoulombDecay { frequency: 2.2, amplitude: 10.0, deadband: 0.5, release }
+    }
+
+    #[test]
+    fn release_is_found_in_velocity_and_displacement() {
+        for noise in [0.0, 1e-3, 0.01, 0.03] {
+            for rest in [0.1, 1.0, 5.0] {
+                let decay = decay(rest + 0.000_37);
+                let scale = 13.8 * 9.5;
+                let velocity = sampled(1000.0, 12.0, Quantity::Velocity, noise * scale, |t| 20.0 + decay.state(t).1);
+                // A tenth of a second near a turning point looks the same within so much noise.
+                let hopeless = rest < 0.5 && noise >= 0.01;
+                let Some(found) = Release::of(&velocity) else {
+                    assert!(hopeless, "noise {noise}, rest {rest} s");
+                    continue;
+                };
+                // The sample grid gives 0.1 ms or so; noise the scatter of a line through some 15 samples.
+                let error = (found.rest_end - decay.release).abs();
+                assert!(error < 2e-4 + noise * 0.1, "noise {noise}, rest {rest} s: {error} s");
+                let allowed = 4.0 * noise * scale / (found.samples as f64).sqrt() + 1e-12;
+                assert!((found.offset - 20.0).abs() <= allowed, "{} against 20", found.offset);
+                if noise > 0.0 && rest >= 1.0 {
+                    assert!((found.noise / (noise * scale) - 1.0).abs() < 0.1, "{}", found.noise);
+                }
+                let position = sampled(1000.0, 12.0, Quantity::Displacement, noise * 10.0, |t| decay.state(t).0);
+                let Some(found) = Release::of(&position) else {
+                    assert!(hopeless, "noise {noise}, rest {rest} s");
+                    continue;
+                };
+                let error = (found.rest_end - decay.release).abs();
+                assert!(error < 2e-4 + noise * 0.3, "noise {noise}, rest {rest} s: {error} s");
+            }
+        }
+    }
+
+    #[test]
+    fn a_short_rest_and_a_constant_rest_count() {
+        let decay = decay(0.025);
+        let velocity = sampled(1000.0, 12.0, Quantity::Velocity, 0.0, |t| decay.state(t).1);
+        let found = Release::of(&velocity).unwrap();
+        assert!((found.rest_end - 0.025).abs() < 2e-4, "{} s", found.rest_end);
+        let coarse =
+            quantised(&sampled(1000.0, 12.0, Quantity::Velocity, 0.02, |t| 3.0 + decay.state(t - 1.0).1), 0.61);
+        let found = Release::of(&coarse).unwrap();
+        assert!((found.rest_end - 1.025).abs() < 1e-3 && found.noise == 0.0, "{found:?}");
+        assert!((found.offset - 3.0).abs() < 0.305);
+    }
+
+    #[test]
+    fn records_that_begin_in_motion_have_no_release() {
+        #[cfg(feature = "mat")]
+        assert_eq!(Release::of(&crate::synthetic::fork()), None);
+        for record in [wheel(), pendulum(), pendulum_velocity()] {
+            assert_eq!(Release::of(&record), None);
+        }
+        for phase in 0..24 {
+            for rate in [50.0, 1000.0, 100_000.0] {
+                for noise in [0.0, 0.01, 0.1] {
+                    let phase = f64::from(phase) * 0.27;
+                    let record = sampled(rate, 5.0, Quantity::Velocity, noise, |t| (13.8 * t + phase).cos());
+                    let found = Release::of(&record);
+                    assert_eq!(found, None, "phase {phase}, {rate} Hz, noise {noise}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn records_without_motion_have_no_release() {
+        let rest = sampled(1000.0, 10.0, Quantity::Velocity, 0.1, |_| 1.0);
+        assert_eq!(Release::of(&rest), None);
+        let constant = sampled(1000.0, 1.0, Quantity::Velocity, 0.0, |_| 1.0);
+        assert_eq!(Release::of(&constant), None);
+        let short = sampled(1000.0, 0.01, Quantity::Velocity, 0.0, |t| t);
+        assert_eq!(Release::of(&short), None);
+    }
+
+    #[test]
+    fn a_spike_in_the_rest_is_no_release() {
+        let decay = decay(1.0);
+        let record = sampled(1000.0, 8.0, Quantity::Velocity, 0.1, |t| decay.state(t).1);
+        let mut values = record.into_values();
+        for value in &mut values[400..403] {
+            *value += 30.0;
+        }
+        let record = Record::sampled(1000.0, values, Quantity::Velocity, "mm/s").unwrap();
+        let found = Release::of(&record).unwrap();
+        assert!((found.rest_end - 1.0).abs() < 1e-3, "{} s", found.rest_end);
+    }
+
+    #[test]
+    fn swings_begin_after_the_rest_before_a_release() {
+        // A displacement is at its extremum while it is held.
+        let is_velocity = |recorded: &Recorded| recorded.record.quantity() == Quantity::Velocity;
+        for recorded in (0..600).map(Recorded::random).filter(is_velocity) {
+            let swings = crate::Swings::of(&recorded.record);
+            let early = swings.peaks().first().filter(|peak| peak.time < recorded.rest - 0.06);
+            assert_eq!(early, None, "released at {} s", recorded.rest);
+        }
+    }
+}

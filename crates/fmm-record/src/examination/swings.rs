@@ -1,0 +1,472 @@
+//! The swings of an oscillation: its peaks and the crossings of its centre, with sub-sample resolution.
+
+use crate::examination::harmonic::Harmonic;
+use crate::examination::spikes::without_spikes;
+use crate::examination::turning::turning_points;
+use crate::record::mean;
+use crate::{Quantity, Record, noise, quantisation_step};
+
+/// A turning point of an oscillation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Peak {
+    /// Time of the extremum, between samples (s).
+    pub time: f64,
+    /// Value of the extremum, in the unit of the record.
+    pub value: f64,
+    /// The sample nearest to it.
+    pub index: usize,
+    /// Whether it is a maximum.
+    pub is_maximum: bool,
+}
+
+/// The passage of an oscillation through its centre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Crossing {
+    /// Time of the passage, between samples (s).
+    pub time: f64,
+    /// The centre there, in the unit of the record.
+    pub centre: f64,
+    /// Whether the values rise.
+    pub is_rising: bool,
+}
+
+/// The half swings of an oscillation about a centre that is unknown and may vary slowly.
+///
+/// The record may have noise, few bits, spikes, an offset of any size, rest before and after, and from four samples
+/// per half swing upwards. What is found is the one regular oscillation that moves most; neighbouring half swings
+/// differ in length by less than a factor of two in it. It begins with the first turning point in the record and
+/// ends with the last that stands out of the noise, so that rest after a stop has none.
+///
+/// Peaks and crossings are fitted: a piece of a sine with the length of the local half swing, to the samples
+/// within ±1/12 period (±1 sample at least). That averages noise, and has no bias for a sine however few samples
+/// there are. Dry friction makes a kink where a velocity changes sign; crossings are fitted with one, except those
+/// of a displacement. (The peaks of a displacement have a jump of curvature there, which makes them late by
+/// 0.2 d/A rad for an amplitude A that loses 2d per half swing.) The centre at a crossing comes from the four peaks
+/// around it (weights 1, 3, 3, 1), which no linear change of amplitude disturbs.
+///
+/// ```
+/// use fmm_record::{Quantity, Record, Swings};
+///
+/// // 2 Hz about 1.5, losing amplitude at a constant rate as dry friction makes it.
+/// let at = |t: f64| 1.5 + (1.0 - 0.05 * t) * (std::f64::consts::TAU * 2.0 * t).sin();
+/// let record = Record::sampled(100.0, (0..1000).map(|i| at(f64::from(i) / 100.0)).collect(), Quantity::Velocity, "V")?;
+///
+/// let swings = Swings::of(&record);
+/// assert_eq!((swings.peaks().len(), swings.crossings().len()), (40, 39));
+/// assert!((swings.frequency().unwrap() - 2.0).abs() < 1e-4);
+/// assert!((swings.peaks()[0].value - 2.49375).abs() < 1e-4);
+/// # Ok::<(), fmm_record::RecordError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Swings {
+    peaks: Vec<Peak>,
+    crossings: Vec<Crossing>,
+}
+
+impl Swings {
+    /// The swings of `record`; empty if nothing in it oscillates, and never just one peak.
+    pub fn of(record: &Record) -> Self {
+        Self::bridging(record, 0)
+    }
+
+    /// The swings of `record`, with up to `bridged` irregular ones in a row taken along.
+    pub(crate) fn bridging(record: &Record, bridged: usize) -> Self {
+        let values = without_spikes(record);
+        let step = quantisation_step(&values).unwrap_or(0.0);
+        let turning = turning_points(&values, noise_in_motion(&values), step, bridged);
+        let mut turning = &turning[..];
+        let mut fitted = fit_peaks(&values, turning);
+        // The length of a half swing beside a rest, where noise may turn more than once, is none: all is fitted again.
+        while fitted.len() > 1 && (!begins_moving(&fitted) || begins_held(&values, &fitted)) {
+            turning = &turning[1..];
+            fitted = fit_peaks(&values, turning);
+        }
+        if fitted.len() > 1 && !fitted.last().is_some_and(Fitted::turns) {
+            turning = &turning[..turning.len() - 1];
+            fitted = fit_peaks(&values, turning);
+        }
+        if fitted.len() < 2 {
+            return Self::default();
+        }
+        let peaks: Vec<Peak> = fitted.iter().map(|fit| fit.peak(record)).collect();
+        let crossings = crossings(record, &values, &fitted);
+        Self { peaks, crossings }
+    }
+
+    /// The turning points, maxima and minima by turns, one per half swing.
+    pub fn peaks(&self) -> &[Peak] {
+        &self.peaks
+    }
+
+    /// The passages through the centre, one between each two peaks.
+    pub fn crossings(&self) -> &[Crossing] {
+        &self.crossings
+    }
+
+    /// Mean frequency (Hz): half of the inverse slope of the times of the crossings against their number, by least
+    /// squares. None with fewer than two crossings.
+    ///
+    /// Crossings are weighted by the square of the swing they belong to, as noise shifts those of small swings
+    /// more. Where the frequency depends on the amplitude, as that of a pendulum, this is the frequency of the large
+    /// swings.
+    pub fn frequency(&self) -> Option<f64> {
+        let first = self.crossings.first()?.time;
+        let weighted = || {
+            self.crossings.iter().zip(self.peaks.windows(2)).enumerate().map(|(k, (crossing, pair))| {
+                let swing = pair[1].value - pair[0].value;
+                (swing * swing, k as f64, crossing.time - first)
+            })
+        };
+        let (w, wk, wt) = weighted().fold((0.0, 0.0, 0.0), |sum, (w, k, t)| (sum.0 + w, sum.1 + w * k, sum.2 + w * t));
+        let (mean_k, mean_t) = (wk / w, wt / w);
+        let (kk, kt) = weighted().fold((0.0, 0.0), |sum, (w, k, t)| {
+            let (k, t) = (k - mean_k, t - mean_t);
+            (sum.0 + w * k * k, sum.1 + w * k * t)
+        });
+        (kt > 0.0).then(|| kk / (2.0 * kt))
+    }
+}
+
+/// Standard deviation of the white noise where it is loud, but not loudest: a noise that grows with the motion is larger in the
+/// motion than in the rest, and a shock in one part is none.
+fn noise_in_motion(values: &[f64]) -> f64 {
+    const PARTS: usize = 8;
+    const FEWEST: usize = 100;
+    let all = noise(values);
+    if values.len() < PARTS * FEWEST {
+        return all;
+    }
+    let mut parts: Vec<f64> = values.chunks_exact(values.len() / PARTS).map(noise).collect();
+    parts.sort_unstable_by(f64::total_cmp);
+    parts[parts.len() - 2].max(all)
+}
+
+/// A turning point as fitted, in samples.
+#[derive(Debug, Clone, Copy)]
+struct Fitted {
+    at: f64,
+    value: f64,
+    is_maximum: bool,
+    /// Height above the centre as the fit sees it, against half of the smaller neighbouring swing.
+    curvature: f64,
+}
+
+impl Fitted {
+    /// Whether the values really turn here as in a swing, instead of resting.
+    fn turns(&self) -> bool {
+        (0.3..3.0).contains(&self.curvature)
+    }
+
+    fn peak(&self, record: &Record) -> Peak {
+        let index = (self.at.round().max(0.0) as usize).min(record.len() - 1);
+        Peak { time: record.time_at(self.at), value: self.value, index, is_maximum: self.is_maximum }
+    }
+}
+
+/// Samples to either side of a point that a fit uses, for a half swing of `half` samples.
+fn reach(half: f64) -> usize {
+    ((half / 6.0).round() as usize).max(1)
+}
+
+/// The samples within reach of `at`.
+fn around(at: f64, half: f64, length: usize) -> std::ops::Range<usize> {
+    let centre = at.round().max(0.0) as usize;
+    centre.saturating_sub(reach(half))..(centre + reach(half) + 1).min(length)
+}
+
+/// Fits every turning point, given to the sample. The lengths of the half swings come from the turning points as
+/// given at first, then from the fitted ones.
+fn fit_peaks(values: &[f64], turning: &[usize]) -> Vec<Fitted> {
+    let last = turning.len().saturating_sub(1);
+    if last == 0 {
+        return Vec::new();
+    }
+    let swing = |i: usize| (values[turning[i + 1]] - values[turning[i]]).abs();
+    let fit = |at: &[f64]| -> Vec<Fitted> {
+        (0..=last)
+            .map(|k| {
+                let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
+                let half = (at[after] - at[before]) / (after - before) as f64;
+                let other = if k == last { before } else { after };
+                let is_maximum = values[turning[k]] > values[turning[other]];
+                let amplitude = swing(before).min(swing(after - 1)) / 2.0;
+                fit_peak(values, turning[k], is_maximum, half, amplitude)
+            })
+            .collect()
+    };
+    let first = fit(&turning.iter().map(|index| *index as f64).collect::<Vec<_>>());
+    fit(&first.iter().map(|fitted| fitted.at).collect::<Vec<_>>())
+}
+
+/// Fits one turning point near sample `index`; what cannot be fitted stays at its sample.
+fn fit_peak(values: &[f64], index: usize, is_maximum: bool, half: f64, amplitude: f64) -> Fitted {
+    let mut found = Fitted { at: index as f64, value: values[index], is_maximum, curvature: 0.0 };
+    // The second fit is centred where the first one found the peak, which noise may have moved from the sample.
+    for _ in 0..2 {
+        let range = around(found.at, half, values.len());
+        let Some(fit) = Harmonic::fit(values, range.clone(), found.at, half) else { break };
+        let at = fit.extremum();
+        // Half a sample of play: a record may begin or end at its peak.
+        let inside = at >= range.start as f64 - 0.5 && at <= range.end as f64 - 0.5;
+        if !inside || (fit.height() > 0.0) != is_maximum {
+            break;
+        }
+        found = Fitted { at, value: fit.peak(), curvature: fit.height().abs() / amplitude, ..found };
+    }
+    found
+}
+
+/// Whether the first turning point belongs to the oscillation: its values turn there, and it lies as far from the
+/// centre of the swings that follow as they do. The rest before a release does not.
+fn begins_moving(fitted: &[Fitted]) -> bool {
+    let first = &fitted[0];
+    let far = match fitted {
+        [first, a, b, c, ..] => {
+            let centre = (a.value + 2.0 * b.value + c.value) / 4.0;
+            (first.value - centre).abs() >= 0.5 * (a.value - centre).abs()
+        }
+        [first, a, b] => (a.value - first.value).abs() >= 0.75 * (b.value - a.value).abs(),
+        _ => true,
+    };
+    first.turns() && far
+}
+
+/// Whether the first turning point lies where something is held until it is released, as noise turns anywhere in that: where
+/// the values before it are near it, which in a swing come from the other side, and after a blow from the centre; or
+/// those on the way to the next one, which in a swing have left it by a half to the whole of its height.
+fn begins_held(values: &[f64], fitted: &[Fitted]) -> bool {
+    let [first, second, ..] = fitted else { return false };
+    let half = second.at - first.at;
+    let centre = centre(fitted, 0);
+    // Height of the mean over a part of the way from one half swing before to the next turning point.
+    let height = |from: f64, to: f64| {
+        let (from, to) = ((first.at + from * half).max(0.0), first.at + to * half);
+        let is_enough = to - from >= (0.25 * half).max(1.0);
+        is_enough
+            .then(|| (mean(&values[from as usize..(to as usize).min(values.len())]) - centre) / (first.value - centre))
+    };
+    height(-1.0, -0.25).is_some_and(|before| (before - 1.0).abs() < 0.5)
+        || height(0.25, 0.5).is_some_and(|after| after > 0.75)
+}
+
+/// Centre of the oscillation between peaks `k` and `k + 1`.
+fn centre(fitted: &[Fitted], k: usize) -> f64 {
+    let value = |i: usize| fitted[i].value;
+    if k > 0 && k + 2 < fitted.len() {
+        (value(k - 1) + 3.0 * (value(k) + value(k + 1)) + value(k + 2)) / 8.0
+    } else if k + 2 < fitted.len() {
+        (value(k) + 2.0 * value(k + 1) + value(k + 2)) / 4.0
+    } else if k > 0 {
+        (value(k - 1) + 2.0 * value(k) + value(k + 1)) / 4.0
+    } else {
+        f64::midpoint(value(k), value(k + 1))
+    }
+}
+
+/// The crossings between neighbouring peaks.
+fn crossings(record: &Record, values: &[f64], fitted: &[Fitted]) -> Vec<Crossing> {
+    const ENOUGH_FOR_A_KINK: usize = 8;
+    // Friction changes its sign with the velocity; a displacement passes its centre smoothly.
+    let has_kinks = record.quantity() != Quantity::Displacement;
+    fitted
+        .windows(2)
+        .enumerate()
+        .map(|(k, pair)| {
+            let [from, to] = [pair[0], pair[1]];
+            let centre = centre(fitted, k);
+            let half = to.at - from.at;
+            let mut at = passage(values, &from, &to, centre);
+            for _ in 0..4 {
+                let range = around(at, half, values.len());
+                let kink = has_kinks && range.len() >= ENOUGH_FOR_A_KINK;
+                let Some(fit) = Harmonic::fit_about(values, range, at, half, centre, kink) else { break };
+                let moved = fit.crossing();
+                if (moved - at).abs() > half / 4.0 {
+                    break;
+                }
+                at = moved;
+            }
+            Crossing { time: record.time_at(at), centre, is_rising: to.is_maximum }
+        })
+        .collect()
+}
+
+/// Where the values pass `centre` on their way between two peaks (samples), between the two samples nearest to the
+/// middle of the way that lie on either side of it; the middle itself if there are none.
+fn passage(values: &[f64], from: &Fitted, to: &Fitted, centre: f64) -> f64 {
+    let middle = 0.5 * (from.at + to.at);
+    let rising = if to.is_maximum { 1.0 } else { -1.0 };
+    let above = |i: usize| rising * (values[i] - centre);
+    let (first, last) = (from.at.floor().max(0.0) as usize, (to.at.ceil() as usize).min(values.len() - 1));
+    (first..last)
+        .filter(|i| above(*i) <= 0.0 && above(*i + 1) > 0.0)
+        .map(|i| i as f64 + above(i) / (above(i) - above(i + 1)))
+        .min_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()))
+        .unwrap_or(middle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::{CoulombDecay, pendulum, pendulum_velocity, quantised, sampled, wheel};
+
+    const DECAY: CoulombDecay = CoulombDecay { frequency: 2.2, amplitude: 10.0, deadband: 0.13, release: 0.3 };
+
+    /// Turning points of the displacement: ±(A − 2kd) at k half swings after the release.
+    #[test]
+    fn displacement_with_friction_has_its_peaks() {
+        for noise in [0.0, 1e-3, 0.05] {
+            let record = sampled(1000.0, 20.0, Quantity::Displacement, noise, |t| 15.0 + DECAY.state(t).0);
+            let swings = Swings::of(&record);
+            // 38 half swings; the one at the release has no extremum, the one at the stop does not turn.
+            assert!((36..=37).contains(&swings.peaks().len()), "{} peaks", swings.peaks().len());
+            for (k, peak) in swings.peaks().iter().enumerate().map(|(i, peak)| (i as f64 + 1.0, peak)) {
+                let side = if peak.is_maximum { 1.0 } else { -1.0 };
+                let (time, height) = (0.3 + k / 4.4, 10.0 - 2.0 * k * 0.13);
+                // The curvature jumps at the turn by 2d: 3 w d/(8 A) of phase with w = π/6, to the second order in
+                // value. A fit over 77 samples averages noise to 1.5/√77 in value and some 2.5/(w √77 A) in phase.
+                let phase = 0.22 * 0.13 / height + 5.0 * noise * 0.55 / height;
+                let error = (peak.time - time).abs() * 13.8;
+                assert!(error < phase + 1e-3, "peak {k}, noise {noise}: {error} rad of {phase} rad");
+                let error = (side * (peak.value - 15.0) - height).abs();
+                assert!(error < 3e-3 + 5.0 * 0.17 * noise, "peak {k}, noise {noise}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn velocity_with_friction_crosses_its_offset_at_the_turns_and_rests_without_peaks() {
+        let scale = 13.823 * 10.0;
+        for (noise, step) in [(0.0, None), (1e-3, None), (0.02, None), (1e-3, Some(5e-3)), (1e-5, Some(5e-3))] {
+            let clean = sampled(1000.0, 45.0, Quantity::Velocity, noise, |t| 1.5 + DECAY.state(t).1 / scale);
+            let record = step.map_or(clean.clone(), |step| quantised(&clean, step));
+            let swings = Swings::of(&record);
+            let (noise, count) = (noise + step.unwrap_or(0.0) / 3.0, swings.peaks().len());
+            assert!((35..=38).contains(&count), "noise {noise}: {count} peaks");
+            assert!(swings.peaks().iter().all(|peak| peak.time < DECAY.stop()), "a peak after the stop");
+            for (k, crossing) in swings.crossings().iter().enumerate() {
+                let height = 1.0 - 0.026 * (k as f64 + 1.0);
+                let error = (crossing.time - (0.3 + (k as f64 + 1.0) / 4.4)).abs() * 13.8;
+                // 2/√77 for the fit, and as much for the centre, from peaks with 1.5/√77 each.
+                let allowed = 5.0 * noise * 0.3 / height + 2e-4 / height;
+                assert!(error < allowed, "noise {noise}, crossing {k}: {error} rad of {allowed} rad");
+                assert_eq!(crossing.is_rising, k % 2 == 0, "the first swing is negative");
+            }
+            let frequency = swings.frequency().unwrap();
+            assert!((frequency - 2.2).abs() < 1e-3, "{frequency} Hz");
+        }
+    }
+
+    #[test]
+    fn four_samples_per_half_swing_are_enough() {
+        let record =
+            sampled(8.0 * 2.2 + 0.1, 60.0, Quantity::Velocity, 0.0, |t| 1.5 + (-0.02 * t).exp() * (13.823 * t).cos());
+        let swings = Swings::of(&record);
+        assert!((262..=264).contains(&swings.peaks().len()), "{} peaks", swings.peaks().len());
+        assert!((swings.frequency().unwrap() - 2.2).abs() < 1e-4, "{:?} Hz", swings.frequency());
+        for peak in swings.peaks() {
+            let height = (peak.value - 1.5).abs() / (-0.02 * peak.time).exp();
+            // The local half swing is known to the sample only, which shows in second order.
+            assert!((height - 1.0).abs() < 0.02, "{height} at {} s", peak.time);
+        }
+    }
+
+    #[test]
+    fn spikes_ripple_and_drift_do_not_upset_the_swings() {
+        let ripple = |t: f64| 0.05 * t + 0.3 * (std::f64::consts::TAU * 50.0 * t).sin();
+        let record = sampled(1000.0, 12.0, Quantity::Velocity, 0.05, |t| DECAY.state(t).1 / 13.823 + ripple(t));
+        let mut values = record.into_values();
+        for i in [900, 901, 4500, 7002] {
+            values[i] += 100.0;
+        }
+        let record = Record::sampled(1000.0, values, Quantity::Velocity, "mm/s").unwrap();
+        let swings = Swings::of(&record);
+        assert!((33..=38).contains(&swings.peaks().len()), "{} peaks", swings.peaks().len());
+        assert!((swings.frequency().unwrap() - 2.2).abs() < 0.01, "{:?} Hz", swings.frequency());
+    }
+
+    #[cfg(feature = "mat")]
+    #[test]
+    fn fork_swings_as_others_found() {
+        let swings = Swings::of(&crate::synthetic::fork());
+        assert_eq!(swings.peaks().len(), 37);
+        // 0.62885 Hz from fits of the whole record by others.
+        assert!((swings.frequency().unwrap() - 0.6288).abs() < 1e-3, "{:?} Hz", swings.frequency());
+        for crossing in swings.crossings() {
+            assert!((crossing.centre - 1.356).abs() < 0.01, "{} V at {} s", crossing.centre, crossing.time);
+        }
+    }
+
+    #[test]
+    fn wheel_and_pendulum_swing_as_others_found() {
+        let wheel = Swings::of(&wheel());
+        assert_eq!(wheel.peaks().len(), 9);
+        // ω² = 222.4 1/s² (2.3735 Hz) from fits of the whole record by others.
+        assert!((wheel.frequency().unwrap() - 2.3735).abs() < 0.01, "{:?} Hz", wheel.frequency());
+        for record in [pendulum(), pendulum_velocity()] {
+            let swings = Swings::of(&record);
+            assert_eq!(swings.peaks().len(), 133);
+            // Small swings have √64.08/2π = 1.2740 Hz; the first ones, of 1.6 rad, are 18 % longer.
+            let periods: Vec<f64> = swings.crossings().windows(3).map(|c| c[2].time - c[0].time).collect();
+            let last = periods.iter().rev().take(20).sum::<f64>() / 20.0;
+            assert!((1.0 / last - 1.270).abs() < 0.005, "{} Hz", 1.0 / last);
+            assert!((periods[0] * 1.274 - 1.18).abs() < 0.02, "{} s", periods[0]);
+        }
+    }
+
+    #[test]
+    fn what_does_not_oscillate_has_no_swings() {
+        for noise in [0.0, 1.0] {
+            for f in [|_| 1.0, |t: f64| t, |t: f64| (-t).exp(), |t: f64| if t < 5.0 { 0.0 } else { 50.0 }] {
+                let record = sampled(1000.0, 10.0, Quantity::Velocity, noise, f);
+                assert!(Swings::of(&record).peaks().is_empty(), "{:?}", Swings::of(&record).peaks());
+            }
+        }
+        for length in 1..8 {
+            let record = Record::sampled(1.0, vec![1.0; length], Quantity::Velocity, "m/s").unwrap();
+            assert_eq!(Swings::of(&record), Swings::default());
+        }
+    }
+
+    /// Rest with noise before a release or before a blow; what turns in it is no swing.
+    #[test]
+    fn rest_before_a_motion_has_no_peaks() {
+        type Motion<'a> = (&'a str, Quantity, &'a dyn Fn(f64) -> f64);
+        const TRIALS: u32 = 500;
+        let mut random = crate::synthetic::Noise::new(17);
+        let mut early = Vec::new();
+        for trial in 0..TRIALS {
+            let frequency = 0.5 + 6.0 * random.uniform();
+            let begin = 0.3 + 2.0 * random.uniform();
+            let decay =
+                CoulombDecay { frequency, amplitude: 1.0, deadband: 0.01 + 0.03 * random.uniform(), release: begin };
+            let (w, damping) = (std::f64::consts::TAU * frequency, 0.005 + 0.02 * random.uniform());
+            let rate = frequency * 10f64.powf(1.2 + 1.3 * random.uniform());
+            let noise = 10f64.powf(-3.5 + 3.0 * random.uniform());
+            let step = (noise * 10f64.powf(-1.0 + 2.0 * random.uniform())).min(0.2);
+            let ringing = |t: f64| if t < begin { 0.0 } else { (-damping * w * (t - begin)).exp() };
+            let motions: [Motion<'_>; 4] = [
+                ("displacement after a release", Quantity::Displacement, &|t| decay.state(t).0),
+                ("velocity after a release", Quantity::Velocity, &|t| decay.state(t).1 / w),
+                ("displacement after a blow", Quantity::Displacement, &|t| ringing(t) * (w * (t - begin)).sin()),
+                ("velocity after a blow", Quantity::Velocity, &|t| ringing(t) * (w * (t - begin)).cos()),
+            ];
+            for (name, quantity, motion) in motions {
+                let duration = begin + 20.0 / frequency;
+                let record = crate::synthetic::sampled_by(&mut random, rate, duration, quantity, noise, motion);
+                let record = if trial % 2 == 0 { record } else { quantised(&record, step) };
+                let swings = Swings::of(&record);
+                let Some(first) = swings.peaks().first().map(|peak| peak.time) else { continue };
+                // What jumps at the blow may be the first turning point, a sample early.
+                if first < begin - 0.05 / frequency - 1.5 / rate {
+                    early.push(format!(
+                        "trial {trial}, {name}: {first} s for {begin} s, {frequency} Hz at {rate} Hz, noise {noise}, step {step}"
+                    ));
+                }
+            }
+        }
+        assert!(early.is_empty(), "{} of {}:\n{}", early.len(), 4 * TRIALS, early.join("\n"));
+    }
+}

@@ -1,0 +1,219 @@
+//! The time that the name of a column or variable tells.
+
+use crate::RecordError;
+use crate::files::reading::seconds_in;
+use crate::units::label::{is_remark, without_groups};
+use crate::units::word::words;
+
+/// What a name says of time.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Clock {
+    /// Whether it is called time.
+    pub(crate) is_time: bool,
+    /// Whether it is called a number of samples.
+    pub(crate) is_counter: bool,
+    unit: Written,
+}
+
+/// The unit that is written.
+#[derive(Debug, Clone, PartialEq)]
+enum Written {
+    Nothing,
+    /// A unit of time of so many seconds.
+    Seconds(f64),
+    /// Something else where a unit belongs.
+    Other(String),
+}
+
+/// Words for time.
+const TIMES: [&str; 10] =
+    ["time", "times", "zeit", "timestamp", "timestamps", "zeitstempel", "elapsed", "uptime", "temps", "tiempo"];
+
+/// Words that may stand beside one for time.
+const FILLERS: [&str; 16] = [
+    "stamp", "stamps", "rel", "relative", "abs", "absolute", "total", "since", "start", "system", "device", "sensor",
+    "axis", "vector", "values", "in",
+];
+
+/// Words for a number of samples.
+const COUNTERS: [&str; 26] = [
+    "sample",
+    "samples",
+    "index",
+    "idx",
+    "ind",
+    "frame",
+    "frames",
+    "row",
+    "rows",
+    "scan",
+    "scans",
+    "point",
+    "points",
+    "sequence",
+    "seq",
+    "number",
+    "num",
+    "no",
+    "nr",
+    "id",
+    "counter",
+    "record",
+    "line",
+    "unnamed",
+    "messwert",
+    "datensatz",
+];
+
+impl Clock {
+    /// What is said where there is no name.
+    #[cfg(any(feature = "mat", feature = "npy"))]
+    pub(crate) fn nameless() -> Self {
+        Self { is_time: false, is_counter: false, unit: Written::Nothing }
+    }
+
+    /// What a name says.
+    pub(crate) fn of(name: &str) -> Self {
+        let (stem, unit, in_brackets) = unit_of_time(name);
+        let stem_words = words(&stem);
+        let one_of = |list: &[&str], word: &String| list.contains(&&**word);
+        let has_time = stem_words.iter().any(|word| one_of(&TIMES, word));
+        let only_time = has_time && stem_words.iter().all(|word| one_of(&TIMES, word) || one_of(&FILLERS, word));
+        let is_known = matches!(unit, Written::Seconds(_));
+        // A letter may stand for temperature or torque, which have other units.
+        let is_letter = stem.trim().eq_ignore_ascii_case("t") && !matches!(unit, Written::Other(_));
+        let begins = stem_words.first().is_some_and(|word| one_of(&TIMES, word));
+        let is_bare_unit = is_known && stem_words.is_empty();
+        let is_time = only_time || is_letter || is_bare_unit || (begins && is_known && in_brackets);
+        let is_nameless = matches!(stem.trim(), "" | "#");
+        let counts = !stem_words.is_empty() && stem_words.iter().all(|word| one_of(&COUNTERS, word));
+        let unit_counts = matches!(&unit, Written::Other(unit) if !words(unit).is_empty() && words(unit).iter().all(|word| one_of(&COUNTERS, word)));
+        let is_counter = !is_time && !is_known && (is_nameless || counts || unit_counts);
+        Self { is_time, is_counter, unit }
+    }
+
+    /// Whether it is called time, in a unit that is known or not written.
+    pub(crate) fn is_known_time(&self) -> bool {
+        self.is_time && !matches!(self.unit, Written::Other(_))
+    }
+
+    /// Whether a series that is not called time may be it.
+    #[cfg(feature = "csv")]
+    pub(crate) fn may_be_time(&self) -> bool {
+        self.is_time || self.is_counter || !matches!(self.unit, Written::Other(_))
+    }
+
+    /// Whether uniform numbers count samples: whole ones in no unit.
+    pub(crate) fn counts(&self, numbers: &[f64]) -> bool {
+        self.unit == Written::Nothing && are_whole(numbers)
+    }
+
+    /// Brings the time stamps of the series called `name` to seconds; `by_nature` tells that nobody called it time, but that it
+    /// increases uniformly.
+    ///
+    /// # Errors
+    /// [`RecordError::TimeAxis`] if something else is written where the unit belongs, or if they
+    /// count samples: by their name, or as whole numbers of which nobody said that they are time.
+    pub(crate) fn to_seconds(&self, name: &str, by_nature: bool, times: &mut [f64]) -> Result<(), RecordError> {
+        // A stamp of a computer is a whole number of whatever its clock counts.
+        let is_vague = by_nature || (self.is_time && name.to_lowercase().contains("stamp"));
+        match &self.unit {
+            Written::Other(unit) if !self.is_counter => {
+                let what = format!(
+                    "the time stamps \"{name}\" are in \"{unit}\", which is no unit of time that is known; give the sampling rate"
+                );
+                return Err(RecordError::time(None, what));
+            }
+            _ if self.is_counter => return Err(counter(name)),
+            Written::Nothing if is_vague && self.counts(times) => return Err(counter(name)),
+            Written::Seconds(scale) if *scale != 1.0 => times.iter_mut().for_each(|time| *time *= scale),
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+/// A series that counts samples and tells no time.
+pub(crate) fn counter(name: &str) -> RecordError {
+    let what =
+        format!("\"{name}\" counts samples and tells no time; give the sampling rate, or time stamps with their unit");
+    RecordError::time(None, what)
+}
+
+/// Whether all numbers are whole, as those that count samples are.
+pub(crate) fn are_whole(numbers: &[f64]) -> bool {
+    numbers.iter().all(|number| number.fract() == 0.0)
+}
+
+/// The name without its unit, the unit, and whether that stood in brackets.
+fn unit_of_time(name: &str) -> (String, Written, bool) {
+    let (bare, groups) = without_groups(name);
+    let known = groups.iter().rev().find_map(|group| seconds_in(&group.text).filter(|_| !group.text.is_empty()));
+    if let Some(seconds) = known {
+        return (bare, Written::Seconds(seconds), true);
+    }
+    if let Some(group) = groups.iter().rev().find(|group| !is_remark(&group.text)) {
+        return (bare, Written::Other(group.text.clone()), true);
+    }
+    if let Some((stem, unit)) = bare.split_once('/').filter(|(stem, _)| !stem.trim().is_empty()) {
+        let unit = unit.trim();
+        let written = seconds_in(unit).map_or_else(|| Written::Other(unit.to_owned()), Written::Seconds);
+        return (stem.trim().to_owned(), written, false);
+    }
+    if seconds_in(&bare).is_some() && bare.chars().count() > 1 && !["min", "std"].contains(&&*bare.to_lowercase()) {
+        // Called by nothing but its unit, which a single letter may not be.
+        return (String::new(), seconds_in(&bare).map_or(Written::Nothing, Written::Seconds), false);
+    }
+    let parts = words(&bare);
+    if let [_, .., last] = &parts[..]
+        && let Some(seconds) = seconds_in(last)
+        && bare.to_lowercase().ends_with(last.as_str())
+    {
+        let stem = bare[..bare.len() - last.len()].trim_end_matches(|sign: char| !sign.is_alphanumeric());
+        // Of anything but time these are other things: `v_ms` is a velocity, `x_min` a minimum.
+        if stem.eq_ignore_ascii_case("t") || words(stem).iter().any(|word| TIMES.contains(&&**word)) {
+            return (stem.to_owned(), Written::Seconds(seconds), false);
+        }
+    }
+    (bare, Written::Nothing, false)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seconds(name: &str) -> Option<f64> {
+        let clock = Clock::of(name);
+        let mut times = [0.0, 0.5];
+        clock.is_time.then(|| clock.to_seconds(name, false, &mut times).ok().map(|()| 2.0 * times[1]))?
+    }
+
+    #[test]
+    fn names_of_time_are_known_with_their_units() {
+        for name in
+            ["t", "T", "time", "t_s", "time_s", "Time (s)", "t [s]", "t/s", "Zeit", " Zeit [s] ", "TIME", "Time, s"]
+        {
+            assert_eq!(seconds(name), Some(1.0), "{name}");
+        }
+        for name in ["Time  1 - default sample rate [s]", "Timestamp", "time stamp", "relative time (secs)", "times"] {
+            assert_eq!(seconds(name), Some(1.0), "{name}");
+        }
+        for (name, unit) in [
+            ("time_ms", 1e-3),
+            ("t [µs]", 1e-6),
+            ("t [μs]", 1e-6),
+            ("Time (Min.)", 60.0),
+            ("time_min", 60.0),
+            ("timeMs", 1e-3),
+            ("t_ns", 1e-9),
+            ("Zeit [h]", 3600.0),
+            ("time_millis", 1e-3),
+            ("elapsed_ms", 1e-3),
+        ] {
+            assert_eq!(seconds(name), Some(unit), "{name}");
+        }
+        for name in ["theta", "t_coil", "velocity", "timer", "", "trial", "time constant", "T [K]", "T1", "s", "min"] {
+            assert!(!Clock::of(name).is_time, "{name}");
+        }
+    }
+}

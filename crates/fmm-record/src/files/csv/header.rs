@@ -1,0 +1,187 @@
+//! What stands above a table: the names of its columns, their units, and what is stated of the sampling.
+
+use super::fields::{Separator, split, text};
+use super::layout::{Kind, Row};
+use super::lines::Line;
+use super::number;
+use super::table::{not_a_number, ragged};
+use crate::files::clock::Clock;
+use crate::files::reading::seconds_in;
+use crate::{RecordError, Unit};
+
+/// What stands above a table.
+#[derive(Debug, Default)]
+pub(super) struct Header {
+    /// The names of the columns with their units; their positions if they have no names.
+    pub(super) names: Vec<String>,
+    /// The names as they are written, without the units that a row of units gives.
+    pub(super) bare: Vec<String>,
+    /// Numbers that are stated by a name.
+    pub(super) stated: Vec<(String, f64)>,
+}
+
+/// Reads what stands above the table; its names do not stand before line `begin`, and `row` is its first row.
+pub(super) fn header(
+    above: &[Line],
+    begin: usize,
+    row: Option<&Line>,
+    columns: &[Kind],
+    separator: Separator,
+) -> Result<Header, RecordError> {
+    let width = columns.len();
+    let mut found =
+        Header { stated: above.iter().filter_map(|line| statement(line, separator)).collect(), ..Header::default() };
+    let fitting =
+        |line: usize| above.get(line).filter(|_| line >= begin).and_then(|line| fitted(&line.text, columns, separator));
+    let Some(last) = above.len().checked_sub(1).filter(|last| *last >= begin) else {
+        let comment = row.and_then(|row| row.comment.as_deref());
+        let names = comment.and_then(|comment| names_in(comment, columns, separator));
+        found.bare = names.unwrap_or_else(|| positions(width));
+        found.names.clone_from(&found.bare);
+        return Ok(found);
+    };
+    let Some(names) = fitting(last) else {
+        let fields = Row::of(&above[last], separator).len();
+        if let (Some(row), true) = (row, fields > 1) {
+            return Err(ragged(row.number, fields, width, separator));
+        }
+        // The end of a preamble.
+        found.bare = positions(width);
+        found.names.clone_from(&found.bare);
+        return Ok(found);
+    };
+    let is_number = |column: &usize| number::parse(names[*column].as_bytes(), separator).is_some();
+    let mut numbers = (0..width).filter(|column| columns[*column] == Kind::Number);
+    let first = numbers.next();
+    if first.into_iter().chain(numbers).any(|column| is_number(&column)) {
+        // A row without its first number must not be lost; the last line of a preamble has a name there.
+        if let (Some(column), Some(line)) = (first.filter(|first| names[*first].is_empty()), above.get(last)) {
+            return Err(not_a_number(line.number, &column.to_string(), ""));
+        }
+        found.bare = positions(width);
+        found.names.clone_from(&found.bare);
+        return Ok(found);
+    }
+    let named = last.checked_sub(1).and_then(fitting).filter(|named| are_units(&names) && are_names(named, separator));
+    found.bare = named.unwrap_or_default();
+    if found.bare.is_empty() {
+        found.bare = names;
+        found.names.clone_from(&found.bare);
+        return Ok(found);
+    }
+    for (name, unit) in found.bare.iter().zip(&names) {
+        // An oscilloscope states the increment of its first column there.
+        if let Some((value, _)) = number::parse(unit.as_bytes(), separator) {
+            found.stated.push((format!("{} {name}", found.bare[0]), value));
+        }
+    }
+    found.names = found.bare.iter().zip(&names).map(|(name, unit)| with_unit(name, unit)).collect();
+    Ok(found)
+}
+
+fn positions(width: usize) -> Vec<String> {
+    (0..width).map(|column| column.to_string()).collect()
+}
+
+/// A name and the number behind it on the same line.
+fn statement(line: &Line, separator: Separator) -> Option<(String, f64)> {
+    let row = Row::of(line, separator);
+    let (value, _) = (1..row.len()).find_map(|column| number::parse(row.field(column), separator))?;
+    let name = text(row.field(0)).trim_end_matches([':', '=']).trim().to_owned();
+    // A third field may be a unit, which must be that of a time or a rate.
+    let units = (1..row.len())
+        .map(|column| row.field(column))
+        .filter(|field| !field.is_empty() && number::parse(field, separator).is_none());
+    let plain = units.map(text).all(|unit| matches!(&*unit, "s" | "Hz" | "S/s" | "Sa/s"));
+    plain.then_some((name, value))
+}
+
+/// The fields of a line as one for each column, if they fit.
+fn fitted(line: &[u8], columns: &[Kind], separator: Separator) -> Option<Vec<String>> {
+    let width = columns.len();
+    let mut fields = match separator {
+        Separator::Blanks => aligned_names(line, width),
+        Separator::Sign(_) => {
+            let mut ranges = Vec::new();
+            split(line, separator, &mut ranges);
+            ranges.into_iter().map(|range| text(&line[range])).collect()
+        }
+    };
+    // LabVIEW names a column of comments that most rows do not have; others end every line with a separator.
+    while fields.len() > width && fields.last().is_some_and(|name| name.is_empty() || name == "Comment") {
+        fields.pop();
+    }
+    while fields.len() < width && fields.len() > 1 && columns[fields.len()..].iter().all(|kind| *kind == Kind::Blank) {
+        fields.push(String::new());
+    }
+    (fields.len() == width).then_some(fields)
+}
+
+/// Names above aligned columns: words, words with a unit in brackets behind, or whatever two blanks separate.
+fn aligned_names(line: &[u8], width: usize) -> Vec<String> {
+    let line = text(line.trim_ascii());
+    let line = line.replace('\t', "  ");
+    let words: Vec<&str> = line.split_whitespace().collect();
+    if words.len() == width {
+        return words.into_iter().map(str::to_owned).collect();
+    }
+    let mut with_units: Vec<String> = Vec::new();
+    for word in words {
+        match with_units.last_mut() {
+            Some(name) if word.starts_with(['[', '(']) => {
+                name.push(' ');
+                name.push_str(word);
+            }
+            _ => with_units.push(word.to_owned()),
+        }
+    }
+    if with_units.len() == width || width == 1 {
+        return if width == 1 { vec![line.trim().to_owned()] } else { with_units };
+    }
+    line.split("  ").map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned).collect()
+}
+
+/// Names in a comment right above the first row, if one of them is that of time.
+fn names_in(comment: &[u8], columns: &[Kind], separator: Separator) -> Option<Vec<String>> {
+    let comment = comment.trim_ascii();
+    let comment = &comment[comment.iter().take_while(|byte| matches!(byte, b'#' | b'%' | b' ' | b'\t')).count()..];
+    let names = [separator, Separator::Sign(b','), Separator::Sign(b';'), Separator::Sign(b'\t'), Separator::Blanks];
+    let mut fitting = names.into_iter().filter_map(|separator| fitted(comment, columns, separator));
+    fitting.find(|names| names.iter().any(|name| Clock::of(name).is_time))
+}
+
+/// Whether fields are units, or stand in the places of units.
+fn are_units(fields: &[String]) -> bool {
+    let is_unit = |field: &&String| {
+        let plain = plain(field);
+        let is_enclosed = plain.len() < field.len();
+        is_enclosed || plain.parse::<Unit>().is_ok() || seconds_in(plain).is_some()
+    };
+    let may_be = |field: &&String| {
+        is_unit(field)
+            || matches!(&***field, "-" | "1" | "%")
+            || field.parse::<f64>().is_ok()
+            || Clock::of(field).is_counter
+    };
+    let mut filled = fields.iter().filter(|field| !field.is_empty()).peekable();
+    filled.peek().is_some() && filled.clone().any(|field| is_unit(&field)) && filled.all(|field| may_be(&field))
+}
+
+/// Whether fields may be the names above a row of units: some are filled, none is a number.
+fn are_names(fields: &[String], separator: Separator) -> bool {
+    let filled: Vec<&String> = fields.iter().filter(|field| !field.is_empty()).collect();
+    !filled.is_empty() && filled.iter().all(|name| number::parse(name.as_bytes(), separator).is_none())
+}
+
+/// A unit without the brackets around it.
+fn plain(unit: &str) -> &str {
+    let inside = |open, close| unit.strip_prefix(open).and_then(|rest| rest.strip_suffix(close));
+    inside('(', ')').or_else(|| inside('[', ']')).unwrap_or(unit).trim()
+}
+
+/// A name with the unit below it.
+fn with_unit(name: &str, unit: &str) -> String {
+    let is_number = unit.parse::<f64>().is_ok();
+    let unit = plain(unit);
+    if unit.is_empty() || is_number { name.to_owned() } else { format!("{name} [{unit}]") }
+}

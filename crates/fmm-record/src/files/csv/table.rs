@@ -1,0 +1,222 @@
+//! The rows of a text file.
+
+use std::collections::VecDeque;
+use std::io::{BufReader, Read};
+use std::ops::Range;
+
+use super::fields::{Separator, split};
+use super::header::Header;
+use super::layout::{Kind, Layout};
+use super::lines::{Line, Lines};
+use super::number::{self, Digits, Mark};
+use crate::files::reading::quoted;
+use crate::{Column, RecordError};
+
+/// How much of the file its layout is judged by (bytes).
+const HEAD: usize = 1 << 16;
+
+/// Rows that the last one is compared with before it is called cut off.
+const ENOUGH: usize = 8;
+
+/// A header without a table.
+pub(super) const NO_ROWS: &str = "the file has a header but no rows of data below it";
+
+/// A row with more or fewer fields than the first.
+pub(super) fn ragged(line: u64, expected: usize, found: usize, separator: Separator) -> RecordError {
+    let remedy = if separator.leaves_comma() {
+        ""
+    } else {
+        "; if the numbers have decimal commas, save the file with semicolons or tabs between the columns; if lines stand above \
+         the table, skip them"
+    };
+    RecordError::on_line(line, format!("line {line} has {found} fields, but the first row has {expected}{remedy}"))
+}
+
+/// A field that is not a number.
+pub(super) fn not_a_number(line: u64, column: &str, text: &str) -> RecordError {
+    RecordError::on_line(line, format!("line {line}, column \"{column}\": \"{text}\" is not a number"))
+}
+
+/// An open table: the names of its columns are known, its rows are read one by one.
+pub(super) struct Table<R> {
+    head: VecDeque<Line>,
+    lines: Lines<BufReader<R>>,
+    line: Line,
+    fields: Vec<Range<usize>>,
+    separator: Separator,
+    columns: Vec<Kind>,
+    header: Header,
+    mark: Option<Mark>,
+}
+
+impl<R: Read> Table<R> {
+    /// Opens the table behind the first `skip` lines.
+    pub(super) fn open(input: R, separator: Option<u8>, skip: u64) -> Result<Self, RecordError> {
+        let separator = match separator {
+            None => None,
+            Some(b' ') => Some(Separator::Blanks),
+            Some(sign @ (b',' | b';' | b'\t' | b'|' | b':')) => Some(Separator::Sign(sign)),
+            Some(separator) => {
+                let sign = char::from(separator);
+                return Err(RecordError::options(format!("{sign:?} cannot separate columns of numbers")));
+            }
+        };
+        let mut lines = Lines::new(BufReader::new(input), skip);
+        let mut head = Vec::new();
+        let mut length = 0;
+        let mut line = Line::default();
+        while length < HEAD && lines.next(&mut line)? {
+            length += line.text.len() + 1;
+            head.push(std::mem::take(&mut line));
+        }
+        if head.is_empty() {
+            return Err(RecordError::damaged("the file is empty or holds comments only"));
+        }
+        let Layout { separator, columns, header, first } = Layout::of(&head, separator)?;
+        let head = head.into_iter().skip(first).collect();
+        let (fields, mark) = (Vec::new(), None);
+        Ok(Self { head, lines, line, fields, separator, columns, header, mark })
+    }
+
+    /// The names of the columns.
+    pub(super) fn names(&self) -> &[String] {
+        &self.header.names
+    }
+
+    /// Numbers that are stated above the table.
+    pub(super) fn stated(&self) -> &[(String, f64)] {
+        &self.header.stated
+    }
+
+    /// The first column that holds anything.
+    pub(super) fn first(&self) -> usize {
+        self.columns.iter().position(|kind| *kind != Kind::Blank).unwrap_or(0)
+    }
+
+    /// Whether nothing is in a column.
+    pub(super) fn is_blank(&self, column: usize) -> bool {
+        self.columns[column] == Kind::Blank
+    }
+
+    /// Position of the column that the caller means.
+    pub(super) fn find(&self, column: &Column) -> Result<usize, RecordError> {
+        let names = &self.header.names;
+        let found = match column {
+            Column::Index(index) if *index < names.len() => vec![*index],
+            Column::Index(_) => Vec::new(),
+            Column::Name(wanted) => {
+                let wanted = wanted.trim();
+                let lower = wanted.to_lowercase();
+                let matching = |names: &[String], same: &dyn Fn(&str) -> bool| -> Vec<usize> {
+                    names.iter().enumerate().filter(|(_, name)| same(name)).map(|(index, _)| index).collect()
+                };
+                let exact = |name: &str| name == wanted;
+                let alike = |name: &str| name.to_lowercase() == lower;
+                let in_turn = [
+                    matching(names, &exact),
+                    matching(&self.header.bare, &exact),
+                    matching(names, &alike),
+                    matching(&self.header.bare, &alike),
+                ];
+                in_turn.into_iter().find(|found| !found.is_empty()).unwrap_or_default()
+            }
+        };
+        match found[..] {
+            [index] => Ok(index),
+            [] => {
+                let what = format!("there is no column {column}; the file has: {}", quoted(names));
+                Err(RecordError::NoSuchChannel { what })
+            }
+            _ => {
+                let count = found.len();
+                let what = format!("{count} columns are called {column}; choose one by its position, counted from 0");
+                Err(RecordError::WhichChannel { what })
+            }
+        }
+    }
+
+    /// Reads the chosen columns of all rows.
+    pub(super) fn read_columns<const N: usize>(mut self, chosen: [usize; N]) -> Result<[Vec<f64>; N], RecordError> {
+        let mut columns = [const { Vec::new() }; N];
+        let last = self.columns.len() - 1;
+        let is_last_in_use = chosen.contains(&last);
+        let mut least: Option<Digits> = None;
+        while self.advance()? {
+            self.check_width()?;
+            for (values, &column) in columns.iter_mut().zip(&chosen) {
+                values.push(self.number(column)?);
+            }
+            if is_last_in_use {
+                let digits = Digits::of(self.field(last));
+                let rows = columns.first().map_or(0, Vec::len);
+                if !self.line.is_ended && rows > ENOUGH && least.is_some_and(|least| digits.are_fewer_than(least)) {
+                    let (line, text) = (self.line.number, self.shown(last));
+                    let what = format!(
+                        "line {line} ends with \"{text}\" and without a line end, and all other numbers of its column have more \
+                         digits: the file is cut off; if it is not, end its last line"
+                    );
+                    return Err(RecordError::on_line(line, what));
+                }
+                least = Some(least.map_or(digits, |least| least.least(digits)));
+            }
+        }
+        if columns.iter().any(Vec::is_empty) { Err(RecordError::damaged(NO_ROWS)) } else { Ok(columns) }
+    }
+
+    /// Goes to the next row that is not blank; false at the end.
+    fn advance(&mut self) -> Result<bool, RecordError> {
+        loop {
+            match self.head.pop_front() {
+                Some(line) => self.line = line,
+                None if self.lines.next(&mut self.line)? => {}
+                None => return Ok(false),
+            }
+            split(&self.line.text, self.separator, &mut self.fields);
+            if self.fields.iter().any(|field| !field.is_empty()) {
+                return Ok(true);
+            }
+        }
+    }
+
+    /// Refuses a row with more or fewer fields than the table has columns; only columns in which nothing is may be missing.
+    fn check_width(&self) -> Result<(), RecordError> {
+        let (expected, found) = (self.columns.len(), self.fields.len());
+        let missing_are_blank = || self.columns[found..].iter().all(|kind| *kind == Kind::Blank);
+        if found == expected || (found < expected && missing_are_blank()) {
+            return Ok(());
+        }
+        Err(ragged(self.line.number, expected, found, self.separator))
+    }
+
+    fn field(&self, column: usize) -> &[u8] {
+        self.fields.get(column).map_or(&[], |range| &self.line.text[range.clone()])
+    }
+
+    /// A field, cut after as much as is enough to recognise it by.
+    fn shown(&self, column: usize) -> String {
+        const SHOWN: usize = 40;
+        String::from_utf8_lossy(self.field(column)).chars().take(SHOWN).collect()
+    }
+
+    /// The number in a field of the current row.
+    fn number(&mut self, column: usize) -> Result<f64, RecordError> {
+        let line = self.line.number;
+        let Some((value, mark)) = number::parse(self.field(column), self.separator) else {
+            return Err(not_a_number(line, &self.header.names[column], &self.shown(column)));
+        };
+        match (self.mark, mark) {
+            (None, _) => self.mark = mark,
+            (Some(earlier), Some(mark)) if earlier != mark => {
+                let [this, other] = if mark == Mark::Comma { ["comma", "point"] } else { ["point", "comma"] };
+                let (name, text) = (&self.header.names[column], self.shown(column));
+                let what = format!(
+                    "line {line}, column \"{name}\": \"{text}\" has a decimal {this}, but earlier numbers have a decimal \
+                     {other}; a file must keep to one of them"
+                );
+                return Err(RecordError::on_line(line, what));
+            }
+            _ => {}
+        }
+        Ok(value)
+    }
+}

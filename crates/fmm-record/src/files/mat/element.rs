@@ -1,0 +1,166 @@
+//! The variables in the bytes of a file, found without trusting any of the lengths that it states.
+
+use std::borrow::Cow;
+use std::io::Read;
+
+use libflate::zlib::Decoder;
+
+use crate::RecordError;
+use crate::files::is_matlab_4;
+use crate::files::reading::{MOST_INFLATED, too_large};
+
+const HEADER: usize = 128;
+pub(super) const MATRIX: u32 = 14;
+const COMPRESSED: u32 = 15;
+
+/// Order of the bytes in a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Endian {
+    Little,
+    Big,
+}
+
+impl Endian {
+    pub(super) fn u16(self, bytes: [u8; 2]) -> u16 {
+        match self {
+            Self::Little => u16::from_le_bytes(bytes),
+            Self::Big => u16::from_be_bytes(bytes),
+        }
+    }
+
+    pub(super) fn u32(self, bytes: [u8; 4]) -> u32 {
+        match self {
+            Self::Little => u32::from_le_bytes(bytes),
+            Self::Big => u32::from_be_bytes(bytes),
+        }
+    }
+
+    pub(super) fn bytes_of(self, number: u32) -> [u8; 4] {
+        match self {
+            Self::Little => number.to_le_bytes(),
+            Self::Big => number.to_be_bytes(),
+        }
+    }
+}
+
+/// The order of bytes in a file of version 5 to 7, by its header.
+pub(super) fn endian(file: &[u8]) -> Result<Endian, RecordError> {
+    let length = file.len();
+    let endian = match file.get(HEADER - 2..HEADER) {
+        Some(b"IM") => Endian::Little,
+        Some(b"MI") => Endian::Big,
+        _ if is_matlab_4(file) => {
+            let what = "a MATLAB version 4 file; load it in MATLAB and save it with -v7";
+            return Err(RecordError::unsupported(what));
+        }
+        _ => {
+            let what = format!("not a MATLAB file: {length} bytes without the header of one");
+            return Err(RecordError::UnknownFormat { what });
+        }
+    };
+    match endian.u16([file[HEADER - 4], file[HEADER - 3]]) {
+        0x0100 => Ok(endian),
+        version => {
+            let what = format!("a MATLAB file of unknown version {version:#06x}; save it with -v7");
+            Err(RecordError::unsupported(what))
+        }
+    }
+}
+
+/// Where a variable begins, and the body of its array, as it stands in the file or expanded; or why it cannot be expanded.
+type Variable<'a> = (usize, Result<Cow<'a, [u8]>, RecordError>);
+
+/// What the variable there is called as long as its name is not known.
+pub(super) fn place(offset: usize) -> String {
+    format!("(at byte {offset})")
+}
+
+/// Goes through the variables of a file.
+pub(super) struct Variables<'a> {
+    file: &'a [u8],
+    endian: Endian,
+    at: usize,
+    budget: usize,
+}
+
+impl<'a> Variables<'a> {
+    /// The variables of a file whose header has been checked by [`endian`].
+    pub(super) fn new(file: &'a [u8], endian: Endian) -> Self {
+        Self { file, endian, at: HEADER, budget: MOST_INFLATED }
+    }
+
+    /// The next variable; none at the end of the file.
+    ///
+    /// # Errors
+    /// Those after which it is not known where the next one begins.
+    pub(super) fn next(&mut self) -> Result<Option<Variable<'a>>, RecordError> {
+        let offset = self.at;
+        let rest = self.file.get(offset..).unwrap_or_default();
+        if rest.is_empty() {
+            return Ok(None);
+        }
+        let Some((tag, rest)) = rest.split_first_chunk::<8>() else {
+            return Err(truncated(offset, 8, rest.len()));
+        };
+        let (code, length) = long_tag(*tag, self.endian);
+        if code != MATRIX && code != COMPRESSED {
+            return Err(unknown_element(offset, code));
+        }
+        let Some(content) = rest.get(..length as usize) else {
+            return Err(truncated(offset, length as usize, rest.len()));
+        };
+        // Arrays are padded to eight bytes, compressed ones are not; padding may be missing at the end of the file.
+        let padded = if code == MATRIX { content.len().next_multiple_of(8) } else { content.len() };
+        self.at = offset + tag.len() + padded;
+        if code == MATRIX {
+            return Ok(Some((offset, Ok(Cow::Borrowed(content)))));
+        }
+        Ok(Some((offset, self.inflate(offset, content).map(Cow::Owned))))
+    }
+
+    /// Expands a compressed variable and takes it off the budget. The tag of the array inside says how long it is;
+    /// no more than that is expanded.
+    fn inflate(&mut self, offset: usize, content: &[u8]) -> Result<Vec<u8>, RecordError> {
+        let place = format!("the compressed variable at byte {offset} is damaged");
+        let damaged = |error| RecordError::undecoded(&place, error);
+        let mut decoder = Decoder::new(content).map_err(damaged)?;
+        let mut tag = [0; 8];
+        decoder.read_exact(&mut tag).map_err(damaged)?;
+        let (code, length) = long_tag(tag, self.endian);
+        if code != MATRIX {
+            return Err(unknown_element(offset, code));
+        }
+        let length = length as usize;
+        if length > self.budget {
+            return Err(too_large());
+        }
+        self.budget -= length;
+        let mut body = Vec::new();
+        decoder.by_ref().take(length as u64).read_to_end(&mut body).map_err(damaged)?;
+        if body.len() < length {
+            return Err(truncated(offset, length, body.len()));
+        }
+        // The checksum stands behind the data, and is compared only when the end of the stream is reached.
+        let beyond = std::io::copy(&mut decoder.take(8), &mut std::io::sink()).map_err(damaged)?;
+        if beyond < 8 { Ok(body) } else { Err(RecordError::damaged(format!("{place}: data follow the array"))) }
+    }
+}
+
+/// A variable that ends behind the end of what holds it (bytes).
+fn truncated(offset: usize, promised: usize, present: usize) -> RecordError {
+    let what = format!(
+        "the file is cut off: the variable at byte {offset} promises {promised} bytes, but {present} are there"
+    );
+    RecordError::damaged(what)
+}
+
+/// A variable that is neither an array nor a compressed array.
+fn unknown_element(offset: usize, code: u32) -> RecordError {
+    RecordError::damaged(format!(
+        "the variable at byte {offset} is of type {code}, which is neither an array (14) nor a compressed one (15)"
+    ))
+}
+
+fn long_tag([a, b, c, d, e, f, g, h]: [u8; 8], endian: Endian) -> (u32, u32) {
+    (endian.u32([a, b, c, d]), endian.u32([e, f, g, h]))
+}

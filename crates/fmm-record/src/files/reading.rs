@@ -1,0 +1,122 @@
+//! A reading: the record, and what was chosen in the file to get it.
+
+use std::convert::Infallible;
+use std::str::FromStr;
+
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
+use crate::{Quantity, RecordError, Resampling};
+use crate::{Record, Sampling};
+
+/// A record as read from a file, with the choices that led to it, so that a report can name them.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Reading {
+    /// The record.
+    pub record: Record,
+    /// Name of the column or variable that became the record.
+    pub channel: String,
+    /// Name of the column or variable of time stamps, if the file has one.
+    pub time: Option<String>,
+    /// Every column or numeric variable that the file offers.
+    pub columns: Vec<String>,
+    /// How the sampling rate was found.
+    pub sampling: Sampling,
+}
+
+/// The record of `values` at `times` (s) in the series called `name`, resampled if asked for.
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
+pub(crate) fn timed(
+    name: String,
+    times: &[f64],
+    values: Vec<f64>,
+    resampling: Option<Resampling>,
+) -> Result<(Record, Sampling), RecordError> {
+    let Some(resampling) = resampling else {
+        return Ok((Record::from_times(times, values, Quantity::Other, "")?, Sampling::Times { name }));
+    };
+    let resampled = resampling.of(times, &values)?;
+    let sampling =
+        Sampling::Resampled { name, rate: resampling.rate(), band: resampling.band(), error: resampled.error };
+    Ok((resampled.record(Quantity::Other, "")?, sampling))
+}
+
+/// How many bytes the compressed data of one file may expand to, all together: 33 million numbers. A small file can
+/// be made to expand a thousandfold; one that exceeds this limit is refused.
+#[cfg(any(feature = "mat", feature = "npy"))]
+pub(crate) const MOST_INFLATED: usize = 1 << 28;
+
+/// More than that.
+#[cfg(any(feature = "mat", feature = "npy"))]
+pub(crate) fn too_large() -> RecordError {
+    RecordError::damaged(format!("the variables of the file expand to more than {MOST_INFLATED} bytes"))
+}
+
+/// A column of a table, by name or by position.
+///
+/// A name matches exactly or, if no column does, without regard to case; a position counts from **0**. Text of
+/// digits only is a position, any other text is a name; a column whose *name* is a number is chosen with
+/// [`Column::Name`]. In a table without a header row the names are the positions.
+///
+/// ```
+/// use fmm_record::Column;
+///
+/// assert_eq!(Column::from("velocity"), Column::Name("velocity".into()));
+/// assert_eq!(Column::from("1"), Column::Index(1));
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Column {
+    /// By name.
+    Name(String),
+    /// By position, counted from 0.
+    Index(usize),
+}
+
+impl From<&str> for Column {
+    fn from(text: &str) -> Self {
+        text.parse().map_or_else(|_| Self::Name(text.into()), Self::Index)
+    }
+}
+
+impl From<usize> for Column {
+    fn from(index: usize) -> Self {
+        Self::Index(index)
+    }
+}
+
+impl FromStr for Column {
+    type Err = Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Infallible> {
+        Ok(Self::from(text))
+    }
+}
+
+impl std::fmt::Display for Column {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Name(name) => write!(f, "\"{name}\""),
+            Self::Index(index) => write!(f, "{index}"),
+        }
+    }
+}
+
+/// How many seconds a unit of time has; no unit means seconds.
+pub(crate) fn seconds_in(unit: &str) -> Option<f64> {
+    const UNITS: [(&[&str], f64); 7] = [
+        (&["", "s", "sec", "secs", "second", "seconds", "sekunde", "sekunden"], 1.0),
+        (&["ms", "msec", "msecs", "milli", "millis", "millisec", "millisecs", "millisecond", "milliseconds"], 1e-3),
+        (&["us", "usec", "usecs", "micro", "micros", "microsec", "microsecs", "microsecond", "microseconds"], 1e-6),
+        (&["ns", "nsec", "nsecs", "nano", "nanos", "nanosec", "nanosecond", "nanoseconds"], 1e-9),
+        (&["min", "mins", "minute", "minutes", "minuten"], 60.0),
+        (&["h", "hr", "hrs", "hour", "hours", "std", "stunden"], 3600.0),
+        (&["d", "day", "days", "tage"], 86_400.0),
+    ];
+    let plain = unit.trim().trim_end_matches('.').to_lowercase().replace(['µ', 'μ'], "u");
+    UNITS.iter().find(|(spellings, _)| spellings.contains(&&*plain)).map(|(_, seconds)| *seconds)
+}
+
+/// Names for an error that lists them.
+#[cfg(any(feature = "csv", feature = "uff"))]
+pub(crate) fn quoted(names: &[String]) -> String {
+    names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
+}
