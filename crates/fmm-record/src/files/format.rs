@@ -132,4 +132,17 @@ mod tests {
             assert!(Format::found(head).unwrap_err().contains(word), "{word}");
         }
     }
+
+    #[cfg(not(feature = "npy"))]
+    #[test]
+    fn a_format_that_is_off_is_refused_with_its_feature() {
+        let error = crate::Reader::default().parse(*b"\x93NUMPY").unwrap_err();
+        assert!(matches!(error, RecordError::MissingFeature { feature: "npy", .. }), "{error}");
+        assert_eq!(error.to_string(), "a file of NumPy is read with the feature \"npy\" of fmm-record, which is off");
+        #[cfg(not(feature = "hdf5"))]
+        {
+            let error = crate::Reader::default().parse(*b"\x89HDF\r\n\x1a\n").unwrap_err().to_string();
+            assert!(error.contains("the feature \"hdf5\"") && error.ends_with("save it with -v7"), "{error}");
+        }
+    }
 }
