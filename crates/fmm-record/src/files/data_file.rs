@@ -92,6 +92,7 @@ impl DataFile {
         Self::parse(reader, bytes)
     }
 
+    #[cfg_attr(not(feature = "csv"), expect(clippy::needless_pass_by_value, reason = "text is kept as it is"))]
     pub(super) fn parse(reader: Reader, bytes: Vec<u8>) -> Result<Self, RecordError> {
         let format = Format::of(&bytes[..bytes.len().min(HEAD)])?;
         let content = match format {
