@@ -70,30 +70,27 @@ pub(crate) trait Slide<D> {
 pub(crate) struct Contact<'a, D, V> {
     pub(crate) oscillator: &'a Oscillator<D>,
     pub(crate) levels: V,
-    pub(crate) normal_load: D,
     pub(crate) belt: D,
-    static_force: D,
     budget: usize,
 }
 
 impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     pub(crate) fn new<L>(scenario: &'a Scenario<D, L>, levels: V, drive: &Drive<D>) -> Result<Self, SimulationError> {
-        let static_force = scenario.normal_load() * levels.breakaway();
-        if !static_force.value().is_finite() {
+        let most = scenario.largest_load() * levels.breakaway();
+        if !most.value().is_finite() {
             return Err(SimulationError::NotFinite { time: 0.0 });
         }
-        Ok(Self {
-            oscillator: scenario.oscillator(),
-            levels,
-            normal_load: scenario.normal_load(),
-            belt: drive.belt(),
-            static_force,
-            budget: SEARCH_BUDGET,
-        })
+        Ok(Self { oscillator: scenario.oscillator(), levels, belt: drive.belt(), budget: SEARCH_BUDGET })
     }
 
     fn load(&self, piece: &Piece<D>, time: D, position: D, velocity: D) -> Curve<'static, D> {
         load(self.oscillator, piece, time, State { position, velocity })
+    }
+
+    /// Static friction force (N) at `time`, and its slope (N/s).
+    fn static_force(&self, piece: &Piece<D>, time: D) -> (D, D) {
+        let (load, slope) = piece.normal_load(time);
+        (load * self.levels.breakaway(), slope * self.levels.breakaway())
     }
 
     /// The mode in which a contact goes on from `state`, the automaton's only decision; and the load at zero relative
@@ -109,7 +106,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             }
             let moving = self.load(piece, time, state.position, state.velocity);
             let drive = moving.now().value() * direction.sign();
-            let (gaining, losing) = self.branch_forces(D::from(relative.abs()));
+            let (gaining, losing) = self.branch_forces(piece.normal_load(time).0, D::from(relative.abs()));
             let mode = if drive > gaining.value() {
                 Mode::Gaining(direction)
             } else if drive < losing.value() {
@@ -119,24 +116,26 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             };
             return (mode, load);
         }
-        let held = self.static_force.value();
+        let (held, held_slope) = self.static_force(piece, time);
+        let (held, held_slope) = (held.value(), held_slope.value());
         let rate = resting.slope_now().value();
         // What an exact comparison would decide by rounding is decided by where the load is going.
         let rounding = if resting.is_plainly_free() { 0.0 } else { rounding(self.oscillator, &resting, time, state) };
         let direction = Direction::of(if load.abs() <= rounding { rate } else { load });
-        let growing = rate * direction.sign() > 0.0;
+        let growing = rate * direction.sign() > held_slope;
         let slips = if (load.abs() - held).abs() <= rounding {
             growing
         } else {
-            growing && load.abs() >= held || load.abs() > held && self.is_ahead(&resting, state, direction)
+            growing && load.abs() >= held
+                || load.abs() > held && self.is_ahead(&resting, piece.normal_load(time).0, state, direction)
         };
         (if slips { self.sliding(direction) } else { Mode::Stick }, load)
     }
 
     /// Whether the position in which friction balances the load lies ahead. Beyond the static level it does, as the
     /// sliding level is not higher; where rounding says otherwise, nothing moves.
-    fn is_ahead(&self, load: &Curve<D>, state: State<D>, direction: Direction) -> bool {
-        let sliding = (self.levels.gaining(D::from(0.0)) * self.normal_load).value();
+    fn is_ahead(&self, load: &Curve<D>, normal_load: D, state: State<D>, direction: Direction) -> bool {
+        let sliding = (self.levels.gaining(D::from(0.0)) * normal_load).value();
         let load = load.now().value();
         match self.oscillator.restoring() {
             Restoring::Linear if self.oscillator.stiffness().value() > 0.0 => {
@@ -154,19 +153,20 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     }
 
     /// Friction forces at `speed` while it grows and while it falls.
-    fn branch_forces(&self, speed: D) -> (D, D) {
-        (self.levels.gaining(speed) * self.normal_load, self.levels.losing(speed) * self.normal_load)
+    fn branch_forces(&self, normal_load: D, speed: D) -> (D, D) {
+        (self.levels.gaining(speed) * normal_load, self.levels.losing(speed) * normal_load)
     }
 
-    fn event(&self, kind: EventKind, time: D, state: State<D>, next: Mode, load: f64, grazing: bool) -> Event<D> {
+    /// The event at `time`, with the `balance` of load and static level (N) there.
+    fn event(kind: EventKind, time: D, state: State<D>, next: Mode, balance: (f64, D), grazing: bool) -> Event<D> {
         Event {
             kind,
             time,
             position: state.position,
             velocity: state.velocity,
             next,
-            load: load.abs(),
-            static_level: self.static_force.value(),
+            load: balance.0.abs(),
+            static_level: balance.1.value(),
             grazing,
         }
     }
@@ -182,7 +182,8 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         let (mut index, mut piece) = (0, drive.piece(0));
         let (mut time, mut state) = (D::from(0.0), initial);
         let (mut mode, load) = self.mode(&piece, time, state);
-        recorder.push(self.event(EventKind::Start, time, state, mode, load, false))?;
+        let balance = (load, self.static_force(&piece, time).0);
+        recorder.push(Self::event(EventKind::Start, time, state, mode, balance, false))?;
         self.push(mode, drive, index, &mut state);
         let end = recorder.sampling.end();
         loop {
@@ -198,8 +199,9 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             (time, state) = (ended.time, ended.state);
             let (kind, next, load) = match ended.ending {
                 Ending::Limit if last => {
-                    let rests = mode == Mode::Stick
-                        && holds_for_good(self.oscillator, drive, index, time, state, self.static_force.value());
+                    let breakaway = self.levels.breakaway().value();
+                    let rests =
+                        mode == Mode::Stick && holds_for_good(self.oscillator, drive, index, time, state, breakaway);
                     recorder.trajectory.set_rests(rests);
                     return Ok(());
                 }
@@ -236,13 +238,18 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                     (if next == Mode::Stick { EventKind::Stop } else { EventKind::Reversal }, next, load)
                 }
                 Ending::SteadySpeed => {
-                    let next = if matches!(mode, Mode::Steady(_)) { next } else { self.after_branch(mode, state) };
+                    let next = if matches!(mode, Mode::Steady(_)) {
+                        next
+                    } else {
+                        self.after_branch(mode, &piece, time, state)
+                    };
                     let load = self.load(&piece, time, state.position, state.velocity).now().value();
                     (EventKind::BranchChange, next, load)
                 }
             };
             mode = next;
-            recorder.push(self.event(kind, time, state, mode, load, ended.grazing))?;
+            let balance = (load, self.static_force(&piece, time).0);
+            recorder.push(Self::event(kind, time, state, mode, balance, ended.grazing))?;
         }
     }
 
@@ -278,7 +285,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             return Some(self.mode(piece, time, state)).filter(|(next, _)| *next != Mode::Stick);
         };
         let drive = load.now().value() * direction.sign();
-        let (gaining, losing) = self.branch_forces((state.velocity - self.belt).abs());
+        let (gaining, losing) = self.branch_forces(piece.normal_load(time).0, (state.velocity - self.belt).abs());
         let agrees = match mode {
             Mode::Gaining(_) => drive >= gaining.value(),
             Mode::Losing(_) => drive <= losing.value(),
@@ -294,8 +301,8 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     }
 
     /// Where a contact goes whose acceleration has become zero on a branch.
-    fn after_branch(&self, mode: Mode, state: State<D>) -> Mode {
-        let (gaining, losing) = self.branch_forces((state.velocity - self.belt).abs());
+    fn after_branch(&self, mode: Mode, piece: &Piece<D>, time: D, state: State<D>) -> Mode {
+        let (gaining, losing) = self.branch_forces(piece.normal_load(time).0, (state.velocity - self.belt).abs());
         match mode {
             // Between the levels nothing but a constant speed is consistent.
             Mode::Gaining(direction) | Mode::Losing(direction) if gaining.value() >= losing.value() => {
@@ -317,40 +324,45 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     ) -> Result<(Ended<D>, Mode), SimulationError> {
         let State { position, velocity } = phase.state;
         let load = self.load(phase.piece, phase.time, position, velocity);
-        // Friction along the positive direction lies between −below and above.
+        // Friction over the normal load lies between −below and above along the positive direction.
         let (above, below) = match steady {
-            None => (self.static_force, self.static_force),
+            None => (self.levels.breakaway(), self.levels.breakaway()),
             Some(direction) => {
-                let (gaining, losing) = self.branch_forces((velocity - self.belt).abs());
+                let speed = (velocity - self.belt).abs();
+                let (gaining, losing) = (self.levels.gaining(speed), self.levels.losing(speed));
                 match direction {
                     Direction::Positive => (gaining, -losing),
                     Direction::Negative => (-losing, gaining),
                 }
             }
         };
+        let (normal_load, load_slope) = phase.piece.normal_load(phase.time);
         let begin = phase.time.value();
-        let mut leaving = None;
+        let mut leaving: Option<(f64, (D, D), f64)> = None;
         let span = phase.limit - begin;
         let plain = load.plain_without_decay();
         let reach = plain.slope.abs() * span + plain.waves.iter().map(|w| w.cosine.hypot(w.sine)).sum::<f64>();
         let now = plain.at(0.0);
-        for (bound, sign) in [(above, 1.0), (below, -1.0)] {
+        for (level, sign) in [(above, 1.0), (below, -1.0)] {
+            let (bound, bound_slope) = (normal_load * level, load_slope * level);
             let excess = sign * now - bound.value();
             // A contact that has been found to hold does so although rounding may put the load beyond the level; a steady
             // phase begins on a bound, as exactly as the engine has found it.
             let slack = excess > 0.0 && (steady.is_none() || excess <= ON_BOUND * bound.value().abs());
             let bound = if slack { bound + excess } else { bound };
             // What is out of reach need not be searched for.
+            let reach = reach + bound_slope.value().abs() * span;
             if bound.value() - sign * plain.constant > reach && span.is_finite() {
                 continue;
             }
-            let reserve = plain.clone().scaled(-sign, bound.value());
-            let span = leaving.map_or(span, |(elapsed, _, _)| elapsed);
+            let mut reserve = plain.clone().scaled(-sign, bound.value());
+            reserve.slope += bound_slope.value();
+            let span = leaving.map_or(span, |(elapsed, ..)| elapsed);
             if let Some(elapsed) = first_zero(&reserve, span, &mut self.budget)? {
-                leaving = Some((elapsed, bound, sign));
+                leaving = Some((elapsed, (bound, bound_slope), sign));
             }
         }
-        let stop = leaving.map_or(phase.samples_end(), |(elapsed, _, _)| begin + elapsed);
+        let stop = leaving.map_or(phase.samples_end(), |(elapsed, ..)| begin + elapsed);
         let at = |time: D| position + velocity * (time - phase.time);
         let still = velocity.value() == 0.0 && (0..D::DIRECTIONS).all(|direction| velocity.partial(direction) == 0.0);
         if still {
@@ -368,12 +380,14 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                 external: force * velocity - friction * self.belt,
             }
         })?;
-        let Some((elapsed, bound, sign)) = leaving else {
+        let Some((elapsed, (bound, bound_slope), sign)) = leaving else {
             let time = D::from(phase.limit);
             let state = State { position: at(time), velocity };
             return Ok((Ended { ending: Ending::Limit, time, state, grazing: false }, Mode::Stick));
         };
-        let (time, grazing) = crossing(&load.scaled(D::from(-sign), bound), phase.time, begin + elapsed);
+        let mut reserve = load.scaled(D::from(-sign), bound);
+        reserve.slope += bound_slope;
+        let (time, grazing) = crossing(&reserve, phase.time, begin + elapsed);
         let state = State { position: at(time), velocity };
         let direction = if sign > 0.0 { Direction::Positive } else { Direction::Negative };
         let (ending, next) = match steady {
@@ -385,15 +399,15 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     }
 }
 
-/// Whether a contact that holds in `state` at `time`, in the piece of this `index`, is at rest and no force to come exceeds its
-/// `level` (N).
+/// Whether a contact that holds in `state` at `time`, in the piece of this `index`, is at rest and no force to come exceeds what its
+/// `breakaway` coefficient holds.
 pub(crate) fn holds_for_good<D: Scalar>(
     oscillator: &Oscillator<D>,
     drive: &Drive<D>,
     index: usize,
     time: D,
     state: State<D>,
-    level: f64,
+    breakaway: f64,
 ) -> bool {
     // What takes the contact along loads the spring.
     if state.velocity.value() != 0.0 {
@@ -401,8 +415,13 @@ pub(crate) fn holds_for_good<D: Scalar>(
     }
     let holds = |piece: &Piece<D>, begin: D| {
         let load = load(oscillator, piece, begin, state).plain_without_decay();
-        let level = level + level * 4.0 * f64::EPSILON + rounding(oscillator, &load, begin, state);
+        let (normal_load, load_slope) = piece.normal_load(begin);
+        let level = normal_load.value() * breakaway;
+        let slack = level * 4.0 * f64::EPSILON + rounding(oscillator, &load, begin, state);
         let span = piece.end - begin.value();
+        // A load that varies has an end.
+        let change = if load_slope.value() == 0.0 { 0.0 } else { load_slope.value() * breakaway * span };
+        let levels = [level + slack, level + change + slack];
         let (begin, end) = if span.is_finite() {
             (load.constant, load.constant + load.slope * span)
         } else if load.slope == 0.0 {
@@ -419,7 +438,8 @@ pub(crate) fn holds_for_good<D: Scalar>(
             }
         }
         let reach = waves.iter().map(|wave| wave.cosine.hypot(wave.sine)).sum::<f64>();
-        begin.abs().max(end.abs()) + reach <= level
+        // Between the ends load and level are lines.
+        begin.abs() + reach <= levels[0] && end.abs() + reach <= levels[1]
     };
     (index..drive.pieces()).all(|later| {
         let piece = drive.piece(later);

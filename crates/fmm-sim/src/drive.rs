@@ -4,8 +4,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use fmm_model::Scalar;
 
-use crate::Excitation;
 use crate::excitation::Source;
+use crate::scenario::SampledLoad;
+use crate::{Excitation, Scenario};
 
 /// amplitude · cos(angular · (t − since) + phase), with t counted from the start of the simulation.
 #[derive(Debug, Clone, Copy)]
@@ -24,7 +25,7 @@ impl<D: Scalar> Harmonic<D> {
     }
 }
 
-/// The force between two knots.
+/// The force and the normal load between two knots.
 #[derive(Debug, Clone)]
 pub(crate) struct Piece<D> {
     /// When it begins (s).
@@ -34,17 +35,26 @@ pub(crate) struct Piece<D> {
     force: D,
     slope: D,
     waves: Vec<Harmonic<D>>,
+    /// Normal load at the beginning (N), and its slope (N/s).
+    load: D,
+    load_slope: D,
 }
 
 impl<D: Scalar> Piece<D> {
     /// A force (N) at time 0 that grows by `slope` (N/s) for ever.
     pub(crate) fn line_from_zero(force: D, slope: D) -> Self {
-        Self { start: 0.0, end: f64::INFINITY, force, slope, waves: Vec::new() }
+        let zero = D::from(0.0);
+        Self { start: 0.0, end: f64::INFINITY, force, slope, waves: Vec::new(), load: zero, load_slope: zero }
     }
 
     /// Straight part of the force at `time` (N), and its slope (N/s).
     pub(crate) fn line(&self, time: D) -> (D, D) {
         (self.force + self.slope * (time - self.start), self.slope)
+    }
+
+    /// Normal load at `time` (N), and its slope (N/s).
+    pub(crate) fn normal_load(&self, time: D) -> (D, D) {
+        (self.load + self.load_slope * (time - self.start), self.load_slope)
     }
 
     pub(crate) fn waves(&self) -> &[Harmonic<D>] {
@@ -77,16 +87,34 @@ impl<D: Scalar> Piece<D> {
     }
 }
 
-/// All excitations of a scenario.
+/// All excitations of a scenario, and its normal load.
 pub(crate) struct Drive<'a, D> {
     excitations: &'a [Excitation<D>],
     mass: D,
-    /// Times at which the force changes its formula, ascending; the first is 0.
+    normal_load: D,
+    sampled_load: Option<&'a SampledLoad<D>>,
+    /// Times at which the force or the normal load changes its formula, ascending; the first is 0.
     knots: Vec<f64>,
 }
 
 impl<'a, D: Scalar> Drive<'a, D> {
-    pub(crate) fn new(excitations: &'a [Excitation<D>], mass: D) -> Self {
+    pub(crate) fn of<L>(scenario: &'a Scenario<D, L>) -> Self {
+        let drive = Self::new(scenario.excitations(), scenario.oscillator().mass());
+        drive.under(scenario.normal_load(), scenario.sampled_load())
+    }
+
+    /// The same with this normal load.
+    fn under(mut self, normal_load: D, sampled_load: Option<&'a SampledLoad<D>>) -> Self {
+        (self.normal_load, self.sampled_load) = (normal_load, sampled_load);
+        if let Some(SampledLoad { interval, values }) = sampled_load {
+            self.knots.extend((0..values.len()).map(|index| index as f64 * interval));
+            self.knots.sort_by(f64::total_cmp);
+            self.knots.dedup();
+        }
+        self
+    }
+
+    fn new(excitations: &'a [Excitation<D>], mass: D) -> Self {
         let mut knots = vec![0.0];
         for Excitation { source, delay } in excitations {
             let delay = delay.value();
@@ -109,7 +137,7 @@ impl<'a, D: Scalar> Drive<'a, D> {
         }
         knots.sort_by(f64::total_cmp);
         knots.dedup();
-        Self { excitations, mass, knots }
+        Self { excitations, mass, normal_load: D::from(0.0), sampled_load: None, knots }
     }
 
     /// Whether the counterface moves, or may move in a derivative.
@@ -174,7 +202,16 @@ impl<'a, D: Scalar> Drive<'a, D> {
         let end = self.knots.get(index + 1).copied().unwrap_or(f64::INFINITY);
         let middle = if end.is_finite() { start + 0.5 * (end - start) } else { f64::INFINITY };
         let zero = D::from(0.0);
-        let mut piece = Piece { start, end, force: zero, slope: zero, waves: Vec::new() };
+        let mut piece =
+            Piece { start, end, force: zero, slope: zero, waves: Vec::new(), load: self.normal_load, load_slope: zero };
+        if let Some(SampledLoad { interval, values }) = self.sampled_load {
+            let last = (values.len() - 1) as f64 * interval;
+            let at = |time: f64| interpolated(values, *interval, 0.0, time.min(last));
+            piece.load = at(start);
+            if middle < last {
+                piece.load_slope = (at(end) - at(start)) / (end - start);
+            }
+        }
         for Excitation { source, delay } in self.excitations {
             let begun = start >= delay.value();
             // How much later it is in derivatives.

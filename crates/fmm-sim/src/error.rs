@@ -38,9 +38,9 @@ pub enum SimulationError {
     /// A method of fixed step was asked for samples that are not equally spaced.
     #[error("a method of fixed step needs uniform sampling; simulate with another engine or sample uniformly")]
     NotUniform,
-    /// The engine has no closed form for this machine.
+    /// The engine has no closed form for this machine, or its normal load.
     #[error(
-        "the exact engine needs linear damping and a linear spring, but there is {found}; take the Runge-Kutta engine"
+        "the exact engine needs linear damping, a linear spring and a constant normal load, but there is {found}; take the Runge-Kutta engine"
     )]
     NotLinear {
         /// What is not linear.

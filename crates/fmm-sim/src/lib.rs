@@ -54,6 +54,7 @@
 //! | a block without a spring | a stiffness of zero |
 //! | a spring pulled at its other end with velocity v | [`Excitation::ramp`] of k v |
 //! | a counterface whose velocity b′ varies, on a linear machine | x counted from the counterface, under an [`Excitation::function`] of −m b″ − c b′ − k b; the work of friction stays what it is, that of the force and of damping does not |
+//! | a normal load that varies, with a law of the sliding speed | [`Scenario::under_sampled_load`] |
 //! | bristles that an earlier motion has left bent | [`Scenario::with_deflection`] |
 //! | any force over time | [`Excitation::function`], or [`Excitation::sampled_force`] |
 //!

@@ -62,8 +62,9 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Moreau {
                 what: "a law that depends on the acceleration",
             });
         }
+        scenario.require_constant_load("moreau")?;
         trajectory.reset("moreau", 0, false, sampling)?;
-        let drive = Drive::new(scenario.excitations(), oscillator.mass());
+        let drive = Drive::of(scenario);
         let (belt, mut pieces) = (drive.belt(), PieceAt::new(&drive));
         let (mass, stiffness) = (oscillator.mass(), oscillator.stiffness());
         let linear = oscillator.damping().linear_coefficient();
@@ -155,7 +156,7 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Moreau {
             trajectory.push(stop);
         }
         let state = State { position: x, velocity: v };
-        let rests = mode == Mode::Stick && pieces.holds_for_good(oscillator, sampling.end(), state, static_level);
+        let rests = mode == Mode::Stick && pieces.holds_for_good(oscillator, sampling.end(), state, law.breakaway());
         trajectory.set_rests(rests);
         Ok(())
     }

@@ -1,5 +1,7 @@
 //! What is simulated: machine, contact and how the motion begins.
 
+use std::sync::Arc;
+
 use fmm_friction::BristleLaw;
 use fmm_model::{ModelError, Oscillator, Scalar};
 
@@ -32,10 +34,20 @@ pub struct Scenario<D, L> {
     oscillator: Oscillator<D>,
     law: L,
     normal_load: D,
+    sampled_load: Option<SampledLoad<D>>,
     initial: State<D>,
     /// What the law's states are at t = 0, up to the last that is not zero.
     deflections: Vec<D>,
     excitations: Vec<Excitation<D>>,
+}
+
+/// A normal load (N) that is given at equal distances in time.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SampledLoad<D> {
+    /// Distance in time (s).
+    pub(crate) interval: f64,
+    /// Two values at least (N).
+    pub(crate) values: Arc<[D]>,
 }
 
 impl<D: Scalar, L> Scenario<D, L> {
@@ -47,7 +59,15 @@ impl<D: Scalar, L> Scenario<D, L> {
         ModelError::require_not_negative("normal load", normal_load.value(), "N")?;
         let zero = D::from(0.0);
         let initial = State { position: zero, velocity: zero };
-        Ok(Self { oscillator, law, normal_load, initial, deflections: Vec::new(), excitations: Vec::new() })
+        Ok(Self {
+            oscillator,
+            law,
+            normal_load,
+            sampled_load: None,
+            initial,
+            deflections: Vec::new(),
+            excitations: Vec::new(),
+        })
     }
 
     /// The same machine, let go at `position` (m) with `velocity` (m/s).
@@ -68,6 +88,59 @@ impl<D: Scalar, L> Scenario<D, L> {
         self
     }
 
+    /// The same machine under a normal load that varies in time: `values` (N), one every `interval` (s) from t = 0 on, straight lines
+    /// between them, and the last from its time on.
+    ///
+    /// [`RungeKutta`](crate::RungeKutta) takes such a load with any law of the sliding speed, and [`simulate`](crate::simulate) takes
+    /// that engine; laws with internal state cannot have one. Values that are dual numbers carry their derivatives into the motion.
+    ///
+    /// ```
+    /// use fmm_friction::Coulomb;
+    /// use fmm_model::Oscillator;
+    /// use fmm_sim::{Sampling, Scenario, State, simulate};
+    ///
+    /// // A mass on a rail, at 1 m/s under a load that grows from 0 N by 10 N/s: v = v₀ − μ (10 N/s) t²/(2 m).
+    /// let scenario = Scenario::new(Oscillator::new(1.0, 0.0)?, Coulomb::new(0.2)?, 0.0)?;
+    /// let scenario = scenario.under_sampled_load(2.0, [0.0, 20.0])?.starting_at(0.0, 1.0)?;
+    /// let motion = simulate(&scenario, &Sampling::uniform(0.5, 4)?)?;
+    /// assert!((motion.velocity().values()[1] - 0.75).abs() < 1e-12);
+    /// assert!((motion.rest().expect("friction stops it").time - 1.0).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SimulationError::Quantity`] if the interval is not positive or a value is negative or not finite,
+    /// [`SimulationError::Sampling`] without a value.
+    pub fn under_sampled_load(mut self, interval: f64, values: impl Into<Arc<[D]>>) -> Result<Self, SimulationError> {
+        let values = values.into();
+        ModelError::require_positive("interval of the normal load", interval, "s")?;
+        for value in values.iter() {
+            ModelError::require_not_negative("normal load", value.value(), "N")?;
+        }
+        self.normal_load = *values.first().ok_or(SimulationError::Sampling { count: 0, interval })?;
+        self.sampled_load = (values.len() > 1).then_some(SampledLoad { interval, values });
+        Ok(self)
+    }
+
+    /// The normal load at its samples, if it varies.
+    pub(crate) fn sampled_load(&self) -> Option<&SampledLoad<D>> {
+        self.sampled_load.as_ref()
+    }
+
+    /// The largest normal load (N).
+    pub(crate) fn largest_load(&self) -> D {
+        let samples = self.sampled_load.iter().flat_map(|load| load.values.iter().copied());
+        samples.fold(self.normal_load, |most, load| if load.value() > most.value() { load } else { most })
+    }
+
+    /// That the normal load is constant, which `engine` needs.
+    pub(crate) fn require_constant_load(&self, engine: &'static str) -> Result<(), SimulationError> {
+        if self.sampled_load.is_none() {
+            return Ok(());
+        }
+        Err(SimulationError::NotSupported { engine, what: "a normal load that varies in time" })
+    }
+
     /// What acts on the machine from outside.
     pub fn excitations(&self) -> &[Excitation<D>] {
         &self.excitations
@@ -83,7 +156,7 @@ impl<D: Scalar, L> Scenario<D, L> {
         &self.law
     }
 
-    /// N, normal load (N).
+    /// N, normal load (N), at t = 0 if it varies.
     pub fn normal_load(&self) -> D {
         self.normal_load
     }

@@ -55,9 +55,10 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
         if sampling.channels().acceleration() {
             return Err(SimulationError::NotSupported { engine: "thesis", what: "samples of the acceleration" });
         }
+        scenario.require_constant_load("thesis")?;
         trajectory.reset("thesis", 0, false, sampling)?;
         let (oscillator, law, load) = (scenario.oscillator(), scenario.law(), scenario.normal_load());
-        let drive = Drive::new(scenario.excitations(), oscillator.mass());
+        let drive = Drive::of(scenario);
         if drive.has_belt() {
             return Err(SimulationError::NotSupported { engine: "thesis", what: "a moving counterface" });
         }
@@ -143,12 +144,12 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
                 return Err(SimulationError::NotFinite { time: (index + 1) as f64 * step });
             }
         }
-        let level = match self.level {
-            StaticLevel::Breakaway => static_level,
-            StaticLevel::AtSpeed => law.coefficient(0.0) * load,
+        let breakaway = match self.level {
+            StaticLevel::Breakaway => law.breakaway(),
+            StaticLevel::AtSpeed => law.coefficient(0.0),
         };
         let state = State { position: x, velocity: v };
-        let rests = mode == Mode::Stick && pieces.holds_for_good(oscillator, sampling.end(), state, level);
+        let rests = mode == Mode::Stick && pieces.holds_for_good(oscillator, sampling.end(), state, breakaway);
         trajectory.set_rests(rests);
         Ok(())
     }

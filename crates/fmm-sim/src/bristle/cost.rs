@@ -13,7 +13,7 @@ fn steps<L: BristleLaw<f64>>(law: L, velocity: f64) -> usize {
     let sampling = Sampling::uniform(1e-3, 470).unwrap();
     let mut trajectory = Trajectory::new();
     let oscillator = scenario.oscillator();
-    let drive = Drive::new(scenario.excitations(), oscillator.mass());
+    let drive = Drive::of(&scenario);
     let field = Field::new(oscillator, scenario.law(), scenario.normal_load(), drive.belt());
     let recorder = Recorder::new("bristle", scenario.law().states(), &sampling, &mut trajectory).unwrap();
     let steps = Run::new(field, beginning(&scenario), 1e-10, recorder).run(&drive).unwrap();

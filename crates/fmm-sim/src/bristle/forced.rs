@@ -10,7 +10,7 @@ use crate::{Direction, EventKind, Excitation, Mode, State};
 /// x and v at the samples of `sampling`, by `steps` steps of order 4 a sample.
 fn reference<L: BristleLaw<f64>>(scenario: &Scenario<f64, L>, sampling: &Sampling, steps: usize) -> Vec<State> {
     let oscillator = scenario.oscillator();
-    let drive = Drive::new(scenario.excitations(), oscillator.mass());
+    let drive = Drive::of(scenario);
     let (mut index, mut piece) = (0, drive.piece(0));
     let State { position, velocity } = scenario.initial();
     let mut y = [position, velocity, 0.0];

@@ -124,9 +124,10 @@ impl<D: Scalar, L: BristleLaw<D>> Engine<D, L> for Bristle {
         sampling: &Sampling,
         trajectory: &mut Trajectory<D>,
     ) -> Result<(), SimulationError> {
+        scenario.require_constant_load("bristle")?;
         odd::require_odd(scenario.law())?;
         let oscillator = scenario.oscillator();
-        let drive = Drive::new(scenario.excitations(), oscillator.mass());
+        let drive = Drive::of(scenario);
         let field = Field::new(oscillator, scenario.law(), scenario.normal_load(), drive.belt());
         let recorder = Recorder::new("bristle", scenario.law().states(), sampling, trajectory)?;
         Run::new(field, beginning(scenario), self.tolerance, recorder).run(&drive).map(|_| ())

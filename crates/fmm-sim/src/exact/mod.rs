@@ -68,10 +68,13 @@ impl<D: Scalar, L: PiecewiseLinearLaw<D>> Engine<D, L> for Exact {
         if !matches!(oscillator.restoring(), Restoring::Linear) {
             return Err(SimulationError::NotLinear { found: "a nonlinear restoring force" });
         }
+        if scenario.sampled_load().is_some() {
+            return Err(SimulationError::NotLinear { found: "a normal load that varies in time" });
+        }
         if oscillator.stiffness().value() == 0.0 {
             return Err(SimulationError::WeakSpring { stiffness: 0.0 });
         }
-        let drive = Drive::new(scenario.excitations(), oscillator.mass());
+        let drive = Drive::of(scenario);
         let elements = scenario.law().elements().len();
         if elements > 0 {
             let Affine { level, slope, breakaway } = scenario.law().affine();

@@ -60,9 +60,9 @@ impl<D: Scalar> BySpeed<D> {
         let rate = |beyond: f64, now: &[D], stage: usize, rates: &mut [Rates<D>]| {
             let speed = begin + beyond;
             let velocity = field.belt + speed * sign;
-            let force = field.is_driven.then(|| phase.piece.force_at(now[0] + at.time));
+            let outside = field.outside(phase, now[0] + at.time);
             let state = State { position: now[1], velocity };
-            let acceleration = field.balance(phase, at.side, force, state, D::from(speed));
+            let acceleration = field.balance(phase, at.side, outside, state, D::from(speed));
             let duration = D::from(sign) / acceleration;
             rates[0][stage] = duration;
             rates[1][stage] = velocity * duration;

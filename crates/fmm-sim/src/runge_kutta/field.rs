@@ -15,6 +15,8 @@ pub(super) struct Field<'a, D, L> {
     pub(super) oscillator: &'a Oscillator<D>,
     law: &'a L,
     normal_load: D,
+    /// Whether the normal load varies in time.
+    load_varies: bool,
     pub(super) belt: D,
     /// 1/m.
     pub(super) per_mass: D,
@@ -24,6 +26,15 @@ pub(super) struct Field<'a, D, L> {
     pub(super) is_driven: bool,
     /// The speed at which the contact is caught (m/s), if there is one.
     pub(super) capture: Option<D>,
+}
+
+/// What acts on the machine from outside at one time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Outside<D> {
+    /// Force (N), if there is any.
+    force: Option<D>,
+    /// Normal load (N).
+    normal_load: D,
 }
 
 /// A side of the capture speed, at which the law may jump: whether the speed has exceeded it.
@@ -42,6 +53,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Field<'a, D, L> {
             oscillator,
             law: scenario.law(),
             normal_load: scenario.normal_load(),
+            load_varies: scenario.sampled_load().is_some(),
             belt: drive.belt(),
             per_mass: D::from(1.0) / oscillator.mass(),
             linear_damping: oscillator.damping().is_linear().then(|| oscillator.damping().linear_coefficient()),
@@ -79,17 +91,31 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Field<'a, D, L> {
         }
     }
 
-    /// Friction force at a sliding `speed`, along the direction of `phase`.
+    /// What acts from outside at `time`.
+    #[inline]
+    pub(super) fn outside(&self, phase: &Phase<D>, time: D) -> Outside<D> {
+        let force = self.is_driven.then(|| phase.piece.force_at(time));
+        let normal_load = if self.load_varies { phase.piece.normal_load(time).0 } else { self.normal_load };
+        Outside { force, normal_load }
+    }
+
+    /// By how much friction grows in time (N/s) at constant `velocity`, along the positive direction.
+    pub(super) fn friction_slope(&self, phase: &Phase<D>, side: Side, velocity: D) -> D {
+        let slope = phase.piece.normal_load(phase.time).1;
+        self.coefficient(phase, side, self.speed(phase, velocity)) * slope * phase.direction.sign()
+    }
+
+    /// Friction coefficient at a sliding `speed`, along the direction of `phase`.
     ///
     /// Stages may look past the end of a piece of the law: its curve is turned about its end, which keeps the slope.
     #[inline]
-    fn friction_at(&self, phase: &Phase<D>, side: Side, speed: D) -> D {
+    fn coefficient(&self, phase: &Phase<D>, side: Side, speed: D) -> D {
         let at = |speed| match phase.branch {
             Branch::Losing => self.law.coefficient_losing_speed(speed),
             Branch::Only | Branch::Gaining => self.law.coefficient(speed),
         };
         let beyond = |end: D| at(end) * 2.0 - at(end * 2.0 - speed);
-        let coefficient = match (self.capture, side) {
+        match (self.capture, side) {
             (Some(capture), Side::Below) if speed.value() > capture.value() => beyond(capture),
             (Some(capture), Side::Above) if speed.value() <= capture.value() => {
                 beyond(capture + (capture.value().next_up() - capture.value()))
@@ -97,21 +123,20 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Field<'a, D, L> {
             // A law knows no negative speed.
             _ if speed.value() < 0.0 => at(D::from(0.0)) * 2.0 - at(-speed),
             _ => at(speed),
-        };
-        self.normal_load * coefficient
+        }
     }
 
-    /// The acceleration at `speed`, which is that of `state`, under `force`.
+    /// The acceleration at `speed`, which is that of `state`.
     #[inline]
-    pub(super) fn balance(&self, phase: &Phase<D>, side: Side, force: Option<D>, state: State<D>, speed: D) -> D {
+    pub(super) fn balance(&self, phase: &Phase<D>, side: Side, outside: Outside<D>, state: State<D>, speed: D) -> D {
         // The other forms cost as much as everything else here together.
         let damping = match self.linear_damping {
             Some(coefficient) => state.velocity * coefficient,
             None => self.oscillator.damping().force(state.velocity),
         };
-        let friction = self.friction_at(phase, side, speed) * phase.direction.sign();
+        let friction = outside.normal_load * self.coefficient(phase, side, speed) * phase.direction.sign();
         let mut sum = -friction - damping - self.oscillator.restoring_force(state.position);
-        if let Some(force) = force {
+        if let Some(force) = outside.force {
             sum += force;
         }
         sum * self.per_mass
@@ -119,22 +144,24 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Field<'a, D, L> {
 
     #[inline]
     pub(super) fn acceleration(&self, phase: &Phase<D>, side: Side, time: f64, state: State<D>) -> D {
-        let force = self.is_driven.then(|| phase.piece.force(time));
-        self.balance(phase, side, force, state, self.speed(phase, state.velocity))
+        let outside = self.outside(phase, D::from(time));
+        self.balance(phase, side, outside, state, self.speed(phase, state.velocity))
     }
 
     /// Rounding of an acceleration (m/s²): what is less is zero, or a motion that tends to a constant speed would go from
     /// branch to branch for ever.
     pub(super) fn noise(&self, phase: &Phase<D>, side: Side, state: State<D>) -> f64 {
         let load = load(self.oscillator, phase.piece, phase.time, state);
-        let friction = self.friction_at(phase, side, self.speed(phase, state.velocity)).value().abs();
+        let coefficient = self.coefficient(phase, side, self.speed(phase, state.velocity));
+        let friction = (coefficient * self.outside(phase, phase.time).normal_load).value().abs();
         (rounding(self.oscillator, &load, phase.time, state) + ROUNDING * friction) * self.per_mass.value()
     }
 
     /// What friction, damping and the forces from outside do at `time`.
     pub(super) fn power(&self, phase: &Phase<D>, side: Side, time: f64, state: State<D>) -> Power<D> {
         let speed = self.speed(phase, state.velocity);
-        let friction = self.friction_at(phase, side, speed) * phase.direction.sign();
+        let normal_load = self.outside(phase, D::from(time)).normal_load;
+        let friction = normal_load * self.coefficient(phase, side, speed) * phase.direction.sign();
         Power {
             friction: friction * (state.velocity - self.belt),
             viscous: self.oscillator.damping().force(state.velocity) * state.velocity,

@@ -87,7 +87,7 @@ impl<D: Scalar, L: SlidingLaw<D>> Engine<D, L> for RungeKutta {
         sampling: &Sampling,
         trajectory: &mut Trajectory<D>,
     ) -> Result<(), SimulationError> {
-        let drive = Drive::new(scenario.excitations(), scenario.oscillator().mass());
+        let drive = Drive::of(scenario);
         if drive.has_belt() && matches!(scenario.oscillator().restoring(), Restoring::Polynomial { .. }) {
             let what =
                 "a spring that hardens or softens on a moving counterface: what holds the mass is no line in time";

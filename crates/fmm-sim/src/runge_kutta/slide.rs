@@ -60,7 +60,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         let angular = if end > 0.0 { natural.max(WEAK / end) } else { natural };
         // Where there is neither a spring nor a time, nothing moves.
         let angular = if angular > 0.0 { angular } else { 1.0 };
-        let static_force = (scenario.law().breakaway() * scenario.normal_load()).value();
+        let static_force = (scenario.law().breakaway() * scenario.largest_load()).value();
         let held = static_force / (oscillator.mass().value() * angular * angular);
         Self {
             field: Field::new(scenario, drive),
@@ -90,13 +90,14 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         }
     }
 
-    /// The rate of the guard at the end of a step that begins at `time`, if it is zero there.
-    fn rate(&self, phase: &Phase<D>, time: f64, step: &Step<D>, guard: Guard) -> f64 {
+    /// The rate of the guard at the end of a step that begins at `at`, if it is zero there.
+    fn rate(&self, phase: &Phase<D>, at: &Progress<D>, step: &Step<D>, guard: Guard) -> f64 {
         let rate = match guard {
-            // At constant speed the law does not change, only the load does.
+            // At constant speed the law does not change, only the loads do.
             Guard::Steady => {
-                let load = load(self.field.oscillator, phase.piece, D::from(time + step.length), step.end);
-                (load.derivative().at(D::from(0.0)) * self.field.per_mass).value()
+                let load = load(self.field.oscillator, phase.piece, D::from(at.time + step.length), step.end);
+                let friction = self.field.friction_slope(phase, at.side, step.end.velocity);
+                ((load.derivative().at(D::from(0.0)) - friction) * self.field.per_mass).value()
             }
             Guard::Rest | Guard::Escape => step.last_acceleration().value(),
         };
@@ -174,7 +175,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         let mut before: Option<(f64, f64)> = None;
         for _ in 0..LANDINGS {
             let value = self.guard(phase, at.side, &step, guard).value();
-            let mut rate = self.rate(phase, at.time, &step, guard);
+            let mut rate = self.rate(phase, at, &step, guard);
             if let (Guard::Steady, Some((other, at_other))) = (guard, before) {
                 // Away from the event the acceleration changes with the law as well.
                 rate = (value - at_other) / (length - other);
@@ -200,7 +201,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
     /// Whether the guard is zero at the end of `step`, or so near that it is by rounding.
     fn has_landed(&self, phase: &Phase<D>, at: &Progress<D>, step: &Step<D>, guard: Guard) -> bool {
         let value = self.guard(phase, at.side, step, guard).value().abs();
-        let rate = self.rate(phase, at.time, step, guard).abs();
+        let rate = self.rate(phase, at, step, guard).abs();
         value <= rate * self.close() || value <= 16.0 * f64::EPSILON * self.rate_scale(step, guard) / self.angular
     }
 
@@ -208,7 +209,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
     fn ended(&self, phase: &Phase<D>, at: &Progress<D>, step: &Step<D>, guard: Guard) -> Ended<D> {
         let time = D::from(at.time + step.length);
         let value = self.guard(phase, at.side, step, guard);
-        let rate = self.rate(phase, at.time, step, guard);
+        let rate = self.rate(phase, at, step, guard);
         // What is rounding at a slope like this may as well be zero a period away.
         let flat = rate.abs() <= 4.0 * f64::EPSILON.sqrt() * self.rate_scale(step, guard);
         let late = if flat { D::from(0.0) } else { -value / rate };

@@ -6,6 +6,7 @@ mod derivatives;
 mod duals;
 mod hands;
 mod limits;
+mod loads;
 mod paths;
 mod rest;
 mod springs;
