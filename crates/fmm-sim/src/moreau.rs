@@ -57,10 +57,8 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Moreau {
         let h = sampling.interval().ok_or(SimulationError::NotUniform)?;
         let (oscillator, law, load) = (scenario.oscillator(), scenario.law(), scenario.normal_load());
         if law.depends_on_acceleration() {
-            return Err(SimulationError::NotSupported {
-                engine: "moreau",
-                what: "a law that depends on the acceleration",
-            });
+            let what = "a law that depends on the acceleration";
+            return Err(SimulationError::NotSupported { engine: "moreau", what });
         }
         scenario.require_constant_load("moreau")?;
         trajectory.reset("moreau", 0, false, sampling)?;
