@@ -17,7 +17,7 @@ use fmm_friction::{Berger, Coulomb, LawFamily};
 use fmm_identify::MachineProblem;
 use fmm_model::{Bounds, Damping, Dual, Oscillator, Parameter, Scalar};
 use fmm_record::{Quantity, Record};
-use fmm_sim::{Channels, Engine, Exact, RungeKutta, Sampling, Scenario, Simulated, Thesis, Trajectory};
+use fmm_sim::{Channels, Engine, Exact, RungeKutta, Sampling, Scenario, Thesis, Trajectory};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -239,7 +239,7 @@ fn thesis_fit(criterion: &mut Criterion) {
 }
 
 /// Fits of `problem` on other machines, as a Monte Carlo calculation repeats them.
-fn repeat<F: Simulated>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, problem: &MachineProblem<F>) {
+fn repeat<F: LawFamily>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, problem: &MachineProblem<F>) {
     let fit = solve(problem, problem.values(), &Options::default()).expect("valid");
     let varying = [("mass", 10.391, 0.0049), ("stiffness", 1982.0, 1.3), ("damping", 0.275, 0.0341)];
     let refit = Refit::prepare(problem, &fit).expect("a minimum");

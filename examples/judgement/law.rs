@@ -6,7 +6,7 @@ use fmm_friction::{
     Stribeck, StribeckLorentzian, Viscous,
 };
 use fmm_model::Oscillator;
-use fmm_sim::{Sampling, Scenario, Simulated, Trajectory};
+use fmm_sim::{Sampling, Scenario, Trajectory, simulate_into};
 
 use super::Found;
 
@@ -46,7 +46,7 @@ pub(crate) struct Law {
 }
 
 /// The motion of an oscillator under the law of these `values` and a `load` (N), let go at `release` (m).
-fn simulate<F: Simulated>(
+fn simulate<F: LawFamily>(
     oscillator: Oscillator,
     values: &[f64],
     load: f64,
@@ -55,7 +55,7 @@ fn simulate<F: Simulated>(
 ) -> Found<Trajectory> {
     let scenario = Scenario::new(oscillator, F::at::<f64>(values)?, load)?.starting_at(release, 0.0)?;
     let mut trajectory = Trajectory::new();
-    F::simulate_into(&scenario, sampling, &mut trajectory)?;
+    simulate_into::<F, _>(&scenario, sampling, None, &mut trajectory)?;
     Ok(trajectory)
 }
 
@@ -83,7 +83,7 @@ where
 }
 
 /// Levels of steady sliding of a law with internal state.
-fn with_state<F: Simulated>(values: &[f64], peak_speed: f64) -> Option<Levels> {
+fn with_state<F: LawFamily>(values: &[f64], peak_speed: f64) -> Option<Levels> {
     let law = F::at::<f64>(values).ok()?;
     let at = |speed| F::steady_coefficient(&law, speed, true);
     Some(Levels { rest: at(0.0)?, peak: at(peak_speed)?, beyond: at(BEYOND * peak_speed)? })
@@ -112,7 +112,7 @@ const LAWS: &[Law] = &[
 ];
 
 impl Law {
-    const fn of<F: Simulated>(levels: fn(&[f64], f64) -> Option<Levels>) -> Self {
+    const fn of<F: LawFamily>(levels: fn(&[f64], f64) -> Option<Levels>) -> Self {
         Self { name: F::NAME, parameters: F::PARAMETERS, simulate: simulate::<F>, levels }
     }
 

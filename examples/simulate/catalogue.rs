@@ -1,14 +1,11 @@
 //! The laws by their names.
 
 use fmm_friction::{
-    AccelerationCoulomb, Berger, BoucWen, BristleLaw, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair,
-    Gms, Hyperbolic, Karnopp, LawError, LawFamily, LuGre, MakkarDixon, MaxwellSlip, PiecewiseLinearLaw, PowerLaw,
-    RegularisedStribeck, Shifted, SlidingLaw, Smoothed, Stribeck, StribeckLorentzian, Viscous,
+    FamilyVisitor, Gms, LawError, LawFamily, MaxwellSlip, MaxwellSlipOf, Smoothed, Stribeck, catalogue,
 };
-use fmm_sim::Simulated;
 
 use super::ScenarioError;
-use super::contact::{Affine, AnySliding, Bristled, Contact, Sliding};
+use super::contact::{AnySliding, Contact, Law, OfGms, OfSmoothed};
 use super::entries::{Entries, Field};
 use super::keys::{Shape, Slot};
 use super::law::Given;
@@ -24,50 +21,25 @@ pub(crate) struct Entry {
     make: fn(Given) -> Made,
 }
 
+/// Makes entries of families.
+struct AllEntries;
+
+impl FamilyVisitor for AllEntries {
+    type Output = Entry;
+
+    fn visit<F: LawFamily>(&mut self) -> Entry {
+        let make = |given: Given| made(&given, |values| F::at(values).map(Law::<F, _>::new));
+        Entry { name: F::NAME, slots: || Slot::numbers(F::NAME, F::PARAMETERS), make }
+    }
+}
+
 /// Every law that a scenario can name.
-pub(crate) const CATALOGUE: &[Entry] = &[
-    affine::<Viscous>(),
-    affine::<Coulomb>(),
-    affine::<CoulombStatic>(),
-    affine::<CoulombViscous>(),
-    affine::<AccelerationCoulomb>(),
-    sliding::<Stribeck>(),
-    sliding::<StribeckLorentzian>(),
-    sliding::<Hyperbolic>(),
-    sliding::<Berger>(),
-    sliding::<PowerLaw>(),
-    sliding::<ExponentialPair>(),
-    sliding::<Karnopp>(),
-    sliding::<MakkarDixon>(),
-    sliding::<Shifted<MakkarDixon>>(),
-    sliding::<RegularisedStribeck>(),
-    bristled::<Dahl>(),
-    bristled::<LuGre>(),
-    bristled::<BoucWen>(),
-    MAXWELL_SLIP,
-    GMS,
-    SMOOTHED,
-];
-
-const fn affine<F: Simulated>() -> Entry
-where
-    F::At<f64>: PiecewiseLinearLaw<f64> + SlidingLaw<f64> + 'static,
-{
-    Entry { name: F::NAME, slots: slots::<F>, make: |given| made(&given, Affine::<F>::of) }
-}
-
-const fn sliding<F: Simulated>() -> Entry
-where
-    F::At<f64>: SlidingLaw<f64> + 'static,
-{
-    Entry { name: F::NAME, slots: slots::<F>, make: |given| made(&given, Sliding::<F>::of) }
-}
-
-const fn bristled<F: Simulated>() -> Entry
-where
-    F::At<f64>: BristleLaw<f64> + 'static,
-{
-    Entry { name: F::NAME, slots: slots::<F>, make: |given| made(&given, Bristled::<F>::of) }
+pub(crate) fn laws() -> Vec<Entry> {
+    let mut laws = catalogue(&mut AllEntries);
+    // A list of elements says how many there are.
+    laws.retain(|entry| !entry.name.starts_with("maxwell_slip"));
+    laws.extend([MAXWELL_SLIP, GMS, SMOOTHED]);
+    laws
 }
 
 const MAXWELL_SLIP: Entry = Entry {
@@ -75,7 +47,7 @@ const MAXWELL_SLIP: Entry = Entry {
     slots: || vec![Slot::of("stiffness", "κ", "1/m", Shape::List), Slot::of("level", "w", "1", Shape::List)],
     make: |given| {
         let elements = given.pairs()?;
-        made(&given, |_| MaxwellSlip::new(&elements))
+        made(&given, |_| MaxwellSlip::new(&elements).map(Law::<MaxwellSlipOf<1>, _>::new))
     },
 };
 
@@ -92,7 +64,7 @@ const GMS: Entry = Entry {
         let elements = given.pairs()?;
         made(&given, |values| {
             let (curve, attraction) = values.split_at(Stribeck::PARAMETERS.len());
-            Gms::new(Stribeck::at(curve)?, attraction[0], &elements)
+            Gms::new(Stribeck::at(curve)?, attraction[0], &elements).map(Law::<OfGms, _>::new)
         })
     },
 };
@@ -105,13 +77,9 @@ const SMOOTHED: Entry = Entry {
         let Some(smooth) = law.into_sliding() else {
             return Err(ScenarioError::NotSliding { law: inner, known: known() });
         };
-        made(&given, |values| Smoothed::new(AnySliding::new(smooth), values[0]))
+        made(&given, |values| Smoothed::new(AnySliding::new(smooth), values[0]).map(Law::<OfSmoothed, _>::new))
     },
 };
-
-fn slots<F: LawFamily>() -> Vec<Slot> {
-    Slot::numbers(F::NAME, F::PARAMETERS)
-}
 
 fn made<C: Contact + 'static>(given: &Given, make: impl FnOnce(&[f64]) -> Result<C, LawError>) -> Made {
     let law = given.law();
@@ -123,7 +91,7 @@ fn made<C: Contact + 'static>(given: &Given, make: impl FnOnce(&[f64]) -> Result
 
 /// The names of all laws, for a message.
 fn known() -> String {
-    let names: Vec<&str> = CATALOGUE.iter().map(|entry| entry.name).collect();
+    let names: Vec<&str> = laws().iter().map(|entry| entry.name).collect();
     format!("the laws are {}", names.join(", "))
 }
 
@@ -135,7 +103,7 @@ pub(crate) fn contact(law: Entries) -> Result<(&'static str, Box<dyn Contact>), 
     let Ok([(name, field)]) = <[_; 1]>::try_from(law.0) else {
         return Err(ScenarioError::NotOneLaw { known: known() });
     };
-    let Some(entry) = CATALOGUE.iter().find(|entry| entry.name == name) else {
+    let Some(entry) = laws().into_iter().find(|entry| entry.name == name) else {
         return Err(ScenarioError::UnknownLaw { law: name, known: known() });
     };
     let Field::Object(parameters) = field else {

@@ -1,12 +1,14 @@
 //! A law whose type is known only at run time, with the engines that take it.
 
+use std::marker::PhantomData;
 use std::rc::Rc;
 
-use fmm_friction::{
-    BristleLaw, Gms, LawError, LawFamily, MaxwellSlip, PiecewiseLinearLaw, Regime, SlidingLaw, Smoothed,
-};
+use fmm_friction::{BristleLaw, Gms, LawFamily, LawVisitor, PiecewiseLinearLaw, Regime, SlidingLaw, Smoothed};
 use fmm_model::Oscillator;
-use fmm_sim::{Engine, Exact, Excitation, Sampling, Scenario, Simulated, SimulationError, State, Trajectory};
+use fmm_sim::{
+    Bristle, Engine, Exact, Excitation, RungeKutta, Sampling, Scenario, SimulationError, State, Trajectory,
+    simulate_into,
+};
 
 use super::EngineName;
 use super::engine::Choice;
@@ -31,8 +33,7 @@ impl Setting {
 
 /// A law of any type.
 ///
-/// There is one implementation for each set of engines that take a law, generic in the law. An implementor promises
-/// that [`simulate`](Self::simulate) answers exactly the engines of [`engines`](Self::engines).
+/// An implementor promises that [`simulate`](Self::simulate) answers exactly the engines of [`engines`](Self::engines).
 pub(crate) trait Contact {
     /// The engines that take the law.
     fn engines(&self) -> &'static [EngineName];
@@ -56,72 +57,75 @@ pub(crate) trait Contact {
     fn into_sliding(self: Box<Self>) -> Option<Box<dyn SlidingLaw<f64>>>;
 }
 
-/// The engines of a law of the sliding speed.
-fn of_the_speed(law: &impl SlidingLaw<f64>) -> &'static [EngineName] {
-    // Time stepping has one level only.
-    let engines = &[EngineName::Auto, EngineName::RungeKutta, EngineName::Thesis, EngineName::Moreau];
-    if law.depends_on_acceleration() { &engines[..3] } else { engines }
+/// What a law of type `L` is: its kind, and the engine that suits it.
+pub(crate) trait Kind<L> {
+    /// What `visitor` does with laws of this kind.
+    fn visit<V: LawVisitor<f64, L>>(visitor: V) -> V::Output;
+
+    /// The motion by the engine that suits the law.
+    ///
+    /// # Errors
+    /// [`SimulationError`] if the engine has no answer.
+    fn automatic(scenario: &Scenario<f64, L>, sampling: &Sampling) -> Result<Trajectory, SimulationError>;
 }
 
-/// The engines of such a law that is a level plus a slope.
-fn of_levels(law: &impl SlidingLaw<f64>) -> &'static [EngineName] {
-    let engines =
-        &[EngineName::Auto, EngineName::Exact, EngineName::RungeKutta, EngineName::Thesis, EngineName::Moreau];
-    if law.depends_on_acceleration() { &engines[..4] } else { engines }
+impl<F: LawFamily> Kind<F::At<f64>> for F {
+    fn visit<V: LawVisitor<f64, F::At<f64>>>(visitor: V) -> V::Output {
+        <F as LawFamily>::visit(visitor)
+    }
+
+    fn automatic(scenario: &Scenario<f64, F::At<f64>>, sampling: &Sampling) -> Result<Trajectory, SimulationError> {
+        let mut trajectory = Trajectory::new();
+        simulate_into::<F, _>(scenario, sampling, None, &mut trajectory)?;
+        Ok(trajectory)
+    }
 }
 
-/// Friction against a velocity of either sign.
-fn against(law: &(impl SlidingLaw<f64> + ?Sized), velocity: f64, losing: bool) -> f64 {
-    let speed = velocity.abs();
-    let coefficient = if losing { law.coefficient_losing_speed(speed) } else { law.coefficient(speed) };
-    if velocity == 0.0 { 0.0 } else { coefficient * velocity.signum() }
+/// The kind of [`Gms`].
+pub(crate) struct OfGms;
+
+impl Kind<Gms> for OfGms {
+    fn visit<V: LawVisitor<f64, Gms>>(visitor: V) -> V::Output {
+        visitor.bristle()
+    }
+
+    fn automatic(scenario: &Scenario<f64, Gms>, sampling: &Sampling) -> Result<Trajectory, SimulationError> {
+        Bristle::default().run(scenario, sampling)
+    }
 }
 
-/// Friction of a law with internal states; which elements slide does not matter to it.
-fn carried(law: &impl BristleLaw<f64>, velocity: f64, states: &[f64]) -> f64 {
-    let mut rate = vec![0.0; law.states()];
-    law.rate(velocity, states, Regime::ALL_HOLD, &mut rate);
-    law.coefficient(velocity, states, &rate)
+/// The kind of a law that is made smooth.
+pub(crate) struct OfSmoothed;
+
+impl Kind<Smoothed<AnySliding>> for OfSmoothed {
+    fn visit<V: LawVisitor<f64, Smoothed<AnySliding>>>(visitor: V) -> V::Output {
+        visitor.sliding()
+    }
+
+    fn automatic(
+        scenario: &Scenario<f64, Smoothed<AnySliding>>,
+        sampling: &Sampling,
+    ) -> Result<Trajectory, SimulationError> {
+        RungeKutta::default().run(scenario, sampling)
+    }
 }
 
-/// The family's own choice of an engine.
-fn automatic<F: Simulated>(
-    scenario: &Scenario<f64, F::At<f64>>,
-    sampling: &Sampling,
-) -> Result<Trajectory, SimulationError> {
-    let mut trajectory = Trajectory::new();
-    F::simulate_into(scenario, sampling, &mut trajectory)?;
-    Ok(trajectory)
+/// A law `L` of kind `K`.
+pub(crate) struct Law<K, L> {
+    law: L,
+    kind: PhantomData<K>,
 }
 
-/// A law that is a level plus a slope.
-pub(crate) struct Affine<F: LawFamily>(F::At<f64>);
-
-/// Any other law of the sliding speed.
-pub(crate) struct Sliding<F: LawFamily>(F::At<f64>);
-
-/// A law with an internal state.
-pub(crate) struct Bristled<F: LawFamily>(F::At<f64>);
-
-macro_rules! of_values {
-    ($($wrapper:ident),+) => {$(
-        impl<F: LawFamily> $wrapper<F> {
-            /// The law with these parameter values, in the order of [`LawFamily::PARAMETERS`].
-            pub(crate) fn of(values: &[f64]) -> Result<Self, LawError> {
-                F::at(values).map(Self)
-            }
-        }
-    )+};
+impl<K, L> Law<K, L> {
+    /// That law.
+    pub(crate) const fn new(law: L) -> Self {
+        Self { law, kind: PhantomData }
+    }
 }
 
-of_values!(Affine, Sliding, Bristled);
-
-impl<F: Simulated> Contact for Affine<F>
-where
-    F::At<f64>: PiecewiseLinearLaw<f64> + SlidingLaw<f64> + 'static,
-{
+impl<K: Kind<L>, L: Clone + 'static> Contact for Law<K, L> {
     fn engines(&self) -> &'static [EngineName] {
-        of_levels(&self.0)
+        K::visit(Engines(&self.law))
     }
 
     fn simulate(
@@ -130,141 +134,158 @@ where
         choice: Choice,
         sampling: &Sampling,
     ) -> Result<Option<Trajectory>, SimulationError> {
-        let scenario = setting.with(self.0.clone())?;
-        match choice.engine {
-            EngineName::Auto => automatic::<F>(&scenario, sampling).map(Some),
-            EngineName::Exact => Exact.run(&scenario, sampling).map(Some),
-            _ => choice.sliding(&scenario, sampling).transpose(),
+        let scenario = setting.with(self.law.clone())?;
+        if choice.engine == EngineName::Auto {
+            return K::automatic(&scenario, sampling).map(Some);
         }
+        K::visit(Run { scenario: &scenario, choice, sampling })
     }
 
-    fn coefficient(&self, velocity: f64, _states: &[f64], losing: bool) -> f64 {
-        against(&self.0, velocity, losing)
+    fn coefficient(&self, velocity: f64, states: &[f64], losing: bool) -> f64 {
+        K::visit(Coefficient { law: &self.law, velocity, states, losing })
     }
 
     fn into_sliding(self: Box<Self>) -> Option<Box<dyn SlidingLaw<f64>>> {
-        Some(Box::new(self.0))
+        K::visit(IntoSliding(self.law))
     }
 }
 
-impl<F: Simulated> Contact for Sliding<F>
-where
-    F::At<f64>: SlidingLaw<f64> + 'static,
-{
-    fn engines(&self) -> &'static [EngineName] {
-        of_the_speed(&self.0)
+/// Asks for the engines that take a law.
+struct Engines<'a, L>(&'a L);
+
+impl<L> LawVisitor<f64, L> for Engines<'_, L> {
+    type Output = &'static [EngineName];
+
+    fn sliding(self) -> Self::Output
+    where
+        L: SlidingLaw<f64>,
+    {
+        // Time stepping has one level only.
+        let engines = &[EngineName::Auto, EngineName::RungeKutta, EngineName::Thesis, EngineName::Moreau];
+        if self.0.depends_on_acceleration() { &engines[..3] } else { engines }
     }
 
-    fn simulate(
-        &self,
-        setting: &Setting,
-        choice: Choice,
-        sampling: &Sampling,
-    ) -> Result<Option<Trajectory>, SimulationError> {
-        let scenario = setting.with(self.0.clone())?;
-        match choice.engine {
-            EngineName::Auto => automatic::<F>(&scenario, sampling).map(Some),
-            _ => choice.sliding(&scenario, sampling).transpose(),
-        }
+    fn piecewise_linear(self) -> Self::Output
+    where
+        L: PiecewiseLinearLaw<f64> + SlidingLaw<f64>,
+    {
+        let engines =
+            &[EngineName::Auto, EngineName::Exact, EngineName::RungeKutta, EngineName::Thesis, EngineName::Moreau];
+        if self.0.depends_on_acceleration() { &engines[..4] } else { engines }
     }
 
-    fn coefficient(&self, velocity: f64, _states: &[f64], losing: bool) -> f64 {
-        against(&self.0, velocity, losing)
-    }
-
-    fn into_sliding(self: Box<Self>) -> Option<Box<dyn SlidingLaw<f64>>> {
-        Some(Box::new(self.0))
-    }
-}
-
-impl<F: Simulated> Contact for Bristled<F>
-where
-    F::At<f64>: BristleLaw<f64> + 'static,
-{
-    fn engines(&self) -> &'static [EngineName] {
+    fn bristle(self) -> Self::Output
+    where
+        L: BristleLaw<f64>,
+    {
         &[EngineName::Auto, EngineName::Bristle]
     }
 
-    fn simulate(
-        &self,
-        setting: &Setting,
-        choice: Choice,
-        sampling: &Sampling,
-    ) -> Result<Option<Trajectory>, SimulationError> {
-        let scenario = setting.with(self.0.clone())?;
-        match choice.engine {
-            EngineName::Auto => automatic::<F>(&scenario, sampling).map(Some),
-            EngineName::Bristle => choice.bristle(&scenario, sampling).map(Some),
-            _ => Ok(None),
-        }
-    }
-
-    fn coefficient(&self, velocity: f64, states: &[f64], _losing: bool) -> f64 {
-        carried(&self.0, velocity, states)
-    }
-
-    fn into_sliding(self: Box<Self>) -> Option<Box<dyn SlidingLaw<f64>>> {
-        None
-    }
-}
-
-impl Contact for MaxwellSlip {
-    fn engines(&self) -> &'static [EngineName] {
+    fn elements(self) -> Self::Output
+    where
+        L: PiecewiseLinearLaw<f64> + BristleLaw<f64>,
+    {
         &[EngineName::Auto, EngineName::Exact, EngineName::Bristle]
     }
+}
 
-    fn simulate(
-        &self,
-        setting: &Setting,
-        choice: Choice,
-        sampling: &Sampling,
-    ) -> Result<Option<Trajectory>, SimulationError> {
-        let scenario = setting.with(self.clone())?;
-        match choice.engine {
-            EngineName::Auto => match Exact.run(&scenario, sampling) {
-                Err(SimulationError::NotLinear { .. } | SimulationError::Resonance { .. }) => {
-                    choice.bristle(&scenario, sampling).map(Some)
-                }
-                other => other.map(Some),
-            },
-            EngineName::Exact => Exact.run(&scenario, sampling).map(Some),
-            EngineName::Bristle => choice.bristle(&scenario, sampling).map(Some),
+/// Runs the engine that is chosen by name; none if it does not take the law.
+struct Run<'a, L> {
+    scenario: &'a Scenario<f64, L>,
+    choice: Choice,
+    sampling: &'a Sampling,
+}
+
+impl<L> LawVisitor<f64, L> for Run<'_, L> {
+    type Output = Result<Option<Trajectory>, SimulationError>;
+
+    fn sliding(self) -> Self::Output
+    where
+        L: SlidingLaw<f64>,
+    {
+        self.choice.sliding(self.scenario, self.sampling).transpose()
+    }
+
+    fn piecewise_linear(self) -> Self::Output
+    where
+        L: PiecewiseLinearLaw<f64> + SlidingLaw<f64>,
+    {
+        match self.choice.engine {
+            EngineName::Exact => Exact.run(self.scenario, self.sampling).map(Some),
+            _ => self.sliding(),
+        }
+    }
+
+    fn bristle(self) -> Self::Output
+    where
+        L: BristleLaw<f64>,
+    {
+        match self.choice.engine {
+            EngineName::Bristle => self.choice.bristle(self.scenario, self.sampling).map(Some),
             _ => Ok(None),
         }
     }
 
-    fn coefficient(&self, _velocity: f64, states: &[f64], _losing: bool) -> f64 {
-        self.coefficient_at(states)
-    }
-
-    fn into_sliding(self: Box<Self>) -> Option<Box<dyn SlidingLaw<f64>>> {
-        None
+    fn elements(self) -> Self::Output
+    where
+        L: PiecewiseLinearLaw<f64> + BristleLaw<f64>,
+    {
+        match self.choice.engine {
+            EngineName::Exact => Exact.run(self.scenario, self.sampling).map(Some),
+            _ => self.bristle(),
+        }
     }
 }
 
-impl Contact for Gms {
-    fn engines(&self) -> &'static [EngineName] {
-        &[EngineName::Auto, EngineName::Bristle]
+/// Asks a law for its coefficient (1), with its sign, at a velocity (m/s) of either sign.
+struct Coefficient<'a, L> {
+    law: &'a L,
+    velocity: f64,
+    states: &'a [f64],
+    losing: bool,
+}
+
+impl<L> LawVisitor<f64, L> for Coefficient<'_, L> {
+    type Output = f64;
+
+    fn sliding(self) -> f64
+    where
+        L: SlidingLaw<f64>,
+    {
+        let Self { law, velocity, losing, .. } = self;
+        let speed = velocity.abs();
+        let coefficient = if losing { law.coefficient_losing_speed(speed) } else { law.coefficient(speed) };
+        if velocity == 0.0 { 0.0 } else { coefficient * velocity.signum() }
     }
 
-    fn simulate(
-        &self,
-        setting: &Setting,
-        choice: Choice,
-        sampling: &Sampling,
-    ) -> Result<Option<Trajectory>, SimulationError> {
-        let scenario = setting.with(self.clone())?;
-        match choice.engine {
-            EngineName::Auto | EngineName::Bristle => choice.bristle(&scenario, sampling).map(Some),
-            _ => Ok(None),
-        }
+    fn bristle(self) -> f64
+    where
+        L: BristleLaw<f64>,
+    {
+        // Which elements slide does not matter to the coefficient.
+        let mut rate = vec![0.0; self.law.states()];
+        self.law.rate(self.velocity, self.states, Regime::ALL_HOLD, &mut rate);
+        self.law.coefficient(self.velocity, self.states, &rate)
+    }
+}
+
+/// Makes a law one of the sliding speed alone, if it is one.
+struct IntoSliding<L>(L);
+
+impl<L: 'static> LawVisitor<f64, L> for IntoSliding<L> {
+    type Output = Option<Box<dyn SlidingLaw<f64>>>;
+
+    fn sliding(self) -> Self::Output
+    where
+        L: SlidingLaw<f64>,
+    {
+        Some(Box::new(self.0))
     }
 
-    fn coefficient(&self, velocity: f64, states: &[f64], _losing: bool) -> f64 {
-        carried(self, velocity, states)
-    }
-
-    fn into_sliding(self: Box<Self>) -> Option<Box<dyn SlidingLaw<f64>>> {
+    fn bristle(self) -> Self::Output
+    where
+        L: BristleLaw<f64>,
+    {
         None
     }
 }
@@ -299,32 +320,5 @@ impl SlidingLaw<f64> for AnySliding {
 
     fn capture_speed(&self) -> f64 {
         self.0.capture_speed()
-    }
-}
-
-impl Contact for Smoothed<AnySliding> {
-    fn engines(&self) -> &'static [EngineName] {
-        of_the_speed(self)
-    }
-
-    fn simulate(
-        &self,
-        setting: &Setting,
-        choice: Choice,
-        sampling: &Sampling,
-    ) -> Result<Option<Trajectory>, SimulationError> {
-        let scenario = setting.with(self.clone())?;
-        match choice.engine {
-            EngineName::Auto => choice.runge_kutta(&scenario, sampling).map(Some),
-            _ => choice.sliding(&scenario, sampling).transpose(),
-        }
-    }
-
-    fn coefficient(&self, velocity: f64, _states: &[f64], losing: bool) -> f64 {
-        against(self, velocity, losing)
-    }
-
-    fn into_sliding(self: Box<Self>) -> Option<Box<dyn SlidingLaw<f64>>> {
-        Some(self)
     }
 }

@@ -18,7 +18,7 @@ mod motion;
 mod plan;
 mod run;
 
-pub(crate) use catalogue::CATALOGUE;
+pub(crate) use catalogue::laws;
 pub(crate) use engine::EngineName;
 pub(crate) use error::ScenarioError;
 pub(crate) use motion::Motion;

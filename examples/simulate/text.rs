@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::figure::label;
-use crate::simulation::{CATALOGUE, Motion, Simulation};
+use crate::simulation::{Motion, Simulation, laws};
 
 /// Events printed at most; the document of `--json` has them all.
 const MOST_EVENTS: usize = 60;
@@ -38,7 +38,7 @@ pub(crate) struct Laws;
 impl fmt::Display for Laws {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         writeln!(f, "A parameter goes by its name or its symbol. With a normal load of 1 a coefficient is a force.")?;
-        for entry in CATALOGUE {
+        for entry in laws() {
             writeln!(f, "\n{}", entry.name)?;
             for slot in (entry.slots)() {
                 let description = slot.description();

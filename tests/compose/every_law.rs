@@ -1,23 +1,23 @@
 //! Every law of the catalogue on the thesis' machine: the default search names it.
 
 use fmm_friction::{
-    AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombViscous, Dahl, ExponentialPair, Hyperbolic, Karnopp, LuGre,
-    MakkarDixon, PowerLaw, RegularisedStribeck, Stribeck, StribeckLorentzian, Viscous,
+    AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombViscous, Dahl, ExponentialPair, Hyperbolic, Karnopp,
+    LawFamily, LuGre, MakkarDixon, PowerLaw, RegularisedStribeck, Stribeck, StribeckLorentzian, Viscous,
 };
 use fmm_identify::{Comparison, Experiment, Identification, Machine, Preparation, Search, search};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
-use fmm_sim::{Sampling, Scenario, Simulated, Trajectory};
+use fmm_sim::{Sampling, Scenario, Trajectory, simulate_into};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 
 /// The default search on 3 s of a free vibration from 22 mm under 14 N with a contact of `values`, sampled at 1 kHz with `noise` (m/s).
-fn searched<F: Simulated>(values: &[f64], noise: f64) -> Comparison {
+fn searched<F: LawFamily>(values: &[f64], noise: f64) -> Comparison {
     let oscillator = Oscillator::new(10.391, 1982.0).unwrap();
     let scenario = Scenario::new(oscillator, F::at(values).unwrap(), 14.0).unwrap().starting_at(0.022, 0.0).unwrap();
     let mut motion = Trajectory::new();
-    F::simulate_into(&scenario, &Sampling::uniform(1e-3, 3000).unwrap(), &mut motion).unwrap();
+    simulate_into::<F, _>(&scenario, &Sampling::uniform(1e-3, 3000).unwrap(), None, &mut motion).unwrap();
     let mut random = ChaCha8Rng::seed_from_u64(16);
     let mut noisy = |velocity: &f64| {
         let normal: f64 = StandardNormal.sample(&mut random);
@@ -30,7 +30,7 @@ fn searched<F: Simulated>(values: &[f64], noise: f64) -> Comparison {
 }
 
 /// Whether a law is preferred, or not excluded where the record does not decide.
-fn assert_named<F: Simulated>(values: &[f64]) {
+fn assert_named<F: LawFamily>(values: &[f64]) {
     let comparison = searched::<F>(values, 1e-3);
     let is_right = |found: &Identification| found.law().split([' ', ',']).next() == Some(F::NAME);
     let is_named = if comparison.is_decided() {

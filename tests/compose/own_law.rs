@@ -1,10 +1,10 @@
 //! A friction law of one's own, written outside the crates: simulated, differentiated, fitted and compared.
 
-use fmm_friction::{Affine, LawError, LawFamily, LawParameter, PiecewiseLinearLaw, Role, SlidingLaw};
+use fmm_friction::{Affine, LawError, LawFamily, LawParameter, LawVisitor, PiecewiseLinearLaw, Role, SlidingLaw};
 use fmm_identify::{Candidate, Experiment, Machine, Preparation, compare};
 use fmm_model::{Bounds, Oscillator, Parameter, Scalar};
 use fmm_record::{Quantity, Record};
-use fmm_sim::{Engine, Exact, Sampling, Scenario, Simulated, SimulationError, Trajectory};
+use fmm_sim::{Engine, Exact, Sampling, Scenario};
 
 use crate::measurement::white;
 
@@ -25,6 +25,10 @@ impl LawFamily for Rising {
         let [coefficient] = Self::checked(values)?;
         Ok(Rising(coefficient))
     }
+
+    fn visit<D: Scalar, V: LawVisitor<D, Rising<D>>>(visitor: V) -> V::Output {
+        visitor.piecewise_linear()
+    }
 }
 
 impl<D: Scalar> SlidingLaw<D> for Rising<D> {
@@ -39,16 +43,6 @@ impl<D: Scalar> SlidingLaw<D> for Rising<D> {
 impl<D: Scalar> PiecewiseLinearLaw<D> for Rising<D> {
     fn affine(&self) -> Affine<D> {
         Affine { level: self.0, slope: self.0 / DOUBLING, breakaway: self.0 }
-    }
-}
-
-impl Simulated for Rising {
-    fn simulate_into<D: Scalar>(
-        scenario: &Scenario<D, Rising<D>>,
-        sampling: &Sampling,
-        trajectory: &mut Trajectory<D>,
-    ) -> Result<(), SimulationError> {
-        Exact.run_into(scenario, sampling, trajectory)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use fmm_friction::{Berger, Coulomb, SlidingLaw};
 use fmm_model::{Damping, Oscillator};
-use fmm_sim::{Engine, Excitation, RungeKutta, Sampling, Scenario, Simulated, Trajectory};
+use fmm_sim::{Engine, Excitation, RungeKutta, Sampling, Scenario, Trajectory, simulate_into};
 use serde_json::Value;
 
 use crate::oracle::{number, read};
@@ -67,7 +67,7 @@ fn a_block_slides_to_rest_without_a_spring() {
     let block = block.starting_at(0.0, speed).unwrap();
     let sampling = Sampling::uniform(0.5, 5).unwrap();
     let mut automatic = Trajectory::new();
-    Coulomb::simulate_into(&block, &sampling, &mut automatic).unwrap();
+    simulate_into::<Coulomb, _>(&block, &sampling, None, &mut automatic).unwrap();
     for motion in [automatic, RungeKutta::default().run(&block, &sampling).unwrap()] {
         let rest = motion.rest().unwrap_or_else(|| panic!("{}: no rest", motion.engine()));
         let (time, distance) = (number(&entry["value"]["time"]), number(&entry["value"]["distance"]));
@@ -85,7 +85,7 @@ fn a_ramp_starts_a_motion_gently() {
     let block = block.driven_by(Excitation::ramp(rate).unwrap());
     let sampling = Sampling::at(vec![0.0, 0.1 + after]).unwrap();
     let mut automatic = Trajectory::new();
-    Coulomb::simulate_into(&block, &sampling, &mut automatic).unwrap();
+    simulate_into::<Coulomb, _>(&block, &sampling, None, &mut automatic).unwrap();
     for motion in [automatic, RungeKutta::default().run(&block, &sampling).unwrap()] {
         assert!((motion.events()[1].time - 0.1).abs() < 1e-15, "{}", motion.engine());
         let velocity = motion.velocity().values()[1];

@@ -1,9 +1,10 @@
 //! Laws that are others in a limit are them to the last bit, and all keep the promises of their trait.
 
 use fmm_friction::{
-    BristleLaw, Coulomb, CoulombStatic, CoulombViscous, Dahl, PiecewiseLinearLaw, Regime, SlidingLaw, Viscous,
+    BristleLaw, Coulomb, CoulombStatic, CoulombViscous, Dahl, LawFamily, PiecewiseLinearLaw, Regime, SlidingLaw,
+    Viscous,
 };
-use fmm_sim::{Mode, Simulated, Trajectory};
+use fmm_sim::{Mode, Trajectory, simulate_into};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -81,9 +82,9 @@ fn static_level_only_ends_the_motion() {
 /// A law made by its family is the law, and the family's engine is the exact one.
 #[test]
 fn families_make_their_laws() {
-    fn made<L: Simulated>(case: &Case, values: &[f64]) -> Trajectory {
+    fn made<L: LawFamily>(case: &Case, values: &[f64]) -> Trajectory {
         let mut motion = Trajectory::new();
-        L::simulate_into(&case.with_law(L::at(values).unwrap()), &case.sampling(), &mut motion).unwrap();
+        simulate_into::<L, _>(&case.with_law(L::at(values).unwrap()), &case.sampling(), None, &mut motion).unwrap();
         motion
     }
     for (case, viscous) in cases_with_viscosity(95).take(200) {

@@ -25,7 +25,7 @@ law_family! {
     ///   each swing has a phase of constant speed v that lasts (μ₁ − μ₂) N/(k |v|) on a spring k.
     /// * μ₁ < μ₂: at a load between the two levels both motions are possible. The contact goes on as it did, and
     ///   changes level only when its own acceleration changes sign.
-    pub struct AccelerationCoulomb, "acceleration_coulomb" {
+    pub struct AccelerationCoulomb, "acceleration_coulomb", piecewise_linear {
         gaining: LawParameter::level("gaining_coefficient", "μ₁").typically(1.05),
         losing: LawParameter::level("losing_coefficient", "μ₂").typically(0.95),
     }

@@ -34,7 +34,7 @@ law_family! {
     /// # References
     /// E. J. Berger, "Friction modeling for dynamic system simulation", Applied Mechanics Reviews 55 (2002) 535,
     /// doi 10.1115/1.1501080.
-    pub struct Berger, "berger" {
+    pub struct Berger, "berger", sliding {
         floor: LawParameter::level("coefficient", "μ₀").typically(0.7),
         excess: LawParameter::not_negative("excess_coefficient", "μ₁", "1", Role::Excess).typically(0.6),
         decay: LawParameter::not_negative("decay", "α", "s/m", Role::Shape).typically(3.0),

@@ -18,7 +18,7 @@ law_family! {
     ///
     /// # References
     /// C. A. Coulomb, *Théorie des machines simples*, Paris 1785.
-    pub struct Coulomb, "coulomb" {
+    pub struct Coulomb, "coulomb", piecewise_linear {
         coefficient: LawParameter::level("coefficient", "μ"),
     }
 

@@ -19,7 +19,7 @@ law_family! {
     ///
     /// With μ_s = μ_d this is [`Coulomb`](crate::Coulomb). In a free decay μ_s decides only *at which* turning point
     /// the motion ends; between those decisions the motion does not depend on it at all.
-    pub struct CoulombStatic, "coulomb_static" {
+    pub struct CoulombStatic, "coulomb_static", piecewise_linear {
         sliding: LawParameter::level("sliding_coefficient", "μ_d"),
         breakaway: LawParameter::breakaway("static_coefficient", "μ_s"),
     }

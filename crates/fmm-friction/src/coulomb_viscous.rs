@@ -18,7 +18,7 @@ law_family! {
     /// | β | `viscous` | s/m | increase of the coefficient with speed |
     ///
     /// The viscous part acts exactly as a linear damping N β of the machine: a ring-down determines their sum only.
-    pub struct CoulombViscous, "coulomb_viscous" {
+    pub struct CoulombViscous, "coulomb_viscous", piecewise_linear {
         coefficient: LawParameter::level("coefficient", "μ"),
         viscous: LawParameter::slope("viscous", "β"),
     }

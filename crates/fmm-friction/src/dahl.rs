@@ -26,7 +26,7 @@ law_family! {
     ///
     /// # References
     /// P. R. Dahl, *A solid friction model*, The Aerospace Corporation TOR-0158(3107-18)-1, 1968.
-    pub struct Dahl, "dahl" {
+    pub struct Dahl, "dahl", bristle {
         coefficient: LawParameter::positive("coefficient", "μ", "1", Role::Level),
         stiffness: LawParameter::positive("stiffness", "σ", "1/m", Role::Level).typically(50.0),
         exponent: LawParameter::positive("exponent", "i", "1", Role::Shape),

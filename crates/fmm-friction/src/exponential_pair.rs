@@ -29,7 +29,7 @@ law_family! {
     /// The form is the one attributed to Den Hartog and Burdekin, after J. Wojewoda, A. Stefański, M. Wiercigroch,
     /// T. Kapitaniak, "Hysteretic effects of dry friction: modelling and experimental studies", Phil. Trans. R. Soc. A
     /// 366 (2008) 747; it is given here as it is cited, not as read in the paper.
-    pub struct ExponentialPair, "exponential_pair" {
+    pub struct ExponentialPair, "exponential_pair", sliding {
         sliding: LawParameter::level("sliding_coefficient", "μ_k"),
         breakaway: LawParameter::level_above("static_coefficient", "μ_s").typically(0.3),
         gaining_decay: LawParameter::positive("gaining_decay", "a", "s/m", Role::Shape).typically(5.0),

@@ -4,7 +4,8 @@ use std::fmt::Debug;
 
 use fmm_model::{Bounds, Parameter, Scalar};
 
-use crate::LawError;
+use crate::kind::{KindOf, SteadyCoefficient};
+use crate::{LawError, LawKind, LawVisitor};
 
 /// How a parameter of a law enters the friction force. It says what is left of the parameter when the normal
 /// load and the mass are unknown.
@@ -185,6 +186,21 @@ pub trait LawFamily: 'static {
     /// not finite, out of bounds, or contradicts another ([`LawError::Condition`] unless another variant fits).
     fn at<D: Scalar>(values: &[D]) -> Result<Self::At<D>, LawError>;
 
+    /// What `visitor` does with laws of this family's kind: an implementor calls the one method of [`LawVisitor`] that says what
+    /// its laws are.
+    fn visit<D: Scalar, V: LawVisitor<D, Self::At<D>>>(visitor: V) -> V::Output;
+
+    /// Kind of the family's laws.
+    fn kind() -> LawKind {
+        Self::visit::<f64, _>(KindOf)
+    }
+
+    /// Friction coefficient (1) of steady sliding by `law` at `speed` ≥ 0 (m/s), in the limit of a speed that grows slowly or, if it
+    /// is `losing`, falls; none for laws with internal state that do not say it.
+    fn steady_coefficient<D: Scalar>(law: &Self::At<D>, speed: D, losing: bool) -> Option<D> {
+        Self::visit(SteadyCoefficient { law, speed, losing })
+    }
+
     /// The `values` one by one, exactly as many as the law has parameters and each within its bounds: how
     /// [`at`](Self::at) of a law of one's own begins.
     ///
@@ -211,7 +227,7 @@ pub trait LawFamily: 'static {
 /// `Coulomb::new(Dual::from(0.2))` needs no annotation. A family of one's own says it in three lines:
 ///
 /// ```
-/// # use fmm_friction::{Coulomb, FamilyMember, LawError, LawFamily, LawParameter};
+/// # use fmm_friction::{Coulomb, FamilyMember, LawError, LawFamily, LawParameter, LawVisitor, SlidingLaw};
 /// # use fmm_model::Scalar;
 /// # #[derive(Debug, Clone)]
 /// # struct Sticky<D = f64>(Coulomb<D>);
@@ -221,6 +237,17 @@ pub trait LawFamily: 'static {
 /// #     type At<D: Scalar> = Sticky<D>;
 /// #     fn at<D: Scalar>(values: &[D]) -> Result<Sticky<D>, LawError> {
 /// #         Coulomb::at(values).map(Sticky)
+/// #     }
+/// #     fn visit<D: Scalar, V: LawVisitor<D, Sticky<D>>>(visitor: V) -> V::Output {
+/// #         visitor.sliding()
+/// #     }
+/// # }
+/// # impl<D: Scalar> SlidingLaw<D> for Sticky<D> {
+/// #     fn coefficient(&self, speed: D) -> D {
+/// #         self.0.coefficient(speed)
+/// #     }
+/// #     fn breakaway(&self) -> D {
+/// #         self.0.breakaway()
 /// #     }
 /// # }
 /// impl<D: Scalar> FamilyMember for Sticky<D> {
@@ -262,13 +289,13 @@ pub(crate) fn static_not_below<D: Scalar>(sliding: D, breakaway: D) -> Result<()
 
 /// A law that is a fixed list of numbers: its struct, its validating constructor and its [`LawFamily`].
 ///
-/// Each field stands beside the parameter that it is. The braces after the constructor hold what must be true of
+/// After the name stands its kind, the method of [`LawVisitor`](crate::LawVisitor) that takes it. Each field stands beside the parameter that it is. The braces after the constructor hold what must be true of
 /// several parameters together. `Scalar`, `LawError`, `LawFamily` and `LawParameter` must be in scope, as the documents
 /// refer to them.
 macro_rules! law_family {
     (
         $(#[$law_doc:meta])*
-        pub struct $law:ident, $name:literal {
+        pub struct $law:ident, $name:literal, $kind:ident {
             $($field:ident: $parameter:expr,)+
         }
 
@@ -305,6 +332,10 @@ macro_rules! law_family {
             fn at<D: Scalar>(values: &[D]) -> Result<$law<D>, LawError> {
                 let [$($field),+] = $crate::family::exactly(Self::NAME, values)?;
                 $law::$new($($field),+)
+            }
+
+            fn visit<D: Scalar, V: $crate::LawVisitor<D, $law<D>>>(visitor: V) -> V::Output {
+                visitor.$kind()
             }
         }
 

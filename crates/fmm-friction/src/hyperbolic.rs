@@ -22,7 +22,7 @@ law_family! {
     /// # References
     /// R. I. Leine, D. H. van Campen, A. de Kraker, L. van den Steen, "Stick-slip vibrations induced by alternate
     /// friction models", Nonlinear Dynamics 16 (1998) 41, doi 10.1023/A:1008289604683.
-    pub struct Hyperbolic, "hyperbolic" {
+    pub struct Hyperbolic, "hyperbolic", sliding {
         breakaway: LawParameter::level("static_coefficient", "μ_s").typically(1.3),
         decay: LawParameter::not_negative("decay", "δ", "s/m", Role::Shape).typically(0.5),
     }

@@ -27,7 +27,7 @@ law_family! {
     /// # References
     /// D. Karnopp, "Computer simulation of stick-slip friction in mechanical dynamic systems", Journal of Dynamic
     /// Systems, Measurement, and Control 107 (1985) 100, doi 10.1115/1.3140698.
-    pub struct Karnopp, "karnopp" {
+    pub struct Karnopp, "karnopp", sliding {
         sliding: LawParameter::level("sliding_coefficient", "μ_d"),
         breakaway: LawParameter::level_above("static_coefficient", "μ_s").typically(0.1),
         dead_zone: LawParameter::positive("dead_zone", "v_d", "m/s", Role::Shape).typically(0.01),

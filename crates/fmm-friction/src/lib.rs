@@ -37,7 +37,8 @@
 //! internal state, which do not; their pages say what an implementor promises and why they are as they are.
 //! [`PiecewiseLinearLaw`] marks the laws that move a linear machine in closed form. [`LawFamily`] names the parameters and
 //! builds a law at any number type, so that a fit, a budget or a report can speak of them; a law of one's own that
-//! implements it is fitted like these.
+//! implements it is simulated and fitted like these. A family also says what kind it is: a [`LawVisitor`] does one thing or
+//! another with a law according to its kind, and [`catalogue()`] leads a [`FamilyVisitor`] through all families by name.
 //!
 //! # Units and conventions
 //!
@@ -62,7 +63,8 @@
 //! # Neighbours
 //!
 //! [`fmm-sim`](https://docs.rs/fmm-sim) moves a machine under a law, [`fmm-identify`](https://docs.rs/fmm-identify) finds
-//! its parameters in a record, but for those of [`MaxwellSlip`] and [`Gms`], which are lists and no [`LawFamily`];
+//! its parameters in a record, but for those of [`Gms`], which are a list and no [`LawFamily`] ([`MaxwellSlipOf`] is that of
+//! [`MaxwellSlip`]);
 //! [`fmm-model`](https://docs.rs/fmm-model) has the number types. There are no features.
 
 mod acceleration_coulomb;
@@ -70,6 +72,7 @@ mod affine;
 mod berger;
 mod blend;
 mod bouc_wen;
+mod catalogue;
 mod coulomb;
 mod coulomb_static;
 mod coulomb_viscous;
@@ -81,10 +84,12 @@ mod family;
 mod gms;
 mod hyperbolic;
 mod karnopp;
+mod kind;
 mod law;
 mod lugre;
 mod makkar_dixon;
 mod maxwell_slip;
+mod maxwell_slip_family;
 mod power;
 mod power_law;
 mod regularised_stribeck;
@@ -103,6 +108,7 @@ pub use acceleration_coulomb::AccelerationCoulomb;
 pub use affine::{Affine, Element, PiecewiseLinearLaw};
 pub use berger::Berger;
 pub use bouc_wen::BoucWen;
+pub use catalogue::{FamilyVisitor, catalogue, family_named};
 pub use coulomb::Coulomb;
 pub use coulomb_static::CoulombStatic;
 pub use coulomb_viscous::CoulombViscous;
@@ -113,10 +119,12 @@ pub use family::{FamilyMember, LawFamily, LawParameter, Role, SpecialCase};
 pub use gms::Gms;
 pub use hyperbolic::Hyperbolic;
 pub use karnopp::Karnopp;
+pub use kind::{LawKind, LawVisitor};
 pub use law::{BristleLaw, Regime, SlidingLaw};
 pub use lugre::LuGre;
 pub use makkar_dixon::MakkarDixon;
 pub use maxwell_slip::MaxwellSlip;
+pub use maxwell_slip_family::MaxwellSlipOf;
 pub use power_law::PowerLaw;
 pub use regularised_stribeck::RegularisedStribeck;
 pub use shifted::{Inflected, Shifted};

@@ -31,7 +31,7 @@ law_family! {
     /// # References
     /// C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky, "A new model for control of systems with friction",
     /// IEEE Trans. Automatic Control 40 (1995) 419, doi 10.1109/9.376053.
-    pub struct LuGre, "lugre" {
+    pub struct LuGre, "lugre", bristle {
         sliding: LawParameter::positive("sliding_coefficient", "μ_c", "1", Role::Level).typically(0.9),
         breakaway: LawParameter::positive("static_coefficient", "μ_s", "1", Role::LevelAbove).typically(0.3),
         fall_speed: LawParameter::positive("stribeck_speed", "v_s", "m/s", Role::Shape).typically(0.2),

@@ -42,7 +42,7 @@ law_family! {
     /// # References
     /// C. Makkar, W. E. Dixon, W. G. Sawyer, G. Hu, "A new continuously differentiable friction model for control
     /// systems design", Proc. IEEE/ASME Int. Conf. Advanced Intelligent Mechatronics (2005) 600.
-    pub struct MakkarDixon, "makkar_dixon" {
+    pub struct MakkarDixon, "makkar_dixon", sliding {
         difference: LawParameter::level("difference_coefficient", "γ₁").typically(0.4),
         rise: LawParameter::positive("rise", "γ₂", "s/m", Role::Shape).typically(50.0),
         fall: LawParameter::positive("fall", "γ₃", "s/m", Role::Shape).typically(3.0),

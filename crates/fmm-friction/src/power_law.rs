@@ -25,7 +25,7 @@ law_family! {
     ///
     /// For p < 1 the slope at zero speed is +∞: the value at v = 0 carries the derivatives in the parameters, which are
     /// finite, and none in the speed.
-    pub struct PowerLaw, "power_law" {
+    pub struct PowerLaw, "power_law", sliding {
         amplitude: LawParameter::not_negative("power_coefficient", "a", "(s/m)^p", Role::Level).typically(0.5),
         exponent: LawParameter::new(
             Parameter::new("exponent", "p", "1").bounded(Bounds::POSITIVE.at_most(1.0)),

@@ -27,7 +27,7 @@ law_family! {
     ///
     /// # References
     /// MathWorks, *Simscape Reference*, block Translational Friction.
-    pub struct RegularisedStribeck, "regularised_stribeck" {
+    pub struct RegularisedStribeck, "regularised_stribeck", sliding {
         peak: LawParameter::level_above("peak_coefficient", "μ_b").typically(0.3),
         sliding: LawParameter::level("sliding_coefficient", "μ_c").typically(0.9),
         peak_speed: LawParameter::positive("peak_speed", "v_b", "m/s", Role::Shape).typically(0.03),

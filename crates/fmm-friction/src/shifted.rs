@@ -2,7 +2,7 @@
 
 use fmm_model::Scalar;
 
-use crate::{FamilyMember, LawError, LawFamily, LawParameter, MakkarDixon, SlidingLaw};
+use crate::{FamilyMember, LawError, LawFamily, LawParameter, LawVisitor, MakkarDixon, SlidingLaw};
 
 /// A law whose curve over the speed rises to a Stribeck peak and bends while it falls.
 pub trait Inflected {
@@ -85,6 +85,10 @@ impl LawFamily for Shifted<MakkarDixon> {
 
     fn at<D: Scalar>(values: &[D]) -> Result<Shifted<MakkarDixon<D>>, LawError> {
         MakkarDixon::at(values).map(Shifted::new)
+    }
+
+    fn visit<D: Scalar, V: LawVisitor<D, Self::At<D>>>(visitor: V) -> V::Output {
+        visitor.sliding()
     }
 }
 

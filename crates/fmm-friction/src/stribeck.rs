@@ -40,7 +40,7 @@ law_family! {
     ///
     /// B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, "A survey of models, analysis tools and compensation
     /// methods for the control of machines with friction", Automatica 30 (1994) 1083, doi 10.1016/0005-1098(94)90209-7.
-    pub struct Stribeck, "stribeck" {
+    pub struct Stribeck, "stribeck", sliding {
         sliding: LawParameter::level("sliding_coefficient", "μ_c").typically(0.9),
         breakaway: LawParameter::level_above("static_coefficient", "μ_s").typically(0.4),
         fall_speed: LawParameter::positive("stribeck_speed", "v_s", "m/s", Role::Shape).typically(0.2),

@@ -26,7 +26,7 @@ law_family! {
     /// # References
     /// D. P. Hess, A. Soom, "Friction at a lubricated line contact operating at oscillating sliding velocities",
     /// Journal of Tribology 112 (1990) 147.
-    pub struct StribeckLorentzian, "stribeck_lorentzian" {
+    pub struct StribeckLorentzian, "stribeck_lorentzian", sliding {
         sliding: LawParameter::level("sliding_coefficient", "μ_c").typically(0.9),
         breakaway: LawParameter::level_above("static_coefficient", "μ_s").typically(0.4),
         fall_speed: LawParameter::positive("stribeck_speed", "v_s", "m/s", Role::Shape).typically(0.2),

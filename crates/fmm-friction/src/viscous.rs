@@ -15,7 +15,7 @@ law_family! {
     /// | symbol | field | unit | meaning |
     /// |---|---|---|---|
     /// | β | `viscous` | s/m | coefficient per speed |
-    pub struct Viscous, "viscous" {
+    pub struct Viscous, "viscous", piecewise_linear {
         viscous: LawParameter::slope("viscous", "β"),
     }
 

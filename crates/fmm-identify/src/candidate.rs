@@ -3,12 +3,7 @@
 use std::ops::ControlFlow;
 
 use fmm_fit::{Options, Progress};
-use fmm_friction::{
-    AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, Hyperbolic,
-    Karnopp, LuGre, MakkarDixon, PowerLaw, RegularisedStribeck, Shifted, SpecialCase, Stribeck, StribeckLorentzian,
-    Viscous,
-};
-use fmm_sim::Simulated;
+use fmm_friction::{Coulomb, CoulombViscous, FamilyVisitor, LawFamily, SpecialCase, Viscous, catalogue, family_named};
 
 use crate::fit_stages::Near;
 use crate::identification::identify_by;
@@ -27,18 +22,20 @@ pub struct Candidate {
     terms: Terms,
 }
 
-macro_rules! catalogue {
-    ($($law:ty),+ $(,)?) => {
-        /// Every law that can be identified.
-        pub fn catalogue() -> Vec<Self> {
-            vec![$(Self::of::<$law>()),+]
-        }
-    };
+/// Makes candidates of families.
+struct Candidates;
+
+impl FamilyVisitor for Candidates {
+    type Output = Candidate;
+
+    fn visit<F: LawFamily>(&mut self) -> Candidate {
+        Candidate::of::<F>()
+    }
 }
 
 impl Candidate {
     /// The candidate of family `F`, which may be a law of one's own.
-    pub const fn of<F: Simulated>() -> Self {
+    pub const fn of<F: LawFamily>() -> Self {
         Self { law: Law::of::<F>(), terms: Terms::NONE }
     }
 
@@ -62,26 +59,10 @@ impl Candidate {
         [Self::of::<Viscous>(), Self::of::<Coulomb>(), Self::of::<CoulombViscous>()]
     }
 
-    catalogue!(
-        Viscous,
-        Coulomb,
-        CoulombStatic,
-        CoulombViscous,
-        AccelerationCoulomb,
-        Stribeck,
-        StribeckLorentzian,
-        Hyperbolic,
-        Berger,
-        PowerLaw,
-        ExponentialPair,
-        Karnopp,
-        MakkarDixon,
-        Shifted<MakkarDixon>,
-        RegularisedStribeck,
-        Dahl,
-        LuGre,
-        BoucWen,
-    );
+    /// Every law of the [catalogue](fmm_friction::catalogue()).
+    pub fn catalogue() -> Vec<Self> {
+        catalogue(&mut Candidates)
+    }
 
     /// The law called `name` in the [`catalogue`](Self::catalogue), with the terms that follow it after plus signs.
     ///
@@ -98,11 +79,10 @@ impl Candidate {
     /// # Errors
     /// [`IdentifyError::UnknownLaw`] and [`IdentifyError::UnknownTerm`], with the names there are.
     pub fn named(name: &str) -> Result<Self, IdentifyError> {
-        let catalogue = Self::catalogue();
         let mut parts = name.split('+').map(str::trim);
         let law = parts.next().unwrap_or_default();
-        let known = || catalogue.iter().map(|candidate| candidate.law.name).collect::<Vec<_>>().join(", ");
-        let found = catalogue.iter().find(|candidate| candidate.law.name == law).cloned();
+        let known = || Self::catalogue().iter().map(|candidate| candidate.law.name).collect::<Vec<_>>().join(", ");
+        let found = family_named(law, &mut Candidates);
         let found = found.ok_or_else(|| IdentifyError::UnknownLaw { name: law.to_owned(), known: known() })?;
         let mut terms = Terms::NONE;
         for term in parts {

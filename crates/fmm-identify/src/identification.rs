@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 
 use fmm_fit::{Estimate, EvaluationError, Fit, Options, Progress, solve_observed};
-use fmm_friction::Role;
-use fmm_sim::{Event, EventKind, Simulated, Trajectory};
+use fmm_friction::{LawFamily, Role};
+use fmm_sim::{Event, EventKind, Trajectory};
 
 use crate::drift::{as_fitted, with_drift};
 use crate::experiment::scaled;
@@ -116,7 +116,7 @@ pub struct Identification {
 /// println!("{found}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn identify<F: Simulated>(machine: &Machine, decays: &[Experiment]) -> Result<Identification, IdentifyError> {
+pub fn identify<F: LawFamily>(machine: &Machine, decays: &[Experiment]) -> Result<Identification, IdentifyError> {
     identify_with::<F>(machine, &Terms::NONE, decays)
 }
 
@@ -124,7 +124,7 @@ pub fn identify<F: Simulated>(machine: &Machine, decays: &[Experiment]) -> Resul
 ///
 /// # Errors
 /// As for [`identify`], and if the terms do not fit the law.
-pub fn identify_with<F: Simulated>(
+pub fn identify_with<F: LawFamily>(
     machine: &Machine,
     terms: &Terms,
     decays: &[Experiment],
@@ -136,7 +136,7 @@ pub fn identify_with<F: Simulated>(
 ///
 /// # Errors
 /// As for [`identify_with`].
-pub fn identify_observed<F: Simulated>(
+pub fn identify_observed<F: LawFamily>(
     machine: &Machine,
     terms: &Terms,
     decays: &[Experiment],

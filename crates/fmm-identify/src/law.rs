@@ -1,9 +1,9 @@
 //! A law family as a value: what must know its type is the simulation alone, and all else is compiled once for all laws.
 
 use fmm_fit::EvaluationError;
-use fmm_friction::{LawParameter, Role, SpecialCase};
+use fmm_friction::{LawFamily, LawParameter, Role, SpecialCase};
 use fmm_model::{Dual, Oscillator, Scalar};
-use fmm_sim::{Excitation, Sampling, Scenario, Simulated, Trajectory};
+use fmm_sim::{Excitation, Sampling, Scenario, Trajectory, simulate_into};
 
 /// Directions of derivative that one simulation carries; a law with more parameters takes several.
 pub(crate) const DIRECTIONS: usize = 6;
@@ -22,7 +22,7 @@ pub(crate) struct Motion<D> {
 
 impl<D: Scalar> Motion<D> {
     /// Simulates it by family `F`.
-    pub(crate) fn simulate<F: Simulated>(
+    pub(crate) fn simulate<F: LawFamily>(
         &self,
         sampling: &Sampling,
         trajectory: &mut Trajectory<D>,
@@ -32,12 +32,12 @@ impl<D: Scalar> Motion<D> {
         if let Some(force) = &self.force {
             scenario = scenario.driven_by(force.clone());
         }
-        Ok(F::simulate_into(&scenario, sampling, trajectory)?)
+        Ok(simulate_into::<F, _>(&scenario, sampling, None, trajectory)?)
     }
 }
 
 /// Friction coefficient (1) of steady sliding by family `F` of these `values` at a speed (m/s) that grows or, if it is `losing`, falls.
-fn steady<F: Simulated>(values: &[f64], speed: f64, losing: bool) -> Option<f64> {
+fn steady<F: LawFamily>(values: &[f64], speed: f64, losing: bool) -> Option<f64> {
     F::steady_coefficient(&F::at::<f64>(values).ok()?, speed, losing)
 }
 
@@ -59,7 +59,7 @@ pub(crate) struct Law {
 
 impl Law {
     /// Family `F`.
-    pub(crate) const fn of<F: Simulated>() -> Self {
+    pub(crate) const fn of<F: LawFamily>() -> Self {
         Self {
             name: F::NAME,
             parameters: F::PARAMETERS,

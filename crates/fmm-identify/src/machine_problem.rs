@@ -6,7 +6,7 @@ use fmm_fit::{EvaluationError, Residuals};
 use fmm_friction::{LawFamily, SlidingLaw};
 use fmm_model::{Bounds, Damping, Dual, Oscillator, Parameter, Scalar};
 use fmm_record::{Quantity, Record};
-use fmm_sim::{Channels, Engine, RungeKutta, Sampling, Scenario, Simulated, SimulationError, Thesis, Trajectory};
+use fmm_sim::{Channels, Engine, RungeKutta, Sampling, Scenario, SimulationError, Thesis, Trajectory, simulate_into};
 
 use crate::IdentifyError;
 use crate::pool::Pool;
@@ -97,7 +97,7 @@ const MACHINE: [Parameter; 5] = [
     Parameter::new("normal_load", "N", "N").bounded(Bounds::POSITIVE),
 ];
 
-impl<F: Simulated> MachineProblem<F> {
+impl<F: LawFamily> MachineProblem<F> {
     /// The problem of `record`, a velocity (m/s) or a displacement (m), with the value of each parameter by its name.
     ///
     /// # Errors
@@ -236,10 +236,7 @@ impl<F: Simulated> MachineProblem<F> {
         scenario: &Scenario<D, F::At<D>>,
         trajectory: &mut Trajectory<D>,
     ) -> Result<(), SimulationError> {
-        match self.tolerance {
-            Some(tolerance) => F::simulate_within(scenario, &self.sampling, tolerance, trajectory),
-            None => F::simulate_into(scenario, &self.sampling, trajectory),
-        }
+        simulate_into::<F, _>(scenario, &self.sampling, self.tolerance, trajectory)
     }
 
     fn write_residuals<D: Scalar>(&self, p: &[f64], trajectory: &Trajectory<D>, residuals: &mut [f64]) {
@@ -285,7 +282,7 @@ fn index(parameters: &[Parameter], name: &str) -> Result<usize, IdentifyError> {
     })
 }
 
-impl<F: Simulated> Residuals for MachineProblem<F> {
+impl<F: LawFamily> Residuals for MachineProblem<F> {
     fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }

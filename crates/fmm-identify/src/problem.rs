@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use fmm_fit::{Block, EvaluationError, Fit, Residuals};
+use fmm_friction::LawFamily;
 use fmm_model::{Parameter, Scalar};
-use fmm_sim::{Channels, Sampling, Simulated, Trajectory};
+use fmm_sim::{Channels, Sampling, Trajectory};
 
 use crate::experiment::{Drive, scaled};
 use crate::law::{Law, Simulate};
@@ -44,7 +45,7 @@ impl<'a> Problem<'a> {
     ///
     /// # Errors
     /// [`IdentifyError::NoRecord`] and [`IdentifyError::MixedRecords`].
-    pub fn new<F: Simulated>(machine: Machine, decays: &'a [Experiment]) -> Result<Self, IdentifyError> {
+    pub fn new<F: LawFamily>(machine: Machine, decays: &'a [Experiment]) -> Result<Self, IdentifyError> {
         Self::with_terms::<F>(machine, Terms::NONE, decays)
     }
 
@@ -53,7 +54,7 @@ impl<'a> Problem<'a> {
     /// # Errors
     /// As for [`new`](Self::new), and [`IdentifyError::TwoDampings`], [`IdentifyError::NothingToHold`] and
     /// [`IdentifyError::HeldOutOfBounds`].
-    pub fn with_terms<F: Simulated>(
+    pub fn with_terms<F: LawFamily>(
         machine: Machine,
         terms: Terms,
         decays: &'a [Experiment],

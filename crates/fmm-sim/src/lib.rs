@@ -35,7 +35,7 @@
 //! | [`Thesis`] | reproduction of the thesis only | the appendix' semi-implicit Euler, branch for branch | fits: its sum of squares jumps |
 //!
 //! The first three give gradients in every input, through every event: [`Exact`] to rounding, the others as well as their pages
-//! say. [`simulate`] takes the engine that suits the law ([`Simulated`]); [`Trajectory::engine`] says which one ran. What acts
+//! say. [`simulate`] takes the engine that suits the law; [`Trajectory::engine`] says which one ran. What acts
 //! from outside is an
 //! [`Excitation`], several of which add up; a release or a push is an initial state. The [`Work`] done by friction, damping
 //! and excitation comes along on request. A contact whose motion is given has no need of an engine: [`friction_along`].
@@ -116,6 +116,7 @@
 mod agreement;
 mod automaton;
 mod bristle;
+mod choice;
 mod curve;
 mod decay;
 mod dormand_prince;
@@ -136,13 +137,13 @@ mod runge_kutta;
 mod samples;
 mod sampling;
 mod scenario;
-mod simulated;
 mod thesis;
 mod trajectory;
 mod within;
 mod work;
 
 pub use bristle::Bristle;
+pub use choice::{simulate, simulate_into};
 pub use energy::Energy;
 pub use engine::Engine;
 pub use error::SimulationError;
@@ -155,7 +156,6 @@ pub use runge_kutta::RungeKutta;
 pub use samples::Samples;
 pub use sampling::{Channels, Sampling};
 pub use scenario::{Scenario, State};
-pub use simulated::{Simulated, simulate};
 pub use thesis::Thesis;
 pub use trajectory::Trajectory;
 pub use work::Work;

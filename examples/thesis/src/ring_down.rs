@@ -3,7 +3,7 @@
 use fmm_friction::LawFamily;
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{Quantity, Record};
-use fmm_sim::{Sampling, Scenario, Simulated, Trajectory};
+use fmm_sim::{Sampling, Scenario, Trajectory, simulate_into};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, Normal};
@@ -50,9 +50,9 @@ pub(crate) fn scenario<F: LawFamily>(
 }
 
 /// The motion by the engine that suits the law.
-pub(crate) fn motion<F: Simulated>(scenario: &Scenario<f64, F::At<f64>>, sampling: &Sampling) -> Found<Trajectory> {
+pub(crate) fn motion<F: LawFamily>(scenario: &Scenario<f64, F::At<f64>>, sampling: &Sampling) -> Found<Trajectory> {
     let mut trajectory = Trajectory::new();
-    F::simulate_into(scenario, sampling, &mut trajectory)?;
+    simulate_into::<F, _>(scenario, sampling, None, &mut trajectory)?;
     Ok(trajectory)
 }
 

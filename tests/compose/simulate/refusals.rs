@@ -1,6 +1,6 @@
 //! Scenarios that should be refused, each with its reason and what would be right.
 
-use super::simulation::CATALOGUE;
+use super::simulation::laws;
 use super::{run, with};
 
 fn refused(scenario: &str) -> String {
@@ -9,7 +9,7 @@ fn refused(scenario: &str) -> String {
 
 #[test]
 fn no_key_means_two_parameters() {
-    for entry in CATALOGUE {
+    for entry in laws() {
         let slots = (entry.slots)();
         for (index, slot) in slots.iter().enumerate() {
             assert!(
@@ -26,7 +26,7 @@ fn no_key_means_two_parameters() {
         }
     }
     let keys = ["coefficient", "excess_coefficient", "decay"].map(String::from);
-    let berger = CATALOGUE.iter().find(|entry| entry.name == "berger").unwrap();
+    let berger = laws().into_iter().find(|entry| entry.name == "berger").unwrap();
     for (slot, (name, symbol)) in (berger.slots)().iter().zip(keys.iter().zip(["mu0", "mu1", "alpha"])) {
         assert!(slot.keys().contains(name) && slot.is(symbol), "{name}");
     }
@@ -35,7 +35,7 @@ fn no_key_means_two_parameters() {
 /// A value for each law, one parameter being left out or misspelt.
 #[test]
 fn every_law_says_what_it_needs() {
-    for entry in CATALOGUE {
+    for entry in laws() {
         let name = entry.name;
         let said = refused(&with(&format!(r#""law": {{"{name}": {{"nonsense": 1}}}}, "duration": 1"#)));
         assert!(said.contains("no parameter \"nonsense\""), "{said}");
@@ -52,7 +52,7 @@ fn every_law_says_what_it_needs() {
 fn unknown_names_are_answered_with_the_valid_ones() {
     let said = refused(&with(r#""law": {"colomb": {"mu": 0.1}}, "duration": 1"#));
     assert!(said.contains("no law \"colomb\""), "{said}");
-    for entry in CATALOGUE {
+    for entry in laws() {
         assert!(said.contains(entry.name), "{said}");
     }
     for (scenario, wrong, valid) in [

@@ -1,8 +1,7 @@
 //! A law of one's own: friction that grows with the logarithm of the speed, as between rough surfaces that creep.
 
-use fmm_friction::{LawError, LawFamily, LawParameter, Role, SlidingLaw};
+use fmm_friction::{LawError, LawFamily, LawParameter, LawVisitor, Role, SlidingLaw};
 use fmm_model::{Bounds, Parameter, Scalar};
-use fmm_sim::{Engine, RungeKutta, Sampling, Scenario, Simulated, SimulationError, Trajectory};
 
 /// Speed (m/s) from which on the logarithm counts.
 const REFERENCE_SPEED: f64 = 0.01;
@@ -44,15 +43,8 @@ impl LawFamily for Logarithmic {
         let [at_rest, increase] = Self::checked(values)?;
         Ok(Logarithmic { at_rest, increase })
     }
-}
 
-/// Which engine follows it.
-impl Simulated for Logarithmic {
-    fn simulate_into<D: Scalar>(
-        scenario: &Scenario<D, Logarithmic<D>>,
-        sampling: &Sampling,
-        trajectory: &mut Trajectory<D>,
-    ) -> Result<(), SimulationError> {
-        RungeKutta::default().run_into(scenario, sampling, trajectory)
+    fn visit<D: Scalar, V: LawVisitor<D, Logarithmic<D>>>(visitor: V) -> V::Output {
+        visitor.sliding()
     }
 }

@@ -1,10 +1,10 @@
 //! The derivatives of the problem of blows, against differences.
 
 use fmm_fit::Residuals;
-use fmm_friction::{Berger, Coulomb};
+use fmm_friction::{Berger, Coulomb, LawFamily};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
-use fmm_sim::{Excitation, Sampling, Scenario, Simulated, Trajectory};
+use fmm_sim::{Excitation, Sampling, Scenario, Trajectory, simulate_into};
 
 use crate::Known;
 use crate::impact::parameters::{LAW, RESPONSE_GAIN};
@@ -23,7 +23,8 @@ fn trials() -> Vec<ImpactTrial> {
             let scenario = Scenario::new(Oscillator::new(0.5, 79.0).unwrap(), law, 1.0).unwrap();
             let scenario = scenario.driven_by(Excitation::sampled_force(INTERVAL, force.clone()).unwrap());
             let mut motion = Trajectory::new();
-            Berger::simulate_into(&scenario, &Sampling::uniform(INTERVAL, samples).unwrap(), &mut motion).unwrap();
+            simulate_into::<Berger, _>(&scenario, &Sampling::uniform(INTERVAL, samples).unwrap(), None, &mut motion)
+                .unwrap();
             let velocity = motion.velocity().values().to_vec();
             let force = Record::new(0.0, INTERVAL, force, Quantity::Force, "N").unwrap();
             let velocity = Record::new(0.0, INTERVAL, velocity, Quantity::Velocity, "m/s").unwrap();
@@ -38,7 +39,7 @@ fn machine() -> ImpactMachine {
 }
 
 /// In every parameter, held or not, in every domain.
-fn compare_with_differences<F: Simulated>(law: &[f64]) {
+fn compare_with_differences<F: LawFamily>(law: &[f64]) {
     let trials = trials();
     for domain in [ImpactDomain::Mobility, ImpactDomain::Time, ImpactDomain::Both] {
         let options = ImpactOptions::default().within(0.5, 20.0).unwrap().fitting(domain);

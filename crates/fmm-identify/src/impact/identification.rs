@@ -3,9 +3,8 @@
 use std::ops::ControlFlow;
 
 use fmm_fit::{EvaluationError, Fit};
-use fmm_friction::{Coulomb, Role};
+use fmm_friction::{Coulomb, LawFamily, Role};
 use fmm_model::Parameter;
-use fmm_sim::Simulated;
 
 use crate::finding::{Finding, Origin};
 use crate::fit_stages::best_fit;
@@ -81,7 +80,7 @@ pub struct ImpactIdentification {
 /// println!("{found}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn identify_impact<F: Simulated>(
+pub fn identify_impact<F: LawFamily>(
     machine: &ImpactMachine,
     trials: &[ImpactTrial],
     options: &ImpactOptions,

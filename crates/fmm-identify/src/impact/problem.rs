@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use fmm_fit::{Block, EvaluationError, Residuals};
 use fmm_frf::RealTransform;
+use fmm_friction::LawFamily;
 use fmm_model::Parameter;
-use fmm_sim::Simulated;
 
 use crate::impact::lines::{Lines, Scratch};
 use crate::impact::parameters::Parameters;
@@ -65,7 +65,7 @@ impl<'a> ImpactProblem<'a> {
     /// [`IdentifyError::NoRecord`], [`IdentifyError::NoLine`], [`IdentifyError::UnknownParameter`],
     /// [`IdentifyError::HeldOutOfBounds`], and [`IdentifyError::TwoDampings`] if the damping is to be found beside a law that has
     /// a viscous part.
-    pub fn new<F: Simulated>(
+    pub fn new<F: LawFamily>(
         machine: &ImpactMachine,
         trials: &'a [ImpactTrial],
         options: &ImpactOptions,

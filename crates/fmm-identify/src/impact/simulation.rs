@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use fmm_fit::EvaluationError;
+use fmm_friction::LawFamily;
 use fmm_model::{Damping, Dual, Oscillator, Scalar};
-use fmm_sim::{Channels, Excitation, Sampling, Simulated, Trajectory};
+use fmm_sim::{Channels, Excitation, Sampling, Trajectory};
 
 use crate::impact::lines::Scratch;
 use crate::impact::parameters::{LAW, RESPONSE_GAIN};
@@ -23,7 +24,7 @@ pub(crate) struct ImpactLaw {
 
 impl ImpactLaw {
     /// Family `F`.
-    pub(crate) const fn of<F: Simulated>() -> Self {
+    pub(crate) const fn of<F: LawFamily>() -> Self {
         Self { law: Law::of::<F>(), with_few: Motion::simulate::<F> }
     }
 

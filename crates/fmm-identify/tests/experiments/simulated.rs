@@ -1,9 +1,10 @@
 //! Simulated records of the machine of the thesis (T. 3.1), with noise.
 
+use fmm_friction::LawFamily;
 use fmm_identify::{Known, Machine};
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{Quantity, Record};
-use fmm_sim::{Channels, Excitation, Sampling, Scenario, Simulated, Trajectory};
+use fmm_sim::{Channels, Excitation, Sampling, Scenario, Trajectory, simulate_into};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -34,7 +35,7 @@ pub(crate) struct Motion<'a> {
 }
 
 impl Motion<'_> {
-    pub(crate) fn of<F: Simulated>(&self) -> Trajectory {
+    pub(crate) fn of<F: LawFamily>(&self) -> Trajectory {
         let damping = Damping::linear(self.damping).unwrap();
         let machine = Oscillator::new(MASS, STIFFNESS).unwrap().with_damping(damping);
         let scenario = Scenario::new(machine, F::at(self.law).unwrap(), self.load).unwrap();
@@ -44,7 +45,7 @@ impl Motion<'_> {
         }
         let sampling = Sampling::uniform(self.interval, self.samples).unwrap().keeping(Channels::All);
         let mut trajectory = Trajectory::new();
-        F::simulate_into(&scenario, &sampling, &mut trajectory).unwrap();
+        simulate_into::<F, _>(&scenario, &sampling, None, &mut trajectory).unwrap();
         trajectory
     }
 }

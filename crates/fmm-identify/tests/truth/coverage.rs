@@ -1,10 +1,9 @@
 //! How often 95 % intervals contain the truth.
 
 use fmm_fit::{Fit, Options, Residuals, coverage_factor, solve};
-use fmm_friction::{AccelerationCoulomb, Berger, Coulomb, Stribeck};
+use fmm_friction::{AccelerationCoulomb, Berger, Coulomb, LawFamily, Stribeck};
 use fmm_identify::{Candidate, Experiment, Identification, Known, Machine, Problem, Terms, compare, identify};
 use fmm_model::{Damping, Oscillator, Parameter};
-use fmm_sim::Simulated;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -35,7 +34,7 @@ fn covers(names: &[&str], truth: &[f64], mut fit: impl FnMut(u64) -> Fit) {
 }
 
 /// Motions without noise, one for each release.
-fn motions<F: Simulated>(machine: Oscillator, values: &[f64], releases: &[f64]) -> Vec<Vec<f64>> {
+fn motions<F: LawFamily>(machine: Oscillator, values: &[f64], releases: &[f64]) -> Vec<Vec<f64>> {
     releases.iter().map(|release| velocity::<F>(machine, values, *release, SAMPLES)).collect()
 }
 
@@ -44,7 +43,7 @@ fn decays(motions: &[Vec<f64>], seed: u64) -> Vec<Experiment> {
 }
 
 /// The fit of law `F` from the true `start`: that it is found from elsewhere is not the question here.
-fn fitted<F: Simulated>(decays: &[Experiment], terms: &Terms, shared: &[f64], releases: &[f64]) -> Fit {
+fn fitted<F: LawFamily>(decays: &[Experiment], terms: &Terms, shared: &[f64], releases: &[f64]) -> Fit {
     let problem = Problem::with_terms::<F>(Machine::per_unit_mass(), terms.clone(), decays).unwrap();
     let own = releases.iter().flat_map(|release| [*release, 0.0, 0.0]);
     let mut known = shared.iter().copied().chain(own);

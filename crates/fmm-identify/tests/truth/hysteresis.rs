@@ -1,8 +1,8 @@
 //! Two levels fitted to friction that has no hysteresis: by exact simulation they agree, by the thesis' Euler they do not.
 
-use fmm_friction::{AccelerationCoulomb, Berger, Coulomb};
+use fmm_friction::{AccelerationCoulomb, Berger, Coulomb, LawFamily};
 use fmm_identify::{Candidate, Experiment, Identification, Machine, compare};
-use fmm_sim::{Engine, Sampling, Scenario, Simulated, Thesis};
+use fmm_sim::{Engine, Sampling, Scenario, Thesis};
 
 use crate::records::{LOAD, RELEASES, machine, noisy, prepared, velocity};
 
@@ -54,7 +54,7 @@ fn thesis_levels(start: f64, release: f64, measured: &[f64]) -> [f64; 2] {
 }
 
 /// Exact and thesis' differences of the levels for a record without noise.
-fn differences<F: Simulated>(values: &[f64], start: f64, release: f64) -> ((f64, f64), f64) {
+fn differences<F: LawFamily>(values: &[f64], start: f64, release: f64) -> ((f64, f64), f64) {
     let measured = velocity::<F>(machine(), values, release, SAMPLES);
     let thesis = thesis_levels(start, release, &measured);
     let found = identified(prepared(measured));

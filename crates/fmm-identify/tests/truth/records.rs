@@ -4,7 +4,7 @@ use fmm_friction::{LawFamily, Role};
 use fmm_identify::{Experiment, Preparation};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
-use fmm_sim::{Sampling, Scenario, Simulated, Trajectory};
+use fmm_sim::{Sampling, Scenario, Trajectory, simulate_into};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, Normal};
@@ -25,11 +25,11 @@ pub(crate) fn machine() -> Oscillator {
 }
 
 /// Velocity (m/s) of `machine` with the law of these `values`, released at `release` (m).
-pub(crate) fn velocity<F: Simulated>(machine: Oscillator, values: &[f64], release: f64, samples: usize) -> Vec<f64> {
+pub(crate) fn velocity<F: LawFamily>(machine: Oscillator, values: &[f64], release: f64, samples: usize) -> Vec<f64> {
     let scenario = Scenario::new(machine, F::at::<f64>(values).unwrap(), LOAD).unwrap();
     let mut trajectory = Trajectory::new();
     let sampling = Sampling::uniform(INTERVAL, samples).unwrap();
-    F::simulate_into(&scenario.starting_at(release, 0.0).unwrap(), &sampling, &mut trajectory).unwrap();
+    simulate_into::<F, _>(&scenario.starting_at(release, 0.0).unwrap(), &sampling, None, &mut trajectory).unwrap();
     trajectory.velocity().values().to_vec()
 }
 

@@ -2,10 +2,10 @@
 
 use fmm_friction::{
     AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, Hyperbolic,
-    Karnopp, LuGre, MakkarDixon, PowerLaw, RegularisedStribeck, Shifted, Stribeck, StribeckLorentzian, Viscous,
+    Karnopp, LawFamily, LuGre, MakkarDixon, PowerLaw, RegularisedStribeck, Shifted, Stribeck, StribeckLorentzian,
+    Viscous,
 };
 use fmm_identify::{Candidate, Identification, Machine, Terms, Warning, compare};
-use fmm_sim::Simulated;
 
 use crate::records::{RELEASES, expected, machine, prepared, velocity};
 
@@ -15,7 +15,7 @@ const SAMPLES: usize = 2000;
 const ERROR: f64 = 1e-6;
 
 /// Identifies the law of these `values` from one record for each of `releases` (m).
-fn identified<F: Simulated>(values: &[f64], terms: Terms, releases: &[f64]) -> Identification {
+fn identified<F: LawFamily>(values: &[f64], terms: Terms, releases: &[f64]) -> Identification {
     let decays: Vec<_> =
         releases.iter().map(|release| prepared(velocity::<F>(machine(), values, *release, SAMPLES))).collect();
     let candidate = Candidate::of::<F>().with(terms);
@@ -23,7 +23,7 @@ fn identified<F: Simulated>(values: &[f64], terms: Terms, releases: &[f64]) -> I
 }
 
 /// Largest relative error of the parameters of the law, and the name of the parameter that has it.
-fn worst<F: Simulated>(found: &Identification, values: &[f64]) -> (f64, String) {
+fn worst<F: LawFamily>(found: &Identification, values: &[f64]) -> (f64, String) {
     let expected = expected::<F>(values);
     // Natural frequency first, then the law, as there are no terms beside it.
     let errors = found.fit().estimates()[1..].iter().zip(&expected);
@@ -33,7 +33,7 @@ fn worst<F: Simulated>(found: &Identification, values: &[f64]) -> (f64, String) 
 }
 
 /// All parameters come back, and the fit claims to know them.
-fn recovers<F: Simulated>(values: &[f64], terms: Terms, releases: &[f64]) -> Identification {
+fn recovers<F: LawFamily>(values: &[f64], terms: Terms, releases: &[f64]) -> Identification {
     let found = identified::<F>(values, terms, releases);
     let (error, name) = worst::<F>(&found, values);
     println!("{}: {name} is off by {error:.1e}", found.law());
@@ -44,7 +44,7 @@ fn recovers<F: Simulated>(values: &[f64], terms: Terms, releases: &[f64]) -> Ide
 }
 
 /// One release of 22 mm.
-fn recovers_from_one<F: Simulated>(values: &[f64]) -> Identification {
+fn recovers_from_one<F: LawFamily>(values: &[f64]) -> Identification {
     recovers::<F>(values, Terms::default(), &RELEASES[2..])
 }
 

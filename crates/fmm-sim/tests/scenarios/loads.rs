@@ -1,10 +1,9 @@
 //! Normal loads that vary in time, against closed forms, the balance of energy and differences.
 
-use fmm_friction::{AccelerationCoulomb, Coulomb, CoulombStatic, Dahl, Stribeck};
+use fmm_friction::{AccelerationCoulomb, Coulomb, CoulombStatic, Dahl, LawFamily, Stribeck};
 use fmm_model::{Dual, Oscillator, Scalar};
 use fmm_sim::{
-    Bristle, Engine, EventKind, Exact, Excitation, Moreau, RungeKutta, Sampling, Scenario, Simulated, SimulationError,
-    simulate,
+    Bristle, Engine, EventKind, Exact, Excitation, Moreau, RungeKutta, Sampling, Scenario, SimulationError, simulate,
 };
 
 fn machine<D: Scalar>() -> Oscillator<D> {
@@ -65,7 +64,7 @@ fn pulsing() -> Vec<f64> {
 
 fn balances<L>(law: L)
 where
-    L: fmm_friction::FamilyMember<Number = f64, Family: Simulated>,
+    L: fmm_friction::FamilyMember<Number = f64, Family: LawFamily>,
 {
     let drive = Excitation::harmonic(2.0, 4.1, 0.3).unwrap();
     let scenario = Scenario::new(machine(), law, 1.0).unwrap().under_sampled_load(0.05, pulsing()).unwrap();

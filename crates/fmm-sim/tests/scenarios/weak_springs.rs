@@ -3,8 +3,8 @@
 use fmm_friction::{Coulomb, CoulombStatic, Dahl, MaxwellSlip, Stribeck};
 use fmm_model::{Damping, Oscillator};
 use fmm_sim::{
-    Bristle, Engine, Exact, Excitation, Moreau, RungeKutta, Sampling, Scenario, Simulated, SimulationError, Thesis,
-    Trajectory,
+    Bristle, Engine, Exact, Excitation, Moreau, RungeKutta, Sampling, Scenario, SimulationError, Thesis, Trajectory,
+    simulate_into,
 };
 
 /// 1 kg pushed at 1 m/s against 0.5 N: x = t − t²/4 until 2 s, then 1 m.
@@ -51,7 +51,7 @@ fn a_hammer_on_a_weak_spring_is_right_or_refused() {
         let closed = Exact.run(&scenario, &sampling);
         assert_eq!(closed.is_ok(), exact, "{stiffness} N/m: {:?}", closed.err());
         let mut chosen = Trajectory::new();
-        Coulomb::simulate_into(&scenario, &sampling, &mut chosen).unwrap();
+        simulate_into::<Coulomb, _>(&scenario, &sampling, None, &mut chosen).unwrap();
         assert_eq!(chosen.engine(), if exact { "exact" } else { "runge_kutta" });
         for (got, expected) in chosen.position().values().iter().zip(reference.position().values()) {
             assert!((got - expected).abs() < 1e-8, "{stiffness} N/m: {got} instead of {expected} m");
@@ -64,7 +64,7 @@ fn a_hammer_on_a_weak_spring_is_right_or_refused() {
 fn no_spring_is_a_machine() {
     let sampling = Sampling::uniform(1e-3, 3001).unwrap();
     let mut chosen = Trajectory::new();
-    Coulomb::simulate_into(&block(0.0), &sampling, &mut chosen).unwrap();
+    simulate_into::<Coulomb, _>(&block(0.0), &sampling, None, &mut chosen).unwrap();
     assert!(off(&chosen, &sampling) < 1e-13, "chosen: {} m", off(&chosen, &sampling));
     for (motion, most) in [
         (RungeKutta::default().run(&block(0.0), &sampling).unwrap(), 1e-13),

@@ -1,9 +1,8 @@
 //! The normal loads that Tables 4 and 5 go with: their highest velocities tell.
 
 use fmm_fit::{EvaluationError, Options, Residuals, solve};
-use fmm_friction::{Berger, Coulomb};
+use fmm_friction::{Berger, Coulomb, LawFamily};
 use fmm_model::{Bounds, Parameter};
-use fmm_sim::Simulated;
 
 use super::{Known, LOAD_4, LOAD_5, Release, largest, rms, value};
 use crate::figure::{Layer, Panel, Role};
@@ -53,7 +52,7 @@ struct Residue {
 }
 
 impl Residue {
-    fn of<F: Simulated>(rows: &[Row], viscous: Viscous) -> Found<Self> {
+    fn of<F: LawFamily>(rows: &[Row], viscous: Viscous) -> Found<Self> {
         let problem = PeakVelocities::<F> {
             rows,
             viscous,
@@ -83,7 +82,7 @@ struct PeakVelocities<'a, F> {
     family: std::marker::PhantomData<fn() -> F>,
 }
 
-impl<F: Simulated> Residuals for PeakVelocities<'_, F> {
+impl<F: LawFamily> Residuals for PeakVelocities<'_, F> {
     fn parameters(&self) -> &[Parameter] {
         &self.load
     }

@@ -12,10 +12,11 @@ mod power_law;
 mod tanh;
 
 use fmm_fit::{Estimate, Fit, Options, solve};
+use fmm_friction::LawFamily;
 use fmm_identify::MachineProblem;
 use fmm_model::Bounds;
 use fmm_record::Record;
-use fmm_sim::{Sampling, Simulated};
+use fmm_sim::Sampling;
 
 use crate::figure::{Layer, Panel, Role};
 use crate::ring_down::{INTERVAL, Viscous, machine, motion, over_time, scenario, velocity_record, with_noise};
@@ -60,14 +61,14 @@ struct Release<'a> {
 
 impl Release<'_> {
     /// Highest velocity after the release (m/s).
-    fn peak<F: Simulated>(&self) -> Found<f64> {
+    fn peak<F: LawFamily>(&self) -> Found<f64> {
         // Within half a step of the top the velocity is lower by (ω h)²/8, 2e-7 of it.
         let sampling = Sampling::uniform(1e-4, 2000)?;
         Ok(motion::<F>(&self.scenario::<F>()?, &sampling)?.velocity().values().iter().copied().fold(0.0, f64::max))
     }
 
     /// Velocity (m/s) at 1 kHz from the highest sample on, as the thesis cuts its records, until it has rested for 0.1 s.
-    fn velocity<F: Simulated>(&self) -> Found<Vec<f64>> {
+    fn velocity<F: LawFamily>(&self) -> Found<Vec<f64>> {
         let sampling = Sampling::uniform(INTERVAL, 2500)?;
         let motion = motion::<F>(&self.scenario::<F>()?, &sampling)?;
         let values = motion.velocity().values();
@@ -78,17 +79,17 @@ impl Release<'_> {
     }
 
     /// [`velocity`](Self::velocity) as a record with white noise (m/s).
-    fn record<F: Simulated>(&self, noise: f64, seed: u64) -> Found<Record> {
+    fn record<F: LawFamily>(&self, noise: f64, seed: u64) -> Found<Record> {
         velocity_record(with_noise(&self.velocity::<F>()?, noise, seed)?)
     }
 
     /// As [`record`](Self::record), from the release on.
-    fn before_top<F: Simulated>(&self, noise: f64, seed: u64) -> Found<Record> {
+    fn before_top<F: LawFamily>(&self, noise: f64, seed: u64) -> Found<Record> {
         let motion = motion::<F>(&self.scenario::<F>()?, &Sampling::uniform(INTERVAL, 1600)?)?;
         velocity_record(with_noise(motion.velocity().values(), noise, seed)?)
     }
 
-    fn scenario<F: Simulated>(&self) -> Found<fmm_sim::Scenario<f64, F::At<f64>>> {
+    fn scenario<F: LawFamily>(&self) -> Found<fmm_sim::Scenario<f64, F::At<f64>>> {
         scenario::<F>(machine(self.viscous)?, self.law, self.load, (-1e-3 * self.displacement, 0.0))
     }
 }
@@ -103,7 +104,7 @@ struct Known {
 impl Known {
     /// Law `F` and the position at the first sample, with m, k and c of the tables, as a problem that begins at the law's
     /// values in `law`, of which those in `free` are to be found.
-    fn problem<F: Simulated>(self, record: &Record, law: &[(&str, f64)], free: &[&str]) -> Found<MachineProblem<F>> {
+    fn problem<F: LawFamily>(self, record: &Record, law: &[(&str, f64)], free: &[&str]) -> Found<MachineProblem<F>> {
         let [mass, stiffness, _] = printed::MACHINE;
         let [linear, quadratic] = self.viscous.coefficients();
         let mut values = vec![
@@ -126,12 +127,12 @@ impl Known {
 
     /// All of `law` fitted from these values and the position at the first sample; the velocity is held at that sample, as
     /// in the thesis.
-    fn fit_holding_velocity<F: Simulated>(self, record: &Record, law: &[(&str, f64)]) -> Found<Fit> {
+    fn fit_holding_velocity<F: LawFamily>(self, record: &Record, law: &[(&str, f64)]) -> Found<Fit> {
         self.fit_holding::<F>(record, record.values()[0], law)
     }
 
     /// The same with this velocity (m/s).
-    fn fit_holding<F: Simulated>(self, record: &Record, velocity: f64, law: &[(&str, f64)]) -> Found<Fit> {
+    fn fit_holding<F: LawFamily>(self, record: &Record, velocity: f64, law: &[(&str, f64)]) -> Found<Fit> {
         let free: Vec<&str> = law.iter().map(|(name, _)| *name).collect();
         let values = [law, &[("initial_velocity", velocity)]].concat();
         let problem = self.problem::<F>(record, &values, &free)?;
@@ -139,7 +140,7 @@ impl Known {
     }
 
     /// All of `law` fitted from these values, position and velocity at the first sample with it.
-    fn fit<F: Simulated>(self, record: &Record, law: &[(&str, f64)]) -> Found<Fit> {
+    fn fit<F: LawFamily>(self, record: &Record, law: &[(&str, f64)]) -> Found<Fit> {
         let free: Vec<&str> = law.iter().map(|(name, _)| *name).chain(["initial_velocity"]).collect();
         let problem = self.problem::<F>(record, law, &free)?;
         Ok(solve(&problem, problem.values(), &Options::default())?)

@@ -1,7 +1,7 @@
 //! Section 7.5: the continuously differentiable law, raw and shifted, Figs 25 to 28.
 
 use fmm_fit::{Options, solve};
-use fmm_friction::{MakkarDixon, Shifted, SlidingLaw};
+use fmm_friction::{LawFamily, MakkarDixon, Shifted, SlidingLaw};
 use fmm_record::Record;
 use fmm_sim::{Engine, Sampling, Thesis};
 
@@ -294,7 +294,7 @@ fn fitted(chapter: &mut Chapter, settings: &Settings<'_>) -> Found<()> {
 }
 
 /// γ₁, γ₃ and γ₄ fitted, the two steep slopes held: the fit and all γ's.
-fn by<F: fmm_sim::Simulated>(record: &Record, start: [f64; 6]) -> Found<(fmm_fit::Fit, [f64; 6])> {
+fn by<F: LawFamily>(record: &Record, start: [f64; 6]) -> Found<(fmm_fit::Fit, [f64; 6])> {
     const NAMES: [&str; 6] = ["difference_coefficient", "rise", "fall", "coefficient", "level_rise", "viscous"];
     let law: Vec<(&str, f64)> = NAMES.into_iter().zip(start).collect();
     let free = [NAMES[0], NAMES[2], NAMES[3], "initial_velocity"];

@@ -4,15 +4,13 @@
 //! what a ring-down says of them. And a monolithic machine beside an assembled one: what a ring-down says of the clamps.
 
 mod clamps;
-mod maxwell_pair;
 mod measured;
 mod presliding;
 
-use fmm_friction::{Coulomb, Dahl, LuGre};
+use fmm_friction::{Coulomb, Dahl, LuGre, MaxwellSlipOf};
 use fmm_identify::{Candidate, Terms};
 
 use crate::{Chapter, Found, Settings};
-use maxwell_pair::MaxwellPair;
 
 /// The questions of section 9.2.
 ///
@@ -47,6 +45,6 @@ fn candidates(terms: &Terms) -> Found<[Candidate; 4]> {
         Candidate::of::<Coulomb>().with(terms.clone()),
         Candidate::of::<Dahl>().with(terms.clone()).holding("exponent", 1.0)?,
         Candidate::of::<LuGre>().holding("exponent", 1.0)?,
-        Candidate::of::<MaxwellPair>().with(terms.clone()),
+        Candidate::of::<MaxwellSlipOf<2>>().with(terms.clone()),
     ])
 }

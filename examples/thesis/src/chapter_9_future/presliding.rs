@@ -1,13 +1,12 @@
 //! Dahl, `LuGre` and Maxwell slip on simulated records of known truth: what a ring-down says of presliding.
 
-use fmm_friction::{Dahl, LuGre};
+use fmm_friction::{Dahl, LawFamily, LuGre, MaxwellSlipOf};
 use fmm_identify::{
     Candidate, Comparison, Experiment, Identification, Known, Machine, Offset, Preparation, Terms, compare,
 };
 use fmm_record::Record;
-use fmm_sim::{Sampling, Simulated};
+use fmm_sim::Sampling;
 
-use super::maxwell_pair::MaxwellPair;
 use super::{candidates, side_by_side};
 use crate::figure::{Layer, Panel, Role};
 use crate::printed::{LOADS, MACHINE};
@@ -31,7 +30,7 @@ struct Truth {
 }
 
 impl Truth {
-    fn of<F: Simulated>(
+    fn of<F: LawFamily>(
         name: &'static str,
         values: &'static str,
         law: &[f64],
@@ -68,15 +67,15 @@ impl Truth {
                 ],
                 seed + 1,
             )?,
-            Self::of::<MaxwellPair>(
+            Self::of::<MaxwellSlipOf<2>>(
                 "Maxwell slip",
                 "w₁ = 0.15, κ₁ = 15 /mm, w₂ = 0.10, κ₂ = 2 /mm",
                 &[0.15, 1.5e4, 0.10, 2e3],
                 &[
-                    ("mu", 0.15, "1"),
-                    ("contact_stiffness", 1.5e4 * LOAD, "N/m"),
-                    ("second_mu", 0.10, "1"),
-                    ("contact_second_stiffness", 2e3 * LOAD, "N/m"),
+                    ("level_1_mu", 0.15, "1"),
+                    ("contact_stiffness_1", 1.5e4 * LOAD, "N/m"),
+                    ("level_2_mu", 0.10, "1"),
+                    ("contact_stiffness_2", 2e3 * LOAD, "N/m"),
                 ],
                 seed + 2,
             )?,

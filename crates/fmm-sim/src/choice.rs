@@ -1,0 +1,166 @@
+//! Which engine simulates a law when nobody chooses one.
+
+use fmm_friction::{BristleLaw, FamilyMember, LawFamily, LawVisitor, PiecewiseLinearLaw, SlidingLaw};
+use fmm_model::Scalar;
+
+use crate::{Bristle, Engine, Exact, RungeKutta, Sampling, Scenario, SimulationError, Trajectory};
+
+/// Simulates `scenario` with the engine that suits its law.
+///
+/// | law | machine and force | engine |
+/// |---|---|---|
+/// | a level plus a slope, also with two levels; elements | linear | [`Exact`](crate::Exact) |
+/// | the same without elements | not linear, driven at the resonance of an undamped machine, under a load that varies, or hardly a spring | [`RungeKutta`](crate::RungeKutta) |
+/// | any other of the sliding speed | any | [`RungeKutta`](crate::RungeKutta) |
+/// | with internal state, elements on a machine that is not linear among them | any | [`Bristle`](crate::Bristle) |
+///
+/// [`Trajectory::engine`] says which was taken.
+///
+/// ```
+/// use fmm_friction::Stribeck;
+/// use fmm_model::{Dual, Oscillator, Scalar};
+/// use fmm_sim::{Sampling, Scenario, simulate};
+///
+/// // The derivative in the static coefficient; all other numbers follow from the one that is said to have two directions.
+/// let machine = Oscillator::new(Dual::<2>::from(10.0), Dual::from(2000.0))?;
+/// let law = Stribeck::new(Dual::from(0.1), Dual::variable(0.15, 0), Dual::from(0.02), Dual::from(1.0), Dual::from(0.0))?;
+/// let scenario = Scenario::new(machine, law, Dual::from(10.0))?.starting_at(Dual::from(0.01), Dual::from(0.0))?;
+/// let motion = simulate(&scenario, &Sampling::uniform(1e-3, 3000)?)?;
+/// assert_eq!(motion.engine(), "runge_kutta");
+/// let rest = motion.rest().expect("friction stops it");
+/// assert!(rest.position.partial(0).abs() > 1e-4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`Engine::run_into`].
+pub fn simulate<L>(
+    scenario: &Scenario<L::Number, L>,
+    sampling: &Sampling,
+) -> Result<Trajectory<L::Number>, SimulationError>
+where
+    L: FamilyMember,
+{
+    let mut trajectory = Trajectory::new();
+    simulate_into::<L::Family, _>(scenario, sampling, None, &mut trajectory)?;
+    Ok(trajectory)
+}
+
+/// Simulates `scenario` with the engine that suits the laws of family `F`, as [`simulate`] does, into `trajectory`; to a relative
+/// `tolerance` (1) instead of the engine's own, if one is given and the engine has one: a Runge-Kutta run to 1e-10 takes half as long.
+///
+/// # Errors
+/// As [`Engine::run_into`], and [`SimulationError::Tolerance`] for a tolerance outside 1e-15 to 1e-2, whether the engine has one or
+/// not.
+pub fn simulate_into<F: LawFamily, D: Scalar>(
+    scenario: &Scenario<D, F::At<D>>,
+    sampling: &Sampling,
+    tolerance: Option<f64>,
+    trajectory: &mut Trajectory<D>,
+) -> Result<(), SimulationError> {
+    if let Some(tolerance) = tolerance {
+        SimulationError::require_tolerance(tolerance)?;
+    }
+    F::visit(Simulation { scenario, sampling, tolerance, trajectory })
+}
+
+/// A scenario to be simulated by the kind of its law.
+struct Simulation<'a, D: Scalar, L> {
+    scenario: &'a Scenario<D, L>,
+    sampling: &'a Sampling,
+    tolerance: Option<f64>,
+    trajectory: &'a mut Trajectory<D>,
+}
+
+/// Below this ω₀ t the closed form has lost four digits.
+const WEAK_SPRING: f64 = 1e-2;
+
+/// Whether an error of the exact engine says that it has no closed form.
+const fn has_no_closed_form(error: &SimulationError) -> bool {
+    matches!(
+        error,
+        SimulationError::NotLinear { .. } | SimulationError::Resonance { .. } | SimulationError::WeakSpring { .. }
+    )
+}
+
+impl<D: Scalar, L> LawVisitor<D, L> for Simulation<'_, D, L> {
+    type Output = Result<(), SimulationError>;
+
+    fn sliding(self) -> Self::Output
+    where
+        L: SlidingLaw<D>,
+    {
+        let engine = self.tolerance.map_or_else(|| Ok(RungeKutta::default()), RungeKutta::new)?;
+        engine.run_into(self.scenario, self.sampling, self.trajectory)
+    }
+
+    fn piecewise_linear(self) -> Self::Output
+    where
+        L: PiecewiseLinearLaw<D> + SlidingLaw<D>,
+    {
+        // On a spring that does not turn the motion round within the sampled time, the closed form is a small difference of
+        // large numbers.
+        let turns = self.scenario.oscillator().natural_angular_frequency().value() * self.sampling.end();
+        if turns < WEAK_SPRING {
+            return self.sliding();
+        }
+        match Exact.run_into(self.scenario, self.sampling, self.trajectory) {
+            Err(error) if has_no_closed_form(&error) => self.sliding(),
+            other => other,
+        }
+    }
+
+    fn bristle(self) -> Self::Output
+    where
+        L: BristleLaw<D>,
+    {
+        let engine = self.tolerance.map_or_else(|| Ok(Bristle::default()), Bristle::new)?;
+        engine.run_into(self.scenario, self.sampling, self.trajectory)
+    }
+
+    fn elements(self) -> Self::Output
+    where
+        L: PiecewiseLinearLaw<D> + BristleLaw<D>,
+    {
+        match Exact.run_into(self.scenario, self.sampling, self.trajectory) {
+            Err(error) if has_no_closed_form(&error) => self.bristle(),
+            other => other,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fmm_friction::{Berger, Coulomb};
+    use fmm_model::Oscillator;
+
+    use super::*;
+
+    fn velocity<F: LawFamily>(values: &[f64], tolerance: Option<f64>) -> Result<Vec<f64>, SimulationError> {
+        let law = F::at(values).expect("a law");
+        let scenario = Scenario::new(Oscillator::new(10.0, 2000.0)?, law, 10.0)?.starting_at(0.01, 0.0)?;
+        let (sampling, mut trajectory) = (Sampling::uniform(1e-3, 800)?, Trajectory::<f64>::new());
+        simulate_into::<F, _>(&scenario, &sampling, tolerance, &mut trajectory)?;
+        Ok(trajectory.velocity().values().to_vec())
+    }
+
+    /// The tolerance reaches the engines that have one, and no other.
+    #[test]
+    fn tolerances_reach_the_engines_that_have_one() {
+        let largest = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let berger = velocity::<Berger>(&[0.1, 0.1, 5.0], None).unwrap();
+        for (tolerance, bounds) in [(1e-6, 1e-10..1e-5), (1e-9, 1e-13..1e-8)] {
+            let off = largest(&velocity::<Berger>(&[0.1, 0.1, 5.0], Some(tolerance)).unwrap(), &berger);
+            assert!(bounds.contains(&off), "{off} m/s at {tolerance}");
+        }
+        let coulomb = velocity::<Coulomb>(&[0.1], None).unwrap();
+        assert_eq!(velocity::<Coulomb>(&[0.1], Some(1e-3)).unwrap(), coulomb);
+        for tolerance in [0.0, -1e-9, 0.1, f64::NAN] {
+            for refused in
+                [velocity::<Berger>(&[0.1, 0.1, 5.0], Some(tolerance)), velocity::<Coulomb>(&[0.1], Some(tolerance))]
+            {
+                assert!(matches!(refused, Err(SimulationError::Tolerance { .. })), "{tolerance}");
+            }
+        }
+    }
+}
