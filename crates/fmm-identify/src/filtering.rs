@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use fmm_fit::Options;
 
+use crate::comparison::closest;
 use crate::identification::identify_by;
 use crate::{Experiment, Identification, Sensor, Warning};
 
@@ -25,13 +26,27 @@ pub(crate) fn filtering_sensor(
     identifications: &[Identification],
     preferred: usize,
 ) -> Option<Warning> {
+    let found = behind_filter(decays, identifications)?;
+    if found.rms_residual() > AS_GOOD * identifications[preferred].rms_residual() {
+        return None;
+    }
+    let is_corner = |name: &str| name.starts_with("sensor_corner_hz");
+    let corner = found.findings().iter().find(|finding| is_corner(finding.parameter().name()))?;
+    let u = corner.uncertainty().filter(|u| corner.value() > TOLD * u)?;
+    Some(Warning::FilteringSensor { law: found.law().to_owned(), corner: corner.value(), uncertainty: u })
+}
+
+/// The fit by the closest simple law, behind a low-pass filter in the sensor; none if nothing is left to explain, a filter is known, or
+/// the fit fails.
+pub(crate) fn behind_filter(decays: &[Experiment], identifications: &[Identification]) -> Option<Identification> {
     let is_known = |decay: &Experiment| decay.sensor().low_pass().is_some() || decay.drive().is_some();
     if decays.iter().any(is_known) {
         return None;
     }
-    let is_simple = |found: &&Identification| matches!(found.family().dry_name(), None | Some("coulomb"));
-    let simple =
-        identifications.iter().filter(is_simple).min_by(|a, b| a.rms_residual().total_cmp(&b.rms_residual()))?;
+    let is_simple = |found: &&Identification| {
+        matches!(found.family().dry_name(), None | Some("coulomb")) && !found.terms().has_spring()
+    };
+    let simple = closest(identifications.iter().filter(is_simple))?;
     let structure = simple.structure();
     if !structure.is_correlated() && structure.residual < EXCESS * structure.noise {
         return None;
@@ -41,12 +56,5 @@ pub(crate) fn filtering_sensor(
     let options = Options::default().with_max_iterations(MOST_ITERATIONS);
     let (machine, terms) = (simple.machine(), simple.terms());
     let mut observer = |_: &fmm_fit::Progress<'_>| ControlFlow::Continue(());
-    let found = identify_by(simple.family(), machine, terms, &seen, None, &options, &mut observer).ok()?;
-    if found.rms_residual() > AS_GOOD * identifications[preferred].rms_residual() {
-        return None;
-    }
-    let is_corner = |name: &str| name.starts_with("sensor_corner_hz");
-    let corner = found.findings().iter().find(|finding| is_corner(finding.parameter().name()))?;
-    let u = corner.uncertainty().filter(|u| corner.value() > TOLD * u)?;
-    Some(Warning::FilteringSensor { law: found.law().to_owned(), corner: corner.value(), uncertainty: u })
+    identify_by(simple.family(), machine, terms, &seen, None, &options, &mut observer).ok()
 }

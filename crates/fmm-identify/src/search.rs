@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use fmm_fit::{Options, Progress};
 
 use crate::comparison::{closest, explains};
+use crate::filtering::behind_filter;
 use crate::fit_stages::Near;
 use crate::judgement::{Judgement, shortcomings};
 use crate::sign::{Addition, Sign, signs};
@@ -187,7 +188,10 @@ pub fn search_observed(
         let falling = run.fit(run.candidates(&OF_SPEED)?, found.near(&signs, &[], 0).as_ref())?;
         found.add(falling);
         let is_bent = |sign: &Sign| sign.addition == Addition::SofteningSpring && sign.is_plain();
-        if found.is_structured() && signs.iter().any(is_bent) {
+        // What a filter in the sensor does to a decay looks like a bent spring as well.
+        let is_filtered =
+            || behind_filter(decays, &found.identifications).is_some_and(|found| !found.structure().is_correlated());
+        if found.is_structured() && signs.iter().any(is_bent) && !is_filtered() {
             let bent = run.fit(run.candidates(&WITH_SPRING)?, found.near(&signs, &[], 0).as_ref())?;
             found.add(bent);
         }

@@ -19,7 +19,7 @@ const SAMPLES: usize = 1500;
 const GRAVITY: f64 = 0.3;
 
 /// The trajectory of a release with so many samples in an interval of the record.
-fn motion(release: f64, finer: usize) -> fmm_sim::Trajectory {
+pub(crate) fn motion(release: f64, finer: usize) -> fmm_sim::Trajectory {
     let law = [COEFFICIENT, SLOPE];
     let (samples, interval) = (SAMPLES * finer, INTERVAL / finer as f64);
     let motion =
@@ -59,11 +59,11 @@ fn accelerations_of_three_releases_cover() {
 
 /// Corner of the filter (Hz) and delay (s) of a sensor.
 const CORNER: f64 = 44.0;
-const DELAY: f64 = 5e-3;
-const FINER: usize = 20;
+pub(crate) const DELAY: f64 = 5e-3;
+pub(crate) const FINER: usize = 20;
 
 /// What a Butterworth filter of second order gives of `values`, by Heun's method on a grid as fine as they are, every `FINER`-th.
-fn filtered(values: &[f64]) -> Vec<f64> {
+pub(crate) fn filtered(values: &[f64]) -> Vec<f64> {
     let (angular, interval) = (TAU * CORNER, INTERVAL / FINER as f64);
     let rate = |[y, v]: [f64; 2], u: f64| [v, angular * angular * (u - y) - 2f64.sqrt() * angular * v];
     let mut state = [values[0], 0.0];

@@ -1,12 +1,13 @@
 //! Springs that harden or soften, and cubic damping, fitted beside the law.
 
 use fmm_friction::{Coulomb, CoulombViscous};
-use fmm_identify::{Candidate, Experiment, IdentifyError, Machine, Preparation, Terms, identify_with};
+use fmm_identify::{Candidate, Experiment, IdentifyError, Machine, Preparation, Search, Terms, identify_with, search};
 use fmm_model::{Damping, Oscillator, Restoring};
 use fmm_record::Quantity;
 use fmm_sim::{Sampling, Scenario, simulate};
 
-use crate::simulated::{INTERVAL, record};
+use crate::acceleration::{self, DELAY, FINER, filtered};
+use crate::simulated::{INTERVAL, machine, record};
 
 /// 2 Hz at small amplitude, released at 0.3 rad.
 fn motion(cubic: f64, quintic: f64, damping: Damping) -> Vec<f64> {
@@ -60,4 +61,18 @@ fn a_pendulum_has_no_further_spring() {
         Candidate::named("coulomb+cubic_spring+quintic spring").unwrap().name(),
         "coulomb + cubic spring + quintic spring"
     );
+}
+
+/// What a filter leaves at the beginning of a decay looks like a bent spring to the first residuals.
+#[test]
+fn a_filter_is_no_spring() {
+    let motion = acceleration::motion(22e-3, FINER);
+    let seen = filtered(motion.velocity().values());
+    let late = (DELAY / INTERVAL) as usize;
+    let values: Vec<f64> = std::iter::repeat_n(0.0, late).chain(seen).collect();
+    let record = record(&values, 1e-3, 1, Quantity::Velocity, "m/s");
+    let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+    let found = search(&machine(), &[decay], &Search::default()).unwrap();
+    let all = found.identifications();
+    assert!(all.iter().all(|found| !found.law().contains("spring")), "{}", found.preferred());
 }
