@@ -52,6 +52,8 @@ fn is_loud(warnings: &[Warning]) -> bool {
                 | Warning::Drift
                 | Warning::GrowingNoise { .. }
                 | Warning::ColouredNoise { .. }
+                | Warning::FilteringSensor { .. }
+                | Warning::Beginning { .. }
                 | Warning::TimeLimit
         )
     })

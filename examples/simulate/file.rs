@@ -91,6 +91,13 @@ enum Spring {
         #[serde(default = "one")]
         length: f64,
     },
+    Polynomial {
+        /// k₃ (1/m²).
+        cubic: f64,
+        /// k₅ (1/m⁴).
+        #[serde(default)]
+        quintic: f64,
+    },
 }
 
 impl Machine {
@@ -113,6 +120,7 @@ impl Machine {
         let restoring = match self.restoring {
             Spring::Linear => Restoring::Linear,
             Spring::Sine { length } => Restoring::sine(length)?,
+            Spring::Polynomial { cubic, quintic } => Restoring::polynomial(cubic, quintic)?,
         };
         Ok(Oscillator::new(self.mass, self.stiffness)?.with_damping(damping).with_restoring(restoring))
     }
@@ -133,6 +141,12 @@ pub(crate) enum Drive {
     HalfSine {
         peak: f64,
         duration: f64,
+        #[serde(default)]
+        delay: f64,
+    },
+    /// A constant `force` (N).
+    Constant {
+        force: f64,
         #[serde(default)]
         delay: f64,
     },
@@ -171,6 +185,7 @@ impl Drive {
                 Excitation::sampled_force(interval, values)?.delayed(delay)
             }
             Self::HalfSine { peak, duration, delay } => Excitation::half_sine(peak, duration)?.delayed(delay),
+            Self::Constant { force, delay } => Excitation::constant(force)?.delayed(delay),
             Self::Ramp { rate, delay } => Excitation::ramp(rate)?.delayed(delay),
             Self::Harmonic { amplitude, angular_frequency, phase } => {
                 Excitation::harmonic(amplitude, angular_frequency, phase)

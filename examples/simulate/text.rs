@@ -21,11 +21,11 @@ pub(crate) const HELP: &str = r#"A scenario, all SI; only oscillator and an end 
   oscillator   mass, stiffness, damping, restoring
   damping      linear, quadratic, cubic, power {coefficient, exponent}, which add up; instead of linear and quadratic
                peak_velocity_line {intercept, slope}; default none
-  restoring    "linear" (default) or {"sine": {"length": 1.0}}
+  restoring    "linear" (default), {"sine": {"length": 1.0}} or {"polynomial": {"cubic": 1.5, "quintic": 0.0}}
   law          an object with one key, see --laws; default no friction
   normal_load  default 1, with which a coefficient is a force
-  excitation   a list of: sampled_force {interval, values}, half_sine {peak, duration}, ramp {rate}, each with an
-               optional delay; harmonic and base {amplitude, angular_frequency, phase}; belt {velocity}
+  excitation   a list of: sampled_force {interval, values}, half_sine {peak, duration}, constant {force}, ramp {rate},
+               each with an optional delay; harmonic and base {amplitude, angular_frequency, phase}; belt {velocity}
   initial      position, velocity; default 0
   duration     default the last output time
   output       {"times": […]} or {"rate": …}; default 1000 samples

@@ -67,6 +67,20 @@ fn the_scenario_files_run_and_keep_their_energy() {
     assert!(count >= 10, "{count} scenarios");
 }
 
+/// x = A cn(Ω t), Ω² = ω² (1 + k₃ A²), m = k₃ A² ω²/2Ω²: with k₃ A² = 3 every half period lasts 2 K(3/8)/Ω, Ω = 2 ω.
+#[test]
+fn a_spring_that_hardens_keeps_its_period() {
+    let complete = 1.760_568_811_771_95;
+    let motion = run(r#"{"oscillator": {"mass": 2, "stiffness": 50, "restoring": {"polynomial": {"cubic": 12}}},
+            "initial": {"position": 0.5}, "duration": 2}"#);
+    let motion = motion.unwrap();
+    assert!(motion.events.len() > 5, "{} events", motion.events.len());
+    for (index, event) in motion.events.iter().enumerate() {
+        let expected = index as f64 * 2.0 * complete / 10.0;
+        assert!((event.t - expected).abs() < 1e-10, "{} s for {expected} s", event.t);
+    }
+}
+
 const MACHINE: &str = r#""oscillator": {"mass": 10, "stiffness": 2000}"#;
 
 fn with(rest: &str) -> String {

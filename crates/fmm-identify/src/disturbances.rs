@@ -97,6 +97,11 @@ impl Warning {
                  the motion where it reverses and looks like friction; state the filter of the sensor, or let it be fitted",
                 Rounded::new(*corner, Some(*uncertainty))
             ),
+            Self::Beginning { law, time } => write!(
+                f,
+                "the beginning of the record is not described: without its first {time:.2} s {law} explains the rest; a sensor that \
+                 filters or is late, or a release that is not free, makes such a beginning: state the sensor, or begin later"
+            ),
             Self::NotSi { unit } => write!(
                 f,
                 "the record is in {unit}, of which no mass in kg makes a friction force in N, and no normal load a coefficient mu; give \

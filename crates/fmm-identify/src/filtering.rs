@@ -20,25 +20,34 @@ const EXCESS: f64 = 1.1;
 const MOST_ITERATIONS: usize = 60;
 
 /// That a low-pass filter in the sensor, of which nothing was said, would explain the records by a simple law as well as the preferred law does
-/// without: both round the motion where it reverses, and only one is friction.
+/// without: both round the motion where it reverses, and only one is friction. Or, if the records do not tell the filter, that their
+/// beginning, which it leaves out, is all that the preferred law misses.
 pub(crate) fn filtering_sensor(
     decays: &[Experiment],
     identifications: &[Identification],
     preferred: usize,
 ) -> Option<Warning> {
-    let found = behind_filter(decays, identifications)?;
-    if found.rms_residual() > AS_GOOD * identifications[preferred].rms_residual() {
+    let (found, settled) = behind_filter(decays, identifications)?;
+    let preferred = &identifications[preferred];
+    if found.rms_residual() > AS_GOOD * preferred.rms_residual() {
         return None;
     }
+    let law = found.law().to_owned();
     let is_corner = |name: &str| name.starts_with("sensor_corner_hz");
     let corner = found.findings().iter().find(|finding| is_corner(finding.parameter().name()))?;
-    let u = corner.uncertainty().filter(|u| corner.value() > TOLD * u)?;
-    Some(Warning::FilteringSensor { law: found.law().to_owned(), corner: corner.value(), uncertainty: u })
+    if let Some(uncertainty) = corner.uncertainty().filter(|u| corner.value() > TOLD * u) {
+        return Some(Warning::FilteringSensor { law, corner: corner.value(), uncertainty });
+    }
+    let is_explained = preferred.structure().is_structured() && !found.structure().is_correlated();
+    is_explained.then_some(Warning::Beginning { law, time: settled })
 }
 
-/// The fit by the closest simple law, behind a low-pass filter in the sensor; none if nothing is left to explain, a filter is known, or
-/// the fit fails.
-pub(crate) fn behind_filter(decays: &[Experiment], identifications: &[Identification]) -> Option<Identification> {
+/// The fit by the closest simple law, behind a low-pass filter in the sensor, with the time (s) at the beginning that it leaves out; none
+/// if nothing is left to explain, a filter is known, or the fit fails.
+pub(crate) fn behind_filter(
+    decays: &[Experiment],
+    identifications: &[Identification],
+) -> Option<(Identification, f64)> {
     let is_known = |decay: &Experiment| decay.sensor().low_pass().is_some() || decay.drive().is_some();
     if decays.iter().any(is_known) {
         return None;
@@ -56,5 +65,7 @@ pub(crate) fn behind_filter(decays: &[Experiment], identifications: &[Identifica
     let options = Options::default().with_max_iterations(MOST_ITERATIONS);
     let (machine, terms) = (simple.machine(), simple.terms());
     let mut observer = |_: &fmm_fit::Progress<'_>| ControlFlow::Continue(());
-    identify_by(simple.family(), machine, terms, &seen, None, &options, &mut observer).ok()
+    let found = identify_by(simple.family(), machine, terms, &seen, None, &options, &mut observer).ok()?;
+    let settled = decays.iter().map(|decay| sensor.settling(decay.guess().frequency())).fold(0.0, f64::max);
+    Some((found, settled))
 }

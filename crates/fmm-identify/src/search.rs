@@ -189,8 +189,9 @@ pub fn search_observed(
         found.add(falling);
         let is_bent = |sign: &Sign| sign.addition == Addition::SofteningSpring && sign.is_plain();
         // What a filter in the sensor does to a decay looks like a bent spring as well.
-        let is_filtered =
-            || behind_filter(decays, &found.identifications).is_some_and(|found| !found.structure().is_correlated());
+        let is_filtered = || {
+            behind_filter(decays, &found.identifications).is_some_and(|(found, _)| !found.structure().is_correlated())
+        };
         if found.is_structured() && signs.iter().any(is_bent) && !is_filtered() {
             let bent = run.fit(run.candidates(&WITH_SPRING)?, found.near(&signs, &[], 0).as_ref())?;
             found.add(bent);

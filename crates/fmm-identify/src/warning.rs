@@ -198,6 +198,13 @@ pub enum Warning {
         /// Its standard uncertainty (Hz).
         uncertainty: f64,
     },
+    /// The beginning of the record is not described; without it a simple law explains the rest.
+    Beginning {
+        /// The simple law that explains the rest.
+        law: String,
+        /// How long the beginning lasts that was left out (s).
+        time: f64,
+    },
     /// The record is in a unit of which no mass and no load makes a force or a coefficient.
     NotSi {
         /// Unit of the record.

@@ -1,7 +1,9 @@
 //! Springs that harden or soften, and cubic damping, fitted beside the law.
 
 use fmm_friction::{Coulomb, CoulombViscous};
-use fmm_identify::{Candidate, Experiment, IdentifyError, Machine, Preparation, Search, Terms, identify_with, search};
+use fmm_identify::{
+    Candidate, Experiment, IdentifyError, Machine, Preparation, Search, Terms, Warning, identify_with, search,
+};
 use fmm_model::{Damping, Oscillator, Restoring};
 use fmm_record::Quantity;
 use fmm_sim::{Sampling, Scenario, simulate};
@@ -75,4 +77,6 @@ fn a_filter_is_no_spring() {
     let found = search(&machine(), &[decay], &Search::default()).unwrap();
     let all = found.identifications();
     assert!(all.iter().all(|found| !found.law().contains("spring")), "{}", found.preferred());
+    let is_named = |warning: &Warning| matches!(warning, Warning::FilteringSensor { .. } | Warning::Beginning { .. });
+    assert!(found.warnings().iter().any(is_named), "{}", found.preferred());
 }
