@@ -1,7 +1,7 @@
 //! The laws by their names.
 
 use fmm_friction::{
-    FamilyVisitor, Gms, LawError, LawFamily, MaxwellSlip, MaxwellSlipOf, Smoothed, Stribeck, catalogue,
+    FamilyVisitor, Gms, LawError, LawFamily, LawKind, MaxwellSlip, MaxwellSlipOf, Smoothed, Stribeck, catalogue,
 };
 
 use super::ScenarioError;
@@ -25,21 +25,21 @@ pub(crate) struct Entry {
 struct AllEntries;
 
 impl FamilyVisitor for AllEntries {
-    type Output = Entry;
+    /// None for families of so many elements: a scenario lists its elements.
+    type Output = Option<Entry>;
 
-    fn visit<F: LawFamily>(&mut self) -> Entry {
+    fn visit<F: LawFamily>(&mut self) -> Option<Entry> {
+        if F::kind() == LawKind::Elements {
+            return None;
+        }
         let make = |given: Given| made(&given, |values| F::at(values).map(Law::<F, _>::new));
-        Entry { name: F::NAME, slots: || Slot::numbers(F::NAME, F::PARAMETERS), make }
+        Some(Entry { name: F::NAME, slots: || Slot::numbers(F::NAME, F::PARAMETERS), make })
     }
 }
 
 /// Every law that a scenario can name.
 pub(crate) fn laws() -> Vec<Entry> {
-    let mut laws = catalogue(&mut AllEntries);
-    // A list of elements says how many there are.
-    laws.retain(|entry| !entry.name.starts_with("maxwell_slip"));
-    laws.extend([MAXWELL_SLIP, GMS, SMOOTHED]);
-    laws
+    catalogue(&mut AllEntries).into_iter().flatten().chain([MAXWELL_SLIP, GMS, SMOOTHED]).collect()
 }
 
 const MAXWELL_SLIP: Entry = Entry {

@@ -131,8 +131,8 @@ impl<D: Scalar, L> LawVisitor<D, L> for Simulation<'_, D, L> {
 
 #[cfg(test)]
 mod tests {
-    use fmm_friction::{Berger, Coulomb};
-    use fmm_model::Oscillator;
+    use fmm_friction::{Berger, Coulomb, MaxwellSlipOf};
+    use fmm_model::{Damping, Oscillator};
 
     use super::*;
 
@@ -142,6 +142,23 @@ mod tests {
         let (sampling, mut trajectory) = (Sampling::uniform(1e-3, 800)?, Trajectory::<f64>::new());
         simulate_into::<F, _>(&scenario, &sampling, tolerance, &mut trajectory)?;
         Ok(trajectory.velocity().values().to_vec())
+    }
+
+    /// Elements move a linear machine in closed form; with other damping they are integrated, and a load that varies is none for them.
+    #[test]
+    fn elements_go_to_the_engine_that_takes_them() {
+        let law = || MaxwellSlipOf::<2>::at(&[0.1, 4e3, 0.1, 1e3]).unwrap();
+        let sampling = Sampling::uniform(1e-3, 500).unwrap();
+        let run = |machine: Oscillator, load: &[f64]| {
+            let scenario = Scenario::new(machine, law(), 1.0)?.under_sampled_load(1.0, load)?.starting_at(0.01, 0.0)?;
+            let mut motion = Trajectory::new();
+            simulate_into::<MaxwellSlipOf<2>, _>(&scenario, &sampling, None, &mut motion)?;
+            Ok::<_, SimulationError>(motion.engine())
+        };
+        let linear = Oscillator::new(10.0, 2000.0).unwrap();
+        let damped = linear.with_damping(Damping::new(0.0, 1.0).unwrap());
+        assert_eq!((run(linear, &[10.0]), run(damped, &[10.0])), (Ok("exact"), Ok("bristle")));
+        assert!(matches!(run(linear, &[10.0, 20.0]), Err(SimulationError::NotSupported { engine: "bristle", .. })));
     }
 
     /// The tolerance reaches the engines that have one, and no other.

@@ -2,7 +2,7 @@
 
 use fmm_model::Oscillator;
 
-use crate::automaton::holds_for_good;
+use crate::at_rest::holds_for_good;
 use crate::drive::{Drive, Piece};
 use crate::{Event, EventKind, Mode, State};
 

@@ -114,6 +114,7 @@
 
 #[cfg(test)]
 mod agreement;
+mod at_rest;
 mod automaton;
 mod bristle;
 mod choice;

@@ -97,7 +97,7 @@ impl<D: Scalar, L> Scenario<D, L> {
     /// ```
     /// use fmm_friction::Coulomb;
     /// use fmm_model::Oscillator;
-    /// use fmm_sim::{Sampling, Scenario, State, simulate};
+    /// use fmm_sim::{Sampling, Scenario, simulate};
     ///
     /// // A mass on a rail, at 1 m/s under a load that grows from 0 N by 10 N/s: v = v₀ − μ (10 N/s) t²/(2 m).
     /// let scenario = Scenario::new(Oscillator::new(1.0, 0.0)?, Coulomb::new(0.2)?, 0.0)?;

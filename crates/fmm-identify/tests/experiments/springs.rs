@@ -2,7 +2,7 @@
 
 use fmm_friction::{Coulomb, CoulombViscous};
 use fmm_identify::{
-    Candidate, Experiment, IdentifyError, Machine, Preparation, Search, Terms, Warning, identify_with, search,
+    Candidate, Experiment, IdentifyError, Machine, Preparation, Search, Terms, Warning, compare, identify_with, search,
 };
 use fmm_model::{Damping, Oscillator, Restoring};
 use fmm_record::Quantity;
@@ -74,9 +74,17 @@ fn a_filter_is_no_spring() {
     let values: Vec<f64> = std::iter::repeat_n(0.0, late).chain(seen).collect();
     let record = record(&values, 1e-3, 1, Quantity::Velocity, "m/s");
     let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
-    let found = search(&machine(), &[decay], &Search::default()).unwrap();
-    let all = found.identifications();
-    assert!(all.iter().all(|found| !found.law().contains("spring")), "{}", found.preferred());
-    let is_named = |warning: &Warning| matches!(warning, Warning::FilteringSensor { .. } | Warning::Beginning { .. });
-    assert!(found.warnings().iter().any(is_named), "{}", found.preferred());
+    let decays = [decay];
+    let searched = search(&machine(), &decays, &Search::default()).unwrap();
+    let all = searched.identifications();
+    assert!(all.iter().all(|found| !found.law().contains("spring")), "{}", searched.preferred());
+    let candidates = ["coulomb_viscous", "coulomb_viscous+cubic spring+quintic spring"].map(Candidate::named);
+    let asked = compare(&machine(), &decays, &candidates.map(Result::unwrap)).unwrap();
+    for comparison in [searched, asked] {
+        let is_named = |warning: &Warning| match warning {
+            Warning::FilteringSensor { law, .. } | Warning::Beginning { law, .. } => !law.contains("spring"),
+            _ => false,
+        };
+        assert!(comparison.warnings().iter().any(is_named), "{}", comparison.preferred());
+    }
 }

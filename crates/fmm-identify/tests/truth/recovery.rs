@@ -2,10 +2,10 @@
 
 use fmm_friction::{
     AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, Hyperbolic,
-    Karnopp, LawFamily, LuGre, MakkarDixon, PowerLaw, RegularisedStribeck, Shifted, Stribeck, StribeckLorentzian,
-    Viscous,
+    Karnopp, LawFamily, LuGre, MakkarDixon, MaxwellSlipOf, PowerLaw, RegularisedStribeck, Shifted, Stribeck,
+    StribeckLorentzian, Viscous,
 };
-use fmm_identify::{Candidate, Identification, Machine, Terms, Warning, compare};
+use fmm_identify::{Candidate, Identification, Known, Machine, Terms, Warning, compare, identify};
 
 use crate::records::{RELEASES, expected, machine, prepared, velocity};
 
@@ -108,6 +108,24 @@ fn berger() {
 #[test]
 fn power_law() {
     recovers_from_one::<PowerLaw>(&[0.311, 0.2116, 0.031_48]);
+}
+
+#[test]
+fn maxwell_slip() {
+    recovers_from_one::<MaxwellSlipOf<1>>(&[0.25, 2000.0]);
+    recovers_from_one::<MaxwellSlipOf<2>>(&[0.15, 4000.0, 0.1, 500.0]);
+}
+
+/// No element alone is the coefficient.
+#[test]
+fn elements_have_levels_of_their_own() {
+    let values = [0.15, 4000.0, 0.1, 500.0];
+    let decay = prepared(velocity::<MaxwellSlipOf<2>>(machine(), &values, RELEASES[2], SAMPLES));
+    let known = |value| Known::exact(value).unwrap();
+    let machine = Machine::of_mass(known(1.0)).unwrap().with_normal_load(known(1.0)).unwrap();
+    let found = identify::<MaxwellSlipOf<2>>(&machine, &[decay]).unwrap();
+    let names: Vec<&str> = found.findings().iter().map(|finding| finding.parameter().name()).collect();
+    assert!(names.contains(&"level_1_mu") && names.contains(&"level_2_mu") && !names.contains(&"mu"), "{names:?}");
 }
 
 #[test]

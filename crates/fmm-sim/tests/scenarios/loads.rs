@@ -57,6 +57,63 @@ fn a_load_that_falls_lets_go_at_its_time() {
     }
 }
 
+/// On its static level a contact goes where the load is going.
+#[test]
+fn a_level_that_is_reached_is_left_by_a_load_that_falls() {
+    for (later, slips) in [(10.0, true), (30.0, false)] {
+        let scenario = Scenario::new(machine(), CoulombStatic::new(0.25, 0.5).unwrap(), 0.0).unwrap();
+        // 10 N of the spring, and of friction at the start.
+        let scenario = scenario.under_sampled_load(1.0, [20.0, later]).unwrap().starting_at(0.2, 0.0).unwrap();
+        let motion = simulate(&scenario, &Sampling::uniform(0.01, 50).unwrap()).unwrap();
+        assert_eq!(motion.events()[0].next.direction().is_some(), slips, "{:?}", motion.events()[0]);
+        assert_eq!(motion.rest().is_some(), !slips);
+    }
+}
+
+/// A force that grows with the level never exceeds it, and the load stays what its last sample says.
+#[test]
+fn a_load_that_has_grown_holds_for_good() {
+    let scenario = Scenario::new(machine(), CoulombStatic::new(0.25, 0.5).unwrap(), 0.0).unwrap();
+    let scenario = scenario.under_sampled_load(1.0, [20.0, 40.0]).unwrap().starting_at(0.1, 0.0).unwrap();
+    // 5 N of the spring, and with the force 13 N of 20 N at last, where the first level was 10 N.
+    let pulled = scenario.clone().driven_by(Excitation::sampled_force(1.0, [0.0, -8.0]).unwrap());
+    let motion = simulate(&pulled, &Sampling::uniform(0.01, 20).unwrap()).unwrap();
+    assert_eq!((motion.events().len(), motion.rest().is_some()), (1, true));
+    let moving = scenario.starting_at(0.1, 9.0).unwrap();
+    let later = moving.clone().driven_by(Excitation::constant(0.0).unwrap().delayed(2.0).unwrap());
+    let sampling = Sampling::uniform(0.01, 400).unwrap();
+    let [one, other] = [moving, later].map(|scenario| simulate(&scenario, &sampling).unwrap());
+    for (one, other) in one.velocity().values().iter().zip(other.velocity().values()) {
+        assert!((one - other).abs() < 1e-11, "{one}, {other} m/s");
+    }
+}
+
+/// Times of changes of branch know by how much the friction of the moment grows.
+#[test]
+fn changes_of_branch_have_their_derivatives() {
+    let run = |scale: Dual<1>| {
+        let load: Vec<Dual<1>> = pulsing().into_iter().map(|load| scale * (load + 20.0)).collect();
+        let law = AccelerationCoulomb::new(Dual::from(0.25), Dual::from(0.2)).unwrap();
+        let scenario = Scenario::new(machine(), law, Dual::from(1.0)).unwrap().under_sampled_load(0.05, load).unwrap();
+        let push = Excitation::harmonic(Dual::from(9.0), Dual::from(4.1), Dual::from(0.3)).unwrap();
+        let scenario = scenario.driven_by(push).starting_at(Dual::from(0.5), Dual::from(0.0)).unwrap();
+        RungeKutta::default().run(&scenario, &Sampling::uniform(2e-2, 150).unwrap()).unwrap()
+    };
+    let (step, exact) = (1e-4, run(Dual::variable(1.0, 0)));
+    let runs = [-2.0, -1.0, 1.0, 2.0].map(|steps| run(Dual::from(1.0 + steps * step)));
+    let mut compared = 0;
+    for (index, event) in exact.events().iter().enumerate().filter(|(_, event)| event.kind == EventKind::BranchChange) {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|at: usize| &runs[at].events()[index]);
+        assert!([a, b, c, d].iter().all(|other| other.kind == event.kind), "{event:?}");
+        let [a, b, c, d] = [a, b, c, d].map(|event| event.time.value());
+        let difference = (8.0 * (c - b) - (d - a)) / (12.0 * step);
+        let partial = event.time.partial(0);
+        assert!((difference - partial).abs() < 1e-5 * partial.abs().max(1e-3), "{difference}, {partial} at {event:?}");
+        compared += 1;
+    }
+    assert!(compared > 5, "{compared} changes of branch in {} events", exact.events().len());
+}
+
 /// Loads that change sign of their slope often, from nothing to twice the mean.
 fn pulsing() -> Vec<f64> {
     (0..200).map(|i| 5.0 * (1.0 + (0.9 * f64::from(i)).sin())).collect()
