@@ -122,6 +122,15 @@ pub trait BristleLaw<D: Scalar> {
         None
     }
 
+    /// Carries the state along a motion of constant `velocity` (m/s, not zero) that lasts `duration` (s), in closed form; whether there is
+    /// one. Without, the state stays as it is.
+    ///
+    /// Elements that switch are taken to hold at the beginning, unless they are at their bound.
+    fn carry(&self, velocity: D, duration: D, state: &mut [D]) -> bool {
+        let _ = (velocity, duration, state);
+        false
+    }
+
     /// For an element that holds and moves with `velocity`, how far it is from sliding: positive while it holds. None
     /// for laws without elements that switch.
     fn reserve(&self, index: usize, velocity: D, state: &[D]) -> Option<D> {

@@ -99,6 +99,14 @@ impl<D: Scalar> BristleLaw<D> for LuGre<D> {
     fn steady_coefficient(&self, speed: D) -> Option<D> {
         Some(self.steady().coefficient(speed))
     }
+
+    /// At constant velocity z tends exponentially to sgn(v) g(v)/σ₀.
+    fn carry(&self, velocity: D, duration: D, state: &mut [D]) -> bool {
+        let end = self.steady().dry_coefficient(velocity.abs()) / self.stiffness;
+        let steady = end * direction(velocity);
+        state[0] = steady + (state[0] - steady) * (-velocity.abs() * duration / end).exp();
+        true
+    }
 }
 
 #[cfg(test)]
@@ -127,6 +135,23 @@ mod tests {
             assert!((rate[0] - expected).abs() < 1e-17, "{} m/s instead of {expected} m/s", rate[0]);
             let coefficient = 1e5 * state[0] + 316.0 * expected + 0.4 * velocity;
             assert!((law.coefficient(velocity, &state, &rate) - coefficient).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn is_carried_in_closed_form() {
+        let law = LuGre::new(1.0, 1.5, 1e-3, 2.0, 1e5, 316.0, 0.4).unwrap();
+        for (velocity, begin) in [(2e-3, 0.0), (-2e-3, 1e-5), (1e-3, -1.2e-5)] {
+            let end = |duration: f64| {
+                let mut state = [begin];
+                assert!(law.carry(velocity, duration, &mut state));
+                state[0]
+            };
+            let slope = (end(3e-3 + 1e-7) - end(3e-3 - 1e-7)) / 2e-7;
+            let mut rate = [0.0];
+            law.rate(velocity, &[end(3e-3)], Regime::ALL_HOLD, &mut rate);
+            assert!((slope - rate[0]).abs() < 1e-8 * velocity.abs(), "{slope} m/s for {} m/s", rate[0]);
+            assert!((end(0.0) - begin).abs() < 1e-20);
         }
     }
 

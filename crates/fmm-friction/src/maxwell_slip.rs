@@ -107,6 +107,11 @@ impl<D: Scalar> BristleLaw<D> for MaxwellSlip<D> {
         self.coefficient_at(state)
     }
 
+    fn carry(&self, velocity: D, duration: D, state: &mut [D]) -> bool {
+        self.deflect(state, velocity * duration);
+        true
+    }
+
     fn bound(&self, index: usize) -> D {
         self.elements[index].level / self.elements[index].stiffness
     }

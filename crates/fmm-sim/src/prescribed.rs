@@ -63,6 +63,35 @@ impl<D: Scalar> Path<D> {
         Ok(Self { first: positions.first().copied(), legs: positions.windows(2).map(leg).collect() })
     }
 
+    /// Straight lines through `positions` (m) at `times` (s), at constant velocity between each two of them: a motion of which nothing but
+    /// positions was measured.
+    ///
+    /// # Errors
+    /// [`SimulationError::Times`] if the times do not ascend from 0, two are equal, or there are not as many as positions,
+    /// [`SimulationError::Quantity`] if a number is not finite.
+    pub fn lines(times: &[D], positions: &[D]) -> Result<Self, SimulationError> {
+        require_times(times, positions.len())?;
+        for position in positions {
+            ModelError::require_finite("position", position.value(), "m")?;
+        }
+        let mut legs = Vec::with_capacity(times.len().saturating_sub(1));
+        for (index, (times, positions)) in times.windows(2).zip(positions.windows(2)).enumerate() {
+            let (duration, zero) = (times[1] - times[0], D::from(0.0));
+            if duration.value() == 0.0 {
+                return Err(SimulationError::Times {
+                    index: index + 1,
+                    time: times[1].value(),
+                    before: times[0].value(),
+                });
+            }
+            let velocity = (positions[1] - positions[0]) / duration;
+            ModelError::require_finite("velocity", velocity.value(), "m/s")?;
+            let [begin, end] = [0, 1].map(|at| State { position: positions[at], velocity });
+            legs.push(Leg { duration, begin, end, acceleration: zero, jerk: zero });
+        }
+        Ok(Self { first: positions.first().copied(), legs })
+    }
+
     /// A motion through `states` (m, m/s) at `times` (s): the cubic between each two of them that has their positions and
     /// velocities. Between samples h (s) apart of a smooth motion it is off by up to h⁴/384 times the fourth derivative. Two states
     /// at the same time make the velocity jump.
@@ -87,16 +116,7 @@ impl<D: Scalar> Path<D> {
     /// [`SimulationError::Times`] if the times do not ascend from 0 or there are not as many as states,
     /// [`SimulationError::Quantity`] if a number is not finite or the position jumps.
     pub fn through(times: &[D], states: &[State<D>]) -> Result<Self, SimulationError> {
-        let mut before = 0.0;
-        for (index, time) in times.iter().map(|time| time.value()).enumerate() {
-            if !(time.is_finite() && time >= before) || index >= states.len() {
-                return Err(SimulationError::Times { index, time, before });
-            }
-            before = time;
-        }
-        if states.len() > times.len() {
-            return Err(SimulationError::Times { index: times.len(), time: f64::NAN, before });
-        }
+        require_times(times, states.len())?;
         for State { position, velocity } in states {
             ModelError::require_finite("position", position.value(), "m")?;
             ModelError::require_finite("velocity", velocity.value(), "m/s")?;
@@ -124,11 +144,27 @@ impl<D: Scalar> Path<D> {
     }
 }
 
+/// That `times` ascend from 0, and are as many as there are points.
+fn require_times<D: Scalar>(times: &[D], points: usize) -> Result<(), SimulationError> {
+    let mut before = 0.0;
+    for (index, time) in times.iter().map(|time| time.value()).enumerate() {
+        if !(time.is_finite() && time >= before) || index >= points {
+            return Err(SimulationError::Times { index, time, before });
+        }
+        before = time;
+    }
+    if points > times.len() {
+        return Err(SimulationError::Times { index: times.len(), time: f64::NAN, before });
+    }
+    Ok(())
+}
+
 /// Friction of a `law` with internal state under `normal_load` (N) along a `path`: one entry for each of its points. Bristles are
 /// not deflected at the first.
 ///
 /// Laws such as [`Dahl`](fmm_friction::Dahl), [`BoucWen`](fmm_friction::BoucWen) and
-/// [`MaxwellSlip`](fmm_friction::MaxwellSlip) depend on the positions only, so that any speed gives the quasi-static loop. Forces
+/// [`MaxwellSlip`](fmm_friction::MaxwellSlip) depend on the positions only, so that any speed gives the quasi-static loop. At constant velocity the
+/// laws that can ([`BristleLaw::carry`]) are followed in closed form. Forces
 /// and states are good to about 1e-12; at a dual number they have their derivatives, those in positions, velocities and times
 /// included.
 ///

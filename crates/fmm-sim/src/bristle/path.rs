@@ -1,6 +1,6 @@
 //! Following a path that something outside prescribes.
 
-use fmm_friction::BristleLaw;
+use fmm_friction::{BristleLaw, Regime};
 use fmm_model::{Oscillator, Scalar};
 
 use super::field::Field;
@@ -35,7 +35,7 @@ pub(crate) fn follow<D: Scalar, L: BristleLaw<D>>(
     begin[0] = first;
     let mut run = Run::new(field, begin, TOLERANCE, recorder);
     visit(zero, &run.step.begin[2..]);
-    let mut before = 0.0;
+    let (mut before, mut rates) = (0.0, vec![zero; law.states()]);
     for leg in &path.legs {
         let duration = leg.duration.value();
         let piece = Piece::line_from_zero(leg.acceleration, leg.jerk);
@@ -43,6 +43,15 @@ pub(crate) fn follow<D: Scalar, L: BristleLaw<D>>(
         run.step.begin[0] = leg.begin.position;
         run.step.begin[1] = leg.begin.velocity;
         let velocity = leg.begin.velocity.value();
+        let is_uniform = leg.acceleration.value() == 0.0 && leg.jerk.value() == 0.0 && velocity != 0.0;
+        if is_uniform && law.carry(leg.begin.velocity, leg.duration, &mut run.step.begin[2..]) {
+            let states = &run.step.begin[2..];
+            law.rate(leg.end.velocity, states, Regime::ALL_HOLD, &mut rates);
+            visit(normal_load * law.coefficient(leg.end.velocity, states, &rates), states);
+            // What follows begins anew.
+            before = 0.0;
+            continue;
+        }
         if velocity == 0.0 || velocity * before <= 0.0 {
             // From rest the acceleration says where it goes.
             let direction = if velocity == 0.0 { run.departure(&piece) } else { Some(Direction::of(velocity)) };

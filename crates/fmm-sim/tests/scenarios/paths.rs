@@ -1,8 +1,8 @@
 //! Friction along motions that are given.
 
-use fmm_friction::{Dahl, LuGre};
+use fmm_friction::{Dahl, LuGre, MaxwellSlip};
 use fmm_model::{Dual, Oscillator, Scalar};
-use fmm_sim::{Bristle, Engine, Path, Sampling, Scenario, SimulationError, State, friction_along};
+use fmm_sim::{Bristle, Engine, Path, PathPoint, Sampling, Scenario, SimulationError, State, friction_along};
 
 const LEVEL: f64 = 2.0;
 const STIFFNESS: f64 = 4e4;
@@ -108,4 +108,49 @@ fn what_is_no_motion_is_refused() {
     assert!(Path::at_speed(&[0.0], 0.0).is_err() && Path::at_speed(&[f64::INFINITY], 1.0).is_err());
     let nothing = Path::<f64>::through(&[], &[]).unwrap();
     assert_eq!(friction_along(&dahl(), 1.0, &nothing), Ok(vec![]));
+}
+
+/// In closed form or by steps, a motion of straight lines is the same: a path of cubics whose velocities are those of the lines has the
+/// same motion and no closed form where a velocity changes a little.
+#[test]
+fn closed_forms_are_what_steps_find() {
+    let times: Vec<f64> = (0..60).map(|i| 0.01 * f64::from(i) + 1e-3 * f64::from(i % 3)).collect();
+    let positions: Vec<f64> = times.iter().map(|t| 2e-4 * (7.0 * t).sin() + 5e-5 * (31.0 * t).cos()).collect();
+    let lines = Path::lines(&times, &positions).unwrap();
+    let mut stepped = (vec![0.0], vec![]);
+    for (index, (times, positions)) in times.windows(2).zip(positions.windows(2)).enumerate() {
+        let velocity = (positions[1] - positions[0]) / (times[1] - times[0]);
+        if index == 0 {
+            stepped.1.push(State { position: positions[0], velocity });
+        } else {
+            stepped.0.push(times[0]);
+            stepped.1.push(State { position: positions[0], velocity });
+        }
+        // A point on the line that is off by rounding, so that no leg is one of constant velocity.
+        let middle = 0.5 * (times[0] + times[1]);
+        let state = State { position: 0.5 * (positions[0] + positions[1]), velocity: velocity * (1.0 + 1e-12) };
+        stepped.0.push(middle);
+        stepped.1.push(state);
+        stepped.0.push(times[1]);
+        stepped.1.push(State { position: positions[1], velocity });
+    }
+    let stepped = Path::through(&stepped.0, &stepped.1).unwrap();
+    let same = |one: Vec<PathPoint>, other: Vec<PathPoint>| {
+        let size = one.iter().fold(0.0f64, |size, point| size.max(point.force.abs()));
+        let others =
+            other.iter().enumerate().filter(|(index, _)| *index == 0 || index % 3 == 2).map(|(_, point)| point);
+        for (index, (one, other)) in one.iter().zip(others).enumerate() {
+            assert_eq!(one.position, other.position, "{index}");
+            assert!((one.force - other.force).abs() < 1e-9 * size, "{index}: {} N, {} N", one.force, other.force);
+        }
+        assert!(size > 0.1, "{size} N");
+    };
+    for exponent in [0.6, 1.0, 2.0] {
+        let law = Dahl::new(0.2, 2e3, exponent).unwrap();
+        same(friction_along(&law, 3.0, &lines).unwrap(), friction_along(&law, 3.0, &stepped).unwrap());
+    }
+    let law = LuGre::new(0.2, 0.3, 1e-3, 2.0, 2e3, 1.0, 0.1).unwrap();
+    same(friction_along(&law, 3.0, &lines).unwrap(), friction_along(&law, 3.0, &stepped).unwrap());
+    let law = MaxwellSlip::new(&[(2e3, 0.1), (500.0, 0.1)]).unwrap();
+    same(friction_along(&law, 3.0, &lines).unwrap(), friction_along(&law, 3.0, &stepped).unwrap());
 }
