@@ -105,6 +105,8 @@ impl Comparison {
         let preferred = judgement.preferred;
         let others = unfinished(candidates, &identifications);
         judgement.is_decided &= others.is_empty();
+        // A law that leaves something is not the answer, however far the others are from it.
+        judgement.is_decided &= !identifications[preferred].structure().is_structured();
         let widened = widen_for_other_laws(candidates, &mut identifications, &judgement);
         let mut warnings = identifications[preferred].warnings().to_vec();
         warnings.extend(others);
