@@ -7,9 +7,9 @@ use serde_json::Value;
 
 /// What each crate takes from others when nobody asks for a feature, and for what.
 const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
-    ("fmm-model", &[PULP, THISERROR]),
+    ("fmm-model", &[]),
     ("fmm-record", &[("libflate", "inflates MATLAB files up to a limit"), MATFILE, REALFFT, THISERROR]),
-    ("fmm-friction", &[THISERROR]),
+    ("fmm-friction", &[]),
     (
         "fmm-fit",
         &[
@@ -32,8 +32,11 @@ const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
             THISERROR,
         ],
     ),
-    ("fmm-sim", &[THISERROR]),
-    ("fmm-frf", &[("num-complex", "the number type of a response, part of the public interface"), REALFFT, THISERROR]),
+    ("fmm-sim", &[PULP, THISERROR]),
+    (
+        "fmm-frf",
+        &[("num-complex", "the number type of a response, part of the public interface"), PULP, REALFFT, THISERROR],
+    ),
     ("fmm-identify", &[THISERROR]),
 ];
 

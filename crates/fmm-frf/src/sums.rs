@@ -3,8 +3,8 @@
 use std::iter::Zip;
 use std::slice::Iter;
 
-use fmm_model::widest;
 use num_complex::Complex64;
+use pulp::Arch;
 
 use crate::estimator::Spectra;
 
@@ -30,7 +30,7 @@ impl SpectralSums {
         let sums = powers.zip(real.iter_mut().zip(imaginary));
         let lines = sums.zip(first.lines().zip(second.lines()));
         let (first, second) = (first.factors, second.factors);
-        widest(
+        Arch::new().dispatch(
             #[inline(always)]
             || {
                 lines.for_each(|(((ff, vv), (re, im)), (one, two))| {
@@ -59,7 +59,7 @@ impl SpectralSums {
         }
         let [real, imaginary] = &self.cross;
         let sums = self.force.iter().zip(&self.response).zip(real.iter().zip(imaginary));
-        widest(
+        Arch::new().dispatch(
             #[inline(always)]
             || {
                 let spectra = sums.map(|((&force, &response), (&re, &im))| Spectra {

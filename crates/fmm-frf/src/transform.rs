@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use fmm_model::widest;
 use num_complex::Complex64;
+use pulp::Arch;
 
 use crate::window::Windows;
 use crate::{Baseline, Channel, FrfError, RealTransform};
@@ -143,7 +143,7 @@ fn weigh(given: &[f64], samples: &mut [f64], rule: impl Fn(f64, f64) -> f64, wei
         }
         sums.iter().sum::<f64>() + rest.iter().map(|x| x * x).sum::<f64>()
     }
-    widest(
+    Arch::new().dispatch(
         #[inline(always)]
         || {
             let mut energy = 0.0;

@@ -1,5 +1,8 @@
 //! The catalogue of all law families.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use crate::{
     AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, Hyperbolic,
     Karnopp, LawFamily, LuGre, MakkarDixon, MaxwellSlipOf, PowerLaw, RegularisedStribeck, Shifted, Stribeck,

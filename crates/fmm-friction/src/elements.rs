@@ -1,5 +1,7 @@
 //! What the elements of [`MaxwellSlip`](crate::MaxwellSlip) and [`Gms`](crate::Gms) have to be.
 
+use alloc::format;
+
 use fmm_model::{Bounds, Parameter, Scalar};
 
 use crate::{LawError, LawParameter, Regime, Role};

@@ -1,11 +1,14 @@
 //! What can be wrong with the parameters of a law.
 
+use alloc::string::String;
+use core::error::Error;
+use core::fmt;
+
 /// Parameters that make no law.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum LawError {
     /// A parameter is not finite or lies outside its bounds.
-    #[error("{parameter} must lie in [{lower}, {upper}] {unit}, but is {value}")]
     OutOfBounds {
         /// Name of the parameter.
         parameter: String,
@@ -19,7 +22,6 @@ pub enum LawError {
         upper: f64,
     },
     /// The static level is below the sliding level at zero speed, so the contact would slip while it sticks.
-    #[error("the static coefficient {breakaway} must not be below the sliding coefficient {sliding}")]
     StaticBelowSliding {
         /// The static level given.
         breakaway: f64,
@@ -27,7 +29,6 @@ pub enum LawError {
         sliding: f64,
     },
     /// Two parameters of which the first must be the greater.
-    #[error("{greater} must be greater than {lesser}, but {greater} = {greater_value} and {lesser} = {lesser_value}")]
     NotOrdered {
         /// Symbol of the parameter that must be the greater.
         greater: &'static str,
@@ -39,7 +40,6 @@ pub enum LawError {
         lesser_value: f64,
     },
     /// A condition between the parameters of a law does not hold; for laws of one's own.
-    #[error("the parameters of the law {law} must satisfy {condition}")]
     Condition {
         /// Name of the law.
         law: &'static str,
@@ -47,7 +47,6 @@ pub enum LawError {
         condition: String,
     },
     /// Shape parameters of a hysteresis loop that would create energy or grow without bound.
-    #[error("a Bouc-Wen loop needs −β < γ ≤ β, but β = {beta} and γ = {gamma}")]
     NotDissipative {
         /// The β given.
         beta: f64,
@@ -55,7 +54,6 @@ pub enum LawError {
         gamma: f64,
     },
     /// No elements, or more than a [`Regime`](crate::Regime) can tell apart.
-    #[error("a law of elements has 1 to {most} of them, but {got} were given")]
     ElementCount {
         /// How many were given.
         got: usize,
@@ -63,16 +61,13 @@ pub enum LawError {
         most: usize,
     },
     /// The elements do not share the whole contact.
-    #[error("the shares of the elements must sum to 1 within 1e-9, but sum to {sum}")]
     SharesNotOne {
         /// Their sum.
         sum: f64,
     },
     /// A law whose friction differs between growing and falling speed cannot be smoothed in the speed alone.
-    #[error("a law that depends on the acceleration has two levels at one speed and cannot be smoothed in the speed")]
     DependsOnAcceleration,
     /// The wrong number of parameter values.
-    #[error("the law {law} has {expected} parameters, but {got} values were given")]
     WrongCount {
         /// Name of the law.
         law: &'static str,
@@ -82,3 +77,38 @@ pub enum LawError {
         got: usize,
     },
 }
+
+impl fmt::Display for LawError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OutOfBounds { parameter, value, unit, lower, upper } => {
+                write!(f, "{parameter} must lie in [{lower}, {upper}] {unit}, but is {value}")
+            }
+            Self::StaticBelowSliding { breakaway, sliding } => {
+                write!(f, "the static coefficient {breakaway} must not be below the sliding coefficient {sliding}")
+            }
+            Self::NotOrdered { greater, greater_value, lesser, lesser_value } => {
+                let values = format_args!("{greater} = {greater_value} and {lesser} = {lesser_value}");
+                write!(f, "{greater} must be greater than {lesser}, but {values}")
+            }
+            Self::Condition { law, condition } => write!(f, "the parameters of the law {law} must satisfy {condition}"),
+            Self::NotDissipative { beta, gamma } => {
+                write!(f, "a Bouc-Wen loop needs −β < γ ≤ β, but β = {beta} and γ = {gamma}")
+            }
+            Self::ElementCount { got, most } => {
+                write!(f, "a law of elements has 1 to {most} of them, but {got} were given")
+            }
+            Self::SharesNotOne { sum } => {
+                write!(f, "the shares of the elements must sum to 1 within 1e-9, but sum to {sum}")
+            }
+            Self::DependsOnAcceleration => f.write_str(
+                "a law that depends on the acceleration has two levels at one speed and cannot be smoothed in the speed",
+            ),
+            Self::WrongCount { law, expected, got } => {
+                write!(f, "the law {law} has {expected} parameters, but {got} values were given")
+            }
+        }
+    }
+}
+
+impl Error for LawError {}

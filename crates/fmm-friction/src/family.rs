@@ -1,6 +1,7 @@
 //! A law as a family over its number types, and the vocabulary of its parameters.
 
-use std::fmt::Debug;
+use alloc::borrow::ToOwned;
+use core::fmt::Debug;
 
 use fmm_model::{Bounds, Parameter, Scalar};
 

@@ -1,5 +1,7 @@
 //! The generalised Maxwell slip model: elements that follow a Stribeck curve while they slide.
 
+use alloc::vec::Vec;
+
 use fmm_model::Scalar;
 
 use crate::elements::{check, direction};

@@ -65,7 +65,19 @@
 //! [`fmm-sim`](https://docs.rs/fmm-sim) moves a machine under a law, [`fmm-identify`](https://docs.rs/fmm-identify) finds
 //! its parameters in a record, but for those of [`Gms`], which are a list and no [`LawFamily`] ([`MaxwellSlipOf`] is that of
 //! [`MaxwellSlip`]);
-//! [`fmm-model`](https://docs.rs/fmm-model) has the number types. There are no features.
+//! [`fmm-model`](https://docs.rs/fmm-model) has the number types.
+//!
+//! # Features
+//!
+//! | feature | |
+//! |---|---|
+//! | `std` | on by default: elementary functions of the standard library |
+//! | `libm` | those of the crate libm where `std` is off, so that a controller evaluates a law; an allocator is needed for laws of a variable
+//! number of elements, and for messages |
+
+#![cfg_attr(not(feature = "std"), no_std)]
+
+extern crate alloc;
 
 mod acceleration_coulomb;
 mod affine;

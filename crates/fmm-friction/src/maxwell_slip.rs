@@ -1,5 +1,7 @@
 //! Elements in parallel, each a spring that slides at its level.
 
+use alloc::vec::Vec;
+
 use fmm_model::Scalar;
 
 use crate::elements::{check, direction};

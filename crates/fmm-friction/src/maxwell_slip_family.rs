@@ -1,5 +1,7 @@
 //! Maxwell slip laws of a fixed number of elements as a family.
 
+use alloc::vec::Vec;
+
 use fmm_model::Scalar;
 
 use crate::{LawError, LawFamily, LawParameter, LawVisitor, MaxwellSlip, Role, SpecialCase};

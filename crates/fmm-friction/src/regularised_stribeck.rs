@@ -1,6 +1,6 @@
 //! A Stribeck curve that passes smoothly through zero: friction for simulators that cannot stick.
 
-use std::f64::consts::{E, SQRT_2};
+use core::f64::consts::{E, SQRT_2};
 
 use fmm_model::Scalar;
 

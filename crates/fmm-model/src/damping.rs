@@ -1,8 +1,8 @@
 //! Damping of the machine itself: sums of powers of the velocity.
 
-use std::f64::consts::PI;
+use core::f64::consts::PI;
 
-use crate::{ModelError, Scalar};
+use crate::{ModelError, Scalar, math};
 
 /// Damping force opposing the motion, as the sum of a linear, a quadratic, a cubic and a free power of the velocity.
 ///
@@ -184,10 +184,10 @@ fn mean_of_sine_power<D: Scalar>(power: D) -> D {
     let mut sum = D::from(0.0);
     for i in 0..=STEPS {
         let u = -3.2 + step * f64::from(i);
-        let inner = PI / 2.0 * u.sinh();
+        let inner = PI / 2.0 * math::sinh(u);
         // sin(π/4 (1 + tanh s)) with 1 + tanh s as 2/(1 + e^(−2s)): no cancellation at the lower end.
         let angle = PI / 2.0 / (1.0 + (-2.0 * inner).exp());
-        let weight = PI / 2.0 * u.cosh() / inner.cosh().powi(2);
+        let weight = PI / 2.0 * math::cosh(u) / math::cosh(inner).powi(2);
         let sine = angle.sin();
         if sine > 0.0 {
             sum += (power * sine.ln()).exp() * weight;

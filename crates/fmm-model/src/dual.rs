@@ -1,9 +1,9 @@
 //! A number that carries its partial derivatives along.
 
-use std::cmp::Ordering;
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use core::cmp::Ordering;
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use crate::Scalar;
+use crate::{Scalar, math};
 
 /// A value with its partial derivatives in `N` directions, both exact through every operation.
 ///
@@ -212,12 +212,12 @@ impl<const N: usize> Scalar for Dual<N> {
         self.chain(self.value.atan(), (1.0 + self.value * self.value).recip())
     }
     fn log10(self) -> Self {
-        self.chain(self.value.log10(), (self.value * std::f64::consts::LN_10).recip())
+        self.chain(self.value.log10(), (self.value * core::f64::consts::LN_10).recip())
     }
     fn tanh(self) -> Self {
         let tanh = self.value.tanh();
         // 1 − tanh² loses its digits where tanh is close to 1; 1/cosh² does not.
-        let cosh = self.value.cosh();
+        let cosh = math::cosh(self.value);
         self.chain(tanh, (cosh * cosh).recip())
     }
     fn powi(self, exponent: i32) -> Self {

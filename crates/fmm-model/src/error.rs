@@ -1,13 +1,15 @@
 //! What can be wrong with the description of a machine.
 
+use core::error::Error;
+use core::fmt;
+
 use crate::Rounded;
 
 /// A machine description that cannot be.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ModelError {
     /// A quantity that must be positive is zero, negative or not finite.
-    #[error("{quantity} must be positive and finite, but is {value} {unit}", value = Rounded::every_digit(*.value))]
     NotPositive {
         /// Which quantity.
         quantity: &'static str,
@@ -17,7 +19,6 @@ pub enum ModelError {
         unit: &'static str,
     },
     /// A quantity that must not be negative is negative or not finite.
-    #[error("{quantity} must be zero or positive and finite, but is {value} {unit}", value = Rounded::every_digit(*.value))]
     Negative {
         /// Which quantity.
         quantity: &'static str,
@@ -27,7 +28,6 @@ pub enum ModelError {
         unit: &'static str,
     },
     /// A quantity that may have either sign is infinite or not a number.
-    #[error("{quantity} must be finite, but is {value} {unit}", value = Rounded::every_digit(*.value))]
     NotFinite {
         /// Which quantity.
         quantity: &'static str,
@@ -37,7 +37,6 @@ pub enum ModelError {
         unit: &'static str,
     },
     /// Bounds that no value can satisfy.
-    #[error("the lower bound {lower} must not exceed the upper bound {upper}, and neither may be NaN", lower = Rounded::every_digit(*.lower), upper = Rounded::every_digit(*.upper))]
     InvertedBounds {
         /// The lower bound given.
         lower: f64,
@@ -71,3 +70,23 @@ impl ModelError {
         if value.is_finite() { Ok(value) } else { Err(Self::NotFinite { quantity, value, unit }) }
     }
 }
+
+impl fmt::Display for ModelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (quantity, value, unit, range) = match self {
+            Self::NotPositive { quantity, value, unit } => (quantity, value, unit, "positive and finite"),
+            Self::Negative { quantity, value, unit } => (quantity, value, unit, "zero or positive and finite"),
+            Self::NotFinite { quantity, value, unit } => (quantity, value, unit, "finite"),
+            Self::InvertedBounds { lower, upper } => {
+                let [lower, upper] = [lower, upper].map(|bound| Rounded::every_digit(*bound));
+                return write!(
+                    f,
+                    "the lower bound {lower} must not exceed the upper bound {upper}, and neither may be NaN"
+                );
+            }
+        };
+        write!(f, "{quantity} must be {range}, but is {} {unit}", Rounded::every_digit(*value))
+    }
+}
+
+impl Error for ModelError {}

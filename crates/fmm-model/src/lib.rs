@@ -42,7 +42,6 @@
 //! * Constructors check what they are given; a value that exists is valid, and what is asked of it cannot fail. What cannot
 //!   be, such as the damped frequency of an overdamped machine, is none.
 //! * [`Dual`] gives the bits of `f64` as its value, so that branches do not depend on the number type.
-//! * [`widest`] gives the same bits on every x86-64 processor: operations are neither reordered nor fused.
 //!
 //! # Cost
 //!
@@ -54,7 +53,21 @@
 //!
 //! [`fmm-friction`](https://docs.rs/fmm-friction) has the laws of the contact, [`fmm-sim`](https://docs.rs/fmm-sim) moves
 //! the machine, [`fmm-fit`](https://docs.rs/fmm-fit) finds parameters, [`fmm-identify`](https://docs.rs/fmm-identify) finds
-//! them in measured records. There are no features.
+//! them in measured records.
+//!
+//! # Features
+//!
+//! | feature | |
+//! |---|---|
+//! | `std` | on by default: elementary functions of the standard library |
+//! | `libm` | those of the crate libm where `std` is off, as on a controller; an allocator is needed all the same |
+
+#![cfg_attr(not(feature = "std"), no_std)]
+
+extern crate alloc;
+
+#[cfg(not(any(feature = "std", feature = "libm")))]
+compile_error!("fmm-model needs elementary functions: turn on one of the features `std` and `libm`");
 
 mod bounds;
 mod damping;
@@ -62,13 +75,13 @@ mod dual;
 mod error;
 mod flexure;
 mod leaf_spring;
+mod math;
 mod oscillator;
 mod parameter;
 mod restoring;
 mod rounded;
 mod scalar;
 mod tilt;
-mod widest;
 
 pub use bounds::Bounds;
 pub use damping::Damping;
@@ -82,7 +95,6 @@ pub use restoring::Restoring;
 pub use rounded::Rounded;
 pub use scalar::Scalar;
 pub use tilt::Tilt;
-pub use widest::widest;
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

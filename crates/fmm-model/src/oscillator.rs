@@ -1,6 +1,6 @@
 //! The machine as a single-degree-of-freedom oscillator.
 
-use std::f64::consts::PI;
+use core::f64::consts::PI;
 
 use crate::{Damping, ModelError, Restoring, Scalar};
 

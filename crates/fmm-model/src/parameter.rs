@@ -1,6 +1,6 @@
 //! The vocabulary in which laws, fits, budgets and reports speak of a number that is to be found.
 
-use std::borrow::Cow;
+use alloc::borrow::Cow;
 
 use crate::Bounds;
 
@@ -87,8 +87,8 @@ impl From<&'static str> for Parameter {
     }
 }
 
-impl std::fmt::Display for Parameter {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl core::fmt::Display for Parameter {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         write!(f, "{} {} ({})", self.name, self.symbol, self.unit)
     }
 }

@@ -112,7 +112,7 @@ mod tests {
         assert!((pendulum.force(8.0, 1e-4) / spring.force(8.0, 1e-4) - 1.0).abs() < 1e-8);
         assert!((pendulum.energy(8.0, 1e-4) / spring.energy(8.0, 1e-4) - 1.0).abs() < 1e-8);
         // Hanging out sideways: F = k ℓ, E = k ℓ².
-        let quarter = 0.5 * std::f64::consts::FRAC_PI_2;
+        let quarter = 0.5 * core::f64::consts::FRAC_PI_2;
         assert!((pendulum.force(8.0, quarter) - 4.0).abs() < 1e-15);
         assert!((pendulum.energy(8.0, quarter) - 2.0).abs() < 1e-15);
         let polynomial = Restoring::polynomial(-1.0 / 6.0, 1.0 / 120.0).unwrap();

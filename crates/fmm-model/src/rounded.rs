@@ -1,6 +1,11 @@
 //! How numbers are written in reports: rounded to what is known of them.
 
-use std::fmt;
+use alloc::borrow::ToOwned;
+use alloc::format;
+use alloc::string::String;
+use core::fmt;
+
+use crate::math;
 
 /// A value, written with two significant digits of its standard uncertainty (JCGM 100:2008, 7.2.6), or with six
 /// digits if it has none.
@@ -55,7 +60,7 @@ impl Rounded {
             None => format!("[{}, {}]", plain(low), plain(high)),
             Some(Notation::Plain { place }) => format!("[{}, {}]", at_place(low, place), at_place(high, place)),
             Some(Notation::Scaled { decimals, exponent }) => {
-                let scale = 10f64.powi(exponent);
+                let scale = math::powi(10.0, exponent);
                 format!("[{}, {}]e{exponent}", signed(low / scale, decimals), signed(high / scale, decimals))
             }
         }
@@ -76,7 +81,7 @@ impl fmt::Display for Rounded {
                 f.pad(&format!("{} ± {}", at_place(value, place), at_place(uncertainty, place)))
             }
             Notation::Scaled { decimals, exponent } => {
-                let scale = 10f64.powi(exponent);
+                let scale = math::powi(10.0, exponent);
                 let (value, uncertainty) = (signed(value / scale, decimals), signed(uncertainty / scale, decimals));
                 f.pad(&format!("({value} ± {uncertainty})e{exponent}"))
             }
@@ -95,8 +100,8 @@ enum Notation {
 impl Notation {
     fn of(value: f64, uncertainty: f64) -> Self {
         // The decimal place of the second digit of the uncertainty; rounding up to 100 is harmless.
-        let place = uncertainty.log10().floor() as i32 - 1;
-        let exponent = value.abs().max(uncertainty).log10().floor() as i32;
+        let place = decade(uncertainty) - 1;
+        let exponent = decade(value.abs().max(uncertainty));
         if (-4..6).contains(&exponent) && place > -12 {
             Self::Plain { place }
         } else {
@@ -106,10 +111,15 @@ impl Notation {
     }
 }
 
+/// The power of ten that a positive number begins with.
+fn decade(value: f64) -> i32 {
+    math::floor(math::log10(value)) as i32
+}
+
 /// `value` down to a decimal `place`; digits behind the last known place before the point are zeros.
 fn at_place(value: f64, place: i32) -> String {
-    let step = 10f64.powi(place.max(0));
-    let value = if place > 0 { (value / step).round() * step } else { value };
+    let step = math::powi(10.0, place.max(0));
+    let value = if place > 0 { math::round(value / step) * step } else { value };
     signed(value, place.min(0).unsigned_abs() as usize)
 }
 
@@ -128,7 +138,7 @@ fn plain(value: f64) -> String {
     if magnitude == 0.0 {
         "0".to_owned()
     } else if (1e-3..1e6).contains(&magnitude) {
-        let decimals = (5 - magnitude.log10().floor() as i32).max(0) as usize;
+        let decimals = (5 - decade(magnitude)).max(0) as usize;
         let text = format!("{value:.decimals$}");
         if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
     } else {

@@ -1,7 +1,9 @@
 //! The number type in which a formula is written once: plain, or carrying derivatives.
 
-use std::fmt::Debug;
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use crate::math;
 
 /// What a formula of FMM needs of its number type.
 ///
@@ -135,43 +137,43 @@ impl Scalar for f64 {
         0.0
     }
     fn exp(self) -> Self {
-        f64::exp(self)
+        math::exp(self)
     }
     fn ln(self) -> Self {
-        f64::ln(self)
+        math::ln(self)
     }
     fn sqrt(self) -> Self {
-        f64::sqrt(self)
+        math::sqrt(self)
     }
     fn sin_cos(self) -> (Self, Self) {
-        f64::sin_cos(self)
+        math::sin_cos(self)
     }
     fn sin(self) -> Self {
-        f64::sin(self)
+        math::sin(self)
     }
     fn cos(self) -> Self {
-        f64::cos(self)
+        math::cos(self)
     }
     fn tan(self) -> Self {
-        f64::tan(self)
+        math::tan(self)
     }
     fn atan(self) -> Self {
-        f64::atan(self)
+        math::atan(self)
     }
     fn log10(self) -> Self {
-        f64::log10(self)
+        math::log10(self)
     }
     fn tanh(self) -> Self {
-        f64::tanh(self)
+        math::tanh(self)
     }
     fn powi(self, exponent: i32) -> Self {
-        f64::powi(self, exponent)
+        math::powi(self, exponent)
     }
     fn powf(self, exponent: impl Into<Self>) -> Self {
-        f64::powf(self, exponent.into())
+        math::powf(self, exponent.into())
     }
     fn atan2(self, x: Self) -> Self {
-        f64::atan2(self, x)
+        math::atan2(self, x)
     }
 }
 
@@ -251,7 +253,7 @@ mod tests {
     #[test]
     fn the_angle_has_its_derivative_on_the_axis() {
         let angle = Scalar::atan2(Dual::<2>::variable(0.5, 0), Dual::variable(0.0, 1));
-        assert_eq!(angle.value(), std::f64::consts::FRAC_PI_2);
+        assert_eq!(angle.value(), core::f64::consts::FRAC_PI_2);
         assert_eq!((angle.partial(0), angle.partial(1)), (0.0, -2.0));
     }
 

@@ -2,7 +2,8 @@
 
 use std::marker::PhantomData;
 
-use fmm_model::{Scalar, widest};
+use fmm_model::Scalar;
+use pulp::Arch;
 
 use crate::SimulationError;
 
@@ -80,7 +81,7 @@ impl<D: Scalar> Samples<D> {
         coefficients: &[D; N],
         theta: impl Fn(u32) -> f64,
     ) {
-        widest(
+        Arch::new().dispatch(
             #[inline(always)]
             || {
                 let fill = |out: &mut [f64], coefficients: [f64; N]| {
@@ -102,7 +103,7 @@ impl<D: Scalar> Samples<D> {
     /// Writes `constant` plus the sum of the `terms`, samples times a factor, at every index of `range`.
     pub(crate) fn combine(&mut self, range: std::ops::Range<usize>, constant: D, terms: [(&Self, D); 2]) {
         let count = self.values.len();
-        widest(
+        Arch::new().dispatch(
             #[inline(always)]
             || {
                 let [(x, by_x), (y, by_y)] = terms;

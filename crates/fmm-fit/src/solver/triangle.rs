@@ -2,7 +2,7 @@
 
 use std::array;
 
-use fmm_model::widest;
+use pulp::Arch;
 
 use crate::solver::sums::products;
 
@@ -122,7 +122,7 @@ impl Triangle {
     /// `residuals`; `scratch` may have any length.
     pub(crate) fn factor(&mut self, jacobian: &[f64], columns: &[usize], residuals: &[f64], scratch: &mut Vec<f64>) {
         if !self.factor_few(jacobian, columns, residuals) {
-            widest(
+            Arch::new().dispatch(
                 #[inline(always)]
                 || self.factor_here(jacobian, columns, residuals, scratch),
             );
@@ -461,7 +461,7 @@ mod tests {
         for columns in 0..=6 {
             let columns: Vec<usize> = (0..columns).collect();
             let (mut wide, mut narrow) = (Triangle::default(), Triangle::default());
-            widest(
+            Arch::new().dispatch(
                 #[inline(always)]
                 || wide.factor_here(&jacobian, &columns, &residuals, &mut Vec::new()),
             );

@@ -1,6 +1,7 @@
 //! Samples of one swing from a table of powers, vectorised over time.
 
-use fmm_model::{Scalar, widest};
+use fmm_model::Scalar;
+use pulp::Arch;
 
 use crate::decay::Decay;
 use crate::recorder::Recorder;
@@ -102,7 +103,7 @@ impl Powers {
         cosine: D,
         sine: D,
     ) {
-        widest(
+        Arch::new().dispatch(
             #[inline(always)]
             || self.write_wave_here(samples, range, wave, offset, cosine, sine),
         );
