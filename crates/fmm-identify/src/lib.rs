@@ -86,83 +86,34 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-mod autoregression;
-mod banded;
-mod candidate;
-mod comparison;
-mod correlation;
-mod decrement;
-mod dimension;
-mod disturbances;
-mod drift;
-mod energy_rates;
 mod error;
-mod estimated;
+mod estimators;
 mod experiment;
-mod filtering;
-mod finding;
-mod first_guess;
-mod fit_stages;
-mod free_vibration;
-mod friction_curve;
-mod half_swings;
-mod identification;
+mod fit;
 mod impact;
 mod judgement;
-mod known;
 mod law;
-mod layout;
 mod machine;
-mod machine_problem;
-mod noise_growth;
-mod nuisance;
-mod pool;
-mod preparation;
-mod problem;
 mod report;
-mod residual_noise;
-mod residual_structure;
-mod search;
-#[cfg(feature = "serde")]
-mod serialised;
-mod sight;
-mod sign;
-mod tangent;
-mod terms;
-mod test_function;
-mod thesis_decrement;
-mod turning_energies;
-mod warning;
-mod weak_equations;
-mod weak_form;
-mod windows;
+mod residuals;
 
-pub use candidate::Candidate;
-pub use comparison::{Comparison, NestedTest, compare, compare_observed};
-pub use decrement::{Decrement, decrements};
-pub use energy_rates::{EnergyMethod, EnergyRate, EnergyRates};
 pub use error::IdentifyError;
-pub use estimated::Estimated;
-pub use experiment::{Drive, Experiment, Sensor};
-pub use finding::{Finding, Origin};
-pub use identification::{FittedMotion, Identification, identify, identify_observed, identify_with};
+pub use estimators::{
+    Decrement, EnergyMethod, EnergyRate, EnergyRates, HalfSwing, ThesisCycle, ThesisDecrement, WeakForm,
+    WeakFormEstimate, WindowFit, Windows, decrements, half_swing_losses, half_swing_losses_of,
+};
+pub use experiment::{Drive, Experiment, Offset, Preparation, RecordSummary, Sensor};
+pub use fit::{FittedMotion, Identification, MachineProblem, Problem, identify, identify_observed, identify_with};
 pub use impact::{
     ImpactDomain, ImpactIdentification, ImpactMachine, ImpactOptions, ImpactProblem, ImpactSummary, ImpactTrial,
     identify_impact,
 };
-pub use known::Known;
-pub use machine::{Machine, Scale};
-pub use machine_problem::MachineProblem;
-pub use preparation::{Offset, Preparation, RecordSummary};
-pub use problem::Problem;
-pub use search::{Search, search, search_observed};
-pub use sign::{Addition, Sign};
-pub use terms::Terms;
-pub use thesis_decrement::{ThesisCycle, ThesisDecrement};
-pub use turning_energies::{HalfSwing, half_swing_losses, half_swing_losses_of};
-pub use warning::Warning;
-pub use weak_form::{WeakForm, WeakFormEstimate};
-pub use windows::{WindowFit, Windows};
+pub use judgement::{
+    Addition, Comparison, NestedTest, Search, Sign, compare, compare_observed, search, search_observed,
+};
+pub use law::Candidate;
+pub use machine::{Known, Machine, Scale, Terms};
+pub use report::{Estimated, Finding, Origin, Warning};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

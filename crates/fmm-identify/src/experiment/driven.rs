@@ -7,8 +7,8 @@ use fmm_model::ModelError;
 use fmm_record::{Quantity, Record, Swings, noise, quantisation_step, saturation, spikes};
 
 use super::{Drive, Driven, Experiment, ring_down, usable};
-use crate::first_guess::{Dissipation, FirstGuess};
-use crate::tangent::inverse_of_products;
+use crate::fit::first_guess::{Dissipation, FirstGuess};
+use crate::fit::tangent::inverse_of_products;
 use crate::{IdentifyError, Offset, Preparation, RecordSummary};
 
 impl Experiment {

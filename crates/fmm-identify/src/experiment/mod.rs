@@ -2,8 +2,11 @@
 
 mod drive;
 mod driven;
+pub(crate) mod nuisance;
+mod preparation;
 mod ring_down;
 mod sensor;
+pub(crate) mod sight;
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -13,12 +16,13 @@ use fmm_record::{Quantity, Record};
 
 pub use drive::Drive;
 pub(crate) use driven::DrivenGuess;
+pub use preparation::{Offset, Preparation, RecordSummary};
 pub(crate) use sensor::Filter;
 pub use sensor::Sensor;
 
-use crate::first_guess::{Dissipation, FirstGuess};
-use crate::nuisance::Nuisance;
-use crate::{IdentifyError, Machine, Preparation, RecordSummary};
+use crate::experiment::nuisance::Nuisance;
+use crate::fit::first_guess::{Dissipation, FirstGuess};
+use crate::{IdentifyError, Machine};
 
 /// An experiment on a machine: a ring-down ([`ring_down`](Self::ring_down)), or a motion that is driven by a measured force or by a
 /// measured motion of the base ([`driven`](Self::driven)).

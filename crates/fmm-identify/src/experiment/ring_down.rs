@@ -10,9 +10,9 @@ use fmm_record::{
 };
 
 use super::{Experiment, Sensor, usable};
-use crate::first_guess::{FirstGuess, Oscillation};
-use crate::nuisance::Nuisance;
-use crate::preparation::COARSE;
+use crate::experiment::nuisance::Nuisance;
+use crate::experiment::preparation::COARSE;
+use crate::fit::first_guess::{FirstGuess, Oscillation};
 use crate::{IdentifyError, Offset, Preparation, RecordSummary};
 
 /// Fewest half swings that show a period.

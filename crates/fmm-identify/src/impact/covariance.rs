@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use fmm_fit::{EvaluationError, Fit, PropagatedCovariance, Residuals, Sensitivity, autocorrelation_time};
 
-use crate::correlation::{are_correlated, correlated_covariance};
 use crate::impact::lines::Scratch;
 use crate::impact::parameters::LOAD;
 use crate::impact::{ImpactDomain, ImpactProblem, remainder};
+use crate::residuals::correlation::{are_correlated, correlated_covariance};
 
 /// What rounding makes of a noise-free velocity, relative to the largest.
 const ROUNDING: f64 = 1e-9;

@@ -6,14 +6,14 @@ use fmm_fit::{EvaluationError, Fit};
 use fmm_friction::{Coulomb, LawFamily, Role};
 use fmm_model::Parameter;
 
-use crate::finding::{Finding, Origin};
-use crate::fit_stages::best_fit;
-use crate::identification::FittedMotion;
+use crate::fit::identification::FittedMotion;
+use crate::fit::layout::named;
+use crate::fit::stages::best_fit;
 use crate::impact::covariance::ImpactCovariance;
 use crate::impact::parameters::{DAMPING, LAW, LOAD, MASS, RESPONSE_GAIN, STIFFNESS};
 use crate::impact::simulation::ImpactLaw;
 use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactProblem, ImpactSummary, ImpactTrial, warnings};
-use crate::layout::named;
+use crate::report::finding::{Finding, Origin};
 use crate::{IdentifyError, Warning};
 
 /// Friction parameters of one law out of blows, with their uncertainty and what limits them.

@@ -8,13 +8,13 @@ use fmm_frf::RealTransform;
 use fmm_friction::LawFamily;
 use fmm_model::Parameter;
 
+use crate::fit::pool::Pool;
 use crate::impact::lines::{Lines, Scratch};
 use crate::impact::parameters::Parameters;
 use crate::impact::pulse_prior::PulsePrior;
 use crate::impact::simulation::{FEW, ImpactLaw, Memory};
 use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactTrial};
 use crate::law::Law;
-use crate::pool::Pool;
 use crate::{IdentifyError, Known};
 
 /// The residuals "model less measurement" of one or several blows by a law, with exact derivatives.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use fmm_fit::{EvaluationError, Fit, Residuals};
 
-use crate::banded::BandedFactor;
+use crate::estimators::banded::BandedFactor;
 use crate::impact::ImpactProblem;
 use crate::impact::lines::Scratch;
 

@@ -5,9 +5,9 @@ use std::f64::consts::{PI, TAU};
 use fmm_frf::{SingleDegreeOfFreedom, friction_force_of_coulomb_impact, friction_force_of_viscous_coulomb_impact};
 use fmm_friction::LawParameter;
 
-use crate::dimension::{Scales, bends, is_force};
 use crate::impact::ImpactProblem;
 use crate::impact::parameters::{DAMPING, LAW};
+use crate::law::dimension::{Scales, bends, is_force};
 
 /// Damping ratio with which an unknown damping begins, and share of the friction that a viscous part begins with.
 const DAMPING_RATIO: f64 = 1e-3;

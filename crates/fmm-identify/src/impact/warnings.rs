@@ -7,7 +7,7 @@ use fmm_fit::Fit;
 use fmm_frf::{Channel, coulomb_impact_duration};
 
 use crate::Warning;
-use crate::identification::FittedMotion;
+use crate::fit::identification::FittedMotion;
 use crate::impact::ImpactTrial;
 use crate::impact::covariance::ImpactCovariance;
 

@@ -1,0 +1,446 @@
+//! The main job: friction parameters of one law out of ring-down records.
+
+use std::ops::ControlFlow;
+
+use fmm_fit::{Estimate, EvaluationError, Fit, Options, Progress, solve_observed};
+use fmm_friction::{LawFamily, Role};
+use fmm_sim::{Event, EventKind, Trajectory};
+
+use crate::experiment::nuisance::Nuisance;
+use crate::experiment::scaled;
+use crate::fit::layout::{Layout, named};
+use crate::fit::problem::Problem;
+use crate::fit::stages::{Near, fit_in_stages, fit_near};
+use crate::fit::tangent::Tangent;
+use crate::law::Law;
+use crate::machine::terms::LINEAR;
+use crate::report::finding::{Finding, findings};
+use crate::residuals::drift::{as_fitted, with_drift};
+use crate::residuals::noise::ResidualNoise;
+use crate::residuals::structure::{Covariance, ResidualStructure};
+use crate::{Drive, Experiment, IdentifyError, Machine, Terms, Warning};
+
+/// How the fitted motion of one record ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FittedMotion {
+    stop_time: Option<f64>,
+    half_swings: usize,
+    narrowest: Option<(f64, f64)>,
+}
+
+impl FittedMotion {
+    /// The motion behind `trajectory`, which begins at `start` (s) on the time axis of a record sampled every `interval` (s).
+    pub(crate) fn of_events(start: f64, interval: f64, trajectory: &Trajectory) -> Self {
+        // A velocity of nearly zero at the first sample reverses at once, or does not: that is no swing of the record.
+        let turns = |event: &&Event| matches!(event.kind, EventKind::Reversal | EventKind::Stop);
+        let begun = |event: &&Event| event.time > interval;
+        let decided = trajectory.events().iter().filter(turns).filter(begun);
+        let margins = decided.clone().map(|event| (event.margin(), start + event.time));
+        Self {
+            stop_time: trajectory.rest().map(|event| start + event.time),
+            half_swings: decided.count(),
+            narrowest: margins.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs())),
+        }
+    }
+
+    /// Margin and time (s) of the most narrowly decided turning point of `motions`.
+    pub(crate) fn narrowest_decision(motions: &[Self]) -> Option<(f64, f64)> {
+        let decided = motions.iter().filter_map(|motion| motion.narrowest);
+        decided.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
+    }
+
+    /// When the contact stops for good, on the time axis of the record (s); none if it does not before the end.
+    pub fn stop_time(&self) -> Option<f64> {
+        self.stop_time
+    }
+
+    /// How many times the velocity reaches zero.
+    pub fn half_swings(&self) -> usize {
+        self.half_swings
+    }
+}
+
+/// Friction parameters of one law, with their uncertainty and what limits them.
+///
+/// `Display` gives the report.
+#[derive(Debug, Clone)]
+pub struct Identification {
+    law: String,
+    family: Law,
+    friction_at_rest: Option<f64>,
+    terms: Terms,
+    machine: Machine,
+    fit: Fit,
+    findings: Vec<Finding>,
+    motions: Vec<FittedMotion>,
+    warnings: Vec<Warning>,
+    structure: ResidualStructure,
+    covariance: Covariance,
+    /// By how many standard uncertainties the linear damping would leave its bound, if it is there.
+    pull_at_bound: Option<f64>,
+    /// Of each record, what was fitted beside its motion.
+    disturbances: Vec<Vec<Nuisance>>,
+    amplitude: f64,
+}
+
+/// Identifies the parameters of law family `F` from ring-downs of one machine.
+///
+/// Standard uncertainties take the residuals as independent if they look like noise. If the law misses something, so
+/// that neighbouring residuals are alike, they come from [`CorrelatedCovariance`](fmm_fit::CorrelatedCovariance) where
+/// that gives more, and a warning says so; the [`Fit`] keeps those of independent residuals.
+///
+/// The law explains all dissipation that `machine` does not claim as its own known damping. Start values come
+/// from the records; the fit starts from each hypothesis that the amplitudes allow and keeps the best end.
+///
+/// # Errors
+/// [`IdentifyError`] if there is no record, if records disagree in quantity or unit, or if the fit cannot begin.
+/// How the fit *ends* is in the result.
+///
+/// ```
+/// use fmm_friction::CoulombViscous;
+/// use fmm_identify::{Machine, Preparation, Experiment, identify};
+/// use fmm_record::{Quantity, Record};
+/// # use fmm_model::Oscillator;
+/// # use fmm_sim::{Engine, Exact, Sampling, Scenario};
+///
+/// // A velocity record; here a simulated one: 2 Hz, c/m = 0.05 1/s, F/m = 0.3 m/s², 1 kHz.
+/// # let scenario = Scenario::new(Oscillator::per_unit_mass(2.0)?, CoulombViscous::new(0.3, 0.05)?, 1.0)?;
+/// # let motion = Exact.run(&scenario.starting_at(0.02, 0.0)?, &Sampling::uniform(1e-3, 2000)?)?;
+/// # let velocity = motion.velocity().values().to_vec();
+/// let record = Record::new(0.0, 1e-3, velocity, Quantity::Velocity, "m/s")?;
+///
+/// let decay = Experiment::ring_down(&record, &Preparation::default())?;
+/// let found = identify::<CoulombViscous>(&Machine::per_unit_mass(), &[decay])?;
+/// assert!((found.finding("friction_per_mass").unwrap().value() - 0.3).abs() < 1e-9);
+/// assert!((found.finding("damping_per_mass").unwrap().value() - 0.05).abs() < 1e-8);
+/// println!("{found}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn identify<F: LawFamily>(machine: &Machine, decays: &[Experiment]) -> Result<Identification, IdentifyError> {
+    identify_with::<F>(machine, &Terms::NONE, decays)
+}
+
+/// As [`identify`], with damping of the machine beside the law, and parameters held.
+///
+/// # Errors
+/// As for [`identify`], and if the terms do not fit the law.
+pub fn identify_with<F: LawFamily>(
+    machine: &Machine,
+    terms: &Terms,
+    decays: &[Experiment],
+) -> Result<Identification, IdentifyError> {
+    identify_observed::<F>(machine, terms, decays, &Options::default(), &mut |_| ControlFlow::Continue(()))
+}
+
+/// As [`identify_with`], with options for the solver and an observer of every trial step, which may end the fit.
+///
+/// # Errors
+/// As for [`identify_with`].
+pub fn identify_observed<F: LawFamily>(
+    machine: &Machine,
+    terms: &Terms,
+    decays: &[Experiment],
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Identification, IdentifyError> {
+    identify_by(Law::of::<F>(), machine, terms, decays, None, options, observer)
+}
+
+/// As [`identify_observed`], by a law that is known at run time, near another fit if there is one.
+pub(crate) fn identify_by(
+    law: Law,
+    machine: &Machine,
+    terms: &Terms,
+    decays: &[Experiment],
+    near: Option<&Near<'_>>,
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Identification, IdentifyError> {
+    let problem = Problem::of(law, *machine, terms.clone(), decays)?;
+    let fit = match near {
+        Some(near) if !terms.has_spring() => fit_near(&problem.clone().bending_in_sight(), near, options, observer)?,
+        _ => fit_in_stages(&problem, options, observer)?,
+    };
+    // One instrument for all records; the worst statement counts.
+    let gain = decays.iter().map(|decay| decay.summary().gain_uncertainty).fold(0.0, f64::max);
+    let failure = |error: EvaluationError| IdentifyError::Simulation { law: law.name, message: error.to_string() };
+    let structure = ResidualStructure::of(&fit, decays);
+    let covariance = Covariance::of(&problem, &fit, &structure).map_err(failure)?;
+    // What a force does depends on the mass: its uncertainty is propagated by fits, not by the scale of the results.
+    let has_force = decays.iter().any(|decay| decay.drive().is_some_and(Drive::is_force));
+    let stated = |machine: &Machine| if has_force { machine.with_exact_scale() } else { *machine };
+    let mut found = findings(&stated(machine), problem.layout(), &fit, &covariance, gain);
+    for moved in machine.with_inputs_moved(has_force) {
+        let mut ends = Vec::new();
+        for machine in moved {
+            let problem = Problem::of(law, machine, terms.clone(), decays)?;
+            let fit = solve_observed(&problem, fit.values(), options, |progress| observer(progress))
+                .map_err(|source| IdentifyError::Fit { law: law.name, source })?;
+            let covariance = Covariance::of(&problem, &fit, &structure).map_err(failure)?;
+            ends.push(findings(&stated(&machine), problem.layout(), &fit, &covariance, gain));
+        }
+        add_in_quadrature(&mut found, &ends[0], &ends[1]);
+    }
+
+    let mut motions = Vec::with_capacity(decays.len());
+    for (record, decay) in decays.iter().enumerate() {
+        let trajectory = problem.events(record, fit.values()).map_err(failure)?;
+        let start = decay.record().start() - decay.sensor().delay();
+        motions.push(FittedMotion::of_events(start, decay.record().interval(), &trajectory));
+    }
+    let mut identification = Identification {
+        law: terms.name(law.name),
+        family: problem.layout().family,
+        friction_at_rest: friction_at_rest(problem.layout(), fit.values()),
+        terms: terms.clone(),
+        machine: *machine,
+        structure,
+        disturbances: decays.iter().map(|decay| decay.nuisances().to_vec()).collect(),
+        pull_at_bound: pull_at_bound(&problem, &fit, &covariance),
+        covariance,
+        amplitude: scaled(decays).map(|(decay, weight)| weight * decay.summary().amplitudes.0).fold(0.0, f64::max),
+        fit,
+        findings: found,
+        motions,
+        warnings: Vec::new(),
+    };
+    identification.warnings = Warning::of(&identification, decays);
+    let held = problem.layout().family.held_breakaway();
+    identification
+        .warnings
+        .extend(held.map(|held| Warning::StaticLevelHeld { parameter: held.parameter().name().to_owned() }));
+    Ok(identification)
+}
+
+/// By how many standard uncertainties the linear damping would leave the bound that it lies on; none if it lies on none.
+fn pull_at_bound(problem: &Problem<'_>, fit: &Fit, covariance: &Covariance) -> Option<f64> {
+    let index = fit.estimates().iter().position(|estimate| estimate.name() == LINEAR)?;
+    fit.estimates()[index].status().is_at_bound().then_some(())?;
+    let step = -Tangent::of(problem, fit)?.step(index, fit.residuals());
+    Some(step / covariance.relaxed(index)?.sqrt())
+}
+
+/// F/m at rest that fitted `values` stand for: the sliding level of the law with what lies above it; none for laws without.
+fn friction_at_rest(layout: &Layout, values: &[f64]) -> Option<f64> {
+    let parameters = || layout.family.fitted().zip(&values[layout.law..]);
+    let (_, level) = parameters().nth(layout.family.level()?)?;
+    let above = parameters().filter(|(parameter, _)| matches!(parameter.role(), Role::Excess | Role::LevelAbove));
+    Some(level + above.map(|(_, excess)| excess).sum::<f64>())
+}
+
+/// Adds half the difference that moving an input by ± its uncertainty makes (JCGM 100:2008, 5.1.3 note 2).
+fn add_in_quadrature(findings: &mut [Finding], below: &[Finding], above: &[Finding]) {
+    for ((finding, below), above) in findings.iter_mut().zip(below).zip(above) {
+        let change = 0.5 * (above.value - below.value);
+        if let Some(u) = finding.uncertainty() {
+            finding.widen(u.hypot(change));
+        }
+    }
+}
+
+impl Identification {
+    /// Name of the law, with the terms beside it.
+    pub fn law(&self) -> &str {
+        &self.law
+    }
+
+    pub(crate) fn family(&self) -> Law {
+        self.family
+    }
+
+    /// What was fitted beside the law, and what was held.
+    pub fn terms(&self) -> &Terms {
+        &self.terms
+    }
+
+    /// F/m at rest, in the unit of the friction per mass: the sliding level with what the law adds to it at zero speed; none for
+    /// laws without a level.
+    pub fn friction_at_rest(&self) -> Option<f64> {
+        self.friction_at_rest
+    }
+
+    /// What was known of the machine.
+    pub fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// The fit behind the findings: covariance, rank, residuals, intervals.
+    pub fn fit(&self) -> &Fit {
+        &self.fit
+    }
+
+    /// Everything found: fitted parameters first, then what follows from them and from the machine.
+    pub fn findings(&self) -> &[Finding] {
+        &self.findings
+    }
+
+    /// The finding of this name, such as `"friction_per_mass"` or `"mu"`.
+    pub fn finding(&self, name: &str) -> Option<&Finding> {
+        self.findings.iter().find(|finding| finding.parameter().name() == name)
+    }
+
+    /// The interval that covers the finding of this name with probability `level`, [`Finding::interval`].
+    ///
+    /// ```no_run
+    /// # fn of(found: &fmm_identify::Identification) {
+    /// if let Some((low, high)) = found.interval("mu", 0.95) {
+    ///     println!("μ lies between {low:.4} and {high:.4} with 95 %");
+    /// }
+    /// # }
+    /// ```
+    pub fn interval(&self, name: &str, level: f64) -> Option<(f64, f64)> {
+        self.finding(name)?.interval(level)
+    }
+
+    pub(crate) fn finding_mut(&mut self, name: &str) -> Option<&mut Finding> {
+        self.findings.iter_mut().find(|finding| finding.parameter().name() == name)
+    }
+
+    /// The fitted motion of each record.
+    pub fn motions(&self) -> &[FittedMotion] {
+        &self.motions
+    }
+
+    /// What limits the findings.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// Root mean square of the residuals, in the unit of the records.
+    pub fn rms_residual(&self) -> f64 {
+        self.structure.residual
+    }
+
+    /// τ, how many neighbouring residuals tell no more than one (1).
+    pub fn autocorrelation_time(&self) -> f64 {
+        self.structure.autocorrelation_time
+    }
+
+    /// What the law says for every sample of record number `record` of `decays`, which must be those of the
+    /// identification; none for another number.
+    pub fn model(&self, decays: &[Experiment], record: usize) -> Option<Vec<f64>> {
+        if record >= decays.len() || decays.len() != self.motions.len() {
+            return None;
+        }
+        let decays = as_fitted(decays, &self.disturbances);
+        let problem = Problem::of(self.family, self.machine, self.terms.clone(), &decays).ok()?;
+        problem.model(record, self.fit.values()).ok()
+    }
+
+    pub(crate) fn structure(&self) -> ResidualStructure {
+        self.structure
+    }
+
+    /// Largest factor by which an uncertainty exceeds that of independent residuals (1).
+    pub(crate) fn inflation(&self) -> f64 {
+        self.covariance.inflation()
+    }
+
+    /// The `decays` with slow drift to be fitted beside their motion, if the residuals of this fit show any.
+    pub(crate) fn with_drift(&self, decays: &[Experiment]) -> Option<Vec<Experiment>> {
+        let problem = Problem::of(self.family, self.machine, self.terms.clone(), decays).ok()?;
+        with_drift(self, &problem, decays)
+    }
+
+    /// How many parameters the fit makes use of: those that the records determine, and those that ended on a bound other than zero,
+    /// where a term is not merely left out.
+    pub(crate) fn parameters_used(&self) -> usize {
+        let is_used = |estimate: &&Estimate| estimate.status().is_at_bound() && estimate.value() != 0.0;
+        self.fit.rank() + self.fit.estimates().iter().filter(is_used).count()
+    }
+
+    /// How many places a law has to leap at: the samples of a half swing for one that comes to rest within a dead zone, else one.
+    pub(crate) fn tries(&self) -> f64 {
+        if self.finding("dead_zone").is_none() {
+            return 1.0;
+        }
+        let half_swings: usize = self.motions.iter().map(FittedMotion::half_swings).sum();
+        self.fit.residuals().len() as f64 / half_swings.max(1) as f64
+    }
+
+    /// The noise that the residuals show.
+    pub(crate) fn noise(&self) -> &ResidualNoise {
+        self.covariance.noise_of_residuals()
+    }
+
+    /// As how many independent residuals those of this fit count (1).
+    pub(crate) fn told(&self) -> f64 {
+        self.covariance.degrees_of_freedom() + self.fit.rank() as f64
+    }
+
+    /// What the parameters of this fit to `problem` can follow, those on a bound included; none if the derivatives cannot be had.
+    pub(crate) fn tangent(&self, problem: &Problem<'_>) -> Option<Tangent> {
+        Tangent::of(problem, &self.fit)
+    }
+
+    /// Whether a viscous part that ended at zero would be significantly negative without its bound, as if friction fell with the
+    /// speed.
+    pub(crate) fn damping_would_be_negative(&self) -> bool {
+        /// Standard uncertainties by which it would be negative.
+        const PLAIN: f64 = 2.33;
+        let Some(index) = self.fit.estimates().iter().position(|estimate| estimate.name() == LINEAR) else {
+            return false;
+        };
+        self.fit.estimates()[index].status().is_at_bound() && self.pull_at_bound.is_some_and(|pull| pull < -PLAIN)
+    }
+
+    /// By how much this fit is worse than that by `other`, in variances of the noise that the residuals of the other show in the
+    /// direction in which the laws differ (1), and the degrees of freedom with which that variance is known.
+    pub(crate) fn misfit_beside(&self, other: &Self) -> (f64, f64) {
+        let floor = self.floor().max(other.floor());
+        let excess = self.fit.sum_of_squares().max(floor) - other.fit.sum_of_squares().max(floor);
+        let pairs = self.fit.residuals().iter().zip(other.fit.residuals());
+        let difference: Vec<f64> = pairs.map(|(own, theirs)| own - theirs).collect();
+        let rounding = floor / difference.len().max(1) as f64;
+        let variance = other.noise().variance_along(&difference).max(rounding);
+        let freedom = 2.0 * other.noise().ordinates_along(&difference);
+        let misfit = if excess > 0.0 && variance > 0.0 { excess / variance } else { 0.0 };
+        (misfit, freedom.min(other.fit.degrees_of_freedom() as f64).max(1.0))
+    }
+
+    /// The findings that mean the same in both, each with that of `other`: what has the same name, and the sliding levels, which
+    /// laws name as they like.
+    pub(crate) fn common_findings<'a>(&'a self, other: &'a Self) -> Vec<(&'a Finding, &'a Finding)> {
+        let (own, theirs) = (self.level_names(), other.level_names());
+        let same = |finding: &'a Finding| {
+            let name = finding.parameter().name();
+            let at = own.iter().position(|level| level == name);
+            let counterpart = at.map_or(name, |at| theirs.get(at).map_or(name, String::as_str));
+            other.finding(counterpart).map(|theirs| (finding, theirs))
+        };
+        self.findings.iter().filter_map(same).collect()
+    }
+
+    /// What most ask for: the friction at large speed and at rest, as coefficient, force or per mass, whichever is known; of a law
+    /// without friction the damping.
+    pub(crate) fn main_findings(&self) -> Vec<&Finding> {
+        let sliding = self.level_names().into_iter().rev().find_map(|name| self.finding(&name));
+        let Some(sliding) = sliding else {
+            return ["damping", LINEAR].iter().find_map(|name| self.finding(name)).into_iter().collect();
+        };
+        let unit = sliding.parameter().unit();
+        let at_rest = self
+            .family
+            .fitted()
+            .filter(|parameter| matches!(parameter.role(), Role::LevelAbove | Role::Excess | Role::Breakaway));
+        let at_rest = at_rest.filter_map(|parameter| {
+            let quantities = ["mu", "friction_force", "friction_per_mass"];
+            let names = quantities.map(|quantity| named(parameter.parameter(), quantity, "").name().to_owned());
+            names.iter().find_map(|name| self.finding(name).filter(|finding| finding.parameter().unit() == unit))
+        });
+        std::iter::once(sliding).chain(at_rest).collect()
+    }
+
+    /// Names of the findings of the first level, as friction per mass, force and coefficient; empty for laws without.
+    fn level_names(&self) -> Vec<String> {
+        let Some(level) = self.family.level() else { return Vec::new() };
+        let Some(parameter) = self.family.fitted().nth(level) else { return Vec::new() };
+        let quantities = ["friction_per_mass", "friction_force", "mu"];
+        quantities.map(|quantity| named(parameter.parameter(), quantity, "").name().to_owned()).to_vec()
+    }
+
+    /// Sum of squares below which a fit reproduces its records to rounding, and none is better than another.
+    pub(crate) fn floor(&self) -> f64 {
+        (1e-12 * self.amplitude).powi(2) * self.fit.residuals().len() as f64
+    }
+}

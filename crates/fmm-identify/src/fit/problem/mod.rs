@@ -1,0 +1,384 @@
+//! The least-squares problem of an identification: these records by that law.
+
+use std::ops::Range;
+
+use fmm_fit::{Block, EvaluationError, Fit, Residuals};
+use fmm_friction::LawFamily;
+use fmm_model::{Parameter, Scalar};
+use fmm_sim::{Channels, Sampling, Trajectory};
+
+use crate::experiment::sight::{Seen, Sight};
+use crate::experiment::{Drive, scaled};
+use crate::fit::layout::{Layout, Units};
+use crate::law::{Law, Simulate};
+use crate::machine::Scale;
+use crate::{Experiment, IdentifyError, Machine, Terms};
+
+mod parts;
+mod residuals;
+mod starts;
+
+/// The residuals "model less record" of one or several ring-downs by a law, with exact derivatives.
+///
+/// Oscillator and law are shared by all records; initial position, initial velocity and offset are each
+/// record's own. The initial velocity is never taken from the data: fixing it at a noisy maximum biases the
+/// friction by up to 0.8 %.
+///
+/// Anything that takes [`Residuals`] can be applied to it; [`identify`](crate::identify) is what most want.
+#[derive(Debug, Clone)]
+pub struct Problem<'a> {
+    machine: Machine,
+    terms: Terms,
+    decays: &'a [Experiment],
+    parameters: Vec<Parameter>,
+    layout: Layout,
+    blocks: Vec<Block>,
+    /// By what the residuals of each record are multiplied.
+    weights: Vec<f64>,
+}
+
+/// Samples simulated at a time: memory beyond the solver's own stays below 4 MB however long the record.
+const WINDOW: usize = 1 << 16;
+
+impl<'a> Problem<'a> {
+    /// The problem of `decays` on `machine` by a law of family `F`.
+    ///
+    /// # Errors
+    /// [`IdentifyError::NoRecord`] and [`IdentifyError::MixedRecords`].
+    pub fn new<F: LawFamily>(machine: Machine, decays: &'a [Experiment]) -> Result<Self, IdentifyError> {
+        Self::with_terms::<F>(machine, Terms::NONE, decays)
+    }
+
+    /// The problem of `decays` on `machine`, with `terms` beside the law.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new), and [`IdentifyError::TwoDampings`], [`IdentifyError::NothingToHold`] and
+    /// [`IdentifyError::HeldOutOfBounds`].
+    pub fn with_terms<F: LawFamily>(
+        machine: Machine,
+        terms: Terms,
+        decays: &'a [Experiment],
+    ) -> Result<Self, IdentifyError> {
+        Self::of(Law::of::<F>(), machine, terms, decays)
+    }
+
+    pub(crate) fn of(
+        law: Law,
+        machine: Machine,
+        terms: Terms,
+        decays: &'a [Experiment],
+    ) -> Result<Self, IdentifyError> {
+        let describe = |decay: &Experiment| format!("{} in {}", decay.record().quantity(), decay.record().unit());
+        let first = decays.first().ok_or(IdentifyError::NoRecord)?;
+        let length = |decay: &Experiment| Units::of(decay).position;
+        if let Some(other) = decays.iter().find(|decay| length(decay) != length(first)) {
+            return Err(IdentifyError::MixedRecords { first: describe(first), other: describe(other) });
+        }
+        let is_metric = length(first) == "m";
+        let has_force = decays.iter().any(|decay| decay.drive().is_some_and(Drive::is_force));
+        if has_force && machine.scale() == Scale::PerUnitMass {
+            return Err(IdentifyError::ForceWithoutScale);
+        }
+        if has_force && !is_metric {
+            let expected = "a force in N beside responses in m, m/s or m/s²";
+            return Err(IdentifyError::Drive { expected, found: format!("beside a {}", describe(first)) });
+        }
+        let (layout, parameters) = Layout::of(law, &machine, &terms, decays)?;
+        let blocks = blocks(&layout, decays);
+        let weights = scaled(decays).map(|(_, weight)| weight).collect();
+        Ok(Self { machine, terms, decays, parameters, layout, blocks, weights })
+    }
+
+    fn law(&self) -> &Law {
+        &self.layout.family
+    }
+
+    /// Name of the law.
+    pub(crate) fn name(&self) -> &'static str {
+        self.law().name
+    }
+
+    /// Whether terms of the spring are fitted.
+    pub(crate) fn has_spring(&self) -> bool {
+        self.terms.has_spring()
+    }
+
+    pub(crate) fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    pub(crate) fn decays(&self) -> &'a [Experiment] {
+        self.decays
+    }
+
+    pub(crate) fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Shared values and initial state of `record` as numbers of type `D`, direction `first` being direction 0.
+    fn values<D: Scalar>(&self, record: usize, p: &[f64], first: usize) -> Vec<D> {
+        (0..self.layout.directions())
+            .map(|direction| {
+                let value = p[self.layout.index(record, direction)];
+                // A direction below `first` wraps to one that no number carries, which makes it a constant.
+                D::variable(value, direction.wrapping_sub(first))
+            })
+            .collect()
+    }
+
+    /// Simulates `record` by `simulate` once, window by window; `visit` gets, for each of `ranges` in a window, the number of
+    /// samples of the ranges before it, its samples' indices in the record, and those among the simulated samples.
+    fn simulate<D: Scalar>(
+        &self,
+        simulate: Simulate<D>,
+        record: usize,
+        p: &[f64],
+        first: usize,
+        ranges: &[Range<usize>],
+        mut visit: impl FnMut(usize, Range<usize>, Range<usize>, &Seen<'_, D>),
+    ) -> Result<(), EvaluationError> {
+        let (Some(first_range), Some(last_range)) = (ranges.first(), ranges.last()) else { return Ok(()) };
+        let decay = &self.decays[record];
+        let motion = self.layout.motion(&self.machine, &self.terms, decay, &self.values::<D>(record, p, first))?;
+        let mut sight = Sight::of(decay, self.corner(record, p));
+        let sampling = Sampling::uniform(decay.record().interval(), decay.record().len())?.keeping(sight.channels());
+        let mut trajectory = Trajectory::new();
+        let mut before = 0;
+        // A filter sees all samples in turn.
+        let (mut next, mut start) = (0, if sight.is_filtered() { 0 } else { first_range.start });
+        while start < last_range.end {
+            let end = last_range.end.min(start + WINDOW);
+            let Some(window) = sampling.window(start..end) else { break };
+            simulate(&motion, &window, &mut trajectory)?;
+            let seen = sight.see(&trajectory);
+            let simulated = &seen;
+            while let Some(range) = ranges.get(next) {
+                let samples = range.start.max(start)..range.end.min(end);
+                if !samples.is_empty() {
+                    let count = samples.len();
+                    let inside = samples.start - start..samples.end - start;
+                    visit(before, samples, inside, simulated);
+                    before += count;
+                }
+                if range.end > end {
+                    break;
+                }
+                next += 1;
+            }
+            start = end;
+        }
+        Ok(())
+    }
+
+    /// The events of `record` up to its end.
+    pub(crate) fn events(&self, record: usize, p: &[f64]) -> Result<Trajectory, EvaluationError> {
+        let values = self.values::<f64>(record, p, 0);
+        let motion = self.layout.motion(&self.machine, &self.terms, &self.decays[record], &values)?;
+        let mut trajectory = Trajectory::new();
+        let ends = Sampling::uniform(self.decays[record].record().duration(), 2)?.keeping(Channels::Position);
+        (self.law().plain)(&motion, &ends, &mut trajectory)?;
+        Ok(trajectory)
+    }
+
+    /// What the model says for every sample of `record`, its offset included.
+    pub(crate) fn model(&self, record: usize, p: &[f64]) -> Result<Vec<f64>, EvaluationError> {
+        let count = self.decays[record].record().len();
+        let offset = self.offset(record, p);
+        let mut model = vec![0.0; count];
+        self.simulate(
+            self.law().plain,
+            record,
+            p,
+            0,
+            std::slice::from_ref(&(0..count)),
+            |_, samples, inside, simulated| {
+                for (out, value) in model[samples].iter_mut().zip(&simulated.values()[inside]) {
+                    *out = value + offset;
+                }
+            },
+        )?;
+        for (size, shape) in self.disturbances(record, p) {
+            model.iter_mut().zip(shape).for_each(|(out, shape)| *out += size * shape);
+        }
+        Ok(model)
+    }
+
+    /// Corner frequency (Hz) of the sensor of `record`, if it has a filter.
+    fn corner(&self, record: usize, p: &[f64]) -> Option<f64> {
+        let decay = &self.decays[record];
+        match self.layout.corner(record, decay) {
+            Some(index) => Some(p[index]),
+            None => decay.first_corner(),
+        }
+    }
+
+    fn offset(&self, record: usize, p: &[f64]) -> f64 {
+        self.decays[record].fixed_offset().unwrap_or_else(|| p[self.layout.own[record] + 2])
+    }
+
+    /// Size and shape of the disturbances of `record`.
+    fn disturbances<'s>(&'s self, record: usize, p: &'s [f64]) -> impl Iterator<Item = (f64, &'s [f64])> {
+        let decay = &self.decays[record];
+        let first = self.layout.nuisance(record, decay);
+        decay.shapes().iter().enumerate().map(move |(at, shape)| (p[first + at], shape.as_slice()))
+    }
+
+    /// The rows of each record among the residuals.
+    pub(crate) fn row_ranges(&self) -> impl Iterator<Item = Range<usize>> {
+        self.bases().map(|(record, base)| base..base + self.decays[record].summary().samples)
+    }
+
+    /// The derivatives of all residuals by each of the `wanted` parameters.
+    pub(crate) fn columns(&self, p: &[f64], wanted: &[usize]) -> Result<Vec<Vec<f64>>, EvaluationError> {
+        let elements = self.blocks.iter().map(|block| block.rows() * block.parameters().len()).sum();
+        let mut jacobian = vec![0.0; elements];
+        self.jacobian(p, &mut jacobian)?;
+        let mut columns = vec![Vec::new(); wanted.len()];
+        let mut end = self.len();
+        // From the end on, so that what is in a column is given back at once.
+        for block in self.blocks.iter().rev() {
+            for parameter in block.parameters().iter().rev() {
+                let part = jacobian.split_off(jacobian.len() - block.rows());
+                jacobian.shrink_to_fit();
+                let Some(index) = wanted.iter().position(|wanted| wanted == parameter) else { continue };
+                let column = &mut columns[index];
+                if block.rows() == self.len() {
+                    *column = part;
+                } else {
+                    column.resize(self.len(), 0.0);
+                    column[end - block.rows()..end].copy_from_slice(&part);
+                }
+            }
+            end -= block.rows();
+        }
+        Ok(columns)
+    }
+
+    /// The signal of `record` without its offset at each of its rows, as `fit` has it.
+    pub(crate) fn signal(&self, record: usize, fit: &Fit) -> Vec<f64> {
+        let Some(rows) = self.row_ranges().nth(record) else { return Vec::new() };
+        let offset = self.offset(record, fit.values());
+        let decay = &self.decays[record];
+        let measured = decay.kept().iter().flat_map(|range| &decay.record().values()[range.clone()]);
+        let mut signal: Vec<f64> = fit.residuals()[rows]
+            .iter()
+            .zip(measured)
+            .map(|(residual, measured)| residual / self.weights[record] + measured - offset)
+            .collect();
+        for (size, shape) in self.disturbances(record, fit.values()) {
+            let kept = decay.kept().iter().flat_map(|range| &shape[range.clone()]);
+            signal.iter_mut().zip(kept).for_each(|(value, shape)| *value -= size * shape);
+        }
+        signal
+    }
+
+    /// Each record with the number of residuals before its own.
+    fn bases(&self) -> impl Iterator<Item = (usize, usize)> {
+        let mut base = 0;
+        self.decays.iter().enumerate().map(move |(record, decay)| {
+            let this = base;
+            base += decay.summary().samples;
+            (record, this)
+        })
+    }
+}
+
+/// One block per record: the parameters of its motion and its offset.
+fn blocks(layout: &Layout, decays: &[Experiment]) -> Vec<Block> {
+    let block = |(record, decay): (usize, &Experiment)| {
+        let mut parameters: Vec<usize> = (0..layout.directions()).map(|j| layout.index(record, j)).collect();
+        if decay.fixed_offset().is_none() {
+            parameters.push(layout.own[record] + 2);
+        }
+        let first = layout.nuisance(record, decay);
+        parameters.extend(first..first + decay.nuisances().len());
+        parameters.extend(layout.corner(record, decay));
+        Block::new(decay.summary().samples, parameters)
+    };
+    decays.iter().enumerate().map(block).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use fmm_friction::{CoulombViscous, Stribeck};
+    use fmm_model::Oscillator;
+    use fmm_record::Quantity;
+    use fmm_record::Record;
+    use fmm_sim::{Engine, Exact, Scenario};
+
+    use super::*;
+    use crate::Preparation;
+
+    /// Two velocity records of a machine of 2 Hz, c/m = 0.05 1/s, F/m = 0.3 m/s², of different length.
+    fn decays() -> Vec<Experiment> {
+        [(0.02, 2000), (0.025, 2300)]
+            .map(|(position, samples)| {
+                let law = CoulombViscous::new(0.3, 0.05).unwrap();
+                let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), law, 1.0).unwrap();
+                let sampling = Sampling::uniform(1e-3, samples).unwrap();
+                let motion = Exact.run(&scenario.starting_at(position, 0.0).unwrap(), &sampling).unwrap();
+                let noise = |i: usize| 1e-4 * (((i * 7919) % 1009) as f64 / 1009.0 - 0.5);
+                let values = motion.velocity().values().iter().enumerate().map(|(i, v)| v + noise(i)).collect();
+                let record = Record::new(0.0, 1e-3, values, Quantity::Velocity, "m/s").unwrap();
+                Experiment::ring_down(&record, &Preparation::default()).unwrap()
+            })
+            .to_vec()
+    }
+
+    #[test]
+    fn derivatives_of_joint_records_are_those_of_differences() {
+        let decays = decays();
+        let problem = Problem::new::<CoulombViscous>(Machine::per_unit_mass(), &decays).unwrap();
+        // Off the bounds, so that differences have room.
+        let p: Vec<f64> = problem.starts()[0].iter().map(|value| value + 1e-3).collect();
+        let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
+        let mut jacobian = vec![0.0; elements];
+        assert!(problem.jacobian(&p, &mut jacobian).unwrap());
+        let at = |j: usize, by: f64| {
+            let mut moved = p.clone();
+            moved[j] += by;
+            let mut residuals = vec![0.0; problem.len()];
+            problem.residuals(&moved, &mut residuals).unwrap();
+            residuals
+        };
+        let mut columns = jacobian.as_slice();
+        let mut row = 0;
+        for block in problem.blocks() {
+            for &j in block.parameters() {
+                let h = 1e-6;
+                let (above, below) = (at(j, h), at(j, -h));
+                let (column, rest) = columns.split_at(block.rows());
+                let difference = |i: usize| (above[row + i] - below[row + i]) / (2.0 * h);
+                let scale = column.iter().fold(0.0f64, |scale, d| scale.max(d.abs()));
+                // A reversal may cross a sample within h, which spoils its difference: one sample per half swing at most.
+                let off = (0..block.rows()).filter(|&i| (column[i] - difference(i)).abs() > 1e-5 * scale).count();
+                let name = problem.parameters()[j].name();
+                assert!(scale > 0.0 && off < 20, "{name}: {off} of {} samples differ", block.rows());
+                columns = rest;
+            }
+            row += block.rows();
+        }
+        assert_eq!((row, columns.len()), (problem.len(), 0));
+    }
+
+    /// A law put beside another begins with its friction over the speed, and with its oscillator and initial state.
+    #[test]
+    fn a_law_beside_another_begins_with_its_friction() {
+        let decays = &decays()[..1];
+        let other = crate::identify::<CoulombViscous>(&Machine::per_unit_mass(), decays).unwrap();
+        let machine = Machine::per_unit_mass();
+        let problem = Problem::new::<Stribeck>(machine, decays).unwrap();
+        let start = problem.beside(&other, &[&other], &problem.starts()).unwrap();
+        let law = problem.layout().law..problem.layout().shared;
+        let steady = |speed: f64| problem.law().steady(&start[law.clone()], speed, true).unwrap();
+        let known = |name: &str| other.finding(name).unwrap().value();
+        let speed = decays[0].scales().1;
+        for share in [0.01, 0.1, 0.5, 1.0] {
+            let expected = known("friction_per_mass") + known("damping_per_mass") * share * speed;
+            let got = steady(share * speed);
+            assert!((got - expected).abs() < 1e-4 * expected, "{got} in place of {expected} at {share}");
+        }
+        assert_eq!(start[0], known("natural_frequency_hz"));
+        assert_eq!(start[law.end..], other.fit().values()[3..]);
+    }
+}

@@ -1,0 +1,210 @@
+//! Start values of a fit to ring-downs.
+
+use std::f64::consts::PI;
+
+use fmm_fit::Estimate;
+use fmm_friction::Role;
+use fmm_model::Parameter;
+
+use super::Problem;
+use crate::experiment::nuisance::Nuisance;
+use crate::experiment::reference;
+use crate::fit::first_guess::Dissipation;
+use crate::fit::layout::{Layout, mass_of_stiffness};
+use crate::judgement::sign::Addition;
+use crate::law::dimension::{Scales, bends, is_force};
+use crate::law::friction_curve::FrictionCurve;
+use crate::machine::terms::Term;
+use crate::{Drive, Experiment, Identification, Sign};
+
+/// What a static level lies above the sliding one by, to begin with (1).
+const FIRST_STATIC_EXCESS: f64 = 0.2;
+
+impl Problem<'_> {
+    /// Whether the law or the terms beside it have more to find than levels and a viscous part.
+    pub(crate) fn is_elaborate(&self) -> bool {
+        self.layout.law > self.layout.oscillator
+            || self.law().fitted().filter(|parameter| is_force(parameter.role())).count() > 1
+            || self.law().fitted().any(bends)
+    }
+
+    /// Start values, one set per hypothesis that the law can express, each inside the bounds.
+    pub(crate) fn starts(&self) -> Vec<Vec<f64>> {
+        let has_level = self.law().fitted().any(|parameter| is_force(parameter.role()));
+        let has_slope = self.has_linear_damping();
+        let reference = reference(self.decays);
+        let hypotheses = match reference.driven_guess() {
+            Some(guess) => guess.hypotheses(),
+            None => reference.guess().hypotheses(),
+        };
+        let expressible = |dissipation: &&Dissipation| {
+            (has_level || dissipation.friction == 0.0) && (has_slope || dissipation.damping == 0.0)
+        };
+        let mut starts: Vec<_> =
+            hypotheses.iter().filter(expressible).map(|hypothesis| self.start(*hypothesis)).collect();
+        if self.decays.iter().any(|decay| decay.drive().is_some()) {
+            let neutral: Vec<Experiment> = self.decays.iter().map(|decay| decay.clone().begun_neutral()).collect();
+            let problem = self.with_records(&neutral);
+            starts.extend(hypotheses.iter().filter(expressible).map(|hypothesis| problem.start(*hypothesis)));
+        }
+        if starts.is_empty() {
+            starts.extend(hypotheses.first().map(|hypothesis| self.start(*hypothesis)));
+        }
+        starts
+    }
+
+    fn has_linear_damping(&self) -> bool {
+        self.terms.has_linear_damping() || self.law().has_slope()
+    }
+
+    /// Start values under one hypothesis.
+    fn start(&self, dissipation: Dissipation) -> Vec<f64> {
+        let reference = reference(self.decays);
+        let frequency = reference
+            .driven_guess()
+            .map_or_else(|| reference.natural_frequency(dissipation, &self.machine), |guess| guess.frequency);
+        // An unknown mass starts at 1 kg unless a force tells it; nothing in a free vibration says better.
+        let told = || self.decays.iter().filter(|decay| decay.drive().is_some_and(Drive::is_force));
+        let mass = told().find_map(|decay| decay.driven_guess()).map_or(1.0, |guess| guess.mass);
+        let (mut start, force_per_mass) = match self.layout.oscillator {
+            1 => (vec![frequency], 1.0),
+            _ => (vec![mass, mass / mass_of_stiffness(1.0, frequency)], mass),
+        };
+        let of_law = Dissipation {
+            friction: dissipation.friction * force_per_mass,
+            damping: dissipation.damping * force_per_mass,
+        };
+        self.push_dissipation(of_law, 1.0, &mut start);
+        for decay in self.decays {
+            let (position, velocity) = decay.first_state(dissipation);
+            start.extend([position, velocity]);
+            if decay.fixed_offset().is_none() {
+                start.push(decay.first_offset(dissipation));
+            }
+            start.extend(decay.nuisances().iter().map(Nuisance::start));
+            start.extend(decay.first_corner().filter(|_| decay.sensor().has_free_corner()));
+        }
+        self.clamped(&start)
+    }
+
+    /// Start values that continue a fit of `simple`, which has a level and a viscous part: the same losses, put into the law
+    /// in as many ways as it offers.
+    pub(crate) fn continued(&self, simple: &Problem<'_>, values: &[f64]) -> Vec<Vec<f64>> {
+        let (oscillator, rest) = values.split_at(simple.layout.oscillator);
+        let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
+        // A damper and Coulomb friction lose the same in a swing if F = π/4 c V.
+        let as_friction =
+            dissipation.friction + 0.25 * PI * dissipation.damping * 0.5 * reference(self.decays).scales().1;
+        let all_friction = Dissipation { friction: as_friction, damping: 0.0 };
+        let half = Dissipation { friction: as_friction, damping: 0.5 * dissipation.damping };
+        let mut starts = Vec::new();
+        let sharpnesses: &[f64] = if self.law().fitted().any(bends) { &[1.0, 8.0, 0.125] } else { &[1.0] };
+        for sharpness in sharpnesses {
+            let shares = if self.has_linear_damping() { vec![dissipation, half] } else { vec![all_friction] };
+            for share in shares {
+                let mut start = oscillator.to_vec();
+                self.push_dissipation(share, *sharpness, &mut start);
+                start.extend_from_slice(&values[simple.layout.shared..]);
+                starts.push(self.clamped(&start));
+            }
+        }
+        starts
+    }
+
+    /// Start values near a fit of `simple`, with what its residuals ask for: friction that falls over the speeds of the plainest
+    /// signs, by as much as they say; and the same losses without it.
+    pub(crate) fn near(&self, simple: &Problem<'_>, values: &[f64], signs: &[Sign]) -> Vec<Vec<f64>> {
+        if simple.layout.oscillator != 1 || !self.is_elaborate() {
+            return self.starts();
+        }
+        let (oscillator, rest) = values.split_at(simple.layout.oscillator);
+        let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
+        let own = &values[simple.layout.shared..];
+        let mut falls: Vec<(f64, f64, f64)> = signs
+            .iter()
+            .filter_map(|sign| match sign.addition {
+                Addition::FallsWithSpeed(share) => Some((share, sign.size, sign.significance())),
+                _ => None,
+            })
+            .collect();
+        falls.sort_by(|a, b| b.2.total_cmp(&a.2));
+        falls.truncate(2);
+        if falls.is_empty() {
+            falls = vec![(0.06, 0.3, 0.0), (0.3, 0.3, 0.0)];
+        }
+        if !self.law().fitted().any(bends) {
+            falls.truncate(1);
+        }
+        let bends_at = |share: f64| self.law().bend().map_or(1.0, |typical| typical / share);
+        let mut starts = Vec::new();
+        for (share, size, _) in falls {
+            let mut start = oscillator.to_vec();
+            self.push_dissipation_with(dissipation, bends_at(share), Some(size.clamp(0.05, 2.0)), &mut start);
+            start.extend_from_slice(own);
+            starts.push(self.clamped(&start));
+        }
+        starts
+    }
+
+    /// Start values that put this law where `other` has ended: the same friction over the speed, as nearly as it can, and what else has
+    /// the same name there or in one of `others`; none if one of the two laws states no friction over the speed.
+    pub(crate) fn beside(
+        &self,
+        other: &Identification,
+        others: &[&Identification],
+        starts: &[Vec<f64>],
+    ) -> Option<Vec<f64>> {
+        if self.layout.oscillator != 1 {
+            return None;
+        }
+        let fitted = other.fit();
+        let (layout, _) = Layout::of(other.family(), &self.machine, other.terms(), self.decays).ok()?;
+        let curve = FrictionCurve::of(&layout, other.terms(), fitted.values(), reference(self.decays).scales().1)?;
+        let own = &fitted.values()[layout.shared..];
+        let of_that_name = |(value, parameter): (&f64, &Parameter)| {
+            let mut estimates = std::iter::once(&other).chain(others).flat_map(|other| other.fit().estimates());
+            estimates.find(|estimate| estimate.name() == parameter.name()).map_or(*value, Estimate::value)
+        };
+        let continued = |start: &Vec<f64>| {
+            let shared = start.iter().zip(&self.parameters).take(self.layout.shared).map(of_that_name);
+            self.clamped(&shared.chain(own.iter().copied()).collect::<Vec<_>>())
+        };
+        let starts: Vec<Vec<f64>> = starts.iter().map(continued).collect();
+        curve.followed(&self.layout, &self.terms, &self.parameters, &starts)
+    }
+
+    /// Pushes start values of the damping beside the law and of the law.
+    fn push_dissipation(&self, dissipation: Dissipation, sharpness: f64, start: &mut Vec<f64>) {
+        self.push_dissipation_with(dissipation, sharpness, None, start);
+    }
+
+    /// As [`push_dissipation`](Self::push_dissipation), with the excess of the friction at rest as a share of the level, if it is
+    /// given.
+    fn push_dissipation_with(
+        &self,
+        dissipation: Dissipation,
+        sharpness: f64,
+        excess: Option<f64>,
+        start: &mut Vec<f64>,
+    ) {
+        let (length, speed) = reference(self.decays).scales();
+        let Dissipation { friction, damping } = dissipation;
+        start.extend(self.terms.iter().map(|term| match term {
+            Term::LinearDamping => damping,
+            Term::QuadraticDamping => 0.1 * (damping + friction / speed) / speed,
+            Term::CubicDamping => 0.1 * (damping + friction / speed) / (speed * speed),
+            Term::CubicSpring | Term::QuinticSpring => 0.0,
+        }));
+        let scales = Scales { length, speed, friction, damping, sharpness };
+        start.extend(self.law().fitted().map(|parameter| match (parameter.role(), excess) {
+            (Role::Excess | Role::LevelAbove, Some(excess)) => excess * friction,
+            (Role::Breakaway, _) => FIRST_STATIC_EXCESS * friction,
+            (Role::Level, Some(_)) if parameter.parameter().unit() == "1" => friction,
+            _ => scales.typical(parameter),
+        }));
+    }
+
+    fn clamped(&self, start: &[f64]) -> Vec<f64> {
+        start.iter().zip(&self.parameters).map(|(value, parameter)| parameter.bounds().clamp(*value)).collect()
+    }
+}

@@ -1,0 +1,166 @@
+//! The stages in which a fit is begun: with few samples, with a simple law, with a part of the record, or near another fit.
+
+use std::ops::ControlFlow;
+
+use fmm_fit::{Fit, Options, Outcome, Progress, Residuals, solve_observed};
+use fmm_friction::CoulombViscous;
+use fmm_model::Restoring;
+
+use crate::fit::problem::Problem;
+use crate::{Identification, IdentifyError, Sign};
+
+/// A fit by Coulomb and viscous friction to begin another one near, and what its residuals ask for.
+pub(crate) struct Near<'a> {
+    pub(crate) simple: &'a Identification,
+    pub(crate) signs: &'a [Sign],
+    /// Fits by other laws that describe the records better.
+    pub(crate) others: Vec<&'a Identification>,
+    /// How many of the starts beside others are fitted, the best first.
+    pub(crate) tries: usize,
+}
+
+/// Iterations after which a law that still fits worse than Coulomb and viscous friction is given up.
+const ENOUGH_TO_BE_BETTER: usize = 30;
+
+/// Starts of a driven motion that are fitted, those nearest to the records.
+const MOST_DRIVEN_STARTS: usize = 2;
+
+/// Shares of a record to which a spring that is not linear is fitted before the whole: where the period depends on the amplitude, a small
+/// error of it adds up.
+const BEGINNINGS: [f64; 2] = [0.125, 0.4];
+
+/// The best end of the fits from all start values. Displacements are first fitted up to their last peak, and from
+/// there as a whole. Laws with more than a level and a viscous part continue the fit of one that has just these.
+pub(crate) fn fit_in_stages(
+    problem: &Problem<'_>,
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, IdentifyError> {
+    if let Some(thinned) = problem.thinned() {
+        // One fit of all samples, begun where a search with few of them has ended.
+        let search = problem.with_records(&thinned);
+        let found = fit_in_search(&search, options, observer)?;
+        return best_fit(problem, problem.name(), vec![found.values().to_vec()], options, observer);
+    }
+    fit_in_search(problem, options, observer)
+}
+
+/// The best end of the fits from the starts near a simple fit, or near one by another law, with few of the samples first. The latter
+/// is given up if it stays worse than the simple fit.
+pub(crate) fn fit_near(
+    problem: &Problem<'_>,
+    near: &Near<'_>,
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, IdentifyError> {
+    let simple = Problem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
+    let mut starts = problem.near(&simple, near.simple.fit().values(), near.signs);
+    let beside: Vec<Vec<f64>> =
+        near.others.iter().filter_map(|other| problem.beside(other, &near.others, &starts)).collect();
+    if !beside.is_empty() {
+        let mut all = problem.continued(&simple, near.simple.fit().values());
+        all.truncate(1);
+        all.extend(beside);
+        starts = lowest(problem, all, near.tries);
+    }
+    let worse = near.simple.rms_residual().powi(2);
+    let mut is_given_up = false;
+    let mut observe = |progress: &Progress<'_>, residuals: usize| {
+        let is_worse = progress.sum_of_squares() > worse * residuals as f64;
+        is_given_up |= !near.others.is_empty() && progress.iterations() > ENOUGH_TO_BE_BETTER && is_worse;
+        if is_given_up && is_worse { ControlFlow::Break(()) } else { observer(progress) }
+    };
+    let mut polish = options.clone();
+    if let Some(thinned) = problem.thinned() {
+        let search = problem.with_records(&thinned);
+        let found =
+            best_fit(&search, problem.name(), starts, options, &mut |progress| observe(progress, search.len()))?;
+        starts = vec![found.values().to_vec()];
+        polish = polish.with_max_iterations(options.max_iterations().div_ceil(3));
+    }
+    best_fit(problem, problem.name(), starts, &polish, &mut |progress| observe(progress, problem.len()))
+}
+
+/// Those of `starts` with the smallest sums of squares, at most `count`.
+fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec<f64>> {
+    if starts.len() <= count {
+        return starts;
+    }
+    let mut residuals = vec![0.0; problem.len()];
+    let mut sum = |start: &Vec<f64>| match problem.residuals(start, &mut residuals) {
+        Ok(()) => residuals.iter().map(|residual| residual * residual).sum(),
+        Err(_) => f64::INFINITY,
+    };
+    let mut sums: Vec<(f64, Vec<f64>)> = starts.into_iter().map(|start| (sum(&start), start)).collect();
+    sums.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sums.into_iter().take(count).map(|(_, start)| start).collect()
+}
+
+/// The best end of the fits from everything that may be a start.
+fn fit_in_search(
+    problem: &Problem<'_>,
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, IdentifyError> {
+    if !problem.is_elaborate() || problem.has_spring() {
+        return fit_simple(problem, options, observer);
+    }
+    let simple = Problem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
+    let known = fit_simple(&simple, options, observer)?;
+    let mut starts = problem.continued(&simple, known.values());
+    starts.extend(problem.starts().into_iter().next());
+    best_fit(problem, problem.name(), starts, options, observer)
+}
+
+/// The best end of the fits from start values that the records show.
+fn fit_simple(
+    problem: &Problem<'_>,
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, IdentifyError> {
+    let mut starts = problem.starts();
+    if problem.decays().iter().any(|decay| decay.drive().is_some()) {
+        starts = lowest(problem, starts, MOST_DRIVEN_STARTS);
+    }
+    if let Some(swinging) = problem.up_to_last_peaks() {
+        let problem = problem.with_records(&swinging);
+        if let Ok(fit) = best_fit(&problem, problem.name(), problem.starts(), options, observer) {
+            starts.push(fit.values().to_vec());
+        }
+    }
+    if problem.machine().restoring() != Restoring::Linear || problem.has_spring() {
+        let mut begun = problem.starts();
+        for share in BEGINNINGS {
+            let beginning = problem.beginnings(share);
+            let problem = problem.with_records(&beginning);
+            if let Ok(fit) = best_fit(&problem, problem.name(), std::mem::take(&mut begun), options, observer) {
+                begun.push(fit.values().to_vec());
+            }
+        }
+        starts.extend(begun);
+    }
+    best_fit(problem, problem.name(), starts, options, observer)
+}
+
+/// The best end of the fits from `starts`. No other end is better than one that leaves rounding only.
+pub(crate) fn best_fit(
+    problem: &impl Residuals,
+    law: &'static str,
+    starts: Vec<Vec<f64>>,
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, IdentifyError> {
+    let mut best: Option<Fit> = None;
+    let mut failure = None;
+    for start in starts {
+        match solve_observed(problem, &start, options, |progress| observer(progress)) {
+            Ok(fit) if fit.outcome() == Outcome::AtNoiseFloor => return Ok(fit),
+            Ok(fit) if best.as_ref().is_none_or(|best| fit.sum_of_squares() < best.sum_of_squares()) => {
+                best = Some(fit);
+            }
+            Ok(_) => {}
+            Err(source) => failure = Some(IdentifyError::Fit { law, source }),
+        }
+    }
+    best.ok_or_else(|| failure.unwrap_or(IdentifyError::TooFewHalfSwings { found: 0, needed: 2 }))
+}

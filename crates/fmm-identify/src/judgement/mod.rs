@@ -1,0 +1,160 @@
+//! The judgement: which of several fitted laws the records bear, and which they exclude.
+
+pub(crate) mod comparison;
+mod search;
+pub(crate) mod sign;
+
+pub use comparison::{Comparison, NestedTest, compare, compare_observed};
+pub use search::{Search, search, search_observed};
+pub use sign::{Addition, Sign};
+
+use fmm_fit::f_tail;
+
+use crate::{Candidate, Finding, Identification};
+
+/// What the records say of each of several laws beside the one that fits them best, which laws are left, and which of them is
+/// preferred.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Judgement {
+    /// D of each law, by how much it fits worse than the best, in variances of the noise (1).
+    misfits: Vec<f64>,
+    /// Probability of a misfit as large if that law were the true one (1).
+    pub(crate) probabilities: Vec<f64>,
+    /// D + 2 k, by which laws with as many parameters and more are ranked (1).
+    pub(crate) scores: Vec<f64>,
+    /// Whether each law was fitted to its lowest minimum, as far as is known.
+    pub(crate) is_finished: Vec<bool>,
+    /// Place of the preferred law.
+    pub(crate) preferred: usize,
+    /// Whether no rival is left.
+    pub(crate) is_decided: bool,
+}
+
+/// A law that fits worse than this by chance is excluded. The law that is true is excluded by no more than one in a hundred records:
+/// the best of several others is a little better than one other.
+pub(crate) const EXCLUDED: f64 = 0.002;
+/// A law with a smaller probability is not preferred to a more general one. The best of a dozen laws is better than one other by
+/// chance about four times as often as that one.
+const UNFIT: f64 = 0.0125;
+/// A preferred law with a smaller probability has the more general ones as rivals. A simple law that is true is called undecided by
+/// about one record in eight.
+pub(crate) const DOUBTED: f64 = 0.05;
+/// A rival with more parameters must come within this of the score of the preferred law: what lies farther off has a twentieth of its
+/// likelihood.
+const CLOSE: f64 = 6.0;
+
+/// Relative uncertainty (1) from which on a parameter is told too badly to say that there is no damping beside it.
+const TOLD_BADLY: f64 = 0.004;
+/// How much of that uncertainty, against that of the law without damping, is due to the damping (1).
+const DUE_TO_DAMPING: f64 = 2.0;
+
+/// Whether a parameter of the law `without` damping may be off by more than four thousandths for want of it, as the law `with` it says.
+fn hides_damping(without: &Identification, with: &Identification) -> bool {
+    without.findings().iter().filter(|own| !own.is_of_record()).any(|own| {
+        let theirs = with.finding(own.parameter().name());
+        let (u, value, their_u) = (own.uncertainty(), own.value().abs(), theirs.and_then(Finding::uncertainty));
+        match (u, their_u) {
+            (Some(u), Some(their_u)) => their_u > TOLD_BADLY * value && their_u > DUE_TO_DAMPING * u,
+            _ => false,
+        }
+    })
+}
+
+/// What keeps the fit at this place from being the best that its law can do: it has not ended, or a special case fits better.
+pub(crate) fn shortcomings(place: usize, candidates: &[Candidate], identifications: &[Identification]) -> Vec<String> {
+    /// Rounding of a sum of squares.
+    const ROUNDING: f64 = 1e-9;
+    let found = &identifications[place];
+    let mut sentences = Vec::new();
+    if !found.fit().outcome().is_success() {
+        sentences.push(format!("the fit {}", found.fit().outcome()));
+    }
+    let least = found.fit().sum_of_squares() * (1.0 - ROUNDING) - found.floor();
+    let is_better = |(special, other): &(&Candidate, &Identification)| {
+        other.fit().sum_of_squares() < least && special.is_nested_in(&candidates[place])
+    };
+    if let Some((special, _)) = candidates.iter().zip(identifications).find(is_better) {
+        sentences.push(format!("the fit missed its lowest minimum, as {} fits better", special.name()));
+    }
+    sentences
+}
+
+impl Judgement {
+    /// The judgement of `candidates` by their `identifications` from the same records; none without any.
+    ///
+    /// ```text
+    /// D_i = (S_i − S_b)/σ_i²,     σ_i² = δᵀΣδ/δᵀδ,     δ = r_i − r_b
+    /// ```
+    ///
+    /// b is the law with the smallest sum of squares S, Σ the noise that its residuals r show. σ_i² is the variance of that noise in the
+    /// direction in which the two laws differ: twice the logarithm of a ratio of likelihoods for correlated noise. It depends on
+    /// the two laws alone, and not on how often the record was sampled, nor on other candidates. The probability of D_i is that of
+    /// Fisher's F with as many degrees of freedom as the best law has more parameters, at least one; times the places at which a best
+    /// law that leaps can leap, each of which is a try (Bonferroni).
+    pub(crate) fn of(candidates: &[Candidate], identifications: &[Identification]) -> Option<Self> {
+        let floor = |found: &Identification| found.fit().sum_of_squares().max(found.floor());
+        let best = identifications.iter().min_by(|a, b| floor(a).total_cmp(&floor(b)))?;
+        let rank = |i: usize| identifications[i].parameters_used();
+        let standings = identifications.iter().map(|found| {
+            let (misfit, freedom) = found.misfit_beside(best);
+            let further = best.fit().rank().saturating_sub(found.fit().rank()).max(1) as f64;
+            let probability = (f_tail(misfit / further, further, freedom).unwrap_or(0.0) * best.tries()).min(1.0);
+            (misfit, if misfit > 0.0 { probability } else { 1.0 })
+        });
+        let (misfits, probabilities): (Vec<f64>, Vec<f64>) = standings.unzip();
+        let scores = misfits.iter().enumerate().map(|(i, misfit)| misfit + 2.0 * rank(i) as f64).collect();
+        let is_finished: Vec<bool> =
+            (0..candidates.len()).map(|place| shortcomings(place, candidates, identifications).is_empty()).collect();
+        // A fit that has not ended says what the law can do at least, not what its parameters are.
+        let is_any = (0..misfits.len()).any(|i| probabilities[i] >= UNFIT && is_finished[i]);
+        let bears = |i: &usize| probabilities[*i] >= UNFIT && (is_finished[*i] || !is_any);
+        let preferred = (0..misfits.len()).filter(bears).min_by(|&a, &b| {
+            let (near, far) = (misfits[a], misfits[b]);
+            let by_misfit = if (near - far).abs() > 1e-6 { near.total_cmp(&far) } else { std::cmp::Ordering::Equal };
+            let by_count = candidates[a].parameter_count().cmp(&candidates[b].parameter_count());
+            rank(a).cmp(&rank(b)).then(by_misfit).then(by_count)
+        })?;
+        let mut judgement = Self { misfits, probabilities, scores, is_finished, preferred, is_decided: true };
+        judgement.is_decided =
+            !(0..candidates.len()).any(|place| judgement.is_rival(place, candidates, identifications));
+        Some(judgement)
+    }
+
+    /// Whether the records do not exclude the law at this place.
+    pub(crate) fn is_left(&self, place: usize) -> bool {
+        self.probabilities[place] >= EXCLUDED
+    }
+
+    /// Whether the law at this place may be true in the stead of the preferred one: not excluded, and no law that merely says the
+    /// same with more parameters.
+    fn is_rival(&self, place: usize, candidates: &[Candidate], identifications: &[Identification]) -> bool {
+        let preferred = self.preferred;
+        if place == preferred || !self.is_left(place) {
+            return false;
+        }
+        // A special case of the preferred law is doubted, or it would be preferred, but it is not excluded.
+        if candidates[place].is_nested_in(&candidates[preferred]) {
+            return identifications[place].parameters_used() < identifications[preferred].parameters_used();
+        }
+        let is_general = candidates[preferred].is_nested_in(&candidates[place]);
+        if is_general && candidates[place].differs_by_damping(&candidates[preferred]) {
+            return hides_damping(&identifications[preferred], &identifications[place]);
+        }
+        if is_general && self.probabilities[preferred] < DOUBTED {
+            return self.scores[place] < self.scores[preferred];
+        }
+        let says_the_same = (self.misfits[place] - self.misfits[preferred]).abs() < 1e-6
+            && identifications[place].parameters_used() == identifications[preferred].parameters_used()
+            && candidates[place].parameter_count() > candidates[preferred].parameter_count();
+        !is_general && !says_the_same && self.scores[place] < self.scores[preferred] + CLOSE
+    }
+
+    /// The weight of the law at `general`, of which the preferred one is a special case, beside the preferred one (1): the ratio of
+    /// their probabilities by Akaike's criterion where the one has only a viscous part more, as every machine has some, and by
+    /// Schwarz' for about `count` independent residuals otherwise.
+    pub(crate) fn weight(&self, general: usize, further: usize, is_damping: bool, count: f64) -> f64 {
+        let gain = self.misfits[self.preferred] - self.misfits[general];
+        let penalty = if is_damping { 2.0 } else { count.max(8.0).ln() };
+        1.0 / (1.0 + (-0.5 * (gain - further as f64 * penalty)).exp())
+    }
+}

@@ -1,0 +1,395 @@
+//! The search for the law that a record asks for: it begins simple and widens as the residuals ask.
+
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use fmm_fit::{Options, Progress};
+
+use crate::fit::stages::Near;
+use crate::judgement::comparison::{closest, explains};
+use crate::judgement::sign::{Addition, Sign, signs};
+use crate::judgement::{Judgement, shortcomings};
+use crate::residuals::filtering::behind_filter;
+use crate::{Candidate, Comparison, Experiment, Identification, IdentifyError, Machine, Warning};
+
+/// How laws are searched for. The default tries as many as the record asks for, on two threads.
+///
+/// ```
+/// use std::time::Duration;
+///
+/// use fmm_identify::Search;
+///
+/// let search = Search::default().within(Duration::from_secs(2));
+/// assert_eq!(search, Search::default().within(Duration::from_millis(2000)));
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Search {
+    held: Vec<(Option<String>, String, f64)>,
+    time_limit: Option<Duration>,
+    threads: usize,
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        Self { held: Vec::new(), time_limit: None, threads: 2 }
+    }
+}
+
+impl Search {
+    /// The same with the parameter called `name` held at `value`, in the unit in which it would be fitted: of the law called `law`, or of
+    /// every law that has one of that name.
+    #[must_use]
+    pub fn holding(mut self, law: Option<&str>, name: &str, value: f64) -> Self {
+        self.held.push((law.map(str::to_owned), name.to_owned(), value));
+        self
+    }
+
+    /// The same ended after `limit`: no further law is begun, and one that is being fitted is left out.
+    #[must_use]
+    pub fn within(self, limit: Duration) -> Self {
+        Self { time_limit: Some(limit), ..self }
+    }
+
+    /// The same on so many threads, at least one. The result does not depend on it.
+    #[must_use]
+    pub fn on_threads(self, threads: usize) -> Self {
+        Self { threads: threads.max(1), ..self }
+    }
+
+    /// The candidate of this name, with what is held.
+    fn candidate(&self, name: &str, machine: &Machine, decays: &[Experiment]) -> Result<Candidate, IdentifyError> {
+        let (name, own) = name.split_once(',').unwrap_or((name, ""));
+        let mut candidate = Candidate::named(name)?;
+        if let Some((parameter, value)) = own.split_once('=') {
+            let is_given =
+                self.held.iter().any(|(law, held, _)| held == parameter.trim() && is_meant(law.as_deref(), &candidate));
+            if let (false, Ok(value)) = (is_given, value.trim().parse()) {
+                candidate = candidate.holding(parameter.trim(), value)?;
+            }
+        }
+        let known = candidate.parameters(machine, decays)?;
+        for (law, parameter, value) in &self.held {
+            if is_meant(law.as_deref(), &candidate) && known.contains(parameter) {
+                candidate = candidate.holding(parameter, *value)?;
+            }
+        }
+        Ok(candidate)
+    }
+
+    /// That each parameter that is held is one of some law that may be tried.
+    fn require_known(&self, machine: &Machine, decays: &[Experiment]) -> Result<(), IdentifyError> {
+        let mut known = Vec::new();
+        for name in SIMPLE
+            .iter()
+            .chain(&OF_SPEED)
+            .chain(&WITH_SPRING)
+            .chain(&OF_SPEED_FURTHER)
+            .chain(&WITH_STATE)
+            .chain(&WITH_STATE_FURTHER)
+        {
+            let candidate = self.candidate(name, machine, decays)?;
+            known.extend(candidate.parameters(machine, decays)?.into_iter().map(|name| (candidate.law_name(), name)));
+        }
+        let is_one = |(law, name): (&Option<String>, &String)| {
+            known.iter().any(|(of, known)| known == name && law.as_ref().is_none_or(|law| law == of))
+        };
+        let Some((_, name, _)) = self.held.iter().find(|(law, name, _)| !is_one((law, name))) else { return Ok(()) };
+        let mut names: Vec<String> = known.into_iter().map(|(_, name)| name).collect();
+        names.sort();
+        names.dedup();
+        Err(IdentifyError::UnknownParameter { name: name.clone(), known: names.join(", ") })
+    }
+}
+
+/// Whether what is held of `law`, or of all if it is none, is meant for the `candidate`.
+fn is_meant(law: Option<&str>, candidate: &Candidate) -> bool {
+    law.is_none_or(|law| candidate.law_name() == law)
+}
+
+/// Laws of the first stage.
+const SIMPLE: [&str; 3] = ["viscous", "coulomb", "coulomb_viscous"];
+/// Laws that change with speed, with the viscous part that a simple law has.
+const OF_SPEED: [&str; 7] = [
+    "berger+linear",
+    "stribeck,exponent=2",
+    "stribeck_lorentzian",
+    "coulomb+quadratic",
+    "coulomb_viscous+quadratic",
+    "acceleration_coulomb+linear",
+    "hyperbolic+linear",
+];
+/// Laws whose friction changes with speed in ways of their own.
+const OF_SPEED_FURTHER: [&str; 6] =
+    ["stribeck", "power_law", "exponential_pair+linear", "makkar_dixon", "regularised_stribeck", "karnopp+linear"];
+/// A level and a straight line on a spring that hardens or softens.
+const WITH_SPRING: [&str; 3] = [
+    "coulomb_viscous+cubic spring",
+    "coulomb_viscous+cubic spring+quintic spring",
+    "coulomb_viscous+quadratic+cubic spring+quintic spring",
+];
+/// Presliding over less of the amplitude than this (1) is none that a record shows.
+const LEAST_PRESLIDING: f64 = 2e-3;
+/// Steps of a converter that presliding must exceed to be seen.
+const STEPS_OF_PRESLIDING: f64 = 3.0;
+/// Iterations of a fit that is begun near another one: one that needs more is led by something else.
+const MOST_ITERATIONS: usize = 80;
+/// The same of laws with presliding, whose motion takes long to simulate.
+const MOST_ITERATIONS_WITH_STATE: usize = 40;
+/// Laws with presliding.
+const WITH_STATE: [&str; 1] = ["dahl+linear,exponent=1"];
+/// Laws with presliding that are begun near the one that describes the records best.
+const WITH_STATE_FURTHER: [&str; 2] = ["lugre,exponent=2", "bouc_wen+linear,amplitude=1"];
+
+/// Identifies `decays` by as many laws as they ask for.
+///
+/// First viscous damping, Coulomb friction and both. If the residuals of these show signs of something else, or are alike where they
+/// should be noise, laws whose friction changes with speed, and springs that harden or soften if there are signs of one; then further
+/// families, each begun where its friction over the speed follows
+/// that of the best law so far; and laws with presliding if there are signs of that. What was looked for is in [`Comparison::signs`].
+/// Laws that could not be fitted to the end, and that are then far from what others reach, are left out; a warning names them.
+///
+/// # Errors
+/// [`IdentifyError`] as for [`identify`](crate::identify), and for a parameter that no law has.
+pub fn search(machine: &Machine, decays: &[Experiment], search: &Search) -> Result<Comparison, IdentifyError> {
+    search_observed(machine, decays, search, &Options::default(), |_, _| ControlFlow::Continue(()))
+}
+
+/// As [`search`], with options for the solver and an observer that gets the law's name with every trial step.
+///
+/// # Errors
+/// As for [`search`].
+pub fn search_observed(
+    machine: &Machine,
+    decays: &[Experiment],
+    search: &Search,
+    options: &Options,
+    observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
+) -> Result<Comparison, IdentifyError> {
+    let (observer, begun) = (Mutex::new(observer), Instant::now());
+    let run = Run { machine, decays, search, options, observer: &observer, begun };
+    if !search.held.is_empty() {
+        search.require_known(machine, decays)?;
+    }
+    let mut found = run.fit(run.candidates(&SIMPLE)?, None)?;
+    let drifting = closest(found.identifications.iter()).and_then(|found| found.with_drift(decays));
+    let mut decays = decays;
+    if let Some(drifting) = &drifting {
+        let with_drift = Run { decays: drifting, ..run }.fit(run.candidates(&SIMPLE)?, None)?;
+        if explains(&with_drift.identifications) {
+            (decays, found) = (drifting, with_drift);
+        }
+    }
+    let run = Run { decays, ..run };
+    let mut signs = run.signs(&found);
+    if found.asks_for_more(&signs) {
+        let falling = run.fit(run.candidates(&OF_SPEED)?, found.near(&signs, &[], 0).as_ref())?;
+        found.add(falling);
+        let is_bent = |sign: &Sign| sign.addition == Addition::SofteningSpring && sign.is_plain();
+        // What a filter in the sensor does to a decay looks like a bent spring as well.
+        let is_filtered = || {
+            behind_filter(decays, &found.identifications).is_some_and(|(found, _)| !found.structure().is_correlated())
+        };
+        if found.is_structured() && signs.iter().any(is_bent) && !is_filtered() {
+            let bent = run.fit(run.candidates(&WITH_SPRING)?, found.near(&signs, &[], 0).as_ref())?;
+            found.add(bent);
+        }
+        let limited = |most: usize| options.clone().with_max_iterations(most.min(options.max_iterations()));
+        let (of_speed, limited_more) = (limited(MOST_ITERATIONS), limited(MOST_ITERATIONS_WITH_STATE));
+        let run = Run { options: &of_speed, ..run };
+        let further = found.unfinished().chain(run.candidates(&OF_SPEED_FURTHER)?).collect();
+        let further = run.fit(further, found.near(&signs, &[|_| true], 1).as_ref())?;
+        found.add(further);
+        // A converter hides what is not longer than a few of its steps, and its steps look like presliding: neither moves where the
+        // machine turns.
+        let steps = decays.iter().map(|decay| {
+            let summary = decay.summary();
+            summary.resolution.filter(|_| summary.is_rounded()).unwrap_or(0.0) / summary.amplitudes.0
+        });
+        let least = steps.map(|step| STEPS_OF_PRESLIDING * step).fold(LEAST_PRESLIDING, f64::max);
+        let seen =
+            |sign: &Sign| sign.addition == Addition::Presliding && sign.significance() > 2.0 && sign.size > least;
+        if signs.iter().any(seen) {
+            let run = Run { options: &limited_more, ..run };
+            let with_state = run.fit(run.candidates(&WITH_STATE)?, found.near(&signs, &[], 0).as_ref())?;
+            found.add(with_state);
+            let with_state =
+                run.fit(run.candidates(&WITH_STATE_FURTHER)?, found.near(&signs, &[preslides], 2).as_ref())?;
+            found.add(with_state);
+        }
+    }
+    let dropped = found.drop_unfinished();
+    signs.retain(|sign| sign.uncertainty.is_finite());
+    let mut comparison = Comparison::of(decays, &found.candidates, found.identifications)?;
+    comparison.signs = signs;
+    comparison.is_complete = !found.is_cut_short;
+    if found.is_cut_short {
+        comparison.warnings.push(Warning::TimeLimit);
+    }
+    if !dropped.is_empty() {
+        comparison.warnings.push(Warning::NotFitted { laws: dropped.join(", ") });
+    }
+    Ok(comparison)
+}
+
+/// What a search has found so far.
+#[derive(Default)]
+struct Found {
+    candidates: Vec<Candidate>,
+    identifications: Vec<Identification>,
+    is_cut_short: bool,
+}
+
+impl Found {
+    /// Adds what was found further; of two fits by one law the better stays.
+    fn add(&mut self, further: Self) {
+        self.is_cut_short |= further.is_cut_short;
+        for (candidate, found) in further.candidates.into_iter().zip(further.identifications) {
+            match self.identifications.iter_mut().find(|known| known.law() == found.law()) {
+                Some(known) if found.fit().sum_of_squares() < known.fit().sum_of_squares() => *known = found,
+                Some(_) => {}
+                None => {
+                    self.candidates.push(candidate);
+                    self.identifications.push(found);
+                }
+            }
+        }
+    }
+
+    /// Fits to begin another one near: that by Coulomb and viscous friction, and the closest to the records of each of `kinds`; so many
+    /// `tries` are made.
+    fn near<'a>(&'a self, signs: &'a [Sign], kinds: &[fn(&Identification) -> bool], tries: usize) -> Option<Near<'a>> {
+        let simple = self.simple()?;
+        let others =
+            kinds.iter().filter_map(|is_kind| closest(self.identifications.iter().filter(|found| is_kind(found))));
+        Some(Near { simple, signs, others: others.collect(), tries })
+    }
+
+    /// Laws whose fits have not ended in their lowest minimum.
+    fn unfinished(&self) -> impl Iterator<Item = Candidate> {
+        let all = self.candidates.iter().enumerate();
+        all.filter(|(place, _)| !shortcomings(*place, &self.candidates, &self.identifications).is_empty())
+            .map(|(_, candidate)| candidate.clone())
+    }
+
+    /// Leaves out the laws whose fits have not ended in their lowest minimum and are far from what other laws reach; returns their
+    /// names.
+    fn drop_unfinished(&mut self) -> Vec<String> {
+        let Some(judgement) = Judgement::of(&self.candidates, &self.identifications) else { return Vec::new() };
+        let all = std::mem::take(&mut self.candidates).into_iter().zip(std::mem::take(&mut self.identifications));
+        let mut dropped = Vec::new();
+        for (place, (candidate, found)) in all.enumerate() {
+            let is_simple = SIMPLE.contains(&candidate.law_name());
+            if !is_simple && !judgement.is_left(place) && !judgement.is_finished[place] {
+                dropped.push(candidate.name());
+            } else {
+                self.candidates.push(candidate);
+                self.identifications.push(found);
+            }
+        }
+        dropped
+    }
+
+    /// Whether the simple laws leave something in the residuals.
+    fn asks_for_more(&self, signs: &[Sign]) -> bool {
+        let held_back = |found: &Identification| found.damping_would_be_negative();
+        signs.iter().any(Sign::is_plain) || self.is_structured() || self.simple().is_some_and(held_back)
+    }
+
+    /// Whether the residuals of the best law are alike where they should be noise.
+    fn is_structured(&self) -> bool {
+        let judgement = Judgement::of(&self.candidates, &self.identifications);
+        judgement.is_some_and(|judgement| self.identifications[judgement.preferred].structure().is_correlated())
+    }
+
+    /// The fit by Coulomb and viscous friction, whatever is held of it; it is among the first.
+    fn simple(&self) -> Option<&Identification> {
+        self.identifications.iter().find(|found| found.family().name == "coulomb_viscous")
+    }
+}
+
+/// Whether the law has presliding.
+fn preslides(found: &Identification) -> bool {
+    found.finding("contact_stiffness_per_mass").is_some()
+}
+
+struct Run<'a, F> {
+    machine: &'a Machine,
+    decays: &'a [Experiment],
+    search: &'a Search,
+    options: &'a Options,
+    observer: &'a Mutex<F>,
+    begun: Instant,
+}
+
+impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
+    /// The candidates of these names, with what is held.
+    fn candidates(&self, names: &[&str]) -> Result<Vec<Candidate>, IdentifyError> {
+        names.iter().map(|name| self.search.candidate(name, self.machine, self.decays)).collect()
+    }
+
+    fn is_late(&self) -> bool {
+        self.search.time_limit.is_some_and(|limit| self.begun.elapsed() >= limit)
+    }
+
+    /// Fits the `candidates`, each a piece of work for whichever thread is idle. Those that are not begun near others must be there,
+    /// whatever the time.
+    fn fit(&self, candidates: Vec<Candidate>, near: Option<&Near<'_>>) -> Result<Found, IdentifyError> {
+        let must = near.is_none();
+        let mut found = Found::default();
+        let next = AtomicUsize::new(0);
+        let results: Vec<Mutex<Option<Result<Identification, IdentifyError>>>> =
+            candidates.iter().map(|_| Mutex::new(None)).collect();
+        let work = || {
+            loop {
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                let Some(candidate) = candidates.get(index) else { break };
+                if !must && self.is_late() {
+                    break;
+                }
+                let name = candidate.name();
+                let mut observe = |progress: &Progress<'_>| {
+                    if !must && self.is_late() {
+                        return ControlFlow::Break(());
+                    }
+                    match self.observer.lock() {
+                        Ok(mut observer) => observer(&name, progress),
+                        Err(_) => ControlFlow::Break(()),
+                    }
+                };
+                let result = candidate.identify_near(self.machine, self.decays, near, self.options, &mut observe);
+                if let Ok(mut slot) = results[index].lock() {
+                    *slot = Some(result);
+                }
+            }
+        };
+        let threads = self.search.threads.min(candidates.len());
+        std::thread::scope(|scope| {
+            for _ in 1..threads {
+                scope.spawn(work);
+            }
+            work();
+        });
+        for (candidate, result) in candidates.into_iter().zip(results) {
+            let result = result.into_inner().ok().flatten();
+            match result {
+                Some(Ok(identification)) if must || !self.is_late() || identification.fit().outcome().is_success() => {
+                    found.candidates.push(candidate);
+                    found.identifications.push(identification);
+                }
+                Some(Err(error)) if must => return Err(error),
+                // A law that cannot follow this record is no candidate for it.
+                Some(Err(_)) => {}
+                _ => found.is_cut_short = true,
+            }
+        }
+        Ok(found)
+    }
+
+    fn signs(&self, found: &Found) -> Vec<Sign> {
+        let base = found.simple();
+        base.and_then(|base| signs(base, self.decays).ok()).unwrap_or_default()
+    }
+}

@@ -1,0 +1,199 @@
+//! A law that takes part in a comparison.
+
+use std::ops::ControlFlow;
+
+use fmm_fit::{Options, Progress};
+use fmm_friction::{Coulomb, CoulombViscous, FamilyVisitor, LawFamily, SpecialCase, Viscous, catalogue, family_named};
+
+use crate::fit::identification::identify_by;
+use crate::fit::layout::Layout;
+use crate::fit::stages::Near;
+use crate::law::Law;
+use crate::machine::terms::Term;
+use crate::{Experiment, Identification, IdentifyError, Machine, Terms};
+
+/// An observer of trial steps that may end the fit.
+pub(crate) type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
+
+/// A law family as a value, with terms beside it, so that laws can be chosen at run time and compared in one list.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    law: Law,
+    terms: Terms,
+}
+
+/// Makes candidates of families.
+struct Candidates;
+
+impl FamilyVisitor for Candidates {
+    type Output = Candidate;
+
+    fn visit<F: LawFamily>(&mut self) -> Candidate {
+        Candidate::of::<F>()
+    }
+}
+
+impl Candidate {
+    /// The candidate of family `F`, which may be a law of one's own.
+    pub const fn of<F: LawFamily>() -> Self {
+        Self { law: Law::of::<F>(), terms: Terms::NONE }
+    }
+
+    /// The same law with `terms` beside it.
+    #[must_use]
+    pub fn with(self, terms: Terms) -> Self {
+        Self { terms, ..self }
+    }
+
+    /// The same law with the fitted parameter called `name` held at `value`, in the unit in which it would be fitted.
+    ///
+    /// # Errors
+    /// [`IdentifyError::InvalidInput`] if the value is not finite.
+    pub fn holding(mut self, name: &str, value: f64) -> Result<Self, IdentifyError> {
+        self.terms = self.terms.holding(name, value)?;
+        Ok(self)
+    }
+
+    /// Viscous, Coulomb, and both: the three that a ring-down is compared by when nothing else is asked for.
+    pub const fn standard() -> [Self; 3] {
+        [Self::of::<Viscous>(), Self::of::<Coulomb>(), Self::of::<CoulombViscous>()]
+    }
+
+    /// Every law of the [catalogue](fmm_friction::catalogue()).
+    pub fn catalogue() -> Vec<Self> {
+        catalogue(&mut Candidates)
+    }
+
+    /// The law called `name` in the [`catalogue`](Self::catalogue), with the terms that follow it after plus signs.
+    ///
+    /// ```
+    /// use fmm_identify::Candidate;
+    ///
+    /// assert_eq!(Candidate::named("berger + quadratic")?.name(), "berger + quadratic");
+    /// assert_eq!(Candidate::named("coulomb+linear+any sign")?.name(), "coulomb + linear of any sign");
+    /// assert_eq!(Candidate::named("viscous+cubic_spring")?.name(), "viscous + cubic spring");
+    /// assert!(Candidate::named("coulomb + air").is_err());
+    /// # Ok::<(), fmm_identify::IdentifyError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`IdentifyError::UnknownLaw`] and [`IdentifyError::UnknownTerm`], with the names there are.
+    pub fn named(name: &str) -> Result<Self, IdentifyError> {
+        let mut parts = name.split('+').map(str::trim);
+        let law = parts.next().unwrap_or_default();
+        let known = || Self::catalogue().iter().map(|candidate| candidate.law.name).collect::<Vec<_>>().join(", ");
+        let found = family_named(law, &mut Candidates);
+        let found = found.ok_or_else(|| IdentifyError::UnknownLaw { name: law.to_owned(), known: known() })?;
+        let mut terms = Terms::NONE;
+        for term in parts {
+            terms = match Term::named(&term.replace('_', " ")) {
+                Some(term) => terms.with(term),
+                None if term == "any sign" => terms.with_damping_of_any_sign(),
+                None => return Err(IdentifyError::UnknownTerm { name: term.to_owned() }),
+            };
+        }
+        Ok(found.with(terms))
+    }
+
+    /// Name of the law, with the terms beside it.
+    pub fn name(&self) -> String {
+        self.terms.name(self.law.name)
+    }
+
+    /// Whether this law is a special case of `other`: some values of the parameters of `other` make it this one.
+    pub(crate) fn is_nested_in(&self, other: &Self) -> bool {
+        let viscous = |candidate: &Self| candidate.law.has_slope() || candidate.terms.has_linear_damping();
+        let further = || Term::ALL.into_iter().filter(|term| *term != Term::LinearDamping);
+        let damped =
+            viscous(self) <= viscous(other) && further().all(|term| self.terms.has(term) <= other.terms.has(term));
+        damped
+            && self.is_dry_case_of(other)
+            && !(self.holds_as(other)
+                && other.is_dry_case_of(self)
+                && viscous(self) == viscous(other)
+                && further().all(|term| self.terms.has(term) == other.terms.has(term)))
+    }
+
+    /// Whether the two are the same but for damping of the machine.
+    pub(crate) fn differs_by_damping(&self, other: &Self) -> bool {
+        let viscous = |candidate: &Self| candidate.law.has_slope() || candidate.terms.has_linear_damping();
+        let spring = |candidate: &Self| Term::ALL.map(|term| term.is_spring() && candidate.terms.has(term));
+        self.law.dry_name() == other.law.dry_name()
+            && viscous(self) != viscous(other)
+            && spring(self) == spring(other)
+            && self.holds_as(other)
+    }
+
+    /// Whether both hold the same parameters at the same values.
+    fn holds_as(&self, other: &Self) -> bool {
+        self.terms.held().count() == other.terms.held().count()
+            && self.terms.held().all(|held| other.terms.held().any(|theirs| theirs == held))
+    }
+
+    /// Whether the part of this law that does not grow with the speed is that of `other` for some values of its parameters.
+    fn is_dry_case_of(&self, other: &Self) -> bool {
+        // What the other holds, this one must hold as well.
+        let held = |name: &str| self.terms.held().find(|(held, _)| *held == name).map(|(_, value)| value);
+        let (own, theirs) = (self.law.dry_name(), other.law.dry_name());
+        if own == theirs {
+            return other.terms.held().all(|(name, value)| held(name) == Some(value));
+        }
+        // No friction but the damping is a case of every law with levels that may vanish.
+        if own.is_none() {
+            return true;
+        }
+        let catalogue = Self::catalogue();
+        let allowed = |case: &SpecialCase| {
+            let free = |(name, value): &(&str, f64)| other.terms.held().all(|(held, at)| held != *name || at == *value);
+            case.needed().iter().all(free) && case.restricted().iter().all(|(name, value)| held(name) == Some(*value))
+        };
+        other.law.special_cases.iter().filter(|case| allowed(case)).any(|case| {
+            Some(case.law()) == own
+                || catalogue.iter().any(|between| between.law.name == case.law() && self.is_dry_case_of(between))
+        })
+    }
+
+    pub(crate) fn parameter_count(&self) -> usize {
+        let beside = self.terms.iter().count();
+        (self.law.parameters.len() + beside).saturating_sub(self.terms.held().count())
+    }
+
+    pub(crate) fn identify(
+        &self,
+        machine: &Machine,
+        decays: &[Experiment],
+        options: &Options,
+        observer: &mut Observer<'_>,
+    ) -> Result<Identification, IdentifyError> {
+        identify_by(self.law, machine, &self.terms, decays, None, options, observer)
+    }
+
+    /// As [`identify`](Self::identify), begun near other fits of the same records.
+    pub(crate) fn identify_near(
+        &self,
+        machine: &Machine,
+        decays: &[Experiment],
+        near: Option<&Near<'_>>,
+        options: &Options,
+        observer: &mut Observer<'_>,
+    ) -> Result<Identification, IdentifyError> {
+        identify_by(self.law, machine, &self.terms, decays, near, options, observer)
+    }
+
+    /// Name of the law alone.
+    pub fn law_name(&self) -> &'static str {
+        self.law.name
+    }
+
+    /// Names of the parameters of a fit to `decays`: of the oscillator, the damping, the law, and the initial state.
+    ///
+    /// # Errors
+    /// [`IdentifyError::NoRecord`], and as [`Layout::of`].
+    pub(crate) fn parameters(&self, machine: &Machine, decays: &[Experiment]) -> Result<Vec<String>, IdentifyError> {
+        if decays.is_empty() {
+            return Err(IdentifyError::NoRecord);
+        }
+        let (_, parameters) = Layout::of(self.law, machine, &self.terms, decays)?;
+        Ok(parameters.iter().map(|parameter| parameter.name().to_owned()).collect())
+    }
+}

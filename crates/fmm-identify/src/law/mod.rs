@@ -1,0 +1,155 @@
+//! A law family as a value: what must know its type is the simulation alone, and all else is compiled once for all laws.
+
+mod candidate;
+pub(crate) mod dimension;
+pub(crate) mod friction_curve;
+
+pub use candidate::Candidate;
+
+use fmm_fit::EvaluationError;
+use fmm_friction::{LawFamily, LawParameter, Role, SpecialCase};
+use fmm_model::{Dual, Oscillator, Scalar};
+use fmm_sim::{Excitation, Sampling, Scenario, Trajectory, simulate_into};
+
+/// Directions of derivative that one simulation carries; a law with more parameters takes several.
+pub(crate) const DIRECTIONS: usize = 6;
+
+/// A motion of which everything is said but what the values of the law mean.
+#[derive(Debug, Clone)]
+pub(crate) struct Motion<D> {
+    pub(crate) oscillator: Oscillator<D>,
+    /// One value per parameter of the law.
+    pub(crate) law: Vec<D>,
+    pub(crate) normal_load: D,
+    /// Position and velocity at the begin.
+    pub(crate) initial: [D; 2],
+    pub(crate) force: Option<Excitation<D>>,
+}
+
+impl<D: Scalar> Motion<D> {
+    /// Simulates it by family `F`.
+    pub(crate) fn simulate<F: LawFamily>(
+        &self,
+        sampling: &Sampling,
+        trajectory: &mut Trajectory<D>,
+    ) -> Result<(), EvaluationError> {
+        let scenario = Scenario::new(self.oscillator, F::at(&self.law)?, self.normal_load)?;
+        let mut scenario = scenario.starting_at(self.initial[0], self.initial[1])?;
+        if let Some(force) = &self.force {
+            scenario = scenario.driven_by(force.clone());
+        }
+        Ok(simulate_into::<F, _>(&scenario, sampling, None, trajectory)?)
+    }
+}
+
+/// Friction coefficient (1) of steady sliding by family `F` of these `values` at a speed (m/s) that grows or, if it is `losing`, falls.
+fn steady<F: LawFamily>(values: &[f64], speed: f64, losing: bool) -> Option<f64> {
+    F::steady_coefficient(&F::at::<f64>(values).ok()?, speed, losing)
+}
+
+/// The simulation of a motion by one family.
+pub(crate) type Simulate<D> = fn(&Motion<D>, &Sampling, &mut Trajectory<D>) -> Result<(), EvaluationError>;
+
+/// Name, parameters and simulations of a law family.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Law {
+    pub(crate) name: &'static str,
+    pub(crate) parameters: &'static [LawParameter],
+    pub(crate) special_cases: &'static [SpecialCase],
+    pub(crate) plain: Simulate<f64>,
+    pub(crate) with_derivatives: Simulate<Dual<DIRECTIONS>>,
+    /// Whether static levels of their own are fitted.
+    fits_breakaway: bool,
+    steady: fn(&[f64], f64, bool) -> Option<f64>,
+}
+
+impl Law {
+    /// Family `F`.
+    pub(crate) const fn of<F: LawFamily>() -> Self {
+        Self {
+            name: F::NAME,
+            parameters: F::PARAMETERS,
+            special_cases: F::SPECIAL_CASES,
+            plain: Motion::simulate::<F>,
+            with_derivatives: Motion::simulate::<F>,
+            fits_breakaway: false,
+            steady: steady::<F>,
+        }
+    }
+
+    /// Friction of steady sliding by the law of these [`fitted`](Self::fitted) values, in their unit of force, at a `speed` that grows
+    /// or, if it is `losing`, falls; none if the family does not say.
+    pub(crate) fn steady(&self, fitted: &[f64], speed: f64, losing: bool) -> Option<f64> {
+        (self.steady)(&self.values(fitted), speed, losing)
+    }
+
+    /// The same law with its static level fitted, as what it lies above the sliding level by.
+    pub(crate) const fn with_breakaway(self) -> Self {
+        Self { fits_breakaway: true, ..self }
+    }
+
+    /// The static level that is held; none if it is fitted or has none of its own.
+    pub(crate) fn held_breakaway(&self) -> impl Iterator<Item = &'static LawParameter> + use<> {
+        let is_held = !self.fits_breakaway;
+        self.parameters.iter().filter(move |parameter| is_held && parameter.role() == Role::Breakaway)
+    }
+
+    /// The parameters that records are fitted by: of ring-downs all but static levels, on which the motion depends only in where it
+    /// stops. They are held at the sliding level.
+    pub(crate) fn fitted(&self) -> impl Iterator<Item = &'static LawParameter> + use<> {
+        let is_all = self.fits_breakaway;
+        self.parameters.iter().filter(move |parameter| is_all || parameter.role() != Role::Breakaway)
+    }
+
+    /// The place of its sliding level among the [`fitted`](Self::fitted) parameters: of several levels the one that is called so, or
+    /// else the first.
+    pub(crate) fn level(&self) -> Option<usize> {
+        let is_level =
+            |parameter: &LawParameter| parameter.role() == Role::Level && parameter.parameter().unit() == "1";
+        let is_named = |parameter: &LawParameter| {
+            is_level(parameter) && matches!(parameter.parameter().name(), "coefficient" | "sliding_coefficient")
+        };
+        self.fitted().position(is_named).or_else(|| self.fitted().position(is_level))
+    }
+
+    /// The share of the largest speed at which the law typically bends, of the first parameter that says so; none for laws without.
+    pub(crate) fn bend(&self) -> Option<f64> {
+        self.fitted().filter(|parameter| parameter.role() == Role::Shape).find_map(|parameter| {
+            match parameter.parameter().unit() {
+                "m/s" => Some(parameter.typical()),
+                "s/m" => Some(1.0 / parameter.typical()),
+                _ => None,
+            }
+        })
+    }
+
+    /// Name of what is left of it without its viscous part; none if that is nothing.
+    pub(crate) fn dry_name(&self) -> Option<&'static str> {
+        let is_slope = |parameter: &LawParameter| parameter.role() == Role::Slope;
+        let slopes = self.parameters.iter().filter(|parameter| is_slope(parameter)).count();
+        match (slopes, self.parameters.len() - slopes, self.special_cases) {
+            (1, 0, _) => None,
+            // A level beside the slope is Coulomb's law.
+            (1, 1, [case]) => Some(case.law()),
+            _ => Some(self.name),
+        }
+    }
+
+    /// Whether it has a viscous part.
+    pub(crate) fn has_slope(&self) -> bool {
+        self.parameters.iter().any(|parameter| parameter.role() == Role::Slope)
+    }
+
+    /// Values for all parameters from those of the [`fitted`](Self::fitted) ones: static levels are put in, and a level that may
+    /// not lie below another is that with what it is above it.
+    pub(crate) fn values<D: Scalar>(&self, fitted: &[D]) -> Vec<D> {
+        let level = self.level().map_or(D::from(0.0), |level| fitted[level]);
+        let mut values = fitted.iter();
+        let value = |parameter: &LawParameter| match parameter.role() {
+            Role::Breakaway if !self.fits_breakaway => Some(level),
+            Role::Breakaway | Role::LevelAbove => values.next().map(|excess| level + *excess),
+            _ => values.next().copied(),
+        };
+        self.parameters.iter().filter_map(value).collect()
+    }
+}

@@ -1,0 +1,165 @@
+//! What is known about the machine besides its record.
+
+mod known;
+pub(crate) mod terms;
+
+pub use known::Known;
+pub use terms::Terms;
+
+use fmm_model::{ModelError, Restoring};
+
+/// What is known about the machine besides the record of its motion.
+///
+/// A free vibration shows the natural frequency, damping per mass and friction per mass; multiplying mass,
+/// stiffness, damping and friction by one factor changes nothing in it. The *scale* (a mass or a stiffness) and
+/// the normal load therefore have to come from elsewhere, with an uncertainty of their own.
+///
+/// | known | gives |
+/// |---|---|
+/// | nothing | natural frequency, damping and friction per mass |
+/// | mass or stiffness | the other one, damping and friction force |
+/// | normal load as well | friction coefficient |
+///
+/// ```
+/// use fmm_identify::{Known, Machine};
+///
+/// let machine = Machine::of_mass(Known::new(10.391, 0.005)?)?.with_normal_load(Known::new(14.0, 0.02)?)?;
+/// assert_eq!(machine.normal_load().map(|load| load.value()), Some(14.0));
+/// assert!(Machine::of_mass(Known::exact(-1.0)?).is_err());
+/// # Ok::<(), fmm_model::ModelError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Machine {
+    scale: Scale,
+    damping: Option<Known>,
+    normal_load: Option<Known>,
+    restoring: Restoring,
+}
+
+/// How the equation of motion is scaled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Scale {
+    /// No scale: everything per unit mass.
+    PerUnitMass,
+    /// The mass is known (kg).
+    Mass(Known),
+    /// The stiffness is known (N/m).
+    Stiffness(Known),
+    /// Mass and stiffness are both to be found, which no free vibration can do; a fit says so.
+    Unknown,
+}
+
+impl Machine {
+    /// Nothing is known: everything is found per unit mass.
+    pub const fn per_unit_mass() -> Self {
+        Self { scale: Scale::PerUnitMass, damping: None, normal_load: None, restoring: Restoring::Linear }
+    }
+
+    /// A machine of known `mass` (kg).
+    ///
+    /// # Errors
+    /// [`ModelError::NotPositive`] if the mass is zero or negative.
+    pub fn of_mass(mass: Known) -> Result<Self, ModelError> {
+        ModelError::require_positive("mass", mass.value(), "kg")?;
+        Ok(Self { scale: Scale::Mass(mass), ..Self::per_unit_mass() })
+    }
+
+    /// A machine of known `stiffness` (N/m).
+    ///
+    /// # Errors
+    /// [`ModelError::NotPositive`] if the stiffness is zero or negative.
+    pub fn of_stiffness(stiffness: Known) -> Result<Self, ModelError> {
+        ModelError::require_positive("stiffness", stiffness.value(), "N/m")?;
+        Ok(Self { scale: Scale::Stiffness(stiffness), ..Self::per_unit_mass() })
+    }
+
+    /// A machine whose mass *and* stiffness are to be found from the record, as the thesis' appendix A1 tries.
+    ///
+    /// They cannot be: the fit reports the direction in which mass, stiffness, damping and friction may be scaled
+    /// together. It is here to show that.
+    pub const fn unknown() -> Self {
+        Self { scale: Scale::Unknown, damping: None, normal_load: None, restoring: Restoring::Linear }
+    }
+
+    /// The same machine with a linear damping of its own that is known, for instance from a ring-down without the
+    /// contact, and held in the fit (N s/m; 1/s if no scale is known).
+    ///
+    /// # Errors
+    /// [`ModelError::Negative`] if the damping is negative.
+    pub fn with_damping(mut self, damping: Known) -> Result<Self, ModelError> {
+        ModelError::require_not_negative("linear damping", damping.value(), "N s/m")?;
+        self.damping = Some(damping);
+        Ok(self)
+    }
+
+    /// The same machine with a known normal load (N) on its contact.
+    ///
+    /// # Errors
+    /// [`ModelError::NotPositive`] if the load is zero or negative.
+    pub fn with_normal_load(mut self, load: Known) -> Result<Self, ModelError> {
+        ModelError::require_positive("normal load", load.value(), "N")?;
+        self.normal_load = Some(load);
+        Ok(self)
+    }
+
+    /// The same machine with another restoring force than that of a linear spring. A length in it is in the unit of position
+    /// that belongs to the record: for angles in radians the sine has length 1.
+    #[must_use]
+    pub const fn with_restoring(mut self, restoring: Restoring) -> Self {
+        self.restoring = restoring;
+        self
+    }
+
+    /// The restoring force.
+    pub const fn restoring(&self) -> Restoring {
+        self.restoring
+    }
+
+    /// What is known of mass and stiffness.
+    pub const fn scale(&self) -> Scale {
+        self.scale
+    }
+
+    /// The machine's own damping, if it is known.
+    pub const fn damping(&self) -> Option<Known> {
+        self.damping
+    }
+
+    /// The normal load, if it is known.
+    pub const fn normal_load(&self) -> Option<Known> {
+        self.normal_load
+    }
+
+    /// The same machine with each known input on which a fit depends moved to the ends of its standard uncertainty: its damping, the
+    /// lower end cut at zero, and its scale if a measured force acts on it. Inputs without an uncertainty are left out.
+    pub(crate) fn with_inputs_moved(&self, has_force: bool) -> Vec<[Self; 2]> {
+        let ends = |known: Known| [(known.value() - known.uncertainty()).max(0.0), known.value() + known.uncertainty()];
+        let uncertain = |known: &Known| known.uncertainty() > 0.0;
+        let damping = self
+            .damping
+            .filter(uncertain)
+            .map(|damping| ends(damping).map(|value| Self { damping: Some(damping.moved_to(value)), ..*self }));
+        let scale = match self.scale {
+            Scale::Mass(mass) if has_force && uncertain(&mass) => {
+                Some(ends(mass).map(|value| Self { scale: Scale::Mass(mass.moved_to(value)), ..*self }))
+            }
+            Scale::Stiffness(stiffness) if has_force && uncertain(&stiffness) => {
+                Some(ends(stiffness).map(|value| Self { scale: Scale::Stiffness(stiffness.moved_to(value)), ..*self }))
+            }
+            _ => None,
+        };
+        damping.into_iter().chain(scale).collect()
+    }
+
+    /// The same machine with a scale without uncertainty.
+    pub(crate) fn with_exact_scale(&self) -> Self {
+        let exact = |known: Known| known.exactly();
+        let scale = match self.scale {
+            Scale::Mass(mass) => Scale::Mass(exact(mass)),
+            Scale::Stiffness(stiffness) => Scale::Stiffness(exact(stiffness)),
+            other => other,
+        };
+        Self { scale, ..*self }
+    }
+}

@@ -1,0 +1,321 @@
+//! One number of a report: a quantity with its uncertainty and where it comes from.
+
+use fmm_fit::{EstimateStatus, Fit, coverage_factor};
+use fmm_friction::Role;
+use fmm_model::{Bounds, Dual, Parameter, Rounded, Scalar};
+
+use crate::fit::layout::{Layout, mass_of_stiffness, named};
+use crate::law::dimension::is_force;
+use crate::law::{DIRECTIONS, Law};
+use crate::machine::Scale;
+use crate::residuals::structure::Covariance;
+use crate::{Machine, Terms};
+
+/// Where the value of a finding comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Origin {
+    /// Found by the fit.
+    Fitted(EstimateStatus),
+    /// Follows from fitted values and what is known of the machine.
+    Derived,
+}
+
+/// A quantity that the identification found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    pub(crate) parameter: Parameter,
+    pub(crate) value: f64,
+    pub(crate) uncertainty: Option<f64>,
+    /// ν, by which `uncertainty` is known; infinite for a finding without.
+    degrees_of_freedom: f64,
+    pub(crate) origin: Origin,
+    is_of_record: bool,
+    /// u as if a value on its bound were not there, where `uncertainty` is none for the bound.
+    at_bound: Option<f64>,
+}
+
+impl Finding {
+    /// A finding whose variance, if it has any, is given as that by the residuals of a fit with `degrees_of_freedom`, and in all.
+    /// What else contributes is known; the degrees of freedom of all follow by Welch and Satterthwaite (JCGM 100:2008, G.4.1).
+    pub(crate) fn new(
+        parameter: Parameter,
+        value: f64,
+        variances: Option<(f64, f64)>,
+        degrees_of_freedom: f64,
+        origin: Origin,
+        is_of_record: bool,
+    ) -> Self {
+        let effective = |(random, all): (f64, f64)| {
+            let ratio = if random > 0.0 { all / random } else { f64::INFINITY };
+            degrees_of_freedom * ratio * ratio
+        };
+        Self {
+            parameter,
+            value,
+            uncertainty: variances.map(|(_, all)| all.sqrt()),
+            degrees_of_freedom: variances.map_or(f64::INFINITY, effective),
+            origin,
+            is_of_record,
+            at_bound: None,
+        }
+    }
+
+    /// The same for a value that lies on a bound, or follows from one: the standard uncertainty that it had without the bound.
+    pub(crate) fn at_bound(mut self, uncertainty: Option<f64>, degrees_of_freedom: f64) -> Self {
+        if self.uncertainty.is_none() && uncertainty.is_some() {
+            self.at_bound = uncertainty;
+            self.degrees_of_freedom = degrees_of_freedom;
+        }
+        self
+    }
+
+    /// Widens the uncertainty, if there is one, to `uncertainty` by something known.
+    pub(crate) fn widen(&mut self, uncertainty: f64) {
+        if let Some(narrow) = self.uncertainty.filter(|narrow| *narrow < uncertainty) {
+            self.uncertainty = Some(uncertainty);
+            self.degrees_of_freedom *= (uncertainty / narrow).powi(4);
+        }
+    }
+
+    /// Name, symbol and unit.
+    pub fn parameter(&self) -> &Parameter {
+        &self.parameter
+    }
+
+    /// The estimate, in the unit of the parameter.
+    pub fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// u, its standard uncertainty, in the unit of the parameter; none if the record does not determine it.
+    pub fn uncertainty(&self) -> Option<f64> {
+        self.uncertainty
+    }
+
+    /// ν, the effective degrees of freedom of the uncertainty (1), infinite if nothing of it was estimated from residuals.
+    pub fn degrees_of_freedom(&self) -> f64 {
+        self.degrees_of_freedom
+    }
+
+    /// The interval that covers the quantity with probability `level`, in the unit of the parameter: value ± k u by Student's t
+    /// with the [degrees of freedom](Self::degrees_of_freedom) (JCGM 100:2008, G.4), as far as the bounds of the parameter allow; of
+    /// a value on its bound what lies within the bounds. None without an uncertainty, for what was held, or for a level outside
+    /// (0, 1).
+    pub fn interval(&self, level: f64) -> Option<(f64, f64)> {
+        if self.origin == Origin::Fitted(EstimateStatus::Fixed) {
+            return None;
+        }
+        let reach = self.uncertainty.or(self.at_bound)? * coverage_factor(level, self.degrees_of_freedom)?;
+        let bounds = self.parameter.bounds();
+        Some((bounds.clamp(self.value - reach), bounds.clamp(self.value + reach)))
+    }
+
+    /// Value, uncertainty and unit as text.
+    pub(crate) fn quantity(&self) -> String {
+        let value = Rounded::new(self.value, self.uncertainty);
+        match self.parameter.unit() {
+            "1" => value.to_string(),
+            unit => format!("{value} {unit}"),
+        }
+    }
+
+    /// Its 95 % interval as text, to the place to which the uncertainty is rounded.
+    pub(crate) fn interval_text(&self) -> Option<String> {
+        let (low, high) = self.interval(0.95)?;
+        Some(Rounded::new(self.value, self.uncertainty.or(self.at_bound)).interval(low, high))
+    }
+
+    /// Whether it belongs to one record alone: its initial state or its offset.
+    pub fn is_of_record(&self) -> bool {
+        self.is_of_record
+    }
+
+    /// Where it comes from.
+    pub fn origin(&self) -> Origin {
+        self.origin
+    }
+}
+
+/// Shared values of one fit and what is known from elsewhere, from which the derived quantities follow.
+struct Inputs<'a> {
+    machine: &'a Machine,
+    shared: &'a [f64],
+    family: Law,
+    terms: &'a Terms,
+    /// Unit of a position.
+    position: &'a str,
+    /// Index of the first parameter of the law.
+    law: usize,
+    /// Unit of a force per mass.
+    acceleration: &'a str,
+    gain_uncertainty: f64,
+}
+
+/// Unit of a force per mass of a record in metres.
+pub(crate) const SI_ACCELERATION: &str = "m/s²";
+
+/// Inputs that were not fitted: scale of the machine, normal load, gain of the instrument.
+const KNOWN: usize = 3;
+
+impl Inputs<'_> {
+    /// Standard uncertainties of the inputs that were not fitted.
+    fn uncertainties(&self) -> [f64; KNOWN] {
+        let scale = match self.machine.scale() {
+            Scale::Mass(known) | Scale::Stiffness(known) => known.uncertainty(),
+            Scale::PerUnitMass | Scale::Unknown => 0.0,
+        };
+        [scale, self.machine.normal_load().map_or(0.0, |load| load.uncertainty()), self.gain_uncertainty]
+    }
+
+    /// Whether forces per mass are accelerations in SI, so that a mass makes forces of them.
+    fn is_si(&self) -> bool {
+        self.machine.scale() == Scale::Unknown || self.acceleration == SI_ACCELERATION
+    }
+
+    /// The derived quantities, as numbers whose directions from `first` on are the shared values, then the inputs.
+    fn derived<D: Scalar>(&self, first: usize) -> Vec<(Parameter, D)> {
+        let variable = |value: f64, direction: usize| D::variable(value, direction.wrapping_sub(first));
+        let natural_frequency = variable(self.shared[0], 0);
+        let mut derived = Vec::new();
+        let mass = match self.machine.scale() {
+            Scale::PerUnitMass | Scale::Unknown => None,
+            Scale::Mass(known) => {
+                let mass = variable(known.value(), self.shared.len());
+                let stiffness = mass / mass_of_stiffness(D::from(1.0), natural_frequency);
+                derived.push((Parameter::new("stiffness", "k", "N/m").bounded(Bounds::POSITIVE), stiffness));
+                Some(mass)
+            }
+            Scale::Stiffness(known) => {
+                let mass = mass_of_stiffness(variable(known.value(), self.shared.len()), natural_frequency);
+                derived.push((Parameter::new("mass", "m", "kg").bounded(Bounds::POSITIVE), mass));
+                Some(mass)
+            }
+        };
+        if self.machine.scale() != Scale::Unknown {
+            for (place, term) in self.terms.iter().enumerate().filter(|(_, term)| term.is_spring()) {
+                let value = variable(self.shared[1 + place], 1 + place);
+                let per_mass = value / mass_of_stiffness(D::from(1.0), natural_frequency);
+                derived.push((term.stiffness_per_mass(self.position), per_mass));
+            }
+        }
+        // With an unknown scale the fitted values are forces already, whatever they are worth.
+        let to_force = match self.machine.scale() {
+            Scale::Unknown => Some(D::from(1.0)),
+            _ => mass,
+        };
+        let load = self.machine.normal_load().map(|load| variable(load.value(), self.shared.len() + 1));
+        let gain = variable(1.0, self.shared.len() + 2);
+        let law_value = |index: usize| variable(self.shared[self.law + index], self.law + index);
+        let level = self.family.level().map(law_value);
+        for (i, law_parameter) in self.family.fitted().enumerate() {
+            let (parameter, role) = (law_parameter.parameter(), law_parameter.role());
+            let mut value = law_value(i);
+            if let (Role::LevelAbove | Role::Breakaway, Some(level)) = (role, level) {
+                value += level;
+                if self.machine.scale() == Scale::Unknown {
+                    derived.push((named(parameter, "friction_force", "N").bounded(parameter.bounds()), value));
+                } else {
+                    derived.push((
+                        named(parameter, "friction_per_mass", self.acceleration).bounded(parameter.bounds()),
+                        value / gain,
+                    ));
+                }
+            }
+            let Some(to_force) = to_force else { continue };
+            let force = value * to_force;
+            if role == Role::Slope && mass.is_some() {
+                derived.push((Parameter::new("damping", "c", "N s/m").bounded(parameter.bounds()), force));
+            } else if is_force(role) && parameter.unit() == "1" && self.is_si() {
+                let force = force / gain;
+                let bounded = |quantity, unit| named(parameter, quantity, unit).bounded(parameter.bounds());
+                if mass.is_some() {
+                    derived.push((bounded("friction_force", "N"), force));
+                }
+                if let Some(load) = load {
+                    derived.push((bounded("mu", "1"), force / load));
+                }
+            } else if is_force(role) && parameter.unit() == "1/m" && mass.is_some() && self.is_si() {
+                let name = format!("contact_{}", parameter.name());
+                derived.push((Parameter::named(name, parameter.symbol().to_owned(), "N/m"), force));
+            }
+        }
+        derived
+    }
+}
+
+/// Everything that a fit found: its parameters, and what follows from them and the known inputs of the machine.
+///
+/// Uncertainties of derived quantities are first order, u² = gᵀ V g + Σ (∂y/∂xᵢ)² u²(xᵢ), with exact derivatives
+/// (JCGM 100:2008, 5.1.2 and 5.2.2).
+pub(crate) fn findings(
+    machine: &Machine,
+    layout: &Layout,
+    fit: &Fit,
+    covariance: &Covariance,
+    gain_uncertainty: f64,
+) -> Vec<Finding> {
+    let estimated = fit.estimates().iter().enumerate().map(|(index, estimate)| {
+        // What is proportional to a power of the record is uncertain with its gain.
+        let gain = gain_uncertainty * layout.power_of_gain(index) * estimate.value();
+        Finding::new(
+            estimate.parameter().clone(),
+            estimate.value(),
+            covariance.get(index, index).map(|variance| (variance, variance + gain * gain)),
+            covariance.degrees_of_freedom(),
+            Origin::Fitted(estimate.status()),
+            index >= layout.shared,
+        )
+        .at_bound(
+            Some(estimate)
+                .filter(|estimate| estimate.status().is_at_bound())
+                .and(covariance.relaxed(index))
+                .map(f64::sqrt),
+            covariance.degrees_of_freedom(),
+        )
+    });
+    let mut findings: Vec<Finding> = estimated.collect();
+    let shared = &fit.values()[..layout.shared];
+    let force = layout.family.fitted().position(|parameter| is_force(parameter.role()));
+    let acceleration = force.map_or("", |index| fit.estimates()[layout.law + index].parameter().unit());
+    let position = &layout.position;
+    let (family, law) = (layout.family, layout.law);
+    let inputs =
+        Inputs { machine, shared, family, terms: &layout.terms, position, law, acceleration, gain_uncertainty };
+    let directions = layout.shared + KNOWN;
+    let values = inputs.derived::<f64>(0);
+    let mut gradients = vec![vec![0.0; directions]; values.len()];
+    for first in (0..directions).step_by(DIRECTIONS) {
+        for (gradient, (_, number)) in gradients.iter_mut().zip(inputs.derived::<Dual<DIRECTIONS>>(first)) {
+            for (direction, slope) in gradient[first..].iter_mut().enumerate().take(DIRECTIONS) {
+                *slope = number.partial(direction);
+            }
+        }
+    }
+    for ((parameter, value), gradient) in values.into_iter().zip(gradients) {
+        let known = inputs.uncertainties();
+        let inside = variances(|i, j| covariance.get(i, j), &gradient, known);
+        let relaxed = variances(|i, j| covariance.relaxed_pair(i, j), &gradient, known).map(|(_, all)| all.sqrt());
+        let freedom = covariance.degrees_of_freedom();
+        let finding = Finding::new(parameter, value, inside, freedom, Origin::Derived, false);
+        findings.push(finding.at_bound(relaxed, freedom));
+    }
+    findings
+}
+
+/// gᵀ V g over the fitted values, and that with the variances of the inputs; none if a value that matters has none.
+fn variances(
+    covariance: impl Fn(usize, usize) -> Option<f64>,
+    gradient: &[f64],
+    inputs: [f64; KNOWN],
+) -> Option<(f64, f64)> {
+    let (shared, known) = gradient.split_at(gradient.len() - inputs.len());
+    let mut random = 0.0;
+    for (i, row) in shared.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
+        for (j, column) in shared.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
+            random += row * column * covariance(i, j)?;
+        }
+    }
+    let known: f64 = known.iter().zip(inputs).map(|(slope, u)| (slope * u).powi(2)).sum();
+    Some((random, random + known))
+}

@@ -1,0 +1,166 @@
+//! The reports, on one screen each.
+
+mod estimated;
+pub(crate) mod finding;
+#[cfg(feature = "serde")]
+mod serialised;
+mod warning;
+
+pub use estimated::Estimated;
+pub use finding::{Finding, Origin};
+pub use warning::Warning;
+
+use std::fmt;
+
+use fmm_fit::EstimateStatus;
+
+use crate::judgement::EXCLUDED;
+use crate::{Comparison, Identification, Sign};
+
+/// Width of the column that holds the names of parameters.
+pub(crate) fn name_width(findings: &[Finding]) -> usize {
+    findings.iter().map(|finding| finding.parameter().name().chars().count()).max().unwrap_or(0)
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.quantity())?;
+        if let Some(interval) = self.interval_text() {
+            write!(f, "  {interval}")?;
+        }
+        match self.origin() {
+            Origin::Derived => write!(f, "  (with what is known of the machine)"),
+            Origin::Fitted(EstimateStatus::Undetermined) => write!(f, "  (not determined)"),
+            Origin::Fitted(EstimateStatus::Fixed) => write!(f, "  (held)"),
+            Origin::Fitted(status) if status.is_at_bound() => write!(f, "  (at its bound)"),
+            Origin::Fitted(_) => Ok(()),
+        }
+    }
+}
+
+impl Identification {
+    fn write_findings(&self, f: &mut fmt::Formatter<'_>, rests: &[Option<f64>]) -> fmt::Result {
+        let width = name_width(self.findings());
+        for finding in self.findings() {
+            writeln!(f, "  {:<width$} = {finding}", finding.parameter().name())?;
+        }
+        for (record, motion) in self.motions().iter().enumerate() {
+            let which = if self.motions().len() > 1 { format!("record {}: ", record + 1) } else { String::new() };
+            let ends = match motion.stop_time() {
+                Some(time) => format!("at rest from {time:.4} s"),
+                None => "still moving at the end of the record".to_owned(),
+            };
+            let seen = rests.get(record).copied().flatten();
+            let ends = seen.map_or(ends.clone(), |time| format!("{ends} (the record rests from {time:.3} s)"));
+            writeln!(f, "  {which}{} half swings, {ends}", motion.half_swings())?;
+        }
+        Ok(())
+    }
+}
+
+pub(crate) fn write_warnings(f: &mut fmt::Formatter<'_>, warnings: &[Warning]) -> fmt::Result {
+    if !warnings.is_empty() {
+        writeln!(f, "\nWarnings")?;
+    }
+    warnings.iter().try_for_each(|warning| writeln!(f, "  - {warning}"))
+}
+
+impl fmt::Display for Identification {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let fit = self.fit();
+        writeln!(f, "Fit by the law {}", self.law())?;
+        writeln!(
+            f,
+            "  {}; {} samples, rank {} of {}, rms residual {:.4e}",
+            fit.outcome(),
+            fit.residuals().len(),
+            fit.rank(),
+            fit.free_count(),
+            self.rms_residual()
+        )?;
+        self.write_findings(f, &[])?;
+        write_warnings(f, self.warnings())
+    }
+}
+
+impl Comparison {
+    /// What was found, how sure that is, and what would make it surer: two or three sentences.
+    pub fn headline(&self) -> String {
+        let preferred = self.preferred();
+        let main = preferred.main_findings();
+        let found: Vec<String> = main
+            .iter()
+            .map(|finding| {
+                let interval = finding.interval_text().map_or(String::new(), |text| format!(", 95 % within {text}"));
+                format!("{} = {}{interval}", finding.parameter().name(), finding.quantity())
+            })
+            .collect();
+        let found =
+            if found.is_empty() { "no friction or damping that it determines".to_owned() } else { found.join("; ") };
+        let others: Vec<&str> =
+            self.not_excluded().map(Identification::law).filter(|law| *law != preferred.law()).collect();
+        let is_explained = !preferred.structure().is_structured();
+        let sure = match (self.is_decided(), others.is_empty()) {
+            _ if !is_explained => "of the laws that were tried none explains the record to its noise".to_owned(),
+            (true, true) => "the record excludes every other law that was tried".to_owned(),
+            (true, false) => format!("the record does not ask for more, nor exclude it ({})", others.join(", ")),
+            (false, true) => "a law that was tried could not be fitted to the end".to_owned(),
+            (false, false) => format!("the record does not decide: {} may be true as well", others.join(", ")),
+        };
+        let surer = if !is_explained {
+            "a law that was not tried, a spring that is not linear or a second mode may"
+        } else if self.is_decided() {
+            "more half cycles or less noise would make it surer"
+        } else {
+            "releases of other amplitudes fitted together, or less noise, would tell the laws apart"
+        };
+        format!("{}: {found}; {sure}; {surer}.", preferred.law())
+    }
+}
+
+impl fmt::Display for Comparison {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}\n", self.headline())?;
+        for (record, summary) in self.records().iter().enumerate() {
+            let number = if self.records().len() > 1 { format!(" {}", record + 1) } else { String::new() };
+            writeln!(f, "Record{number}: {summary}")?;
+        }
+        writeln!(f, "\nLaws")?;
+        let width = self.identifications().iter().map(|law| law.law().len()).max().unwrap_or(0);
+        let best = self.scores().iter().copied().fold(f64::INFINITY, f64::min);
+        writeln!(f, "  {:<width$}  rms residual  rank  half swings    rest from   misfit + 2 rank  probability", "")?;
+        let standings = self.scores().iter().copied().zip(self.probabilities().iter().copied());
+        for (law, (score, probability)) in self.identifications().iter().zip(standings) {
+            let stop = law.motions().iter().find_map(crate::FittedMotion::stop_time);
+            let stop = stop.map_or_else(|| "-".to_owned(), |time| format!("{time:.4} s"));
+            let half_swings: usize = law.motions().iter().map(crate::FittedMotion::half_swings).sum();
+            let probability = if probability < EXCLUDED { "excluded".to_owned() } else { format!("{probability:.3}") };
+            writeln!(
+                f,
+                "  {:<width$}  {:>12.4e}  {:>4}  {half_swings:>11}  {stop:>11}  {:>16.1}  {probability:>11}",
+                law.law(),
+                law.rms_residual(),
+                law.fit().rank(),
+                score - best,
+            )?;
+        }
+        let plain: Vec<&Sign> = self.signs().iter().filter(|sign| sign.is_plain()).collect();
+        for sign in &plain {
+            let times = sign.significance();
+            writeln!(f, "  sign of {}: {times:.1} standard uncertainties", sign.addition)?;
+        }
+        let is_simple = matches!(self.preferred().family().dry_name(), None | Some("coulomb"));
+        if plain.is_empty() && !self.signs().is_empty() && is_simple {
+            writeln!(
+                f,
+                "  looked for and not seen: friction that changes with speed, quadratic damping, presliding, a softening spring"
+            )?;
+        }
+        let preferred = self.preferred();
+        let confidence = if self.is_decided() { "" } else { ", though the record does not decide" };
+        writeln!(f, "\nPreferred: {}{confidence}  (value ± standard uncertainty  [95 % interval])", preferred.law())?;
+        let rests: Vec<Option<f64>> = self.records().iter().map(|record| record.rest_from).collect();
+        preferred.write_findings(f, &rests)?;
+        write_warnings(f, self.warnings())
+    }
+}

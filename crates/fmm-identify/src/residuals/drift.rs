@@ -1,0 +1,83 @@
+//! Slow drift of an instrument, as the residuals of a fit show it.
+
+use std::f64::consts::TAU;
+
+use fmm_fit::f_tail;
+
+use crate::experiment::nuisance::{DRIFT, Nuisance};
+use crate::fit::problem::Problem;
+use crate::{Experiment, Identification};
+
+/// The chance that noise alone looks like a drift.
+const CHANCE: f64 = 1e-3;
+/// Residuals below this many times the noise are near it: the parameters of the motion follow the drift by a little as well.
+const NEAR: f64 = 2.0;
+/// Frequencies between the harmonics of the motion, in natural frequencies, where the residuals show their noise.
+const BETWEEN: [f64; 6] = [1.5, 2.5, 3.5, 4.5, 5.5, 6.5];
+
+/// The `decays` with a slow polynomial to be fitted beside the motion of each whose residuals, those of `found`, hold more of it than of
+/// vibrations just above the motion; none if no record shows any.
+///
+/// ```text
+/// F = Σ (qᵀr)²/3 : Σ (cᵀr)²/12,     q polynomials of degree 1 to 3, c cosines and sines at 1.5, 2.5 … 6.5 f₀
+/// ```
+///
+/// q and c are of unit length and without what the parameters of the fit can follow. Noise, white or remembering for a few samples,
+/// has as much of either.
+pub(crate) fn with_drift(
+    found: &Identification,
+    problem: &Problem<'_>,
+    decays: &[Experiment],
+) -> Option<Vec<Experiment>> {
+    if !found.structure().is_noisy() {
+        return None;
+    }
+    let tangent = found.tangent(problem)?;
+    let mut any = false;
+    let mut drifting = Vec::with_capacity(decays.len());
+    for (decay, rows) in decays.iter().zip(problem.row_ranges()) {
+        let (start, end) = (decay.record().start(), decay.record().end());
+        let times: Vec<f64> = decay
+            .kept()
+            .iter()
+            .flat_map(|range| range.clone().map(|index| start + index as f64 * decay.record().interval()))
+            .collect();
+        let energy = |shape: &dyn Fn(f64) -> f64| -> Option<f64> {
+            let mut direction = vec![0.0; found.fit().residuals().len()];
+            direction[rows.clone()].iter_mut().zip(&times).for_each(|(d, time)| *d = shape(*time));
+            tangent.take_out(&mut direction);
+            let square: f64 = direction.iter().map(|d| d * d).sum();
+            let product: f64 = direction.iter().zip(found.fit().residuals()).map(|(d, r)| d * r).sum();
+            (square > 0.0).then(|| product * product / square)
+        };
+        let slow: f64 = DRIFT.iter().filter_map(|nuisance| energy(&|time| nuisance.at(time, start, end))).sum();
+        let frequency = decay.guess().frequency();
+        let above: f64 = BETWEEN
+            .iter()
+            .flat_map(|factor| {
+                let phase = move |time: f64| TAU * factor * frequency * (time - start);
+                [energy(&|time| phase(time).cos()), energy(&|time| phase(time).sin())]
+            })
+            .flatten()
+            .sum();
+        let (degrees, controls) = (DRIFT.len() as f64, 2.0 * BETWEEN.len() as f64);
+        let ratio = (slow / degrees) / (above / controls);
+        // What is left must be near the noise, or it is a law that misses something.
+        let left = (found.fit().sum_of_squares() - slow).max(0.0) / found.fit().residuals().len() as f64;
+        let drifts = above > 0.0
+            && left.sqrt() < NEAR * found.structure().noise
+            && f_tail(ratio, degrees, controls).is_some_and(|p| p < CHANCE);
+        any |= drifts;
+        drifting.push(if drifts { decay.clone().beside(DRIFT.to_vec()) } else { decay.clone() });
+    }
+    any.then_some(drifting)
+}
+
+/// The `decays` with the disturbances that `found` was fitted with, which may be more than they carry.
+pub(crate) fn as_fitted(decays: &[Experiment], disturbances: &[Vec<Nuisance>]) -> Vec<Experiment> {
+    let further = |(decay, all): (&Experiment, &Vec<Nuisance>)| {
+        let missing = all.iter().skip(decay.nuisances().len()).copied().collect();
+        decay.clone().beside(missing)
+    };
+    decays.iter().zip(disturbances).map(further).collect()
+}

@@ -1,0 +1,10 @@
+//! What a fit leaves of the records: its noise, its structure, and what that says of sensor, instrument and surroundings.
+
+mod autoregression;
+pub(crate) mod correlation;
+mod disturbances;
+pub(crate) mod drift;
+pub(crate) mod filtering;
+pub(crate) mod noise;
+mod noise_growth;
+pub(crate) mod structure;

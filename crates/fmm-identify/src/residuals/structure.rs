@@ -1,0 +1,177 @@
+//! Whether the residuals are noise, and the covariance of the estimates either way.
+
+use fmm_fit::{EvaluationError, Fit, autocorrelation_time};
+
+use crate::Experiment;
+use crate::experiment::scaled;
+use crate::fit::problem::Problem;
+use crate::fit::tangent::inverse_of_products;
+use crate::residuals::correlation::are_correlated;
+use crate::residuals::noise::{ResidualNoise, Series};
+
+/// What the residuals of a fit look like beside the noise of the records.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ResidualStructure {
+    /// Root mean square of the residuals, in the unit of the records.
+    pub(crate) residual: f64,
+    /// Standard deviation of what cannot be fitted: white noise and rounding, in the same unit.
+    pub(crate) noise: f64,
+    /// What rounding of doubles alone makes of a record without noise, in the same unit.
+    rounding: f64,
+    /// τ (samples).
+    pub(crate) autocorrelation_time: f64,
+}
+
+/// Above this ratio of residual to noise, and with neighbours that tell each other's value, a law misses something.
+const EXCESS: f64 = 1.5;
+
+impl ResidualStructure {
+    pub(crate) fn of(fit: &Fit, decays: &[Experiment]) -> Self {
+        let rounding =
+            scaled(decays).map(|(decay, weight)| 1e-9 * weight * decay.summary().amplitudes.0).fold(0.0, f64::max);
+        // A converter step counts as the noise of its rounding.
+        let noise = scaled(decays).map(|(decay, weight)| weight * decay.white_noise()).fold(rounding, f64::max);
+        let count = fit.residuals().len() as f64;
+        Self {
+            residual: (fit.sum_of_squares() / count).sqrt(),
+            noise,
+            rounding,
+            autocorrelation_time: autocorrelation_time(fit.residuals()).unwrap_or(1.0),
+        }
+    }
+
+    /// Whether there is more in the residuals than the rounding of doubles.
+    pub(crate) fn is_noisy(&self) -> bool {
+        self.residual > self.rounding
+    }
+
+    /// Whether neighbouring residuals tell each other's value: the law misses something, or the noise is not white.
+    pub(crate) fn is_correlated(&self) -> bool {
+        self.is_noisy() && are_correlated(self.autocorrelation_time)
+    }
+
+    /// Whether the law misses something that the record shows.
+    pub(crate) fn is_structured(&self) -> bool {
+        self.residual > EXCESS * self.noise && self.is_correlated()
+    }
+}
+
+/// Covariance of the estimates, for the noise that the residuals show.
+///
+/// ```text
+/// V = (JᵀJ)⁻¹ JᵀΣJ (JᵀJ)⁻¹
+/// ```
+///
+/// Where the noise is white and of one variance this is that of the [`Fit`]. A parameter that ended on its bound counts as free
+/// to leave it, so that the uncertainty of the others includes what it may take from them.
+#[derive(Debug, Clone)]
+pub(crate) struct Covariance {
+    count: usize,
+    elements: Vec<Option<f64>>,
+    /// Whether the fit knows the parameter: determined, and not on a bound.
+    is_inside: Vec<bool>,
+    degrees_of_freedom: f64,
+    inflation: f64,
+    noise: ResidualNoise,
+}
+
+impl Covariance {
+    pub(crate) fn of(problem: &Problem<'_>, fit: &Fit, structure: &ResidualStructure) -> Result<Self, EvaluationError> {
+        let count = fit.values().len();
+        let plain = |i: usize, j: usize| fit.relaxed_covariance(i, j).or_else(|| fit.covariance(i, j));
+        let mut elements: Vec<Option<f64>> = (0..count * count).map(|at| plain(at / count, at % count)).collect();
+        let known: Vec<usize> = (0..count).filter(|i| elements[i * count + i].is_some()).collect();
+        let variance = fit.residual_standard_deviation().map_or(0.0, |s| s * s);
+        let columns = problem.columns(fit.values(), &known)?;
+        let scale = 1.0 / variance.max(f64::MIN_POSITIVE);
+        let pairs = known.iter().flat_map(|i| known.iter().map(move |j| i * count + j));
+        let unit: Vec<f64> = pairs.map(|at| elements[at].unwrap_or(0.0) * scale).collect();
+        let noise = Self::noise(problem, fit, structure, &columns, &inverse_of_products(&columns));
+        let independent = fit.degrees_of_freedom() as f64;
+        let (mut degrees_of_freedom, mut inflation) = (independent, 1.0_f64);
+        if structure.is_noisy() && !noise.is_plain() && !known.is_empty() {
+            let order = known.len();
+            let middle = noise.products(&columns);
+            let element = |matrix: &[f64], i: usize, j: usize| matrix[i * order + j];
+            // A parameter's influence on the residuals of one that holds all others apart from what they can take over.
+            let mut sum = 0.0;
+            for (a, &i) in known.iter().enumerate() {
+                for (b, &j) in known.iter().enumerate() {
+                    let mut covariance = 0.0;
+                    for k in 0..order {
+                        for l in 0..order {
+                            covariance += element(&unit, a, k) * element(&middle, k, l) * element(&unit, l, b);
+                        }
+                    }
+                    if a == b {
+                        let ratio = covariance / elements[i * count + j].unwrap_or(f64::INFINITY);
+                        inflation = inflation.max(ratio.sqrt());
+                        sum += ratio;
+                    }
+                    elements[i * count + j] = Some(covariance);
+                }
+            }
+            // So many residuals tell no more than one.
+            let alike = (sum / order as f64).max(1.0);
+            let influence: Vec<f64> =
+                (0..columns[0].len()).map(|row| columns.iter().map(|column| column[row]).sum()).collect();
+            let told = (fit.residuals().len() as f64 / alike).min(2.0 * noise.ordinates_along(&influence));
+            degrees_of_freedom = (told - fit.rank() as f64).max(1.5).min(independent);
+        }
+        let is_inside = fit.estimates().iter().map(|estimate| estimate.standard_uncertainty().is_some()).collect();
+        Ok(Self { count, elements, is_inside, degrees_of_freedom, inflation, noise })
+    }
+
+    fn noise(
+        problem: &Problem<'_>,
+        fit: &Fit,
+        structure: &ResidualStructure,
+        columns: &[Vec<f64>],
+        weights: &[f64],
+    ) -> ResidualNoise {
+        let signals: Vec<Vec<f64>> = (0..problem.decays().len()).map(|record| problem.signal(record, fit)).collect();
+        let series: Vec<Series<'_>> = problem
+            .row_ranges()
+            .enumerate()
+            .map(|(record, rows)| Series {
+                rows,
+                signal: structure.is_noisy().then_some(signals[record].as_slice()),
+                period: problem.decays()[record].record().rate() / problem.decays()[record].guess().frequency(),
+                columns,
+                weights,
+                stays: problem.decays()[record].stays(),
+            })
+            .collect();
+        ResidualNoise::of(fit.residuals(), &series)
+    }
+
+    /// Covariance of parameters `i` and `j`; none where the record does not determine them, or for those on a bound.
+    pub(crate) fn get(&self, i: usize, j: usize) -> Option<f64> {
+        if self.is_inside[i] && self.is_inside[j] { self.elements[i * self.count + j] } else { None }
+    }
+
+    /// Variance of parameter `i` as if it were not on its bound.
+    pub(crate) fn relaxed(&self, i: usize) -> Option<f64> {
+        self.relaxed_pair(i, i)
+    }
+
+    /// Covariance of parameters `i` and `j` as if they were not on their bounds.
+    pub(crate) fn relaxed_pair(&self, i: usize, j: usize) -> Option<f64> {
+        self.elements[i * self.count + j]
+    }
+
+    /// Degrees of freedom of the covariance.
+    pub(crate) fn degrees_of_freedom(&self) -> f64 {
+        self.degrees_of_freedom
+    }
+
+    /// Largest ratio of an uncertainty to that of independent residuals.
+    pub(crate) fn inflation(&self) -> f64 {
+        self.inflation
+    }
+
+    /// The noise behind it.
+    pub(crate) fn noise_of_residuals(&self) -> &ResidualNoise {
+        &self.noise
+    }
+}
