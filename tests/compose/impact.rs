@@ -306,7 +306,7 @@ fn other_laws() {
     let value = found.finding("coefficient").unwrap().value();
     assert!((value / 0.04 - 1.0).abs() < 1e-6, "{found}");
     let two = identify_impact::<CoulombViscous>(&small::machine(), &trials, &ImpactOptions::default().free("damping"));
-    assert!(matches!(two, Err(IdentifyError::TwoDampings { .. })));
+    assert!(matches!(two, Err(IdentifyError::Contradiction { .. })));
 }
 
 /// What a blow needs to be, and what is said if it is not.
@@ -347,14 +347,14 @@ fn doubtful_blows() {
         |options: &ImpactOptions| identify_impact::<Coulomb>(&small::machine(), std::slice::from_ref(&trial), options);
     assert!(matches!(
         identify_impact::<Coulomb>(&small::machine(), &[], &ImpactOptions::default()),
-        Err(IdentifyError::NoRecord)
+        Err(IdentifyError::Missing { .. })
     ));
     let narrow = ImpactOptions::default().within(2.01, 2.02).unwrap();
-    assert!(matches!(identify(&narrow), Err(IdentifyError::NoLine { .. })));
+    assert!(matches!(identify(&narrow), Err(IdentifyError::NotSeen { .. })));
     let unknown = ImpactOptions::default().free("dampning");
-    assert!(matches!(identify(&unknown), Err(IdentifyError::UnknownParameter { .. })));
+    assert!(matches!(identify(&unknown), Err(IdentifyError::UnknownName { .. })));
     let outside = ImpactOptions::default().holding("damping", -1.0).unwrap();
-    assert!(matches!(identify(&outside), Err(IdentifyError::HeldOutOfBounds { .. })));
+    assert!(matches!(identify(&outside), Err(IdentifyError::OutOfRange { .. })));
     // Everything free has a scale too many.
     let all = ["mass", "stiffness", "damping", "normal_load", "force_gain"];
     let all = all.into_iter().fold(ImpactOptions::default().fitting(ImpactDomain::Time), ImpactOptions::free);

@@ -90,12 +90,12 @@ const FEWEST: usize = 4;
 /// ```
 ///
 /// # Errors
-/// [`IdentifyError::TooFewHalfSwings`] below four, [`IdentifyError::Amplitude`] where turning points do not alternate.
+/// [`IdentifyError::TooFew`] below four, [`IdentifyError::NotSeen`] where turning points do not alternate.
 pub fn decrements(decay: &Experiment) -> Result<Vec<Decrement>, IdentifyError> {
     decay.require_free("the decrement")?;
     let peaks = decay.peaks();
     if peaks.len() < FEWEST {
-        return Err(IdentifyError::TooFewHalfSwings { found: peaks.len(), needed: FEWEST });
+        return Err(IdentifyError::too_few_half_swings(peaks.len(), FEWEST));
     }
     let displacement = decay.record().quantity() == Quantity::Displacement;
     let rising = (peaks[1].1 - peaks[0].1).signum();
@@ -105,7 +105,7 @@ pub fn decrements(decay: &Experiment) -> Result<Vec<Decrement>, IdentifyError> {
         let sign = if j.is_multiple_of(2) { rising } else { -rising };
         let (time, amplitude) = (f64::midpoint(from, to), 0.5 * sign * (second - first));
         if !(amplitude > 0.0 && amplitude.is_finite()) {
-            return Err(IdentifyError::Amplitude { time, amplitude, unit: decay.record().unit().to_owned() });
+            return Err(IdentifyError::amplitude(time, amplitude, decay.record().unit()));
         }
         amplitudes.push((time, amplitude));
     }

@@ -109,12 +109,12 @@ impl EnergyMethod {
     /// The energy rates in a velocity `record` that has no offset and ends with the motion.
     ///
     /// # Errors
-    /// [`IdentifyError::VelocityNeeded`], [`IdentifyError::TooShort`] if no sample is left, [`IdentifyError::Record`] if
+    /// [`IdentifyError::WrongRecord`], [`IdentifyError::TooFew`] if no sample is left, [`IdentifyError::Record`] if
     /// the smoothing does not fit the record.
     pub fn rates(&self, record: &Record) -> Result<EnergyRates, IdentifyError> {
         let quantity = record.quantity();
         if quantity != Quantity::Velocity {
-            return Err(IdentifyError::VelocityNeeded { estimator: "the energy method", quantity });
+            return Err(IdentifyError::velocity_needed("the energy method", quantity));
         }
         let span = self.smoothing.span();
         if span > record.len() {
@@ -133,7 +133,7 @@ impl EnergyMethod {
     /// as a simulated one; neither smoothed nor differentiated.
     ///
     /// # Errors
-    /// [`IdentifyError::VelocityNeeded`], [`IdentifyError::TooShort`] if no sample is left or the other two have
+    /// [`IdentifyError::WrongRecord`], [`IdentifyError::TooFew`] if no sample is left or the other two have
     /// fewer samples.
     pub fn rates_of_motion(
         &self,
@@ -143,11 +143,11 @@ impl EnergyMethod {
     ) -> Result<EnergyRates, IdentifyError> {
         let quantity = velocity.quantity();
         if quantity != Quantity::Velocity {
-            return Err(IdentifyError::VelocityNeeded { estimator: "the energy method", quantity });
+            return Err(IdentifyError::velocity_needed("the energy method", quantity));
         }
         let samples = position.len().min(acceleration.len());
         if samples < velocity.len() {
-            return Err(IdentifyError::TooShort { samples, needed: velocity.len() });
+            return Err(IdentifyError::too_short(samples, velocity.len()));
         }
         self.rates_of(velocity, position, acceleration, 0.0)
     }
@@ -180,7 +180,7 @@ impl EnergyMethod {
             })
             .collect();
         if rates.is_empty() {
-            return Err(IdentifyError::TooShort { samples: 0, needed: 1 });
+            return Err(IdentifyError::too_short(0, 1));
         }
         rates.sort_by(|a, b| a.velocity.total_cmp(&b.velocity));
         Ok(EnergyRates { rates, noise })

@@ -43,7 +43,10 @@ pub(crate) fn check_reversals(record: &Record, times: &[f64]) -> Result<(), Iden
     let mut previous = f64::NEG_INFINITY;
     for (index, &time) in times.iter().enumerate() {
         if !(time > previous && time >= start - rounding && time <= end + rounding) {
-            return Err(IdentifyError::Reversals { index, time, start, end });
+            let what = format!(
+                "times of zero velocity must increase and lie within {start} s and {end} s, but number {index} is {time} s"
+            );
+            return Err(IdentifyError::OutOfRange { what, value: time });
         }
         previous = time;
     }

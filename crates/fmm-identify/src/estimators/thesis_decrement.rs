@@ -88,12 +88,12 @@ impl ThesisDecrement {
     /// The cycles of a velocity record without offset.
     ///
     /// # Errors
-    /// [`IdentifyError::Quantity`] unless it is a velocity, [`IdentifyError::TooFewHalfSwings`] if fewer than two
+    /// [`IdentifyError::WrongRecord`] unless it is a velocity, [`IdentifyError::TooFew`] if fewer than two
     /// maxima are left, [`IdentifyError::Record`] if the span is even.
     pub fn cycles(&self, record: &Record) -> Result<Vec<ThesisCycle>, IdentifyError> {
         let quantity = record.quantity();
         if quantity != Quantity::Velocity {
-            return Err(IdentifyError::VelocityNeeded { estimator: "the thesis' logarithmic decrement", quantity });
+            return Err(IdentifyError::velocity_needed("the thesis' logarithmic decrement", quantity));
         }
         let values = record.values();
         // MATLAB's `find(v == max(v))` gives the first of equal maxima.
@@ -107,7 +107,7 @@ impl ThesisDecrement {
             .map(|index| smooth[index])
             .collect();
         if peaks.len() < 2 {
-            return Err(IdentifyError::TooFewHalfSwings { found: 2 * peaks.len(), needed: 4 });
+            return Err(IdentifyError::too_few_half_swings(2 * peaks.len(), 4));
         }
         let cycle = |pair: &[f64]| {
             let decrement = (pair[0] / pair[1]).ln();
@@ -149,9 +149,9 @@ mod tests {
         let decrement = ThesisDecrement::default();
         let record = |quantity| Record::sampled(1000.0, vec![1.0; 100], quantity, "m").unwrap();
         let wrong = decrement.cycles(&record(Quantity::Displacement));
-        assert!(matches!(wrong, Err(IdentifyError::VelocityNeeded { quantity: Quantity::Displacement, .. })));
+        assert!(matches!(wrong, Err(IdentifyError::WrongRecord { what }) if what.contains("displacement")));
         let still = decrement.cycles(&record(Quantity::Velocity));
-        assert!(matches!(still, Err(IdentifyError::TooFewHalfSwings { found: 0, .. })));
+        assert!(matches!(still, Err(IdentifyError::TooFew { found: 0, .. })));
         assert!(matches!(decrement.with_span(4).cycles(&record(Quantity::Velocity)), Err(IdentifyError::Record(_))));
         assert!(decrement.with_natural_frequency(0.0).is_err());
     }

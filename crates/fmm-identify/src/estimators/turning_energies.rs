@@ -37,7 +37,7 @@ pub struct HalfSwing {
 /// ([`Oscillator::per_unit_mass`]) F is F/m.
 ///
 /// # Errors
-/// [`IdentifyError::VelocityNeeded`], [`IdentifyError::Reversals`], [`IdentifyError::TooFewHalfSwings`] below one,
+/// [`IdentifyError::WrongRecord`], [`IdentifyError::OutOfRange`], [`IdentifyError::TooFew`] below one,
 /// [`IdentifyError::InvalidInput`].
 pub fn half_swing_losses(
     record: &Record,
@@ -47,7 +47,7 @@ pub fn half_swing_losses(
 ) -> Result<Vec<HalfSwing>, IdentifyError> {
     let quantity = record.quantity();
     if quantity != Quantity::Velocity {
-        return Err(IdentifyError::VelocityNeeded { estimator: "the energy at turning points", quantity });
+        return Err(IdentifyError::velocity_needed("the energy at turning points", quantity));
     }
     let initial_position = ModelError::require_finite("initial position", initial_position, "m")?;
     check_reversals(record, reversals)?;
@@ -88,7 +88,7 @@ pub fn half_swing_losses(
 /// ```
 ///
 /// # Errors
-/// [`IdentifyError::TooFewHalfSwings`] if the centre cannot be found.
+/// [`IdentifyError::TooFew`] if the centre cannot be found.
 pub fn half_swing_losses_of(decay: &Experiment, oscillator: &Oscillator) -> Result<Vec<HalfSwing>, IdentifyError> {
     decay.require_free("the energy of turning points")?;
     let record = decay.record();
@@ -282,7 +282,7 @@ fn losses(
     };
     let found = turns.len().saturating_sub(1);
     if found < needed {
-        return Err(IdentifyError::TooFewHalfSwings { found, needed });
+        return Err(IdentifyError::too_few_half_swings(found, needed));
     }
     let half_swing = |(j, pair): (usize, &[Turn])| {
         let [from, to] = [pair[0], pair[1]];
@@ -292,8 +292,7 @@ fn losses(
         let loss = oscillator.potential_energy(first) - oscillator.potential_energy(last);
         let distance = (last - first).abs();
         if !(distance > 0.0 && distance.is_finite()) {
-            let unit = "between turning points".to_owned();
-            return Err(IdentifyError::Amplitude { time: from.time, amplitude: 0.5 * distance, unit });
+            return Err(IdentifyError::amplitude(from.time, 0.5 * distance, "between turning points"));
         }
         // F is k/2 |x_j + x_{j+1} − 2 centre| less the damping, for a linear spring.
         let mut weights: Vec<f64> = at_middle.iter().map(|weight| -oscillator.stiffness() * weight).collect();

@@ -146,8 +146,8 @@ impl WeakForm {
     /// held here.
     ///
     /// # Errors
-    /// [`IdentifyError::TooFewHalfSwings`] if there are fewer equations than unknowns, [`IdentifyError::Undetermined`] if
-    /// they do not tell them apart, [`IdentifyError::VelocityNeeded`] for quadratic damping of a displacement.
+    /// [`IdentifyError::TooFew`] if there are fewer equations than unknowns, [`IdentifyError::Undetermined`] if
+    /// they do not tell them apart, [`IdentifyError::WrongRecord`] for quadratic damping of a displacement.
     pub fn estimate(&self, decay: &Experiment) -> Result<WeakFormEstimate, IdentifyError> {
         decay.require_free("the weak form")?;
         self.solve(decay.record(), &bridged(decay), &reversals(decay), decay.fixed_offset(), decay.white_noise())
@@ -157,7 +157,7 @@ impl WeakForm {
     /// held if it is given.
     ///
     /// # Errors
-    /// As for [`estimate`](Self::estimate), and [`IdentifyError::Quantity`], [`IdentifyError::Reversals`].
+    /// As for [`estimate`](Self::estimate), and [`IdentifyError::WrongRecord`], [`IdentifyError::OutOfRange`].
     pub fn estimate_between(
         &self,
         record: &Record,
@@ -166,11 +166,8 @@ impl WeakForm {
     ) -> Result<WeakFormEstimate, IdentifyError> {
         let quantity = record.quantity();
         if !matches!(quantity, Quantity::Displacement | Quantity::Velocity) {
-            return Err(IdentifyError::Quantity {
-                subject: "a record for the weak form",
-                needed: "a displacement or a velocity",
-                quantity,
-            });
+            let needed = "a displacement or a velocity";
+            return Err(IdentifyError::wrong_quantity("a record for the weak form", needed, quantity));
         }
         check_reversals(record, reversals)?;
         let offset = offset.map(|offset| ModelError::require_finite("offset", offset, "in the unit of the record"));
@@ -190,11 +187,11 @@ impl WeakForm {
         const FEWEST: usize = 2;
         let half_swings = reversals.len().saturating_sub(1);
         if half_swings < FEWEST {
-            return Err(IdentifyError::TooFewHalfSwings { found: half_swings, needed: FEWEST });
+            return Err(IdentifyError::too_few_half_swings(half_swings, FEWEST));
         }
         let quantity = record.quantity();
         if self.quadratic != Quadratic::None && quantity == Quantity::Displacement {
-            return Err(IdentifyError::VelocityNeeded { estimator: "quadratic damping by the weak form", quantity });
+            return Err(IdentifyError::velocity_needed("quadratic damping by the weak form", quantity));
         }
         let span = reversals[half_swings] - reversals[0];
         let guess = self.frequency.unwrap_or(0.5 * half_swings as f64 / span);
@@ -215,7 +212,7 @@ impl WeakForm {
             let free = parameters.iter().filter(|parameter| !parameter.bounds().is_fixed()).count();
             if system.len() < free {
                 // Two equations for each half swing, one less for differences.
-                return Err(IdentifyError::TooFewHalfSwings { found: half_swings, needed: free.div_ceil(2) + 1 });
+                return Err(IdentifyError::too_few_half_swings(half_swings, free.div_ceil(2) + 1));
             }
             let found = solve(&system, &start, &Options::default())
                 .map_err(|source| IdentifyError::Fit { law: "the weak form", source })?;
@@ -257,7 +254,7 @@ impl WeakForm {
 fn undetermined(parameters: &[Parameter]) -> IdentifyError {
     let free = parameters.iter().filter(|parameter| !parameter.bounds().is_fixed());
     let parameters = free.map(|parameter| parameter.symbol().to_owned()).collect::<Vec<_>>().join(", ");
-    IdentifyError::Undetermined { estimator: "the weak form", parameters }
+    IdentifyError::undetermined("the weak form", parameters)
 }
 
 /// Reads the estimates off a fit whose residuals have a variance of 1 where the record has one of 1.
@@ -270,9 +267,8 @@ fn estimate(fit: Fit, half_swings: usize, noise: f64) -> Result<WeakFormEstimate
         out.value = parameter.value();
         if !parameter.parameter().bounds().is_fixed() {
             let symbol = || parameter.parameter().symbol().to_owned();
-            let variance = fit
-                .unit_covariance(j, j)
-                .ok_or_else(|| IdentifyError::Undetermined { estimator: "the weak form", parameters: symbol() })?;
+            let variance =
+                fit.unit_covariance(j, j).ok_or_else(|| IdentifyError::undetermined("the weak form", symbol()))?;
             out.uncertainty = noise * variance.sqrt();
         }
     }

@@ -120,12 +120,12 @@ impl Windows {
     /// Fits the windows of `decay`.
     ///
     /// # Errors
-    /// [`IdentifyError::TooFewHalfSwings`] if it does not hold one window, [`IdentifyError::Fit`] if a fit cannot begin.
+    /// [`IdentifyError::TooFew`] if it does not hold one window, [`IdentifyError::Fit`] if a fit cannot begin.
     pub fn fit(&self, decay: &Experiment) -> Result<Vec<WindowFit>, IdentifyError> {
         decay.require_free("the fit of windows")?;
         let (peaks, half_swings) = (decay.peaks(), self.cycles.saturating_mul(2));
         if peaks.len() <= half_swings {
-            return Err(IdentifyError::TooFewHalfSwings { found: peaks.len(), needed: half_swings.saturating_add(1) });
+            return Err(IdentifyError::too_few_half_swings(peaks.len(), half_swings.saturating_add(1)));
         }
         let step = self.step.unwrap_or(self.cycles).saturating_mul(2);
         let starts = (0..peaks.len() - half_swings).step_by(step);
@@ -147,7 +147,7 @@ impl Windows {
         let uncertainty = problem.uncertainties(&fit)?;
         let estimated = |j: usize| Estimated { value: fit.values()[j], uncertainty: uncertainty[j] };
 
-        let vibration = problem.vibration(fit.values()).map_err(|error| failure(&error))?;
+        let vibration = problem.vibration(fit.values()).map_err(failure)?;
         let displacement = record.quantity() == Quantity::Displacement;
         let to_velocity = if displacement { 2.0 * std::f64::consts::PI * fit.values()[FREQUENCY] } else { 1.0 };
         let measured = |value: f64| to_velocity * (value - fit.values()[OFFSET]).abs();
@@ -170,8 +170,8 @@ fn centre(peaks: &[(f64, f64)]) -> f64 {
     centres.sum::<f64>() / (peaks.len() - 2) as f64
 }
 
-fn failure(error: &EvaluationError) -> IdentifyError {
-    IdentifyError::Simulation { law: LAW, message: error.to_string() }
+fn failure(error: EvaluationError) -> IdentifyError {
+    IdentifyError::simulation(LAW, error)
 }
 
 /// What is fitted, in errors.
@@ -274,8 +274,7 @@ impl<'a> WindowProblem<'a> {
         let time = autocorrelation_time(fit.residuals()).unwrap_or(1.0);
         let span = ((CORRELATION_TIMES * time) as usize).min(self.kept.len() / FEWEST_WINDOWS).max(1);
         let correlated = if time > INDEPENDENT {
-            CorrelatedCovariance::of(self, fit, span, std::slice::from_ref(&(0..self.kept.len())))
-                .map_err(|error| failure(&error))?
+            CorrelatedCovariance::of(self, fit, span, std::slice::from_ref(&(0..self.kept.len()))).map_err(failure)?
         } else {
             None
         };
@@ -285,10 +284,9 @@ impl<'a> WindowProblem<'a> {
                 continue;
             }
             let parameters = || estimate.name().to_owned();
-            let white = estimate.standard_uncertainty().ok_or_else(|| IdentifyError::Undetermined {
-                estimator: "a window of this length",
-                parameters: parameters(),
-            })?;
+            let white = estimate
+                .standard_uncertainty()
+                .ok_or_else(|| IdentifyError::undetermined("a window of this length", parameters()))?;
             *u =
                 correlated.as_ref().and_then(|covariance| covariance.standard_uncertainty(j)).unwrap_or(0.0).max(white);
         }

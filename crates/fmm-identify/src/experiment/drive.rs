@@ -29,11 +29,11 @@ impl Drive {
     /// A measured force on the mass (N).
     ///
     /// # Errors
-    /// [`IdentifyError::Drive`] unless the record is a force in N.
+    /// [`IdentifyError::WrongRecord`] unless the record is a force in N.
     pub fn force(record: &Record) -> Result<Self, IdentifyError> {
         if record.quantity() != Quantity::Force || record.unit() != "N" {
             let found = format!("{} in {}", record.quantity(), record.unit());
-            return Err(IdentifyError::Drive { expected: "a force in N", found });
+            return Err(IdentifyError::drive("a force in N", &found));
         }
         Ok(Self { record: record.clone(), kind: Kind::Force })
     }
@@ -42,7 +42,7 @@ impl Drive {
     /// once, a displacement twice, by central differences. The response is the motion relative to the base, in the same unit of length.
     ///
     /// # Errors
-    /// [`IdentifyError::Drive`] for a record that is no motion, [`IdentifyError::Record`] for one too short to differentiate.
+    /// [`IdentifyError::WrongRecord`] for a record that is no motion, [`IdentifyError::Record`] for one too short to differentiate.
     pub fn base(record: &Record) -> Result<Self, IdentifyError> {
         let record = match record.quantity() {
             Quantity::Acceleration => record.clone(),
@@ -50,7 +50,7 @@ impl Drive {
             Quantity::Displacement => record.differentiate()?.differentiate()?,
             other => {
                 let found = format!("{other} in {}", record.unit());
-                return Err(IdentifyError::Drive { expected: "an acceleration, a velocity or a displacement", found });
+                return Err(IdentifyError::drive("an acceleration, a velocity or a displacement", &found));
             }
         };
         Ok(Self { record, kind: Kind::Base })
@@ -71,7 +71,9 @@ impl Drive {
         let slack = 1e-6 * self.record.interval();
         if self.record.start() > start + slack || self.record.end() < end - slack {
             let (known_from, known_to) = (self.record.start(), self.record.end());
-            return Err(IdentifyError::DriveTooShort { known_from, known_to, start, end });
+            return Err(IdentifyError::not_seen(format!(
+                "the drive is known from {known_from} s to {known_to} s, but the response lasts from {start} s to {end} s; crop the response"
+            )));
         }
         Ok(())
     }

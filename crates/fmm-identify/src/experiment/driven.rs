@@ -42,20 +42,20 @@ impl Experiment {
     /// ```
     ///
     /// # Errors
-    /// [`IdentifyError::Quantity`] for a response that is neither displacement nor velocity, [`IdentifyError::DriveTooShort`],
-    /// [`IdentifyError::TooShort`], [`IdentifyError::NoMotion`], and [`IdentifyError::NoRest`] for an offset of the rest.
+    /// [`IdentifyError::WrongRecord`] for a response that is neither displacement nor velocity, [`IdentifyError::TooFew`],
+    /// and [`IdentifyError::NotSeen`] if the drive does not last as long, nothing moves, or the offset is to be that of a rest.
     pub fn driven(response: &Record, drive: Drive, preparation: &Preparation) -> Result<Self, IdentifyError> {
         let quantity = response.quantity();
         if !matches!(quantity, Quantity::Displacement | Quantity::Velocity) {
             let (subject, needed) = ("the response of a driven machine", "a displacement or a velocity");
-            return Err(IdentifyError::Quantity { subject, needed, quantity });
+            return Err(IdentifyError::wrong_quantity(subject, needed, quantity));
         }
         let (record, gain_uncertainty) = usable(response, preparation)?;
         let first = record.values()[0];
         drive.require_within(record.start(), record.end())?;
         let held_offset = match preparation.offset {
             Offset::Fitted => None,
-            Offset::Rest => return Err(IdentifyError::NoRest),
+            Offset::Rest => return Err(IdentifyError::no_rest()),
             Offset::Fixed(value) => Some(ModelError::require_finite("offset", value, "in the unit of the record")?),
         };
         let spikes = spikes(&record);

@@ -61,11 +61,11 @@ impl Experiment {
     /// The same under `factor` times the normal load of the machine.
     ///
     /// # Errors
-    /// [`IdentifyError::NotAllowed`] for a factor that is negative or not finite.
+    /// [`IdentifyError::OutOfRange`] for a factor that is negative or not finite.
     pub fn with_load_factor(mut self, factor: f64) -> Result<Self, IdentifyError> {
         if !(factor >= 0.0 && factor.is_finite()) {
             let subject = "the normal load of an experiment";
-            return Err(IdentifyError::NotAllowed { subject, value: factor, allowed: "a multiple from 0 on" });
+            return Err(IdentifyError::not_allowed(subject, factor, "a multiple from 0 on"));
         }
         self.load_factor = factor;
         Ok(self)
@@ -80,13 +80,13 @@ impl Experiment {
     /// The same seen by `sensor`. What its filter remembers of the time before the record is left out of the fit.
     ///
     /// # Errors
-    /// [`IdentifyError::NotAllowed`] for a corner above half the sampling rate, [`IdentifyError::TooShort`] if the filter leaves nothing.
+    /// [`IdentifyError::OutOfRange`] for a corner above half the sampling rate, [`IdentifyError::TooFew`] if the filter leaves nothing.
     pub fn seen_by(mut self, sensor: Sensor) -> Result<Self, IdentifyError> {
         let frequency = self.guess.frequency();
         let limit = 0.5 * self.record.rate();
         if let Some(value) = sensor.low_pass().and_then(|(_, corner)| corner).filter(|corner| *corner > limit) {
             let subject = "the corner frequency of a sensor (Hz)";
-            return Err(IdentifyError::NotAllowed { subject, value, allowed: "below half the sampling rate" });
+            return Err(IdentifyError::not_allowed(subject, value, "below half the sampling rate"));
         }
         let settled = (sensor.settling(frequency) * self.record.rate()).ceil() as usize;
         for range in &mut self.kept {
@@ -95,7 +95,7 @@ impl Experiment {
         self.kept.retain(|range| !range.is_empty());
         self.summary.samples = self.kept.iter().map(Range::len).sum();
         if self.summary.samples < FEWEST_SAMPLES {
-            return Err(IdentifyError::TooShort { samples: self.summary.samples, needed: FEWEST_SAMPLES });
+            return Err(IdentifyError::too_short(self.summary.samples, FEWEST_SAMPLES));
         }
         self.sensor = sensor;
         Ok(self)
@@ -137,12 +137,14 @@ impl Experiment {
     /// That it is a free vibration whose record is one of position or velocity, as `estimator` needs.
     pub(crate) fn require_free(&self, estimator: &'static str) -> Result<(), IdentifyError> {
         if self.driven.is_some() {
-            return Err(IdentifyError::FreeVibrationNeeded { estimator });
+            return Err(IdentifyError::wrong_record(format!(
+                "{estimator} needs a free vibration, but the record is that of a driven one"
+            )));
         }
         let quantity = self.record.quantity();
         if quantity == Quantity::Acceleration {
             let needed = "a displacement or a velocity";
-            return Err(IdentifyError::Quantity { subject: estimator, needed, quantity });
+            return Err(IdentifyError::wrong_quantity(estimator, needed, quantity));
         }
         Ok(())
     }
@@ -350,11 +352,11 @@ fn usable(record: &Record, preparation: &Preparation) -> Result<(Record, f64), I
     let (from, to) = (preparation.from.unwrap_or(record.start()), preparation.to.unwrap_or(record.end()));
     let record = record.crop(from, to)?;
     if record.len() < FEWEST_SAMPLES {
-        return Err(IdentifyError::TooShort { samples: record.len(), needed: FEWEST_SAMPLES });
+        return Err(IdentifyError::too_short(record.len(), FEWEST_SAMPLES));
     }
     let first = record.values()[0];
     if record.values().iter().all(|value| *value == first) {
-        return Err(IdentifyError::NoMotion { value: first, unit: record.unit().to_owned() });
+        return Err(IdentifyError::no_motion(first, record.unit()));
     }
     Ok((record, gain_uncertainty))
 }

@@ -41,7 +41,7 @@ impl Experiment {
         let quantity = record.quantity();
         if !matches!(quantity, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration) {
             let (subject, needed) = ("a ring-down", "a displacement, a velocity or an acceleration");
-            return Err(IdentifyError::Quantity { subject, needed, quantity });
+            return Err(IdentifyError::wrong_quantity(subject, needed, quantity));
         }
         let (record, gain_uncertainty) = usable(record, preparation)?;
         // Hum must not be taken for the machine; what is fitted is the record as it was measured.
@@ -51,7 +51,7 @@ impl Experiment {
         // What shows the swings: the kinks of a velocity are smaller than the jumps of an acceleration.
         let seen_of = |record: &Record| if is_acceleration { velocity_of(record) } else { Some(record.clone()) };
         // One motion is fitted, the first.
-        let seen = seen_of(&cleaned).ok_or(IdentifyError::TooFewHalfSwings { found: 0, needed: FEWEST_HALF_SWINGS })?;
+        let seen = seen_of(&cleaned).ok_or(IdentifyError::too_few_half_swings(0, FEWEST_HALF_SWINGS))?;
         let seen_quantity = seen.quantity();
         let further = further_releases(&seen);
         let until = further.first().map_or(record.end(), |next| next.sound_until);
@@ -61,7 +61,7 @@ impl Experiment {
         let release = Release::of(&cleaned);
         let held_offset = match preparation.offset {
             Offset::Fitted => None,
-            Offset::Rest => Some(release.ok_or(IdentifyError::NoRest)?.offset),
+            Offset::Rest => Some(release.ok_or(IdentifyError::no_rest())?.offset),
             Offset::Fixed(value) => Some(ModelError::require_finite("offset", value, "in the unit of the record")?),
         };
         let begin = release.map_or(record.start(), |release| beginning(&swings, release.rest_end, seen_quantity));
@@ -77,7 +77,7 @@ impl Experiment {
             extrema: peaks.iter().map(|peak| ((peak.time - start).max(0.0), peak.value)).collect(),
             frequency,
         };
-        let few = IdentifyError::TooFewHalfSwings { found: peaks.len(), needed: FEWEST_HALF_SWINGS };
+        let few = IdentifyError::too_few_half_swings(peaks.len(), FEWEST_HALF_SWINGS);
         let guess = FirstGuess::of(&oscillation, seen_quantity).ok_or(few)?;
 
         let spikes = spikes(&cleaned);

@@ -44,7 +44,7 @@ impl Sensor {
     /// The same with a Butterworth low-pass filter of `order` (1 to 8) whose `corner` frequency (Hz, −3 dB) is known.
     ///
     /// # Errors
-    /// [`IdentifyError::NotAllowed`], and [`IdentifyError::InvalidInput`] for a corner that is not positive.
+    /// [`IdentifyError::OutOfRange`], and [`IdentifyError::InvalidInput`] for a corner that is not positive.
     pub fn with_low_pass(self, order: usize, corner: f64) -> Result<Self, IdentifyError> {
         let corner = ModelError::require_positive("corner frequency of the sensor", corner, "Hz")?;
         Ok(Self { low_pass: Some(LowPass { order: checked(order)?, corner: Some(corner) }), ..self })
@@ -53,7 +53,7 @@ impl Sensor {
     /// The same with a Butterworth low-pass filter of `order` (1 to 8) whose corner frequency is fitted.
     ///
     /// # Errors
-    /// [`IdentifyError::NotAllowed`].
+    /// [`IdentifyError::OutOfRange`].
     pub fn with_free_low_pass(self, order: usize) -> Result<Self, IdentifyError> {
         Ok(Self { low_pass: Some(LowPass { order: checked(order)?, corner: None }), ..self })
     }
@@ -108,7 +108,7 @@ fn checked(order: usize) -> Result<usize, IdentifyError> {
     if (1..=HIGHEST_ORDER).contains(&order) {
         return Ok(order);
     }
-    Err(IdentifyError::NotAllowed { subject: "the order of a sensor's filter", value: order as f64, allowed: "1 to 8" })
+    Err(IdentifyError::not_allowed("the order of a sensor's filter", order as f64, "1 to 8"))
 }
 
 /// Low-pass filter of sampled series, exact for series that are straight between their samples.

@@ -163,7 +163,7 @@ pub(crate) fn identify_by(
     };
     // One instrument for all records; the worst statement counts.
     let gain = decays.iter().map(|decay| decay.summary().gain_uncertainty).fold(0.0, f64::max);
-    let failure = |error: EvaluationError| IdentifyError::Simulation { law: law.name, message: error.to_string() };
+    let failure = |error: EvaluationError| IdentifyError::simulation(law.name, error);
     let structure = ResidualStructure::of(&fit, decays);
     let covariance = Covariance::of(&problem, &fit, &structure).map_err(failure)?;
     // What a force does depends on the mass: its uncertainty is propagated by fits, not by the scale of the results.

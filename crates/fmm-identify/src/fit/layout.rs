@@ -43,10 +43,12 @@ impl Layout {
         decays: &[Experiment],
     ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
         if terms.has_linear_damping() && family.has_slope() {
-            return Err(IdentifyError::TwoDampings { law: family.name });
+            return Err(IdentifyError::two_dampings(family.name));
         }
         if terms.has_spring() && matches!(machine.restoring(), Restoring::Sine { .. }) {
-            return Err(IdentifyError::TwoSprings);
+            return Err(IdentifyError::contradiction(
+                "a pendulum has the sine for its restoring force; leave out the pendulum, or the terms of the spring",
+            ));
         }
         let reference = reference(decays);
         let is_driven = decays.iter().any(|decay| decay.drive().is_some());
@@ -91,12 +93,15 @@ impl Layout {
         for (name, value) in terms.held() {
             let known = || parameters.iter().map(Parameter::name).collect::<Vec<_>>().join(", ");
             let Some(index) = parameters.iter().position(|parameter| parameter.name() == name) else {
-                return Err(IdentifyError::NothingToHold { law: family.name, name: name.to_owned(), known: known() });
+                let law = family.name;
+                return Err(IdentifyError::UnknownName {
+                    what: format!("{law} has no parameter called {name:?} to hold; its parameters are: {}", known()),
+                });
             };
             let bounds = parameters[index].bounds();
             if !bounds.contains(value) {
                 let (name, lower, upper) = (name.to_owned(), bounds.lower(), bounds.upper());
-                return Err(IdentifyError::HeldOutOfBounds { name, value, lower, upper });
+                return Err(IdentifyError::held_out_of_bounds(&name, value, lower, upper));
             }
             parameters[index] = parameters[index].clone().bounded(Bounds::new(value, value)?);
         }

@@ -101,23 +101,23 @@ impl<F: LawFamily> MachineProblem<F> {
     /// The problem of `record`, a velocity (m/s) or a displacement (m), with the value of each parameter by its name.
     ///
     /// # Errors
-    /// [`IdentifyError::Quantity`] for a record of another quantity, [`IdentifyError::UnknownParameter`],
-    /// [`IdentifyError::MissingValue`], and [`IdentifyError::HeldOutOfBounds`] for a value that its parameter cannot have.
+    /// [`IdentifyError::WrongRecord`] for a record of another quantity, [`IdentifyError::UnknownName`],
+    /// [`IdentifyError::Missing`], and [`IdentifyError::OutOfRange`] for a value that its parameter cannot have.
     pub fn new(record: &Record, values: &[(&str, f64)]) -> Result<Self, IdentifyError> {
         let quantity = record.quantity();
         let channels = match quantity {
             Quantity::Displacement => Channels::Position,
             Quantity::Velocity => Channels::Velocity,
             _ => {
-                return Err(IdentifyError::Quantity {
-                    subject: "the record of a machine problem",
-                    needed: "a displacement or a velocity",
+                return Err(IdentifyError::wrong_quantity(
+                    "the record of a machine problem",
+                    "a displacement or a velocity",
                     quantity,
-                });
+                ));
             }
         };
         let sampling = Sampling::uniform(record.interval(), record.len())
-            .map_err(|error| IdentifyError::Simulation { law: F::NAME, message: error.to_string() })?
+            .map_err(|error| IdentifyError::simulation(F::NAME, error))?
             .keeping(channels);
         let mut parameters = MACHINE.to_vec();
         parameters.extend(F::PARAMETERS.iter().map(|parameter| parameter.parameter().clone()));
@@ -140,14 +140,15 @@ impl<F: LawFamily> MachineProblem<F> {
         }
         let mut held = Vec::with_capacity(given.len());
         for (parameter, value) in parameters.iter_mut().zip(given) {
-            let value = value.ok_or_else(|| IdentifyError::MissingValue { parameter: parameter.name().to_owned() })?;
+            let value =
+                value.ok_or_else(|| IdentifyError::missing(format!("{} must be given a value", parameter.name())))?;
             let (bounds, fixed) = (parameter.bounds(), Bounds::new(value, value));
             match fixed {
                 Ok(fixed) if bounds.contains(value) => *parameter = parameter.clone().bounded(fixed),
                 _ => {
                     let (lower, upper) = (bounds.lower(), bounds.upper());
                     let name = parameter.name().to_owned();
-                    return Err(IdentifyError::HeldOutOfBounds { name, value, lower, upper });
+                    return Err(IdentifyError::held_out_of_bounds(&name, value, lower, upper));
                 }
             }
             held.push(value);
@@ -170,7 +171,7 @@ impl<F: LawFamily> MachineProblem<F> {
     /// The same with a parameter to be found, from its value and within the bounds of its nature.
     ///
     /// # Errors
-    /// [`IdentifyError::UnknownParameter`].
+    /// [`IdentifyError::UnknownName`].
     pub fn free(self, name: &str) -> Result<Self, IdentifyError> {
         let natural = self.natural[index(&self.parameters, name)?];
         self.free_within(name, natural)
@@ -179,14 +180,14 @@ impl<F: LawFamily> MachineProblem<F> {
     /// The same with a parameter to be found, from its value and within `bounds` and those of its nature.
     ///
     /// # Errors
-    /// [`IdentifyError::UnknownParameter`], and [`IdentifyError::HeldOutOfBounds`] if its value is not within them.
+    /// [`IdentifyError::UnknownName`], and [`IdentifyError::OutOfRange`] if its value is not within them.
     pub fn free_within(mut self, name: &str, bounds: Bounds) -> Result<Self, IdentifyError> {
         let j = index(&self.parameters, name)?;
         let (natural, value) = (self.natural[j], self.values[j]);
         let (lower, upper) = (bounds.lower().max(natural.lower()), bounds.upper().min(natural.upper()));
         let bounds = Bounds::new(lower, upper).ok().filter(|bounds| bounds.contains(value));
         let name = name.to_owned();
-        let bounds = bounds.ok_or(IdentifyError::HeldOutOfBounds { name, value, lower, upper })?;
+        let bounds = bounds.ok_or(IdentifyError::held_out_of_bounds(&name, value, lower, upper))?;
         self.parameters[j] = self.parameters[j].clone().bounded(bounds);
         if let Err(place) = self.free.binary_search(&j) {
             self.free.insert(place, j);
@@ -212,8 +213,7 @@ impl<F: LawFamily> MachineProblem<F> {
     /// # Errors
     /// [`IdentifyError::Simulation`] for a tolerance outside the engine's.
     pub fn with_tolerance(mut self, tolerance: f64) -> Result<Self, IdentifyError> {
-        RungeKutta::new(tolerance)
-            .map_err(|error| IdentifyError::Simulation { law: F::NAME, message: error.to_string() })?;
+        RungeKutta::new(tolerance).map_err(|error| IdentifyError::simulation(F::NAME, error))?;
         self.tolerance = Some(tolerance);
         Ok(self)
     }
@@ -276,9 +276,8 @@ impl<F: LawFamily> MachineProblem<F> {
 
 /// The place of the parameter of this name.
 fn index(parameters: &[Parameter], name: &str) -> Result<usize, IdentifyError> {
-    parameters.iter().position(|parameter| parameter.name() == name).ok_or_else(|| IdentifyError::UnknownParameter {
-        name: name.to_owned(),
-        known: parameters.iter().map(Parameter::name).collect::<Vec<_>>().join(", "),
+    parameters.iter().position(|parameter| parameter.name() == name).ok_or_else(|| {
+        IdentifyError::unknown_parameter(name, &parameters.iter().map(Parameter::name).collect::<Vec<_>>().join(", "))
     })
 }
 

@@ -162,5 +162,5 @@ pub(crate) fn best_fit(
             Err(source) => failure = Some(IdentifyError::Fit { law, source }),
         }
     }
-    best.ok_or_else(|| failure.unwrap_or(IdentifyError::TooFewHalfSwings { found: 0, needed: 2 }))
+    best.ok_or_else(|| failure.unwrap_or(IdentifyError::too_few_half_swings(0, 2)))
 }

@@ -96,8 +96,7 @@ fn identify_by(
 ) -> Result<ImpactIdentification, IdentifyError> {
     let problem = ImpactProblem::of(law, machine, trials, options)?;
     let fit = fit_in_stages(&problem, options)?;
-    let failure =
-        |error: EvaluationError| IdentifyError::Simulation { law: problem.law().name, message: error.to_string() };
+    let failure = |error: EvaluationError| IdentifyError::simulation(problem.law().name, error);
     let motion = |trial: usize| {
         let trajectory = problem.motion(trial, fit.values())?;
         Ok(FittedMotion::of_events(trials[trial].summary().begin, trials[trial].interval(), &trajectory))

@@ -39,7 +39,10 @@ impl Lines {
         let end = (position(band.1) * (1.0 + 1e-9)).floor() as usize + 1;
         let lines = first..end.min(length.div_ceil(2));
         if lines.is_empty() {
-            return Err(IdentifyError::NoLine { low: band.0, high: band.1, spacing: rate / length as f64 });
+            let ((low, high), spacing) = (band, rate / length as f64);
+            return Err(IdentifyError::not_seen(format!(
+                "no line of the spectrum lies between {low} Hz and {high} Hz; lines are {spacing} Hz apart"
+            )));
         }
         Ok(Self { plan, rate, range: lines })
     }
@@ -157,7 +160,7 @@ mod tests {
         assert!((lines(1.0, 4.0).unwrap().frequencies().next().unwrap() - 1.0).abs() < 1e-12);
         for (low, high) in [(0.001, 0.02), (6000.0, 7000.0), (1.001, 1.01)] {
             let refused = lines(low, high);
-            assert!(matches!(refused, Err(IdentifyError::NoLine { .. })), "{low} Hz to {high} Hz: {refused:?}");
+            assert!(matches!(refused, Err(IdentifyError::NotSeen { .. })), "{low} Hz to {high} Hz: {refused:?}");
         }
     }
 }

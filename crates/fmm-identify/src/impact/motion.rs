@@ -73,14 +73,14 @@ impl Motion {
         // The mean of equal numbers is off by rounding.
         let seen = (SEEN * noise).max(SEEN_SHARE * speed_about(rough.value)).max(ROUNDING * rough.value.abs());
         let last = (begin..length).rev().find(|&i| (velocity[i] - rough.value).abs() > seen);
-        let last = last.ok_or(IdentifyError::NoMotion { value: rough.value, unit: "m/s".to_owned() })?;
+        let last = last.ok_or_else(|| IdentifyError::no_motion(rough.value, "m/s"))?;
         let last = last_in_means(&velocity, begin, last, &rough, seen / SEEN).unwrap_or(last);
         let follow = ((AFTER * (last - begin) as f64) as usize).max(FEWEST_QUIET);
         let end = (last + 1 + follow).min(length);
         let is_at_rest = length - end >= FEWEST_QUIET;
         let after = if is_at_rest { end..length } else { length..length };
         if begin.max(after.len()) < FEWEST_QUIET {
-            return Err(IdentifyError::NoQuiet { channel: Channel::Response, samples: begin, needed: FEWEST_QUIET });
+            return Err(IdentifyError::no_quiet(Channel::Response, begin, FEWEST_QUIET));
         }
         let offset = mean(velocity[..begin].iter().chain(&velocity[after]), noise);
         let speed = speed_about(offset.value);

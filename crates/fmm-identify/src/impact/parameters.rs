@@ -108,7 +108,7 @@ impl Parameters {
         for name in &options.free {
             let indices = self.named(name)?;
             if indices == [DAMPING] && law.has_slope() {
-                return Err(IdentifyError::TwoDampings { law: law.name });
+                return Err(IdentifyError::two_dampings(law.name));
             }
             for index in indices {
                 (is_held[index], is_named[index]) = (false, true);
@@ -133,7 +133,7 @@ impl Parameters {
             let bounds = parameter.bounds();
             if !bounds.contains(*value) {
                 let (name, lower, upper) = (parameter.name().to_owned(), bounds.lower(), bounds.upper());
-                return Err(IdentifyError::HeldOutOfBounds { name, value: *value, lower, upper });
+                return Err(IdentifyError::held_out_of_bounds(&name, *value, lower, upper));
             }
             *parameter = parameter.clone().bounded(Bounds::new(*value, *value)?);
         }
@@ -150,7 +150,7 @@ impl Parameters {
         if indices.is_empty() {
             let shared = self.all[..self.shared].iter().map(Parameter::name);
             let known = shared.chain(OWN.iter().map(Parameter::name)).collect::<Vec<_>>().join(", ");
-            return Err(IdentifyError::UnknownParameter { name: name.to_owned(), known });
+            return Err(IdentifyError::unknown_parameter(name, &known));
         }
         Ok(indices)
     }

@@ -62,8 +62,8 @@ impl<'a> ImpactProblem<'a> {
     /// The problem of `trials` on `machine` by a law of family `F`.
     ///
     /// # Errors
-    /// [`IdentifyError::NoRecord`], [`IdentifyError::NoLine`], [`IdentifyError::UnknownParameter`],
-    /// [`IdentifyError::HeldOutOfBounds`], and [`IdentifyError::TwoDampings`] if the damping is to be found beside a law that has
+    /// [`IdentifyError::Missing`], [`IdentifyError::NotSeen`], [`IdentifyError::UnknownName`],
+    /// [`IdentifyError::OutOfRange`], and [`IdentifyError::Contradiction`] if the damping is to be found beside a law that has
     /// a viscous part.
     pub fn new<F: LawFamily>(
         machine: &ImpactMachine,
@@ -80,7 +80,7 @@ impl<'a> ImpactProblem<'a> {
         options: &ImpactOptions,
     ) -> Result<Self, IdentifyError> {
         if trials.is_empty() {
-            return Err(IdentifyError::NoRecord);
+            return Err(IdentifyError::no_record());
         }
         let parameters = Parameters::of(&law.law, machine, trials, options)?;
         let prior = PulsePrior::of(&parameters, options.force_gain_uncertainty);
@@ -98,8 +98,7 @@ impl<'a> ImpactProblem<'a> {
         let spectrum = |(lines, trial): (&Lines, &ImpactTrial)| {
             let mut rows = vec![0.0; lines.rows()];
             let done = lines.transform(0, trial.velocity(), &mut scratch, &mut rows);
-            done.map(|()| rows)
-                .map_err(|error| IdentifyError::Simulation { law: law.law.name, message: error.to_string() })
+            done.map(|()| rows).map_err(|error| IdentifyError::simulation(law.law.name, error))
         };
         let spectra = lines.iter().zip(trials).map(spectrum).collect::<Result<Vec<_>, _>>()?;
         let mut problem = Self {

@@ -102,8 +102,8 @@ impl ImpactTrial {
     ///
     /// # Errors
     /// [`IdentifyError::Impact`] with what is wrong between the two: quantity, number of samples, rate or begin;
-    /// [`IdentifyError::VelocityNeeded`], [`IdentifyError::Unit`], [`IdentifyError::NoPulse`], [`IdentifyError::NoQuiet`],
-    /// [`IdentifyError::NoMotion`], and [`IdentifyError::OppositeDirections`].
+    /// [`IdentifyError::WrongRecord`] for a channel of another quantity or unit, [`IdentifyError::TooFew`] if one is never quiet, and
+    /// [`IdentifyError::NotSeen`] without a blow, without motion, or for motion against the force.
     pub fn prepare(force: &Record, velocity: &Record) -> Result<Self, IdentifyError> {
         require_together(force, velocity)?;
         let interval = velocity.interval();
@@ -114,7 +114,9 @@ impl ImpactTrial {
         let impulse = interval * blow.force.iter().sum::<f64>();
         let swing = motion.velocity[blow.begin..motion.end].iter().find(|v| v.abs() > 0.25 * motion.speed);
         if let Some(first) = swing.filter(|first| *first * impulse < 0.0) {
-            return Err(IdentifyError::OppositeDirections { impulse, velocity: *first });
+            return Err(IdentifyError::not_seen(format!(
+                "the force pushes one way ({impulse} N s) and the machine moves the other ({first} m/s); turn the sign of one channel"
+            )));
         }
         let samples = blow.hits.iter().map(Range::len).sum::<usize>() as f64;
         // A converter step counts as the noise of its rounding.
@@ -192,11 +194,14 @@ fn require_together(force: &Record, velocity: &Record) -> Result<(), IdentifyErr
         return Err(FrfError::WrongQuantity { channel, expected, found }.into());
     }
     if velocity.quantity() != Quantity::Velocity {
-        return Err(IdentifyError::VelocityNeeded { estimator: "the fit of impacts", quantity: velocity.quantity() });
+        return Err(IdentifyError::velocity_needed("the fit of impacts", velocity.quantity()));
     }
     for (channel, record, expected) in [(Channel::Force, force, "N"), (Channel::Response, velocity, "m/s")] {
         if record.unit() != expected {
-            return Err(IdentifyError::Unit { channel, expected, found: record.unit().to_owned() });
+            return Err(IdentifyError::wrong_record(format!(
+                "the {channel} of a blow must be in {expected}, but is in {}; scale the record",
+                record.unit()
+            )));
         }
     }
     if force.len() != velocity.len() {
@@ -241,12 +246,15 @@ impl Blow {
         let after = (after.unwrap_or(0).max(found.samples.end) + width).min(force.len())..force.len();
         let quiet = if before.len() >= FEWEST_QUIET { before } else { after };
         if quiet.len() < FEWEST_QUIET {
-            return Err(IdentifyError::NoQuiet { channel: Channel::Force, samples: quiet.len(), needed: FEWEST_QUIET });
+            return Err(IdentifyError::no_quiet(Channel::Force, quiet.len(), FEWEST_QUIET));
         }
         let offset = mean(force[quiet].iter(), noise);
         let pulse = Pulse::of(force, interval, Baseline::Offset(offset.value))?;
         if !(pulse.level.abs() > SIGNIFICANT * noise) {
-            return Err(IdentifyError::NoPulse { level: pulse.level, noise });
+            let level = pulse.level;
+            return Err(IdentifyError::not_seen(format!(
+                "there is no blow in the force: its largest value is {level} N in a noise of {noise} N"
+            )));
         }
         let spent = (SPENT * noise).max(SPENT_SHARE * pulse.level.abs());
         let push = |i: usize| (force[i] - offset.value) * pulse.level.signum();
@@ -342,20 +350,32 @@ mod tests {
         let slow = Record::new(2.0, 2e-3, velocity.values().to_vec(), Quantity::Velocity, "m/s").unwrap();
         assert!(matches!(prepare(&force, &slow), Err(IdentifyError::Impact(FrfError::Rate { .. }))));
         assert!(matches!(prepare(&velocity, &velocity), Err(IdentifyError::Impact(FrfError::WrongQuantity { .. }))));
-        assert!(matches!(prepare(&force, &force), Err(IdentifyError::VelocityNeeded { .. })));
+        assert!(
+            matches!(prepare(&force, &force), Err(IdentifyError::WrongRecord { what }) if what.contains("needs a velocity"))
+        );
         let other_unit = velocity.clone().with_unit("mm/s");
-        assert!(matches!(prepare(&force, &other_unit), Err(IdentifyError::Unit { .. })));
+        assert!(
+            matches!(prepare(&force, &other_unit), Err(IdentifyError::WrongRecord { what }) if what.contains("scale the record"))
+        );
 
         let white = Normal::new(0.0, 0.5).unwrap().sample_iter(ChaCha8Rng::seed_from_u64(1));
         let white: Vec<f64> = white.take(4000).collect();
         let (silent, _) = records(|i| white[i], swing, 4000);
-        assert!(matches!(prepare(&silent, &velocity), Err(IdentifyError::NoPulse { .. })));
+        assert!(
+            matches!(prepare(&silent, &velocity), Err(IdentifyError::NotSeen { what }) if what.contains("no blow"))
+        );
         let (zero, still) = records(|_| 0.0, |_| 0.3, 4000);
         assert!(matches!(prepare(&zero, &velocity), Err(IdentifyError::Impact(FrfError::NoForce))));
-        assert!(matches!(prepare(&force, &still), Err(IdentifyError::NoMotion { .. })));
+        assert!(
+            matches!(prepare(&force, &still), Err(IdentifyError::NotSeen { what }) if what.contains("nothing moves"))
+        );
         let (_, against) = records(hit, |i| -swing(i), 4000);
-        assert!(matches!(prepare(&force, &against), Err(IdentifyError::OppositeDirections { .. })));
+        assert!(
+            matches!(prepare(&force, &against), Err(IdentifyError::NotSeen { what }) if what.contains("turn the sign"))
+        );
         let (early, moving) = records(|i| half_sine(0, 20.0, i), |i| swing(i + 100), 400);
-        assert!(matches!(prepare(&early, &moving), Err(IdentifyError::NoQuiet { channel: Channel::Response, .. })));
+        assert!(
+            matches!(prepare(&early, &moving), Err(IdentifyError::TooFew { what, .. }) if what.contains("offset of the response"))
+        );
     }
 }

@@ -45,7 +45,7 @@ pub struct Comparison {
 /// Identifies `decays` by each of `candidates` and compares them.
 ///
 /// # Errors
-/// [`IdentifyError`] as for [`identify`](crate::identify), and [`IdentifyError::NoCandidate`].
+/// [`IdentifyError`] as for [`identify`](crate::identify), and [`IdentifyError::Missing`].
 pub fn compare(
     machine: &Machine,
     decays: &[Experiment],
@@ -101,7 +101,8 @@ impl Comparison {
         candidates: &[Candidate],
         mut identifications: Vec<Identification>,
     ) -> Result<Self, IdentifyError> {
-        let mut judgement = Judgement::of(candidates, &identifications).ok_or(IdentifyError::NoCandidate)?;
+        let mut judgement = Judgement::of(candidates, &identifications)
+            .ok_or_else(|| IdentifyError::missing("there is no law to compare; give at least one candidate"))?;
         let preferred = judgement.preferred;
         let others = unfinished(candidates, &identifications);
         judgement.is_decided &= others.is_empty();

@@ -100,7 +100,7 @@ impl Search {
         let mut names: Vec<String> = known.into_iter().map(|(_, name)| name).collect();
         names.sort();
         names.dedup();
-        Err(IdentifyError::UnknownParameter { name: name.clone(), known: names.join(", ") })
+        Err(IdentifyError::unknown_parameter(name, &names.join(", ")))
     }
 }
 

@@ -77,19 +77,28 @@ impl Candidate {
     /// ```
     ///
     /// # Errors
-    /// [`IdentifyError::UnknownLaw`] and [`IdentifyError::UnknownTerm`], with the names there are.
+    /// [`IdentifyError::UnknownName`], with the names there are.
     pub fn named(name: &str) -> Result<Self, IdentifyError> {
         let mut parts = name.split('+').map(str::trim);
         let law = parts.next().unwrap_or_default();
         let known = || Self::catalogue().iter().map(|candidate| candidate.law.name).collect::<Vec<_>>().join(", ");
         let found = family_named(law, &mut Candidates);
-        let found = found.ok_or_else(|| IdentifyError::UnknownLaw { name: law.to_owned(), known: known() })?;
+        let found = found.ok_or_else(|| IdentifyError::UnknownName {
+            what: format!("there is no law called {law:?}; the laws are: {}", known()),
+        })?;
         let mut terms = Terms::NONE;
         for term in parts {
             terms = match Term::named(&term.replace('_', " ")) {
                 Some(term) => terms.with(term),
                 None if term == "any sign" => terms.with_damping_of_any_sign(),
-                None => return Err(IdentifyError::UnknownTerm { name: term.to_owned() }),
+                None => {
+                    return Err(IdentifyError::UnknownName {
+                        what: format!(
+                            "there is no term called {term:?} to put beside a law; the terms are: {}, any sign",
+                            Term::ALL.map(Term::name).join(", ")
+                        ),
+                    });
+                }
             };
         }
         Ok(found.with(terms))
@@ -188,10 +197,10 @@ impl Candidate {
     /// Names of the parameters of a fit to `decays`: of the oscillator, the damping, the law, and the initial state.
     ///
     /// # Errors
-    /// [`IdentifyError::NoRecord`], and as [`Layout::of`].
+    /// [`IdentifyError::Missing`], and as [`Layout::of`].
     pub(crate) fn parameters(&self, machine: &Machine, decays: &[Experiment]) -> Result<Vec<String>, IdentifyError> {
         if decays.is_empty() {
-            return Err(IdentifyError::NoRecord);
+            return Err(IdentifyError::no_record());
         }
         let (_, parameters) = Layout::of(self.law, machine, &self.terms, decays)?;
         Ok(parameters.iter().map(|parameter| parameter.name().to_owned()).collect())

@@ -123,7 +123,7 @@ fn corners_lie_below_half_the_rate() {
     let found = fitted(experiment.clone().seen_by(free).unwrap());
     assert!(found.finding("sensor_corner_hz").unwrap().value() <= 25.0, "{found}");
     let refused = experiment.seen_by(Sensor::default().with_low_pass(2, 26.0).unwrap());
-    assert!(matches!(refused, Err(IdentifyError::NotAllowed { .. })), "{refused:?}");
+    assert!(matches!(refused, Err(IdentifyError::OutOfRange { .. })), "{refused:?}");
 }
 
 /// A gain that is uncertain makes friction uncertain, and neither frequency nor damping, which do not depend on it.

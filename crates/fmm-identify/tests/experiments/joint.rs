@@ -114,11 +114,11 @@ fn loads_of_their_own_scale_friction() {
     assert!((found.finding("mu").unwrap().value() - SLIDING).abs() < 1e-9, "{found}");
     assert!((found.finding("damping_per_mass").unwrap().value() - DAMPING / MASS).abs() < 1e-8, "{found}");
     let refused = experiments[0].clone().with_load_factor(-1.0);
-    assert!(matches!(refused, Err(IdentifyError::NotAllowed { .. })));
+    assert!(matches!(refused, Err(IdentifyError::OutOfRange { .. })));
     let mixed = Record::new(0.0, INTERVAL, experiments[0].record().values().to_vec(), Quantity::Velocity, "V").unwrap();
     let volts = Experiment::ring_down(&mixed, &Preparation::default()).unwrap();
     let refused = identify::<fmm_friction::Coulomb>(&machine(), &[experiments[0].clone(), volts]);
-    assert!(matches!(refused, Err(IdentifyError::MixedRecords { .. })));
+    assert!(matches!(refused, Err(IdentifyError::WrongRecord { .. })));
 }
 
 /// Rows of different quantities count by their noise, and their derivatives, that by the corner of a sensor among them, are those of

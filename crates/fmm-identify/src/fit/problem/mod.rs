@@ -44,7 +44,7 @@ impl<'a> Problem<'a> {
     /// The problem of `decays` on `machine` by a law of family `F`.
     ///
     /// # Errors
-    /// [`IdentifyError::NoRecord`] and [`IdentifyError::MixedRecords`].
+    /// [`IdentifyError::Missing`] and [`IdentifyError::WrongRecord`].
     pub fn new<F: LawFamily>(machine: Machine, decays: &'a [Experiment]) -> Result<Self, IdentifyError> {
         Self::with_terms::<F>(machine, Terms::NONE, decays)
     }
@@ -52,8 +52,8 @@ impl<'a> Problem<'a> {
     /// The problem of `decays` on `machine`, with `terms` beside the law.
     ///
     /// # Errors
-    /// As for [`new`](Self::new), and [`IdentifyError::TwoDampings`], [`IdentifyError::NothingToHold`] and
-    /// [`IdentifyError::HeldOutOfBounds`].
+    /// As for [`new`](Self::new), and [`IdentifyError::Contradiction`], [`IdentifyError::UnknownName`] and
+    /// [`IdentifyError::OutOfRange`].
     pub fn with_terms<F: LawFamily>(
         machine: Machine,
         terms: Terms,
@@ -69,19 +69,25 @@ impl<'a> Problem<'a> {
         decays: &'a [Experiment],
     ) -> Result<Self, IdentifyError> {
         let describe = |decay: &Experiment| format!("{} in {}", decay.record().quantity(), decay.record().unit());
-        let first = decays.first().ok_or(IdentifyError::NoRecord)?;
+        let first = decays.first().ok_or(IdentifyError::no_record())?;
         let length = |decay: &Experiment| Units::of(decay).position;
         if let Some(other) = decays.iter().find(|decay| length(decay) != length(first)) {
-            return Err(IdentifyError::MixedRecords { first: describe(first), other: describe(other) });
+            return Err(IdentifyError::wrong_record(format!(
+                "records fitted together must agree in quantity and unit: one is {}, another {}",
+                describe(first),
+                describe(other)
+            )));
         }
         let is_metric = length(first) == "m";
         let has_force = decays.iter().any(|decay| decay.drive().is_some_and(Drive::is_force));
         if has_force && machine.scale() == Scale::PerUnitMass {
-            return Err(IdentifyError::ForceWithoutScale);
+            return Err(IdentifyError::contradiction(
+                "a measured force tells the mass: give Machine::unknown() to find mass and stiffness, or a mass or a stiffness that is known",
+            ));
         }
         if has_force && !is_metric {
             let expected = "a force in N beside responses in m, m/s or m/s²";
-            return Err(IdentifyError::Drive { expected, found: format!("beside a {}", describe(first)) });
+            return Err(IdentifyError::drive(expected, &format!("beside a {}", describe(first))));
         }
         let (layout, parameters) = Layout::of(law, &machine, &terms, decays)?;
         let blocks = blocks(&layout, decays);
