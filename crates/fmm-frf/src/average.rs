@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use fmm_record::Record;
+use fmm_record::{Quantity, Record};
 
 use crate::estimator::{Spectra, Undefined};
 use crate::sums::{RatioSums, SpectralSums, Weighed};
@@ -66,14 +66,14 @@ impl TrialAverage {
     /// Any length will do, as the transforms are for all lengths; those with small prime factors are fastest.
     ///
     /// # Errors
-    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the rate, [`FrfError::TooFewSamples`] for a length below 2,
-    /// [`FrfError::EmptyBand`] if no line lies in the band of the options, and [`FrfError::WindowOutside`] for a force
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the rate, [`FrfError::TooFew`] for a length below 2,
+    /// [`FrfError::Outside`] if no line lies in the band of the options, and for a force
     /// window that covers no sample.
     pub fn new(form: ResponseForm, rate: f64, length: usize, options: &AverageOptions) -> Result<Self, FrfError> {
         ModelError::require_positive("the sampling rate", rate, "Hz")?;
         let interval = ModelError::require_positive("the sampling interval", rate.recip(), "s")?;
         if length < 2 {
-            return Err(FrfError::TooFewSamples { found: length });
+            return Err(FrfError::too_few_samples(length));
         }
         let mut lines = 0..length / 2 + 1;
         if let Some((low, high)) = options.band {
@@ -83,7 +83,7 @@ impl TrialAverage {
             let last = (position(high) + 1e-9 * position(high)).floor() as usize;
             lines = first..lines.end.min(last.saturating_add(1));
             if lines.is_empty() {
-                return Err(FrfError::EmptyBand { low, high });
+                return Err(FrfError::empty_band(low, high));
             }
         }
         Ok(Self {
@@ -113,15 +113,15 @@ impl TrialAverage {
     /// Adds a trial: its `force` (N) and its `response` (SI unit), sample by sample at the same times.
     ///
     /// # Errors
-    /// [`FrfError::SampleCount`], [`FrfError::SampleNotFinite`], [`FrfError::TooLarge`], [`FrfError::NoForce`],
-    /// [`FrfError::BaselineRange`], and [`FrfError::NoForceAt`] if ratios are kept and a line has none. The average is
+    /// [`FrfError::Mismatch`], [`FrfError::Values`], [`FrfError::NoForce`],
+    /// [`FrfError::Outside`], and [`FrfError::NotDefined`] if ratios are kept and a line has none. The average is
     /// then what it was before.
     pub fn add(&mut self, force: &[f64], response: &[f64]) -> Result<(), FrfError> {
         let slot = self.waiting;
         self.transform.run(slot, force, response)?;
         let (force, response) = self.transform.spectra(slot, &self.lines);
         if let (Some(_), Some(line)) = (&self.ratios, force.iter().position(|force| force.norm_sqr() == 0.0)) {
-            return Err(FrfError::NoForceAt { frequency: self.frequencies[line] });
+            return Err(FrfError::no_force_at(self.frequencies[line]));
         }
         let (keep, gain) = self.averaging.factors(self.trials == 0);
         if let Some(ratios) = &mut self.ratios {
@@ -143,24 +143,12 @@ impl TrialAverage {
     /// in N and the response in its SI unit.
     ///
     /// # Errors
-    /// As [`TrialAverage::add`], and [`FrfError::WrongQuantity`], [`FrfError::Rate`] for rates that differ by more than
-    /// 1e-6 of theirs, or [`FrfError::Begin`] for records that do not begin within 1e-3 of an interval of each other.
+    /// As [`TrialAverage::add`], and [`FrfError::Mismatch`] for other quantities, rates that differ by more than 1e-6 of theirs, or
+    /// records that do not begin within 1e-3 of an interval of each other.
     pub fn add_records(&mut self, force: &Record, response: &Record) -> Result<(), FrfError> {
-        for (channel, record, expected) in
-            [(Channel::Force, force, fmm_record::Quantity::Force), (Channel::Response, response, self.form.quantity())]
-        {
-            let (found, rate) = (record.quantity(), record.rate());
-            if found != expected {
-                return Err(FrfError::WrongQuantity { channel, expected, found });
-            }
-            // Rates are often read from time stamps of six digits.
-            if !((rate / self.rate - 1.0).abs() <= 1e-6) {
-                return Err(FrfError::Rate { channel, expected: self.rate, found: rate });
-            }
-        }
-        if !((force.start() - response.start()).abs() * self.rate <= 1e-3) {
-            return Err(FrfError::Begin { force: force.start(), response: response.start() });
-        }
+        Channel::Force.require(force, Quantity::Force, self.rate)?;
+        Channel::Response.require(response, self.form.quantity(), self.rate)?;
+        Channel::require_together(force, response)?;
         self.add(force.values(), response.values())
     }
 
@@ -170,19 +158,19 @@ impl TrialAverage {
     ///
     /// # Errors
     /// As [`TrialAverage::add`] at the first segment that it refuses, with the segments before it added;
-    /// [`FrfError::Overlap`] for an overlap of a whole segment, and [`FrfError::SampleCount`] for a record shorter than
+    /// [`FrfError::Outside`] for an overlap of a whole segment, and [`FrfError::Mismatch`] for a record shorter than
     /// one, or channels of different length.
     pub fn add_segments(&mut self, force: &[f64], response: &[f64], overlap: usize) -> Result<usize, FrfError> {
         if overlap >= self.length {
-            return Err(FrfError::Overlap { length: self.length, overlap });
+            return Err(FrfError::overlap(self.length, overlap));
         }
         if force.len() < self.length {
             let (expected, found) = (self.length, force.len());
-            return Err(FrfError::SampleCount { channel: Channel::Force, expected, found });
+            return Err(FrfError::sample_count(Channel::Force, expected, found));
         }
         if response.len() != force.len() {
             let (expected, found) = (force.len(), response.len());
-            return Err(FrfError::SampleCount { channel: Channel::Response, expected, found });
+            return Err(FrfError::sample_count(Channel::Response, expected, found));
         }
         let step = self.length - overlap;
         let segments = (force.len() - self.length) / step + 1;
@@ -227,12 +215,12 @@ impl TrialAverage {
     /// The response by `estimator`.
     ///
     /// # Errors
-    /// [`FrfError::NoTrials`]; [`FrfError::NoForceAt`] or [`FrfError::NoCrossSpectrumAt`] at a line where the estimator
-    /// would divide by zero; [`FrfError::RatiosNotKept`] for the mean of ratios; [`FrfError::ValueNotFinite`] if it
+    /// [`FrfError::TooFew`]; [`FrfError::NotDefined`] at a line where the estimator
+    /// would divide by zero; [`FrfError::RatiosNotKept`] for the mean of ratios; [`FrfError::Values`] if it
     /// overflows.
     pub fn estimate(&self, estimator: Estimator) -> Result<FrequencyResponse, FrfError> {
         if self.trials == 0 {
-            return Err(FrfError::NoTrials);
+            return Err(FrfError::no_trials());
         }
         // The estimator is chosen outside the loop over the lines.
         let values = match estimator {
@@ -259,14 +247,14 @@ impl TrialAverage {
     /// differ because the machine does. The phase has u/|H| (rad). With two or three trials, u itself is hardly known.
     ///
     /// # Errors
-    /// As [`TrialAverage::estimate`], and [`FrfError::TooFewTrials`] for less than two averages.
+    /// As [`TrialAverage::estimate`], and [`FrfError::TooFew`] for less than two averages.
     pub fn uncertainty(&self, estimator: Estimator) -> Result<Vec<f64>, FrfError> {
         let freedom = self.averages() - 1.0;
         if self.trials == 0 {
-            return Err(FrfError::NoTrials);
+            return Err(FrfError::no_trials());
         }
         if !(freedom > 0.0 && self.trials > 1) {
-            return Err(FrfError::TooFewTrials { found: self.averages() });
+            return Err(FrfError::too_few_trials(self.averages()));
         }
         self.lines(|line| {
             let scatter = match estimator {
@@ -283,11 +271,11 @@ impl TrialAverage {
     /// γ² = |S_fv|²/(S_ff S_vv), the share of the response that is a multiple of the force.
     ///
     /// # Errors
-    /// [`FrfError::NoTrials`], and [`FrfError::NoForceAt`] or [`FrfError::NoCrossSpectrumAt`] at a line where one channel
+    /// [`FrfError::TooFew`], and [`FrfError::NotDefined`] at a line where one channel
     /// is zero in all trials.
     pub fn coherence(&self) -> Result<Coherence, FrfError> {
         if self.trials == 0 {
-            return Err(FrfError::NoTrials);
+            return Err(FrfError::no_trials());
         }
         let values = self.spectra.map(&self.waiting(), |spectra| spectra.coherence().unwrap_or(f64::NAN));
         // The line to blame is looked for only if there is one.
@@ -302,7 +290,7 @@ impl TrialAverage {
     /// One-sided power spectral density of the force (N²/Hz) at each line; it integrates to the mean square of the force.
     ///
     /// # Errors
-    /// [`FrfError::NoTrials`].
+    /// [`FrfError::TooFew`].
     pub fn force_density(&self) -> Result<Vec<f64>, FrfError> {
         let energy = self.transform.weight_energies().0;
         self.lines(|line| Ok(self.line(line).force * self.density_factor(line, energy)))
@@ -311,7 +299,7 @@ impl TrialAverage {
     /// One-sided power spectral density of the response (its unit squared by Hz) at each line.
     ///
     /// # Errors
-    /// [`FrfError::NoTrials`].
+    /// [`FrfError::TooFew`].
     pub fn response_density(&self) -> Result<Vec<f64>, FrfError> {
         let energy = self.transform.weight_energies().1;
         self.lines(|line| Ok(self.line(line).response * self.density_factor(line, energy)))
@@ -348,7 +336,7 @@ impl TrialAverage {
     /// What `rule` gives for each line.
     fn lines<T>(&self, rule: impl Fn(usize) -> Result<T, FrfError>) -> Result<Vec<T>, FrfError> {
         if self.trials == 0 {
-            return Err(FrfError::NoTrials);
+            return Err(FrfError::no_trials());
         }
         // Collecting results would not know how many there are.
         let mut values = Vec::with_capacity(self.lines.len());

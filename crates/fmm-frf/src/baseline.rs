@@ -31,7 +31,7 @@ impl Baseline {
             Self::Keep => 0.0,
             Self::Offset(offset) => offset,
             Self::MeanOf(range) => {
-                let outside = FrfError::BaselineRange { start: range.start, end: range.end, length: samples.len() };
+                let outside = FrfError::baseline_range(range.start, range.end, samples.len());
                 mean(samples.get(range).filter(|quiet| !quiet.is_empty()).ok_or(outside)?)
             }
             Self::Mean => mean(samples),

@@ -2,6 +2,10 @@
 
 use std::fmt;
 
+use fmm_record::{Quantity, Record};
+
+use crate::FrfError;
+
 /// Which of the two channels of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Channel {
@@ -9,6 +13,46 @@ pub enum Channel {
     Force,
     /// What is excited: displacement, velocity or acceleration.
     Response,
+}
+
+impl Channel {
+    /// Refuses a `record` of another `quantity`, or whose rate differs by more than 1e-6 from `rate` (Hz): rates are often read from
+    /// time stamps of six digits.
+    ///
+    /// # Errors
+    /// [`FrfError::Mismatch`].
+    pub fn require(self, record: &Record, quantity: Quantity, rate: f64) -> Result<(), FrfError> {
+        let found = record.quantity();
+        if found != quantity {
+            let what = format!("the {self} must be a record of {quantity}, but is one of {found}");
+            return Err(FrfError::Mismatch { what });
+        }
+        let found = record.rate();
+        if !((found / rate - 1.0).abs() <= 1e-6) {
+            let what = format!("the {self} was sampled at {found} Hz, but the average is of records at {rate} Hz");
+            return Err(FrfError::Mismatch { what });
+        }
+        Ok(())
+    }
+
+    /// Refuses a `force` and a `response` of different numbers of samples, or that do not begin within 1e-3 of an interval of each
+    /// other.
+    ///
+    /// # Errors
+    /// [`FrfError::Mismatch`].
+    pub fn require_together(force: &Record, response: &Record) -> Result<(), FrfError> {
+        if force.len() != response.len() {
+            return Err(FrfError::sample_count(Self::Response, force.len(), response.len()));
+        }
+        let [from, to] = [force, response].map(Record::start);
+        if !((from - to).abs() * response.rate() <= 1e-3) {
+            let what = format!(
+                "force and response must begin together, but begin at {from} s and {to} s; crop them to the same begin"
+            );
+            return Err(FrfError::Mismatch { what });
+        }
+        Ok(())
+    }
 }
 
 impl fmt::Display for Channel {

@@ -46,15 +46,15 @@ impl CoulombLine {
     /// The line through the `peaks` (m/N) of blows with these `impulses` (N s); at least three, not all of one impulse.
     ///
     /// # Errors
-    /// [`FrfError::PointCount`], [`FrfError::TooFewPoints`], [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any value that is not, and
-    /// for a slope that is not: peaks that do not grow are not those of friction. [`FrfError::Undetermined`] for impulses that
+    /// [`FrfError::Mismatch`], [`FrfError::TooFew`], [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any value that is not, and
+    /// for a slope that is not: peaks that do not grow are not those of friction. [`FrfError::NoFit`] for impulses that
     /// are all the same.
     pub fn fit(impulses: &[f64], peaks: &[f64], mass: f64, natural_angular_frequency: f64) -> Result<Self, FrfError> {
         if impulses.len() != peaks.len() {
-            return Err(FrfError::PointCount { impulses: impulses.len(), peaks: peaks.len() });
+            return Err(FrfError::point_count(impulses.len(), peaks.len()));
         }
         if impulses.len() < 3 {
-            return Err(FrfError::TooFewPoints { needed: 3, found: impulses.len() });
+            return Err(FrfError::too_few_points(3, impulses.len()));
         }
         let count = impulses.len() as f64;
         let mut means = [0.0; 2];
@@ -70,7 +70,7 @@ impl CoulombLine {
             spread += height * height;
             triangle.add([1.0, impulse / means[0] - 1.0], height);
         }
-        let undetermined = FrfError::Undetermined { fit: "line of peaks over impulses", points: impulses.len() };
+        let undetermined = FrfError::undetermined("line of peaks over impulses", impulses.len());
         let ([level, steepness], Some(covariance)) =
             (triangle.solve().ok_or(undetermined.clone())?, triangle.covariance())
         else {
@@ -136,9 +136,9 @@ mod tests {
 
     #[test]
     fn impossible_lines_are_refused() {
-        assert!(matches!(CoulombLine::fit(&[1.0], &[], 1.0, 1.0), Err(FrfError::PointCount { impulses: 1, peaks: 0 })));
-        assert!(matches!(CoulombLine::fit(&[1.0; 2], &[1.0; 2], 1.0, 1.0), Err(FrfError::TooFewPoints { .. })));
-        assert!(matches!(CoulombLine::fit(&[2.0; 3], &[1.0; 3], 1.0, 1.0), Err(FrfError::Undetermined { .. })));
+        assert!(matches!(CoulombLine::fit(&[1.0], &[], 1.0, 1.0), Err(FrfError::Mismatch { .. })));
+        assert!(matches!(CoulombLine::fit(&[1.0; 2], &[1.0; 2], 1.0, 1.0), Err(FrfError::TooFew { .. })));
+        assert!(matches!(CoulombLine::fit(&[2.0; 3], &[1.0; 3], 1.0, 1.0), Err(FrfError::NoFit { .. })));
         let falling = CoulombLine::fit(&[1.0, 2.0, 3.0], &[3.0, 2.0, 1.0], 1.0, 1.0);
         assert!(matches!(falling, Err(FrfError::OutOfRange(ModelError::NotPositive { .. }))), "{falling:?}");
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {

@@ -1,264 +1,231 @@
 //! What can be wrong with a record, a response and an oscillator.
 
 use fmm_model::ModelError;
-use fmm_record::Quantity;
 
 use crate::{Channel, ResponseForm};
 
-/// Why a frequency response or an impulse could not be stated.
+/// Why a frequency response or an impulse could not be stated; each variant is something else that the caller can do about it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FrfError {
-    /// A quantity that cannot be what it is.
+    /// A quantity that cannot be what it is: give another.
     #[error(transparent)]
     OutOfRange(#[from] ModelError),
-    /// A sample that is infinite or not a number.
-    #[error("sample {index} of the {channel} must be finite, but is {value}")]
-    SampleNotFinite {
-        /// Which channel.
-        channel: Channel,
-        /// Which sample, counted from 0.
-        index: usize,
-        /// Its value, in the unit of the channel.
-        value: f64,
+    /// Samples, lines or values that are infinite, no numbers, too large, or not in order: look at the data.
+    #[error("{what}")]
+    Values {
+        /// Which they are, and what is wrong with them.
+        what: String,
     },
-    /// Too few samples to integrate.
-    #[error("an impulse needs at least two samples of the force, but there are {found}")]
-    TooFewSamples {
-        /// How many samples there are.
-        found: usize,
+    /// Channels, records or responses that do not go together: bring them to the same length, rate, begin, quantity or form.
+    #[error("{what}")]
+    Mismatch {
+        /// What does not agree.
+        what: String,
     },
-    /// Samples for the baseline that do not exist.
-    #[error("the baseline needs samples {start} to {end} (excluded), but the record has {length}, from 0 on")]
-    BaselineRange {
-        /// First sample asked for.
-        start: usize,
-        /// One past the last sample asked for.
-        end: usize,
-        /// How many samples there are.
-        length: usize,
+    /// Too few samples, trials or points: take more.
+    #[error("{what}")]
+    TooFew {
+        /// Of what there are too few, and how many are needed.
+        what: String,
     },
-    /// A response whose frequencies and values are not of one number.
-    #[error("a response needs one value for each of its frequencies, but has {frequencies} and {values}")]
-    LengthMismatch {
-        /// How many frequencies were given.
-        frequencies: usize,
-        /// How many values were given.
-        values: usize,
-    },
-    /// Impulses and receptance peaks that are not of one number.
-    #[error("there must be one peak for each impulse, but there are {impulses} impulses and {peaks} peaks")]
-    PointCount {
-        /// How many impulses were given.
-        impulses: usize,
-        /// How many peaks were given.
-        peaks: usize,
-    },
-    /// Frequencies that are negative, not finite or do not increase.
-    #[error("frequencies must be finite, not negative and increasing, but line {index} is at {frequency} Hz")]
-    FrequenciesNotIncreasing {
-        /// Which line, counted from 0.
-        index: usize,
-        /// Its frequency (Hz).
-        frequency: f64,
-    },
-    /// A response that is infinite or not a number.
-    #[error("the {form} at {frequency} Hz must be finite")]
-    ValueNotFinite {
-        /// The form of the response.
-        form: ResponseForm,
-        /// The frequency (Hz).
-        frequency: f64,
-    },
-    /// A division by iω at zero frequency, or a factor so extreme that the value overflows.
-    #[error("no finite {to} follows from the {from} at {frequency} Hz")]
-    NoFiniteForm {
-        /// The form given.
-        from: ResponseForm,
-        /// The form asked for.
-        to: ResponseForm,
-        /// The frequency (Hz).
-        frequency: f64,
-    },
-    /// An undamped oscillator at its natural frequency.
-    #[error("the oscillator has no finite receptance at {frequency} Hz, where it is in resonance without damping")]
-    UndampedResonance {
-        /// The frequency (Hz).
-        frequency: f64,
-    },
-    /// A channel that is not as long as the average, or as the other channel.
-    #[error("the {channel} needs {expected} samples, but has {found}")]
-    SampleCount {
-        /// Which channel.
-        channel: Channel,
-        /// How many samples it needs.
-        expected: usize,
-        /// How many it has.
-        found: usize,
-    },
-    /// A transform of records of another length.
-    #[error("a transform of {expected} samples was given {found}")]
-    TransformLength {
-        /// How many samples it takes.
-        expected: usize,
-        /// How many it was given.
-        found: usize,
-    },
-    /// A record of another rate than the average.
-    #[error("the {channel} was sampled at {found} Hz, but the average is of records at {expected} Hz")]
-    Rate {
-        /// Which channel.
-        channel: Channel,
-        /// Rate of the average (Hz).
-        expected: f64,
-        /// Rate of the record (Hz).
-        found: f64,
-    },
-    /// A record of another quantity than the channel needs.
-    #[error("the {channel} must be a record of {expected}, but is one of {found}")]
-    WrongQuantity {
-        /// Which channel.
-        channel: Channel,
-        /// What it must be.
-        expected: Quantity,
-        /// What it is.
-        found: Quantity,
-    },
-    /// Force and response that do not begin at the same time.
-    #[error(
-        "force and response must begin together, but begin at {force} s and {response} s; crop them to the same begin"
-    )]
-    Begin {
-        /// Begin of the force (s).
-        force: f64,
-        /// Begin of the response (s).
-        response: f64,
-    },
-    /// A trial without any force.
+    /// A trial without any force: leave it out.
     #[error("the force of the trial is zero from begin to end, or so small that its square is; nothing was hit")]
     NoForce,
-    /// A trial whose squares overflow.
-    #[error("the samples of the {channel} are so large that their squares overflow")]
-    TooLarge {
-        /// Which channel.
-        channel: Channel,
-    },
-    /// An estimate without a trial.
-    #[error("there is no trial to average over yet")]
-    NoTrials,
-    /// An uncertainty from too few trials.
-    #[error("scatter needs more than one trial, but the average is worth {found}")]
-    TooFewTrials {
-        /// Effective number of averages.
-        found: f64,
-    },
-    /// A frequency at which no trial has force.
-    #[error("no trial has force at {frequency} Hz; average over a band without this line")]
-    NoForceAt {
+    /// Nothing finite follows at a frequency: leave this line out.
+    #[error("{what}")]
+    NotDefined {
+        /// What does not follow, and why.
+        what: String,
         /// The frequency (Hz).
         frequency: f64,
     },
-    /// A frequency at which force and response have nothing in common.
-    #[error("the response has nothing of the force at {frequency} Hz, so that neither phase nor H2 can be stated")]
-    NoCrossSpectrumAt {
-        /// The frequency (Hz).
-        frequency: f64,
+    /// A range of samples, times or frequencies that the record or the response does not have: choose another.
+    #[error("{what}")]
+    Outside {
+        /// The range asked for, and the one there is.
+        what: String,
     },
     /// A mean of ratios that was not asked for in time.
     #[error("the ratios of the single trials were not kept; ask for them with AverageOptions::keeping_ratios")]
     RatiosNotKept,
-    /// A band of frequencies without lines.
-    #[error("no line lies between {low} Hz and {high} Hz")]
-    EmptyBand {
-        /// Low end (Hz).
-        low: f64,
-        /// High end (Hz).
-        high: f64,
-    },
-    /// A force window outside the record.
-    #[error("the force window from {from} s to {to} s covers no sample of a record of {duration} s")]
-    WindowOutside {
-        /// Begin of the window (s).
-        from: f64,
-        /// End of the window (s).
-        to: f64,
-        /// Duration of the record (s).
-        duration: f64,
-    },
-    /// Segments that do not move on.
-    #[error("segments of {length} samples must overlap by less than that, but should by {overlap}")]
-    Overlap {
-        /// Samples of a segment.
-        length: usize,
-        /// Samples that two segments were to share.
-        overlap: usize,
-    },
-    /// Too few lines or points for a fit.
-    #[error("the fit needs at least {needed} points, but has {found}")]
-    TooFewPoints {
-        /// How many it needs.
-        needed: usize,
-        /// How many there are.
-        found: usize,
-    },
-    /// Points in which the parameters of a fit cannot be told apart.
-    #[error("the {fit} cannot tell its parameters apart in these {points} points")]
-    Undetermined {
-        /// Which fit.
-        fit: &'static str,
-        /// How many points there are.
-        points: usize,
-    },
-    /// A fit that did not settle.
-    #[error("the {fit} did not settle; a narrower band around one resonance may help")]
-    NotConverged {
-        /// Which fit.
-        fit: &'static str,
-    },
-    /// A band without an oscillating mode.
-    #[error("the {fit} finds no oscillating mode between {low} Hz and {high} Hz")]
-    NoMode {
-        /// Which fit.
-        fit: &'static str,
-        /// Low end (Hz).
-        low: f64,
-        /// High end (Hz).
-        high: f64,
-    },
-    /// Two responses that are not of the same form and lines.
-    #[error("both responses must be of one form and at the same frequencies, but differ from line {line} on")]
-    ResponsesDiffer {
-        /// The first line that differs, counted from 0; 0 if the forms differ.
-        line: usize,
-    },
-    /// A linear response that is zero, of which a measured one is no multiple.
-    #[error("the linear response is zero at {frequency} Hz; leave this line out")]
-    LinearResponseZero {
-        /// The frequency (Hz).
-        frequency: f64,
-    },
-    /// Lines too far apart to tell harmonics from each other, or that do not reach them.
-    #[error(
-        "harmonics of {fundamental} Hz up to order {order} need lines that reach {reach} Hz, at most {spacing} Hz apart"
-    )]
-    HarmonicsOutside {
-        /// The fundamental frequency (Hz).
-        fundamental: f64,
-        /// The highest order asked for.
-        order: u32,
-        /// Frequency of that order (Hz).
-        reach: f64,
-        /// Largest spacing of lines that tells orders apart (Hz).
-        spacing: f64,
+    /// A fit that finds no mode or cannot tell its parameters apart: choose another band.
+    #[error("{what}")]
+    NoFit {
+        /// Which fit, and what is wrong.
+        what: String,
     },
 }
 
+/// Samples, lines and values.
 impl FrfError {
     /// Refuses samples that are infinite or not numbers.
     pub(crate) fn require_samples(channel: Channel, samples: &[f64]) -> Result<(), Self> {
         match samples.iter().enumerate().find(|(_, sample)| !sample.is_finite()) {
-            Some((index, &value)) => Err(Self::SampleNotFinite { channel, index, value }),
+            Some((index, &value)) => Err(Self::sample_not_finite(channel, index, value)),
             None => Ok(()),
         }
+    }
+
+    /// A `value` of sample `index`, in the unit of the channel, that is infinite or not a number.
+    pub(crate) fn sample_not_finite(channel: Channel, index: usize, value: f64) -> Self {
+        Self::Values { what: format!("sample {index} of the {channel} must be finite, but is {value}") }
+    }
+
+    /// A trial whose squares overflow.
+    pub(crate) fn too_large(channel: Channel) -> Self {
+        Self::Values { what: format!("the samples of the {channel} are so large that their squares overflow") }
+    }
+
+    /// A `frequency` (Hz) of line `index` that is negative, not finite or does not increase.
+    pub(crate) fn frequencies_not_increasing(index: usize, frequency: f64) -> Self {
+        let what =
+            format!("frequencies must be finite, not negative and increasing, but line {index} is at {frequency} Hz");
+        Self::Values { what }
+    }
+
+    /// A response that is infinite or not a number at a `frequency` (Hz).
+    pub(crate) fn value_not_finite(form: ResponseForm, frequency: f64) -> Self {
+        Self::Values { what: format!("the {form} at {frequency} Hz must be finite") }
+    }
+
+    /// Too few samples to integrate.
+    pub(crate) fn too_few_samples(found: usize) -> Self {
+        Self::TooFew { what: format!("an impulse needs at least two samples of the force, but there are {found}") }
+    }
+
+    /// Samples for the baseline that do not exist.
+    pub(crate) fn baseline_range(start: usize, end: usize, length: usize) -> Self {
+        let what =
+            format!("the baseline needs samples {start} to {end} (excluded), but the record has {length}, from 0 on");
+        Self::Outside { what }
+    }
+
+    /// A force window outside the record; times in s.
+    pub(crate) fn window_outside(from: f64, to: f64, duration: f64) -> Self {
+        let what = format!("the force window from {from} s to {to} s covers no sample of a record of {duration} s");
+        Self::Outside { what }
+    }
+
+    /// Segments that do not move on.
+    pub(crate) fn overlap(length: usize, overlap: usize) -> Self {
+        let what = format!("segments of {length} samples must overlap by less than that, but should by {overlap}");
+        Self::Outside { what }
+    }
+
+    /// A band (Hz) without lines.
+    pub(crate) fn empty_band(low: f64, high: f64) -> Self {
+        Self::Outside { what: format!("no line lies between {low} Hz and {high} Hz") }
+    }
+
+    /// Lines too far apart (Hz) to tell harmonics from each other, or that do not `reach` (Hz) them.
+    pub(crate) fn harmonics_outside(fundamental: f64, order: u32, reach: f64, spacing: f64) -> Self {
+        let what = format!(
+            "harmonics of {fundamental} Hz up to order {order} need lines that reach {reach} Hz, at most {spacing} Hz apart"
+        );
+        Self::Outside { what }
+    }
+}
+
+/// What does not go together.
+impl FrfError {
+    /// A response whose frequencies and values are not of one number.
+    pub(crate) fn length_mismatch(frequencies: usize, values: usize) -> Self {
+        let what =
+            format!("a response needs one value for each of its frequencies, but has {frequencies} and {values}");
+        Self::Mismatch { what }
+    }
+
+    /// Impulses and receptance peaks that are not of one number.
+    pub(crate) fn point_count(impulses: usize, peaks: usize) -> Self {
+        let what =
+            format!("there must be one peak for each impulse, but there are {impulses} impulses and {peaks} peaks");
+        Self::Mismatch { what }
+    }
+
+    /// A channel that is not as long as the average, or as the other channel.
+    pub(crate) fn sample_count(channel: Channel, expected: usize, found: usize) -> Self {
+        Self::Mismatch { what: format!("the {channel} needs {expected} samples, but has {found}") }
+    }
+
+    /// A transform of records of another length.
+    pub(crate) fn transform_length(expected: usize, found: usize) -> Self {
+        Self::Mismatch { what: format!("a transform of {expected} samples was given {found}") }
+    }
+
+    /// Two responses that differ from `line` on; from 0 if their forms do.
+    pub(crate) fn responses_differ(line: usize) -> Self {
+        let what =
+            format!("both responses must be of one form and at the same frequencies, but differ from line {line} on");
+        Self::Mismatch { what }
+    }
+}
+
+/// Trials and lines.
+impl FrfError {
+    /// An estimate without a trial.
+    pub(crate) fn no_trials() -> Self {
+        Self::TooFew { what: "there is no trial to average over yet".to_owned() }
+    }
+
+    /// An uncertainty from an average that is worth fewer than two trials.
+    pub(crate) fn too_few_trials(found: f64) -> Self {
+        Self::TooFew { what: format!("scatter needs more than one trial, but the average is worth {found}") }
+    }
+
+    /// A `frequency` (Hz) at which no trial has force.
+    pub(crate) fn no_force_at(frequency: f64) -> Self {
+        let what = format!("no trial has force at {frequency} Hz; average over a band without this line");
+        Self::NotDefined { what, frequency }
+    }
+
+    /// A `frequency` (Hz) at which force and response have nothing in common.
+    pub(crate) fn no_cross_spectrum_at(frequency: f64) -> Self {
+        let what = format!(
+            "the response has nothing of the force at {frequency} Hz, so that neither phase nor H2 can be stated"
+        );
+        Self::NotDefined { what, frequency }
+    }
+
+    /// A division by iω at zero `frequency` (Hz), or a factor so extreme that the value overflows.
+    pub(crate) fn no_finite_form(from: ResponseForm, to: ResponseForm, frequency: f64) -> Self {
+        Self::NotDefined { what: format!("no finite {to} follows from the {from} at {frequency} Hz"), frequency }
+    }
+
+    /// An undamped oscillator at its natural `frequency` (Hz).
+    pub(crate) fn undamped_resonance(frequency: f64) -> Self {
+        let what = format!(
+            "the oscillator has no finite receptance at {frequency} Hz, where it is in resonance without damping"
+        );
+        Self::NotDefined { what, frequency }
+    }
+
+    /// A linear response that is zero at a `frequency` (Hz), of which a measured one is no multiple.
+    pub(crate) fn linear_response_zero(frequency: f64) -> Self {
+        let what = format!("the linear response is zero at {frequency} Hz; leave this line out");
+        Self::NotDefined { what, frequency }
+    }
+}
+
+/// Fits.
+impl FrfError {
+    /// Too few lines or points.
+    pub(crate) fn too_few_points(needed: usize, found: usize) -> Self {
+        Self::TooFew { what: format!("the fit needs at least {needed} points, but has {found}") }
+    }
+
+    /// Points in which the parameters cannot be told apart.
+    pub(crate) fn undetermined(fit: &str, points: usize) -> Self {
+        Self::NoFit { what: format!("the {fit} cannot tell its parameters apart in these {points} points") }
+    }
+
+    /// A fit that did not settle.
+    pub(crate) fn not_converged(fit: &str) -> Self {
+        Self::NoFit { what: format!("the {fit} did not settle; a narrower band around one resonance may help") }
+    }
+
+    /// A band (Hz) without an oscillating mode.
+    pub(crate) fn no_mode(fit: &str, low: f64, high: f64) -> Self {
+        Self::NoFit { what: format!("the {fit} finds no oscillating mode between {low} Hz and {high} Hz") }
     }
 }

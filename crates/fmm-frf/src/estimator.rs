@@ -47,8 +47,8 @@ pub(crate) enum Undefined {
 impl Undefined {
     pub(crate) fn at(self, frequency: f64) -> FrfError {
         match self {
-            Self::Force => FrfError::NoForceAt { frequency },
-            Self::Cross => FrfError::NoCrossSpectrumAt { frequency },
+            Self::Force => FrfError::no_force_at(frequency),
+            Self::Cross => FrfError::no_cross_spectrum_at(frequency),
         }
     }
 }

@@ -46,12 +46,12 @@ impl ResponseForm {
     /// ```
     ///
     /// # Errors
-    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the frequency, [`FrfError::ValueNotFinite`] for the value, and
-    /// [`FrfError::NoFiniteForm`] for a division at zero frequency or any overflow.
+    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the frequency, [`FrfError::Values`] for the value, and
+    /// [`FrfError::NotDefined`] for a division at zero frequency or any overflow.
     pub fn convert(self, to: Self, value: Complex64, frequency: f64) -> Result<Complex64, FrfError> {
         let omega = TAU * ModelError::require_finite("frequency", frequency, "Hz")?;
         if !value.is_finite() {
-            return Err(FrfError::ValueNotFinite { form: self, frequency });
+            return Err(FrfError::value_not_finite(self, frequency));
         }
         let Complex64 { re, im } = value;
         let converted = match to.derivatives() - self.derivatives() {
@@ -61,7 +61,7 @@ impl ResponseForm {
             2 => Complex64::new(-re * omega * omega, -im * omega * omega),
             _ => value,
         };
-        if converted.is_finite() { Ok(converted) } else { Err(FrfError::NoFiniteForm { from: self, to, frequency }) }
+        if converted.is_finite() { Ok(converted) } else { Err(FrfError::no_finite_form(self, to, frequency)) }
     }
 
     /// [`ResponseForm::convert`] for a response at s = σ + iω instead of iω, with σ the `decay_rate` (1/s) of an
@@ -84,7 +84,7 @@ impl ResponseForm {
             2 => value * s * s,
             _ => value,
         };
-        if converted.is_finite() { Ok(converted) } else { Err(FrfError::NoFiniteForm { from: self, to, frequency }) }
+        if converted.is_finite() { Ok(converted) } else { Err(FrfError::no_finite_form(self, to, frequency)) }
     }
 
     /// The quantity of the response.
@@ -154,7 +154,7 @@ mod tests {
                 match from.convert(to, value, 0.0) {
                     Ok(converted) if from == to => assert_eq!(converted, value),
                     Ok(converted) => assert!(from < to && converted.norm() == 0.0, "{from} to {to}: {converted}"),
-                    Err(error) => assert_eq!(error, FrfError::NoFiniteForm { from, to, frequency: 0.0 }),
+                    Err(error) => assert_eq!(error, FrfError::no_finite_form(from, to, 0.0)),
                 }
                 assert_eq!(from.convert(to, value, 0.0).is_err(), from > to);
             }

@@ -42,22 +42,22 @@ impl FrictionSpectrum {
     /// contact removed.
     ///
     /// # Errors
-    /// [`FrfError::ResponsesDiffer`], and [`FrfError::LinearResponseZero`] at a line where the quotient is not finite, such as
+    /// [`FrfError::Mismatch`], and [`FrfError::NotDefined`] at a line where the quotient is not finite, such as
     /// zero frequency for a mobility.
     pub fn of(measured: &FrequencyResponse, linear: &FrequencyResponse) -> Result<Self, FrfError> {
         if measured.form() != linear.form() || measured.decay_rate() != linear.decay_rate() {
-            return Err(FrfError::ResponsesDiffer { line: 0 });
+            return Err(FrfError::responses_differ(0));
         }
         let shorter = measured.frequencies().len().min(linear.frequencies().len());
         let close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-9 * a.abs().max(b.abs());
         let differs = measured.frequencies().iter().zip(linear.frequencies()).position(|pair| !close(pair));
         if differs.is_some() || measured.frequencies().len() != linear.frequencies().len() {
-            return Err(FrfError::ResponsesDiffer { line: differs.unwrap_or(shorter) });
+            return Err(FrfError::responses_differ(differs.unwrap_or(shorter)));
         }
         let quotients = measured.values().iter().zip(linear.values()).zip(measured.frequencies());
         let quotients = quotients.map(|((measured, linear), &frequency)| {
             let quotient = measured / linear;
-            if quotient.is_finite() { Ok(quotient) } else { Err(FrfError::LinearResponseZero { frequency }) }
+            if quotient.is_finite() { Ok(quotient) } else { Err(FrfError::linear_response_zero(frequency)) }
         });
         Ok(Self { frequencies: measured.frequencies().to_vec(), quotients: quotients.collect::<Result<_, _>>()? })
     }
@@ -83,12 +83,12 @@ impl FrictionSpectrum {
     /// is good enough.
     ///
     /// # Errors
-    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the fundamental, and [`FrfError::HarmonicsOutside`] if no line is within an eighth of the
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the fundamental, and [`FrfError::Outside`] if no line is within an eighth of the
     /// fundamental of each multiple, or if nothing is left over at the fundamental.
     pub fn harmonics(&self, fundamental: f64, highest: u32) -> Result<Vec<Harmonic>, FrfError> {
         ModelError::require_positive("the fundamental frequency", fundamental, "Hz")?;
         let (spacing, reach) = (0.25 * fundamental, fundamental * f64::from(highest));
-        let outside = FrfError::HarmonicsOutside { fundamental, order: highest, reach, spacing };
+        let outside = FrfError::harmonics_outside(fundamental, highest, reach, spacing);
         let nearest = |frequency: f64| {
             let above = self.frequencies.partition_point(|&line| line < frequency);
             let distance = |line: usize| self.frequencies.get(line).map(|at| (at - frequency).abs());
@@ -159,6 +159,6 @@ mod tests {
         // The third harmonic of 1 Hz lies on a line when these are 0.25 Hz apart, and 0.15 Hz from one of 0.35 Hz.
         assert_eq!(spectrum(0.25).harmonics(1.0, 3).unwrap()[2].frequency, 3.0);
         let refused = spectrum(0.35).harmonics(1.0, 3);
-        assert!(matches!(refused, Err(FrfError::HarmonicsOutside { order: 3, .. })), "{refused:?}");
+        assert!(matches!(refused, Err(FrfError::Outside { ref what }) if what.contains("order 3")), "{refused:?}");
     }
 }

@@ -49,8 +49,8 @@ pub enum Quadrature {
 /// ```
 ///
 /// # Errors
-/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFewSamples`], [`FrfError::SampleNotFinite`],
-/// [`FrfError::BaselineRange`] if the range is empty or leaves the record, and [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the
+/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFew`], [`FrfError::Values`],
+/// [`FrfError::Outside`] if the range is empty or leaves the record, and [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the
 /// offset or for a sum that overflows.
 pub fn impulse(force: &[f64], interval: f64, baseline: Baseline) -> Result<f64, FrfError> {
     impulse_by(Quadrature::Trapezoid, force, interval, baseline)
@@ -76,7 +76,7 @@ pub fn impulse(force: &[f64], interval: f64, baseline: Baseline) -> Result<f64, 
 pub fn impulse_by(rule: Quadrature, force: &[f64], interval: f64, baseline: Baseline) -> Result<f64, FrfError> {
     ModelError::require_positive("the sampling interval", interval, "s")?;
     if force.len() < 2 {
-        return Err(FrfError::TooFewSamples { found: force.len() });
+        return Err(FrfError::too_few_samples(force.len()));
     }
     FrfError::require_samples(Channel::Force, force)?;
     let offset = baseline.offset_of(force, "N")?;
@@ -130,7 +130,7 @@ mod tests {
     fn a_record_brings_its_interval() {
         let record = |values: &[f64]| Record::new(5.0, 0.5, values.to_vec(), Quantity::Force, "N").unwrap();
         assert_eq!(impulse_of_record(&record(&[1.0, 3.0]), Baseline::Keep), Ok(1.0));
-        assert_eq!(impulse_of_record(&record(&[1.0]), Baseline::Keep), Err(FrfError::TooFewSamples { found: 1 }));
+        assert_eq!(impulse_of_record(&record(&[1.0]), Baseline::Keep), Err(FrfError::too_few_samples(1)));
     }
 
     #[test]
@@ -168,9 +168,9 @@ mod tests {
         for interval in [0.0, -1e-4, f64::NAN, f64::INFINITY] {
             assert!(impulse(&[0.0, 1.0], interval, Baseline::Keep).is_err(), "{interval} s");
         }
-        assert_eq!(impulse(&[1.0], 0.1, Baseline::Keep), Err(FrfError::TooFewSamples { found: 1 }));
+        assert_eq!(impulse(&[1.0], 0.1, Baseline::Keep), Err(FrfError::too_few_samples(1)));
         let error = impulse(&[0.0, f64::INFINITY, 1.0], 0.1, Baseline::Keep);
-        assert_eq!(error, Err(FrfError::SampleNotFinite { channel: Channel::Force, index: 1, value: f64::INFINITY }));
+        assert_eq!(error, Err(FrfError::sample_not_finite(Channel::Force, 1, f64::INFINITY)));
         let overflow = impulse(&[f64::MAX, f64::MAX, f64::MAX], 0.1, Baseline::Keep);
         assert!(matches!(overflow, Err(FrfError::OutOfRange(ModelError::NotFinite { .. }))), "{overflow:?}");
     }
@@ -179,7 +179,7 @@ mod tests {
     fn impossible_baselines_are_refused() {
         for (start, end) in [(1, 1), (2, 1), (0, 4), (7, 9)] {
             let error = impulse(&[0.0, 1.0, 0.0], 0.1, Baseline::MeanOf(start..end));
-            assert_eq!(error, Err(FrfError::BaselineRange { start, end, length: 3 }));
+            assert_eq!(error, Err(FrfError::baseline_range(start, end, 3)));
         }
         assert!(impulse(&[0.0, 1.0], 0.1, Baseline::Offset(f64::NAN)).is_err());
     }

@@ -117,10 +117,10 @@ impl AverageOptions {
     /// which there is no force.
     ///
     /// # Errors
-    /// [`FrfError::EmptyBand`] if no frequency lies there.
+    /// [`FrfError::Outside`] if no frequency lies there.
     pub fn within(mut self, low: f64, high: f64) -> Result<Self, FrfError> {
         if !(low <= high && high >= 0.0) {
-            return Err(FrfError::EmptyBand { low, high });
+            return Err(FrfError::empty_band(low, high));
         }
         self.band = Some((low, high));
         Ok(self)

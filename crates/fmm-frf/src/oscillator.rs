@@ -72,13 +72,13 @@ impl SingleDegreeOfFreedom {
     /// that of the frequency itself.
     ///
     /// # Errors
-    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the frequency, [`FrfError::UndampedResonance`] for c = 0 at ω₀.
+    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the frequency, [`FrfError::NotDefined`] for c = 0 at ω₀.
     pub fn receptance(&self, frequency: f64) -> Result<Complex64, FrfError> {
         let omega = TAU * ModelError::require_finite("frequency", frequency, "Hz")?;
         let dynamic_stiffness = Complex64::new(self.stiffness - self.mass * omega * omega, self.damping * omega);
         // `finv` divides by the magnitude twice, which neither overflows nor underflows where the result does not.
         let receptance = dynamic_stiffness.finv();
-        if receptance.is_finite() { Ok(receptance) } else { Err(FrfError::UndampedResonance { frequency }) }
+        if receptance.is_finite() { Ok(receptance) } else { Err(FrfError::undamped_resonance(frequency)) }
     }
 
     /// The response at `frequency` (Hz) in any `form`, in its SI unit.
@@ -120,7 +120,7 @@ mod tests {
         // ω² = k/m exactly, with the angular frequency as the square root of a square.
         let frequency = 1.0;
         let undamped = SingleDegreeOfFreedom::new(1.0, 0.0, TAU * TAU).unwrap();
-        assert_eq!(undamped.receptance(frequency), Err(FrfError::UndampedResonance { frequency }));
+        assert_eq!(undamped.receptance(frequency), Err(FrfError::undamped_resonance(frequency)));
         assert!(undamped.receptance(1.5).unwrap().re < 0.0);
         assert!(undamped.receptance(f64::NAN).is_err());
     }

@@ -61,13 +61,13 @@ impl Pulse {
     /// The pulse in a `force` (N) sampled every `interval` (s).
     ///
     /// # Errors
-    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFewSamples`], [`FrfError::SampleNotFinite`],
-    /// [`FrfError::BaselineRange`], [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the baseline, and [`FrfError::NoForce`] if nothing rises
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFew`], [`FrfError::Values`],
+    /// [`FrfError::Outside`], [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the baseline, and [`FrfError::NoForce`] if nothing rises
     /// above the baseline.
     pub fn of(force: &[f64], interval: f64, baseline: Baseline) -> Result<Self, FrfError> {
         ModelError::require_positive("the sampling interval", interval, "s")?;
         if force.len() < 2 {
-            return Err(FrfError::TooFewSamples { found: force.len() });
+            return Err(FrfError::too_few_samples(force.len()));
         }
         FrfError::require_samples(Channel::Force, force)?;
         let offset = baseline.offset_of(force, "N")?;
@@ -173,7 +173,7 @@ mod tests {
         assert!(Pulse::of(&[], 1e-3, Baseline::Keep).is_err() && Pulse::of(&[1.0, 2.0], 0.0, Baseline::Keep).is_err());
         assert!(matches!(
             Pulse::of(&[1.0, f64::NAN], 1e-3, Baseline::Keep),
-            Err(FrfError::SampleNotFinite { index: 1, .. })
+            Err(FrfError::Values { what }) if what.starts_with("sample 1 ")
         ));
         assert!(Pulse::of(&[-f64::MAX, f64::MAX], 1e-3, Baseline::Offset(-f64::MAX)).is_err(), "overflow");
     }

@@ -56,14 +56,14 @@ impl RealTransform {
     /// are used again.
     ///
     /// # Errors
-    /// [`FrfError::TransformLength`] for another number of samples.
+    /// [`FrfError::Mismatch`] for another number of samples.
     pub fn run(
         &self,
         samples: &mut [f64],
         spectrum: &mut Vec<Complex64>,
         scratch: &mut Vec<Complex64>,
     ) -> Result<(), FrfError> {
-        let wrong_length = FrfError::TransformLength { expected: self.length(), found: samples.len() };
+        let wrong_length = FrfError::transform_length(self.length(), samples.len());
         if samples.len() != self.length() {
             return Err(wrong_length);
         }

@@ -32,19 +32,19 @@ impl FrequencyResponse {
     /// A response of the given `form`, one value (SI unit of the form) for each frequency (Hz).
     ///
     /// # Errors
-    /// [`FrfError::LengthMismatch`], [`FrfError::FrequenciesNotIncreasing`] or [`FrfError::ValueNotFinite`].
+    /// [`FrfError::Mismatch`] or [`FrfError::Values`].
     pub fn new(form: ResponseForm, frequencies: Vec<f64>, values: Vec<Complex64>) -> Result<Self, FrfError> {
         if frequencies.len() != values.len() {
-            return Err(FrfError::LengthMismatch { frequencies: frequencies.len(), values: values.len() });
+            return Err(FrfError::length_mismatch(frequencies.len(), values.len()));
         }
         // Zero itself is a frequency, and the largest number below it is not.
         let mut above = (-0.0f64).next_down();
         for (index, (&frequency, value)) in frequencies.iter().zip(&values).enumerate() {
             if !(frequency > above && frequency.is_finite()) {
-                return Err(FrfError::FrequenciesNotIncreasing { index, frequency });
+                return Err(FrfError::frequencies_not_increasing(index, frequency));
             }
             if !value.is_finite() {
-                return Err(FrfError::ValueNotFinite { form, frequency });
+                return Err(FrfError::value_not_finite(form, frequency));
             }
             above = frequency;
         }
@@ -59,7 +59,7 @@ impl FrequencyResponse {
         decay_rate: f64,
     ) -> Result<Self, FrfError> {
         if let Some(line) = values.iter().position(|value| !value.is_finite()) {
-            return Err(FrfError::ValueNotFinite { form, frequency: frequencies[line] });
+            return Err(FrfError::value_not_finite(form, frequencies[line]));
         }
         Ok(Self { form, frequencies: Arc::clone(frequencies), values, decay_rate })
     }
@@ -98,7 +98,7 @@ impl FrequencyResponse {
     /// σ + iω in place of iω.
     ///
     /// # Errors
-    /// [`FrfError::NoFiniteForm`] at a line of zero frequency on the way towards receptance, unless a window has moved
+    /// [`FrfError::NotDefined`] at a line of zero frequency on the way towards receptance, unless a window has moved
     /// it; see [`FrequencyResponse::without_zero_frequency`].
     pub fn converted(&self, form: ResponseForm) -> Result<Self, FrfError> {
         let lines = self.frequencies.iter().zip(&self.values);
@@ -114,13 +114,13 @@ impl FrequencyResponse {
     /// A delay of 1 ms is 0.8° at 2.2 Hz and 36° at 100 Hz; it looks like damping where there is none.
     ///
     /// # Errors
-    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the delay, [`FrfError::ValueNotFinite`] if a window and a long delay overflow.
+    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the delay, [`FrfError::Values`] if a window and a long delay overflow.
     pub fn without_delay(mut self, delay: f64) -> Result<Self, FrfError> {
         ModelError::require_finite("the delay of a channel", delay, "s")?;
         for (value, &frequency) in self.values.iter_mut().zip(&*self.frequencies) {
             *value *= (Complex64::new(self.decay_rate, TAU * frequency) * delay).exp();
             if !value.is_finite() {
-                return Err(FrfError::ValueNotFinite { form: self.form, frequency });
+                return Err(FrfError::value_not_finite(self.form, frequency));
             }
         }
         Ok(self)
@@ -129,12 +129,12 @@ impl FrequencyResponse {
     /// The lines from `low` to `high` (Hz), both ends included.
     ///
     /// # Errors
-    /// [`FrfError::EmptyBand`] if there are none.
+    /// [`FrfError::Outside`] if there are none.
     pub fn within(&self, low: f64, high: f64) -> Result<Self, FrfError> {
         let first = self.frequencies.partition_point(|&frequency| frequency < low);
         let end = self.frequencies.partition_point(|&frequency| frequency <= high);
         if !(first < end && low <= high) {
-            return Err(FrfError::EmptyBand { low, high });
+            return Err(FrfError::empty_band(low, high));
         }
         let (frequencies, values) = (self.frequencies[first..end].into(), self.values[first..end].to_vec());
         Ok(Self { form: self.form, frequencies, values, decay_rate: self.decay_rate })
@@ -169,16 +169,16 @@ mod tests {
             let values = values.iter().map(|&re| Complex64::new(re, 0.0)).collect();
             FrequencyResponse::new(ResponseForm::Mobility, frequencies.to_vec(), values)
         };
-        assert_eq!(new(&[1.0], &[]), Err(FrfError::LengthMismatch { frequencies: 1, values: 0 }));
+        assert_eq!(new(&[1.0], &[]), Err(FrfError::length_mismatch(1, 0)));
         for frequencies in [[1.0, 1.0], [2.0, 1.0], [0.0, f64::NAN], [1.0, f64::INFINITY]] {
             let frequency = frequencies[1];
             match new(&frequencies, &[1.0, 1.0]) {
-                Err(FrfError::FrequenciesNotIncreasing { index: 1, .. }) => (),
+                Err(FrfError::Values { what }) if what.contains("line 1 ") => (),
                 other => panic!("{frequency} Hz: {other:?}"),
             }
         }
         assert!(new(&[-1.0], &[1.0]).is_err());
-        assert!(matches!(new(&[1.0], &[f64::NAN]), Err(FrfError::ValueNotFinite { .. })));
+        assert!(matches!(new(&[1.0], &[f64::NAN]), Err(FrfError::Values { .. })));
         assert!(new(&[0.0, 1.0], &[1.0, 1.0]).unwrap().converted(ResponseForm::Receptance).is_err());
     }
 

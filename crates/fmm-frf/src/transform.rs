@@ -68,7 +68,7 @@ impl TrialTransform {
         for (side, given) in [(&*force_side, force), (&*response_side, response)] {
             if given.len() != samples.len() {
                 let (channel, expected, found) = (side.channel, samples.len(), given.len());
-                return Err(FrfError::SampleCount { channel, expected, found });
+                return Err(FrfError::sample_count(channel, expected, found));
             }
         }
         let mut force_energy = 0.0;
@@ -122,7 +122,7 @@ impl Side {
             return Ok(energy);
         }
         FrfError::require_samples(self.channel, given)?;
-        Err(FrfError::TooLarge { channel: self.channel })
+        Err(FrfError::too_large(self.channel))
     }
 }
 

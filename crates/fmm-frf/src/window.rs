@@ -156,7 +156,7 @@ impl Windows {
     /// Weights of the force; none if all are one.
     ///
     /// # Errors
-    /// [`FrfError::WindowOutside`] if none but zero is left.
+    /// [`FrfError::Outside`] if none but zero is left.
     pub(crate) fn force_weights(&self, length: usize, interval: f64) -> Result<Option<Vec<f64>>, FrfError> {
         let Some(window) = self.force else { return Ok(self.response_weights(length, interval)) };
         let mut weights = self.response_weights(length, interval).unwrap_or_else(|| vec![1.0; length]);
@@ -166,7 +166,7 @@ impl Windows {
         if weights.iter().any(|weight| *weight > 0.0) {
             Ok(Some(weights))
         } else {
-            Err(FrfError::WindowOutside { from: window.from, to: window.to, duration: interval * length as f64 })
+            Err(FrfError::window_outside(window.from, window.to, interval * length as f64))
         }
     }
 }
@@ -202,7 +202,7 @@ mod tests {
         assert!((weights[95] - 0.5).abs() < 1e-5 && (weights[205] - 0.5).abs() < 1e-5, "{}", weights[95]);
         assert_eq!((weights[89], weights[211]), (0.0, 0.0));
         let outside = Windows { force: Some(ForceWindow::new(5.0, 6.0).unwrap()), ..Windows::default() };
-        assert!(matches!(outside.force_weights(400, 1e-4), Err(FrfError::WindowOutside { .. })));
+        assert!(matches!(outside.force_weights(400, 1e-4), Err(FrfError::Outside { .. })));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! How trials are added, weighed and refused.
 
 use fmm_frf::{
-    AverageOptions, Averaging, Baseline, Channel, Complex64, Estimator, ExponentialWindow, ForceWindow, FrfError,
+    AverageOptions, Averaging, Baseline, Complex64, Estimator, ExponentialWindow, ForceWindow, FrfError,
     ResponseForm, TrialAverage,
 };
 use fmm_record::{Quantity, Record};
@@ -104,8 +104,8 @@ fn trials_can_be_added_later_and_forgotten() {
     assert_ne!(early.estimate(Estimator::H1).unwrap(), before);
     early.clear();
     assert_eq!((early.trials(), early.averages()), (0, 0.0));
-    assert_eq!(early.estimate(Estimator::H1), Err(FrfError::NoTrials));
-    assert_eq!(early.coherence().unwrap_err(), FrfError::NoTrials);
+    assert!(matches!(early.estimate(Estimator::H1), Err(FrfError::TooFew { what }) if what.contains("no trial")));
+    assert!(matches!(early.coherence(), Err(FrfError::TooFew { .. })));
     for seed in 0..2 {
         let (force, response) = trial(seed);
         early.add(&force, &response).unwrap();
@@ -156,12 +156,18 @@ fn records_must_fit() {
     average.add_records(&f, &v).unwrap();
     let slower = record(RATE / 2.0, &response, Quantity::Velocity);
     let error = average.add_records(&f, &slower).unwrap_err();
-    assert_eq!(error, FrfError::Rate { channel: Channel::Response, expected: RATE, found: RATE / 2.0 });
-    assert!(matches!(average.add_records(&v, &v), Err(FrfError::WrongQuantity { channel: Channel::Force, .. })));
+    assert!(error.to_string().starts_with(&format!("the response was sampled at {} Hz", RATE / 2.0)), "{error}");
+    assert!(
+        matches!(average.add_records(&v, &v), Err(FrfError::Mismatch { what }) if what.contains("the force must be"))
+    );
     let acceleration = record(RATE, &response, Quantity::Acceleration);
-    assert!(matches!(average.add_records(&f, &acceleration), Err(FrfError::WrongQuantity { .. })));
+    assert!(
+        matches!(average.add_records(&f, &acceleration), Err(FrfError::Mismatch { what }) if what.contains("the response must be"))
+    );
     let late = v.clone().starting_at(0.5).unwrap();
-    assert_eq!(average.add_records(&f, &late), Err(FrfError::Begin { force: 0.0, response: 0.5 }));
+    assert!(
+        matches!(average.add_records(&f, &late), Err(FrfError::Mismatch { what }) if what.contains("begin at 0 s and 0.5 s"))
+    );
     assert_eq!(average.trials(), 1);
 }
 
@@ -170,7 +176,7 @@ fn lines_without_force_or_response_have_no_estimate() {
     // A constant force is at zero frequency only.
     let mut constant = average(&AverageOptions::default());
     constant.add(&[1.0; LENGTH], &trial(0).1).unwrap();
-    assert_eq!(constant.estimate(Estimator::H1), Err(FrfError::NoForceAt { frequency: 0.5 }));
+    assert!(matches!(constant.estimate(Estimator::H1), Err(FrfError::NotDefined { frequency: 0.5, .. })));
     let mut narrow = average(&AverageOptions::default().within(0.0, 0.4).unwrap());
     narrow.add(&[1.0; LENGTH], &[2.0; LENGTH]).unwrap();
     assert_eq!(narrow.estimate(Estimator::H1).unwrap().values(), [Complex64::new(2.0, 0.0)]);
@@ -178,10 +184,10 @@ fn lines_without_force_or_response_have_no_estimate() {
     let mut silent = average(&AverageOptions::default());
     silent.add(&trial(0).0, &[0.0; LENGTH]).unwrap();
     assert!(silent.estimate(Estimator::H1).unwrap().values().iter().all(|value| value.norm() == 0.0));
-    assert_eq!(silent.estimate(Estimator::H2), Err(FrfError::NoCrossSpectrumAt { frequency: 0.0 }));
+    assert!(matches!(silent.estimate(Estimator::H2), Err(FrfError::NotDefined { frequency: 0.0, .. })));
     assert!(silent.estimate(Estimator::Hv).is_err() && silent.coherence().is_err());
     assert_eq!(silent.estimate(Estimator::MeanOfRatios), Err(FrfError::RatiosNotKept));
-    assert_eq!(silent.uncertainty(Estimator::H1), Err(FrfError::TooFewTrials { found: 1.0 }));
+    assert!(matches!(silent.uncertainty(Estimator::H1), Err(FrfError::TooFew { what }) if what.ends_with("worth 1")));
     silent.add(&trial(1).0, &[0.0; LENGTH]).unwrap();
     assert!(silent.uncertainty(Estimator::H1).unwrap().iter().all(|u| *u == 0.0));
 }
@@ -223,7 +229,8 @@ fn bands_and_lengths() {
     let new = |rate, length, options: &AverageOptions| TrialAverage::new(ResponseForm::Mobility, rate, length, options);
     for (low, high) in [(20.0, 30.0), (1.1, 1.2)] {
         let options = AverageOptions::default().within(low, high).unwrap();
-        assert_eq!(new(RATE, LENGTH, &options).unwrap_err(), FrfError::EmptyBand { low, high });
+        let error = new(RATE, LENGTH, &options).unwrap_err().to_string();
+        assert_eq!(error, format!("no line lies between {low} Hz and {high} Hz"));
     }
     for (low, high) in [(2.0, 1.0), (f64::NAN, 1.0), (-2.0, -1.0)] {
         assert!(AverageOptions::default().within(low, high).is_err(), "{low} Hz to {high} Hz");
@@ -235,7 +242,7 @@ fn bands_and_lengths() {
         assert!(new(RATE, length, &AverageOptions::default()).is_err(), "{length} samples");
     }
     let window = AverageOptions::default().force_window(ForceWindow::new(10.0, 11.0).unwrap());
-    assert!(matches!(new(RATE, LENGTH, &window), Err(FrfError::WindowOutside { .. })));
+    assert!(matches!(new(RATE, LENGTH, &window), Err(FrfError::Outside { .. })));
 }
 
 #[test]
@@ -248,7 +255,7 @@ fn segments() {
     assert_eq!(average.add_segments(&force, &response, 0).unwrap(), 2);
     assert_eq!(average.estimate(Estimator::H1), of(&AverageOptions::default(), 1..3).estimate(Estimator::H1));
     assert_eq!(average.add_segments(&force[..100], &response[..100], 32).unwrap(), 2);
-    assert!(matches!(average.add_segments(&force, &response, LENGTH), Err(FrfError::Overlap { .. })));
+    assert!(matches!(average.add_segments(&force, &response, LENGTH), Err(FrfError::Outside { .. })));
     assert!(average.add_segments(&force[..9], &response[..9], 0).is_err());
     assert!(average.add_segments(&force, &response[1..], 0).is_err());
     assert_eq!(average.trials(), 4);
@@ -275,5 +282,8 @@ fn offsets_and_windows() {
     assert_eq!(estimate(&exponential, &force).decay_rate(), 0.7);
     let wrong = AverageOptions::default().force_baseline(Baseline::MeanOf(60..70));
     let error = average(&wrong).add(&force, &response).unwrap_err();
-    assert_eq!(error, FrfError::BaselineRange { start: 60, end: 70, length: LENGTH });
+    assert!(
+        error.to_string().contains(&format!("samples 60 to 70 (excluded), but the record has {LENGTH}")),
+        "{error}"
+    );
 }

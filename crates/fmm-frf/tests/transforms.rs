@@ -27,7 +27,8 @@ fn another_number_of_samples_is_refused() {
     let (mut spectrum, mut scratch) = (Vec::new(), Vec::new());
     for (length, given) in [(4, 3), (4, 5), (4, 0), (0, 1)] {
         let error = RealTransform::new(length).run(&mut vec![1.0; given], &mut spectrum, &mut scratch);
-        assert_eq!(error, Err(FrfError::TransformLength { expected: length, found: given }));
+        let what = format!("a transform of {length} samples was given {given}");
+        assert_eq!(error, Err(FrfError::Mismatch { what }));
     }
     RealTransform::new(0).run(&mut [], &mut spectrum, &mut scratch).unwrap();
     assert_eq!(spectrum, [Complex64::default()]);

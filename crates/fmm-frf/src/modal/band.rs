@@ -29,10 +29,10 @@ impl Band {
         let magnitudes = lines.values().iter().map(|value| value.norm()).enumerate();
         let highest = magnitudes.reduce(|best, line| if line.1 > best.1 { line } else { best });
         let Some((highest, magnitude)) = highest.filter(|_| found >= needed) else {
-            return Err(FrfError::TooFewPoints { needed, found });
+            return Err(FrfError::too_few_points(needed, found));
         };
         if magnitude == 0.0 {
-            return Err(FrfError::NoMode { fit: "fit of a mode", low, high });
+            return Err(FrfError::no_mode("fit of a mode", low, high));
         }
         let unit = TAU * lines.frequencies()[highest];
         let ratios = lines.frequencies().iter().map(|frequency| TAU * frequency / unit).collect();

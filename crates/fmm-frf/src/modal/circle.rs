@@ -55,16 +55,15 @@ impl CircleFit {
     /// Fits the lines of `response` from `low` to `high` (Hz); at least four, around one resonance.
     ///
     /// # Errors
-    /// [`FrfError::EmptyBand`], [`FrfError::TooFewPoints`], [`FrfError::NotConverged`], [`FrfError::Undetermined`],
-    /// [`FrfError::NoMode`].
+    /// [`FrfError::Outside`], [`FrfError::TooFew`], [`FrfError::NoFit`].
     pub fn of(response: &FrequencyResponse, low: f64, high: f64) -> Result<Self, FrfError> {
         Band::of(response, low, high, 4)?;
         let band = Band::of(&Band::apparent(&response.within(low, high)?, ResponseForm::Mobility)?, low, high, 4)?;
         let size = band.values[band.highest].norm();
         let points: Vec<Complex64> = band.values.iter().map(|value| value / size).collect();
-        let undetermined = FrfError::Undetermined { fit: NAME, points: points.len() };
-        let unsettled = FrfError::NotConverged { fit: NAME };
-        let none = FrfError::NoMode { fit: NAME, low, high };
+        let undetermined = FrfError::undetermined(NAME, points.len());
+        let unsettled = FrfError::not_converged(NAME);
+        let none = FrfError::no_mode(NAME, low, high);
 
         let start = algebraic_circle(&points).ok_or(undetermined.clone())?;
         let circle = gauss_newton(start, |circle| Some(distances(&points, circle))).ok_or(unsettled.clone())?;

@@ -45,12 +45,11 @@ impl PeakFit {
     /// Fits the lines of `response` from `low` to `high` (Hz); at least four.
     ///
     /// # Errors
-    /// [`FrfError::EmptyBand`], [`FrfError::TooFewPoints`], [`FrfError::NoMode`] if the magnitudes are no peak,
-    /// [`FrfError::Undetermined`].
+    /// [`FrfError::Outside`], [`FrfError::TooFew`], [`FrfError::NoFit`] if the magnitudes are no peak or do not tell it.
     pub fn of(response: &FrequencyResponse, low: f64, high: f64) -> Result<Self, FrfError> {
         let given = Band::of(response, low, high, 4)?;
         let receptance = Band::apparent(&response.within(low, high)?, ResponseForm::Receptance)?;
-        let none = FrfError::NoMode { fit: NAME, low, high };
+        let none = FrfError::no_mode(NAME, low, high);
         let derivatives = i32::from(response.form().derivatives());
         let magnitudes: Vec<f64> = receptance.values().iter().map(|value| value.norm()).collect();
         let largest = magnitudes.iter().copied().fold(0.0, f64::max);
@@ -64,7 +63,7 @@ impl PeakFit {
                 triangle.add([u * u, u, 1.0].map(|term| term * weight), weight / (relative * relative));
             }
         }
-        let undetermined = FrfError::Undetermined { fit: NAME, points: triangle.rows };
+        let undetermined = FrfError::undetermined(NAME, triangle.rows);
         let [a, b, d] = triangle.solve().ok_or(undetermined.clone())?;
         let covariance = triangle.covariance().ok_or(undetermined)?;
         // a u² + b u + d = a (w² + (q₁² − 2q₀) w + q₀²) with w = 1 + u, without cancellation near the peak.

@@ -79,8 +79,7 @@ impl RationalFit {
     /// Fits the lines of `response` from `low` to `high` (Hz); at least three, or with a background four.
     ///
     /// # Errors
-    /// [`FrfError::EmptyBand`], [`FrfError::TooFewPoints`], [`FrfError::Undetermined`], [`FrfError::NotConverged`],
-    /// [`FrfError::NoMode`].
+    /// [`FrfError::Outside`], [`FrfError::TooFew`], [`FrfError::NoFit`].
     pub fn of(response: &FrequencyResponse, low: f64, high: f64, background: Background) -> Result<Self, FrfError> {
         let band = Band::of(response, low, high, if background == Background::None { 3 } else { 4 })?;
         let form = i32::from(response.form().derivatives());
@@ -114,11 +113,11 @@ impl<const P: usize> Fitting<P> {
 
     fn fit(&self) -> Result<RationalFit, FrfError> {
         let Band { unit, low, high, .. } = self.band;
-        let undetermined = FrfError::Undetermined { fit: NAME, points: self.band.values.len() };
-        let none = FrfError::NoMode { fit: NAME, low, high };
+        let undetermined = FrfError::undetermined(NAME, self.band.values.len());
+        let none = FrfError::no_mode(NAME, low, high);
         let start = self.start().ok_or(undetermined.clone())?;
         let minimum = gauss_newton(start, |parameters| self.linearise(parameters));
-        let Minimum { parameters, triangle } = minimum.ok_or(FrfError::NotConverged { fit: NAME })?;
+        let Minimum { parameters, triangle } = minimum.ok_or(FrfError::not_converged(NAME))?;
         let covariance = triangle.covariance().ok_or(undetermined)?;
         let (q0, q1) = (parameters[0], parameters[1]);
         let of_mode = [[covariance[0][0], covariance[0][1]], [covariance[1][0], covariance[1][1]]];

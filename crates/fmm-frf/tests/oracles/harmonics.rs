@@ -61,7 +61,7 @@ fn a_linear_machine_has_no_harmonics() {
     assert!((0.4..2.4).contains(&ratio), "odd by even {ratio}");
     // And nothing at all is left of the right model.
     let same = FrictionSpectrum::of(&linear, &linear).unwrap();
-    assert!(matches!(same.harmonics(fundamental, 9), Err(FrfError::HarmonicsOutside { .. })));
+    assert!(matches!(same.harmonics(fundamental, 9), Err(FrfError::Outside { .. })));
 }
 
 /// The highest line of the receptance, as the summary of the simulation has it.
@@ -83,11 +83,13 @@ fn impossible_spectra_are_refused() {
     let fundamental = machine().natural_angular_frequency() / TAU;
     let linear = |lines: &[f64]| machine().frequency_response(ResponseForm::Mobility, lines).unwrap();
     let shorter = linear(&low.frequencies()[1..]);
-    assert_eq!(FrictionSpectrum::of(&low, &shorter), Err(FrfError::ResponsesDiffer { line: 0 }));
+    assert!(
+        matches!(FrictionSpectrum::of(&low, &shorter), Err(FrfError::Mismatch { what }) if what.ends_with("line 0 on"))
+    );
     let receptance = linear(low.frequencies()).converted(ResponseForm::Receptance).unwrap();
-    assert!(matches!(FrictionSpectrum::of(&low, &receptance), Err(FrfError::ResponsesDiffer { .. })));
+    assert!(matches!(FrictionSpectrum::of(&low, &receptance), Err(FrfError::Mismatch { .. })));
     let zero = linear(&[0.0, 1.0]);
-    assert_eq!(FrictionSpectrum::of(&zero, &zero), Err(FrfError::LinearResponseZero { frequency: 0.0 }));
+    assert!(matches!(FrictionSpectrum::of(&zero, &zero), Err(FrfError::NotDefined { frequency: 0.0, .. })));
     let spectrum = FrictionSpectrum::of(&low, &linear(low.frequencies())).unwrap();
     for (frequency, order) in [(0.0, 3), (f64::NAN, 3), (1.0, 3), (fundamental, 10)] {
         assert!(spectrum.harmonics(frequency, order).is_err(), "{frequency} Hz, order {order}");

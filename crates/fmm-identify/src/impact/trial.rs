@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use fmm_frf::{Baseline, Channel, FrfError, Hit, Pulse};
+use fmm_frf::{Baseline, Channel, Hit, Pulse};
 use fmm_record::{Quantity, Record, noise, quantisation_step, saturation};
 
 use crate::impact::motion::{Motion, bridged};
@@ -189,10 +189,7 @@ impl ImpactTrial {
 
 /// That the two records are a force and a velocity, in SI units, sampled at the same times.
 fn require_together(force: &Record, velocity: &Record) -> Result<(), IdentifyError> {
-    if force.quantity() != Quantity::Force {
-        let (channel, expected, found) = (Channel::Force, Quantity::Force, force.quantity());
-        return Err(FrfError::WrongQuantity { channel, expected, found }.into());
-    }
+    Channel::Force.require(force, Quantity::Force, force.rate())?;
     if velocity.quantity() != Quantity::Velocity {
         return Err(IdentifyError::velocity_needed("the fit of impacts", velocity.quantity()));
     }
@@ -204,19 +201,8 @@ fn require_together(force: &Record, velocity: &Record) -> Result<(), IdentifyErr
             )));
         }
     }
-    if force.len() != velocity.len() {
-        let (expected, found) = (force.len(), velocity.len());
-        return Err(FrfError::SampleCount { channel: Channel::Response, expected, found }.into());
-    }
-    // Rates are often read from time stamps of six digits.
-    if !((force.rate() / velocity.rate() - 1.0).abs() <= 1e-6) {
-        let (expected, found) = (force.rate(), velocity.rate());
-        return Err(FrfError::Rate { channel: Channel::Response, expected, found }.into());
-    }
-    if !((force.start() - velocity.start()).abs() * velocity.rate() <= 1e-3) {
-        return Err(FrfError::Begin { force: force.start(), response: velocity.start() }.into());
-    }
-    Ok(())
+    Channel::Response.require(velocity, Quantity::Velocity, force.rate())?;
+    Ok(Channel::require_together(force, velocity)?)
 }
 
 /// Mean of the samples with its uncertainty if they have white noise of this standard deviation.
@@ -344,12 +330,20 @@ mod tests {
         let (force, velocity) = records(hit, swing, 4000);
         let prepare = ImpactTrial::prepare;
         let short = velocity.crop(2.0, 3.0).unwrap();
-        assert!(matches!(prepare(&force, &short), Err(IdentifyError::Impact(FrfError::SampleCount { .. }))));
+        assert!(
+            matches!(prepare(&force, &short), Err(IdentifyError::Impact(FrfError::Mismatch { what })) if what.contains("samples"))
+        );
         let late = velocity.clone().starting_at(2.1).unwrap();
-        assert!(matches!(prepare(&force, &late), Err(IdentifyError::Impact(FrfError::Begin { .. }))));
+        assert!(
+            matches!(prepare(&force, &late), Err(IdentifyError::Impact(FrfError::Mismatch { what })) if what.contains("begin together"))
+        );
         let slow = Record::new(2.0, 2e-3, velocity.values().to_vec(), Quantity::Velocity, "m/s").unwrap();
-        assert!(matches!(prepare(&force, &slow), Err(IdentifyError::Impact(FrfError::Rate { .. }))));
-        assert!(matches!(prepare(&velocity, &velocity), Err(IdentifyError::Impact(FrfError::WrongQuantity { .. }))));
+        assert!(
+            matches!(prepare(&force, &slow), Err(IdentifyError::Impact(FrfError::Mismatch { what })) if what.contains("sampled at"))
+        );
+        assert!(
+            matches!(prepare(&velocity, &velocity), Err(IdentifyError::Impact(FrfError::Mismatch { what })) if what.contains("must be a record of"))
+        );
         assert!(
             matches!(prepare(&force, &force), Err(IdentifyError::WrongRecord { what }) if what.contains("needs a velocity"))
         );
