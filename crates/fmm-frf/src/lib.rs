@@ -67,58 +67,32 @@
 //! percent, and start it. There are no features.
 
 mod average;
-mod baseline;
 mod channel;
-mod coherence;
-mod coulomb_impact;
-mod coulomb_line;
-mod describing_function;
 mod error;
-mod estimator;
-mod form;
-mod friction_spectrum;
-mod gauss_newton;
+mod friction;
 mod impulse;
+mod least_squares;
 mod measured;
 mod modal;
-mod options;
-mod oscillator;
-mod pulse;
-mod real_transform;
-mod resonances;
 mod response;
-mod sums;
-mod transform;
-mod triangle;
-mod viscous_coulomb_impact;
-mod window;
 
-pub use average::TrialAverage;
-pub use baseline::Baseline;
-pub use channel::Channel;
-pub use coherence::Coherence;
-pub use coulomb_impact::{
-    coulomb_impact_duration, friction_force_of_coulomb_impact, peak_receptance_of_coulomb_impact,
+pub use average::{
+    AverageOptions, Averaging, Baseline, Coherence, Estimator, ExponentialWindow, ForceWindow, RealTransform, Taper,
+    TrialAverage,
 };
-pub use coulomb_line::{CoulombLine, friction_force_of_slope};
-pub use describing_function::equivalent_damping_of_friction;
+pub use channel::Channel;
 pub use error::FrfError;
-pub use estimator::Estimator;
 pub use fmm_model::ModelError;
-pub use form::ResponseForm;
-pub use friction_spectrum::{FrictionSpectrum, Harmonic};
-pub use impulse::{Quadrature, impulse, impulse_by, impulse_of_record};
+pub use friction::{
+    CoulombLine, FrictionSpectrum, Harmonic, coulomb_impact_duration, equivalent_damping_of_friction,
+    friction_force_of_coulomb_impact, friction_force_of_slope, friction_force_of_viscous_coulomb_impact,
+    peak_receptance_of_coulomb_impact, peak_receptance_of_viscous_coulomb_impact,
+};
+pub use impulse::{Hit, Pulse, Quadrature, impulse, impulse_by, impulse_of_record};
 pub use measured::Measured;
 pub use modal::{Background, CircleFit, Mode, PeakFit, RationalFit};
 pub use num_complex::Complex64;
-pub use options::{AverageOptions, Averaging};
-pub use oscillator::SingleDegreeOfFreedom;
-pub use pulse::{Hit, Pulse};
-pub use real_transform::RealTransform;
-pub use resonances::{Resonance, resonances};
-pub use response::FrequencyResponse;
-pub use viscous_coulomb_impact::{friction_force_of_viscous_coulomb_impact, peak_receptance_of_viscous_coulomb_impact};
-pub use window::{ExponentialWindow, ForceWindow, Taper};
+pub use response::{FrequencyResponse, Resonance, ResponseForm, SingleDegreeOfFreedom, resonances};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

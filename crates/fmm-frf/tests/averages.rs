@@ -1,8 +1,8 @@
 //! How trials are added, weighed and refused.
 
 use fmm_frf::{
-    AverageOptions, Averaging, Baseline, Complex64, Estimator, ExponentialWindow, ForceWindow, FrfError,
-    ResponseForm, TrialAverage,
+    AverageOptions, Averaging, Baseline, Complex64, Estimator, ExponentialWindow, ForceWindow, FrfError, ResponseForm,
+    TrialAverage,
 };
 use fmm_record::{Quantity, Record};
 

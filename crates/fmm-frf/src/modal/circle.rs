@@ -4,9 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 use num_complex::Complex64;
 
-use crate::gauss_newton::gauss_newton;
+use crate::least_squares::gauss_newton::gauss_newton;
+use crate::least_squares::triangle::Triangle;
 use crate::modal::band::Band;
-use crate::triangle::Triangle;
 use crate::{FrequencyResponse, FrfError, Measured, Mode, ResponseForm};
 
 const NAME: &str = "circle fit";
@@ -61,22 +61,22 @@ impl CircleFit {
         let band = Band::of(&Band::apparent(&response.within(low, high)?, ResponseForm::Mobility)?, low, high, 4)?;
         let size = band.values[band.highest].norm();
         let points: Vec<Complex64> = band.values.iter().map(|value| value / size).collect();
-        let undetermined = FrfError::undetermined(NAME, points.len());
-        let unsettled = FrfError::not_converged(NAME);
-        let none = FrfError::no_mode(NAME, low, high);
+        let undetermined = || FrfError::undetermined(NAME, points.len());
+        let unsettled = || FrfError::not_converged(NAME);
+        let none = || FrfError::no_mode(NAME, low, high);
 
-        let start = algebraic_circle(&points).ok_or(undetermined.clone())?;
-        let circle = gauss_newton(start, |circle| Some(distances(&points, circle))).ok_or(unsettled.clone())?;
+        let start = algebraic_circle(&points).ok_or_else(undetermined)?;
+        let circle = gauss_newton(start, |circle| Some(distances(&points, circle))).ok_or_else(unsettled)?;
         let [x, y, radius] = circle.parameters;
         let centre = Complex64::new(x, y);
         let angles: Vec<f64> = points.iter().map(|point| (point - centre).arg()).collect();
-        let start = starting_mode(&band, &angles).ok_or(none.clone())?;
-        let turning = gauss_newton(start, |mode| sweep(&band.ratios, &angles, mode)).ok_or(unsettled)?;
+        let start = starting_mode(&band, &angles).ok_or_else(none)?;
+        let turning = gauss_newton(start, |mode| sweep(&band.ratios, &angles, mode)).ok_or_else(unsettled)?;
         let ([q0, q1, rotation], covariance) = (turning.parameters, turning.triangle.covariance());
         let ([[a, b, _], [_, c, _], _], Some(of_circle)) =
-            (covariance.ok_or(undetermined.clone())?, circle.triangle.covariance())
+            (covariance.ok_or_else(undetermined)?, circle.triangle.covariance())
         else {
-            return Err(undetermined);
+            return Err(undetermined());
         };
         let mode = Mode::new([q0, q1], &[[a, b], [b, c]], band.unit, band.decay_rate, none)?;
         let relative = of_circle[2][2].sqrt() / radius;

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use crate::triangle::variance_of;
+use crate::least_squares::triangle::variance_of;
 use crate::{FrfError, Measured};
 
 /// Natural frequency and damping of a mode, with the damping of an exponential window taken out.
@@ -35,12 +35,12 @@ impl Mode {
         covariance: &[[f64; 2]; 2],
         unit: f64,
         decay_rate: f64,
-        none: FrfError,
+        none: impl FnOnce() -> FrfError,
     ) -> Result<Self, FrfError> {
         let sigma = decay_rate / unit;
         let (p0, p1) = (q0 - sigma * q1 + sigma * sigma, q1 - 2.0 * sigma);
         if !(p0 > 0.0 && p0.is_finite() && p1.is_finite()) {
-            return Err(none);
+            return Err(none());
         }
         let root = p0.sqrt();
         let ratio = p1 / (2.0 * root);

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use crate::least_squares::triangle::Triangle;
 use crate::modal::band::Band;
-use crate::triangle::Triangle;
 use crate::{FrequencyResponse, FrfError, Mode, ResponseForm};
 
 const NAME: &str = "fit of a peak";
@@ -49,7 +49,7 @@ impl PeakFit {
     pub fn of(response: &FrequencyResponse, low: f64, high: f64) -> Result<Self, FrfError> {
         let given = Band::of(response, low, high, 4)?;
         let receptance = Band::apparent(&response.within(low, high)?, ResponseForm::Receptance)?;
-        let none = FrfError::no_mode(NAME, low, high);
+        let none = || FrfError::no_mode(NAME, low, high);
         let derivatives = i32::from(response.form().derivatives());
         let magnitudes: Vec<f64> = receptance.values().iter().map(|value| value.norm()).collect();
         let largest = magnitudes.iter().copied().fold(0.0, f64::max);
@@ -63,15 +63,15 @@ impl PeakFit {
                 triangle.add([u * u, u, 1.0].map(|term| term * weight), weight / (relative * relative));
             }
         }
-        let undetermined = FrfError::undetermined(NAME, triangle.rows);
-        let [a, b, d] = triangle.solve().ok_or(undetermined.clone())?;
-        let covariance = triangle.covariance().ok_or(undetermined)?;
+        let undetermined = || FrfError::undetermined(NAME, triangle.rows);
+        let [a, b, d] = triangle.solve().ok_or_else(undetermined)?;
+        let covariance = triangle.covariance().ok_or_else(undetermined)?;
         // a u² + b u + d = a (w² + (q₁² − 2q₀) w + q₀²) with w = 1 + u, without cancellation near the peak.
         let e = (d - b) / a;
         let q0 = (1.0 + e).sqrt();
         let q1_squared = b / a + 2.0 * e / (1.0 + q0);
         if !(a > 0.0 && q1_squared > 0.0 && q0.is_finite()) {
-            return Err(none);
+            return Err(none());
         }
         let q1 = q1_squared.sqrt();
         let of_e = [-e / a, -1.0 / a, 1.0 / a];

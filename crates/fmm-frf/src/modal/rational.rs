@@ -4,9 +4,9 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
-use crate::gauss_newton::{Minimum, gauss_newton};
+use crate::least_squares::gauss_newton::{Minimum, gauss_newton};
+use crate::least_squares::triangle::{Triangle, variance_of};
 use crate::modal::band::Band;
-use crate::triangle::{Triangle, variance_of};
 use crate::{FrequencyResponse, FrfError, Measured, Mode};
 
 const NAME: &str = "rational fraction fit";
@@ -113,22 +113,22 @@ impl<const P: usize> Fitting<P> {
 
     fn fit(&self) -> Result<RationalFit, FrfError> {
         let Band { unit, low, high, .. } = self.band;
-        let undetermined = FrfError::undetermined(NAME, self.band.values.len());
-        let none = FrfError::no_mode(NAME, low, high);
-        let start = self.start().ok_or(undetermined.clone())?;
+        let undetermined = || FrfError::undetermined(NAME, self.band.values.len());
+        let none = || FrfError::no_mode(NAME, low, high);
+        let start = self.start().ok_or_else(undetermined)?;
         let minimum = gauss_newton(start, |parameters| self.linearise(parameters));
         let Minimum { parameters, triangle } = minimum.ok_or(FrfError::not_converged(NAME))?;
-        let covariance = triangle.covariance().ok_or(undetermined)?;
+        let covariance = triangle.covariance().ok_or_else(undetermined)?;
         let (q0, q1) = (parameters[0], parameters[1]);
         let of_mode = [[covariance[0][0], covariance[0][1]], [covariance[1][0], covariance[1][1]]];
         // The lines were taken at their true s, so that there is no window to take out.
-        let mode = Mode::new([q0, q1], &of_mode, unit, 0.0, none.clone())?;
+        let mode = Mode::new([q0, q1], &of_mode, unit, 0.0, none)?;
         let machine = if P == 3 {
             let n0 = parameters[2];
             // H = (s/unit)ᵖ size n₀/(…) = sᵖ (1/m)/(…), so that m = unit^(p − 2)/(n₀ size).
             let mass = unit.powi(self.form - 2) / (n0 * self.size);
             if !(mass.is_finite() && mass > 0.0) {
-                return Err(none);
+                return Err(none());
             }
             let measured = |value: f64, gradient: [(usize, f64); 2]| {
                 let mut full = [0.0; P];

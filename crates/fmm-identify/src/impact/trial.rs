@@ -269,6 +269,7 @@ impl Blow {
 
 #[cfg(test)]
 mod tests {
+    use fmm_frf::FrfError;
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::SeedableRng;
     use rand_distr::{Distribution, Normal};

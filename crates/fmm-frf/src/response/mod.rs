@@ -1,11 +1,19 @@
 //! Response per force as a function of frequency.
 
+mod form;
+mod oscillator;
+mod resonances;
+
+pub use form::ResponseForm;
+pub use oscillator::SingleDegreeOfFreedom;
+pub use resonances::{Resonance, resonances};
+
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use num_complex::Complex64;
 
-use crate::{FrfError, ModelError, ResponseForm};
+use crate::{FrfError, ModelError};
 
 /// A response at increasing frequencies, all of it finite and in one form.
 ///

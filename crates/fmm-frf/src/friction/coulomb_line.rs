@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::fmt;
 
-use crate::triangle::Triangle;
+use crate::least_squares::triangle::Triangle;
 use crate::{FrfError, Measured, ModelError};
 
 /// The straight line of receptance peaks over impulses, and the friction force of its slope.
@@ -70,11 +70,11 @@ impl CoulombLine {
             spread += height * height;
             triangle.add([1.0, impulse / means[0] - 1.0], height);
         }
-        let undetermined = FrfError::undetermined("line of peaks over impulses", impulses.len());
+        let undetermined = || FrfError::undetermined("line of peaks over impulses", impulses.len());
         let ([level, steepness], Some(covariance)) =
-            (triangle.solve().ok_or(undetermined.clone())?, triangle.covariance())
+            (triangle.solve().ok_or_else(undetermined)?, triangle.covariance())
         else {
-            return Err(undetermined);
+            return Err(undetermined());
         };
         let slope = steepness * means[1] / means[0];
         ModelError::require_positive("slope of the peaks over the impulses", slope, "m/(N² s)")?;

@@ -1,16 +1,30 @@
 //! The average over trials, from which every estimate follows.
 
+mod baseline;
+mod coherence;
+mod estimator;
+mod options;
+mod real_transform;
+mod sums;
+mod transform;
+mod window;
+
+pub use baseline::Baseline;
+pub use coherence::Coherence;
+pub use estimator::Estimator;
+pub use options::{AverageOptions, Averaging};
+pub use real_transform::RealTransform;
+pub use window::{ExponentialWindow, ForceWindow, Taper};
+
 use std::ops::Range;
 use std::sync::Arc;
 
 use fmm_record::{Quantity, Record};
 
-use crate::estimator::{Spectra, Undefined};
-use crate::sums::{RatioSums, SpectralSums, Weighed};
-use crate::transform::{SLOTS, TrialTransform};
-use crate::{
-    AverageOptions, Averaging, Channel, Coherence, Estimator, FrequencyResponse, FrfError, ModelError, ResponseForm,
-};
+use crate::average::estimator::{Spectra, Undefined};
+use crate::average::sums::{RatioSums, SpectralSums, Weighed};
+use crate::average::transform::{SLOTS, TrialTransform};
+use crate::{Channel, FrequencyResponse, FrfError, ModelError, ResponseForm};
 
 /// Spectra of a test, averaged over its trials.
 ///

@@ -88,7 +88,7 @@ impl FrictionSpectrum {
     pub fn harmonics(&self, fundamental: f64, highest: u32) -> Result<Vec<Harmonic>, FrfError> {
         ModelError::require_positive("the fundamental frequency", fundamental, "Hz")?;
         let (spacing, reach) = (0.25 * fundamental, fundamental * f64::from(highest));
-        let outside = FrfError::harmonics_outside(fundamental, highest, reach, spacing);
+        let outside = || FrfError::harmonics_outside(fundamental, highest, reach, spacing);
         let nearest = |frequency: f64| {
             let above = self.frequencies.partition_point(|&line| line < frequency);
             let distance = |line: usize| self.frequencies.get(line).map(|at| (at - frequency).abs());
@@ -100,13 +100,13 @@ impl FrictionSpectrum {
         let mut harmonics: Vec<Harmonic> = Vec::new();
         let mut first = 0.0;
         for order in 1..=highest {
-            let (line, _) = nearest(fundamental * f64::from(order)).ok_or(outside.clone())?;
+            let (line, _) = nearest(fundamental * f64::from(order)).ok_or_else(outside)?;
             let size = (1.0 - self.quotients[line]).norm();
             if order == 1 {
                 first = size;
             }
             if first == 0.0 {
-                return Err(outside);
+                return Err(outside());
             }
             let (level, deviation) = (decibels(size / first), decibels(self.quotients[line].norm()));
             harmonics.push(Harmonic { order, frequency: self.frequencies[line], level, deviation });

@@ -5,7 +5,7 @@ use std::ops::Range;
 use num_complex::Complex64;
 use pulp::Arch;
 
-use crate::window::Windows;
+use crate::average::window::Windows;
 use crate::{Baseline, Channel, FrfError, RealTransform};
 
 /// How many trials' spectra are kept. Adding up two at a time saves a third of the way to and from memory, which is what it costs.

@@ -1,6 +1,6 @@
 //! Small nonlinear least squares.
 
-use crate::triangle::Triangle;
+use crate::least_squares::triangle::Triangle;
 
 /// What a Gauss-Newton iteration ends with: the parameters, and the factor of the Jacobian there.
 #[derive(Debug, Clone)]

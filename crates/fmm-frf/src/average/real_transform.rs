@@ -63,13 +63,13 @@ impl RealTransform {
         spectrum: &mut Vec<Complex64>,
         scratch: &mut Vec<Complex64>,
     ) -> Result<(), FrfError> {
-        let wrong_length = FrfError::transform_length(self.length(), samples.len());
+        let wrong_length = |samples: &[f64]| FrfError::transform_length(self.length(), samples.len());
         if samples.len() != self.length() {
-            return Err(wrong_length);
+            return Err(wrong_length(samples));
         }
         spectrum.resize(self.lines(), Complex64::default());
         scratch.resize(self.plan.get_scratch_len(), Complex64::default());
-        self.plan.process_with_scratch(samples, spectrum, scratch).map_err(|_| wrong_length)
+        self.plan.process_with_scratch(samples, spectrum, scratch).map_err(|_| wrong_length(samples))
     }
 }
 

@@ -1,5 +1,9 @@
 //! The impulse of a sampled force.
 
+mod pulse;
+
+pub use pulse::{Hit, Pulse};
+
 use fmm_record::Record;
 
 use crate::{Baseline, Channel, FrfError, ModelError};

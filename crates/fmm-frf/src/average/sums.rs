@@ -6,7 +6,7 @@ use std::slice::Iter;
 use num_complex::Complex64;
 use pulp::Arch;
 
-use crate::estimator::Spectra;
+use crate::average::estimator::Spectra;
 
 /// Sums of F*F, V*V and F*V.
 #[derive(Debug, Clone)]

@@ -1,6 +1,6 @@
 //! How trials are treated and averaged.
 
-use crate::window::Windows;
+use crate::average::window::Windows;
 use crate::{Baseline, ExponentialWindow, ForceWindow, FrfError, ModelError, Taper};
 
 /// How much each trial counts.

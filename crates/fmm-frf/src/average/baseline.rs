@@ -31,8 +31,8 @@ impl Baseline {
             Self::Keep => 0.0,
             Self::Offset(offset) => offset,
             Self::MeanOf(range) => {
-                let outside = FrfError::baseline_range(range.start, range.end, samples.len());
-                mean(samples.get(range).filter(|quiet| !quiet.is_empty()).ok_or(outside)?)
+                let quiet = samples.get(range.clone()).filter(|quiet| !quiet.is_empty());
+                mean(quiet.ok_or_else(|| FrfError::baseline_range(range.start, range.end, samples.len()))?)
             }
             Self::Mean => mean(samples),
         };
