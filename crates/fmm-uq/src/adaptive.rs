@@ -65,7 +65,7 @@ impl Adaptive {
     /// trials.
     ///
     /// # Errors
-    /// [`UncertaintyError::OptionOutOfRange`] unless there are 1 to 15 digits.
+    /// [`UncertaintyError::OutOfRange`] unless there are 1 to 15 digits.
     pub fn to_digits(digits: u32) -> Result<Self, UncertaintyError> {
         Ok(Self::new(Target::Digits(valid_digits(digits)?)))
     }
@@ -73,13 +73,13 @@ impl Adaptive {
     /// Results stable to `tolerance` δ (unit of the outputs, which share it).
     ///
     /// # Errors
-    /// [`UncertaintyError::OptionOutOfRange`] unless it is positive and finite.
+    /// [`UncertaintyError::OutOfRange`] unless it is positive and finite.
     pub fn to_tolerance(tolerance: f64) -> Result<Self, UncertaintyError> {
         if tolerance > 0.0 && tolerance.is_finite() {
             Ok(Self::new(Target::Tolerance(tolerance)))
         } else {
             let (option, must_be) = ("numerical tolerance", "positive and finite");
-            Err(UncertaintyError::OptionOutOfRange { option, value: tolerance, must_be })
+            Err(UncertaintyError::out_of_range(option, tolerance, must_be))
         }
     }
 
@@ -91,7 +91,7 @@ impl Adaptive {
     /// The same with an interval of the given kind and coverage probability.
     ///
     /// # Errors
-    /// [`UncertaintyError::LevelOutOfRange`] unless 0 < level < 1.
+    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1.
     pub fn with_interval(mut self, kind: IntervalKind, level: f64) -> Result<Self, UncertaintyError> {
         (self.kind, self.level) = (kind, valid_level(level)?);
         Ok(self)
@@ -220,7 +220,7 @@ impl Stability {
     pub(crate) fn add(&mut self, columns: &[Vec<f64>]) -> Result<bool, UncertaintyError> {
         let values = columns.first().map_or(0, Vec::len);
         if values == self.values {
-            return Err(UncertaintyError::NoSuccess);
+            return Err(UncertaintyError::no_success());
         }
         self.outputs.resize_with(columns.len(), || Figures::new(&self.rule));
         for (column, figures) in columns.iter().zip(&mut self.outputs) {

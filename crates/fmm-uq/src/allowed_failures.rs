@@ -12,7 +12,7 @@ impl AllowedFailures {
             Ok(Self(share))
         } else {
             let (option, must_be) = ("allowed share of failed trials", "in [0, 1)");
-            Err(UncertaintyError::OptionOutOfRange { option, value: share, must_be })
+            Err(UncertaintyError::out_of_range(option, share, must_be))
         }
     }
 

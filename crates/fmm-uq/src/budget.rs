@@ -82,21 +82,21 @@ impl Budget {
         for (i, &sensitivity) in budget.sensitivities.iter().enumerate() {
             if !(sensitivity.is_finite() && budget.signed(i).is_finite()) {
                 let inputs = budget.inputs.as_slice();
-                let (input, at) = (inputs[i].name().to_owned(), place(&budget.inputs, inputs.iter().map(Input::value)));
-                return Err(UncertaintyError::SensitivityNotFinite { input, sensitivity, at });
+                let (input, at) = (inputs[i].name(), place(&budget.inputs, inputs.iter().map(Input::value)));
+                return Err(UncertaintyError::sensitivity_not_finite(input, sensitivity, &at));
             }
         }
         let acts = |(i, c): (usize, &f64)| *c != 0.0 && budget.inputs.as_slice()[i].standard_uncertainty() > 0.0;
         let largest = (0..budget.sensitivities.len()).map(|i| budget.signed(i).abs()).fold(0.0, f64::max);
         if largest < f64::MIN_POSITIVE && budget.sensitivities.iter().enumerate().any(acts) {
-            return Err(UncertaintyError::TooSmall { of: "the result".to_owned() });
+            return Err(UncertaintyError::too_small("the result"));
         }
         budget.standard_uncertainty = budget.combined();
         if budget.standard_uncertainty.is_finite() {
             Ok(budget)
         } else {
-            let (value, unit) = (budget.standard_uncertainty, "(unit of the result)".to_owned());
-            Err(UncertaintyError::UncertaintyOutOfRange { input: "the result".to_owned(), value, unit })
+            let (value, unit) = (budget.standard_uncertainty, "(unit of the result)");
+            Err(UncertaintyError::uncertainty_out_of_range("the result", value, unit))
         }
     }
 
@@ -174,10 +174,10 @@ impl Budget {
     /// Divided by both standard uncertainties it is their correlation coefficient.
     ///
     /// # Errors
-    /// [`UncertaintyError::DifferentInputs`] if the inputs or their correlations differ.
+    /// [`UncertaintyError::Inputs`] if the inputs or their correlations differ.
     pub fn covariance_with(&self, other: &Self) -> Result<f64, UncertaintyError> {
         if self.inputs != other.inputs {
-            return Err(UncertaintyError::DifferentInputs);
+            return Err(UncertaintyError::different_inputs());
         }
         let n = self.sensitivities.len();
         let pairs = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));

@@ -22,8 +22,8 @@ use crate::{UncertaintyError, student};
 /// ```
 ///
 /// # Errors
-/// [`UncertaintyError::LevelOutOfRange`] unless 0 < level < 1, and
-/// [`UncertaintyError::DegreesOfFreedomOutOfRange`] if ν is below 1 or NaN.
+/// [`UncertaintyError::OutOfRange`] unless 0 < level < 1, and
+/// [`UncertaintyError::OutOfRange`] if ν is below 1 or NaN.
 ///
 /// # References
 /// M. Abramowitz, I. A. Stegun, *Handbook of Mathematical Functions*, 26.7.5.
@@ -35,7 +35,7 @@ pub fn coverage_factor(level: f64, degrees_of_freedom: f64) -> Result<f64, Uncer
 
 /// Passes a coverage probability through if it lies between 0 and 1.
 pub(crate) fn valid_level(level: f64) -> Result<f64, UncertaintyError> {
-    if level > 0.0 && level < 1.0 { Ok(level) } else { Err(UncertaintyError::LevelOutOfRange { level }) }
+    if level > 0.0 && level < 1.0 { Ok(level) } else { Err(UncertaintyError::level_out_of_range(level)) }
 }
 
 #[cfg(test)]
@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn impossible_levels_and_degrees_of_freedom_are_refused() {
         for level in [0.0, 1.0, -0.5, 95.0, f64::NAN] {
-            assert!(matches!(coverage_factor(level, 5.0), Err(UncertaintyError::LevelOutOfRange { .. })), "{level}");
+            assert!(matches!(coverage_factor(level, 5.0), Err(UncertaintyError::OutOfRange { .. })), "{level}");
         }
         for nu in [0.0, 0.5, -1.0, f64::NAN] {
             assert!(coverage_factor(0.95, nu).is_err(), "ν {nu}");

@@ -28,11 +28,9 @@ where
         }
         let here = || place(self.inputs, x.iter().copied());
         let mut outputs = Vec::new();
-        (self.model)(&x)
-            .append_to(&mut outputs)
-            .map_err(|source| UncertaintyError::ModelFailed { at: here(), source })?;
+        (self.model)(&x).append_to(&mut outputs).map_err(|source| UncertaintyError::model_failed(&here(), source))?;
         match outputs.iter().find(|y| !y.is_finite()) {
-            Some(&result) => Err(UncertaintyError::ResultNotFinite { result, at: here() }),
+            Some(&result) => Err(UncertaintyError::result_not_finite(result, &here())),
             None => Ok(outputs),
         }
     }
@@ -41,7 +39,7 @@ where
 /// The same outputs, if there are as many as the `first` time.
 fn as_many(outputs: Vec<f64>, first: usize) -> Result<Vec<f64>, UncertaintyError> {
     let again = outputs.len();
-    if again == first { Ok(outputs) } else { Err(UncertaintyError::OutputCountChanged { first, again }) }
+    if again == first { Ok(outputs) } else { Err(UncertaintyError::output_count_changed(first, again)) }
 }
 
 impl<F, R> Derivatives for Differences<'_, F>
@@ -58,7 +56,7 @@ where
         let again = as_many(self.at(&[])?, values.len())?;
         if let Some((&first, &again)) = values.iter().zip(&again).find(|(first, again)| first != again) {
             let at = place(self.inputs, inputs.iter().map(crate::Input::value));
-            return Err(UncertaintyError::ModelNotRepeatable { first, again, at });
+            return Err(UncertaintyError::model_not_repeatable(first, again, &at));
         }
         let mut sensitivities = vec![Vec::with_capacity(inputs.len()); values.len()];
         for (i, input) in inputs.iter().enumerate() {

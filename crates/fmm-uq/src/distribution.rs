@@ -73,7 +73,7 @@ impl Distribution {
     /// A value that is known exactly.
     ///
     /// # Errors
-    /// [`UncertaintyError::ParameterOutOfRange`] if it is not finite.
+    /// [`UncertaintyError::OutOfRange`] if it is not finite.
     pub fn constant(value: f64) -> Result<Self, UncertaintyError> {
         Ok(Shape::Constant(finite("value of a constant", value)?).into())
     }
@@ -81,7 +81,7 @@ impl Distribution {
     /// R(a, b): equally probable between two limits (JCGM 101:2008, 6.4.2).
     ///
     /// # Errors
-    /// [`UncertaintyError::LimitsOutOfOrder`] unless a < b and b − a is finite.
+    /// [`UncertaintyError::OutOfRange`] unless a < b and b − a is finite.
     pub fn rectangular(lower: f64, upper: f64) -> Result<Self, UncertaintyError> {
         let (lower, upper) = limits(lower, upper)?;
         Ok(Shape::Rectangular { lower, upper }.into())
@@ -90,7 +90,7 @@ impl Distribution {
     /// CTrap(a, b, d): rectangular between limits that are each known to ±d (JCGM 101:2008, 6.4.3).
     ///
     /// # Errors
-    /// [`UncertaintyError::LimitsOutOfOrder`]; [`UncertaintyError::ParameterOutOfRange`] unless 0 < d ≤ (b − a)/2.
+    /// [`UncertaintyError::OutOfRange`] unless 0 < d ≤ (b − a)/2.
     pub fn curvilinear_trapezoid(lower: f64, upper: f64, inexactness: f64) -> Result<Self, UncertaintyError> {
         let (lower, upper) = limits(lower, upper)?;
         let half = 0.5 * (upper - lower);
@@ -102,7 +102,7 @@ impl Distribution {
     /// Trap(a, b, β): a symmetric trapezoid whose top is β times its base (JCGM 101:2008, 6.4.4).
     ///
     /// # Errors
-    /// [`UncertaintyError::LimitsOutOfOrder`]; [`UncertaintyError::ParameterOutOfRange`] unless 0 ≤ β < 1.
+    /// [`UncertaintyError::OutOfRange`] unless 0 ≤ β < 1.
     pub fn trapezoid(lower: f64, upper: f64, ratio: f64) -> Result<Self, UncertaintyError> {
         let (lower, upper) = limits(lower, upper)?;
         let ratio = require((0.0..1.0).contains(&ratio), "ratio of top to base of a trapezoid", ratio, "in [0, 1)")?;
@@ -112,7 +112,7 @@ impl Distribution {
     /// T(a, b): a symmetric triangle (JCGM 101:2008, 6.4.5).
     ///
     /// # Errors
-    /// [`UncertaintyError::LimitsOutOfOrder`].
+    /// [`UncertaintyError::OutOfRange`].
     pub fn triangular(lower: f64, upper: f64) -> Result<Self, UncertaintyError> {
         Self::trapezoid(lower, upper, 0.0)
     }
@@ -120,7 +120,7 @@ impl Distribution {
     /// U(a, b): a quantity that cycles sinusoidally between two limits, at unknown phase (JCGM 101:2008, 6.4.6).
     ///
     /// # Errors
-    /// [`UncertaintyError::LimitsOutOfOrder`].
+    /// [`UncertaintyError::OutOfRange`].
     pub fn arc_sine(lower: f64, upper: f64) -> Result<Self, UncertaintyError> {
         let (lower, upper) = limits(lower, upper)?;
         Ok(Shape::ArcSine(ArcSine::new(lower, upper)).into())
@@ -129,7 +129,7 @@ impl Distribution {
     /// N(x, u²) (JCGM 101:2008, 6.4.7).
     ///
     /// # Errors
-    /// [`UncertaintyError::ParameterOutOfRange`] unless x is finite and u positive and finite.
+    /// [`UncertaintyError::OutOfRange`] unless x is finite and u positive and finite.
     pub fn normal(mean: f64, standard_deviation: f64) -> Result<Self, UncertaintyError> {
         let (mean, standard_deviation) = (finite("mean", mean)?, positive("standard deviation", standard_deviation)?);
         Ok(Shape::Normal { mean, standard_deviation }.into())
@@ -141,8 +141,8 @@ impl Distribution {
     /// uncertainty U with coverage factor k, s is U/k. The standard deviation is s √(ν/(ν − 2)), and infinite for ν ≤ 2.
     ///
     /// # Errors
-    /// [`UncertaintyError::ParameterOutOfRange`] unless x is finite and s positive and finite;
-    /// [`UncertaintyError::DegreesOfFreedomOutOfRange`] if ν is below 1 or NaN.
+    /// [`UncertaintyError::OutOfRange`] unless x is finite and s positive and finite;
+    /// [`UncertaintyError::OutOfRange`] if ν is below 1 or NaN.
     pub fn student_t(mean: f64, scale: f64, degrees_of_freedom: f64) -> Result<Self, UncertaintyError> {
         let (mean, scale) = (finite("mean", mean)?, positive("scale of a t-distribution", scale)?);
         let nu = UncertaintyError::require_degrees_of_freedom("a t-distribution", degrees_of_freedom)?;
@@ -158,7 +158,7 @@ impl Distribution {
     /// The GUM counts degrees of freedom apart: it takes s for the standard uncertainty of this distribution.
     ///
     /// # Errors
-    /// Those of [`Distribution::student_t`]; [`UncertaintyError::ParameterOutOfRange`] for ν ≤ 2, which has no standard
+    /// Those of [`Distribution::student_t`]; [`UncertaintyError::OutOfRange`] for ν ≤ 2, which has no standard
     /// deviation.
     pub fn student_t_of_deviation(
         mean: f64,
@@ -174,7 +174,7 @@ impl Distribution {
     /// T(a, m, b): a triangle between two limits with its top at the mode m, which may be at a limit.
     ///
     /// # Errors
-    /// [`UncertaintyError::LimitsOutOfOrder`]; [`UncertaintyError::ParameterOutOfRange`] unless a ≤ m ≤ b.
+    /// [`UncertaintyError::OutOfRange`] unless a ≤ m ≤ b.
     pub fn asymmetric_triangle(lower: f64, mode: f64, upper: f64) -> Result<Self, UncertaintyError> {
         let (lower, upper) = limits(lower, upper)?;
         let mode = require((lower..=upper).contains(&mode), "mode of a triangle", mode, "between its limits")?;
@@ -184,7 +184,7 @@ impl Distribution {
     /// Beta(α, β) on [a, b], with density proportional to (x − a)^(α−1) (b − x)^(β−1).
     ///
     /// # Errors
-    /// [`UncertaintyError::LimitsOutOfOrder`]; [`UncertaintyError::ParameterOutOfRange`] unless both shapes are positive and
+    /// [`UncertaintyError::OutOfRange`] unless both shapes are positive and
     /// finite.
     pub fn beta(first_shape: f64, second_shape: f64, lower: f64, upper: f64) -> Result<Self, UncertaintyError> {
         let name = "shape of a beta distribution";
@@ -198,7 +198,7 @@ impl Distribution {
     /// Its mean and standard deviation are those between the limits, not x and u.
     ///
     /// # Errors
-    /// [`UncertaintyError::LimitsOutOfOrder`] unless a < b; [`UncertaintyError::ParameterOutOfRange`] unless x is finite and
+    /// [`UncertaintyError::OutOfRange`] unless a < b; [`UncertaintyError::OutOfRange`] unless x is finite and
     /// u positive and finite, and if the limits leave no more than some 1e-290 of the distribution.
     pub fn truncated_normal(
         mean: f64,
@@ -208,11 +208,11 @@ impl Distribution {
     ) -> Result<Self, UncertaintyError> {
         let (mean, u) = (finite("mean", mean)?, positive("standard deviation", standard_deviation)?);
         if !(lower < upper) {
-            return Err(UncertaintyError::LimitsOutOfOrder { lower, upper });
+            return Err(UncertaintyError::limits_out_of_order(lower, upper));
         }
         let (parameter, must_be) = ("mean of a truncated normal distribution", "nearer to its limits");
-        let none = UncertaintyError::ParameterOutOfRange { parameter, value: mean, must_be };
-        Ok(Shape::TruncatedNormal(TruncatedNormal::new(mean, u, (lower, upper)).ok_or(none)?).into())
+        let none = || UncertaintyError::out_of_range(parameter, mean, must_be);
+        Ok(Shape::TruncatedNormal(TruncatedNormal::new(mean, u, (lower, upper)).ok_or_else(none)?).into())
     }
 
     /// A positive quantity whose logarithm is normal: ln(x/m) has the standard deviation σ, so that a σ of 0.1 is a factor of
@@ -223,7 +223,7 @@ impl Distribution {
     /// ```
     ///
     /// # Errors
-    /// [`UncertaintyError::ParameterOutOfRange`] unless median m and σ are positive and finite, and so are E and u.
+    /// [`UncertaintyError::OutOfRange`] unless median m and σ are positive and finite, and so are E and u.
     pub fn log_normal(median: f64, deviation_of_logarithm: f64) -> Result<Self, UncertaintyError> {
         let median = positive("median of a log-normal distribution", median)?;
         let deviation = positive("standard deviation of a logarithm", deviation_of_logarithm)?;
@@ -237,7 +237,7 @@ impl Distribution {
     /// What q counted events say of λ is [`Distribution::gamma`] of shape q + 1.
     ///
     /// # Errors
-    /// [`UncertaintyError::ParameterOutOfRange`] unless λ is positive and at most 1e15, where numbers are still whole.
+    /// [`UncertaintyError::OutOfRange`] unless λ is positive and at most 1e15, where numbers are still whole.
     pub fn poisson(mean: f64) -> Result<Self, UncertaintyError> {
         let name = "mean of a Poisson distribution";
         let mean = require(mean > 0.0 && mean <= 1e15, name, mean, "positive and at most 1e15")?;
@@ -249,7 +249,7 @@ impl Distribution {
     /// (JCGM 101:2008, 6.4.10).
     ///
     /// # Errors
-    /// [`UncertaintyError::ParameterOutOfRange`] unless x is positive and finite.
+    /// [`UncertaintyError::OutOfRange`] unless x is positive and finite.
     pub fn exponential(mean: f64) -> Result<Self, UncertaintyError> {
         Ok(Shape::Exponential { mean: positive("mean of an exponential distribution", mean)? }.into())
     }
@@ -258,7 +258,7 @@ impl Distribution {
     /// G(q + 1, 1) (JCGM 101:2008, 6.4.11).
     ///
     /// # Errors
-    /// [`UncertaintyError::ParameterOutOfRange`] unless both are positive and finite.
+    /// [`UncertaintyError::OutOfRange`] unless both are positive and finite.
     pub fn gamma(shape: f64, scale: f64) -> Result<Self, UncertaintyError> {
         let (shape, scale) = (positive("shape of a gamma distribution", shape)?, positive("scale", scale)?);
         let sampler =
@@ -269,8 +269,8 @@ impl Distribution {
     /// Equal probability for each of `values`.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooFewObservations`] for none; [`UncertaintyError::ParameterOutOfRange`] if one is not
-    /// finite; [`UncertaintyError::TooSmall`].
+    /// [`UncertaintyError::TooFewObservations`] for none; [`UncertaintyError::OutOfRange`] if one is not
+    /// finite; [`UncertaintyError::NoAnswer`].
     pub fn empirical(values: &[f64]) -> Result<Self, UncertaintyError> {
         if values.is_empty() {
             return Err(UncertaintyError::TooFewObservations { found: 0, needed: 1 });
@@ -379,7 +379,7 @@ fn limits(lower: f64, upper: f64) -> Result<(f64, f64), UncertaintyError> {
     if lower < upper && (upper - lower).is_finite() {
         Ok((lower, upper))
     } else {
-        Err(UncertaintyError::LimitsOutOfOrder { lower, upper })
+        Err(UncertaintyError::limits_out_of_order(lower, upper))
     }
 }
 
@@ -389,7 +389,7 @@ fn require(
     value: f64,
     must_be: &'static str,
 ) -> Result<f64, UncertaintyError> {
-    if possible { Ok(value) } else { Err(UncertaintyError::ParameterOutOfRange { parameter, value, must_be }) }
+    if possible { Ok(value) } else { Err(UncertaintyError::out_of_range(parameter, value, must_be)) }
 }
 
 fn finite(parameter: &'static str, value: f64) -> Result<f64, UncertaintyError> {
@@ -401,5 +401,5 @@ fn positive(parameter: &'static str, value: f64) -> Result<f64, UncertaintyError
 }
 
 fn refused(parameter: &'static str, value: f64) -> UncertaintyError {
-    UncertaintyError::ParameterOutOfRange { parameter, value, must_be: "in the range that can be sampled" }
+    UncertaintyError::out_of_range(parameter, value, "in the range that can be sampled")
 }

@@ -1,169 +1,24 @@
 //! What can be wrong with inputs, with a model and with a question put to a budget.
 
-/// Why an uncertainty could not be stated.
+use std::error::Error;
+
+/// Why an uncertainty could not be stated; each variant is something else that the caller can do about it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum UncertaintyError {
-    /// An input without a name cannot be told apart in a budget.
-    #[error("an input needs a name, but the one of value {value} {unit} has none")]
-    Unnamed {
+    /// A number that cannot be: give another.
+    #[error("{what}")]
+    OutOfRange {
+        /// What it is given for, its value, and what it may be.
+        what: String,
         /// The value given.
         value: f64,
-        /// Its unit.
-        unit: String,
     },
-    /// The estimate of an input is infinite or not a number.
-    #[error("the value of {input} must be finite, but is {value} {unit}")]
-    ValueNotFinite {
-        /// Which input.
-        input: String,
-        /// The value given.
-        value: f64,
-        /// Its unit.
-        unit: String,
-    },
-    /// A standard uncertainty is negative or not finite.
-    #[error("the standard uncertainty of {input} must be zero or positive and finite, but is {value} {unit}")]
-    UncertaintyOutOfRange {
-        /// Which input, or "the result".
-        input: String,
-        /// The standard uncertainty.
-        value: f64,
-        /// Its unit.
-        unit: String,
-    },
-    /// Degrees of freedom below 1 or not a number.
-    #[error("the degrees of freedom of {of} must be at least 1 and may be infinite, but are {value}")]
-    DegreesOfFreedomOutOfRange {
-        /// Which input, or "the result".
-        of: String,
-        /// The degrees of freedom given.
-        value: f64,
-    },
-    /// A model of no inputs has no uncertainty to propagate.
-    #[error("at least one input is needed, but none was given")]
-    NoInputs,
-    /// Two inputs of the same name.
-    #[error("each input needs a name of its own, but `{name}` is given twice")]
-    DuplicateName {
-        /// The name given twice.
-        name: String,
-    },
-    /// A correlation with an input that does not exist.
-    #[error("there is no input `{name}`; the inputs are {known}")]
-    UnknownName {
-        /// The name given.
-        name: String,
-        /// The names that exist.
-        known: String,
-    },
-    /// A correlation of an input with itself; it is 1 and cannot be set.
-    #[error("the correlation of `{name}` with itself is 1 and cannot be set")]
-    SelfCorrelation {
-        /// The name given on both sides.
-        name: String,
-    },
-    /// The same pair of inputs twice in one list of correlations.
-    #[error("the correlation of `{first}` and `{second}` is given twice")]
-    RepeatedPair {
-        /// One of the pair.
-        first: String,
-        /// The other.
-        second: String,
-    },
-    /// A correlation coefficient outside [−1, 1] or not a number.
-    #[error("the correlation of `{first}` and `{second}` must lie in [-1, 1], but is {value}")]
-    CorrelationOutOfRange {
-        /// One of the pair.
-        first: String,
-        /// The other.
-        second: String,
-        /// The coefficient given.
-        value: f64,
-    },
-    /// Correlation coefficients that no set of quantities can have together.
-    #[error(
-        "no quantities can be correlated like this: the smallest eigenvalue of the correlation matrix is \
-         {smallest_eigenvalue:.3e}, and it must not be negative"
-    )]
-    NotPositiveSemidefinite {
-        /// The smallest eigenvalue of the matrix (1).
-        smallest_eigenvalue: f64,
-    },
-    /// The model itself reported an error.
-    #[error("the model failed at {at}")]
-    ModelFailed {
-        /// The values of the inputs.
-        at: String,
-        /// What the model reported.
-        source: Box<dyn std::error::Error + Send + Sync>,
-    },
-    /// The model gave an infinite result or no number.
-    #[error("the model gives {result} at {at}")]
-    ResultNotFinite {
-        /// The result.
-        result: f64,
-        /// The values of the inputs.
-        at: String,
-    },
-    /// A sensitivity is infinite or not a number, or its product with the uncertainty overflows.
-    #[error("the sensitivity to {input} is {sensitivity}, which cannot be propagated, at {at}")]
-    SensitivityNotFinite {
-        /// Which input.
-        input: String,
-        /// The derivative of the result with respect to it.
-        sensitivity: f64,
-        /// The values of the inputs.
-        at: String,
-    },
-    /// The model gave different results for the same values.
-    #[error("the model gives {first}, then {again}, for the same values {at}; it must be deterministic")]
-    ModelNotRepeatable {
-        /// The first result.
-        first: f64,
-        /// The differing result.
-        again: f64,
-        /// The values of the inputs.
-        at: String,
-    },
-    /// The first-order uncertainty is zero although inputs are uncertain, so that no interval follows from it.
-    #[error(
-        "the first-order uncertainty is zero although inputs are uncertain: the linear approximation cannot see \
-         them, and no coverage interval follows from it"
-    )]
-    LinearisationSuspect,
-    /// The Welch–Satterthwaite formula does not hold, so that a coverage factor has to be chosen by the caller.
-    #[error(
-        "inputs of finite degrees of freedom are correlated, where the Welch-Satterthwaite formula does not hold; \
-         choose the degrees of freedom and use coverage_factor"
-    )]
-    DegreesOfFreedomUndefined,
-    /// A coverage probability that is not strictly between 0 and 1.
-    #[error("the coverage probability must lie between 0 and 1, such as 0.95, but is {level}")]
-    LevelOutOfRange {
-        /// The probability given.
-        level: f64,
-    },
-    /// Two budgets compared that do not rest on the same inputs.
-    #[error("the two budgets do not rest on the same inputs, so that their covariance is not known")]
-    DifferentInputs,
-    /// A parameter of a distribution outside its range.
-    #[error("the {parameter} must be {must_be}, but is {value}")]
-    ParameterOutOfRange {
-        /// Which parameter.
-        parameter: &'static str,
-        /// The value given.
-        value: f64,
-        /// The range that would be right.
-        must_be: &'static str,
-    },
-    /// Limits of a distribution that leave nothing between them.
-    #[error("the lower limit {lower} must lie below the upper limit {upper}, and their distance must be finite")]
-    LimitsOutOfOrder {
-        /// The lower limit given.
-        lower: f64,
-        /// The upper limit given.
-        upper: f64,
+    /// Inputs, or correlations between them, that contradict each other: correct their list.
+    #[error("{what}")]
+    Inputs {
+        /// Which they are, and what is wrong with them.
+        what: String,
     },
     /// Too few observations to say anything about their spread.
     #[error("at least {needed} observations are needed, but {found} were given")]
@@ -173,106 +28,35 @@ pub enum UncertaintyError {
         /// How many are needed.
         needed: usize,
     },
-    /// An observation that is infinite or no number, or whose square is.
-    #[error("observation {index} must be finite, and its square too, but is {value}")]
-    ObservationNotFinite {
-        /// Position of the observation.
-        index: usize,
-        /// The observation.
-        value: f64,
+    /// A model that fails, or gives results from which nothing follows: mend it, or keep to inputs where it holds.
+    #[error("{what}")]
+    Model {
+        /// What it gives, and where.
+        what: String,
+        /// What the model itself reported.
+        source: Option<Box<dyn Error + Send + Sync>>,
     },
-    /// Observations that cannot be simultaneous.
-    #[error("simultaneous observations come in equal numbers, but there are {first} and {second}")]
-    UnequalObservations {
-        /// Number of observations of the first quantity.
-        first: usize,
-        /// Number of observations of the second.
-        second: usize,
+    /// A question that has no answer by this method: ask another, or take another method.
+    #[error("{what}")]
+    NoAnswer {
+        /// Why there is none, and what would have one.
+        what: String,
     },
-    /// An input in two ensembles, or twice in one.
-    #[error("`{name}` is in an ensemble already; an uncertainty comes from one set of observations")]
-    AlreadyInEnsemble {
-        /// The name given.
-        name: String,
-    },
-    /// An ensemble is a multivariate t-distribution, which has room for normal and t-distributed inputs only.
-    #[error("`{name}` is neither normal nor t-distributed, and cannot be part of a multivariate t-distribution")]
-    NotNormal {
-        /// The name given.
-        name: String,
-    },
-    /// The model has another number of outputs than it should have.
-    #[error("the model must give {expected} outputs, but gives {found}")]
-    OutputCount {
-        /// How many there should be.
-        expected: usize,
-        /// How many there are.
-        found: usize,
-    },
-    /// A model whose number of outputs is not always the same.
-    #[error("the model gives {first} outputs, then {again}; their number must not change")]
-    OutputCountChanged {
-        /// How many it gave.
-        first: usize,
-        /// How many it gave another time.
-        again: usize,
-    },
-    /// Trials of an input that has no variance, so that the standard deviation of their results is a matter of chance.
-    #[error(
-        "Student's t of {degrees_of_freedom} degrees of freedom, which {input} has, has no standard deviation, and so has \
-         none to state of the result; an interval can be stated"
-    )]
-    NoVariance {
-        /// Which input.
-        input: String,
-        /// Its degrees of freedom (1).
-        degrees_of_freedom: f64,
-    },
-    /// Trials of an input that has no mean, so that the mean of their results is a matter of chance.
-    #[error(
-        "Student's t of {degrees_of_freedom} degrees of freedom, which {input} has, has no mean, and so has none to state of \
-         the result; an interval can be stated"
-    )]
-    NoMean {
-        /// Which input.
-        input: String,
-        /// Its degrees of freedom (1).
-        degrees_of_freedom: f64,
-    },
-    /// A spread so small that it would count as none.
-    #[error("the spread of {of} is so small that its square is no number any more; take a smaller unit")]
-    TooSmall {
-        /// What spreads.
-        of: String,
-    },
-    /// An output that does not vary has no variance to share among inputs.
-    #[error("the output does not vary, so that there is no variance to share among the inputs")]
-    ConstantOutput,
-    /// Second-order terms that were not asked for, are not finite, or make the variance negative.
-    #[error("there is no uncertainty to second order: it was not asked for, or the model cannot be expanded that far")]
-    NoSecondOrder,
-    /// No trials at all.
-    #[error("at least one trial is needed, but none was asked for")]
-    NoTrials,
-    /// More trials than can be counted.
-    #[error("{trials} trials are more than can be told apart; at most {most} are possible")]
-    TooManyTrials {
-        /// How many were asked for.
-        trials: u64,
-        /// How many are possible.
-        most: u64,
-    },
-    /// So few trials that an interval would have to reach beyond the smallest or largest of them.
-    #[error(
-        "{trials} trials are too few for an interval of coverage probability {level}; at least {needed} are needed"
-    )]
+    /// Fewer trials than the answer takes: make or allow more.
+    #[error("{what}")]
     TooFewTrials {
-        /// How many there are.
-        trials: usize,
-        /// The coverage probability.
-        level: f64,
+        /// What takes more of them.
+        what: String,
+        /// How many there are, or are allowed.
+        found: u64,
         /// How many are needed.
-        needed: usize,
+        needed: u64,
+    },
+    /// The tolerance was not reached within the largest number of trials allowed.
+    #[error("the results are not stable to the tolerance after {trials} trials; allow more, or ask for fewer digits")]
+    NotStable {
+        /// How many trials were made.
+        trials: u64,
     },
     /// More trials failed than were allowed to.
     #[error("{failed} of {trials} trials failed, more than the allowed share of {allowed}; the first: {first}")]
@@ -286,115 +70,358 @@ pub enum UncertaintyError {
         /// The first failure, by block and trial.
         first: Box<crate::Failure>,
     },
-    /// No trial succeeded at all.
-    #[error("none of the trials succeeded")]
-    NoSuccess,
     /// The progress callback asked for an end.
     #[error("the run was cancelled after {trials} trials")]
     Cancelled {
         /// How many trials were done.
         trials: u64,
     },
-    /// The tolerance was not reached within the largest number of trials allowed.
-    #[error("the results are not stable to the tolerance after {trials} trials; allow more, or ask for fewer digits")]
-    NotStable {
-        /// How many trials were made.
-        trials: u64,
-    },
-    /// An adaptive run that may not make the trials that its first decision takes.
-    #[error(
-        "the first decision takes {needed} trials, but at most {allowed} are allowed; lower the level, or allow more"
-    )]
-    TooFewTrialsAllowed {
-        /// How many are allowed.
-        allowed: u64,
-        /// How many are needed.
-        needed: u64,
-    },
-    /// Partial results of different runs.
-    #[error("partial results belong together only if their {what} agree, but one has {first} and another {second}")]
-    LayoutMismatch {
-        /// What differs.
-        what: &'static str,
-        /// Its value in the first.
-        first: u64,
-        /// Its value in the second.
-        second: u64,
-    },
-    /// The same block of trials twice.
-    #[error("block {block} is in both partial results; a shard must not be counted twice")]
-    DuplicateBlock {
-        /// Index of the block.
-        block: u64,
-    },
-    /// A block of trials that no partial result holds.
-    #[error("block {block} is missing; merge the shard that holds it, or run it")]
-    MissingBlock {
-        /// Index of the first block that is missing.
-        block: u64,
-    },
-    /// A partial result that no run can have given.
-    #[error("block {block} of the partial result is damaged: {what}")]
-    DamagedPartial {
-        /// Index of the block.
-        block: u64,
-        /// What is wrong with it.
-        what: &'static str,
-    },
-    /// An output that does not exist.
-    #[error("there is no output {output}; the model has {outputs}, counted from 0")]
-    NoSuchOutput {
-        /// The position given.
-        output: usize,
-        /// How many outputs there are.
-        outputs: usize,
-    },
-    /// An option of a run outside its range.
-    #[error("the {option} must be {must_be}, but is {value}")]
-    OptionOutOfRange {
-        /// Which option.
-        option: &'static str,
-        /// The value given.
-        value: f64,
-        /// The range that would be right.
-        must_be: &'static str,
-    },
-    /// A covariance matrix of outputs that has no inverse, so that no ellipsoid belongs to it.
-    #[error(
-        "the outputs are fully correlated or constant, so that their coverage region has no extent in some direction"
-    )]
-    SingularCovariance,
-    /// Sensitivity indices of correlated inputs have no meaning as shares of a variance.
-    #[error("variance shares need independent inputs, but `{first}` and `{second}` are not")]
-    CorrelatedInputs {
-        /// One of the pair.
-        first: String,
-        /// The other.
-        second: String,
-    },
-    /// More inputs than the Sobol sequence has dimensions.
-    #[error("the Sobol sequence has {most} dimensions, but these inputs need {needed}")]
-    TooManyDimensions {
-        /// How many are needed.
-        needed: usize,
-        /// How many there are.
-        most: usize,
-    },
-    /// Too many rows of a variance analysis in which the model failed.
-    #[error("the model failed in {failed} of {rows} rows, more than the allowed share of {allowed}")]
-    RowsFailed {
-        /// Rows with at least one failure.
-        failed: u64,
-        /// Rows in all.
-        rows: u64,
-        /// The share allowed (1).
-        allowed: f64,
+    /// Partial results that do not make a whole: merge those of one run, each once.
+    #[error("{what}")]
+    Partial {
+        /// What is wrong with them.
+        what: String,
+        /// The block of trials that is missing, damaged or there twice.
+        block: Option<u64>,
     },
 }
 
+/// Numbers.
 impl UncertaintyError {
+    /// A parameter of a distribution, or an option of a run, outside its range.
+    pub(crate) fn out_of_range(parameter: &str, value: f64, must_be: &str) -> Self {
+        Self::OutOfRange { what: format!("the {parameter} must be {must_be}, but is {value}"), value }
+    }
+
     /// Passes degrees of freedom through if they are at least 1; `of` says whose they are.
     pub(crate) fn require_degrees_of_freedom(of: &str, value: f64) -> Result<f64, Self> {
-        if value >= 1.0 { Ok(value) } else { Err(Self::DegreesOfFreedomOutOfRange { of: of.to_owned(), value }) }
+        if value >= 1.0 {
+            return Ok(value);
+        }
+        let what = format!("the degrees of freedom of {of} must be at least 1 and may be infinite, but are {value}");
+        Err(Self::OutOfRange { what, value })
+    }
+
+    /// The estimate of an input is infinite or not a number.
+    pub(crate) fn value_not_finite(input: &str, value: f64, unit: &str) -> Self {
+        Self::OutOfRange { what: format!("the value of {input} must be finite, but is {value} {unit}"), value }
+    }
+
+    /// A standard uncertainty is negative or not finite.
+    pub(crate) fn uncertainty_out_of_range(input: &str, value: f64, unit: &str) -> Self {
+        Self::OutOfRange {
+            what: format!(
+                "the standard uncertainty of {input} must be zero or positive and finite, but is {value} {unit}"
+            ),
+            value,
+        }
+    }
+
+    /// A correlation coefficient outside [−1, 1] or not a number.
+    pub(crate) fn correlation_out_of_range(first: &str, second: &str, value: f64) -> Self {
+        Self::OutOfRange {
+            what: format!("the correlation of `{first}` and `{second}` must lie in [-1, 1], but is {value}"),
+            value,
+        }
+    }
+
+    /// A coverage probability that is not strictly between 0 and 1.
+    pub(crate) fn level_out_of_range(level: f64) -> Self {
+        Self::OutOfRange {
+            what: format!("the coverage probability must lie between 0 and 1, such as 0.95, but is {level}"),
+            value: level,
+        }
+    }
+
+    /// Limits of a distribution that leave nothing between them.
+    pub(crate) fn limits_out_of_order(lower: f64, upper: f64) -> Self {
+        Self::OutOfRange {
+            what: format!(
+                "the lower limit {lower} must lie below the upper limit {upper}, and their distance must be finite"
+            ),
+            value: lower,
+        }
+    }
+
+    /// An observation that is infinite or no number, or whose square is.
+    pub(crate) fn observation_not_finite(index: usize, value: f64) -> Self {
+        Self::OutOfRange {
+            what: format!("observation {index} must be finite, and its square too, but is {value}"),
+            value,
+        }
+    }
+
+    /// No trials at all.
+    pub(crate) fn no_trials() -> Self {
+        Self::OutOfRange { what: "at least one trial is needed, but none was asked for".to_owned(), value: 0.0 }
+    }
+
+    /// More trials than can be counted.
+    pub(crate) fn too_many_trials(trials: u64, most: u64) -> Self {
+        Self::OutOfRange {
+            what: format!("{trials} trials are more than can be told apart; at most {most} are possible"),
+            value: trials as f64,
+        }
+    }
+
+    /// An output that does not exist.
+    pub(crate) fn no_such_output(output: usize, outputs: usize) -> Self {
+        Self::OutOfRange {
+            what: format!("there is no output {output}; the model has {outputs}, counted from 0"),
+            value: output as f64,
+        }
+    }
+}
+
+/// Lists of inputs.
+impl UncertaintyError {
+    /// An input without a name cannot be told apart in a budget.
+    pub(crate) fn unnamed(value: f64, unit: &str) -> Self {
+        Self::Inputs { what: format!("an input needs a name, but the one of value {value} {unit} has none") }
+    }
+
+    /// A model of no inputs has no uncertainty to propagate.
+    pub(crate) fn no_inputs() -> Self {
+        Self::Inputs { what: "at least one input is needed, but none was given".to_owned() }
+    }
+
+    /// Two inputs of the same name.
+    pub(crate) fn duplicate_name(name: &str) -> Self {
+        Self::Inputs { what: format!("each input needs a name of its own, but `{name}` is given twice") }
+    }
+
+    /// A correlation with an input that does not exist.
+    pub(crate) fn unknown_name(name: &str, known: &str) -> Self {
+        Self::Inputs { what: format!("there is no input `{name}`; the inputs are {known}") }
+    }
+
+    /// A correlation of an input with itself; it is 1 and cannot be set.
+    pub(crate) fn self_correlation(name: &str) -> Self {
+        Self::Inputs { what: format!("the correlation of `{name}` with itself is 1 and cannot be set") }
+    }
+
+    /// The same pair of inputs twice in one list of correlations.
+    pub(crate) fn repeated_pair(first: &str, second: &str) -> Self {
+        Self::Inputs { what: format!("the correlation of `{first}` and `{second}` is given twice") }
+    }
+
+    /// Correlation coefficients that no set of quantities can have together.
+    pub(crate) fn not_positive_semidefinite(smallest_eigenvalue: f64) -> Self {
+        Self::Inputs {
+            what: format!(
+                "no quantities can be correlated like this: the smallest eigenvalue of the correlation matrix is {smallest_eigenvalue:.3e}, and it must not be negative"
+            ),
+        }
+    }
+
+    /// Two budgets compared that do not rest on the same inputs.
+    pub(crate) fn different_inputs() -> Self {
+        Self::Inputs {
+            what: "the two budgets do not rest on the same inputs, so that their covariance is not known".to_owned(),
+        }
+    }
+
+    /// Observations that cannot be simultaneous.
+    pub(crate) fn unequal_observations(first: usize, second: usize) -> Self {
+        Self::Inputs {
+            what: format!("simultaneous observations come in equal numbers, but there are {first} and {second}"),
+        }
+    }
+
+    /// An input in two ensembles, or twice in one.
+    pub(crate) fn already_in_ensemble(name: &str) -> Self {
+        Self::Inputs {
+            what: format!("`{name}` is in an ensemble already; an uncertainty comes from one set of observations"),
+        }
+    }
+
+    /// An ensemble is a multivariate t-distribution, which has room for normal and t-distributed inputs only.
+    pub(crate) fn not_normal(name: &str) -> Self {
+        Self::Inputs {
+            what: format!(
+                "`{name}` is neither normal nor t-distributed, and cannot be part of a multivariate t-distribution"
+            ),
+        }
+    }
+}
+
+/// Models.
+impl UncertaintyError {
+    /// The model itself reported an error.
+    pub(crate) fn model_failed(at: &str, source: Box<dyn Error + Send + Sync>) -> Self {
+        Self::Model { what: format!("the model failed at {at}"), source: Some(source) }
+    }
+
+    /// The model gave an infinite result or no number.
+    pub(crate) fn result_not_finite(result: f64, at: &str) -> Self {
+        Self::Model { what: format!("the model gives {result} at {at}"), source: None }
+    }
+
+    /// A sensitivity is infinite or not a number, or its product with the uncertainty overflows.
+    pub(crate) fn sensitivity_not_finite(input: &str, sensitivity: f64, at: &str) -> Self {
+        Self::Model {
+            what: format!("the sensitivity to {input} is {sensitivity}, which cannot be propagated, at {at}"),
+            source: None,
+        }
+    }
+
+    /// The model gave different results for the same values.
+    pub(crate) fn model_not_repeatable(first: f64, again: f64, at: &str) -> Self {
+        Self::Model {
+            what: format!("the model gives {first}, then {again}, for the same values {at}; it must be deterministic"),
+            source: None,
+        }
+    }
+
+    /// The model has another number of outputs than it should have.
+    pub(crate) fn output_count(expected: usize, found: usize) -> Self {
+        Self::Model { what: format!("the model must give {expected} outputs, but gives {found}"), source: None }
+    }
+
+    /// A model whose number of outputs is not always the same.
+    pub(crate) fn output_count_changed(first: usize, again: usize) -> Self {
+        Self::Model {
+            what: format!("the model gives {first} outputs, then {again}; their number must not change"),
+            source: None,
+        }
+    }
+
+    /// No trial succeeded at all.
+    pub(crate) fn no_success() -> Self {
+        Self::Model { what: "none of the trials succeeded".to_owned(), source: None }
+    }
+
+    /// Too many rows of a variance analysis in which the model failed.
+    pub(crate) fn rows_failed(failed: u64, rows: u64, allowed: f64) -> Self {
+        Self::Model {
+            what: format!("the model failed in {failed} of {rows} rows, more than the allowed share of {allowed}"),
+            source: None,
+        }
+    }
+}
+
+/// Questions.
+impl UncertaintyError {
+    /// The first-order uncertainty is zero although inputs are uncertain, so that no interval follows from it.
+    pub(crate) fn linearisation_suspect() -> Self {
+        Self::NoAnswer { what: "the first-order uncertainty is zero although inputs are uncertain: the linear approximation cannot see them, and no coverage interval follows from it".to_owned() }
+    }
+
+    /// The Welch–Satterthwaite formula does not hold, so that a coverage factor has to be chosen by the caller.
+    pub(crate) fn degrees_of_freedom_undefined() -> Self {
+        Self::NoAnswer { what: "inputs of finite degrees of freedom are correlated, where the Welch-Satterthwaite formula does not hold; choose the degrees of freedom and use coverage_factor".to_owned() }
+    }
+
+    /// Trials of an input that has no variance, so that the standard deviation of their results is a matter of chance.
+    pub(crate) fn no_variance(input: &str, degrees_of_freedom: f64) -> Self {
+        Self::NoAnswer {
+            what: format!(
+                "Student's t of {degrees_of_freedom} degrees of freedom, which {input} has, has no standard deviation, and so has none to state of the result; an interval can be stated"
+            ),
+        }
+    }
+
+    /// Trials of an input that has no mean, so that the mean of their results is a matter of chance.
+    pub(crate) fn no_mean(input: &str, degrees_of_freedom: f64) -> Self {
+        Self::NoAnswer {
+            what: format!(
+                "Student's t of {degrees_of_freedom} degrees of freedom, which {input} has, has no mean, and so has none to state of the result; an interval can be stated"
+            ),
+        }
+    }
+
+    /// A spread so small that it would count as none.
+    pub(crate) fn too_small(of: &str) -> Self {
+        Self::NoAnswer {
+            what: format!("the spread of {of} is so small that its square is no number any more; take a smaller unit"),
+        }
+    }
+
+    /// An output that does not vary has no variance to share among inputs.
+    pub(crate) fn constant_output() -> Self {
+        Self::NoAnswer {
+            what: "the output does not vary, so that there is no variance to share among the inputs".to_owned(),
+        }
+    }
+
+    /// Second-order terms that were not asked for, are not finite, or make the variance negative.
+    pub(crate) fn no_second_order() -> Self {
+        Self::NoAnswer { what: "there is no uncertainty to second order: it was not asked for, or the model cannot be expanded that far".to_owned() }
+    }
+
+    /// A covariance matrix of outputs that has no inverse, so that no ellipsoid belongs to it.
+    pub(crate) fn singular_covariance() -> Self {
+        Self::NoAnswer { what: "the outputs are fully correlated or constant, so that their coverage region has no extent in some direction".to_owned() }
+    }
+
+    /// Sensitivity indices of correlated inputs have no meaning as shares of a variance.
+    pub(crate) fn correlated_inputs(first: &str, second: &str) -> Self {
+        Self::NoAnswer {
+            what: format!("variance shares need independent inputs, but `{first}` and `{second}` are not"),
+        }
+    }
+
+    /// More inputs than the Sobol sequence has dimensions.
+    pub(crate) fn too_many_dimensions(needed: usize, most: usize) -> Self {
+        Self::NoAnswer { what: format!("the Sobol sequence has {most} dimensions, but these inputs need {needed}") }
+    }
+}
+
+/// Trials.
+impl UncertaintyError {
+    /// So few trials that an interval would have to reach beyond the smallest or largest of them.
+    pub(crate) fn too_few_trials(trials: usize, level: f64, needed: usize) -> Self {
+        Self::TooFewTrials {
+            what: format!(
+                "{trials} trials are too few for an interval of coverage probability {level}; at least {needed} are needed"
+            ),
+            found: trials as u64,
+            needed: needed as u64,
+        }
+    }
+
+    /// An adaptive run that may not make the trials that its first decision takes.
+    pub(crate) fn too_few_trials_allowed(allowed: u64, needed: u64) -> Self {
+        Self::TooFewTrials {
+            what: format!(
+                "the first decision takes {needed} trials, but at most {allowed} are allowed; lower the level, or allow more"
+            ),
+            found: allowed,
+            needed,
+        }
+    }
+}
+
+/// Partial results.
+impl UncertaintyError {
+    /// Partial results of different runs.
+    pub(crate) fn layout_mismatch(what: &str, first: u64, second: u64) -> Self {
+        Self::Partial {
+            what: format!(
+                "partial results belong together only if their {what} agree, but one has {first} and another {second}"
+            ),
+            block: None,
+        }
+    }
+
+    /// The same block of trials twice.
+    pub(crate) fn duplicate_block(block: u64) -> Self {
+        Self::Partial {
+            what: format!("block {block} is in both partial results; a shard must not be counted twice"),
+            block: Some(block),
+        }
+    }
+
+    /// A block of trials that no partial result holds.
+    pub(crate) fn missing_block(block: u64) -> Self {
+        Self::Partial {
+            what: format!("block {block} is missing; merge the shard that holds it, or run it"),
+            block: Some(block),
+        }
+    }
+
+    /// A partial result that no run can have given.
+    pub(crate) fn damaged_partial(block: u64, what: &str) -> Self {
+        Self::Partial { what: format!("block {block} of the partial result is damaged: {what}"), block: Some(block) }
     }
 }

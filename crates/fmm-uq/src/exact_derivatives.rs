@@ -31,18 +31,18 @@ where
         let mut outputs = Vec::new();
         (self.model)(x)
             .append_to(&mut outputs)
-            .map_err(|source| UncertaintyError::ModelFailed { at: self.here(), source })?;
+            .map_err(|source| UncertaintyError::model_failed(&self.here(), source))?;
         let values: Vec<f64> = outputs.iter().map(|y| y.value()).collect();
         if let Some(&result) = values.iter().find(|value| !value.is_finite()) {
-            return Err(UncertaintyError::ResultNotFinite { result, at: self.here() });
+            return Err(UncertaintyError::result_not_finite(result, &self.here()));
         }
         let mut known = self.values.borrow_mut();
         let known = known.get_or_insert_with(|| values.clone());
         if known.len() != values.len() {
-            return Err(UncertaintyError::OutputCountChanged { first: known.len(), again: values.len() });
+            return Err(UncertaintyError::output_count_changed(known.len(), values.len()));
         }
         if let Some((&first, &again)) = known.iter().zip(&values).find(|(first, again)| first != again) {
-            return Err(UncertaintyError::ModelNotRepeatable { first, again, at: self.here() });
+            return Err(UncertaintyError::model_not_repeatable(first, again, &self.here()));
         }
         Ok(outputs)
     }

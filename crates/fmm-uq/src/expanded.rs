@@ -89,14 +89,15 @@ impl Budget {
     /// makes the interval too short; [`coverage_factor`] at ν_eff itself interpolates instead.
     ///
     /// # Errors
-    /// [`UncertaintyError::LevelOutOfRange`] unless 0 < level < 1; [`UncertaintyError::LinearisationSuspect`] if
-    /// u(y) is zero although inputs are uncertain, and [`UncertaintyError::DegreesOfFreedomUndefined`] where there
+    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1; [`UncertaintyError::NoAnswer`] if
+    /// u(y) is zero although inputs are uncertain, and [`UncertaintyError::NoAnswer`] where there
     /// is no ν_eff.
     pub fn expanded(&self, level: f64) -> Result<Expanded, UncertaintyError> {
         if self.linearisation() == Linearisation::ZeroUncertainty {
-            return Err(UncertaintyError::LinearisationSuspect);
+            return Err(UncertaintyError::linearisation_suspect());
         }
-        let effective = self.effective_degrees_of_freedom().ok_or(UncertaintyError::DegreesOfFreedomUndefined)?;
+        let effective =
+            self.effective_degrees_of_freedom().ok_or_else(UncertaintyError::degrees_of_freedom_undefined)?;
         self.expand(level, self.standard_uncertainty(), effective)
     }
 
@@ -104,14 +105,13 @@ impl Budget {
     /// first order, or infinite degrees of freedom if u(y) is zero to first order.
     ///
     /// # Errors
-    /// [`UncertaintyError::LevelOutOfRange`] unless 0 < level < 1; [`UncertaintyError::NoSecondOrder`];
-    /// [`UncertaintyError::DegreesOfFreedomUndefined`] where there is no ν_eff.
+    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1; [`UncertaintyError::NoAnswer`] where there is no ν_eff.
     pub fn expanded_to_second_order(&self, level: f64) -> Result<Expanded, UncertaintyError> {
-        let terms = self.second_order().ok_or(UncertaintyError::NoSecondOrder)?;
+        let terms = self.second_order().ok_or_else(UncertaintyError::no_second_order)?;
         let effective = if self.linearisation() == Linearisation::ZeroUncertainty {
             f64::INFINITY
         } else {
-            self.effective_degrees_of_freedom().ok_or(UncertaintyError::DegreesOfFreedomUndefined)?
+            self.effective_degrees_of_freedom().ok_or_else(UncertaintyError::degrees_of_freedom_undefined)?
         };
         self.expand(level, terms.standard_uncertainty, effective)
     }

@@ -26,7 +26,7 @@ impl HeavyTail {
     pub(crate) fn require_mean(this: Option<&Self>) -> Result<(), UncertaintyError> {
         match this {
             Some(Self { input, degrees_of_freedom }) if *degrees_of_freedom <= 1.0 => {
-                Err(UncertaintyError::NoMean { input: input.clone(), degrees_of_freedom: *degrees_of_freedom })
+                Err(UncertaintyError::no_mean(input, *degrees_of_freedom))
             }
             _ => Ok(()),
         }
@@ -35,9 +35,7 @@ impl HeavyTail {
     /// Refuses a variance.
     pub(crate) fn require_variance(this: Option<&Self>) -> Result<(), UncertaintyError> {
         match this {
-            Some(Self { input, degrees_of_freedom }) => {
-                Err(UncertaintyError::NoVariance { input: input.clone(), degrees_of_freedom: *degrees_of_freedom })
-            }
+            Some(Self { input, degrees_of_freedom }) => Err(UncertaintyError::no_variance(input, *degrees_of_freedom)),
             None => Ok(()),
         }
     }

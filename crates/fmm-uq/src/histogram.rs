@@ -32,10 +32,10 @@ impl OutputSample {
     /// The histogram of an output with so many bars.
     ///
     /// # Errors
-    /// [`UncertaintyError::NoSuchOutput`]; [`UncertaintyError::OptionOutOfRange`] unless there are 1 to 1 000 000 bars and
+    /// [`UncertaintyError::OutOfRange`] unless there are 1 to 1 000 000 bars and
     /// the values differ.
     pub fn histogram(&self, output: usize, bars: usize) -> Result<Histogram, UncertaintyError> {
-        let refuse = |option, value, must_be| Err(UncertaintyError::OptionOutOfRange { option, value, must_be });
+        let refuse = |option, value, must_be| Err(UncertaintyError::out_of_range(option, value, must_be));
         if !(1..=1_000_000).contains(&bars) {
             return refuse("number of bars", bars as f64, "between 1 and 1000000");
         }

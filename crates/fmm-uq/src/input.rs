@@ -38,8 +38,8 @@ impl Input {
     /// A normally distributed input of infinite degrees of freedom; `unit` is `"1"` for a pure number.
     ///
     /// # Errors
-    /// [`UncertaintyError::Unnamed`], [`UncertaintyError::ValueNotFinite`] or, if the uncertainty is negative or
-    /// not finite, [`UncertaintyError::UncertaintyOutOfRange`].
+    /// [`UncertaintyError::Inputs`], [`UncertaintyError::OutOfRange`] or, if the uncertainty is negative or
+    /// not finite, [`UncertaintyError::OutOfRange`].
     pub fn new(
         name: impl Into<String>,
         value: f64,
@@ -48,13 +48,13 @@ impl Input {
     ) -> Result<Self, UncertaintyError> {
         let (name, unit) = (name.into(), unit.into());
         if name.trim().is_empty() {
-            return Err(UncertaintyError::Unnamed { value, unit });
+            return Err(UncertaintyError::unnamed(value, &unit));
         }
         if !value.is_finite() {
-            return Err(UncertaintyError::ValueNotFinite { input: name, value, unit });
+            return Err(UncertaintyError::value_not_finite(&name, value, &unit));
         }
         if !(standard_uncertainty >= 0.0 && standard_uncertainty.is_finite()) {
-            return Err(UncertaintyError::UncertaintyOutOfRange { input: name, value: standard_uncertainty, unit });
+            return Err(UncertaintyError::uncertainty_out_of_range(&name, standard_uncertainty, &unit));
         }
         let distribution = if standard_uncertainty == 0.0 {
             Shape::Constant(value).into()
@@ -76,7 +76,7 @@ impl Input {
     /// ```
     ///
     /// # Errors
-    /// [`UncertaintyError::Unnamed`].
+    /// [`UncertaintyError::Inputs`].
     pub fn of(
         name: impl Into<String>,
         distribution: Distribution,
@@ -91,7 +91,7 @@ impl Input {
     /// The mean of repeated observations, an uncertainty of type A: u = s/√n, ν = n − 1, Student's t.
     ///
     /// # Errors
-    /// [`UncertaintyError::Unnamed`].
+    /// [`UncertaintyError::Inputs`].
     pub fn mean_of(
         name: impl Into<String>,
         observations: &Observations,
@@ -116,7 +116,7 @@ impl Input {
     /// exactly leaves heavier tails. Inputs of other distributions keep theirs, and ν only counts in ν_eff.
     ///
     /// # Errors
-    /// [`UncertaintyError::DegreesOfFreedomOutOfRange`] if they are below 1 or NaN.
+    /// [`UncertaintyError::OutOfRange`] if they are below 1 or NaN.
     pub fn with_degrees_of_freedom(mut self, degrees_of_freedom: f64) -> Result<Self, UncertaintyError> {
         self.degrees_of_freedom = UncertaintyError::require_degrees_of_freedom(&self.name, degrees_of_freedom)?;
         if self.is_normal_or_t() {
@@ -185,7 +185,7 @@ mod tests {
         assert_eq!(message(Input::new("a", f64::NAN, 0.1, "m")), "the value of a must be finite, but is NaN m");
         for bad in [-0.1, f64::NAN, f64::INFINITY] {
             let error = Input::new("a", 1.0, bad, "m").unwrap_err();
-            assert!(matches!(error, UncertaintyError::UncertaintyOutOfRange { .. }), "u = {bad} m: {error}");
+            assert!(error.to_string().starts_with("the standard uncertainty of"), "u = {bad} m: {error}");
         }
         for bad in [0.0, 0.999, -1.0, f64::NAN] {
             assert!(Input::new("a", 1.0, 0.1, "m").unwrap().with_degrees_of_freedom(bad).is_err(), "ν = {bad}");

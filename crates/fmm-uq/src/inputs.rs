@@ -44,15 +44,15 @@ impl Inputs {
     /// Uncorrelated inputs, in the order in which a model receives them.
     ///
     /// # Errors
-    /// [`UncertaintyError::NoInputs`] or [`UncertaintyError::DuplicateName`].
+    /// [`UncertaintyError::Inputs`].
     pub fn new(inputs: impl IntoIterator<Item = Input>) -> Result<Self, UncertaintyError> {
         let inputs: Vec<Input> = inputs.into_iter().collect();
         if inputs.is_empty() {
-            return Err(UncertaintyError::NoInputs);
+            return Err(UncertaintyError::no_inputs());
         }
         for (i, input) in inputs.iter().enumerate() {
             if inputs[..i].iter().any(|earlier| earlier.name() == input.name()) {
-                return Err(UncertaintyError::DuplicateName { name: input.name().to_owned() });
+                return Err(UncertaintyError::duplicate_name(input.name()));
             }
         }
         let correlation = DMatrix::identity(inputs.len(), inputs.len());
@@ -68,23 +68,21 @@ impl Inputs {
     /// by which they miss; take them from the observations instead.
     ///
     /// # Errors
-    /// [`UncertaintyError::UnknownName`], [`UncertaintyError::SelfCorrelation`],
-    /// [`UncertaintyError::RepeatedPair`], [`UncertaintyError::CorrelationOutOfRange`] or
-    /// [`UncertaintyError::NotPositiveSemidefinite`].
+    /// [`UncertaintyError::Inputs`], [`UncertaintyError::OutOfRange`] or
+    /// [`UncertaintyError::Inputs`].
     pub fn with_correlations(mut self, coefficients: &[(&str, &str, f64)]) -> Result<Self, UncertaintyError> {
         let mut seen = Vec::with_capacity(coefficients.len());
         for &(first, second, value) in coefficients {
             let (i, j) = (self.position(first)?, self.position(second)?);
             let pair = (i.min(j), i.max(j));
             if i == j {
-                return Err(UncertaintyError::SelfCorrelation { name: first.to_owned() });
+                return Err(UncertaintyError::self_correlation(first));
             }
             if seen.contains(&pair) {
-                return Err(UncertaintyError::RepeatedPair { first: first.to_owned(), second: second.to_owned() });
+                return Err(UncertaintyError::repeated_pair(first, second));
             }
             if !(-1.0..=1.0).contains(&value) {
-                let (first, second) = (first.to_owned(), second.to_owned());
-                return Err(UncertaintyError::CorrelationOutOfRange { first, second, value });
+                return Err(UncertaintyError::correlation_out_of_range(first, second, value));
             }
             seen.push(pair);
             self.correlation[(i, j)] = value;
@@ -92,7 +90,7 @@ impl Inputs {
         }
         let smallest_eigenvalue = self.correlation.symmetric_eigenvalues().min();
         if smallest_eigenvalue < -self.rounding() {
-            return Err(UncertaintyError::NotPositiveSemidefinite { smallest_eigenvalue });
+            return Err(UncertaintyError::not_positive_semidefinite(smallest_eigenvalue));
         }
         Ok(self)
     }
@@ -131,18 +129,17 @@ impl Inputs {
     /// they are correlated with each other.
     ///
     /// # Errors
-    /// [`UncertaintyError::UnknownName`]; [`UncertaintyError::AlreadyInEnsemble`];
-    /// [`UncertaintyError::NotNormal`] for an input that is neither normal nor t;
-    /// [`UncertaintyError::DegreesOfFreedomOutOfRange`] if ν is below 1 or NaN.
+    /// [`UncertaintyError::Inputs`] for an input that is neither normal nor t;
+    /// [`UncertaintyError::OutOfRange`] if ν is below 1 or NaN.
     pub fn with_ensemble(mut self, names: &[&str], degrees_of_freedom: f64) -> Result<Self, UncertaintyError> {
         let mut members = Vec::with_capacity(names.len());
         for &name in names {
             let at = self.position(name)?;
             if members.contains(&at) || self.ensembles.iter().any(|other| other.members.contains(&at)) {
-                return Err(UncertaintyError::AlreadyInEnsemble { name: name.to_owned() });
+                return Err(UncertaintyError::already_in_ensemble(name));
             }
             if !self.all[at].is_normal_or_t() {
-                return Err(UncertaintyError::NotNormal { name: name.to_owned() });
+                return Err(UncertaintyError::not_normal(name));
             }
             self.all[at] = self.all[at].clone().with_degrees_of_freedom(degrees_of_freedom)?;
             members.push(at);
@@ -211,7 +208,7 @@ impl Inputs {
     fn position(&self, name: &str) -> Result<usize, UncertaintyError> {
         self.all.iter().position(|input| input.name() == name).ok_or_else(|| {
             let known: Vec<&str> = self.all.iter().map(Input::name).collect();
-            UncertaintyError::UnknownName { name: name.to_owned(), known: known.join(", ") }
+            UncertaintyError::unknown_name(name, &known.join(", "))
         })
     }
 }
@@ -226,7 +223,7 @@ mod tests {
 
     #[test]
     fn names_must_be_there_and_differ() {
-        assert!(matches!(Inputs::new([]), Err(UncertaintyError::NoInputs)));
+        assert!(matches!(Inputs::new([]), Err(UncertaintyError::Inputs { .. })));
         let twice = ["a", "a"].map(|name| Input::new(name, 1.0, 0.1, "m").unwrap());
         assert_eq!(
             Inputs::new(twice).unwrap_err().to_string(),
@@ -242,12 +239,12 @@ mod tests {
     fn coefficients_are_checked_one_by_one() {
         for bad in [1.000_001, -2.0, f64::NAN, f64::INFINITY] {
             let error = three().with_correlations(&[("a", "b", bad)]).unwrap_err();
-            assert!(matches!(error, UncertaintyError::CorrelationOutOfRange { .. }), "r = {bad}: {error}");
+            assert!(matches!(error, UncertaintyError::OutOfRange { .. }), "r = {bad}: {error}");
         }
         let itself = three().with_correlations(&[("a", "a", 1.0)]);
-        assert!(matches!(itself, Err(UncertaintyError::SelfCorrelation { .. })));
+        assert!(matches!(itself, Err(UncertaintyError::Inputs { what }) if what.contains("with itself")));
         let twice = three().with_correlations(&[("a", "b", 0.1), ("b", "a", 0.1)]);
-        assert!(matches!(twice, Err(UncertaintyError::RepeatedPair { .. })));
+        assert!(matches!(twice, Err(UncertaintyError::Inputs { what }) if what.contains("given twice")));
     }
 
     #[test]
@@ -255,8 +252,8 @@ mod tests {
         // Eigenvalues 1, 1 ± 0.9 √2 without the third pair; 0.1, 0.1, 2.8 with it.
         let half = [("a", "b", 0.9), ("a", "c", 0.9)];
         match three().with_correlations(&half) {
-            Err(UncertaintyError::NotPositiveSemidefinite { smallest_eigenvalue }) => {
-                assert!((smallest_eigenvalue - (1.0 - 0.9 * 2f64.sqrt())).abs() < 1e-14, "{smallest_eigenvalue}");
+            Err(UncertaintyError::Inputs { what }) => {
+                assert!(what.contains(&format!("matrix is {:.3e}", 1.0 - 0.9 * 2f64.sqrt())), "{what}");
             }
             other => panic!("accepted or refused for the wrong reason: {other:?}"),
         }

@@ -18,24 +18,25 @@ impl Propagation {
     /// uncertainties come from one ensemble of ν degrees of freedom each (the multivariate t of a Monte Carlo).
     ///
     /// # Errors
-    /// [`UncertaintyError::LevelOutOfRange`] unless 0 < p < 1; [`UncertaintyError::LinearisationSuspect`] and
-    /// [`UncertaintyError::DegreesOfFreedomUndefined`] as for [`Budget::expanded`];
-    /// [`UncertaintyError::SingularCovariance`] if the outputs are fully correlated or one is certain.
+    /// [`UncertaintyError::OutOfRange`] unless 0 < p < 1; [`UncertaintyError::NoAnswer`] as for [`Budget::expanded`];
+    /// [`UncertaintyError::NoAnswer`] if the outputs are fully correlated or one is certain.
     pub fn ellipsoid(&self, level: f64) -> Result<Region, UncertaintyError> {
         let (mut region, nu) = self.region(level)?;
         let (u, m) = (&region.standard_uncertainties, self.outputs().len());
         let scaled = DMatrix::from_fn(m, m, |i, j| region.covariance[i][j] / u[i] / u[j]);
         let rounding = 1e-12 * m as f64;
-        let root = Cholesky::new(scaled).map(Cholesky::unpack).ok_or(UncertaintyError::SingularCovariance)?;
+        let root = Cholesky::new(scaled).map(Cholesky::unpack).ok_or_else(UncertaintyError::singular_covariance)?;
         if root.diagonal().iter().any(|&pivot| !(pivot * pivot > rounding)) {
-            return Err(UncertaintyError::SingularCovariance);
+            return Err(UncertaintyError::singular_covariance());
         }
         let dimensions = m as f64;
-        let undefined = |_| UncertaintyError::DegreesOfFreedomUndefined;
+        let undefined = |_| UncertaintyError::degrees_of_freedom_undefined();
         let square = if m == 1 {
             coverage_factor(level, nu)?.powi(2)
         } else if nu.is_infinite() {
-            ChiSquared::new(dimensions).map_err(|_| UncertaintyError::DegreesOfFreedomUndefined)?.inverse_cdf(level)
+            ChiSquared::new(dimensions)
+                .map_err(|_| UncertaintyError::degrees_of_freedom_undefined())?
+                .inverse_cdf(level)
         } else {
             dimensions * FisherSnedecor::new(dimensions, nu).map_err(undefined)?.inverse_cdf(level)
         };
@@ -65,7 +66,7 @@ impl Propagation {
         }
         let standard_uncertainties: Vec<f64> = outputs.iter().map(Budget::standard_uncertainty).collect();
         if standard_uncertainties.contains(&0.0) {
-            return Err(UncertaintyError::SingularCovariance);
+            return Err(UncertaintyError::singular_covariance());
         }
         let row = |i: usize| (0..outputs.len()).map(|j| self.covariance(i.max(j), i.min(j))).collect();
         let covariance = (0..outputs.len()).map(row).collect();

@@ -51,7 +51,7 @@ impl Moments {
 
     /// Refuses values `of` something of which the squares are lost.
     pub(crate) fn require_squares(&self, values: &[f64], of: &str) -> Result<(), UncertaintyError> {
-        if self.lost(values) { Err(UncertaintyError::TooSmall { of: of.to_owned() }) } else { Ok(()) }
+        if self.lost(values) { Err(UncertaintyError::too_small(of)) } else { Ok(()) }
     }
 
     /// The moments of values of which the caller knows that they are fit for it.

@@ -73,13 +73,13 @@ impl<'a> MonteCarlo<'a> {
     /// A fixed number of trials, with seed 0.
     ///
     /// # Errors
-    /// [`UncertaintyError::NoTrials`] for zero trials; [`UncertaintyError::TooManyTrials`] beyond 2⁵³.
+    /// [`UncertaintyError::OutOfRange`] for zero trials; [`UncertaintyError::OutOfRange`] beyond 2⁵³.
     pub fn new(inputs: &Inputs, trials: u64) -> Result<Self, UncertaintyError> {
         const MOST: u64 = 1 << 53;
         match trials {
-            0 => Err(UncertaintyError::NoTrials),
+            0 => Err(UncertaintyError::no_trials()),
             1..=MOST => Ok(Self::with_plan(inputs.clone(), Plan::Fixed(trials))),
-            _ => Err(UncertaintyError::TooManyTrials { trials, most: MOST }),
+            _ => Err(UncertaintyError::too_many_trials(trials, MOST)),
         }
     }
 
@@ -118,7 +118,7 @@ impl<'a> MonteCarlo<'a> {
     /// The same with a share of trials that may fail, 0 unless set.
     ///
     /// # Errors
-    /// [`UncertaintyError::OptionOutOfRange`] unless it lies in [0, 1).
+    /// [`UncertaintyError::OutOfRange`] unless it lies in [0, 1).
     pub fn with_allowed_failures(mut self, share: f64) -> Result<Self, UncertaintyError> {
         self.allowed_failures = AllowedFailures::new(share)?;
         Ok(self)
@@ -136,9 +136,9 @@ impl<'a> MonteCarlo<'a> {
     ///
     /// # Errors
     /// [`UncertaintyError::TooManyFailures`] as soon as that is certain and none may fail;
-    /// [`UncertaintyError::NoSuccess`]; [`UncertaintyError::Cancelled`]; [`UncertaintyError::OutputCountChanged`];
-    /// [`UncertaintyError::UncertaintyOutOfRange`] if the squares of the values overflow. For an adaptive run also [`UncertaintyError::NotStable`] at its
-    /// largest number of trials, [`UncertaintyError::TooFewTrialsAllowed`], and [`UncertaintyError::NoVariance`] if an
+    /// [`UncertaintyError::Model`]; [`UncertaintyError::Cancelled`]; [`UncertaintyError::Model`];
+    /// [`UncertaintyError::OutOfRange`] if the squares of the values overflow. For an adaptive run also [`UncertaintyError::NotStable`] at its
+    /// largest number of trials, [`UncertaintyError::TooFewTrials`], and [`UncertaintyError::NoAnswer`] if an
     /// input has Student's t of ν ≤ 2.
     ///
     /// # Panics
@@ -187,8 +187,8 @@ impl<'a> MonteCarlo<'a> {
     /// Pools the trials of a complete partial result; for an adaptive run, those up to the stop.
     ///
     /// # Errors
-    /// [`UncertaintyError::MissingBlock`] with the first block that is still needed;
-    /// [`UncertaintyError::LayoutMismatch`] if it is of another run; and those of [`MonteCarlo::run`].
+    /// [`UncertaintyError::Partial`] with the first block that is still needed;
+    /// [`UncertaintyError::Partial`] if it is of another run; and those of [`MonteCarlo::run`].
     pub fn finish(&self, partial: Partial) -> Result<OutputSample, UncertaintyError> {
         self.finish_plan(partial)
     }

@@ -32,20 +32,20 @@ impl Observations {
     /// At least two finite values.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooFewObservations`]; [`UncertaintyError::ObservationNotFinite`], also if the squares of
-    /// the values overflow; [`UncertaintyError::TooSmall`].
+    /// [`UncertaintyError::TooFewObservations`]; [`UncertaintyError::OutOfRange`], also if the squares of
+    /// the values overflow; [`UncertaintyError::NoAnswer`].
     pub fn new(values: &[f64]) -> Result<Self, UncertaintyError> {
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-            return Err(UncertaintyError::ObservationNotFinite { index, value: values[index] });
+            return Err(UncertaintyError::observation_not_finite(index, values[index]));
         }
-        let too_few = UncertaintyError::TooFewObservations { found: values.len(), needed: 2 };
+        let too_few = || UncertaintyError::TooFewObservations { found: values.len(), needed: 2 };
         if values.len() < 2 {
-            return Err(too_few);
+            return Err(too_few());
         }
-        let overflow = UncertaintyError::ObservationNotFinite { index: 0, value: values[0] };
-        let moments = Moments::of_values(values).if_finite().ok_or(overflow)?;
+        let overflow = || UncertaintyError::observation_not_finite(0, values[0]);
+        let moments = Moments::of_values(values).if_finite().ok_or_else(overflow)?;
         moments.require_squares(values, "the observations")?;
-        let standard_deviation = moments.standard_deviation().ok_or(too_few)?;
+        let standard_deviation = moments.standard_deviation().ok_or_else(too_few)?;
         Ok(Self { values: values.to_vec(), moments, standard_deviation })
     }
 
@@ -86,11 +86,11 @@ impl Observations {
     /// not vary.
     ///
     /// # Errors
-    /// [`UncertaintyError::UnequalObservations`] if the numbers of observations differ.
+    /// [`UncertaintyError::Inputs`] if the numbers of observations differ.
     pub fn correlation(&self, other: &Self) -> Result<f64, UncertaintyError> {
         let (first, second) = (self.values.len(), other.values.len());
         if first != second {
-            return Err(UncertaintyError::UnequalObservations { first, second });
+            return Err(UncertaintyError::unequal_observations(first, second));
         }
         let scale = self.standard_deviation * other.standard_deviation * (first - 1) as f64;
         if scale == 0.0 {

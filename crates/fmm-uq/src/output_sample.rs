@@ -36,13 +36,10 @@ impl OutputSample {
     ) -> Result<Self, UncertaintyError> {
         let mut moments = Vec::with_capacity(columns.len());
         for column in &columns {
-            let overflow = || UncertaintyError::UncertaintyOutOfRange {
-                input: "the result".to_owned(),
-                value: f64::INFINITY,
-                unit: "(unit of the result)".to_owned(),
-            };
+            let overflow =
+                || UncertaintyError::uncertainty_out_of_range("the result", f64::INFINITY, "(unit of the result)");
             if column.is_empty() {
-                return Err(UncertaintyError::NoSuccess);
+                return Err(UncertaintyError::no_success());
             }
             moments.push(Moments::of_values(column).if_finite().ok_or_else(overflow)?);
         }
@@ -67,25 +64,25 @@ impl OutputSample {
     /// The values of an output over the successful trials (its unit).
     ///
     /// # Errors
-    /// [`UncertaintyError::NoSuchOutput`].
+    /// [`UncertaintyError::OutOfRange`].
     pub fn values(&self, output: usize) -> Result<&[f64], UncertaintyError> {
         let outputs = self.columns.len();
-        self.columns.get(output).map(Vec::as_slice).ok_or(UncertaintyError::NoSuchOutput { output, outputs })
+        self.columns.get(output).map(Vec::as_slice).ok_or_else(|| UncertaintyError::no_such_output(output, outputs))
     }
 
     /// Mean and spread of an output (its unit).
     ///
     /// # Errors
-    /// [`UncertaintyError::NoSuchOutput`].
+    /// [`UncertaintyError::OutOfRange`].
     pub fn moments(&self, output: usize) -> Result<&Moments, UncertaintyError> {
         let outputs = self.columns.len();
-        self.moments.get(output).ok_or(UncertaintyError::NoSuchOutput { output, outputs })
+        self.moments.get(output).ok_or_else(|| UncertaintyError::no_such_output(output, outputs))
     }
 
     /// y, mean of the values (unit of the output).
     ///
     /// # Errors
-    /// [`UncertaintyError::NoSuchOutput`]; [`UncertaintyError::NoMean`] if an input has Student's t of ν = 1, of which the
+    /// [`UncertaintyError::OutOfRange`]; [`UncertaintyError::NoAnswer`] if an input has Student's t of ν = 1, of which the
     /// mean is a matter of chance.
     pub fn estimate(&self, output: usize) -> Result<f64, UncertaintyError> {
         HeavyTail::require_mean(self.heavy_tail.as_ref())?;
@@ -95,16 +92,16 @@ impl OutputSample {
     /// u(y), standard deviation of the values (unit of the output).
     ///
     /// # Errors
-    /// [`UncertaintyError::NoSuchOutput`]; [`UncertaintyError::TooFewObservations`] for a single trial;
-    /// [`UncertaintyError::TooSmall`] for values whose squares vanish;
-    /// [`UncertaintyError::NoVariance`] if an input has Student's t of ν ≤ 2, such as the mean of two or three
+    /// [`UncertaintyError::OutOfRange`]; [`UncertaintyError::TooFewObservations`] for a single trial;
+    /// [`UncertaintyError::NoAnswer`] for values whose squares vanish;
+    /// [`UncertaintyError::NoAnswer`] if an input has Student's t of ν ≤ 2, such as the mean of two or three
     /// observations. Of a model that bounds such an input, [`OutputSample::moments`] has the deviation nevertheless.
     pub fn standard_uncertainty(&self, output: usize) -> Result<f64, UncertaintyError> {
         let moments = self.moments(output)?;
         HeavyTail::require_variance(self.heavy_tail.as_ref())?;
         moments.require_squares(self.values(output)?, "the result")?;
-        let too_few = UncertaintyError::TooFewObservations { found: moments.count(), needed: 2 };
-        moments.standard_deviation().ok_or(too_few)
+        let too_few = || UncertaintyError::TooFewObservations { found: moments.count(), needed: 2 };
+        moments.standard_deviation().ok_or_else(too_few)
     }
 
     /// Standard errors of y and of u(y) from the limited number of trials (unit of the output).
@@ -120,7 +117,7 @@ impl OutputSample {
     /// The interval that leaves equal probabilities (1 − p)/2 on both sides (JCGM 101:2008, 7.7.2).
     ///
     /// # Errors
-    /// [`UncertaintyError::NoSuchOutput`]; [`UncertaintyError::LevelOutOfRange`] unless 0 < p < 1;
+    /// [`UncertaintyError::OutOfRange`] unless 0 < p < 1;
     /// [`UncertaintyError::TooFewTrials`] if the interval would reach beyond the values.
     pub fn symmetric_interval(&self, output: usize, level: f64) -> Result<Interval, UncertaintyError> {
         symmetric(self.values(output)?, level)
@@ -143,7 +140,7 @@ fn span(count: usize, level: f64) -> Result<(usize, usize), UncertaintyError> {
     // p M is whole where it is so to rounding: 0.95 of a million is.
     let q = (level * count as f64 + 0.5).floor() as usize;
     if q == 0 || q >= count || count < needed {
-        return Err(UncertaintyError::TooFewTrials { trials: count, level, needed });
+        return Err(UncertaintyError::too_few_trials(count, level, needed));
     }
     Ok((q, count - q))
 }

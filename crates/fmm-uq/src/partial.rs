@@ -74,12 +74,12 @@ impl Partial {
     pub(crate) fn assemble(seed: u64, inputs: u64, mut blocks: Vec<Block>) -> Result<Self, UncertaintyError> {
         blocks.sort_by_key(|block| block.index);
         if let Some(pair) = blocks.windows(2).find(|pair| pair[0].index == pair[1].index) {
-            return Err(UncertaintyError::DuplicateBlock { block: pair[0].index });
+            return Err(UncertaintyError::duplicate_block(pair[0].index));
         }
         let mut outputs = blocks.iter().map(|block| block.outputs as u64).filter(|&n| n != 0);
         let first = outputs.next().unwrap_or(0);
         if let Some(second) = outputs.find(|&n| n != first) {
-            return Err(UncertaintyError::LayoutMismatch { what: "numbers of outputs", first, second });
+            return Err(UncertaintyError::layout_mismatch("numbers of outputs", first, second));
         }
         Ok(Self { seed, inputs, blocks })
     }
@@ -87,14 +87,14 @@ impl Partial {
     /// Both parts as one; the order does not matter.
     ///
     /// # Errors
-    /// [`UncertaintyError::LayoutMismatch`] if seed, inputs or number of outputs differ, and
-    /// [`UncertaintyError::DuplicateBlock`].
+    /// [`UncertaintyError::Partial`] if seed, inputs or number of outputs differ, and
+    /// [`UncertaintyError::Partial`].
     pub fn merge(mut self, other: Self) -> Result<Self, UncertaintyError> {
         for (what, first, second) in
             [("seeds", self.seed, other.seed), ("inputs (by fingerprint)", self.inputs, other.inputs)]
         {
             if first != second {
-                return Err(UncertaintyError::LayoutMismatch { what, first, second });
+                return Err(UncertaintyError::layout_mismatch(what, first, second));
             }
         }
         self.blocks.extend(other.blocks);
@@ -141,5 +141,5 @@ fn check(block: &Block) -> Result<(), UncertaintyError> {
     } else {
         return Ok(());
     };
-    Err(UncertaintyError::DamagedPartial { block: block.index, what })
+    Err(UncertaintyError::damaged_partial(block.index, what))
 }

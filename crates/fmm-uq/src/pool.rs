@@ -52,7 +52,7 @@ impl Pool {
             }
             let (first, again) = (self.columns.len(), block.outputs);
             if first != again {
-                return Err(UncertaintyError::OutputCountChanged { first, again });
+                return Err(UncertaintyError::output_count_changed(first, again));
             }
             if let [column] = self.columns.as_mut_slice() {
                 column.extend_from_slice(&block.values);
@@ -68,7 +68,7 @@ impl Pool {
     /// The sample of all of them.
     pub(crate) fn close(self, heavy_tail: Option<HeavyTail>) -> Result<OutputSample, UncertaintyError> {
         if self.columns.is_empty() {
-            return Err(UncertaintyError::NoSuccess);
+            return Err(UncertaintyError::no_success());
         }
         OutputSample::new(self.columns, self.trials, self.failures, heavy_tail)
     }

@@ -21,12 +21,12 @@ impl Propagation {
     /// The budget of the only output.
     ///
     /// # Errors
-    /// [`UncertaintyError::OutputCount`] if there are more.
+    /// [`UncertaintyError::Model`] if there are more.
     pub fn single(mut self) -> Result<Budget, UncertaintyError> {
         let found = self.budgets.len();
         match (self.budgets.pop(), found) {
             (Some(budget), 1) => Ok(budget),
-            _ => Err(UncertaintyError::OutputCount { expected: 1, found }),
+            _ => Err(UncertaintyError::output_count(1, found)),
         }
     }
 

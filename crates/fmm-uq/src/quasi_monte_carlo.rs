@@ -52,12 +52,12 @@ impl QuasiMonteCarlo {
     /// `points` of each of `scramblings` sequences.
     ///
     /// # Errors
-    /// [`UncertaintyError::OptionOutOfRange`] unless points are a power of two from 2 to 2³¹ and scramblings 8 to
-    /// 65 536; [`UncertaintyError::TooManyDimensions`].
+    /// [`UncertaintyError::OutOfRange`] unless points are a power of two from 2 to 2³¹ and scramblings 8 to
+    /// 65 536; [`UncertaintyError::NoAnswer`].
     pub fn new(inputs: &Inputs, points: u32, scramblings: usize) -> Result<Self, UncertaintyError> {
         let sampler = Sampler::new(inputs);
         SobolSequence::new(sampler.dimensions(), 0)?;
-        let refuse = |option, value, must_be| Err(UncertaintyError::OptionOutOfRange { option, value, must_be });
+        let refuse = |option, value, must_be| Err(UncertaintyError::out_of_range(option, value, must_be));
         if !points.is_power_of_two() || points < 2 {
             return refuse("number of Sobol points", f64::from(points), "a power of two, at least 2");
         }
@@ -78,7 +78,7 @@ impl QuasiMonteCarlo {
     /// The same with a share of points that may fail, 0 unless set. Points that fail spoil the even placing.
     ///
     /// # Errors
-    /// [`UncertaintyError::OptionOutOfRange`] unless it lies in [0, 1).
+    /// [`UncertaintyError::OutOfRange`] unless it lies in [0, 1).
     pub fn with_allowed_failures(mut self, share: f64) -> Result<Self, UncertaintyError> {
         self.allowed_failures = AllowedFailures::new(share)?;
         Ok(self)
@@ -87,8 +87,8 @@ impl QuasiMonteCarlo {
     /// Evaluates the model at all points.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooManyFailures`]; [`UncertaintyError::NoSuccess`]; [`UncertaintyError::OutputCountChanged`];
-    /// [`UncertaintyError::UncertaintyOutOfRange`] if the squares of the values overflow.
+    /// [`UncertaintyError::TooManyFailures`]; [`UncertaintyError::Model`];
+    /// [`UncertaintyError::OutOfRange`] if the squares of the values overflow.
     ///
     /// # Panics
     /// If the model does.
@@ -109,10 +109,10 @@ impl QuasiMonteCarlo {
         self.allowed_failures.check(&failures, trials)?;
         let outputs = parts.iter().map(Vec::len).max().unwrap_or(0);
         if parts.iter().any(Vec::is_empty) {
-            return Err(UncertaintyError::NoSuccess);
+            return Err(UncertaintyError::no_success());
         }
         if let Some(other) = parts.iter().find(|part| part.len() != outputs) {
-            return Err(UncertaintyError::OutputCountChanged { first: outputs, again: other.len() });
+            return Err(UncertaintyError::output_count_changed(outputs, other.len()));
         }
         let column = |output: usize| parts.iter().flat_map(|part| &part[output]).copied().collect();
         let sample = OutputSample::new((0..outputs).map(column).collect(), trials, failures, self.heavy_tail.clone())?;
@@ -194,7 +194,7 @@ impl QuasiSample {
     /// Median of an output (its unit), which suits skewed results.
     ///
     /// # Errors
-    /// [`UncertaintyError::NoSuchOutput`].
+    /// [`UncertaintyError::OutOfRange`].
     pub fn median(&self, output: usize) -> Result<f64, UncertaintyError> {
         let values = self.sample.values(output)?;
         Ok(ranked(values, values.len().div_ceil(2)))

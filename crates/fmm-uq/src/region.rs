@@ -57,17 +57,17 @@ impl OutputSample {
     /// The ellipsoid of the covariance matrix that holds a share p of the trials (JCGM 102:2011, 7.7.2).
     ///
     /// # Errors
-    /// [`UncertaintyError::LevelOutOfRange`]; [`UncertaintyError::TooFewTrials`];
-    /// [`UncertaintyError::SingularCovariance`] if the outputs are fully correlated or one does not vary.
+    /// [`UncertaintyError::OutOfRange`]; [`UncertaintyError::TooFewTrials`];
+    /// [`UncertaintyError::NoAnswer`] if the outputs are fully correlated or one does not vary.
     pub fn ellipsoid(&self, level: f64) -> Result<Region, UncertaintyError> {
         let mut region = self.region(level)?;
         let (u, outputs) = (&region.standard_uncertainties, self.outputs());
         // In units of the uncertainties, so that outputs of very different size do not look singular.
         let scaled = DMatrix::from_fn(outputs, outputs, |i, j| region.covariance[i][j] / u[i] / u[j]);
         let rounding = 1e-12 * outputs as f64;
-        let root = Cholesky::new(scaled).map(Cholesky::unpack).ok_or(UncertaintyError::SingularCovariance)?;
+        let root = Cholesky::new(scaled).map(Cholesky::unpack).ok_or_else(UncertaintyError::singular_covariance)?;
         if root.diagonal().iter().any(|&pivot| !(pivot * pivot > rounding)) {
-            return Err(UncertaintyError::SingularCovariance);
+            return Err(UncertaintyError::singular_covariance());
         }
         let mut distance = DVector::zeros(outputs);
         let squares = self.distances(|row| {
@@ -102,7 +102,7 @@ impl OutputSample {
         let centre = indices.clone().map(|j| self.estimate(j)).collect::<Result<Vec<_>, _>>()?;
         let standard_uncertainties = indices.map(|j| self.standard_uncertainty(j)).collect::<Result<Vec<_>, _>>()?;
         if standard_uncertainties.contains(&0.0) {
-            return Err(UncertaintyError::SingularCovariance);
+            return Err(UncertaintyError::singular_covariance());
         }
         // Each pair once, so that the matrix is symmetric to the last bit.
         let row = |i: usize| (0..self.outputs()).map(move |j| self.covariance(i.max(j), i.min(j))).collect();
@@ -130,7 +130,7 @@ fn rank_of(figures: &[f64], level: f64) -> Result<f64, UncertaintyError> {
     let rank = (level * figures.len() as f64).ceil() as usize;
     if rank == 0 || rank >= figures.len() {
         let needed = (2.0 / (1.0 - level)).ceil() as usize;
-        return Err(UncertaintyError::TooFewTrials { trials: figures.len(), level, needed });
+        return Err(UncertaintyError::too_few_trials(figures.len(), level, needed));
     }
     Ok(ranked(figures, rank))
 }

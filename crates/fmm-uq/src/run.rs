@@ -43,7 +43,7 @@ impl Sequences {
         HeavyTail::require_variance(heavy_tail)?;
         let (allowed, needed) = (rule.most_trials(), rule.fewest_trials());
         if allowed < needed {
-            return Err(UncertaintyError::TooFewTrialsAllowed { allowed, needed });
+            return Err(UncertaintyError::too_few_trials_allowed(allowed, needed));
         }
         Ok(Self { rule, stability: Stability::new(rule), pool: Pool::new(0) })
     }
@@ -97,7 +97,7 @@ impl MonteCarlo<'_> {
             [("seeds", self.seed, partial.seed()), ("inputs (by fingerprint)", self.fingerprint, partial.inputs())]
         {
             if first != second {
-                return Err(UncertaintyError::LayoutMismatch { what, first, second });
+                return Err(UncertaintyError::layout_mismatch(what, first, second));
             }
         }
         let complete = |block: &Block| block.trials == self.trials_of(block.index);
@@ -105,7 +105,7 @@ impl MonteCarlo<'_> {
         let present = blocks.iter().zip(0..).position(|(block, index)| block.index != index || !complete(block));
         blocks.truncate(present.unwrap_or(blocks.len()));
         let present = blocks.as_slice();
-        let missing = Err(UncertaintyError::MissingBlock { block: present.len() as u64 });
+        let missing = Err(UncertaintyError::missing_block(present.len() as u64));
         match self.plan {
             Plan::Fixed(trials) => {
                 let Some(needed) = usize::try_from(blocks_of(trials)).ok().and_then(|count| present.get(..count))
@@ -146,7 +146,7 @@ impl MonteCarlo<'_> {
         if let Some(first) = outputs.next()
             && let Some(again) = outputs.find(|&again| again != first)
         {
-            return Err(UncertaintyError::OutputCountChanged { first, again });
+            return Err(UncertaintyError::output_count_changed(first, again));
         }
         Partial::assemble(self.seed, self.fingerprint, all)
     }

@@ -44,11 +44,11 @@ pub struct VarianceShare {
 /// the row is left out for all; `allowed_failures` is the share of rows for which that may happen.
 ///
 /// # Errors
-/// [`UncertaintyError::CorrelatedInputs`]: shares of a variance need independent inputs.
-/// [`UncertaintyError::OptionOutOfRange`] for fewer than 10 blocks of 1000 trials, from which the errors come, or a share
-/// outside [0, 1); [`UncertaintyError::TooManyTrials`]; [`UncertaintyError::RowsFailed`]; [`UncertaintyError::NoSuccess`];
-/// [`UncertaintyError::ConstantOutput`]; [`UncertaintyError::NoVariance`] if an input has Student's t of ν ≤ 2;
-/// [`UncertaintyError::UncertaintyOutOfRange`] if the squares of the values overflow, [`UncertaintyError::TooSmall`] if they
+/// [`UncertaintyError::NoAnswer`]: shares of a variance need independent inputs.
+/// [`UncertaintyError::OutOfRange`] for fewer than 10 blocks of 1000 trials, from which the errors come, or a share
+/// outside [0, 1); [`UncertaintyError::OutOfRange`]; [`UncertaintyError::Model`];
+/// [`UncertaintyError::NoAnswer`] if an input has Student's t of ν ≤ 2;
+/// [`UncertaintyError::OutOfRange`] if the squares of the values overflow, [`UncertaintyError::NoAnswer`] if they
 /// vanish.
 ///
 /// # Panics
@@ -64,9 +64,9 @@ pub fn variance_shares<R: Outcome<f64>>(
     allowed_failures: f64,
     model: impl Fn(&[f64]) -> R + Sync,
 ) -> Result<Vec<VarianceShare>, UncertaintyError> {
-    let refuse = |option, value, must_be| Err(UncertaintyError::OptionOutOfRange { option, value, must_be });
+    let refuse = |option, value, must_be| Err(UncertaintyError::out_of_range(option, value, must_be));
     if let Some((first, second)) = inputs.dependent_pair() {
-        return Err(UncertaintyError::CorrelatedInputs { first, second });
+        return Err(UncertaintyError::correlated_inputs(&first, &second));
     }
     HeavyTail::require_variance(HeavyTail::of(inputs).as_ref())?;
     let blocks = trials.div_ceil(BLOCK_TRIALS as u64);
@@ -76,7 +76,7 @@ pub fn variance_shares<R: Outcome<f64>>(
     let allowed_failures = AllowedFailures::new(allowed_failures)?;
     let most = 1 << 40;
     let count = usize::try_from(blocks).ok().filter(|_| trials <= most);
-    let count = count.ok_or(UncertaintyError::TooManyTrials { trials, most })?;
+    let count = count.ok_or_else(|| UncertaintyError::too_many_trials(trials, most))?;
     let sampler = Sampler::new(inputs);
     let one = |block: usize| Rows::run(seed, block as u64, &sampler, &model);
     #[cfg(feature = "rayon")]
@@ -85,22 +85,18 @@ pub fn variance_shares<R: Outcome<f64>>(
     let rows: Vec<Rows> = (0..count).map(one).collect();
     let (failed, all) = (rows.iter().map(|r| r.failed).sum::<u64>(), blocks * BLOCK_TRIALS as u64);
     if !allowed_failures.allow(failed, all) {
-        return Err(UncertaintyError::RowsFailed { failed, rows: all, allowed: allowed_failures.share() });
+        return Err(UncertaintyError::rows_failed(failed, all, allowed_failures.share()));
     }
     let base: Vec<f64> = rows.iter().flat_map(|r| r.a.iter().chain(&r.b)).copied().collect();
     if base.is_empty() {
-        return Err(UncertaintyError::NoSuccess);
+        return Err(UncertaintyError::no_success());
     }
     let moments = Moments::of_values(&base);
     moments.require_squares(&base, "the output")?;
-    let overflow = || UncertaintyError::UncertaintyOutOfRange {
-        input: "the output".to_owned(),
-        value: f64::INFINITY,
-        unit: "(its unit)".to_owned(),
-    };
+    let overflow = || UncertaintyError::uncertainty_out_of_range("the output", f64::INFINITY, "(its unit)");
     let moments = moments.if_finite().ok_or_else(overflow)?;
     if moments.sum_of_squares() == 0.0 {
-        return Err(UncertaintyError::ConstantOutput);
+        return Err(UncertaintyError::constant_output());
     }
     let variance = moments.sum_of_squares() / base.len() as f64;
     let names = inputs.as_slice().iter().enumerate();

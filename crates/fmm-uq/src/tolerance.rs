@@ -15,12 +15,12 @@ use crate::UncertaintyError;
 /// ```
 ///
 /// # Errors
-/// [`UncertaintyError::OptionOutOfRange`] unless there are 1 to 15 digits and the uncertainty is positive and finite.
+/// [`UncertaintyError::OutOfRange`] unless there are 1 to 15 digits and the uncertainty is positive and finite.
 pub fn numerical_tolerance(standard_uncertainty: f64, digits: u32) -> Result<f64, UncertaintyError> {
     let digits = valid_digits(digits)?;
     if !(standard_uncertainty > 0.0 && standard_uncertainty.is_finite()) {
         let (option, must_be) = ("uncertainty to take a tolerance from", "positive and finite");
-        return Err(UncertaintyError::OptionOutOfRange { option, value: standard_uncertainty, must_be });
+        return Err(UncertaintyError::out_of_range(option, standard_uncertainty, must_be));
     }
     // The exponent is that of the rounded number: 9.96 to two digits is 10, not 9.9.
     let decimals = digits as usize - 1;
@@ -35,7 +35,7 @@ pub(crate) fn valid_digits(digits: u32) -> Result<u32, UncertaintyError> {
         Ok(digits)
     } else {
         let (option, must_be) = ("number of significant digits", "between 1 and 15");
-        Err(UncertaintyError::OptionOutOfRange { option, value: f64::from(digits), must_be })
+        Err(UncertaintyError::out_of_range(option, f64::from(digits), must_be))
     }
 }
 

@@ -50,7 +50,7 @@ impl Validation {
 /// ```
 ///
 /// # Errors
-/// Those of [`numerical_tolerance`]; [`UncertaintyError::OptionOutOfRange`] if the intervals differ in coverage
+/// Those of [`numerical_tolerance`]; [`UncertaintyError::OutOfRange`] if the intervals differ in coverage
 /// probability.
 pub fn validate(
     gum: Interval,
@@ -60,7 +60,7 @@ pub fn validate(
 ) -> Result<Validation, UncertaintyError> {
     if gum.level != monte_carlo.level {
         let (option, must_be) = ("coverage probability of the second interval", "that of the first");
-        return Err(UncertaintyError::OptionOutOfRange { option, value: monte_carlo.level, must_be });
+        return Err(UncertaintyError::out_of_range(option, monte_carlo.level, must_be));
     }
     let tolerance = numerical_tolerance(standard_uncertainty, digits)?;
     Ok(Validation { tolerance, low: (gum.low - monte_carlo.low).abs(), high: (gum.high - monte_carlo.high).abs() })

@@ -39,7 +39,9 @@ fn a_flat_model_is_flagged() {
     let budget = propagate(&flat, |x| x[0] * x[0] + x[1] * x[1]).unwrap();
     assert!((budget.linearisation() == Linearisation::ZeroUncertainty));
     assert_eq!((budget.standard_uncertainty(), budget.effective_degrees_of_freedom()), (0.0, None));
-    assert!(matches!(budget.expanded(0.95), Err(UncertaintyError::LinearisationSuspect)));
+    assert!(
+        matches!(budget.expanded(0.95), Err(UncertaintyError::NoAnswer { what }) if what.contains("linear approximation"))
+    );
     assert!(budget.to_string().contains("linear approximation"), "{budget}");
 }
 
@@ -70,7 +72,9 @@ fn correlated_inputs_of_finite_degrees_of_freedom_have_no_effective_ones() {
     let harmful = inputs(&three).with_correlations(&[("a", "b", 0.1)]).unwrap();
     let budget = propagate(&harmful, sum).unwrap();
     assert_eq!(budget.effective_degrees_of_freedom(), None);
-    assert!(matches!(budget.expanded(0.95), Err(UncertaintyError::DegreesOfFreedomUndefined)));
+    assert!(
+        matches!(budget.expanded(0.95), Err(UncertaintyError::NoAnswer { what }) if what.contains("Welch-Satterthwaite"))
+    );
     // b has no part in the result, so that its correlation has none either.
     assert_eq!(propagate(&harmful, |x| x[0]).unwrap().effective_degrees_of_freedom(), Some(4.0));
     let harmless = inputs(&three).with_correlations(&[("b", "c", 0.5)]).unwrap();
@@ -110,5 +114,5 @@ fn covariance_needs_the_same_inputs() {
     let (plus, minus) = (propagate(&one, sum).unwrap(), propagate(&one, |x| x[0] - x[1]).unwrap());
     assert_eq!(plus.covariance_with(&minus).unwrap(), 9.0 - 16.0);
     let other = propagate(&inputs(&[("a", 3.0, 5.0), ("b", 4.0, 5.0)]), sum).unwrap();
-    assert!(matches!(plus.covariance_with(&other), Err(UncertaintyError::DifferentInputs)));
+    assert!(matches!(plus.covariance_with(&other), Err(UncertaintyError::Inputs { .. })));
 }

@@ -13,7 +13,7 @@ impl Distribution {
     /// The value that the quantity does not exceed with the given probability.
     ///
     /// # Errors
-    /// [`UncertaintyError::LevelOutOfRange`] unless the probability lies between 0 and 1.
+    /// [`UncertaintyError::OutOfRange`] unless the probability lies between 0 and 1.
     pub fn quantile(&self, probability: f64) -> Result<f64, UncertaintyError> {
         Ok(self.quantile_at(crate::coverage::valid_level(probability)?))
     }

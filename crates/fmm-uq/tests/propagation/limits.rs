@@ -25,7 +25,7 @@ fn an_adaptive_run_keeps_its_cap() {
         assert_eq!(calls.load(Ordering::Relaxed), done, "level {level}, at most {cap}: {error}");
         match error {
             UncertaintyError::NotStable { trials } => assert_eq!(trials, done),
-            UncertaintyError::TooFewTrialsAllowed { allowed, needed } => {
+            UncertaintyError::TooFewTrials { found: allowed, needed, .. } => {
                 assert_eq!((allowed, done), (cap, 0));
                 assert_eq!(needed, if level > 0.99 { 1_000_000_000 } else { 100_000 });
             }
@@ -43,7 +43,10 @@ fn a_variance_that_is_infinite_is_not_stated() {
         let run = MonteCarlo::new(&inputs, 20_000).unwrap();
         let sample = run.run(|x| x[0] + x[1]).unwrap();
         let error = sample.standard_uncertainty(0).unwrap_err();
-        assert!(matches!(&error, UncertaintyError::NoVariance { input, .. } if input == "few"), "{error}");
+        assert!(
+            matches!(&error, UncertaintyError::NoAnswer { what } if what.contains("which few has, has no standard deviation")),
+            "{error}"
+        );
         assert!(error.to_string().contains("few"), "{error}");
         assert_eq!(sample.estimate(0).is_ok(), mean_exists, "{observed:?}");
         assert!(
@@ -55,11 +58,11 @@ fn a_variance_that_is_infinite_is_not_stated() {
         assert_eq!(run.finish(parts).unwrap(), sample);
 
         let adaptive = MonteCarlo::adaptive(&inputs, Adaptive::to_tolerance(0.1).unwrap()).run(|x| x[0]);
-        assert!(matches!(adaptive, Err(UncertaintyError::NoVariance { .. })), "{adaptive:?}");
+        assert!(matches!(adaptive, Err(UncertaintyError::NoAnswer { .. })), "{adaptive:?}");
         let quasi = QuasiMonteCarlo::new(&inputs, 64, 8).unwrap().run(|x| x[0]).unwrap();
         assert!(quasi.sample().standard_uncertainty(0).is_err() && quasi.standard_errors(0).is_err());
         let shares = variance_shares(&inputs, 10_000, 0, 0.0, |x: &[f64]| x[0] + x[1]);
-        assert!(matches!(shares, Err(UncertaintyError::NoVariance { .. })), "{shares:?}");
+        assert!(matches!(shares, Err(UncertaintyError::NoAnswer { .. })), "{shares:?}");
         // Alone, the other input has its variance.
         let alone = run.run_one_at_a_time(|x| x[0] + x[1]).unwrap();
         assert!(alone[0].1.standard_uncertainty(0).is_err());
@@ -142,7 +145,7 @@ fn a_model_that_leaves_its_expansion_is_not_adequate() {
 
 #[test]
 fn uncertainties_too_small_to_square_are_refused() {
-    let tiny = |error: UncertaintyError| assert!(matches!(error, UncertaintyError::TooSmall { .. }), "{error}");
+    let tiny = |error: UncertaintyError| assert!(error.to_string().contains("is so small"), "{error}");
     tiny(Observations::new(&[1e-200, 2e-200, 3e-200]).unwrap_err());
     tiny(Distribution::empirical(&[1e-200, 2e-200]).unwrap_err());
     tiny(propagate(&normal(1.0, 1e-200), |x| x[0] * 1e-200).unwrap_err());
@@ -170,9 +173,9 @@ fn uncertainties_too_small_to_square_are_refused() {
 #[test]
 fn a_constant_output_has_no_shares() {
     let error = variance_shares(&normal(1.0, 0.1), 10_000, 0, 0.0, |_: &[f64]| 3.0).unwrap_err();
-    assert!(matches!(error, UncertaintyError::ConstantOutput), "{error}");
+    assert!(error.to_string().contains("does not vary"), "{error}");
     let error = variance_shares(&normal(1.0, 0.1), 10_000, 0, 0.5, |_: &[f64]| f64::NAN).unwrap_err();
-    assert!(matches!(error, UncertaintyError::RowsFailed { .. }), "{error}");
+    assert!(error.to_string().contains("the model failed in"), "{error}");
 }
 
 /// Whole blocks with one output, and then with two: the model changed, and no parts were mixed up.
@@ -181,16 +184,16 @@ fn a_model_whose_number_of_outputs_changes_is_told_so() {
     let calls = AtomicU64::new(0);
     let changing = |_: &[f64]| vec![1.0; 1 + usize::from(calls.fetch_add(1, Ordering::Relaxed) >= 64_000)];
     let error = MonteCarlo::new(&normal(1.0, 0.1), 128_000).unwrap().run(changing).unwrap_err();
-    assert!(matches!(error, UncertaintyError::OutputCountChanged { .. }), "{error}");
+    assert!(error.to_string().contains("must not change"), "{error}");
     assert!(!error.to_string().contains("partial"), "{error}");
     let calls = AtomicU64::new(0);
     let changing = |_: &[fmm_uq::Taylor]| {
         vec![fmm_uq::Taylor::from(1.0); 1 + usize::from(calls.fetch_add(1, Ordering::Relaxed) > 0)]
     };
     let error = Gum::new(&normal(1.0, 0.1)).propagate(changing).unwrap_err();
-    assert!(matches!(error, UncertaintyError::OutputCountChanged { first: 1, again: 2 }), "{error}");
+    assert!(error.to_string().contains("gives 1 outputs, then 2"), "{error}");
     let error = Gum::new(&normal(1.0, 0.1)).propagate(|_: &[fmm_uq::Taylor]| Vec::new()).unwrap_err();
-    assert!(matches!(error, UncertaintyError::OutputCount { found: 0, .. }), "{error}");
+    assert!(error.to_string().ends_with("but gives 0"), "{error}");
 }
 
 /// a − b with r = 1 and equal uncertainties does not vary: zero is the answer and no shortcoming of the linear one.

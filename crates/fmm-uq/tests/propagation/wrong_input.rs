@@ -15,7 +15,7 @@ fn correlations_that_are_not_positive_semidefinite() {
     let impossible = [("a", "b", 0.9), ("a", "c", 0.9), ("b", "c", -0.9)];
     let error = Inputs::new(three).unwrap().with_correlations(&impossible).unwrap_err();
     assert!(
-        matches!(error, UncertaintyError::NotPositiveSemidefinite { smallest_eigenvalue } if smallest_eigenvalue < 0.0),
+        matches!(error, UncertaintyError::Inputs { ref what } if what.contains("smallest eigenvalue of the correlation matrix is -")),
         "{error}"
     );
 }
@@ -32,13 +32,13 @@ fn scales_that_are_not_positive() {
             ("inexactness", Distribution::curvilinear_trapezoid(-1.0, 1.0, bad)),
         ] {
             let error = refused.unwrap_err();
-            assert!(matches!(error, UncertaintyError::ParameterOutOfRange { .. }), "{what} of {bad}: {error}");
+            assert!(matches!(error, UncertaintyError::OutOfRange { .. }), "{what} of {bad}: {error}");
         }
     }
     let error = Input::new("x", 1.0, -0.1, "m").unwrap_err();
-    assert!(matches!(error, UncertaintyError::UncertaintyOutOfRange { value: -0.1, .. }), "{error}");
+    assert!(matches!(error, UncertaintyError::OutOfRange { value: -0.1, .. }), "{error}");
     let error = Distribution::student_t(0.0, 1.0, -3.0).unwrap_err();
-    assert!(matches!(error, UncertaintyError::DegreesOfFreedomOutOfRange { value: -3.0, .. }), "{error}");
+    assert!(matches!(error, UncertaintyError::OutOfRange { value: -3.0, .. }), "{error}");
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn limits_that_are_inverted() {
             ("arc sine", Distribution::arc_sine(lower, upper)),
         ] {
             let error = refused.unwrap_err();
-            assert!(matches!(error, UncertaintyError::LimitsOutOfOrder { .. }), "{what} {lower} {upper}: {error}");
+            assert!(matches!(error, UncertaintyError::OutOfRange { .. }), "{what} {lower} {upper}: {error}");
         }
     }
 }
@@ -60,7 +60,7 @@ fn limits_that_are_inverted() {
 #[test]
 fn models_that_give_no_number() {
     let error = propagate(&one(), |x| x[0] * f64::NAN).unwrap_err();
-    assert!(matches!(error, UncertaintyError::ResultNotFinite { .. }), "{error}");
+    assert!(matches!(error, UncertaintyError::Model { source: None, .. }), "{error}");
     let trials = MonteCarlo::new(&one(), 10).unwrap().run(|_| f64::NAN).unwrap_err();
     let points = QuasiMonteCarlo::new(&one(), 16, 8).unwrap().run(|_| f64::NAN).unwrap_err();
     for error in [trials, points] {
@@ -68,7 +68,7 @@ fn models_that_give_no_number() {
         assert_eq!(first.kind, FailureKind::NotFinite { output: 0 });
     }
     let error = variance_shares(&one(), 10_000, 0, 0.0, |_: &[f64]| f64::NAN).unwrap_err();
-    assert!(matches!(error, UncertaintyError::RowsFailed { failed: 10_000, .. }), "{error}");
+    assert!(error.to_string().contains("failed in 10000 of"), "{error}");
     let run = MonteCarlo::adaptive(&one(), Adaptive::to_digits(2).unwrap());
     let error = run.run(|_| f64::INFINITY).unwrap_err();
     assert!(matches!(error, UncertaintyError::TooManyFailures { .. }), "{error}");
@@ -76,14 +76,14 @@ fn models_that_give_no_number() {
 
 #[test]
 fn runs_of_no_trials() {
-    assert!(matches!(MonteCarlo::new(&one(), 0), Err(UncertaintyError::NoTrials)));
+    assert!(matches!(MonteCarlo::new(&one(), 0), Err(UncertaintyError::OutOfRange { .. })));
     let refused = QuasiMonteCarlo::new(&one(), 0, 8);
-    assert!(matches!(refused, Err(UncertaintyError::OptionOutOfRange { .. })), "{refused:?}");
+    assert!(matches!(refused, Err(UncertaintyError::OutOfRange { .. })), "{refused:?}");
     let run = MonteCarlo::new(&one(), 10).unwrap();
     let nothing = run.run_blocks(0..0, |x| x[0]).unwrap();
     assert_eq!(nothing.trials(), 0);
     let error = run.finish(nothing).unwrap_err();
-    assert!(matches!(error, UncertaintyError::MissingBlock { block: 0 }), "{error}");
+    assert!(matches!(error, UncertaintyError::Partial { block: Some(0), .. }), "{error}");
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn coverage_probabilities_outside_of_0_and_1() {
             Adaptive::to_digits(2).unwrap().with_interval(IntervalKind::Shortest, level).err(),
         ];
         for (at, error) in results.into_iter().enumerate() {
-            assert!(matches!(error, Some(UncertaintyError::LevelOutOfRange { .. })), "{at}, {level}: {error:?}");
+            assert!(matches!(error, Some(UncertaintyError::OutOfRange { .. })), "{at}, {level}: {error:?}");
         }
     }
 }
@@ -127,16 +127,13 @@ fn parts_of_different_runs_or_twice_the_same() {
     let part = |run: &MonteCarlo, index| run.run_blocks(run.shard(index, 3), |x| x[0]).unwrap();
     let (first, second) = (part(&run, 0), part(&run, 1));
     let seed = first.clone().merge(part(&run.clone().with_seed(2), 1)).unwrap_err();
-    assert!(matches!(seed, UncertaintyError::LayoutMismatch { what: "seeds", first: 1, second: 2 }), "{seed}");
+    assert!(seed.to_string().contains("if their seeds agree, but one has 1 and another 2"), "{seed}");
     let wider = Inputs::new([Input::new("x", 1.0, 0.2, "m").unwrap()]).unwrap();
     let wider = first.clone().merge(part(&MonteCarlo::new(&wider, 3000).unwrap().with_seed(1), 1)).unwrap_err();
-    assert!(matches!(wider, UncertaintyError::LayoutMismatch { what: "inputs (by fingerprint)", .. }), "{wider}");
+    assert!(wider.to_string().contains("inputs (by fingerprint)"), "{wider}");
     let pair = run.run_blocks(1..2, |x| [x[0], x[0]]).unwrap();
     let pair = first.clone().merge(pair).unwrap_err();
-    assert!(
-        matches!(pair, UncertaintyError::LayoutMismatch { what: "numbers of outputs", first: 1, second: 2 }),
-        "{pair}"
-    );
+    assert!(pair.to_string().contains("if their numbers of outputs agree, but one has 1 and another 2"), "{pair}");
     let twice = first.clone().merge(second).unwrap().merge(first).unwrap_err();
-    assert!(matches!(twice, UncertaintyError::DuplicateBlock { block: 0 }), "{twice}");
+    assert!(matches!(twice, UncertaintyError::Partial { block: Some(0), .. }), "{twice}");
 }
