@@ -27,8 +27,9 @@ pub struct NestedTest {
 /// residuals show; correlated residuals count for as much as they tell, so that the answer is the same however often a record is
 /// sampled. Among the others the simplest with a probability of at least 0.0125 is preferred. The preference is *decided* if its
 /// probability is at least 0.05 and what is left beside it are laws that have it as a special case, whose further parameters the record
-/// does not ask for. If a simple law is true, it is undecided in about one record of eight, and excluded in less than one of a hundred. The uncertainties of the preferred law include
-/// what the laws that are left would change, by how probable they are.
+/// does not ask for, and if no filter in the sensor would explain the record as well. If a simple law is true, it is undecided in about one
+/// record of eight, and excluded in less than one of a hundred. The uncertainties of the preferred law include what the laws that are left
+/// would change, by how probable they are.
 ///
 /// `Display` gives the report.
 #[derive(Debug, Clone)]
@@ -106,8 +107,9 @@ impl Comparison {
         let preferred = judgement.preferred;
         let others = unfinished(candidates, &identifications);
         judgement.is_decided &= others.is_empty();
-        // A law that leaves something is not the answer, however far the others are from it.
-        judgement.is_decided &= !identifications[preferred].structure().is_structured();
+        // A filter in the sensor that explains the record as well is a rival, though it is no law.
+        let sensor = filtering_sensor(decays, &identifications, preferred);
+        judgement.is_decided &= sensor.is_none();
         let widened = widen_for_other_laws(candidates, &mut identifications, &judgement);
         let mut warnings = identifications[preferred].warnings().to_vec();
         warnings.extend(others);
@@ -119,7 +121,7 @@ impl Comparison {
         let negative = |warning: &&Warning| matches!(warning, Warning::NegativeDamping { .. });
         warnings.extend(others.flat_map(|(_, found)| found.warnings().iter().filter(negative).cloned()));
         warnings.extend(misled(&identifications, preferred));
-        warnings.extend(filtering_sensor(decays, &identifications, preferred));
+        warnings.extend(sensor);
         Ok(Self {
             records: decays.iter().map(|decay| decay.summary().clone()).collect(),
             tests: tests(candidates, &identifications),

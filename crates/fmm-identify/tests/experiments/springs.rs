@@ -86,7 +86,7 @@ fn a_filter_is_no_spring() {
             _ => false,
         };
         assert!(comparison.warnings().iter().any(is_named), "{}", comparison.preferred());
-        // What both laws leave is not noise, so that neither is the answer.
+        // The filter explains the record as well, so that neither law is the answer.
         assert!(!comparison.is_decided(), "{}", comparison.preferred());
     }
 }
