@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::rounding::percent;
+use crate::report::rounding::percent;
 
 /// A coverage interval.
 ///

@@ -82,99 +82,31 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-mod adaptive;
-mod allowed_failures;
-mod arc_sine;
-mod at_values;
-mod beta;
-#[cfg(feature = "serde")]
-mod bits;
-mod block;
-mod budget;
-mod coverage;
-mod curvilinear_trapezoid;
-mod derivatives;
-mod differences;
-mod distribution;
-mod empirical;
+mod distributions;
 mod error;
-mod evaluation;
-mod exact_derivatives;
-mod excursion;
-mod expanded;
-mod factor;
-mod failure;
-mod gamma;
-mod heavy_tail;
-mod histogram;
-mod input;
+mod gum;
 mod inputs;
 mod interval;
-mod linear_region;
-mod linearisation;
-mod moments;
+mod model;
 mod monte_carlo;
-mod observations;
-mod order_statistics;
-mod outcome;
-mod output_sample;
-mod partial;
-mod pool;
-mod propagate;
-mod propagation;
-mod quasi_monte_carlo;
-mod region;
-mod rounding;
-mod run;
-mod sampler;
-mod second_order;
-mod sensitivity;
-mod settling;
-mod sobol_directions;
-mod sobol_sequence;
-mod statement;
-mod stream;
-mod student;
-mod table;
-mod taylor;
-mod tolerance;
-mod trapezoid;
-mod triangle;
-mod truncated_normal;
-mod validation;
-mod ziggurat;
+mod random;
+mod report;
 
-pub use adaptive::{Adaptive, IntervalKind};
-pub use at_values::at_values;
-pub use budget::{Budget, Contribution};
-pub use coverage::coverage_factor;
-pub use distribution::Distribution;
+pub use distributions::Distribution;
 pub use error::UncertaintyError;
-pub use evaluation::Evaluation;
-pub use expanded::Expanded;
-pub use failure::{Failure, FailureKind, Failures};
 pub use fmm_model::Scalar;
-pub use histogram::Histogram;
-pub use input::Input;
-pub use inputs::Inputs;
+pub use gum::{
+    Budget, Contribution, Expanded, Gum, Linearisation, Propagation, SecondOrder, Validation, coverage_factor,
+    propagate, validate,
+};
+pub use inputs::{Evaluation, Input, Inputs, Observations};
 pub use interval::Interval;
-pub use linearisation::Linearisation;
-pub use moments::Moments;
-pub use monte_carlo::{MonteCarlo, Progress};
-pub use observations::Observations;
-pub use outcome::Outcome;
-pub use output_sample::OutputSample;
-pub use partial::Partial;
-pub use propagate::{Gum, propagate};
-pub use propagation::Propagation;
-pub use quasi_monte_carlo::{QuasiMonteCarlo, QuasiSample};
-pub use region::Region;
-pub use second_order::SecondOrder;
-pub use sensitivity::{VarianceShare, variance_shares};
-pub use statement::{Statement, TrialStatement};
-pub use taylor::Taylor;
-pub use tolerance::numerical_tolerance;
-pub use validation::{Validation, validate};
+pub use model::{Outcome, Taylor, at_values};
+pub use monte_carlo::{
+    Adaptive, Failure, FailureKind, Failures, Histogram, IntervalKind, Moments, MonteCarlo, OutputSample, Partial,
+    Progress, QuasiMonteCarlo, QuasiSample, Region, VarianceShare, numerical_tolerance, variance_shares,
+};
+pub use report::{Statement, TrialStatement};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,0 +1,201 @@
+//! One input quantity of a measurement.
+
+use crate::distributions::Shape;
+use crate::{Distribution, Evaluation, Observations, UncertaintyError};
+
+/// An input quantity: its estimate, the standard uncertainty of that, and how well the uncertainty is known.
+///
+/// | symbol | field | unit | meaning |
+/// |---|---|---|---|
+/// | x | `value` | `unit` | estimate |
+/// | u | `standard_uncertainty` | `unit` | standard deviation attributed to the estimate |
+/// | ν | `degrees_of_freedom` | 1 | n − 1 for the mean of n observations; infinite if u is known exactly |
+/// | | `distribution` | `unit` | what the trials of a Monte Carlo are drawn from |
+///
+/// The unit is a label and is not converted: the model sees the bare values, so that all must belong to one
+/// coherent system. Uncertainty exactly zero is allowed and describes a constant.
+///
+/// ```
+/// use fmm_uq::Input;
+///
+/// let length = Input::new("l", 50_000_623.0, 25.0, "nm")?.with_degrees_of_freedom(18.0)?;
+/// assert_eq!(length.standard_uncertainty(), 25.0);
+/// assert!(Input::new("l", 50_000_623.0, -25.0, "nm").is_err());
+/// # Ok::<(), fmm_uq::UncertaintyError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Input {
+    name: String,
+    value: f64,
+    standard_uncertainty: f64,
+    unit: String,
+    degrees_of_freedom: f64,
+    distribution: Distribution,
+    evaluation: Evaluation,
+}
+
+impl Input {
+    /// A normally distributed input of infinite degrees of freedom; `unit` is `"1"` for a pure number.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::Inputs`], [`UncertaintyError::OutOfRange`] or, if the uncertainty is negative or
+    /// not finite, [`UncertaintyError::OutOfRange`].
+    pub fn new(
+        name: impl Into<String>,
+        value: f64,
+        standard_uncertainty: f64,
+        unit: impl Into<String>,
+    ) -> Result<Self, UncertaintyError> {
+        let (name, unit) = (name.into(), unit.into());
+        if name.trim().is_empty() {
+            return Err(UncertaintyError::unnamed(value, &unit));
+        }
+        if !value.is_finite() {
+            return Err(UncertaintyError::value_not_finite(&name, value, &unit));
+        }
+        if !(standard_uncertainty >= 0.0 && standard_uncertainty.is_finite()) {
+            return Err(UncertaintyError::uncertainty_out_of_range(&name, standard_uncertainty, &unit));
+        }
+        let distribution = if standard_uncertainty == 0.0 {
+            Shape::Constant(value).into()
+        } else {
+            Shape::Normal { mean: value, standard_deviation: standard_uncertainty }.into()
+        };
+        let (degrees_of_freedom, evaluation) = (f64::INFINITY, Evaluation::TypeB);
+        Ok(Self { name, value, standard_uncertainty, unit, degrees_of_freedom, distribution, evaluation })
+    }
+
+    /// An input of the given distribution, with its mean, standard uncertainty and degrees of freedom.
+    ///
+    /// ```
+    /// use fmm_uq::{Distribution, Input};
+    ///
+    /// let density = Input::of("ρ_W", Distribution::rectangular(7000.0, 9000.0)?, "kg/m³")?;
+    /// assert_eq!((density.value(), density.standard_uncertainty()), (8000.0, 2000.0 / 12f64.sqrt()));
+    /// # Ok::<(), fmm_uq::UncertaintyError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`UncertaintyError::Inputs`].
+    pub fn of(
+        name: impl Into<String>,
+        distribution: Distribution,
+        unit: impl Into<String>,
+    ) -> Result<Self, UncertaintyError> {
+        let mut input = Self::new(name, distribution.mean(), distribution.standard_uncertainty(), unit)?;
+        input.degrees_of_freedom = distribution.degrees_of_freedom();
+        input.distribution = distribution;
+        Ok(input)
+    }
+
+    /// The mean of repeated observations, an uncertainty of type A: u = s/√n, ν = n − 1, Student's t.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::Inputs`].
+    pub fn mean_of(
+        name: impl Into<String>,
+        observations: &Observations,
+        unit: impl Into<String>,
+    ) -> Result<Self, UncertaintyError> {
+        Self::new(name, observations.mean(), observations.standard_uncertainty(), unit)?
+            .evaluated_as(Evaluation::TypeA)
+            .with_degrees_of_freedom(observations.degrees_of_freedom())
+    }
+
+    /// The same input with its uncertainty of type A or B, which a budget shows: B unless it is the
+    /// [mean of observations](Input::mean_of).
+    #[must_use]
+    pub const fn evaluated_as(mut self, evaluation: Evaluation) -> Self {
+        self.evaluation = evaluation;
+        self
+    }
+
+    /// The same input with ν degrees of freedom, which need not be whole.
+    ///
+    /// A normal input thereby becomes one of Student's t (JCGM 101:2008, 6.4.9.7): an uncertainty that is not known
+    /// exactly leaves heavier tails. Inputs of other distributions keep theirs, and ν only counts in ν_eff.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::OutOfRange`] if they are below 1 or NaN.
+    pub fn with_degrees_of_freedom(mut self, degrees_of_freedom: f64) -> Result<Self, UncertaintyError> {
+        self.degrees_of_freedom = UncertaintyError::require_degrees_of_freedom(&self.name, degrees_of_freedom)?;
+        if self.is_normal_or_t() {
+            self.distribution = Distribution::student_t(self.value, self.standard_uncertainty, degrees_of_freedom)?;
+        }
+        Ok(self)
+    }
+
+    /// The same input known exactly: its estimate as a constant.
+    #[must_use]
+    pub(crate) fn held(&self) -> Self {
+        let (name, unit) = (self.name.clone(), self.unit.clone());
+        let (distribution, degrees_of_freedom) = (Shape::Constant(self.value).into(), f64::INFINITY);
+        let evaluation = self.evaluation;
+        Self { name, value: self.value, standard_uncertainty: 0.0, unit, degrees_of_freedom, distribution, evaluation }
+    }
+
+    pub(crate) fn is_normal_or_t(&self) -> bool {
+        matches!(self.distribution.shape, Shape::Normal { .. } | Shape::StudentT { .. })
+    }
+
+    /// Name, unique in its set.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// x, estimate (in [`Input::unit`]).
+    pub const fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// u, standard uncertainty of the estimate (in [`Input::unit`]).
+    pub const fn standard_uncertainty(&self) -> f64 {
+        self.standard_uncertainty
+    }
+
+    /// Unit of the value and of its uncertainty.
+    pub fn unit(&self) -> &str {
+        &self.unit
+    }
+
+    /// ν, degrees of freedom of the standard uncertainty (1), at least 1, possibly infinite.
+    pub const fn degrees_of_freedom(&self) -> f64 {
+        self.degrees_of_freedom
+    }
+
+    /// Whether the uncertainty comes from observations (type A) or from elsewhere (type B).
+    pub const fn evaluation(&self) -> Evaluation {
+        self.evaluation
+    }
+
+    /// What a Monte Carlo draws from.
+    pub const fn distribution(&self) -> &Distribution {
+        &self.distribution
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn impossible_inputs_are_refused_by_name() {
+        let message = |input: Result<Input, UncertaintyError>| input.unwrap_err().to_string();
+        assert_eq!(message(Input::new(" ", 1.0, 0.1, "m")), "an input needs a name, but the one of value 1 m has none");
+        assert_eq!(message(Input::new("a", f64::NAN, 0.1, "m")), "the value of a must be finite, but is NaN m");
+        for bad in [-0.1, f64::NAN, f64::INFINITY] {
+            let error = Input::new("a", 1.0, bad, "m").unwrap_err();
+            assert!(error.to_string().starts_with("the standard uncertainty of"), "u = {bad} m: {error}");
+        }
+        for bad in [0.0, 0.999, -1.0, f64::NAN] {
+            assert!(Input::new("a", 1.0, 0.1, "m").unwrap().with_degrees_of_freedom(bad).is_err(), "ν = {bad}");
+        }
+    }
+
+    #[test]
+    fn degrees_of_freedom_are_infinite_unless_given() {
+        let input = Input::new("a", 1.0, 0.0, "m").unwrap();
+        assert_eq!(input.degrees_of_freedom(), f64::INFINITY);
+        assert_eq!(input.with_degrees_of_freedom(25.6).unwrap().degrees_of_freedom(), 25.6);
+    }
+}

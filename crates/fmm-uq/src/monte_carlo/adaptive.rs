@@ -1,0 +1,278 @@
+//! How many trials are enough.
+
+use crate::gum::coverage::{coverage_factor, valid_level};
+use crate::monte_carlo::block::BLOCK_TRIALS;
+use crate::monte_carlo::output_sample::symmetric;
+use crate::monte_carlo::settling::Settling;
+use crate::monte_carlo::tolerance::{numerical_tolerance, valid_digits};
+use crate::{Moments, UncertaintyError};
+
+/// Sequences of trials before the first decision: with fewer, chance may make them agree.
+const FEWEST_SEQUENCES: usize = 10;
+/// Share of δ that a Monte Carlo may be wrong by if it is to validate another result (JCGM 101:2008, 8.2).
+const VALIDATION: f64 = 0.2;
+
+/// Which of the intervals of a given coverage probability.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum IntervalKind {
+    /// Equal probabilities on both sides.
+    #[default]
+    Symmetric,
+    /// The shortest one.
+    Shortest,
+}
+
+/// The adaptive procedure of JCGM 101:2008, 7.9: sequences of M = max(10⁴, 100/(1 − p)) trials until estimate, standard
+/// uncertainty and both ends of the coverage interval are stable, for every output.
+///
+/// ```text
+/// s_z² = Σ (z_h − z̄)²/(h (h − 1)),   stop when 2 s_z ≤ δ for all four z      (JCGM 101:2008, 7.9.4)
+/// ```
+///
+/// What is stated are the ends of the interval of all trials. Those of a symmetric interval scatter as s_z says; those
+/// of a shortest interval settle only as M^(−1/3), and are judged by the scatter of batches that grow with the run.
+/// They take more trials, eight times as many in the guide's examples, and a flat density, of which
+/// all intervals are equally short, ends in [`UncertaintyError::NotStable`].
+///
+/// At least ten sequences are made: two may agree by chance. The stop succeeds in about nine of ten runs, since it waits
+/// for a favourable estimate of s_z; [`Adaptive::two_stage`] takes s_z from the first sequences alone and
+/// succeeds more often, for some more trials.
+///
+/// # References
+/// G. Wübbeler, P. M. Harris, M. G. Cox, C. Elster, "A two-stage procedure for determining the number of trials in
+/// the application of a Monte Carlo method for uncertainty evaluation", Metrologia 47 (2010) 317,
+/// doi:10.1088/0026-1394/47/3/023.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Adaptive {
+    target: Target,
+    share: f64,
+    level: f64,
+    kind: IntervalKind,
+    first_stage: Option<usize>,
+    most_trials: u64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Target {
+    Digits(u32),
+    Tolerance(f64),
+}
+
+impl Adaptive {
+    /// Results stable to `digits` significant digits of u(y), with a symmetric interval of 95 % and at most 10⁸
+    /// trials.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::OutOfRange`] unless there are 1 to 15 digits.
+    pub fn to_digits(digits: u32) -> Result<Self, UncertaintyError> {
+        Ok(Self::new(Target::Digits(valid_digits(digits)?)))
+    }
+
+    /// Results stable to `tolerance` δ (unit of the outputs, which share it).
+    ///
+    /// # Errors
+    /// [`UncertaintyError::OutOfRange`] unless it is positive and finite.
+    pub fn to_tolerance(tolerance: f64) -> Result<Self, UncertaintyError> {
+        if tolerance > 0.0 && tolerance.is_finite() {
+            Ok(Self::new(Target::Tolerance(tolerance)))
+        } else {
+            let (option, must_be) = ("numerical tolerance", "positive and finite");
+            Err(UncertaintyError::out_of_range(option, tolerance, must_be))
+        }
+    }
+
+    const fn new(target: Target) -> Self {
+        let (kind, first_stage, most_trials) = (IntervalKind::Symmetric, None, 100_000_000);
+        Self { target, share: 1.0, level: 0.95, kind, first_stage, most_trials }
+    }
+
+    /// The same with an interval of the given kind and coverage probability.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1.
+    pub fn with_interval(mut self, kind: IntervalKind, level: f64) -> Result<Self, UncertaintyError> {
+        (self.kind, self.level) = (kind, valid_level(level)?);
+        Ok(self)
+    }
+
+    /// The same to a fifth of the tolerance, as the validation of another result needs it (JCGM 101:2008, 8.2).
+    #[must_use]
+    pub const fn for_validation(mut self) -> Self {
+        self.share = VALIDATION;
+        self
+    }
+
+    /// The same in two stages: s_z from the first `sequences`, at least ten, then as many as Student's t asks for.
+    #[must_use]
+    pub fn two_stage(mut self, sequences: usize) -> Self {
+        self.first_stage = Some(sequences.max(FEWEST_SEQUENCES));
+        self
+    }
+
+    /// The same with another largest number of trials, which a run never exceeds: it ends with the last whole sequence
+    /// that fits.
+    #[must_use]
+    pub const fn with_most_trials(mut self, trials: u64) -> Self {
+        self.most_trials = trials;
+        self
+    }
+
+    pub(crate) const fn most_trials(&self) -> u64 {
+        self.most_trials
+    }
+
+    pub(crate) fn trials_of_sequence(&self) -> u64 {
+        self.blocks_of_sequence().saturating_mul(BLOCK_TRIALS as u64)
+    }
+
+    /// Trials before the first decision.
+    pub(crate) fn fewest_trials(&self) -> u64 {
+        self.trials_of_sequence().saturating_mul(self.first_stage.unwrap_or(FEWEST_SEQUENCES) as u64)
+    }
+
+    /// What all figures must be stable to for an output of this uncertainty (unit of the output).
+    pub(crate) fn tolerance(&self, standard_uncertainty: f64) -> Result<f64, UncertaintyError> {
+        let tolerance = match self.target {
+            Target::Digits(digits) => numerical_tolerance(standard_uncertainty, digits)?,
+            Target::Tolerance(tolerance) => tolerance,
+        };
+        Ok(self.share * tolerance)
+    }
+
+    /// Blocks of a sequence.
+    pub(crate) fn blocks_of_sequence(&self) -> u64 {
+        let trials = (100.0 / (1.0 - self.level)).ceil().max(1e4);
+        (trials / BLOCK_TRIALS as f64).ceil() as u64
+    }
+}
+
+/// What the sequences so far have shown.
+#[derive(Debug, Clone)]
+pub(crate) struct Stability {
+    rule: Adaptive,
+    /// Number of values after all sequences so far.
+    values: usize,
+    outputs: Vec<Figures>,
+    /// Sequences to be made in all, once the first of two stages has shown it.
+    planned: Option<usize>,
+}
+
+/// The figures of one output.
+#[derive(Debug, Clone)]
+struct Figures {
+    /// Estimate, uncertainty and, of a symmetric interval, both ends by sequence.
+    averaged: Vec<Vec<f64>>,
+    /// Ends of a shortest interval.
+    settling: Option<Settling>,
+    /// Number, mean and sum of squares of all trials so far.
+    pooled: (f64, f64, f64),
+}
+
+impl Figures {
+    fn new(rule: &Adaptive) -> Self {
+        let (averaged, settling) = match rule.kind {
+            IntervalKind::Symmetric => (4, None),
+            IntervalKind::Shortest => (2, Some(Settling::new(rule.level))),
+        };
+        Self { averaged: vec![Vec::new(); averaged], settling, pooled: (0.0, 0.0, 0.0) }
+    }
+
+    /// Takes in the next sequence: all values of the output, of which those from `start` on are new.
+    fn add(&mut self, values: &[f64], start: usize, level: f64) -> Result<(), UncertaintyError> {
+        let sequence = &values[start..];
+        let moments = Moments::of_values(sequence);
+        let mut figures = vec![moments.mean(), moments.standard_deviation().unwrap_or(0.0)];
+        if let Some(settling) = &mut self.settling {
+            settling.add(values)?;
+        } else {
+            let interval = symmetric(sequence, level)?;
+            figures.extend([interval.low, interval.high]);
+        }
+        for (list, figure) in self.averaged.iter_mut().zip(figures) {
+            list.push(figure);
+        }
+        let (n, mean, squares) = self.pooled;
+        let (more, difference) = (moments.count() as f64, moments.mean() - mean);
+        let all = n + more;
+        self.pooled = (
+            all,
+            mean + difference * (more / all),
+            squares + moments.sum_of_squares() + difference * difference * (n * (more / all)),
+        );
+        Ok(())
+    }
+
+    /// u(y) of all trials so far (unit of the output).
+    fn uncertainty(&self) -> f64 {
+        let (n, _, squares) = self.pooled;
+        (squares / (n - 1.0)).sqrt()
+    }
+}
+
+impl Stability {
+    pub(crate) const fn new(rule: Adaptive) -> Self {
+        Self { rule, values: 0, outputs: Vec::new(), planned: None }
+    }
+
+    /// Takes in the next sequence, given all values so far by output, and says whether it is the last one.
+    pub(crate) fn add(&mut self, columns: &[Vec<f64>]) -> Result<bool, UncertaintyError> {
+        let values = columns.first().map_or(0, Vec::len);
+        if values == self.values {
+            return Err(UncertaintyError::no_success());
+        }
+        self.outputs.resize_with(columns.len(), || Figures::new(&self.rule));
+        for (column, figures) in columns.iter().zip(&mut self.outputs) {
+            figures.add(column, self.values, self.rule.level)?;
+        }
+        self.values = values;
+        self.decide()
+    }
+
+    fn decide(&mut self) -> Result<bool, UncertaintyError> {
+        let count = self.outputs.first().map_or(0, |figures| figures.averaged[0].len());
+        let averages_stand = if let Some(first) = self.rule.first_stage {
+            if count == first {
+                let factor = coverage_factor(0.95, (first - 1) as f64)?;
+                self.planned = Some(self.needed(factor)?.max(first as f64) as usize);
+            }
+            self.planned.is_some_and(|planned| count >= planned)
+        } else {
+            count >= FEWEST_SEQUENCES && self.needed(2.0)? <= count as f64
+        };
+        Ok(averages_stand && self.settled()?)
+    }
+
+    /// Whether the ends of all shortest intervals stand.
+    fn settled(&self) -> Result<bool, UncertaintyError> {
+        for figures in &self.outputs {
+            let u = figures.uncertainty();
+            if let Some(settling) = figures.settling.as_ref().filter(|_| u > 0.0)
+                && !(settling.doubt()? <= self.rule.tolerance(u)?)
+            {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Sequences after which k s_z ≤ δ, if the spread between sequences stays what it is: whole, and the most for any
+    /// averaged figure of any output.
+    fn needed(&self, factor: f64) -> Result<f64, UncertaintyError> {
+        let mut most = 0.0_f64;
+        for figures in &self.outputs {
+            let u = figures.uncertainty();
+            if u == 0.0 {
+                continue;
+            }
+            let tolerance = self.rule.tolerance(u)?;
+            for figure in &figures.averaged {
+                let spread = Moments::of_values(figure).standard_deviation().unwrap_or(f64::INFINITY);
+                most = most.max((factor * spread / tolerance).powi(2));
+            }
+        }
+        // A shade more than whole is whole: rounding must not cost a sequence.
+        Ok((most * (1.0 - 1e-12)).ceil())
+    }
+}

@@ -1,0 +1,232 @@
+//! Propagation of distributions by a Monte Carlo method.
+
+mod adaptive;
+mod allowed_failures;
+#[cfg(feature = "serde")]
+mod bits;
+mod block;
+mod failure;
+mod heavy_tail;
+mod histogram;
+mod moments;
+mod order_statistics;
+mod output_sample;
+mod partial;
+mod pool;
+mod quasi_monte_carlo;
+mod region;
+mod run;
+mod sampler;
+mod sensitivity;
+mod settling;
+mod tolerance;
+
+pub use adaptive::{Adaptive, IntervalKind};
+pub use failure::{Failure, FailureKind, Failures};
+pub use histogram::Histogram;
+pub use moments::Moments;
+pub use output_sample::OutputSample;
+pub use partial::Partial;
+pub use quasi_monte_carlo::{QuasiMonteCarlo, QuasiSample};
+pub use region::Region;
+pub use sensitivity::{VarianceShare, variance_shares};
+pub use tolerance::numerical_tolerance;
+
+use std::ops::{ControlFlow, Range};
+
+use crate::monte_carlo::allowed_failures::AllowedFailures;
+use crate::monte_carlo::block::{BLOCK_TRIALS, Block};
+use crate::monte_carlo::heavy_tail::HeavyTail;
+use crate::monte_carlo::run::Plan;
+use crate::monte_carlo::sampler::Sampler;
+use crate::{Inputs, Outcome, UncertaintyError};
+
+/// A run of JCGM 101:2008 (one output) or JCGM 102:2011 (several): the distributions of the inputs propagated through the
+/// model by random trials.
+///
+/// Trials come in blocks of 1000. A block is drawn from a stream of its own of the ChaCha8 generator, with the
+/// seed as the key and the index of the block as the stream; blocks are put together by index. So the bits of a result
+/// depend on seed, inputs, model and number of trials, and on nothing else: not on the number of threads (feature
+/// `rayon`, in the current pool), nor on how blocks are spread over machines
+/// ([`MonteCarlo::run_blocks`], [`Partial`]).
+///
+/// A trial fails if the model gives back an error or a number that is not finite. By default a single failure is an error:
+/// results without the failed trials are conditional on success, and that must be asked for
+/// ([`MonteCarlo::with_allowed_failures`]).
+///
+/// ```
+/// use fmm_uq::{Distribution, Input, Inputs, MonteCarlo};
+///
+/// // The sum of four rectangular quantities (JCGM 101:2008, 9.2.3).
+/// let half = 3f64.sqrt();
+/// let quantity = |name| Input::of(name, Distribution::rectangular(-half, half)?, "1");
+/// let inputs = Inputs::new([quantity("X1")?, quantity("X2")?, quantity("X3")?, quantity("X4")?])?;
+/// let sum = MonteCarlo::new(&inputs, 200_000)?.run(|x| x[0] + x[1] + x[2] + x[3])?;
+/// let interval = sum.symmetric_interval(0, 0.95)?;
+/// // Ends at ±3.8794, with a standard error of 0.011 here; the GUM has ±3.92.
+/// assert!((interval.high - 3.8794).abs() < 0.055 && (interval.low + 3.8794).abs() < 0.055);
+/// # Ok::<(), fmm_uq::UncertaintyError>(())
+/// ```
+#[derive(Clone)]
+pub struct MonteCarlo<'a> {
+    pub(crate) inputs: Inputs,
+    pub(crate) sampler: Sampler,
+    pub(crate) heavy_tail: Option<HeavyTail>,
+    pub(crate) fingerprint: u64,
+    pub(crate) seed: u64,
+    pub(crate) plan: Plan,
+    pub(crate) allowed_failures: AllowedFailures,
+    pub(crate) watch: Option<&'a Watch<'a>>,
+}
+
+/// What is told of the progress of a run, and may end it.
+type Watch<'a> = dyn Fn(Progress) -> ControlFlow<()> + Sync + 'a;
+
+/// How far a run has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Progress {
+    /// Trials done, by all threads.
+    pub done: u64,
+    /// Trials in all; none for an adaptive run, which does not know.
+    pub planned: Option<u64>,
+}
+
+impl std::fmt::Debug for MonteCarlo<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut debug = f.debug_struct("MonteCarlo");
+        debug.field("seed", &self.seed).field("plan", &self.plan).field("allowed_failures", &self.allowed_failures);
+        debug.finish_non_exhaustive()
+    }
+}
+
+impl<'a> MonteCarlo<'a> {
+    /// A fixed number of trials, with seed 0.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::OutOfRange`] for zero trials; [`UncertaintyError::OutOfRange`] beyond 2⁵³.
+    pub fn new(inputs: &Inputs, trials: u64) -> Result<Self, UncertaintyError> {
+        const MOST: u64 = 1 << 53;
+        match trials {
+            0 => Err(UncertaintyError::no_trials()),
+            1..=MOST => Ok(Self::with_plan(inputs.clone(), Plan::Fixed(trials))),
+            _ => Err(UncertaintyError::too_many_trials(trials, MOST)),
+        }
+    }
+
+    /// As many trials as it takes for stable results.
+    pub fn adaptive(inputs: &Inputs, rule: Adaptive) -> Self {
+        Self::with_plan(inputs.clone(), Plan::Adaptive(rule))
+    }
+
+    fn with_plan(inputs: Inputs, plan: Plan) -> Self {
+        let (sampler, heavy_tail, fingerprint) = (Sampler::new(&inputs), HeavyTail::of(&inputs), inputs.fingerprint());
+        let (allowed_failures, watch) = (AllowedFailures::default(), None);
+        Self { inputs, sampler, heavy_tail, fingerprint, seed: 0, plan, allowed_failures, watch }
+    }
+
+    /// What an adaptive run goes by.
+    pub(crate) const fn rule(&self) -> Option<Adaptive> {
+        match self.plan {
+            Plan::Adaptive(rule) => Some(rule),
+            Plan::Fixed(_) => None,
+        }
+    }
+
+    /// The same run of other inputs.
+    pub(crate) fn with_inputs(&self, inputs: Inputs) -> Self {
+        let (seed, allowed_failures, watch) = (self.seed, self.allowed_failures, self.watch);
+        Self { seed, allowed_failures, watch, ..Self::with_plan(inputs, self.plan) }
+    }
+
+    /// The same with another seed, and so with other random numbers.
+    #[must_use]
+    pub const fn with_seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
+    }
+
+    /// The same with a share of trials that may fail, 0 unless set.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::OutOfRange`] unless it lies in [0, 1).
+    pub fn with_allowed_failures(mut self, share: f64) -> Result<Self, UncertaintyError> {
+        self.allowed_failures = AllowedFailures::new(share)?;
+        Ok(self)
+    }
+
+    /// The same with a function that is told of the progress every 100 trials of a thread, and ends the run by
+    /// giving back [`ControlFlow::Break`].
+    #[must_use]
+    pub const fn with_progress(mut self, watch: &'a (dyn Fn(Progress) -> ControlFlow<()> + Sync + 'a)) -> Self {
+        self.watch = Some(watch);
+        self
+    }
+
+    /// Runs all trials and pools them.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::TooManyFailures`] as soon as that is certain and none may fail;
+    /// [`UncertaintyError::Model`]; [`UncertaintyError::Cancelled`]; [`UncertaintyError::Model`];
+    /// [`UncertaintyError::OutOfRange`] if the squares of the values overflow. For an adaptive run also [`UncertaintyError::NotStable`] at its
+    /// largest number of trials, [`UncertaintyError::TooFewTrials`], and [`UncertaintyError::NoAnswer`] if an
+    /// input has Student's t of ν ≤ 2.
+    ///
+    /// # Panics
+    /// If the model does: a panic ends the run and passes through. What may fail should give back an error.
+    pub fn run<R: Outcome<f64>>(&self, model: impl Fn(&[f64]) -> R + Sync) -> Result<OutputSample, UncertaintyError> {
+        self.run_plan(&model)
+    }
+
+    /// Runs some blocks of trials; [`MonteCarlo::shard`] divides the blocks of a fixed number of trials.
+    ///
+    /// # Errors
+    /// Those of [`MonteCarlo::run`] but for what only the whole can tell: no success, and too many failures
+    /// where some are allowed.
+    ///
+    /// # Panics
+    /// If the model does.
+    pub fn run_blocks<R: Outcome<f64>>(
+        &self,
+        blocks: Range<u64>,
+        model: impl Fn(&[f64]) -> R + Sync,
+    ) -> Result<Partial, UncertaintyError> {
+        self.run_range(blocks, &model)
+    }
+
+    /// The blocks of part `index` out of `parts` of a run of a fixed number of trials, as equal as they can be; empty
+    /// beyond the last part, and for an adaptive run, which does not know its blocks.
+    ///
+    /// ```
+    /// use fmm_uq::{Input, Inputs, MonteCarlo};
+    ///
+    /// let inputs = Inputs::new([Input::new("x", 1.0, 0.1, "m")?])?;
+    /// let run = MonteCarlo::new(&inputs, 10_000)?.with_seed(7);
+    /// let parts = (0..3).map(|part| run.run_blocks(run.shard(part, 3), |x| x[0] * x[0]));
+    /// let merged = parts.rev().reduce(|a, b| a?.merge(b?)).unwrap()?;
+    /// assert_eq!(run.finish(merged)?, run.run(|x| x[0] * x[0])?);
+    /// # Ok::<(), fmm_uq::UncertaintyError>(())
+    /// ```
+    pub fn shard(&self, index: u64, parts: u64) -> Range<u64> {
+        let Plan::Fixed(trials) = self.plan else { return 0..0 };
+        let blocks = u128::from(trials.div_ceil(BLOCK_TRIALS as u64));
+        let parts = u128::from(parts.max(1));
+        let start = |index: u64| (blocks * u128::from(index).min(parts) / parts) as u64;
+        start(index)..start(index.saturating_add(1))
+    }
+
+    /// Pools the trials of a complete partial result; for an adaptive run, those up to the stop.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::Partial`] with the first block that is still needed;
+    /// [`UncertaintyError::Partial`] if it is of another run; and those of [`MonteCarlo::run`].
+    pub fn finish(&self, partial: Partial) -> Result<OutputSample, UncertaintyError> {
+        self.finish_plan(partial)
+    }
+
+    /// The values of the inputs in one trial, such as that of a [`Failure`](crate::Failure); none if the block has no
+    /// such trial.
+    pub fn trial_inputs(&self, block: u64, trial: usize) -> Option<Vec<f64>> {
+        (trial < BLOCK_TRIALS).then(|| Block::inputs(self.seed, block, trial, &self.sampler))
+    }
+}

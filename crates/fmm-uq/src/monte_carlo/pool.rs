@@ -1,0 +1,75 @@
+//! Blocks of trials put together.
+
+use crate::monte_carlo::block::Block;
+use crate::monte_carlo::heavy_tail::HeavyTail;
+use crate::{Failures, OutputSample, UncertaintyError};
+
+/// Values of an output that room is made for at once; more of them are given room as they come.
+const ROOM: u64 = 1 << 27;
+
+/// The values of blocks that came so far, in their order: one column for each output.
+pub(crate) struct Pool {
+    columns: Vec<Vec<f64>>,
+    expected: u64,
+    trials: u64,
+    failures: Failures,
+}
+
+impl Pool {
+    /// An empty pool with room for so many trials.
+    pub(crate) fn new(expected: u64) -> Self {
+        Self { columns: Vec::new(), expected, trials: 0, failures: Failures::default() }
+    }
+
+    /// Number of trials, failed ones included.
+    pub(crate) const fn trials(&self) -> u64 {
+        self.trials
+    }
+
+    /// The values by output.
+    pub(crate) fn columns(&self) -> &[Vec<f64>] {
+        &self.columns
+    }
+
+    pub(crate) const fn failures(&self) -> &Failures {
+        &self.failures
+    }
+
+    /// Appends blocks.
+    pub(crate) fn add(&mut self, blocks: &[Block]) -> Result<(), UncertaintyError> {
+        for block in blocks {
+            self.trials += block.trials as u64;
+            self.failures.append(&block.failures);
+            if block.outputs == 0 {
+                continue;
+            }
+            if self.columns.is_empty() {
+                self.columns.resize_with(block.outputs, Vec::new);
+                for column in &mut self.columns {
+                    // Without room in one piece, the column grows.
+                    let _ = column.try_reserve_exact(self.expected.min(ROOM) as usize);
+                }
+            }
+            let (first, again) = (self.columns.len(), block.outputs);
+            if first != again {
+                return Err(UncertaintyError::output_count_changed(first, again));
+            }
+            if let [column] = self.columns.as_mut_slice() {
+                column.extend_from_slice(&block.values);
+                continue;
+            }
+            for (output, column) in self.columns.iter_mut().enumerate() {
+                column.extend(block.values.iter().skip(output).step_by(block.outputs));
+            }
+        }
+        Ok(())
+    }
+
+    /// The sample of all of them.
+    pub(crate) fn close(self, heavy_tail: Option<HeavyTail>) -> Result<OutputSample, UncertaintyError> {
+        if self.columns.is_empty() {
+            return Err(UncertaintyError::no_success());
+        }
+        OutputSample::new(self.columns, self.trials, self.failures, heavy_tail)
+    }
+}

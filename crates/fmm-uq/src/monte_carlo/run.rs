@@ -1,0 +1,271 @@
+//! Blocks of trials on all threads, and what is done with them.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
+
+use crate::monte_carlo::adaptive::{Adaptive, Stability};
+use crate::monte_carlo::block::{BLOCK_TRIALS, Block};
+use crate::monte_carlo::heavy_tail::HeavyTail;
+use crate::monte_carlo::pool::Pool;
+use crate::{Failures, MonteCarlo, Outcome, OutputSample, Partial, Progress, UncertaintyError};
+
+/// How many trials there are to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Plan {
+    Fixed(u64),
+    Adaptive(Adaptive),
+}
+
+/// Blocks that each thread runs before they are pooled: enough that no thread waits long for the last of the others.
+#[cfg(feature = "rayon")]
+const BLOCKS_OF_THREAD: u64 = 32;
+
+/// What the threads of a run tell each other.
+struct State {
+    done: AtomicU64,
+    cancelled: AtomicBool,
+    /// Index of the first block known to have failed where none may.
+    failed_block: AtomicU64,
+}
+
+/// The sequences of an adaptive run, pooled until they are stable.
+struct Sequences {
+    rule: Adaptive,
+    stability: Stability,
+    pool: Pool,
+}
+
+impl Sequences {
+    fn new(rule: Adaptive, heavy_tail: Option<&HeavyTail>) -> Result<Self, UncertaintyError> {
+        HeavyTail::require_variance(heavy_tail)?;
+        let (allowed, needed) = (rule.most_trials(), rule.fewest_trials());
+        if allowed < needed {
+            return Err(UncertaintyError::too_few_trials_allowed(allowed, needed));
+        }
+        Ok(Self { rule, stability: Stability::new(rule), pool: Pool::new(0) })
+    }
+
+    /// Takes in the blocks of the next sequence and says whether it is the last one.
+    fn add(&mut self, blocks: &[Block]) -> Result<bool, UncertaintyError> {
+        self.pool.add(blocks)?;
+        if self.stability.add(self.pool.columns())? {
+            return Ok(true);
+        }
+        if self.left() == 0 { Err(UncertaintyError::NotStable { trials: self.pool.trials() }) } else { Ok(false) }
+    }
+
+    /// Sequences that may still be made.
+    fn left(&self) -> u64 {
+        self.rule.most_trials().saturating_sub(self.pool.trials()) / self.rule.trials_of_sequence()
+    }
+}
+
+impl MonteCarlo<'_> {
+    pub(crate) fn run_plan<R: Outcome<f64>>(
+        &self,
+        model: &(impl Fn(&[f64]) -> R + Sync),
+    ) -> Result<OutputSample, UncertaintyError> {
+        let rule = match self.plan {
+            Plan::Fixed(trials) => {
+                let mut pool = Pool::new(trials);
+                self.run_groups(0..blocks_of(trials), model, |blocks| pool.add(&blocks))?;
+                return self.close(pool);
+            }
+            Plan::Adaptive(rule) => rule,
+        };
+        let (state, mut sequences) = (State::new(), Sequences::new(rule, self.heavy_tail.as_ref())?);
+        let length = rule.blocks_of_sequence();
+        // Several sequences at a time where one would leave threads idle; those after the stop are dropped.
+        let most_at_once = (4 * threads()).div_ceil(length);
+        let mut start = 0;
+        loop {
+            let at_once = length * most_at_once.min(sequences.left());
+            for sequence in self.run_group(&state, start..start + at_once, model)?.chunks(length as usize) {
+                if sequences.add(sequence)? {
+                    return self.close(sequences.pool);
+                }
+            }
+            start += at_once;
+        }
+    }
+
+    pub(crate) fn finish_plan(&self, partial: Partial) -> Result<OutputSample, UncertaintyError> {
+        for (what, first, second) in
+            [("seeds", self.seed, partial.seed()), ("inputs (by fingerprint)", self.fingerprint, partial.inputs())]
+        {
+            if first != second {
+                return Err(UncertaintyError::layout_mismatch(what, first, second));
+            }
+        }
+        let complete = |block: &Block| block.trials == self.trials_of(block.index);
+        let mut blocks = partial.into_blocks();
+        let present = blocks.iter().zip(0..).position(|(block, index)| block.index != index || !complete(block));
+        blocks.truncate(present.unwrap_or(blocks.len()));
+        let present = blocks.as_slice();
+        let missing = Err(UncertaintyError::missing_block(present.len() as u64));
+        match self.plan {
+            Plan::Fixed(trials) => {
+                let Some(needed) = usize::try_from(blocks_of(trials)).ok().and_then(|count| present.get(..count))
+                else {
+                    return missing;
+                };
+                let mut pool = Pool::new(trials);
+                pool.add(needed)?;
+                self.close(pool)
+            }
+            Plan::Adaptive(rule) => {
+                let mut sequences = Sequences::new(rule, self.heavy_tail.as_ref())?;
+                for sequence in present.chunks_exact(rule.blocks_of_sequence() as usize) {
+                    if sequences.add(sequence)? {
+                        return self.close(sequences.pool);
+                    }
+                }
+                missing
+            }
+        }
+    }
+
+    pub(crate) fn run_range<R: Outcome<f64>>(
+        &self,
+        range: Range<u64>,
+        model: &(impl Fn(&[f64]) -> R + Sync),
+    ) -> Result<Partial, UncertaintyError> {
+        let end = match self.plan {
+            Plan::Fixed(trials) => range.end.min(blocks_of(trials)),
+            Plan::Adaptive(_) => range.end,
+        };
+        let mut all = Vec::new();
+        self.run_groups(range.start..end, model, |blocks| {
+            all.extend(blocks);
+            Ok(())
+        })?;
+        let mut outputs = all.iter().map(|block: &Block| block.outputs).filter(|&outputs| outputs != 0);
+        if let Some(first) = outputs.next()
+            && let Some(again) = outputs.find(|&again| again != first)
+        {
+            return Err(UncertaintyError::output_count_changed(first, again));
+        }
+        Partial::assemble(self.seed, self.fingerprint, all)
+    }
+
+    /// Runs blocks in groups that are taken in by `take`, in their order.
+    ///
+    /// A group is no more than keeps all threads busy, so that its memory is used again for the next one.
+    fn run_groups<R: Outcome<f64>>(
+        &self,
+        range: Range<u64>,
+        model: &(impl Fn(&[f64]) -> R + Sync),
+        mut take: impl FnMut(Vec<Block>) -> Result<(), UncertaintyError>,
+    ) -> Result<(), UncertaintyError> {
+        let state = State::new();
+        let mut start = range.start;
+        while start < range.end {
+            let end = range.end.min(start.saturating_add(blocks_at_once()));
+            take(self.run_group(&state, start..end, model)?)?;
+            start = end;
+        }
+        Ok(())
+    }
+
+    fn run_group<R: Outcome<f64>>(
+        &self,
+        state: &State,
+        range: Range<u64>,
+        model: &(impl Fn(&[f64]) -> R + Sync),
+    ) -> Result<Vec<Block>, UncertaintyError> {
+        let planned = match self.plan {
+            Plan::Fixed(trials) => Some(trials),
+            Plan::Adaptive(_) => None,
+        };
+        let one = |index: u64| {
+            // Where none may fail, blocks after a failed one are not worth running. Those before it are: the first
+            // failure in order is the one that is told, whoever met it first.
+            let wanted =
+                || index <= state.failed_block.load(Ordering::Relaxed) && !state.cancelled.load(Ordering::Relaxed);
+            if !wanted() {
+                return None;
+            }
+            let watch = |trials: usize, failures: u64| {
+                if failures > 0 && self.allowed_failures.is_none() {
+                    state.failed_block.fetch_min(index, Ordering::Relaxed);
+                    return false;
+                }
+                if let Some(watch) = self.watch {
+                    let done = state.done.fetch_add(trials as u64, Ordering::Relaxed) + trials as u64;
+                    if watch(Progress { done, planned }).is_break() {
+                        state.cancelled.store(true, Ordering::Relaxed);
+                    }
+                }
+                wanted()
+            };
+            Some(Block::run((self.seed, index, self.trials_of(index)), &self.sampler, model, &watch))
+        };
+        #[cfg(feature = "rayon")]
+        let blocks: Vec<Option<Block>> = range.into_par_iter().map(one).collect();
+        #[cfg(not(feature = "rayon"))]
+        let blocks: Vec<Option<Block>> = range.map(one).collect();
+        let blocks: Vec<Block> = blocks.into_iter().flatten().filter(|block| block.trials > 0).collect();
+        if self.allowed_failures.is_none() {
+            blocks.iter().try_for_each(|block| self.refuse_failures(&block.failures, block.trials as u64))?;
+        }
+        if state.cancelled.load(Ordering::Relaxed) {
+            return Err(UncertaintyError::Cancelled { trials: state.done.load(Ordering::Relaxed) });
+        }
+        Ok(blocks)
+    }
+
+    fn trials_of(&self, block: u64) -> usize {
+        let whole = BLOCK_TRIALS as u64;
+        match self.plan {
+            Plan::Fixed(trials) => trials.saturating_sub(block.saturating_mul(whole)).min(whole) as usize,
+            Plan::Adaptive(_) => BLOCK_TRIALS,
+        }
+    }
+
+    fn close(&self, pool: Pool) -> Result<OutputSample, UncertaintyError> {
+        self.refuse_failures(pool.failures(), pool.trials())?;
+        pool.close(self.heavy_tail.clone())
+    }
+
+    fn refuse_failures(&self, failures: &Failures, trials: u64) -> Result<(), UncertaintyError> {
+        let checked = self.allowed_failures.check(failures, trials);
+        match checked {
+            // Where the first failure ends the run, its neighbours' counts depend on the threads; its own does not.
+            Err(UncertaintyError::TooManyFailures { allowed, first, .. }) if self.allowed_failures.is_none() => {
+                let trials = first.block * BLOCK_TRIALS as u64 + first.trial as u64 + 1;
+                Err(UncertaintyError::TooManyFailures { failed: 1, trials, allowed, first })
+            }
+            checked => checked,
+        }
+    }
+}
+
+impl State {
+    const fn new() -> Self {
+        let (done, failed_block) = (AtomicU64::new(0), AtomicU64::new(u64::MAX));
+        Self { done, cancelled: AtomicBool::new(false), failed_block }
+    }
+}
+
+/// Blocks of a number of trials.
+const fn blocks_of(trials: u64) -> u64 {
+    trials.div_ceil(BLOCK_TRIALS as u64)
+}
+
+/// Blocks of a group; a single thread needs no others to wait for.
+fn blocks_at_once() -> u64 {
+    #[cfg(feature = "rayon")]
+    return if threads() == 1 { 1 } else { BLOCKS_OF_THREAD * threads() };
+    #[cfg(not(feature = "rayon"))]
+    1
+}
+
+fn threads() -> u64 {
+    #[cfg(feature = "rayon")]
+    return rayon::current_num_threads() as u64;
+    #[cfg(not(feature = "rayon"))]
+    1
+}

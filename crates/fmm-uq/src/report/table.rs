@@ -1,0 +1,220 @@
+//! A budget as text.
+
+use std::fmt;
+
+use crate::report::rounding::{Rounding, degrees, significant, suffix};
+use crate::{Budget, Contribution, Linearisation};
+
+/// Significant digits of uncertainties and shares, and of a value down to its uncertainty.
+const DIGITS: i32 = 3;
+/// Significant digits of a sensitivity, which carries no uncertainty of its own to round it by.
+const SENSITIVITY_DIGITS: i32 = 4;
+/// Coverage probability of the statement below a printed budget; [`Budget::statement`] has others.
+const LEVEL: f64 = 0.95;
+/// Columns that hold words, which begin on the left.
+const WORDS: [usize; 5] = [0, 2, 3, 4, 9];
+
+/// What stands above the columns.
+const HEADER: [&str; 12] =
+    ["quantity", "estimate", "unit", "distribution", "type", "divisor", "u", "ν", "c", "unit of c", "|c| u", "share"];
+
+impl fmt::Display for Budget {
+    /// The inputs as an aligned table, their correlations, the result with its expanded uncertainty at 95 %, and any
+    /// warning.
+    ///
+    /// Values are rounded where their uncertainty is, so that the table never shows more than is known.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.table(f)?;
+        let inputs = self.inputs().as_slice();
+        for (i, j) in self.inputs().correlated_pairs() {
+            let coefficient = significant(self.inputs().correlation_at(i, j), DIGITS);
+            writeln!(f, "r({}, {}) = {coefficient}", inputs[i].name(), inputs[j].name())?;
+        }
+        writeln!(f)?;
+        let unit = suffix(self.unit());
+        if let Ok(statement) = self.statement(LEVEL) {
+            writeln!(f, "{statement}")?;
+        } else {
+            let rounding = Rounding::of(self.standard_uncertainty());
+            let [y, u] = [self.estimate(), self.standard_uncertainty()].map(|value| rounding.number(value));
+            writeln!(f, "{} = {y}{unit}, u = {u}{unit}\nno U: ν_eff undefined", self.name())?;
+        }
+        let digits = |value| significant(value, DIGITS);
+        match self.linearisation() {
+            Linearisation::Adequate | Linearisation::Unchecked => Ok(()),
+            Linearisation::ZeroUncertainty => writeln!(
+                f,
+                "warning: u is zero although inputs are uncertain; the linear approximation cannot see what they do"
+            ),
+            Linearisation::UncertaintyDiffers(terms) => {
+                writeln!(
+                    f,
+                    "warning: the model is curved; to second order u = {}{unit}",
+                    digits(terms.standard_uncertainty)
+                )
+            }
+            Linearisation::EstimateShifts(terms) => {
+                writeln!(f, "warning: the model is curved and moves the estimate by {}{unit}", digits(terms.correction))
+            }
+            Linearisation::NotExpandable => {
+                writeln!(f, "warning: within the uncertainties of its inputs the model is not what its derivatives say")
+            }
+        }
+    }
+}
+
+impl Budget {
+    /// The budget as comma-separated values, with a row of headings, one row for each input and one for the result.
+    ///
+    /// Numbers have all their digits and shares are parts of 1; infinite degrees of freedom are `inf`. Names and units
+    /// are quoted where they need it. The last row has y, its unit, u(y) and ν_eff in the columns of the same meaning.
+    ///
+    /// ```
+    /// use fmm_uq::{Input, Inputs, propagate};
+    ///
+    /// let inputs = Inputs::new([Input::new("mass, dry", 2.0, 0.5, "kg")?])?;
+    /// let budget = propagate(&inputs, |x| x[0] * 4.0)?.named("force", "N");
+    /// assert_eq!(budget.to_csv(), "\
+    /// quantity,estimate,unit,distribution,type,divisor,u,nu,c,unit of c,|c| u,share
+    /// \"mass, dry\",2,kg,normal,B,1,0.5,inf,4,N/kg,2,1
+    /// force,8,N,,,,2,inf,,,,
+    /// ");
+    /// # Ok::<(), fmm_uq::UncertaintyError>(())
+    /// ```
+    pub fn to_csv(&self) -> String {
+        let mut text = HEADER.join(",").replace('ν', "nu");
+        for row in self.contributions() {
+            let input = row.input;
+            let numbers = [row.sensitivity, row.uncertainty, row.share].map(|value| value.to_string());
+            let [sensitivity, contribution, share] = numbers;
+            let cells = [
+                quoted(input.name()),
+                input.value().to_string(),
+                quoted(input.unit()),
+                input.distribution().name().to_owned(),
+                input.evaluation().to_string(),
+                input.distribution().divisor().to_string(),
+                input.standard_uncertainty().to_string(),
+                input.degrees_of_freedom().to_string(),
+                sensitivity,
+                quoted(&self.unit_of_sensitivity(input.unit())),
+                contribution,
+                share,
+            ];
+            text.push('\n');
+            text.push_str(&cells.join(","));
+        }
+        let nu = self.effective_degrees_of_freedom().map_or_else(String::new, |nu| nu.to_string());
+        let (name, unit) = (quoted(self.name()), quoted(self.unit()));
+        text + &format!("\n{name},{},{unit},,,,{},{nu},,,,\n", self.estimate(), self.standard_uncertainty())
+    }
+
+    /// Unit of the result by that of an input.
+    pub(crate) fn unit_of_sensitivity(&self, input: &str) -> String {
+        let one = |unit: &str| matches!(unit, "" | "1");
+        match (self.unit(), input) {
+            (y, x) if one(x) && one(y) => "1".to_owned(),
+            (y, x) if one(x) => y.to_owned(),
+            (y, x) if y == x => "1".to_owned(),
+            (y, x) => {
+                let above = if one(y) { "1" } else { y };
+                let composed = |unit: &str| unit.contains(|sign: char| "/·* ".contains(sign));
+                match x.strip_prefix("1/") {
+                    Some(below) if !composed(below) && one(y) => below.to_owned(),
+                    Some(below) if !composed(below) => format!("{above}·{below}"),
+                    _ if composed(x) => format!("{above}/({x})"),
+                    _ => format!("{above}/{x}"),
+                }
+            }
+        }
+    }
+
+    fn table(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rows = self.contributions().map(|row| self.cells(&row));
+        let lines: Vec<[String; 12]> = std::iter::once(HEADER.map(str::to_owned)).chain(rows).collect();
+        let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
+        let widths: [usize; 12] = std::array::from_fn(width);
+        for line in &lines {
+            let pad = |(column, (cell, &width)): (usize, (&String, &usize))| {
+                if WORDS.contains(&column) { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+            };
+            let cells: Vec<String> = line.iter().zip(&widths).enumerate().map(pad).collect();
+            writeln!(f, "{}", cells.join("  ").trim_end())?;
+        }
+        Ok(())
+    }
+
+    fn cells(&self, row: &Contribution<'_>) -> [String; 12] {
+        let input = row.input;
+        [
+            input.name().to_owned(),
+            rounded_by(input.value(), input.standard_uncertainty()),
+            input.unit().to_owned(),
+            input.distribution().name().to_owned(),
+            input.evaluation().to_string(),
+            divisor(input.distribution().divisor()),
+            significant(input.standard_uncertainty(), DIGITS),
+            degrees(input.degrees_of_freedom()),
+            significant(row.sensitivity, SENSITIVITY_DIGITS),
+            self.unit_of_sensitivity(input.unit()),
+            significant(row.uncertainty, DIGITS),
+            format!("{:.1} %", 100.0 * row.share),
+        ]
+    }
+}
+
+/// "√3" where a divisor is the root of a small whole number.
+fn divisor(value: f64) -> String {
+    let square = (value * value).round();
+    if value != value.round() && (2.0..=24.0).contains(&square) && (square.sqrt() / value - 1.0).abs() < 1e-12 {
+        format!("√{square}")
+    } else {
+        significant(value, SENSITIVITY_DIGITS)
+    }
+}
+
+/// A cell of a table of comma-separated values.
+fn quoted(text: &str) -> String {
+    if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}
+
+/// `value` down to the last significant digit of its `uncertainty`; with ten digits if that is zero.
+fn rounded_by(value: f64, uncertainty: f64) -> String {
+    if value == 0.0 || uncertainty == 0.0 {
+        return significant(value, 10);
+    }
+    let digits = value.abs().log10().floor() - uncertainty.log10().floor() + f64::from(DIGITS);
+    significant(value, (digits as i32).clamp(1, 15))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Input, Inputs, propagate};
+
+    #[test]
+    fn numbers_are_rounded_by_their_uncertainty() {
+        assert_eq!(rounded_by(50_000_838.04, 31.711), "50000838");
+        assert_eq!(rounded_by(219.846_511_9, 0.295_58), "219.847");
+        assert_eq!(rounded_by(1.15e-5, 1.2e-6), "1.15e-5");
+        assert_eq!(rounded_by(0.01, 25.0), "0.01");
+        assert_eq!(rounded_by(-0.1, 0.41), "-0.1");
+        assert_eq!(rounded_by(9.806_65, 0.0), "9.80665");
+    }
+
+    #[test]
+    fn divisors_are_roots_where_they_are() {
+        assert_eq!([3_f64.sqrt(), 1.0, 24_f64.sqrt(), 1.7, 2.0].map(divisor), ["√3", "1", "√24", "1.7", "2"]);
+    }
+
+    #[test]
+    fn sensitivities_have_the_unit_of_a_quotient() {
+        let inputs = Inputs::new([Input::new("a", 1.0, 0.1, "m").unwrap()]).unwrap();
+        let unit = |result: &str, input: &str| {
+            propagate(&inputs, |x| x[0]).unwrap().named("y", result).unit_of_sensitivity(input)
+        };
+        assert_eq!(unit("mg", "kg/m³"), "mg/(kg/m³)");
+        assert_eq!([unit("1", "N"), unit("nm", "1/K"), unit("1", "1/K")], ["1/N", "nm·K", "K"]);
+        assert_eq!([unit("N", "N"), unit("N", "1"), unit("", "1")], ["1", "N", "1"]);
+    }
+}
