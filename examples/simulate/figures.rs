@@ -28,7 +28,7 @@ pub(crate) fn draw(folder: &Path, scenario: &Simulation, motion: &Motion) -> Res
     let dense = match scenario.run_at(&Plan::at(times, end)?) {
         Ok(dense) => dense,
         // A method of fixed step has no times but its own.
-        Err(ScenarioError::Simulation(SimulationError::NotUniform)) => motion.clone(),
+        Err(ScenarioError::Simulation(SimulationError::NotSupported { .. })) => motion.clone(),
         Err(error) => return Err(error.into()),
     };
     figure::stacked(&folder.join("motion.svg"), &motion_panels(scenario, &dense))?;

@@ -85,8 +85,8 @@ fn survive<D: Scalar>(engine: &impl Engine<D, CoulombStatic<D>>, seed: u64, coun
             }
             Err(
                 SimulationError::NotFinite { .. }
-                | SimulationError::EventBudget { .. }
-                | SimulationError::WeakSpring { .. },
+                | SimulationError::Exhausted { .. }
+                | SimulationError::NoClosedForm { .. },
             ) => refused += 1,
             Err(error) => panic!("{error}: {}", case()),
         }

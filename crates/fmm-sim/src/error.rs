@@ -2,22 +2,20 @@
 
 use fmm_model::{ModelError, Oscillator, Scalar};
 
-/// A scenario that cannot be simulated.
+/// A scenario that cannot be simulated; each variant is something else that the caller can do about it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulationError {
     /// A load, time, position or velocity that cannot be.
     #[error(transparent)]
     Quantity(#[from] ModelError),
-    /// No samples, or more than have exact times.
-    #[error(
-        "the number of samples must lie between 1 and 2^53 and their last time be finite, but {count} samples were asked for at {interval} s"
-    )]
-    Sampling {
-        /// How many samples were asked for.
-        count: usize,
-        /// Their interval (s).
-        interval: f64,
+    /// Samples, an initial state or an option of an engine that cannot be: give others.
+    #[error("{what}")]
+    OutOfRange {
+        /// What it is given for, and what it may be.
+        what: String,
+        /// The value given; of samples, their number or the time that is wrong (s).
+        value: f64,
     },
     /// More samples than there is memory for.
     #[error("there is no memory for {count} samples; keep fewer channels or simulate window by window")]
@@ -25,26 +23,27 @@ pub enum SimulationError {
         /// How many samples were asked for.
         count: usize,
     },
-    /// Sample times that do not ascend from zero.
-    #[error("sample times must be finite and ascend from 0, but time {index} is {time} s after {before} s")]
-    Times {
-        /// Which one is wrong.
-        index: usize,
-        /// What it is (s).
-        time: f64,
-        /// The one before it, or 0 (s).
-        before: f64,
+    /// The motion of this machine has no closed form, or none that keeps its digits: take an engine that integrates.
+    #[error("{what}")]
+    NoClosedForm {
+        /// What has none.
+        what: String,
     },
-    /// A method of fixed step was asked for samples that are not equally spaced.
-    #[error("a method of fixed step needs uniform sampling; simulate with another engine or sample uniformly")]
-    NotUniform,
-    /// The engine has no closed form for this machine, or its normal load.
+    /// The law and the engine, or a property of the scenario, do not go together: take another engine.
+    #[error("the {engine} engine cannot take {what}")]
+    NotSupported {
+        /// Name of the engine.
+        engine: &'static str,
+        /// What it cannot take.
+        what: &'static str,
+    },
+    /// A law with internal state that is not odd in velocity and state together, as such laws promise to be.
     #[error(
-        "the exact engine needs linear damping, a linear spring and a constant normal load, but there is {found}; take the Runge-Kutta engine"
+        "the law is not odd: at {velocity} m/s it is not the mirror image of what it is at the opposite velocity and state; a contact cannot tell directions apart"
     )]
-    NotLinear {
-        /// What is not linear.
-        found: &'static str,
+    NotOdd {
+        /// Velocity at which it was seen (m/s).
+        velocity: f64,
     },
     /// The motion has come to where the spring no longer restores.
     #[error(
@@ -56,87 +55,12 @@ pub enum SimulationError {
         /// Where (m).
         position: f64,
     },
-    /// A machine that is hardly damped is driven so near its natural frequency that the closed form loses its digits.
-    #[error(
-        "a wave of {angular_frequency} rad/s is too near the resonance of a machine with hardly any damping for the closed form; take the Runge-Kutta engine"
-    )]
-    Resonance {
-        /// Frequency of the wave (rad/s).
-        angular_frequency: f64,
-    },
-    /// The spring is too weak, beside the forces that act and the time that passes, for the closed form to keep nine digits.
-    #[error(
-        "a spring of {stiffness} N/m is too weak for the closed form, which would be a small difference of large numbers; take an engine that integrates"
-    )]
-    WeakSpring {
-        /// Its stiffness (N/m).
-        stiffness: f64,
-    },
-    /// A law with internal state that is not odd in velocity and state together, as such laws promise to be.
-    #[error(
-        "the law is not odd: at {velocity} m/s it is not the mirror image of what it is at the opposite velocity and state; a contact cannot tell directions apart"
-    )]
-    NotOdd {
-        /// Velocity at which it was seen (m/s).
-        velocity: f64,
-    },
-    /// An initial state that the law does not have, or beyond its bound.
-    #[error(
-        "state {index} of the law must begin within ±{bound}, but is {deflection}; a bound of 0 may mean that there is no such state"
-    )]
-    Deflection {
-        /// Which state.
-        index: usize,
-        /// What it was to be, in the law's unit.
-        deflection: f64,
-        /// What its magnitude may be; 0 if there is no such state.
-        bound: f64,
-    },
-    /// The law and the engine, or a property of the scenario, do not go together.
-    #[error("the {engine} engine cannot take {what}")]
-    NotSupported {
-        /// Name of the engine.
-        engine: &'static str,
-        /// What it cannot take.
-        what: &'static str,
-    },
-    /// A tolerance that no method can keep.
-    #[error("the relative tolerance must lie between 1e-15 and 1e-2, but is {tolerance}")]
-    Tolerance {
-        /// The tolerance given (1).
-        tolerance: f64,
-    },
-    /// A θ for which the θ-method is not stable.
-    #[error("theta must lie between 1/2 and 1, but is {theta}")]
-    Theta {
-        /// The value given (1).
-        theta: f64,
-    },
-    /// The steps that the tolerance asks for are smaller than the resolution of time.
-    #[error("the motion cannot be integrated to a relative tolerance of {tolerance} at {time} s; ask for less")]
-    StepTooSmall {
-        /// The tolerance (1).
-        tolerance: f64,
-        /// Where it happened (s).
-        time: f64,
-    },
-    /// The integration takes more steps than any record needs.
-    #[error(
-        "the motion takes more than {budget} steps before {end} s; shorten the sampled time or ask for less accuracy, neither of which helps where a contact creeps on a law that is steep at rest"
-    )]
-    StepBudget {
-        /// How many steps are allowed.
-        budget: usize,
-        /// End of the sampled time (s).
-        end: f64,
-    },
-    /// The motion has more events in the sampled time than any record can show.
-    #[error("the motion has more than {budget} events before {end} s; shorten the sampled time")]
-    EventBudget {
-        /// How many events are allowed.
-        budget: usize,
-        /// End of the sampled time (s).
-        end: f64,
+    /// More events or steps than any record needs, or steps below the resolution of time: shorten the sampled time, or ask for less
+    /// accuracy.
+    #[error("{what}")]
+    Exhausted {
+        /// Of what there are too many, and until when.
+        what: String,
     },
     /// The motion leaves the range of the number type.
     #[error("the motion is not finite at {time} s; the inputs are too large or too small to be simulated together")]
@@ -145,6 +69,10 @@ pub enum SimulationError {
         time: f64,
     },
 }
+
+/// What engines of fixed step cannot take.
+pub(crate) const NOT_UNIFORM: &str =
+    "samples that are not equally spaced; simulate with another engine or sample uniformly";
 
 impl SimulationError {
     /// That the spring restores at the `position` (m) reached at `time` (s).
@@ -157,6 +85,101 @@ impl SimulationError {
 
     /// That a relative `tolerance` (1) is one that a method can keep.
     pub(crate) fn require_tolerance(tolerance: f64) -> Result<(), Self> {
-        if (1e-15..=1e-2).contains(&tolerance) { Ok(()) } else { Err(Self::Tolerance { tolerance }) }
+        if (1e-15..=1e-2).contains(&tolerance) { Ok(()) } else { Err(Self::tolerance(tolerance)) }
+    }
+
+    /// No samples, or more than have exact times.
+    pub(crate) fn sampling(count: usize, interval: f64) -> Self {
+        Self::OutOfRange {
+            what: format!(
+                "the number of samples must lie between 1 and 2^53 and their last time be finite, but {count} samples were asked for at {interval} s"
+            ),
+            value: count as f64,
+        }
+    }
+
+    /// Sample times that do not ascend from zero.
+    pub(crate) fn times(index: usize, time: f64, before: f64) -> Self {
+        Self::OutOfRange {
+            what: format!(
+                "sample times must be finite and ascend from 0, but time {index} is {time} s after {before} s"
+            ),
+            value: time,
+        }
+    }
+
+    /// The engine has no closed form for this machine, or its normal load.
+    pub(crate) fn not_linear(found: &str) -> Self {
+        Self::NoClosedForm {
+            what: format!(
+                "the exact engine needs linear damping, a linear spring and a constant normal load, but there is {found}; take the Runge-Kutta engine"
+            ),
+        }
+    }
+
+    /// A machine that is hardly damped is driven so near its natural frequency that the closed form loses its digits.
+    pub(crate) fn resonance(angular_frequency: f64) -> Self {
+        Self::NoClosedForm {
+            what: format!(
+                "a wave of {angular_frequency} rad/s is too near the resonance of a machine with hardly any damping for the closed form; take the Runge-Kutta engine"
+            ),
+        }
+    }
+
+    /// The spring is too weak, beside the forces that act and the time that passes, for the closed form to keep nine digits.
+    pub(crate) fn weak_spring(stiffness: f64) -> Self {
+        Self::NoClosedForm {
+            what: format!(
+                "a spring of {stiffness} N/m is too weak for the closed form, which would be a small difference of large numbers; take an engine that integrates"
+            ),
+        }
+    }
+
+    /// An initial state that the law does not have, or beyond its bound.
+    pub(crate) fn deflection(index: usize, deflection: f64, bound: f64) -> Self {
+        Self::OutOfRange {
+            what: format!(
+                "state {index} of the law must begin within ±{bound}, but is {deflection}; a bound of 0 may mean that there is no such state"
+            ),
+            value: deflection,
+        }
+    }
+
+    /// A tolerance that no method can keep.
+    pub(crate) fn tolerance(tolerance: f64) -> Self {
+        Self::OutOfRange {
+            what: format!("the relative tolerance must lie between 1e-15 and 1e-2, but is {tolerance}"),
+            value: tolerance,
+        }
+    }
+
+    /// A θ for which the θ-method is not stable.
+    pub(crate) fn theta(theta: f64) -> Self {
+        Self::OutOfRange { what: format!("theta must lie between 1/2 and 1, but is {theta}"), value: theta }
+    }
+
+    /// The steps that the tolerance asks for are smaller than the resolution of time.
+    pub(crate) fn step_too_small(tolerance: f64, time: f64) -> Self {
+        Self::Exhausted {
+            what: format!(
+                "the motion cannot be integrated to a relative tolerance of {tolerance} at {time} s; ask for less"
+            ),
+        }
+    }
+
+    /// The integration takes more steps than any record needs.
+    pub(crate) fn step_budget(budget: usize, end: f64) -> Self {
+        Self::Exhausted {
+            what: format!(
+                "the motion takes more than {budget} steps before {end} s; shorten the sampled time or ask for less accuracy, neither of which helps where a contact creeps on a law that is steep at rest"
+            ),
+        }
+    }
+
+    /// The motion has more events in the sampled time than any record can show.
+    pub(crate) fn event_budget(budget: usize, end: f64) -> Self {
+        Self::Exhausted {
+            what: format!("the motion has more than {budget} events before {end} s; shorten the sampled time"),
+        }
     }
 }

@@ -89,16 +89,15 @@ impl<D: Scalar> Excitation<D> {
     /// ```
     ///
     /// # Errors
-    /// As [`sampled_force`](Self::sampled_force), and [`SimulationError::Sampling`] if there are more times than there is memory
+    /// As [`sampled_force`](Self::sampled_force), and [`SimulationError::OutOfRange`] if there are more times than there is memory
     /// for.
     pub fn function(interval: f64, duration: f64, force: impl FnMut(f64) -> D) -> Result<Self, SimulationError> {
         ModelError::require_positive("interval of the force", interval, "s")?;
         ModelError::require_positive("duration of the force", duration, "s")?;
         let count = (duration / interval).round() as usize;
         let mut values = Vec::new();
-        let refused = SimulationError::Sampling { count, interval };
         if values.try_reserve_exact(count.saturating_add(1)).is_err() {
-            return Err(refused);
+            return Err(SimulationError::sampling(count, interval));
         }
         values.extend((0..=count).map(|index| index as f64 * interval).map(force));
         Self::sampled_force(interval, values)

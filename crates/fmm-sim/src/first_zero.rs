@@ -24,7 +24,7 @@ const AT_ZERO: f64 = 1e-12;
 /// itself is the zero.
 ///
 /// # Errors
-/// [`SimulationError::EventBudget`] if `budget` steps are not enough.
+/// [`SimulationError::Exhausted`] if `budget` steps are not enough.
 pub(crate) fn first_zero(curve: &Curve<f64>, limit: f64, budget: &mut usize) -> Result<Option<f64>, SimulationError> {
     let mut elapsed = 0.0;
     loop {
@@ -64,7 +64,7 @@ pub(crate) fn first_zero(curve: &Curve<f64>, limit: f64, budget: &mut usize) -> 
             return Ok(Some(elapsed));
         }
         elapsed = next;
-        *budget = budget.checked_sub(1).ok_or(SimulationError::EventBudget { budget: SEARCH_BUDGET, end: limit })?;
+        *budget = budget.checked_sub(1).ok_or_else(|| SimulationError::event_budget(SEARCH_BUDGET, limit))?;
     }
 }
 
@@ -133,6 +133,6 @@ mod tests {
     #[test]
     fn an_endless_search_ends_with_an_error() {
         let error = first_zero(&wave(1.5, 1e9, 1.0, 0.0), 1e9, &mut 1000).unwrap_err();
-        assert!(matches!(error, SimulationError::EventBudget { .. }), "{error}");
+        assert!(matches!(error, SimulationError::Exhausted { .. }), "{error}");
     }
 }

@@ -3,6 +3,7 @@
 use fmm_friction::SlidingLaw;
 
 use crate::drive::Drive;
+use crate::error::NOT_UNIFORM;
 use crate::fixed_step::{GridEvents, PieceAt};
 use crate::{Direction, Engine, Event, EventKind, Mode, Sampling, Scenario, SimulationError, State, Trajectory};
 
@@ -41,9 +42,9 @@ impl Moreau {
     /// The method with another `theta` in [1/2, 1]; 1 is the implicit Euler rule.
     ///
     /// # Errors
-    /// [`SimulationError::Theta`] if it lies outside.
+    /// [`SimulationError::OutOfRange`] if it lies outside.
     pub fn new(theta: f64) -> Result<Self, SimulationError> {
-        if (0.5..=1.0).contains(&theta) { Ok(Self { theta }) } else { Err(SimulationError::Theta { theta }) }
+        if (0.5..=1.0).contains(&theta) { Ok(Self { theta }) } else { Err(SimulationError::theta(theta)) }
     }
 }
 
@@ -54,7 +55,7 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Moreau {
         sampling: &Sampling,
         trajectory: &mut Trajectory<f64>,
     ) -> Result<(), SimulationError> {
-        let h = sampling.interval().ok_or(SimulationError::NotUniform)?;
+        let h = sampling.interval().ok_or(SimulationError::NotSupported { engine: "moreau", what: NOT_UNIFORM })?;
         let (oscillator, law, load) = (scenario.oscillator(), scenario.law(), scenario.normal_load());
         if law.depends_on_acceleration() {
             let what = "a law that depends on the acceleration";
@@ -228,7 +229,10 @@ mod tests {
         assert!(matches!(Moreau::default().run(&two, &sampling), Err(SimulationError::NotSupported { .. })));
         let one = Scenario::new(machine, CoulombStatic::new(0.2, 0.3).unwrap(), 1.0).unwrap();
         let times = Sampling::at(vec![0.0, 0.1]).unwrap();
-        assert_eq!(Moreau::default().run(&one, &times), Err(SimulationError::NotUniform));
+        assert!(matches!(
+            Moreau::default().run(&one, &times),
+            Err(SimulationError::NotSupported { what: NOT_UNIFORM, .. })
+        ));
         assert!(Moreau::new(0.4).is_err() && Moreau::new(1.0).is_ok());
     }
 }

@@ -67,7 +67,7 @@ impl<D: Scalar> Path<D> {
     /// positions was measured.
     ///
     /// # Errors
-    /// [`SimulationError::Times`] if the times do not ascend from 0, two are equal, or there are not as many as positions,
+    /// [`SimulationError::OutOfRange`] if the times do not ascend from 0, two are equal, or there are not as many as positions,
     /// [`SimulationError::Quantity`] if a number is not finite.
     pub fn lines(times: &[D], positions: &[D]) -> Result<Self, SimulationError> {
         require_times(times, positions.len())?;
@@ -78,11 +78,7 @@ impl<D: Scalar> Path<D> {
         for (index, (times, positions)) in times.windows(2).zip(positions.windows(2)).enumerate() {
             let (duration, zero) = (times[1] - times[0], D::from(0.0));
             if duration.value() == 0.0 {
-                return Err(SimulationError::Times {
-                    index: index + 1,
-                    time: times[1].value(),
-                    before: times[0].value(),
-                });
+                return Err(SimulationError::times(index + 1, times[1].value(), times[0].value()));
             }
             let velocity = (positions[1] - positions[0]) / duration;
             ModelError::require_finite("velocity", velocity.value(), "m/s")?;
@@ -113,7 +109,7 @@ impl<D: Scalar> Path<D> {
     /// ```
     ///
     /// # Errors
-    /// [`SimulationError::Times`] if the times do not ascend from 0 or there are not as many as states,
+    /// [`SimulationError::OutOfRange`] if the times do not ascend from 0 or there are not as many as states,
     /// [`SimulationError::Quantity`] if a number is not finite or the position jumps.
     pub fn through(times: &[D], states: &[State<D>]) -> Result<Self, SimulationError> {
         require_times(times, states.len())?;
@@ -149,12 +145,12 @@ fn require_times<D: Scalar>(times: &[D], points: usize) -> Result<(), Simulation
     let mut before = 0.0;
     for (index, time) in times.iter().map(|time| time.value()).enumerate() {
         if !(time.is_finite() && time >= before) || index >= points {
-            return Err(SimulationError::Times { index, time, before });
+            return Err(SimulationError::times(index, time, before));
         }
         before = time;
     }
     if points > times.len() {
-        return Err(SimulationError::Times { index: times.len(), time: f64::NAN, before });
+        return Err(SimulationError::times(times.len(), f64::NAN, before));
     }
     Ok(())
 }

@@ -45,7 +45,7 @@ impl<'a, D: Scalar> Recorder<'a, D> {
             return Err(SimulationError::NotFinite { time: event.time.value() });
         }
         if self.trajectory.events().len() >= EVENT_BUDGET {
-            return Err(SimulationError::EventBudget { budget: EVENT_BUDGET, end: self.sampling.end() });
+            return Err(SimulationError::event_budget(EVENT_BUDGET, self.sampling.end()));
         }
         self.trajectory.push(event);
         Ok(())

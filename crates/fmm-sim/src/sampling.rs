@@ -64,12 +64,12 @@ impl Sampling {
     /// `count` samples from t = 0 on, `interval` seconds apart, position and velocity.
     ///
     /// # Errors
-    /// [`SimulationError::Quantity`] if the interval is not positive and finite, [`SimulationError::Sampling`] if
+    /// [`SimulationError::Quantity`] if the interval is not positive and finite, [`SimulationError::OutOfRange`] if
     /// there is no sample, there are more than 2⁵³, or the last sample time is not finite.
     pub fn uniform(interval: f64, count: usize) -> Result<Self, SimulationError> {
         ModelError::require_positive("sampling interval", interval, "s")?;
         if count == 0 || count > MOST_SAMPLES || !(interval * count as f64).is_finite() {
-            return Err(SimulationError::Sampling { count, interval });
+            return Err(SimulationError::sampling(count, interval));
         }
         Ok(Self { grid: Grid::Uniform { interval }, first: 0, count, channels: Channels::Both, work: false })
     }
@@ -77,18 +77,18 @@ impl Sampling {
     /// Samples at the given `times` (s), which must ascend from 0 on; position and velocity.
     ///
     /// # Errors
-    /// [`SimulationError::Times`] if there is no time, or one that is negative, not finite or before its predecessor.
+    /// [`SimulationError::OutOfRange`] if there is no time, or one that is negative, not finite or before its predecessor.
     pub fn at(times: impl Into<Arc<[f64]>>) -> Result<Self, SimulationError> {
         let times = times.into();
         let mut before = 0.0;
         for (index, &time) in times.iter().enumerate() {
             if !(time.is_finite() && time >= before) {
-                return Err(SimulationError::Times { index, time, before });
+                return Err(SimulationError::times(index, time, before));
             }
             before = time;
         }
         if times.is_empty() {
-            return Err(SimulationError::Sampling { count: 0, interval: 0.0 });
+            return Err(SimulationError::sampling(0, 0.0));
         }
         let count = times.len();
         Ok(Self { grid: Grid::Times(times), first: 0, count, channels: Channels::Both, work: false })

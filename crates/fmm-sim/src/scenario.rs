@@ -110,14 +110,14 @@ impl<D: Scalar, L> Scenario<D, L> {
     ///
     /// # Errors
     /// [`SimulationError::Quantity`] if the interval is not positive or a value is negative or not finite,
-    /// [`SimulationError::Sampling`] without a value.
+    /// [`SimulationError::OutOfRange`] without a value.
     pub fn under_sampled_load(mut self, interval: f64, values: impl Into<Arc<[D]>>) -> Result<Self, SimulationError> {
         let values = values.into();
         ModelError::require_positive("interval of the normal load", interval, "s")?;
         for value in values.iter() {
             ModelError::require_not_negative("normal load", value.value(), "N")?;
         }
-        self.normal_load = *values.first().ok_or(SimulationError::Sampling { count: 0, interval })?;
+        self.normal_load = *values.first().ok_or_else(|| SimulationError::sampling(0, interval))?;
         self.sampled_load = (values.len() > 1).then_some(SampledLoad { interval, values });
         Ok(self)
     }
@@ -194,11 +194,11 @@ impl<D: Scalar, L: BristleLaw<D>> Scenario<D, L> {
     /// ```
     ///
     /// # Errors
-    /// [`SimulationError::Deflection`] if the law has no such state, or its bound is exceeded.
+    /// [`SimulationError::OutOfRange`] if the law has no such state, or its bound is exceeded.
     pub fn with_deflection(mut self, index: usize, deflection: D) -> Result<Self, SimulationError> {
         let bound = if index < self.law.states() { self.law.bound(index).value() } else { 0.0 };
         if !(index < self.law.states() && deflection.value().is_finite() && deflection.value().abs() <= bound) {
-            return Err(SimulationError::Deflection { index, deflection: deflection.value(), bound });
+            return Err(SimulationError::deflection(index, deflection.value(), bound));
         }
         if self.deflections.len() <= index {
             self.deflections.resize(index + 1, D::from(0.0));
@@ -277,7 +277,7 @@ mod tests {
         for (index, deflection) in [(0, 0.005), (0, f64::NAN), (0, f64::NEG_INFINITY), (1, 0.0)] {
             let scenario = Scenario::new(Oscillator::new(1.0, 100.0).unwrap(), law, 5.0).unwrap();
             let refused = scenario.with_deflection(index, deflection);
-            assert!(matches!(refused, Err(SimulationError::Deflection { .. })), "{index}: {deflection} m");
+            assert!(matches!(refused, Err(SimulationError::OutOfRange { .. })), "{index}: {deflection} m");
         }
     }
 }

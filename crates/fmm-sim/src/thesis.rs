@@ -3,6 +3,7 @@
 use fmm_friction::SlidingLaw;
 
 use crate::drive::Drive;
+use crate::error::NOT_UNIFORM;
 use crate::fixed_step::{GridEvents, PieceAt};
 use crate::{Direction, Engine, EventKind, Mode, Sampling, Scenario, SimulationError, State, Trajectory};
 
@@ -51,7 +52,7 @@ impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
         sampling: &Sampling,
         trajectory: &mut Trajectory<f64>,
     ) -> Result<(), SimulationError> {
-        let step = sampling.interval().ok_or(SimulationError::NotUniform)?;
+        let step = sampling.interval().ok_or(SimulationError::NotSupported { engine: "thesis", what: NOT_UNIFORM })?;
         if sampling.channels().acceleration() {
             return Err(SimulationError::NotSupported { engine: "thesis", what: "samples of the acceleration" });
         }

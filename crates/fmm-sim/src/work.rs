@@ -54,7 +54,7 @@ impl<D: Scalar> Work<D> {
     /// is left.
     ///
     /// # Errors
-    /// [`SimulationError::StepBudget`] if there are more pieces.
+    /// [`SimulationError::Exhausted`] if there are more pieces.
     pub(crate) fn add(
         &mut self,
         begin: f64,
@@ -67,8 +67,7 @@ impl<D: Scalar> Work<D> {
             return Ok(());
         }
         let pieces = ((end - begin) / scale).ceil().max(1.0);
-        *budget =
-            budget.checked_sub(pieces as usize).ok_or(SimulationError::StepBudget { budget: PIECE_BUDGET, end })?;
+        *budget = budget.checked_sub(pieces as usize).ok_or_else(|| SimulationError::step_budget(PIECE_BUDGET, end))?;
         let step = (end - begin) / pieces;
         for piece in 0..pieces as usize {
             let start = begin + piece as f64 * step;
@@ -105,6 +104,6 @@ mod tests {
         work.add(3.0, 3.0, 1.0, &mut budget, &mut |_| unreachable!("an empty interval has no work")).unwrap();
         assert_eq!(budget, 1);
         let error = work.add(0.0, 1e9, 1e-9, &mut budget, &mut |_| unreachable!("too many pieces")).unwrap_err();
-        assert!(matches!(error, SimulationError::StepBudget { .. }), "{error}");
+        assert!(matches!(error, SimulationError::Exhausted { .. }), "{error}");
     }
 }

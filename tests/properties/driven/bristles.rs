@@ -68,7 +68,7 @@ fn check<L: BristleLaw<f64>>(seed: u64, law: impl Fn(&mut ChaCha8Rng, &Contact) 
         let sampling = setup.sampling(SAMPLES).with_work();
         let motion = match Bristle::default().run(&scenario, &sampling) {
             Ok(motion) => motion,
-            Err(SimulationError::StepBudget { .. }) => {
+            Err(SimulationError::Exhausted { .. }) => {
                 given_up += 1;
                 continue;
             }

@@ -49,7 +49,7 @@ fn breaks_away(level: f64, causes: &[Excitation], machine: Oscillator, end: f64)
     let motions = [Exact.run(&scenario, &sampling), RungeKutta::default().run(&scenario, &sampling)];
     motions.map(|motion| match motion {
         Ok(motion) => Some(motion.events().iter().any(|event| event.kind == EventKind::Breakaway)),
-        Err(SimulationError::WeakSpring { .. }) => None,
+        Err(SimulationError::NoClosedForm { .. }) => None,
         Err(error) => panic!("{error}"),
     })
 }

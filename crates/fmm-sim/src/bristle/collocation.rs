@@ -245,6 +245,6 @@ impl<D: Scalar> Collocation<D> {
                 return Ok(());
             }
         }
-        Err(SimulationError::StepTooSmall { tolerance: span.tolerance, time: span.begin })
+        Err(SimulationError::step_too_small(span.tolerance, span.begin))
     }
 }

@@ -105,7 +105,7 @@ impl Bristle {
     /// The engine with a relative `tolerance` (1) between 1e-15 and 1e-2; below about 1e-13, rounding decides.
     ///
     /// # Errors
-    /// [`SimulationError::Tolerance`] if it lies outside.
+    /// [`SimulationError::OutOfRange`] if it lies outside.
     pub fn new(tolerance: f64) -> Result<Self, SimulationError> {
         SimulationError::require_tolerance(tolerance)?;
         Ok(Self { tolerance })

@@ -244,7 +244,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             }
             return self.finish(length, 0.0, limit, piece);
         }
-        Err(SimulationError::StepTooSmall { tolerance: self.tolerance, time: self.time })
+        Err(SimulationError::step_too_small(self.tolerance, self.time))
     }
 
     /// A time (s) that rounding makes of the end of a step of this `length` (s): no step is shorter, and what lies within
@@ -283,7 +283,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
     fn count_step(&mut self) -> Result<(), SimulationError> {
         self.steps += 1;
         let end = self.recorder.sampling.end();
-        if self.steps > STEP_BUDGET { Err(SimulationError::StepBudget { budget: STEP_BUDGET, end }) } else { Ok(()) }
+        if self.steps > STEP_BUDGET { Err(SimulationError::step_budget(STEP_BUDGET, end)) } else { Ok(()) }
     }
 
     /// Length (s) of the step to try first: as the last one says, or a part of the period in which the machine swings on

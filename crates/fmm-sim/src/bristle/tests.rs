@@ -185,7 +185,7 @@ fn the_error_follows_the_tolerance() {
         assert!(error < 0.1 * tolerance, "tolerance {tolerance}: {error:e} m");
     }
     for bad in [0.0, 1e-16, 0.1, f64::NAN] {
-        assert!(matches!(Bristle::new(bad), Err(SimulationError::Tolerance { .. })));
+        assert!(matches!(Bristle::new(bad), Err(SimulationError::OutOfRange { .. })));
     }
 }
 
@@ -299,7 +299,7 @@ fn what_cannot_be_simulated_is_an_error() {
     let law = Dahl::new(1e-9, 1e-3, 1.0).unwrap();
     let scenario = Scenario::new(machine, law, 1.0).unwrap().starting_at(1.0, 0.0).unwrap();
     let endless = Bristle::default().run(&scenario, &Sampling::uniform(10.0, 10).unwrap()).unwrap_err();
-    assert!(matches!(endless, SimulationError::StepBudget { .. }), "{endless}");
+    assert!(endless.to_string().contains("more than 300000 steps"), "{endless}");
     for (position, load) in [(1e300, 1.0), (1e-300, 1e300), (1e200, 1e200)] {
         let law = Dahl::new(1e150, 1e150, 1.0).unwrap();
         let scenario = Scenario::new(machine, law, load).unwrap().starting_at(position, 0.0).unwrap();

@@ -61,7 +61,7 @@ impl Cancellation {
     /// rest would move it by, if that is more.
     ///
     /// # Errors
-    /// [`SimulationError::WeakSpring`].
+    /// [`SimulationError::NoClosedForm`].
     pub(super) fn check<D: Scalar>(
         &self,
         oscillator: &Oscillator<D>,
@@ -80,7 +80,7 @@ impl Cancellation {
         // A position as small as its rounding may still belong to a motion that is not.
         let far = far.max(fast * drift);
         if position > LOST * far || velocity > LOST * fast.max(far / drift) {
-            return Err(SimulationError::WeakSpring { stiffness: oscillator.stiffness().value() });
+            return Err(SimulationError::weak_spring(oscillator.stiffness().value()));
         }
         Ok(())
     }

@@ -39,7 +39,7 @@ use swing::{Flows, Swing};
 /// contact keeps its branch until its own acceleration changes sign.
 ///
 /// On a spring that does not turn the motion round the closed form is a small difference of large numbers; where it would lose more
-/// than nine digits, and without a spring, the run ends in [`SimulationError::WeakSpring`].
+/// than nine digits, and without a spring, the run ends in [`SimulationError::NoClosedForm`].
 ///
 /// Guaranteed: no event is missed, events are in order, and their number is at most one million (a typed error
 /// otherwise). Samples within a swing come from a table of powers of exp((−a + iω_d)Δt), anew from the closed
@@ -63,16 +63,16 @@ impl<D: Scalar, L: PiecewiseLinearLaw<D>> Engine<D, L> for Exact {
     ) -> Result<(), SimulationError> {
         let oscillator = scenario.oscillator();
         if !oscillator.damping().is_linear() {
-            return Err(SimulationError::NotLinear { found: "nonlinear damping" });
+            return Err(SimulationError::not_linear("nonlinear damping"));
         }
         if !matches!(oscillator.restoring(), Restoring::Linear) {
-            return Err(SimulationError::NotLinear { found: "a nonlinear restoring force" });
+            return Err(SimulationError::not_linear("a nonlinear restoring force"));
         }
         if scenario.sampled_load().is_some() {
-            return Err(SimulationError::NotLinear { found: "a normal load that varies in time" });
+            return Err(SimulationError::not_linear("a normal load that varies in time"));
         }
         if oscillator.stiffness().value() == 0.0 {
-            return Err(SimulationError::WeakSpring { stiffness: 0.0 });
+            return Err(SimulationError::weak_spring(0.0));
         }
         let drive = Drive::of(scenario);
         let elements = scenario.law().elements().len();

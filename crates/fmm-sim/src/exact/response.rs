@@ -14,7 +14,7 @@ const RESONANCE: f64 = 1e-3;
 /// `force`.
 ///
 /// # Errors
-/// [`SimulationError::Resonance`] for a wave near the resonance of a machine with hardly any damping.
+/// [`SimulationError::NoClosedForm`] for a wave near the resonance of a machine with hardly any damping.
 pub(super) fn respond<'a, D: Scalar>(
     force: Curve<'static, D>,
     mass: D,
@@ -35,7 +35,7 @@ pub(super) fn respond<'a, D: Scalar>(
         let spring = stiffness - mass * wave.angular * wave.angular;
         let drag = damping * wave.angular;
         if !(spring.value().hypot(drag.value()) > RESONANCE * stiffness.value()) {
-            return Err(SimulationError::Resonance { angular_frequency: wave.angular.value() });
+            return Err(SimulationError::resonance(wave.angular.value()));
         }
         let square = spring * spring + drag * drag;
         *wave = Wave {

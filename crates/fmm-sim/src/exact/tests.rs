@@ -124,12 +124,12 @@ fn what_cannot_be_simulated_is_refused() {
     let coulomb = |level| Coulomb::new(level).unwrap();
     let quadratic = machine(0.0).with_damping(Damping::new(0.1, 0.5).unwrap());
     let error = run(quadratic, coulomb(0.1), 1.0, (1.0, 0.0)).unwrap_err();
-    assert_eq!(error, SimulationError::NotLinear { found: "nonlinear damping" });
+    assert_eq!(error, SimulationError::not_linear("nonlinear damping"));
 
     // Ten million half swings in 30 s.
     let fast = Oscillator::new(1.0, 1e12).unwrap();
     let error = run(fast, coulomb(0.0), 1.0, (1.0, 0.0)).unwrap_err();
-    assert!(matches!(error, SimulationError::EventBudget { budget: EVENT_BUDGET, .. }), "{error}");
+    assert!(error.to_string().contains(&format!("more than {EVENT_BUDGET} events")), "{error}");
 
     // v₀/ω is not a number of metres that exists, and neither is N μ_s one of newtons.
     let slow = Oscillator::new(1.0, 1e-20).unwrap();

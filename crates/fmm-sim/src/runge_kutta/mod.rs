@@ -45,7 +45,7 @@ use slide::Integrator;
 /// A law need only be a formula; where it has kinks or an infinite slope (power laws at zero speed) the steps become short
 /// there. Where friction without a static level balances a weak force at a speed near rest, the slope of such a law limits them for as
 /// long as the contact creeps: 10 kg on a power law of exponent ½ and 5 N at 1 m/s, driven by 10 mN, end in
-/// [`SimulationError::StepBudget`] at any tolerance. A law with two branches ([`SlidingLaw::depends_on_acceleration`]) slides at constant speed where neither is
+/// [`SimulationError::Exhausted`] at any tolerance. A law with two branches ([`SlidingLaw::depends_on_acceleration`]) slides at constant speed where neither is
 /// consistent, as in [`Exact`](crate::Exact).
 ///
 /// # References
@@ -68,7 +68,7 @@ impl RungeKutta {
     /// The engine with a relative `tolerance` (1) between 1e-15 and 1e-2.
     ///
     /// # Errors
-    /// [`SimulationError::Tolerance`] if it lies outside.
+    /// [`SimulationError::OutOfRange`] if it lies outside.
     pub fn new(tolerance: f64) -> Result<Self, SimulationError> {
         SimulationError::require_tolerance(tolerance)?;
         Ok(Self { tolerance })

@@ -304,7 +304,7 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
             self.budget = self
                 .budget
                 .checked_sub(1)
-                .ok_or(SimulationError::StepBudget { budget: STEP_BUDGET, end: recorder.sampling.end() })?;
+                .ok_or_else(|| SimulationError::step_budget(STEP_BUDGET, recorder.sampling.end()))?;
             let mut step = self.take(phase, &at, length);
             let mut scale = self.scale(at.state, at.acceleration);
             if self.field.is_driven {
@@ -344,7 +344,7 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
                 if at.time + self.length <= at.time {
                     let finite = at.acceleration.value().is_finite() && at.state.position.value().is_finite();
                     return Err(if finite {
-                        SimulationError::StepTooSmall { tolerance: self.tolerance, time: at.time }
+                        SimulationError::step_too_small(self.tolerance, at.time)
                     } else {
                         SimulationError::NotFinite { time: at.time }
                     });

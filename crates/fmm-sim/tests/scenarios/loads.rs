@@ -187,13 +187,13 @@ fn derivatives_are_those_of_differences() {
 #[test]
 fn loads_that_cannot_be_are_refused() {
     let scenario = || Scenario::new(machine(), Coulomb::new(0.2).unwrap(), 1.0).unwrap();
-    assert!(matches!(scenario().under_sampled_load(0.1, []), Err(SimulationError::Sampling { count: 0, .. })));
+    assert!(matches!(scenario().under_sampled_load(0.1, []), Err(SimulationError::OutOfRange { value: 0.0, .. })));
     assert!(scenario().under_sampled_load(0.1, [1.0, -1.0]).is_err());
     assert!(scenario().under_sampled_load(0.0, [1.0, 1.0]).is_err());
     assert!(scenario().under_sampled_load(0.1, [1.0, f64::NAN]).is_err());
     let sampling = Sampling::uniform(0.1, 10).unwrap();
     let varying = scenario().under_sampled_load(0.1, [1.0, 2.0]).unwrap();
-    assert!(matches!(Exact.run(&varying, &sampling), Err(SimulationError::NotLinear { .. })));
+    assert!(matches!(Exact.run(&varying, &sampling), Err(SimulationError::NoClosedForm { .. })));
     assert!(matches!(Moreau::default().run(&varying, &sampling), Err(SimulationError::NotSupported { .. })));
     let bristles = Scenario::new(machine(), Dahl::new(0.2, 50.0, 1.0).unwrap(), 1.0).unwrap();
     let bristles = bristles.under_sampled_load(0.1, [1.0, 2.0]).unwrap();

@@ -100,9 +100,11 @@ fn motions_have_derivatives() {
 fn what_is_no_motion_is_refused() {
     let state = |position: f64| State { position, velocity: 0.0 };
     let times = |times: &[f64], states: &[State]| Path::through(times, states).map(|_| ());
-    assert!(matches!(times(&[0.0, 1.0], &[state(0.0)]), Err(SimulationError::Times { index: 1, .. })));
-    assert!(matches!(times(&[0.0], &[state(0.0), state(1.0)]), Err(SimulationError::Times { .. })));
-    assert!(matches!(times(&[0.0, -1.0], &[state(0.0); 2]), Err(SimulationError::Times { index: 1, .. })));
+    let second =
+        |refused| matches!(refused, Err(SimulationError::OutOfRange { what, .. }) if what.contains("time 1 is"));
+    assert!(second(times(&[0.0, 1.0], &[state(0.0)])));
+    assert!(matches!(times(&[0.0], &[state(0.0), state(1.0)]), Err(SimulationError::OutOfRange { .. })));
+    assert!(second(times(&[0.0, -1.0], &[state(0.0); 2])));
     assert!(times(&[0.0, 0.0], &[state(0.0), state(1.0)]).is_err());
     assert!(times(&[0.0], &[state(f64::NAN)]).is_err());
     assert!(Path::at_speed(&[0.0], 0.0).is_err() && Path::at_speed(&[f64::INFINITY], 1.0).is_err());

@@ -28,7 +28,7 @@ fn the_closed_form_is_right_or_refused() {
         match Exact.run(&block(stiffness), &sampling) {
             Ok(motion) => assert!(off(&motion, &sampling) < 1e-9, "{stiffness} N/m: {} m off", off(&motion, &sampling)),
             Err(error) => {
-                assert!(matches!(error, SimulationError::WeakSpring { .. }), "{stiffness} N/m: {error}");
+                assert!(error.to_string().contains("is too weak"), "{stiffness} N/m: {error}");
                 refused += 1;
             }
         }
@@ -90,7 +90,7 @@ fn bristles_need_no_spring() {
     assert!(off(&motion, &sampling) < 2e-6, "{} m", off(&motion, &sampling));
     let elements = MaxwellSlip::new(&[(1e6, 0.5)]).unwrap();
     let scenario = Scenario::new(machine, elements, 1.0).unwrap().starting_at(0.0, 1.0).unwrap();
-    assert!(matches!(Exact.run(&scenario, &sampling), Err(SimulationError::WeakSpring { .. })));
+    assert!(matches!(Exact.run(&scenario, &sampling), Err(SimulationError::NoClosedForm { .. })));
     let motion = Bristle::default().run(&scenario, &sampling).unwrap();
     assert!(off(&motion, &sampling) < 2e-6, "{} m", off(&motion, &sampling));
 }
