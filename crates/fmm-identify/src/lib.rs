@@ -99,8 +99,8 @@ mod residuals;
 
 pub use error::IdentifyError;
 pub use estimators::{
-    Decrement, EnergyMethod, EnergyRate, EnergyRates, HalfSwing, ThesisCycle, ThesisDecrement, WeakForm,
-    WeakFormEstimate, WindowFit, Windows, decrements, half_swing_losses, half_swing_losses_of,
+    Decrement, EnergyMethod, EnergyRate, EnergyRates, HalfSwing, WeakForm, WeakFormEstimate, WindowFit, Windows,
+    decrements, half_swing_losses, half_swing_losses_of,
 };
 pub use experiment::{Drive, Experiment, Offset, Preparation, RecordSummary, Sensor};
 pub use fit::{FittedMotion, Identification, MachineProblem, Problem, identify, identify_observed, identify_with};

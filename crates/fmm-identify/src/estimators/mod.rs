@@ -5,7 +5,6 @@ mod decrement;
 mod energy_rates;
 mod half_swings;
 mod test_function;
-mod thesis_decrement;
 mod turning_energies;
 mod weak_equations;
 mod weak_form;
@@ -13,7 +12,6 @@ mod windows;
 
 pub use decrement::{Decrement, decrements};
 pub use energy_rates::{EnergyMethod, EnergyRate, EnergyRates};
-pub use thesis_decrement::{ThesisCycle, ThesisDecrement};
 pub use turning_energies::{HalfSwing, half_swing_losses, half_swing_losses_of};
 pub use weak_form::{WeakForm, WeakFormEstimate};
 pub use windows::{WindowFit, Windows};

@@ -1,15 +1,14 @@
 //! Section 5.2's logarithmic decrement, as its program A2 codes it and by fitted peaks.
 
 use fmm_fit::{StraightLine, Weighting};
-use fmm_identify::{Experiment, Preparation, ThesisDecrement, decrements};
+use fmm_identify::{Experiment, Preparation, decrements};
 
+use super::program_a2;
 use super::simulated::{machine, motion, record};
 use crate::figure::{Layer, Panel, Role, label};
 use crate::printed::{INSTANTANEOUS_SLOPE, MACHINE};
 use crate::{Chapter, Criterion, Found, Settings, Target};
 
-/// Mass in A2 (kg), by which its c follows from c/m.
-const A2_MASS: f64 = 10.415;
 /// White noise (m/s) of the record of the targets and of Fig. 10.
 const NOISE: f64 = 1e-5;
 
@@ -43,8 +42,8 @@ pub(super) fn of_cycles(chapter: &mut Chapter, settings: &Settings<'_>) -> Found
     let (mut rows, mut last) = (Vec::new(), String::new());
     for noise in [0.0, NOISE, 3e-5, 1e-4, 5e-4] {
         let record = record(motion.velocity().values(), noise, settings.seed())?;
-        let coded = ThesisDecrement::default().cycles(&record)?;
-        let coded = Cycles::new(coded.iter().map(|cycle| (cycle.peak_velocity, A2_MASS * cycle.damping)).collect())?;
+        let coded = program_a2::cycles(&record)?;
+        let coded = Cycles::new(coded.iter().map(|cycle| (cycle.peak_velocity, cycle.damping)).collect())?;
         let peaks = decrements(&Experiment::ring_down(&record, &Preparation::default())?)?;
         let peaks = peaks.iter().map(|cycle| (cycle.peak_velocity, MACHINE[0] * cycle.damping.value));
         let fitted = Cycles::new(peaks.collect())?;

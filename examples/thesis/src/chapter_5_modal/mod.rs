@@ -4,6 +4,7 @@ mod decrement;
 mod drag;
 mod figures;
 mod identifiability;
+mod program_a2;
 mod regressions;
 mod simulated;
 mod velocities;
