@@ -33,10 +33,7 @@ const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     ("fmm-sim", &[PULP, THISERROR]),
-    (
-        "fmm-frf",
-        &[("num-complex", "the number type of a response, part of the public interface"), PULP, REALFFT, THISERROR],
-    ),
+    ("fmm-frf", &[PULP, THISERROR]),
     ("fmm-identify", &[THISERROR]),
 ];
 

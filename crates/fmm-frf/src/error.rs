@@ -148,11 +148,6 @@ impl FrfError {
         Self::Mismatch { what: format!("the {channel} needs {expected} samples, but has {found}") }
     }
 
-    /// A transform of records of another length.
-    pub(crate) fn transform_length(expected: usize, found: usize) -> Self {
-        Self::Mismatch { what: format!("a transform of {expected} samples was given {found}") }
-    }
-
     /// Two responses that differ from `line` on; from 0 if their forms do.
     pub(crate) fn responses_differ(line: usize) -> Self {
         let what =

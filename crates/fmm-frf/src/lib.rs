@@ -77,12 +77,12 @@ mod modal;
 mod response;
 
 pub use average::{
-    AverageOptions, Averaging, Baseline, Coherence, Estimator, ExponentialWindow, ForceWindow, RealTransform, Taper,
-    TrialAverage,
+    AverageOptions, Averaging, Baseline, Coherence, Estimator, ExponentialWindow, ForceWindow, Taper, TrialAverage,
 };
 pub use channel::Channel;
 pub use error::FrfError;
 pub use fmm_model::ModelError;
+pub use fmm_record::{Complex64, RealTransform};
 pub use friction::{
     CoulombLine, FrictionSpectrum, Harmonic, coulomb_impact_duration, equivalent_damping_of_friction,
     friction_force_of_coulomb_impact, friction_force_of_slope, friction_force_of_viscous_coulomb_impact,
@@ -91,7 +91,6 @@ pub use friction::{
 pub use impulse::{Hit, Pulse, Quadrature, impulse, impulse_by, impulse_of_record};
 pub use measured::Measured;
 pub use modal::{Background, CircleFit, Mode, PeakFit, RationalFit};
-pub use num_complex::Complex64;
 pub use response::{FrequencyResponse, Resonance, ResponseForm, SingleDegreeOfFreedom, resonances};
 
 #[cfg(doctest)]

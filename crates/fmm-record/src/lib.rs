@@ -107,7 +107,9 @@ pub use files::reading::{Column, Reading};
 pub use files::uff;
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 pub use files::{Channel, DataFile, Format, Reader, open};
+pub use numerics::real_transform::RealTransform;
 pub use quantity::Quantity;
+pub use realfft::num_complex::Complex64;
 pub use record::Record;
 pub use sampling::{JITTER, RATE_ROUNDING, Sampling, UniformTimes};
 pub use units::label::Label;

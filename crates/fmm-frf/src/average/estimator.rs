@@ -1,6 +1,6 @@
 //! Which quotient of averaged spectra is the response.
 
-use num_complex::Complex64;
+use fmm_record::Complex64;
 
 use crate::FrfError;
 

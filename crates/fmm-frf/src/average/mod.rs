@@ -4,7 +4,6 @@ mod baseline;
 mod coherence;
 mod estimator;
 mod options;
-mod real_transform;
 mod sums;
 mod transform;
 mod window;
@@ -13,7 +12,6 @@ pub use baseline::Baseline;
 pub use coherence::Coherence;
 pub use estimator::Estimator;
 pub use options::{AverageOptions, Averaging};
-pub use real_transform::RealTransform;
 pub use window::{ExponentialWindow, ForceWindow, Taper};
 
 use std::ops::Range;

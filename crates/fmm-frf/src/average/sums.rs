@@ -3,7 +3,7 @@
 use std::iter::Zip;
 use std::slice::Iter;
 
-use num_complex::Complex64;
+use fmm_record::Complex64;
 use pulp::Arch;
 
 use crate::average::estimator::Spectra;

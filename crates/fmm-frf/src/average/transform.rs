@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use num_complex::Complex64;
+use fmm_record::Complex64;
 use pulp::Arch;
 
 use crate::average::window::Windows;
@@ -77,7 +77,8 @@ impl TrialTransform {
             if side.channel == Channel::Force {
                 force_energy = energy;
             }
-            plan.run(samples, &mut side.spectra[slot], scratch)?;
+            let run = plan.run(samples, &mut side.spectra[slot], scratch);
+            run.map_err(|_| FrfError::sample_count(side.channel, plan.length(), samples.len()))?;
         }
         if force_energy > 0.0 { Ok(()) } else { Err(FrfError::NoForce) }
     }

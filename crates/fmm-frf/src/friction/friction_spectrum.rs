@@ -1,6 +1,6 @@
 //! The spectrum of the friction force, from what a response lacks of a linear one.
 
-use num_complex::Complex64;
+use fmm_record::Complex64;
 
 use crate::{FrequencyResponse, FrfError, ModelError};
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use num_complex::Complex64;
+use fmm_record::Complex64;
 
 use crate::least_squares::gauss_newton::{Minimum, gauss_newton};
 use crate::least_squares::triangle::{Triangle, variance_of};

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
+use fmm_record::Complex64;
 use fmm_record::Quantity;
-use num_complex::Complex64;
 
 use crate::{FrfError, ModelError};
 

@@ -11,7 +11,7 @@ pub use resonances::{Resonance, resonances};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use num_complex::Complex64;
+use fmm_record::Complex64;
 
 use crate::{FrfError, ModelError};
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use num_complex::Complex64;
+use fmm_record::Complex64;
 
 use crate::{FrequencyResponse, FrfError, ModelError, ResponseForm};
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use realfft::RealFftPlanner;
+use crate::RealTransform;
 
 /// Half of the width of a line in a spectrum of [`blackman_harris`], in units of 1/duration. Beyond it, a line shows
 /// less than 3e-5 of its amplitude.
@@ -41,10 +41,9 @@ impl Spectrum {
         let mean = weighted / sum;
         let mut real: Vec<f64> = values.iter().zip(window).map(|(y, w)| (y - mean) * w).collect();
         real.resize(length, 0.0);
-        let plan = RealFftPlanner::new().plan_fft_forward(length);
-        let mut lines = plan.make_output_vec();
-        // Both have the lengths of the plan.
-        let _ = plan.process(&mut real, &mut lines);
+        let mut lines = Vec::new();
+        // The values have the length of the transform.
+        let _ = RealTransform::new(length).run(&mut real, &mut lines, &mut Vec::new());
         let scale = 4.0 / (sum * sum);
         let squares = lines.iter().map(|line| scale * line.norm_sqr()).collect();
         Self { squares, spacing: values.len() as f64 / length as f64 }

@@ -4,3 +4,4 @@ pub(crate) mod fourier;
 pub(crate) mod least_squares;
 pub(crate) mod line_search;
 pub(crate) mod order;
+pub(crate) mod real_transform;

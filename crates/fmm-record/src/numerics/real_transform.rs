@@ -3,10 +3,10 @@
 use std::fmt;
 use std::sync::Arc;
 
-use num_complex::Complex64;
+use realfft::num_complex::Complex64;
 use realfft::{RealFftPlanner, RealToComplex};
 
-use crate::FrfError;
+use crate::RecordError;
 
 /// The discrete Fourier transform of real samples of one length.
 ///
@@ -14,17 +14,18 @@ use crate::FrfError;
 /// X_k = Σ_j x_j e^{−2πi jk/n},   0 ≤ k ≤ n/2
 /// ```
 ///
-/// It is planned once for as many records as have that length, and copies share the plan. Any length will do, but primes are slow.
+/// Of `realfft`, and compiled once for all crates that transform: its plans are generic, and each crate that made its own would
+/// compile every algorithm of it again, half a minute each. It is planned once for as many records as have that length, and copies share the plan. Any length will do, but primes are slow.
 ///
 /// ```
-/// use fmm_frf::RealTransform;
+/// use fmm_record::RealTransform;
 ///
 /// let transform = RealTransform::new(4);
 /// let (mut spectrum, mut scratch) = (Vec::new(), Vec::new());
 /// transform.run(&mut [1.0, 2.0, 3.0, 2.0], &mut spectrum, &mut scratch)?;
 /// let expected = [(8.0, 0.0), (-2.0, 0.0), (0.0, 0.0)];
 /// assert!(spectrum.iter().zip(expected).all(|(line, (re, im))| line.re == re && line.im == im));
-/// # Ok::<(), fmm_frf::FrfError>(())
+/// # Ok::<(), fmm_record::RecordError>(())
 /// ```
 #[derive(Clone)]
 pub struct RealTransform {
@@ -47,8 +48,8 @@ impl RealTransform {
         self.length() / 2 + 1
     }
 
-    /// Memory in which it works.
-    pub(crate) fn scratch(&self) -> Vec<Complex64> {
+    /// Memory in which [`run`](Self::run) works, so that its first call takes none.
+    pub fn scratch(&self) -> Vec<Complex64> {
         self.plan.make_scratch_vec()
     }
 
@@ -56,14 +57,16 @@ impl RealTransform {
     /// are used again.
     ///
     /// # Errors
-    /// [`FrfError::Mismatch`] for another number of samples.
+    /// [`RecordError::Options`] for another number of samples.
     pub fn run(
         &self,
         samples: &mut [f64],
         spectrum: &mut Vec<Complex64>,
         scratch: &mut Vec<Complex64>,
-    ) -> Result<(), FrfError> {
-        let wrong_length = |samples: &[f64]| FrfError::transform_length(self.length(), samples.len());
+    ) -> Result<(), RecordError> {
+        let wrong_length = |samples: &[f64]| {
+            RecordError::options(format!("a transform of {} samples was given {}", self.length(), samples.len()))
+        };
         if samples.len() != self.length() {
             return Err(wrong_length(samples));
         }
