@@ -112,7 +112,7 @@ impl Structure {
     /// The blocks of `problem`, or the one of all its residuals and parameters.
     ///
     /// # Errors
-    /// [`FitError::InvalidBlock`] and [`FitError::BlockRows`] if the blocks do not fit the problem.
+    /// [`FitError::Problem`] and [`FitError::Count`] if the blocks do not fit the problem.
     pub(crate) fn of<P: Residuals + ?Sized>(problem: &P) -> Result<Self, FitError> {
         let (residuals, parameters) = (problem.len(), problem.parameters().len());
         let blocks = problem.blocks();
@@ -127,14 +127,14 @@ impl Structure {
             if let Some((_, &index)) =
                 own.iter().enumerate().find(|&(place, index)| *index >= parameters || is_repeated((place, index)))
             {
-                return Err(FitError::InvalidBlock { block, index, parameters });
+                return Err(FitError::invalid_block(block, index, parameters));
             }
             let end = row.saturating_add(*rows);
             parts.push(Part { rows: row..end, parameters: own.clone(), first });
             (row, first) = (end, first + rows.saturating_mul(own.len()));
         }
         if row != residuals {
-            return Err(FitError::BlockRows { rows: row, residuals });
+            return Err(FitError::block_rows(row, residuals));
         }
         let is_dense = matches!(parts.as_slice(), [part] if part.parameters.iter().copied().eq(0..parameters));
         Ok(Self { parts, is_dense })

@@ -83,7 +83,7 @@ impl<F: Fn([Dual<N>; N], &mut [Dual<N>]), const N: usize> Residuals for Formula<
 /// ```
 ///
 /// # Errors
-/// [`FitError::DataLength`] unless there is one abscissa per ordinate.
+/// [`FitError::Count`] unless there is one abscissa per ordinate.
 #[expect(clippy::type_complexity, reason = "the type of a closure has no name")]
 pub fn curve<'a, X: Copy, const N: usize>(
     x: &'a [X],
@@ -92,7 +92,7 @@ pub fn curve<'a, X: Copy, const N: usize>(
     model: impl Fn(X, [Dual<N>; N]) -> Dual<N> + 'a,
 ) -> Result<Formula<impl Fn([Dual<N>; N], &mut [Dual<N>]) + 'a, N>, FitError> {
     if x.len() != y.len() {
-        return Err(FitError::DataLength { abscissae: x.len(), ordinates: y.len() });
+        return Err(FitError::data_length(x.len(), y.len()));
     }
     Ok(Formula::new(parameters, y.len(), move |p: [Dual<N>; N], residuals: &mut [Dual<N>]| {
         for ((r, x), y) in residuals.iter_mut().zip(x).zip(y) {
@@ -119,7 +119,7 @@ pub fn curve<'a, X: Copy, const N: usize>(
 /// [`Scalar`] brings the functions, such as `exp`, into scope.
 ///
 /// # Errors
-/// [`FitError::DataLength`], and as for [`solve`].
+/// [`FitError::Count`], and as for [`solve`].
 pub fn curve_fit<X: Copy, const N: usize>(
     x: &[X],
     y: &[f64],

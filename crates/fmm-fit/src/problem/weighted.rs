@@ -51,17 +51,17 @@ impl<P: Residuals> Weighted<P> {
     /// Gives the residuals of `problem` the standard `uncertainties`, one each, in the unit of the residuals.
     ///
     /// # Errors
-    /// [`FitError::UncertaintyCount`] unless there is one per residual; [`FitError::BadUncertainty`] unless all are
+    /// [`FitError::Count`] unless there is one per residual; [`FitError::OutOfRange`] unless all are
     /// positive and finite.
     pub fn new(problem: P, uncertainties: Vec<f64>) -> Result<Self, FitError> {
         if uncertainties.len() != problem.len() {
             let (uncertainties, residuals) = (uncertainties.len(), problem.len());
-            return Err(FitError::UncertaintyCount { uncertainties, residuals });
+            return Err(FitError::uncertainty_count(uncertainties, residuals));
         }
         // The inverse of a subnormal number overflows.
         let bad = uncertainties.iter().position(|u| !(*u > 0.0 && u.is_finite() && u.recip().is_finite()));
         match bad {
-            Some(index) => Err(FitError::BadUncertainty { index, value: uncertainties[index] }),
+            Some(index) => Err(FitError::bad_uncertainty(index, uncertainties[index])),
             None => Ok(Self { problem, uncertainties }),
         }
     }

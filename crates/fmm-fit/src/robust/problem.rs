@@ -55,12 +55,12 @@ impl<P: Residuals> Robust<P> {
     /// Lets the residuals of `problem` count by `loss`, whose `scale` has their unit.
     ///
     /// # Errors
-    /// [`FitError::InvalidOption`] unless the scale is positive and finite.
+    /// [`FitError::OutOfRange`] unless the scale is positive and finite.
     pub fn new(problem: P, loss: Loss, scale: f64) -> Result<Self, FitError> {
         if scale > 0.0 && scale.is_finite() {
             Ok(Self { problem, loss, scale })
         } else {
-            Err(FitError::InvalidOption { option: "scale of the loss", expected: "positive and finite", value: scale })
+            Err(FitError::invalid_option("scale of the loss", "positive and finite", scale))
         }
     }
 

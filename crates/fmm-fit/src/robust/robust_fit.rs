@@ -182,7 +182,7 @@ impl RobustFit {
     fn new<P: Residuals>(problem: &Robust<P>, fit: Fit) -> Result<Self, FitError> {
         let mut residuals = vec![0.0; problem.len()];
         let asked = problem.problem().residuals(fit.values(), &mut residuals);
-        asked.map_err(|error| FitError::ModelFailed(error.into_boxed()))?;
+        asked.map_err(|error| FitError::model_failed(error.into_boxed()))?;
         let weights = residuals.iter().map(|r| problem.loss().weight(problem.square(*r))).collect();
         let covariance = m_covariance(problem, &fit);
         Ok(Self { loss: problem.loss(), scale: problem.scale(), residuals, weights, covariance, fit })

@@ -93,7 +93,7 @@ impl Minimizer {
         let has_radius = stored.scaling.len() == self.region.scaling.len();
         if !has_radius || stored.floor.len() != stored.values.len() {
             let (values, parameters) = (stored.scaling.len(), self.evaluator.free.len());
-            return Err(FitError::StartLength { values, parameters });
+            return Err(FitError::start_length(values, parameters));
         }
         self.current.values = stored.values;
         self.evaluator.floor = stored.floor;

@@ -239,7 +239,7 @@ impl Minimizer {
         }
         let largest = worst(&self.current.residuals).1.abs();
         if largest > 0.0 && largest < SMALLEST_RESIDUAL {
-            return Err(FitError::ResidualsUnderflow { largest });
+            return Err(FitError::residuals_underflow(largest));
         }
         if free == 0 {
             self.current.triangle.reset(0);
@@ -259,14 +259,14 @@ impl Minimizer {
             let mut residuals = vec![0.0; problem.len()];
             let mut jacobian = vec![0.0; self.evaluator.structure.len()];
             if let Err(error) = problem.residuals_and_jacobian(&self.start, &mut residuals, &mut jacobian) {
-                return FitError::ModelFailed(error.into_boxed());
+                return FitError::model_failed(error.into_boxed());
             }
         }
         if let Some(NonFinite::Derivative { parameter }) = &self.evaluator.non_finite {
-            return FitError::DerivativeNotFinite { parameter: parameter.clone() };
+            return FitError::derivative_not_finite(parameter);
         }
         let (index, value) = worst(&self.current.residuals);
-        FitError::ResidualNotFinite { index, value }
+        FitError::residual_not_finite(index, value)
     }
 }
 
@@ -275,10 +275,10 @@ pub(crate) fn check_parameters(parameters: &[Parameter]) -> Result<(), FitError>
         let (name, bounds) = (parameter.name(), parameter.bounds());
         if bounds.is_empty() {
             let (parameter, lower, upper) = (name.to_owned(), bounds.lower(), bounds.upper());
-            return Err(FitError::EmptyBounds { parameter, lower, upper });
+            return Err(FitError::empty_bounds(&parameter, lower, upper));
         }
         if parameters[..j].iter().any(|other| other.name() == name) {
-            return Err(FitError::DuplicateName { name: name.to_owned() });
+            return Err(FitError::duplicate_name(name));
         }
     }
     Ok(())
@@ -286,16 +286,16 @@ pub(crate) fn check_parameters(parameters: &[Parameter]) -> Result<(), FitError>
 
 pub(crate) fn check_start(parameters: &[Parameter], start: &[f64]) -> Result<(), FitError> {
     if start.len() != parameters.len() {
-        return Err(FitError::StartLength { values: start.len(), parameters: parameters.len() });
+        return Err(FitError::start_length(start.len(), parameters.len()));
     }
     for (parameter, &value) in parameters.iter().zip(start) {
         let bounds = parameter.bounds();
         if !value.is_finite() {
-            return Err(FitError::StartNotFinite { parameter: parameter.name().to_owned(), value });
+            return Err(FitError::start_not_finite(parameter.name(), value));
         }
         if !bounds.contains(value) {
             let (lower, upper) = (bounds.lower(), bounds.upper());
-            return Err(FitError::StartOutsideBounds { parameter: parameter.name().to_owned(), value, lower, upper });
+            return Err(FitError::start_outside_bounds(parameter.name(), value, lower, upper));
         }
     }
     Ok(())

@@ -161,14 +161,14 @@ impl Options {
         ];
         for (option, value) in tolerances {
             if !(0.0..1.0).contains(&value) {
-                return Err(FitError::InvalidOption { option, expected: "at least 0 and below 1", value });
+                return Err(FitError::invalid_option(option, "at least 0 and below 1", value));
             }
         }
         let value = self.initial_radius;
         if value > 0.0 && value.is_finite() {
             Ok(())
         } else {
-            Err(FitError::InvalidOption { option: "initial radius", expected: "positive and finite", value })
+            Err(FitError::invalid_option("initial radius", "positive and finite", value))
         }
     }
 }

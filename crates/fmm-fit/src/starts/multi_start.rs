@@ -167,9 +167,7 @@ impl MultiStart {
         let has_values = match minimizer.begin(problem, start) {
             Ok(()) => true,
             // Other starts may do.
-            Err(
-                FitError::ResidualNotFinite { .. } | FitError::DerivativeNotFinite { .. } | FitError::ModelFailed(_),
-            ) => false,
+            Err(FitError::NoModel { .. }) => false,
             Err(error) => return Err(error),
         };
         if let Some(reach) = &self.reach {
@@ -177,7 +175,7 @@ impl MultiStart {
             let value = if reach.len() == parameters.len() { bad } else { Some(reach.len() as f64) };
             if let Some(value) = value {
                 let expected = "one finite value of at least 0 per parameter";
-                return Err(FitError::InvalidOption { option: "reach", expected, value });
+                return Err(FitError::invalid_option("reach", expected, value));
             }
         }
         let size = |j: usize| {

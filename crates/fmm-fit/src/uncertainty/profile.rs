@@ -247,11 +247,7 @@ impl<P: Residuals + ?Sized> Profile<'_, P> {
                     }
                     failure = Some(outcome);
                 }
-                Err(
-                    FitError::ResidualNotFinite { .. }
-                    | FitError::DerivativeNotFinite { .. }
-                    | FitError::ModelFailed(_),
-                ) => self.residual_evaluations += 1,
+                Err(FitError::NoModel { .. }) => self.residual_evaluations += 1,
                 Err(error) => return Err(error.into()),
             }
         }

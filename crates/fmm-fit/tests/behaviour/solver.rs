@@ -84,7 +84,7 @@ fn a_bad_start_is_refused_by_name() {
     let error = solve(&broken, &[1.0], &Options::default()).unwrap_err();
     assert_eq!(error.to_string(), "the model failed at the start: no record");
     let options = Options::default().with_cost_tolerance(f64::NAN);
-    assert!(matches!(solve(&decay, &[1.0, 1.0], &options), Err(FitError::InvalidOption { .. })));
+    assert!(matches!(solve(&decay, &[1.0, 1.0], &options), Err(FitError::OutOfRange { .. })));
     assert!(matches!(Minimizer::default().fit(), Err(FitError::NotStarted)));
 }
 

@@ -122,7 +122,7 @@ fn published_problems_reach_their_minima() {
         let problem_of = FormulaProblem { formula: Published(name.clone()), count, parameters, is_exact: true };
         if problem["x0_note"].is_string() {
             let refused = solve(&problem_of, &start, &Options::default());
-            assert!(matches!(refused, Err(FitError::StartOutsideBounds { .. })), "{name} starts outside");
+            assert!(matches!(refused, Err(FitError::OutOfRange { .. })), "{name} starts outside");
         }
         let inside: Vec<f64> =
             start.iter().zip(&problem_of.parameters).map(|(value, p)| p.bounds().clamp(*value)).collect();
