@@ -3,9 +3,9 @@
 use fmm_model::{Oscillator, Scalar};
 
 use crate::State;
-use crate::automaton::{load, rounding};
 use crate::curve::Wave;
 use crate::drive::{Drive, Piece};
+use crate::load::{load, rounding};
 
 /// Whether a contact that holds in `state` at `time`, in the piece of this `index`, is at rest and no force to come exceeds what its
 /// `breakaway` coefficient holds.

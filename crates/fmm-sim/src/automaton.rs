@@ -3,10 +3,11 @@
 use fmm_model::{Oscillator, Restoring, Scalar};
 
 use crate::at_rest::holds_for_good;
-use crate::curve::{Curve, Wave};
+use crate::curve::Curve;
 use crate::drive::{Drive, Piece};
-use crate::first_zero::{ROUNDING, SEARCH_BUDGET, first_zero};
+use crate::first_zero::{SEARCH_BUDGET, first_zero};
 use crate::levels::Levels;
+use crate::load::{load, rounding};
 use crate::recorder::Recorder;
 use crate::work::Power;
 use crate::{Direction, Event, EventKind, Mode, Scenario, SimulationError, State};
@@ -403,51 +404,6 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
 /// A time (s) within which a curve with these waves varies little.
 fn scale<D: Scalar>(curve: &Curve<D>) -> f64 {
     curve.frequencies().map(f64::recip).fold(f64::MAX, f64::min)
-}
-
-/// Rounding (N) that `load` carries, the load at `state` and `time`: that of its terms, and of the time itself.
-pub(crate) fn rounding<D: Scalar, E: Scalar>(
-    oscillator: &Oscillator<D>,
-    load: &Curve<E>,
-    time: D,
-    state: State<D>,
-) -> f64 {
-    let spring = 2.0 * oscillator.restoring_force(state.position).value().abs();
-    let (mut force, mut rate) = (load.constant.value().abs() + spring, load.slope.value().abs());
-    for wave in &load.waves {
-        let amplitude = wave.cosine.value().hypot(wave.sine.value());
-        force += amplitude;
-        rate += amplitude * wave.angular.value();
-    }
-    ROUNDING * (force + rate * time.value())
-}
-
-/// What is left for friction at constant velocity from `state` at `time` on: L = f − F_c − F_k.
-pub(crate) fn load<D: Scalar>(
-    oscillator: &Oscillator<D>,
-    piece: &Piece<D>,
-    time: D,
-    state: State<D>,
-) -> Curve<'static, D> {
-    let State { position, velocity } = state;
-    let mut load = Curve::force(piece, time);
-    load.constant -= oscillator.damping().force(velocity);
-    match oscillator.restoring() {
-        Restoring::Sine { length } if velocity.value() != 0.0 => {
-            // −k ℓ sin((x + v τ)/ℓ) is a wave.
-            let (sin, cos) = (position / length).sin_cos();
-            let force = oscillator.stiffness() * length;
-            let sign = velocity.value().signum();
-            let angular = velocity.abs() / length;
-            load.waves.push(Wave { angular, cosine: -(force * sin), sine: -(force * cos) * sign });
-        }
-        Restoring::Linear if velocity.value() != 0.0 => {
-            load.constant -= oscillator.stiffness() * position;
-            load.slope -= oscillator.stiffness() * velocity;
-        }
-        _ => load.constant -= oscillator.restoring_force(position),
-    }
-    load
 }
 
 /// The time at which `guard`, counted from `start`, crosses zero near `time`, with its derivatives; and whether it only

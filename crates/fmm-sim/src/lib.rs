@@ -131,6 +131,7 @@ mod excitation;
 mod first_zero;
 mod fixed_step;
 mod levels;
+mod load;
 mod moreau;
 mod prescribed;
 mod recorder;

@@ -444,3 +444,8 @@ impl Identification {
         (1e-12 * self.amplitude).powi(2) * self.fit.residuals().len() as f64
     }
 }
+
+/// The identification with the smallest residuals.
+pub(crate) fn closest<'a>(identifications: impl IntoIterator<Item = &'a Identification>) -> Option<&'a Identification> {
+    identifications.into_iter().min_by(|a, b| a.rms_residual().total_cmp(&b.rms_residual()))
+}

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use fmm_fit::{Options, Progress, f_tail};
 
+use crate::fit::identification::closest;
 use crate::judgement::{Judgement, shortcomings};
 use crate::residuals::filtering::filtering_sensor;
 use crate::{Candidate, Experiment, Identification, IdentifyError, Machine, RecordSummary, Sign, Warning};
@@ -88,11 +89,6 @@ pub fn compare_observed(
 /// something.
 pub(crate) fn explains(identifications: &[Identification]) -> bool {
     closest(identifications).is_some_and(|found| !found.structure().is_structured())
-}
-
-/// The identification with the smallest residuals.
-pub(crate) fn closest<'a>(identifications: impl IntoIterator<Item = &'a Identification>) -> Option<&'a Identification> {
-    identifications.into_iter().min_by(|a, b| a.rms_residual().total_cmp(&b.rms_residual()))
 }
 
 impl Comparison {

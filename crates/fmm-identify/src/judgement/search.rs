@@ -7,8 +7,9 @@ use std::time::{Duration, Instant};
 
 use fmm_fit::{Options, Progress};
 
+use crate::fit::identification::closest;
 use crate::fit::stages::Near;
-use crate::judgement::comparison::{closest, explains};
+use crate::judgement::comparison::explains;
 use crate::judgement::sign::{Addition, Sign, signs};
 use crate::judgement::{Judgement, shortcomings};
 use crate::residuals::filtering::behind_filter;

@@ -4,8 +4,7 @@ use std::ops::ControlFlow;
 
 use fmm_fit::Options;
 
-use crate::fit::identification::identify_by;
-use crate::judgement::comparison::closest;
+use crate::fit::identification::{closest, identify_by};
 use crate::{Experiment, Identification, Sensor, Warning};
 
 /// Order of the filter that is tried: that of most sensors with one.

@@ -4,9 +4,10 @@ use fmm_friction::SlidingLaw;
 use fmm_model::{Oscillator, Scalar};
 
 use super::guard::Guard;
-use crate::automaton::{Branch, Phase, load, rounding};
+use crate::automaton::{Branch, Phase};
 use crate::drive::Drive;
 use crate::first_zero::ROUNDING;
+use crate::load::{load, rounding};
 use crate::work::Power;
 use crate::{Scenario, State};
 
