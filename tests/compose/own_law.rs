@@ -1,10 +1,12 @@
 //! A friction law of one's own, written outside the crates: simulated, differentiated, fitted and compared.
 
-use fmm_friction::{Affine, LawError, LawFamily, LawParameter, LawVisitor, PiecewiseLinearLaw, Role, SlidingLaw};
-use fmm_identify::{Candidate, Experiment, Machine, Preparation, compare};
+use fmm_friction::{
+    Affine, Berger, LawError, LawFamily, LawParameter, LawVisitor, PiecewiseLinearLaw, Role, SlidingLaw,
+};
+use fmm_identify::{Candidate, Experiment, IdentifyError, Machine, Preparation, compare, identify};
 use fmm_model::{Bounds, Oscillator, Parameter, Scalar};
 use fmm_record::{Quantity, Record};
-use fmm_sim::{Engine, Exact, Sampling, Scenario};
+use fmm_sim::{Engine, Exact, RungeKutta, Sampling, Scenario};
 
 use crate::measurement::white;
 
@@ -44,6 +46,71 @@ impl<D: Scalar> PiecewiseLinearLaw<D> for Rising<D> {
     fn affine(&self) -> Affine<D> {
         Affine { level: self.0, slope: self.0 / DOUBLING, breakaway: self.0 }
     }
+}
+
+/// Berger's law with its decay in another unit: α in s/mm, so that a thousand of SI is one.
+#[derive(Debug, Clone, Copy)]
+struct InMillimetres<D, const KNOWN: bool>(Berger<D>);
+
+struct InMillimetresOf<const KNOWN: bool>;
+
+impl<const KNOWN: bool> LawFamily for InMillimetresOf<KNOWN> {
+    const NAME: &'static str = "in_millimetres";
+    const PARAMETERS: &'static [LawParameter] = &[
+        LawParameter::new(Parameter::new("coefficient", "μ₀", "1").bounded(Bounds::NOT_NEGATIVE), Role::Level)
+            .typically(0.7),
+        LawParameter::new(Parameter::new("excess_coefficient", "μ₁", "1").bounded(Bounds::NOT_NEGATIVE), Role::Excess)
+            .typically(0.6),
+        LawParameter::new(
+            Parameter::new("decay", "α", if KNOWN { "s/mm" } else { "s/furlong" }).bounded(Bounds::NOT_NEGATIVE),
+            Role::Shape,
+        )
+        .typically(3.0),
+    ];
+    type At<D: Scalar> = InMillimetres<D, KNOWN>;
+
+    fn at<D: Scalar>(values: &[D]) -> Result<InMillimetres<D, KNOWN>, LawError> {
+        let [floor, excess, decay] = Self::checked(values)?;
+        Ok(InMillimetres(Berger::new(floor, excess, decay * 1000.0)?))
+    }
+
+    fn visit<D: Scalar, V: LawVisitor<D, InMillimetres<D, KNOWN>>>(visitor: V) -> V::Output {
+        visitor.sliding()
+    }
+}
+
+impl<D: Scalar, const KNOWN: bool> SlidingLaw<D> for InMillimetres<D, KNOWN> {
+    fn coefficient(&self, speed: D) -> D {
+        self.0.coefficient(speed)
+    }
+    fn breakaway(&self) -> D {
+        self.0.breakaway()
+    }
+}
+
+/// The unit of a parameter says where its fit begins and what it scales with: a thousandth of the decay in s/m, and all else the same.
+#[test]
+fn a_parameter_in_another_unit_is_the_same() {
+    let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), Berger::new(0.2, 0.15, 10.0).unwrap(), 1.0);
+    let scenario = scenario.unwrap().starting_at(0.04, 0.0).unwrap();
+    let motion = RungeKutta::default().run(&scenario, &Sampling::uniform(2e-3, 1500).unwrap()).unwrap();
+    let values = motion.velocity().values().iter().zip(white(2e-4, 1, 1500)).map(|(v, noise)| v + noise).collect();
+    let record = Record::new(0.0, 2e-3, values, Quantity::Velocity, "m/s").unwrap();
+    let preparation = Preparation::default().gain_uncertainty(0.01);
+    let decays = [Experiment::ring_down(&record, &preparation).unwrap()];
+    let machine = Machine::per_unit_mass();
+    let metres = identify::<Berger>(&machine, &decays).unwrap();
+    let millimetres = identify::<InMillimetresOf<true>>(&machine, &decays).unwrap();
+    assert!((millimetres.rms_residual() / metres.rms_residual() - 1.0).abs() < 1e-9, "{metres}\n{millimetres}");
+    let [one, other] = [&metres, &millimetres].map(|found| found.finding("decay").unwrap());
+    assert!((1000.0 * other.value() / one.value() - 1.0).abs() < 1e-4, "{one} beside {other}");
+    let [one_u, other_u] = [one, other].map(|found| found.uncertainty().unwrap());
+    assert!((1000.0 * other_u / one_u - 1.0).abs() < 1e-2, "{one_u} beside {other_u}");
+    let refused = identify::<InMillimetresOf<false>>(&machine, &decays);
+    assert!(
+        matches!(refused, Err(IdentifyError::UnknownName { ref what }) if what.contains("s/furlong")),
+        "{refused:?}"
+    );
 }
 
 #[test]

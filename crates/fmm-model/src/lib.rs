@@ -29,6 +29,7 @@
 //! | stiffness, stress, allowed deflection, parasitic motion of a guide | [`Flexure`], [`LeafSpring`] |
 //! | the lean of a shaft from two displacements | [`Tilt`] |
 //! | name, symbol, unit and limits of what is to be found | [`Parameter`], [`Bounds`] |
+//! | which powers of metre and second a unit is, and how much of them | [`Dimension`] |
 //! | a formula with exact derivatives | write it over [`Scalar`], evaluate it at [`Dual`] |
 //! | a value as a report writes it | [`Rounded`] |
 //!
@@ -71,6 +72,7 @@ compile_error!("fmm-model needs elementary functions: turn on one of the feature
 
 mod bounds;
 mod damping;
+mod dimension;
 mod dual;
 mod error;
 mod flexure;
@@ -85,6 +87,7 @@ mod tilt;
 
 pub use bounds::Bounds;
 pub use damping::Damping;
+pub use dimension::Dimension;
 pub use dual::Dual;
 pub use error::ModelError;
 pub use flexure::Flexure;

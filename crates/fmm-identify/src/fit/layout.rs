@@ -9,7 +9,7 @@ use fmm_model::{Bounds, Damping, Oscillator, Parameter, Restoring, Scalar};
 use fmm_record::Quantity;
 
 use crate::experiment::reference;
-use crate::law::dimension::{is_force, power_of_gain};
+use crate::law::dimension::is_force;
 use crate::law::{Law, Motion};
 use crate::machine::Scale;
 use crate::machine::terms::{LINEAR, Term};
@@ -42,6 +42,7 @@ impl Layout {
         terms: &Terms,
         decays: &[Experiment],
     ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
+        family.require_units()?;
         if terms.has_linear_damping() && family.has_slope() {
             return Err(IdentifyError::two_dampings(family.name));
         }
@@ -134,7 +135,9 @@ impl Layout {
             return 1.0;
         }
         match index.checked_sub(self.law) {
-            Some(index) => self.family.fitted().nth(index).map_or(0.0, power_of_gain),
+            Some(index) => {
+                self.family.fitted().nth(index).map_or(0.0, |parameter| self.family.power_of_gain(parameter))
+            }
             None => index
                 .checked_sub(self.oscillator)
                 .map_or(0.0, |place| self.terms.iter().nth(place).map_or(0.0, Term::power_of_gain)),

@@ -60,6 +60,7 @@ impl Parameters {
         trials: &[ImpactTrial],
         options: &ImpactOptions,
     ) -> Result<Self, IdentifyError> {
+        law.require_units()?;
         let known = [machine.mass(), machine.stiffness(), machine.damping(), machine.normal_load()];
         let mut values: Vec<f64> = known.iter().map(Known::value).chain([1.0]).collect();
         let gain = options.response_gain_uncertainty;

@@ -7,7 +7,7 @@ use fmm_friction::LawParameter;
 
 use crate::impact::ImpactProblem;
 use crate::impact::parameters::{DAMPING, LAW};
-use crate::law::dimension::{Scales, bends, is_force};
+use crate::law::dimension::{Scales, is_force};
 
 /// Damping ratio with which an unknown damping begins, and share of the friction that a viscous part begins with.
 const DAMPING_RATIO: f64 = 1e-3;
@@ -73,7 +73,8 @@ impl ImpactProblem<'_> {
             (true, false) => &[0.0],
             (false, _) => &[1.0],
         };
-        let sharpnesses: &[f64] = if self.law().fitted().any(bends) { &[1.0, 8.0, 0.125] } else { &[1.0] };
+        let sharpnesses: &[f64] =
+            if self.law().fitted().any(|parameter| self.law().bends(parameter)) { &[1.0, 8.0, 0.125] } else { &[1.0] };
         let layout = self.layout();
         let mut starts = Vec::new();
         for (share, sharpness) in shares.iter().flat_map(|share| sharpnesses.iter().map(move |s| (*share, *s))) {
@@ -88,7 +89,7 @@ impl ImpactProblem<'_> {
             if !layout.is_held(DAMPING) && start[DAMPING] == 0.0 {
                 start[DAMPING] = 2.0 * DAMPING_RATIO * machine.mass().value() * angular;
             }
-            let typical = |parameter: &LawParameter| scales.typical(parameter);
+            let typical = |parameter: &LawParameter| scales.typical(self.law(), parameter);
             for (index, parameter) in (LAW..).zip(self.law().fitted()) {
                 start[index] = typical(parameter);
             }

@@ -1,6 +1,10 @@
 //! What the parameters of a law scale with.
 
 use fmm_friction::{LawParameter, Role};
+use fmm_model::Dimension;
+
+use crate::IdentifyError;
+use crate::law::Law;
 
 /// The scales of the motion in a record, in its units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,55 +21,87 @@ pub(crate) struct Scales {
     pub(crate) sharpness: f64,
 }
 
-/// The dimension of a parameter of a law beyond that of a force, as powers of length and speed.
+/// What the value of a parameter of a law scales with beside a force, as powers of position and time. Angles are positions, and a power
+/// that is itself a parameter of the law has its typical value.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Dimension {
-    length: f64,
-    speed: f64,
+pub(crate) struct Powers {
+    position: f64,
+    time: f64,
+    /// How much of the SI unit the unit of the parameter is (1).
+    factor: f64,
 }
 
-impl Dimension {
-    /// Of a unit as the laws write it; unknown ones are taken as numbers.
-    fn of(unit: &str) -> Self {
-        let (length, speed) = match unit {
-            "m" => (1.0, 0.0),
-            "1/m" | "1/m^n" => (-1.0, 0.0),
-            "m/s" => (0.0, 1.0),
-            "s/m" => (0.0, -1.0),
-            // With a typical exponent of one half.
-            "(s/m)^p" => (0.0, -0.5),
-            _ => (0.0, 0.0),
+impl Powers {
+    /// Of the unit in which `law` states `parameter`; none for one of which it is not known what it scales with.
+    fn of(law: &Law, parameter: &LawParameter) -> Option<Self> {
+        let exponent = |symbol: &str| {
+            let named = |parameter: &&LawParameter| parameter.parameter().symbol() == symbol;
+            law.parameters.iter().find(named).map(LawParameter::typical)
         };
-        Self { length, speed }
+        let unit = Dimension::of(parameter.parameter().unit(), exponent).filter(|unit| unit.mass() == 0.0)?;
+        Some(Self { position: unit.length() + unit.angle(), time: unit.time(), factor: unit.factor() })
+    }
+
+    /// The power of a speed that it is; none if it is none.
+    pub(crate) fn of_speed(&self) -> Option<f64> {
+        (self.position != 0.0 && self.time == -self.position).then_some(self.position)
+    }
+
+    /// The value of the parameter that stands for a `speed`.
+    pub(crate) fn at_speed(&self, speed: f64) -> f64 {
+        speed.powf(self.position) / self.factor
+    }
+}
+
+impl Law {
+    /// What a parameter of this law scales with; a law with a unit that is not known is refused before.
+    pub(crate) fn powers(&self, parameter: &LawParameter) -> Powers {
+        Powers::of(self, parameter).unwrap_or(Powers { position: 0.0, time: 0.0, factor: 1.0 })
+    }
+
+    /// Refuses a law with a parameter in a unit of which it is not known what it scales with.
+    pub(crate) fn require_units(&self) -> Result<(), IdentifyError> {
+        let unknown = self.parameters.iter().find(|parameter| Powers::of(self, parameter).is_none());
+        unknown.map_or(Ok(()), |parameter| {
+            let (law, parameter) = (self.name, parameter.parameter());
+            Err(IdentifyError::UnknownName {
+                what: format!(
+                    "{law} states {} in {}, and a fit does not know where to begin: a unit is made of m, s, rad and deg, with \
+                     prefixes and powers",
+                    parameter.name(),
+                    parameter.unit()
+                ),
+            })
+        })
+    }
+
+    /// Whether `parameter` says where the law bends, which a fit may have to look for.
+    pub(crate) fn bends(&self, parameter: &LawParameter) -> bool {
+        let Powers { position, time, .. } = self.powers(parameter);
+        parameter.role() != Role::Slope && (position, time) != (0.0, 0.0)
+    }
+
+    /// The power of a record's gain to which `parameter` is proportional.
+    pub(crate) fn power_of_gain(&self, parameter: &LawParameter) -> f64 {
+        let force = if is_force(parameter.role()) || parameter.role() == Role::Slope { 1.0 } else { 0.0 };
+        force + self.powers(parameter).position
     }
 }
 
 impl Scales {
-    /// Where a fit of `parameter` may begin.
-    pub(crate) fn typical(&self, parameter: &LawParameter) -> f64 {
+    /// Where a fit of a `parameter` of `law` may begin.
+    pub(crate) fn typical(&self, law: &Law, parameter: &LawParameter) -> f64 {
+        let Powers { position, time, factor } = law.powers(parameter);
         if parameter.role() == Role::Slope {
-            return self.damping;
+            return self.damping / factor;
         }
-        let Dimension { length, speed } = Dimension::of(parameter.parameter().unit());
         let force = if is_force(parameter.role()) { self.friction } else { 1.0 };
-        let scale = force * self.length.powf(length) * self.speed.powf(speed);
-        parameter.typical() * scale * self.sharpness.powf(-(length + speed))
+        let scale = force * self.length.powf(position + time) * self.speed.powf(-time);
+        parameter.typical() * scale * self.sharpness.powf(-position) / factor
     }
 }
 
 /// Whether `role` is proportional to the friction force.
 pub(crate) fn is_force(role: Role) -> bool {
     matches!(role, Role::Level | Role::Excess | Role::LevelAbove | Role::Breakaway)
-}
-
-/// Whether the law bends at a place of its own, which a fit may have to look for.
-pub(crate) fn bends(parameter: &LawParameter) -> bool {
-    parameter.role() != Role::Slope && Dimension::of(parameter.parameter().unit()) != Dimension::of("1")
-}
-
-/// The power of a record's gain to which `parameter` is proportional.
-pub(crate) fn power_of_gain(parameter: &LawParameter) -> f64 {
-    let Dimension { length, speed } = Dimension::of(parameter.parameter().unit());
-    let force = if is_force(parameter.role()) || parameter.role() == Role::Slope { 1.0 } else { 0.0 };
-    force + length + speed
 }

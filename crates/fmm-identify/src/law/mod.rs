@@ -115,11 +115,7 @@ impl Law {
     /// The share of the largest speed at which the law typically bends, of the first parameter that says so; none for laws without.
     pub(crate) fn bend(&self) -> Option<f64> {
         self.fitted().filter(|parameter| parameter.role() == Role::Shape).find_map(|parameter| {
-            match parameter.parameter().unit() {
-                "m/s" => Some(parameter.typical()),
-                "s/m" => Some(1.0 / parameter.typical()),
-                _ => None,
-            }
+            self.powers(parameter).of_speed().map(|power| parameter.typical().powf(power.recip()))
         })
     }
 

@@ -48,12 +48,14 @@ impl Problem<'_> {
         const SLOWEST: f64 = 1e-4;
         let slowest = SLOWEST * reference(self.decays).scales().1;
         for (index, law) in self.law().fitted().enumerate() {
+            let powers = self.law().powers(law);
             let parameter = &mut self.parameters[self.layout.law + index];
             let bounds = parameter.bounds();
-            let bounds = match law.parameter().unit() {
-                "m/s" => Bounds::new(bounds.lower().max(slowest), bounds.upper()),
-                "s/m" if law.role() == Role::Shape => Bounds::new(bounds.lower(), bounds.upper().min(slowest.recip())),
-                _ => continue,
+            let value = powers.at_speed(slowest);
+            let bounds = match powers.of_speed().filter(|_| law.role() == Role::Shape) {
+                Some(power) if power > 0.0 => Bounds::new(bounds.lower().max(value), bounds.upper()),
+                Some(_) => Bounds::new(bounds.lower(), bounds.upper().min(value)),
+                None => continue,
             };
             // One that is held elsewhere stays so.
             if let Ok(bounds) = bounds {

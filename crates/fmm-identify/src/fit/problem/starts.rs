@@ -12,7 +12,7 @@ use crate::experiment::reference;
 use crate::fit::first_guess::Dissipation;
 use crate::fit::layout::{Layout, mass_of_stiffness};
 use crate::judgement::sign::Addition;
-use crate::law::dimension::{Scales, bends, is_force};
+use crate::law::dimension::{Scales, is_force};
 use crate::law::friction_curve::FrictionCurve;
 use crate::machine::terms::Term;
 use crate::{Drive, Experiment, Identification, Sign};
@@ -25,7 +25,7 @@ impl Problem<'_> {
     pub(crate) fn is_elaborate(&self) -> bool {
         self.layout.law > self.layout.oscillator
             || self.law().fitted().filter(|parameter| is_force(parameter.role())).count() > 1
-            || self.law().fitted().any(bends)
+            || self.law().fitted().any(|parameter| self.law().bends(parameter))
     }
 
     /// Start values, one set per hypothesis that the law can express, each inside the bounds.
@@ -98,7 +98,8 @@ impl Problem<'_> {
         let all_friction = Dissipation { friction: as_friction, damping: 0.0 };
         let half = Dissipation { friction: as_friction, damping: 0.5 * dissipation.damping };
         let mut starts = Vec::new();
-        let sharpnesses: &[f64] = if self.law().fitted().any(bends) { &[1.0, 8.0, 0.125] } else { &[1.0] };
+        let sharpnesses: &[f64] =
+            if self.law().fitted().any(|parameter| self.law().bends(parameter)) { &[1.0, 8.0, 0.125] } else { &[1.0] };
         for sharpness in sharpnesses {
             let shares = if self.has_linear_damping() { vec![dissipation, half] } else { vec![all_friction] };
             for share in shares {
@@ -132,7 +133,7 @@ impl Problem<'_> {
         if falls.is_empty() {
             falls = vec![(0.06, 0.3, 0.0), (0.3, 0.3, 0.0)];
         }
-        if !self.law().fitted().any(bends) {
+        if !self.law().fitted().any(|parameter| self.law().bends(parameter)) {
             falls.truncate(1);
         }
         let bends_at = |share: f64| self.law().bend().map_or(1.0, |typical| typical / share);
@@ -200,7 +201,7 @@ impl Problem<'_> {
             (Role::Excess | Role::LevelAbove, Some(excess)) => excess * friction,
             (Role::Breakaway, _) => FIRST_STATIC_EXCESS * friction,
             (Role::Level, Some(_)) if parameter.parameter().unit() == "1" => friction,
-            _ => scales.typical(parameter),
+            _ => scales.typical(self.law(), parameter),
         }));
     }
 
