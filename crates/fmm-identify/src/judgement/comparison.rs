@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use fmm_fit::{Options, Progress, f_tail};
 
+use crate::experiment::nuisance::Nuisance;
 use crate::fit::identification::closest;
 use crate::judgement::{Judgement, shortcomings};
 use crate::residuals::filtering::filtering_sensor;
@@ -28,7 +29,8 @@ pub struct NestedTest {
 /// residuals show; correlated residuals count for as much as they tell, so that the answer is the same however often a record is
 /// sampled. Among the others the simplest with a probability of at least 0.0125 is preferred. The preference is *decided* if its
 /// probability is at least 0.05 and what is left beside it are laws that have it as a special case, whose further parameters the record
-/// does not ask for, and if no filter in the sensor would explain the record as well. If a simple law is true, it is undecided in about one
+/// does not ask for, if no filter in the sensor would explain the record as well, if a drift leaves no correlated residuals, and if no value
+/// depends on which of the laws that are left is true. If a simple law is true, it is undecided in about one
 /// record of eight, and excluded in less than one of a hundred. The uncertainties of the preferred law include what the laws that are left
 /// would change, by how probable they are.
 ///
@@ -106,7 +108,12 @@ impl Comparison {
         // A filter in the sensor that explains the record as well is a rival, though it is no law.
         let sensor = filtering_sensor(decays, &identifications, preferred);
         judgement.is_decided &= sensor.is_none();
+        // What a drift leaves may have been taken for the law.
+        let drifts = decays.iter().any(|decay| decay.nuisances().iter().any(|part| matches!(part, Nuisance::Drift(_))));
+        judgement.is_decided &= !(drifts && identifications[preferred].structure().is_correlated());
         let widened = widen_for_other_laws(candidates, &mut identifications, &judgement);
+        // A value that depends on which of the laws that are left is true has not been decided for.
+        judgement.is_decided &= widened.is_empty();
         let mut warnings = identifications[preferred].warnings().to_vec();
         warnings.extend(others);
         warnings.extend(widened);
