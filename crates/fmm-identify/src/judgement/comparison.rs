@@ -29,9 +29,9 @@ pub struct NestedTest {
 /// residuals show; correlated residuals count for as much as they tell, so that the answer is the same however often a record is
 /// sampled. Among the others the simplest with a probability of at least 0.0125 is preferred. The preference is *decided* if its
 /// probability is at least 0.05 and what is left beside it are laws that have it as a special case, whose further parameters the record
-/// does not ask for, if no filter in the sensor would explain the record as well, if a drift leaves no correlated residuals, and if no value
-/// depends on which of the laws that are left is true. If a simple law is true, it is undecided in about one
-/// record of eight, and excluded in less than one of a hundred. The uncertainties of the preferred law include what the laws that are left
+/// does not ask for, if no filter in the sensor would explain the record as well, and if no drift was fitted beside residuals that are
+/// still correlated. If a simple law is true, it is undecided in about one record of eight, and excluded in less than one of a hundred.
+/// The uncertainties of the preferred law include what the laws that are left
 /// would change, by how probable they are.
 ///
 /// `Display` gives the report.
@@ -112,8 +112,6 @@ impl Comparison {
         let drifts = decays.iter().any(|decay| decay.nuisances().iter().any(|part| matches!(part, Nuisance::Drift(_))));
         judgement.is_decided &= !(drifts && identifications[preferred].structure().is_correlated());
         let widened = widen_for_other_laws(candidates, &mut identifications, &judgement);
-        // A value that depends on which of the laws that are left is true has not been decided for.
-        judgement.is_decided &= widened.is_empty();
         let mut warnings = identifications[preferred].warnings().to_vec();
         warnings.extend(others);
         warnings.extend(widened);
