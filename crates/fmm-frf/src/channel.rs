@@ -29,7 +29,7 @@ impl Channel {
         }
         let found = record.rate();
         if !((found / rate - 1.0).abs() <= 1e-6) {
-            let what = format!("the {self} was sampled at {found} Hz, but the average is of records at {rate} Hz");
+            let what = format!("the {self} was sampled at {found} Hz, but must be at {rate} Hz");
             return Err(FrfError::Mismatch { what });
         }
         Ok(())

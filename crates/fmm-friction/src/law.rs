@@ -126,6 +126,16 @@ pub trait BristleLaw<D: Scalar> {
     /// one. Without, the state stays as it is.
     ///
     /// Elements that switch are taken to hold at the beginning, unless they are at their bound.
+    ///
+    /// ```
+    /// use fmm_friction::{BristleLaw, Dahl};
+    ///
+    /// // 2 µm in 2 ms: z = (µ/σ)(1 − e^(−σ s/µ)) from rest.
+    /// let (mut state, law) = ([0.0], Dahl::new(0.3, 1e5, 1.0)?);
+    /// assert!(law.carry(1e-3, 2e-3, &mut state));
+    /// assert!((state[0] - 3e-6 * (1.0 - f64::exp(-2.0 / 3.0))).abs() < 1e-20);
+    /// # Ok::<(), fmm_friction::LawError>(())
+    /// ```
     fn carry(&self, velocity: D, duration: D, state: &mut [D]) -> bool {
         let _ = (velocity, duration, state);
         false

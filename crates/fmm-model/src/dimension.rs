@@ -28,7 +28,7 @@ pub struct Dimension {
 
 impl Dimension {
     /// A pure number.
-    pub const NONE: Self = Self { factor: 1.0, powers: [0.0; 4] };
+    const NONE: Self = Self { factor: 1.0, powers: [0.0; 4] };
 
     /// Dimension of a unit as it is written: symbols with powers (`s²`, `s^2`, `s^n`), beside each other or with a `*`, each
     /// divided by that has a `/` before it, and parentheses with a power. `exponent` gives the value of a power that is a letter.
@@ -64,14 +64,8 @@ impl Dimension {
         self.powers[3]
     }
 
-    /// Whether it is a pure number, or a part of one such as a percent.
-    pub fn is_none(&self) -> bool {
-        self.powers == [0.0; 4]
-    }
-
     /// This dimension times a power of another.
-    #[must_use]
-    pub fn times(self, other: Self, power: f64) -> Self {
+    fn times(self, other: Self, power: f64) -> Self {
         let mut powers = self.powers;
         powers.iter_mut().zip(other.powers).for_each(|(mine, others)| *mine += power * others);
         Self { factor: self.factor * math::powf(other.factor, power), powers }

@@ -66,6 +66,18 @@ impl<D: Scalar> Path<D> {
     /// Straight lines through `positions` (m) at `times` (s), at constant velocity between each two of them: a motion of which nothing but
     /// positions was measured.
     ///
+    /// ```
+    /// use fmm_friction::Dahl;
+    /// use fmm_sim::{Path, friction_along};
+    ///
+    /// // Force (N) at 10 N and µ = 0.3 after 2 µm, where bristles of 0.1 per µm have given way to 3 µm (1 − e^(−2/3)).
+    /// let path = Path::lines(&[0.0, 1.0, 3.0], &[0.0, 2e-6, -2e-6])?;
+    /// let points = friction_along(&Dahl::new(0.3, 1e5, 1.0)?, 10.0, &path)?;
+    /// assert!((points[1].force - 3.0 * (1.0 - f64::exp(-2.0 / 3.0))).abs() < 1e-12);
+    /// assert!(points[2].force < 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`SimulationError::OutOfRange`] if the times do not ascend from 0, two are equal, or there are not as many as positions,
     /// [`SimulationError::Quantity`] if a number is not finite.

@@ -165,6 +165,7 @@ impl UncertaintyError {
     }
 
     /// An output that does not exist.
+    /// An output that does not exist.
     pub(crate) fn no_such_output(output: usize, outputs: usize) -> Self {
         Self::OutOfRange {
             what: format!("there is no output {output}; the model has {outputs}, counted from 0"),

@@ -189,6 +189,11 @@ impl Experiment {
         &self.nuisances
     }
 
+    /// Whether a slow drift is among them.
+    pub(crate) fn drifts(&self) -> bool {
+        self.nuisances.iter().any(|part| matches!(part, Nuisance::Drift(_)))
+    }
+
     /// The shape of each of them (1) at every sample.
     pub(crate) fn shapes(&self) -> &[Vec<f64>] {
         &self.shapes

@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 
 use fmm_fit::{Options, Progress, f_tail};
 
-use crate::experiment::nuisance::Nuisance;
 use crate::fit::identification::closest;
 use crate::judgement::{Judgement, shortcomings};
 use crate::residuals::filtering::filtering_sensor;
@@ -109,7 +108,7 @@ impl Comparison {
         let sensor = filtering_sensor(decays, &identifications, preferred);
         judgement.is_decided &= sensor.is_none();
         // What a drift leaves may have been taken for the law.
-        let drifts = decays.iter().any(|decay| decay.nuisances().iter().any(|part| matches!(part, Nuisance::Drift(_))));
+        let drifts = decays.iter().any(Experiment::drifts);
         judgement.is_decided &= !(drifts && identifications[preferred].structure().is_correlated());
         let widened = widen_for_other_laws(candidates, &mut identifications, &judgement);
         let mut warnings = identifications[preferred].warnings().to_vec();

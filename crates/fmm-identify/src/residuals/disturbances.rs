@@ -4,7 +4,6 @@ use std::fmt;
 
 use fmm_model::Rounded;
 
-use crate::experiment::nuisance::Nuisance;
 use crate::{Experiment, Identification, RecordSummary, Warning};
 
 /// A factor of the uncertainties that is worth a word.
@@ -29,7 +28,7 @@ impl Warning {
     pub(crate) fn of_noise(identification: &Identification, decays: &[Experiment]) -> Vec<Self> {
         let mut warnings = Vec::new();
         let unit = || decays.first().map_or_else(String::new, |decay| decay.record().unit().to_owned());
-        if decays.iter().any(|decay| decay.nuisances().iter().any(|part| matches!(part, Nuisance::Drift(_)))) {
+        if decays.iter().any(Experiment::drifts) {
             warnings.push(Self::Drift);
         }
         let structure = identification.structure();

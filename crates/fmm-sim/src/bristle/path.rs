@@ -47,7 +47,11 @@ pub(crate) fn follow<D: Scalar, L: BristleLaw<D>>(
         if is_uniform && law.carry(leg.begin.velocity, leg.duration, &mut run.step.begin[2..]) {
             let states = &run.step.begin[2..];
             law.rate(leg.end.velocity, states, Regime::ALL_HOLD, &mut rates);
-            visit(normal_load * law.coefficient(leg.end.velocity, states, &rates), states);
+            let force = normal_load * law.coefficient(leg.end.velocity, states, &rates);
+            if !force.value().is_finite() {
+                return Err(SimulationError::NotFinite { time: duration });
+            }
+            visit(force, states);
             // What follows begins anew.
             before = 0.0;
             continue;

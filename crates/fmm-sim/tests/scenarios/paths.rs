@@ -156,3 +156,11 @@ fn closed_forms_are_what_steps_find() {
     let law = MaxwellSlip::new(&[(2e3, 0.1), (500.0, 0.1)]).unwrap();
     same(friction_along(&law, 3.0, &lines).unwrap(), friction_along(&law, 3.0, &stepped).unwrap());
 }
+
+/// A closed form that leaves the range of numbers is refused as steps are.
+#[test]
+fn a_force_that_is_not_finite_is_refused() {
+    let path = Path::lines(&[0.0, 1.0], &[0.0, 1.0]).unwrap();
+    let refused = friction_along(&Dahl::new(1e3, 1e5, 1.0).unwrap(), 1e307, &path);
+    assert!(matches!(refused, Err(SimulationError::NotFinite { .. })), "{refused:?}");
+}
