@@ -1,13 +1,18 @@
 //! Records on which a judgement went wrong once: each must be right, or say what is the matter.
 
+use std::f64::consts::TAU;
 use std::path::PathBuf;
 
+use fmm_friction::Coulomb;
 use fmm_identify::{
     Candidate, Comparison, Experiment, Finding, Identification, IdentifyError, Known, Machine, Preparation, Search,
     Warning, compare, search,
 };
-use fmm_model::Restoring;
+use fmm_model::{Damping, Oscillator, Restoring};
 use fmm_record::{Column, Quantity, Reader, Record};
+use fmm_sim::{Engine, Exact, Sampling, Scenario};
+
+use crate::measurement::white;
 
 /// The file called `name`, of this folder or of those by which records are tried.
 fn path(name: &str) -> PathBuf {
@@ -197,4 +202,27 @@ fn threads_change_nothing() {
         search(&machine(), std::slice::from_ref(&decay), &Search::default().on_threads(threads)).unwrap().to_string()
     };
     assert_eq!(on(1), on(3));
+}
+
+/// What polynomials leave of a drift is taken for a law that falls or sticks: Coulomb and viscous friction are true.
+#[test]
+fn a_law_that_follows_a_drift_is_not_decided_for() {
+    for seed in [7, 17] {
+        let decay = Experiment::ring_down(&drifting(seed), &Preparation::default()).unwrap();
+        let comparison = search(&machine(), &[decay], &Search::default()).unwrap();
+        assert!(comparison.warnings().contains(&Warning::Drift), "{comparison}");
+        let right = comparison.preferred().law() == "coulomb_viscous";
+        assert!(right || !comparison.is_decided(), "{comparison}");
+    }
+}
+
+/// The thesis' machine released at 22 mm: displacement, with a noise of 5 µm and a wave of 50 µm from end to end as drift.
+fn drifting(seed: u64) -> Record {
+    let oscillator = Oscillator::new(10.391, 1982.0).unwrap().with_damping(Damping::linear(0.275).unwrap());
+    let scenario = Scenario::new(oscillator, Coulomb::new(0.25).unwrap(), 14.0).unwrap().starting_at(22e-3, 0.0);
+    let motion = Exact.run(&scenario.unwrap(), &Sampling::uniform(1e-3, 3000).unwrap()).unwrap();
+    let drift = |i: usize| 25e-6 * (TAU * i as f64 / 3000.0 + 0.7 * seed as f64).sin();
+    let samples = motion.position().values().iter().zip(white(5e-6, seed, 3000)).enumerate();
+    let values = samples.map(|(i, (x, noise))| x + noise + drift(i)).collect();
+    Record::new(0.0, 1e-3, values, Quantity::Displacement, "m").unwrap()
 }
