@@ -105,3 +105,57 @@ impl Scales {
 pub(crate) fn is_force(role: Role) -> bool {
     matches!(role, Role::Level | Role::Excess | Role::LevelAbove | Role::Breakaway)
 }
+
+#[cfg(test)]
+mod tests {
+    use fmm_friction::CoulombViscous;
+    use fmm_model::{Bounds, Parameter};
+
+    use super::*;
+
+    /// A parameter in `unit`, of a law in which it stands alone.
+    const fn alone(unit: &'static str, role: Role) -> LawParameter {
+        LawParameter::new(Parameter::new("value", "x", unit).bounded(Bounds::POSITIVE), role).typically(0.5)
+    }
+
+    static ALL: [LawParameter; 6] = [
+        alone("m/s", Role::Shape),
+        alone("mm/s", Role::Shape),
+        alone("s/m", Role::Shape),
+        alone("s/mm", Role::Shape),
+        alone("1/mm", Role::Level),
+        alone("s/mm", Role::Slope),
+    ];
+
+    fn law() -> Law {
+        Law { parameters: &ALL, ..Law::of::<CoulombViscous>() }
+    }
+
+    #[test]
+    fn fits_begin_at_the_scales_of_the_motion_in_the_unit_of_the_parameter() {
+        // Amplitude 0.02 m, 0.8 m/s, friction 3 m/s², viscous 0.25 1/s, bends twice as sharp.
+        let scales = Scales { length: 0.02, speed: 0.8, friction: 3.0, damping: 0.25, sharpness: 2.0 };
+        let wanted = [0.2, 200.0, 1.25, 1.25e-3, 0.15, 0.25e-3];
+        for (parameter, wanted) in ALL.iter().zip(wanted) {
+            let found = scales.typical(&law(), parameter);
+            assert!((found / wanted - 1.0).abs() < 1e-12, "{}: {found}, {wanted}", parameter.parameter().unit());
+        }
+    }
+
+    #[test]
+    fn a_speed_is_stated_in_the_unit_of_the_parameter() {
+        for (parameter, wanted) in ALL.iter().zip([0.8, 800.0, 1.25, 1.25e-3]) {
+            let powers = law().powers(parameter);
+            assert!(powers.of_speed().is_some());
+            assert!((powers.at_speed(0.8) / wanted - 1.0).abs() < 1e-12, "{}", parameter.parameter().unit());
+        }
+        assert_eq!(law().powers(&ALL[4]).of_speed(), None);
+    }
+
+    #[test]
+    fn a_gain_scales_lengths_and_forces() {
+        let powers = ALL.each_ref().map(|parameter| law().power_of_gain(parameter));
+        // A slope is a force per speed, which a gain does not change.
+        assert_eq!(powers, [1.0, 1.0, -1.0, -1.0, 0.0, 0.0]);
+    }
+}

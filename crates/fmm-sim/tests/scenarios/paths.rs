@@ -107,6 +107,7 @@ fn what_is_no_motion_is_refused() {
     assert!(second(times(&[0.0, -1.0], &[state(0.0); 2])));
     assert!(times(&[0.0, 0.0], &[state(0.0), state(1.0)]).is_err());
     assert!(times(&[0.0], &[state(f64::NAN)]).is_err());
+    assert!(second(Path::lines(&[0.0, 0.0], &[0.0, 1.0]).map(|_| ())));
     assert!(Path::at_speed(&[0.0], 0.0).is_err() && Path::at_speed(&[f64::INFINITY], 1.0).is_err());
     let nothing = Path::<f64>::through(&[], &[]).unwrap();
     assert_eq!(friction_along(&dahl(), 1.0, &nothing), Ok(vec![]));
