@@ -110,6 +110,10 @@ impl Comparison {
         // What a drift leaves may have been taken for the law.
         let drifts = decays.iter().any(Experiment::drifts);
         judgement.is_decided &= !(drifts && identifications[preferred].structure().is_correlated());
+        // Noise that grows with the motion hides what a law that is left has more than the preferred one.
+        let grows = identifications[preferred].noise().growth().is_some();
+        let has_others = (0..candidates.len()).any(|place| place != preferred && judgement.is_left(place));
+        judgement.is_decided &= !(grows && has_others);
         let widened = widen_for_other_laws(candidates, &mut identifications, &judgement);
         let mut warnings = identifications[preferred].warnings().to_vec();
         warnings.extend(others);
