@@ -90,6 +90,7 @@ mod error;
 mod estimators;
 mod experiment;
 mod fit;
+mod force;
 mod impact;
 mod judgement;
 mod law;
@@ -104,6 +105,7 @@ pub use estimators::{
 };
 pub use experiment::{Drive, Experiment, Offset, Preparation, RecordSummary, Sensor};
 pub use fit::{FittedMotion, Identification, MachineProblem, Problem, identify, identify_observed, identify_with};
+pub use force::{ForceIdentification, ForceModel, ForceRecord, Validation, identify_force};
 pub use impact::{
     ImpactDomain, ImpactIdentification, ImpactMachine, ImpactOptions, ImpactProblem, ImpactSummary, ImpactTrial,
     identify_impact,

@@ -68,7 +68,7 @@ impl Layout {
         let oscillator = parameters.len();
         parameters.extend(terms.parameters(&units.position));
         let law = parameters.len();
-        parameters.extend(family.fitted().map(|parameter| units.fitted(parameter, unknown_scale)));
+        parameters.extend(family.fitted().map(|parameter| units.fitted(parameter, unknown_scale.then_some("N"))));
         let shared = parameters.len();
         let mut own = Vec::with_capacity(decays.len());
         for (index, decay) in decays.iter().enumerate() {
@@ -239,41 +239,61 @@ pub(crate) struct Units {
 }
 
 impl Units {
-    /// A parameter of a law as a fit has it: forces per mass, or as they are if the mass is fitted as well.
-    fn fitted(&self, law_parameter: &LawParameter, unknown_scale: bool) -> Parameter {
+    /// A parameter of a law as a fit has it: as a force in its unit if that is given, or else per mass.
+    pub(crate) fn fitted(&self, law_parameter: &LawParameter, force: Option<&str>) -> Parameter {
         let parameter = law_parameter.parameter();
-        let quantity = if unknown_scale { "friction_force" } else { "friction_per_mass" };
-        let force = if unknown_scale { "N" } else { &self.acceleration };
+        let quantity = if force.is_some() { "friction_force" } else { "friction_per_mass" };
+        let level = force.unwrap_or(&self.acceleration);
         let renamed = match (law_parameter.role(), parameter.unit()) {
-            (Role::Slope, _) if unknown_scale => Parameter::new("damping", "c", "N s/m"),
-            (Role::Slope, _) => Parameter::new(LINEAR, "c/m", "1/s"),
+            (Role::Slope, _) => match force {
+                Some(force) => Parameter::named("damping", "c", self.damping(force)),
+                None => Parameter::new(LINEAR, "c/m", "1/s"),
+            },
             (Role::LevelAbove | Role::Breakaway, _) => {
                 let name = parameter.name().replace("coefficient", "excess_coefficient");
-                named(&Parameter::named(name, parameter.symbol().to_owned(), "1"), quantity, force)
+                named(&Parameter::named(name, parameter.symbol().to_owned(), "1"), quantity, level)
             }
-            (role, "1") if is_force(role) => named(parameter, quantity, force),
+            (role, "1") if is_force(role) => named(parameter, quantity, level),
             (role, unit) if is_force(role) => {
-                let name = format!("contact_{}{}", parameter.name(), if unknown_scale { "" } else { "_per_mass" });
-                let unit = match (unit, unknown_scale) {
-                    ("1/m", true) => "N/m".to_owned(),
-                    ("1/m", false) => "1/s²".to_owned(),
-                    ("s/m", true) => "N s/m".to_owned(),
-                    ("s/m", false) => "1/s".to_owned(),
-                    _ => format!("{force} {unit}"),
+                let name = format!("contact_{}{}", parameter.name(), if force.is_some() { "" } else { "_per_mass" });
+                let unit = match (unit, force) {
+                    ("1/m", Some(force)) => format!("{force}/{}", self.position),
+                    ("1/m", None) => "1/s²".to_owned(),
+                    ("s/m", Some(force)) => self.damping(force),
+                    ("s/m", None) => "1/s".to_owned(),
+                    _ => format!("{level} {unit}"),
                 };
                 Parameter::named(name, parameter.symbol().to_owned(), unit)
             }
-            (_, unit) => {
-                let unit = match unit {
-                    "m/s" => self.velocity.clone(),
-                    "s/m" => self.inverse_velocity(),
-                    "1/m^n" => format!("1/{}^n", self.position),
-                    other => other.to_owned(),
-                };
-                Parameter::named(parameter.name().to_owned(), parameter.symbol().to_owned(), unit)
-            }
+            _ => self.of_motion(parameter),
         };
         renamed.bounded(parameter.bounds())
+    }
+
+    /// A parameter that does not scale with the force, with the units of the record in place of m and m/s.
+    pub(crate) fn of_motion(&self, parameter: &Parameter) -> Parameter {
+        let unit = match parameter.unit() {
+            "m/s" => self.velocity.clone(),
+            "s/m" => self.inverse_velocity(),
+            "1/m" => format!("1/{}", self.position),
+            "1/m^n" => format!("1/{}^n", self.position),
+            other => other.to_owned(),
+        };
+        Parameter::named(parameter.name().to_owned(), parameter.symbol().to_owned(), unit).bounded(parameter.bounds())
+    }
+
+    /// Unit of a damping with forces in `force`.
+    pub(crate) fn damping(&self, force: &str) -> String {
+        format!("{force} s/{}", self.position)
+    }
+
+    /// Those of a motion with positions in `position`.
+    pub(crate) fn of_positions(position: &str) -> Self {
+        Self {
+            position: position.into(),
+            velocity: format!("{position}/s"),
+            acceleration: format!("{position}/s²"),
+        }
     }
 
     fn inverse_velocity(&self) -> String {
@@ -286,7 +306,7 @@ impl Units {
     pub(crate) fn of(decay: &Experiment) -> Self {
         let unit = decay.record().unit();
         if decay.record().quantity() == Quantity::Displacement {
-            return Self { position: unit.into(), velocity: format!("{unit}/s"), acceleration: format!("{unit}/s²") };
+            return Self::of_positions(unit);
         }
         if decay.record().quantity() == Quantity::Acceleration {
             return match unit.strip_suffix("/s²").or_else(|| unit.strip_suffix("/s^2")) {

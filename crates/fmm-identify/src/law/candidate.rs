@@ -189,6 +189,14 @@ impl Candidate {
         identify_by(self.law, machine, &self.terms, decays, near, options, observer)
     }
 
+    pub(crate) const fn law(&self) -> &Law {
+        &self.law
+    }
+
+    pub(crate) const fn terms(&self) -> &Terms {
+        &self.terms
+    }
+
     /// Name of the law alone.
     pub fn law_name(&self) -> &'static str {
         self.law.name

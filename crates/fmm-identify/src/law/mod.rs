@@ -7,9 +7,11 @@ pub(crate) mod friction_curve;
 pub use candidate::Candidate;
 
 use fmm_fit::EvaluationError;
-use fmm_friction::{LawFamily, LawParameter, Role, SpecialCase};
+use fmm_friction::{LawFamily, LawKind, LawParameter, Role, SpecialCase};
 use fmm_model::{Dual, Oscillator, Scalar};
 use fmm_sim::{Excitation, Sampling, Scenario, Trajectory, simulate_into};
+
+use crate::force::along::{Along, along};
 
 /// Directions of derivative that one simulation carries; a law with more parameters takes several.
 pub(crate) const DIRECTIONS: usize = 6;
@@ -58,6 +60,9 @@ pub(crate) struct Law {
     pub(crate) special_cases: &'static [SpecialCase],
     pub(crate) plain: Simulate<f64>,
     pub(crate) with_derivatives: Simulate<Dual<DIRECTIONS>>,
+    pub(crate) along: Along<f64>,
+    pub(crate) along_with_derivatives: Along<Dual<DIRECTIONS>>,
+    kind: fn() -> LawKind,
     /// Whether static levels of their own are fitted.
     fits_breakaway: bool,
     steady: fn(&[f64], f64, bool) -> Option<f64>,
@@ -72,6 +77,9 @@ impl Law {
             special_cases: F::SPECIAL_CASES,
             plain: Motion::simulate::<F>,
             with_derivatives: Motion::simulate::<F>,
+            along: along::<F, f64>,
+            along_with_derivatives: along::<F, Dual<DIRECTIONS>>,
+            kind: F::kind,
             fits_breakaway: false,
             steady: steady::<F>,
         }
@@ -81,6 +89,11 @@ impl Law {
     /// or, if it is `losing`, falls; none if the family does not say.
     pub(crate) fn steady(&self, fitted: &[f64], speed: f64, losing: bool) -> Option<f64> {
         (self.steady)(&self.values(fitted), speed, losing)
+    }
+
+    /// Whether it is one of the sliding speed, without internal state.
+    pub(crate) fn is_of_speed(&self) -> bool {
+        matches!((self.kind)(), LawKind::Sliding | LawKind::PiecewiseLinear)
     }
 
     /// The same law with its static level fitted, as what it lies above the sliding level by.

@@ -176,6 +176,11 @@ impl Terms {
         self.iter().any(Term::is_spring)
     }
 
+    /// Whether damping may come out negative.
+    pub(crate) const fn are_of_any_sign(&self) -> bool {
+        self.any_sign
+    }
+
     /// Whether a linear damping of the machine is fitted.
     pub const fn has_linear_damping(&self) -> bool {
         self.has(Term::LinearDamping)

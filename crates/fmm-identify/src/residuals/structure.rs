@@ -31,13 +31,14 @@ impl ResidualStructure {
             scaled(decays).map(|(decay, weight)| 1e-9 * weight * decay.summary().amplitudes.0).fold(0.0, f64::max);
         // A converter step counts as the noise of its rounding.
         let noise = scaled(decays).map(|(decay, weight)| weight * decay.white_noise()).fold(rounding, f64::max);
-        let count = fit.residuals().len() as f64;
-        Self {
-            residual: (fit.sum_of_squares() / count).sqrt(),
-            noise,
-            rounding,
-            autocorrelation_time: autocorrelation_time(fit.residuals()).unwrap_or(1.0),
-        }
+        Self::beside(fit, noise, rounding)
+    }
+
+    /// That of a fit to series of which the `noise` and the `rounding` are known, in the unit of the residuals.
+    pub(crate) fn beside(fit: &Fit, noise: f64, rounding: f64) -> Self {
+        let residual = (fit.sum_of_squares() / fit.residuals().len() as f64).sqrt();
+        let autocorrelation_time = autocorrelation_time(fit.residuals()).unwrap_or(1.0);
+        Self { residual, noise: noise.max(rounding), rounding, autocorrelation_time }
     }
 
     /// Whether there is more in the residuals than the rounding of doubles.
@@ -77,21 +78,36 @@ pub(crate) struct Covariance {
 
 impl Covariance {
     pub(crate) fn of(problem: &Problem<'_>, fit: &Fit, structure: &ResidualStructure) -> Result<Self, EvaluationError> {
+        let columns = problem.columns(fit.values(), &Self::known(fit))?;
+        let noise = Self::noise(problem, fit, structure, &columns, &inverse_of_products(&columns));
+        Ok(Self::of_noise(fit, structure, &columns, noise))
+    }
+
+    /// The parameters of a fit that have a variance.
+    pub(crate) fn known(fit: &Fit) -> Vec<usize> {
+        let has_variance = |i: &usize| Self::plain(fit, *i, *i).is_some();
+        (0..fit.values().len()).filter(has_variance).collect()
+    }
+
+    fn plain(fit: &Fit, i: usize, j: usize) -> Option<f64> {
+        fit.relaxed_covariance(i, j).or_else(|| fit.covariance(i, j))
+    }
+
+    /// That of a `fit` whose residuals show this `noise`; `columns` are the derivatives by the [`known`](Self::known) parameters.
+    pub(crate) fn of_noise(fit: &Fit, structure: &ResidualStructure, columns: &[Vec<f64>], noise: ResidualNoise) -> Self {
         let count = fit.values().len();
-        let plain = |i: usize, j: usize| fit.relaxed_covariance(i, j).or_else(|| fit.covariance(i, j));
-        let mut elements: Vec<Option<f64>> = (0..count * count).map(|at| plain(at / count, at % count)).collect();
-        let known: Vec<usize> = (0..count).filter(|i| elements[i * count + i].is_some()).collect();
+        let plain = |at: usize| Self::plain(fit, at / count, at % count);
+        let mut elements: Vec<Option<f64>> = (0..count * count).map(plain).collect();
+        let known = Self::known(fit);
         let variance = fit.residual_standard_deviation().map_or(0.0, |s| s * s);
-        let columns = problem.columns(fit.values(), &known)?;
         let scale = 1.0 / variance.max(f64::MIN_POSITIVE);
         let pairs = known.iter().flat_map(|i| known.iter().map(move |j| i * count + j));
         let unit: Vec<f64> = pairs.map(|at| elements[at].unwrap_or(0.0) * scale).collect();
-        let noise = Self::noise(problem, fit, structure, &columns, &inverse_of_products(&columns));
         let independent = fit.degrees_of_freedom() as f64;
         let (mut degrees_of_freedom, mut inflation) = (independent, 1.0_f64);
         if structure.is_noisy() && !noise.is_plain() && !known.is_empty() {
             let order = known.len();
-            let middle = noise.products(&columns);
+            let middle = noise.products(columns);
             let element = |matrix: &[f64], i: usize, j: usize| matrix[i * order + j];
             // A parameter's influence on the residuals of one that holds all others apart from what they can take over.
             let mut sum = 0.0;
@@ -119,7 +135,7 @@ impl Covariance {
             degrees_of_freedom = (told - fit.rank() as f64).max(1.5).min(independent);
         }
         let is_inside = fit.estimates().iter().map(|estimate| estimate.standard_uncertainty().is_some()).collect();
-        Ok(Self { count, elements, is_inside, degrees_of_freedom, inflation, noise })
+        Self { count, elements, is_inside, degrees_of_freedom, inflation, noise }
     }
 
     fn noise(

@@ -2,6 +2,7 @@
 
 mod acceleration;
 mod driven;
+mod force;
 mod joint;
 mod simulated;
 mod springs;

@@ -1,0 +1,220 @@
+//! Friction of a law along a motion that was measured.
+
+use fmm_fit::EvaluationError;
+use fmm_friction::{BristleLaw, LawFamily, LawVisitor, Regime, SlidingLaw};
+use fmm_model::Scalar;
+use fmm_sim::{Path, friction_along};
+
+use crate::ForceRecord;
+
+/// A measured motion, seen some time earlier than the force.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Guide<'a, D> {
+    pub(crate) record: &'a ForceRecord,
+    /// By how much the force comes later than the motion (s).
+    pub(crate) delay: D,
+    /// Whether there is such a delay, known or to be found.
+    pub(crate) has_delay: bool,
+    /// Deflection of all bristles at the first sample, as a share of their bounds (1).
+    pub(crate) deflection: D,
+    /// The first sample that is compared; the others follow it.
+    pub(crate) first: usize,
+    /// One for each sample that is compared.
+    pub(crate) places: &'a [Place],
+}
+
+/// Where the motion was when the force of a sample acted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Place {
+    /// The sample before it, or at it.
+    pub(crate) node: usize,
+    pub(crate) contact: Contact,
+}
+
+/// What a contact does, as far as the velocity says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Contact {
+    Slides,
+    /// Between two samples with velocities of opposite signs, nobody knows where.
+    Turns,
+    Rests,
+}
+
+/// Friction coefficient (1) at the sample of each place; of a law of the speed that leaps at rest the level there where the contact does
+/// not slide.
+pub(crate) type Along<D> = fn(&[D], Guide<'_, D>, &mut Vec<D>) -> Result<(), EvaluationError>;
+
+/// Friction of family `F` by these `values`.
+pub(crate) fn along<F: LawFamily, D: Scalar>(
+    values: &[D],
+    guide: Guide<'_, D>,
+    friction: &mut Vec<D>,
+) -> Result<(), EvaluationError> {
+    friction.clear();
+    let law = F::at(values)?;
+    F::visit(Following { law: &law, guide, friction })
+}
+
+/// A way of so many largest deflections makes bristles slide; it takes as many seconds.
+const LONG: f64 = 20.0;
+
+/// Places of the samples `rows` for a `delay` (s).
+pub(crate) fn places(record: &ForceRecord, rows: std::ops::Range<usize>, delay: f64, places: &mut Vec<Place>) {
+    places.clear();
+    let (times, velocities) = (&record.times, &record.velocities);
+    let mut node = 0;
+    for row in rows {
+        let time = times[row] - delay;
+        while node + 2 < times.len() && times[node + 1] <= time {
+            node += 1;
+        }
+        let elapsed = time - times[node];
+        let [begin, end] = [velocities[node], velocities[node + 1]];
+        let velocity = begin + (end - begin) * elapsed / (times[node + 1] - times[node]);
+        let turns = elapsed > 0.0 && begin * end <= 0.0;
+        let rests = velocity.abs() <= record.rest_speed;
+        let contact = if turns { Contact::Turns } else if rests { Contact::Rests } else { Contact::Slides };
+        places.push(Place { node, contact });
+    }
+}
+
+impl<D: Scalar> Guide<'_, D> {
+    /// The time (s) from the node of a place to the motion at sample `row`.
+    pub(crate) fn elapsed(&self, row: usize, place: Place) -> D {
+        D::from(self.record.times[row] - self.record.times[place.node]) - self.delay
+    }
+
+    /// What a measured `series` is between two samples.
+    pub(crate) fn between(&self, series: &[f64], place: Place, elapsed: D) -> D {
+        let (node, times) = (place.node, &self.record.times);
+        let slope = (series[node + 1] - series[node]) / (times[node + 1] - times[node]);
+        D::from(series[node]) + elapsed * slope
+    }
+
+    /// Friction of a law without a closed form, which is followed from sample to sample, and by straight lines between them.
+    fn stepped<L: BristleLaw<D>>(&self, law: &L, friction: &mut Vec<D>) -> Result<(), EvaluationError> {
+        let (times, positions) = (&self.record.times, &self.record.positions);
+        // Bristles are at first as after a long way in the direction in which the record begins.
+        let way = (0..law.states()).map(|index| law.bound(index).value()).fold(0.0, f64::max) * LONG;
+        let direction = self.deflection.value().signum();
+        let before = std::iter::once((0.0, positions[0] - direction * way));
+        let after = times.iter().zip(positions).map(|(time, position)| (time - times[0] + LONG, *position));
+        let (since, positions): (Vec<D>, Vec<D>) =
+            before.chain(after).map(|(time, position)| (D::from(time), D::from(position))).unzip();
+        let points = friction_along(law, D::from(1.0), &Path::lines(&since, &positions)?)?;
+        let points = &points[1..];
+        friction.clear();
+        for (row, place) in (self.first..).zip(self.places) {
+            let share = self.elapsed(row, *place) / (times[place.node + 1] - times[place.node]);
+            let [begin, end] = [0, 1].map(|next| points[place.node + next].force);
+            friction.push(begin + (end - begin) * share);
+        }
+        Ok(())
+    }
+}
+
+/// The motion between two samples: the velocity changes in proportion to time, and what the positions differ by from that is spread evenly.
+struct Leg {
+    duration: f64,
+    /// Velocity at the beginning, with what is spread.
+    velocity: f64,
+    acceleration: f64,
+    /// When it turns after the beginning (s), if it does.
+    turn: Option<f64>,
+}
+
+impl Leg {
+    fn of(record: &ForceRecord, node: usize) -> Self {
+        let change = |series: &[f64]| series[node + 1] - series[node];
+        let (duration, [begin, end]) = (change(&record.times), [0, 1].map(|next| record.velocities[node + next]));
+        let velocity = change(&record.positions) / duration - 0.5 * (end - begin);
+        let acceleration = (end - begin) / duration;
+        let turn = -velocity / acceleration;
+        Self { duration, velocity, acceleration, turn: Some(turn).filter(|turn| *turn > 0.0 && *turn < duration) }
+    }
+
+    /// The mean velocity up to a time after the beginning.
+    fn mean<D: Scalar>(&self, elapsed: D) -> D {
+        D::from(self.velocity) + elapsed * (0.5 * self.acceleration)
+    }
+
+    /// Carries the state of a law through the first `elapsed` of it (s); whether the law has a closed form for that.
+    fn carry<D: Scalar, L: BristleLaw<D>>(&self, law: &L, elapsed: D, state: &mut [D]) -> bool {
+        let go = |velocity: D, duration: D, state: &mut [D]| {
+            velocity.value() == 0.0 || law.carry(velocity, duration, state)
+        };
+        match self.turn.filter(|turn| *turn < elapsed.value()) {
+            None => go(self.mean(elapsed), elapsed, state),
+            Some(turn) => {
+                let turn = D::from(turn);
+                // From the turn on it goes back from rest.
+                go(self.mean(turn), turn, state)
+                    && go((elapsed - turn) * (0.5 * self.acceleration), elapsed - turn, state)
+            }
+        }
+    }
+}
+
+struct Following<'a, 'g, D, L> {
+    law: &'a L,
+    guide: Guide<'g, D>,
+    friction: &'a mut Vec<D>,
+}
+
+impl<D: Scalar, L> LawVisitor<D, L> for Following<'_, '_, D, L> {
+    type Output = Result<(), EvaluationError>;
+
+    fn sliding(self) -> Self::Output
+    where
+        L: SlidingLaw<D>,
+    {
+        let Self { law, guide, friction } = self;
+        let (sliding, breakaway) = (law.coefficient(D::from(0.0)), law.breakaway());
+        let at_rest = if sliding.value() > breakaway.value() { sliding } else { breakaway };
+        let leaps = sliding.value() > 0.0;
+        for (row, place) in (guide.first..).zip(guide.places) {
+            if leaps && place.contact != Contact::Slides {
+                friction.push(at_rest);
+                continue;
+            }
+            let elapsed = guide.elapsed(row, *place);
+            let velocity = guide.between(&guide.record.velocities, *place, elapsed);
+            let acceleration = guide.between(&guide.record.accelerations, *place, elapsed);
+            let losing = velocity.value() * acceleration.value() < 0.0;
+            let speed = velocity.abs();
+            let size = if losing { law.coefficient_losing_speed(speed) } else { law.coefficient(speed) };
+            friction.push(if velocity.value() < 0.0 { -size } else { size });
+        }
+        Ok(())
+    }
+
+    fn bristle(self) -> Self::Output
+    where
+        L: BristleLaw<D>,
+    {
+        let Self { law, guide, friction } = self;
+        let mut state: Vec<D> = (0..law.states()).map(|index| law.bound(index) * guide.deflection).collect();
+        let (mut here, mut rate) = (state.clone(), state.clone());
+        let mut at = 0;
+        for (row, place) in (guide.first..).zip(guide.places) {
+            while at < place.node {
+                let leg = Leg::of(guide.record, at);
+                if !leg.carry(law, D::from(leg.duration), &mut state) {
+                    return guide.stepped(law, friction);
+                }
+                at += 1;
+            }
+            let elapsed = guide.elapsed(row, *place);
+            here.copy_from_slice(&state);
+            // A delay has its derivative even where no time has passed.
+            let is_later = guide.has_delay || elapsed.value() != 0.0;
+            if is_later && !Leg::of(guide.record, at).carry(law, elapsed, &mut here) {
+                return guide.stepped(law, friction);
+            }
+            let velocity = guide.between(&guide.record.velocities, *place, elapsed);
+            law.rate(velocity, &here, Regime::ALL_HOLD, &mut rate);
+            friction.push(law.coefficient(velocity, &here, &rate));
+        }
+        Ok(())
+    }
+}

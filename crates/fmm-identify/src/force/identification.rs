@@ -1,0 +1,289 @@
+//! The fit of a law to measured forces along measured motions.
+
+use std::fmt;
+
+use fmm_fit::{EvaluationError, Fit, Options, Outcome, Residuals, solve};
+use fmm_friction::Role;
+
+use crate::fit::layout::named;
+use crate::fit::tangent::inverse_of_products;
+use crate::force::problem::ForceProblem;
+use crate::force::start::starts;
+use crate::report::{name_width, write_warnings};
+use crate::residuals::noise::{ResidualNoise, Series};
+use crate::residuals::structure::{Covariance, ResidualStructure};
+use crate::{Finding, ForceModel, ForceRecord, IdentifyError, Origin, Warning};
+
+/// Friction parameters out of forces along motions, with their uncertainty.
+///
+/// `Display` gives the report.
+#[derive(Debug, Clone)]
+pub struct ForceIdentification {
+    model: ForceModel,
+    fit: Fit,
+    findings: Vec<Finding>,
+    warnings: Vec<Warning>,
+    structure: ResidualStructure,
+    force: f64,
+    unit: String,
+}
+
+/// How well a model says the forces of a record to which it was not fitted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Validation {
+    /// Root mean square of what it says less the force, in the unit of the force.
+    pub rms: f64,
+    /// Standard deviation of the force, in its unit.
+    pub force: f64,
+}
+
+impl Validation {
+    /// The one over the other (1).
+    pub fn share(&self) -> f64 {
+        self.rms / self.force
+    }
+}
+
+/// Fits `model` to the forces of `records`, which share all parameters.
+///
+/// Levels and what else the force is proportional to begin where a linear fit puts them, shapes where a search on a few scales of the
+/// motion does. Standard uncertainties hold for noise with the correlation that the residuals show.
+///
+/// At rest a law of the speed that leaps there bounds friction and does not give it: such a sample counts only if its force lies outside
+/// the bounds, and one between two samples with velocities of opposite signs does not count. A law with internal state says friction
+/// there too; where its bristles are at the beginning of a record is fitted.
+///
+/// ```
+/// use fmm_identify::{ForceModel, ForceRecord, identify_force};
+///
+/// // A slide driven to and fro, 40 mm at 0.5 Hz; 12 N and 30 N s/m of friction, and a sensor whose zero is 3 N off.
+/// let times: Vec<f64> = (0..400).map(|i| 0.01 * f64::from(i)).collect();
+/// let turn = std::f64::consts::PI;
+/// let positions: Vec<f64> = times.iter().map(|t| 0.02 * (turn * t).sin()).collect();
+/// let velocities: Vec<f64> = times.iter().map(|t| 0.02 * turn * (turn * t).cos()).collect();
+/// let forces: Vec<f64> = velocities.iter().map(|v| 12.0 * v.signum() + 30.0 * v + 3.0).collect();
+///
+/// let record = ForceRecord::of_positions(&times, &positions, &forces)?.with_velocities(&velocities)?;
+/// let found = identify_force(&ForceModel::named("coulomb + linear + zero")?, &[record])?;
+/// assert!((found.finding("friction_force").unwrap().value() - 12.0).abs() < 1e-9);
+/// assert!((found.finding("damping").unwrap().value() - 30.0).abs() < 1e-7);
+/// assert!((found.finding("zero").unwrap().value() - 3.0).abs() < 1e-9);
+/// println!("{found}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`IdentifyError::Missing`] without a record, [`IdentifyError::WrongRecord`] and [`IdentifyError::Contradiction`] if the records do not
+/// go together, [`IdentifyError::TooFew`], and [`IdentifyError::Simulation`] or [`IdentifyError::Fit`] if the fit cannot begin.
+pub fn identify_force(model: &ForceModel, records: &[ForceRecord]) -> Result<ForceIdentification, IdentifyError> {
+    let model = model.settled(records);
+    let problem = ForceProblem::new(&model, records)?;
+    let law = problem.law().name;
+    let failure = |error: EvaluationError| IdentifyError::simulation(law, error);
+    let mut best: Option<Fit> = None;
+    for start in starts(&problem).map_err(failure)? {
+        let fit = solve(&problem, &start, &Options::default()).map_err(|source| IdentifyError::Fit { law, source })?;
+        let is_exact = fit.outcome() == Outcome::AtNoiseFloor;
+        if best.as_ref().is_none_or(|best| fit.sum_of_squares() < best.sum_of_squares()) {
+            best = Some(fit);
+        }
+        if is_exact {
+            break;
+        }
+    }
+    let fit = best.ok_or_else(|| IdentifyError::missing("a model without a parameter cannot be fitted"))?;
+    let noise = records.iter().map(ForceRecord::noise).fold(0.0, f64::max);
+    let forces = deviation(records);
+    let structure = ResidualStructure::beside(&fit, noise, 1e-9 * forces);
+    let covariance = covariance(&problem, &fit, &structure).map_err(failure)?;
+    let findings = fit.estimates().iter().enumerate().map(|(index, estimate)| {
+        let at_bound = estimate.status().is_at_bound();
+        let variance = covariance.get(index, index);
+        Finding::new(
+            estimate.parameter().clone(),
+            estimate.value(),
+            variance.map(|variance| (variance, variance)),
+            covariance.degrees_of_freedom(),
+            Origin::Fitted(estimate.status()),
+            problem.is_of_record(index),
+        )
+        .at_bound(
+            covariance.relaxed(index).filter(|_| at_bound).map(f64::sqrt),
+            covariance.degrees_of_freedom(),
+        )
+    });
+    let mut findings: Vec<Finding> = findings.collect();
+    findings.extend(levels_above(&problem, &fit, &covariance));
+    let unit = records[0].force_unit().to_owned();
+    let mut warnings = Vec::new();
+    if structure.is_structured() {
+        warnings.push(Warning::StructuredResiduals {
+            residual: structure.residual,
+            noise: structure.noise,
+            unit: unit.clone(),
+            inflation: covariance.inflation(),
+        });
+    } else if structure.is_correlated() {
+        warnings.push(Warning::ColouredNoise {
+            time: structure.autocorrelation_time,
+            inflation: covariance.inflation(),
+        });
+    }
+    Warning::of_fit(&fit, &mut warnings);
+    warnings.extend(
+        problem
+            .law()
+            .held_breakaway()
+            .map(|held| Warning::StaticLevelHeld { parameter: held.parameter().name().to_owned() }),
+    );
+    Ok(ForceIdentification { model, fit, findings, warnings, structure, force: forces, unit })
+}
+
+/// What is stated as an excess over the sliding level, as the level that it makes with it.
+fn levels_above(problem: &ForceProblem<'_>, fit: &Fit, covariance: &Covariance) -> Vec<Finding> {
+    let law = problem.law();
+    let Some(level) = law.level() else { return Vec::new() };
+    let is_above = |role: Role| matches!(role, Role::LevelAbove | Role::Breakaway);
+    let above = law.fitted().enumerate().filter(|(_, parameter)| is_above(parameter.role()));
+    let stated = above.map(|(place, parameter)| {
+        let value = fit.values()[level] + fit.values()[place];
+        let variance = [(level, level), (level, place), (level, place), (place, place)]
+            .iter()
+            .map(|(i, j)| covariance.get(*i, *j))
+            .sum::<Option<f64>>();
+        let unit = problem.parameters()[level].unit();
+        let parameter = match problem.records()[0].loads {
+            None => named(parameter.parameter(), "friction_force", unit),
+            Some(_) => parameter.parameter().clone(),
+        };
+        let freedom = covariance.degrees_of_freedom();
+        Finding::new(parameter, value, variance.map(|v| (v, v)), freedom, Origin::Derived, false)
+    });
+    stated.collect()
+}
+
+/// Covariance of the estimates by the noise that the residuals of each record show.
+fn covariance(
+    problem: &ForceProblem<'_>,
+    fit: &Fit,
+    structure: &ResidualStructure,
+) -> Result<Covariance, EvaluationError> {
+    let rows = problem.len();
+    let mut jacobian = vec![0.0; rows * fit.values().len()];
+    problem.jacobian(fit.values(), &mut jacobian)?;
+    let columns: Vec<Vec<f64>> =
+        Covariance::known(fit).into_iter().map(|j| jacobian[j * rows..][..rows].to_vec()).collect();
+    let weights = inverse_of_products(&columns);
+    let series: Vec<Series<'_>> = problem
+        .series()
+        .iter()
+        .zip(problem.records())
+        .map(|(rows, record)| Series {
+            rows: rows.clone(),
+            signal: None,
+            period: record.period(),
+            columns: &columns,
+            weights: &weights,
+            stays: Vec::new(),
+        })
+        .collect();
+    let noise = ResidualNoise::of(fit.residuals(), &series);
+    Ok(Covariance::of_noise(fit, structure, &columns, noise))
+}
+
+/// Standard deviation of the forces of all `records`, in their unit.
+fn deviation(records: &[ForceRecord]) -> f64 {
+    let forces = || records.iter().flat_map(|record| record.forces());
+    let count = forces().count() as f64;
+    let mean = forces().sum::<f64>() / count;
+    (forces().map(|force| (force - mean).powi(2)).sum::<f64>() / count).sqrt()
+}
+
+impl ForceIdentification {
+    /// Name of the model.
+    pub fn model(&self) -> String {
+        self.model.name()
+    }
+
+    /// The fit behind the findings.
+    pub fn fit(&self) -> &Fit {
+        &self.fit
+    }
+
+    /// Everything found.
+    pub fn findings(&self) -> &[Finding] {
+        &self.findings
+    }
+
+    /// The finding of this name, such as `"friction_force"` or `"delay"`.
+    pub fn finding(&self, name: &str) -> Option<&Finding> {
+        self.findings.iter().find(|finding| finding.parameter().name() == name)
+    }
+
+    /// What limits the findings.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// Root mean square of the residuals, in the unit of the force.
+    pub fn rms_residual(&self) -> f64 {
+        self.structure.residual
+    }
+
+    /// Standard deviation of the forces, in their unit.
+    pub fn force_deviation(&self) -> f64 {
+        self.force
+    }
+
+    /// The force that was found at each sample of `record`, whose bristles are taken to begin as after a long way in the direction in
+    /// which it begins; none where a delay asks for a motion before or after what was measured, and where a law that leaps turns. At rest such a law bounds
+    /// the force: what is said is the measured force or the bound that it exceeds.
+    ///
+    /// # Errors
+    /// As for [`identify_force`].
+    pub fn predict(&self, record: &ForceRecord) -> Result<Vec<Option<f64>>, IdentifyError> {
+        let records = std::slice::from_ref(record);
+        let problem = ForceProblem::new(&self.model.of_others(), records)?;
+        let failure = |error| IdentifyError::simulation(problem.law().name, error);
+        let shared = problem.parameters().len();
+        let predicted = problem.predicted(0, &self.fit.values()[..shared]).map_err(failure)?;
+        let mut all = vec![None; record.len()];
+        all[problem.rows()[0].clone()].copy_from_slice(&predicted);
+        Ok(all)
+    }
+
+    /// How well it says the forces of a record to which it was not fitted.
+    ///
+    /// # Errors
+    /// As for [`identify_force`].
+    pub fn validate_on(&self, record: &ForceRecord) -> Result<Validation, IdentifyError> {
+        let predicted = self.predict(record)?;
+        let both = || predicted.iter().zip(record.forces()).filter_map(|(said, force)| Some(((*said)?, *force)));
+        let squares: f64 = both().map(|(said, force)| (said - force).powi(2)).sum();
+        let rms = (squares / both().count() as f64).sqrt();
+        Ok(Validation { rms, force: deviation(std::slice::from_ref(record)) })
+    }
+}
+
+impl fmt::Display for ForceIdentification {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let fit = self.fit();
+        writeln!(f, "Force along a motion by {}", self.model())?;
+        writeln!(
+            f,
+            "  {}; {} samples, rank {} of {}, rms residual {:.4e} {}, {:.1} % of the force",
+            fit.outcome(),
+            fit.residuals().len(),
+            fit.rank(),
+            fit.free_count(),
+            self.rms_residual(),
+            self.unit,
+            100.0 * self.rms_residual() / self.force
+        )?;
+        let width = name_width(self.findings());
+        for finding in self.findings() {
+            writeln!(f, "  {:<width$} = {finding}", finding.parameter().name())?;
+        }
+        write_warnings(f, self.warnings())
+    }
+}

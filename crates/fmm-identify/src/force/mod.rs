@@ -1,0 +1,12 @@
+//! Friction out of a measured force along a measured motion: joints, tribometers, dampers.
+
+pub(crate) mod along;
+mod identification;
+mod model;
+mod problem;
+mod record;
+mod start;
+
+pub use identification::{ForceIdentification, Validation, identify_force};
+pub use model::ForceModel;
+pub use record::ForceRecord;

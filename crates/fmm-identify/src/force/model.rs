@@ -1,0 +1,367 @@
+//! What a force along a motion is made of.
+
+use fmm_friction::{LawParameter, Role};
+use fmm_model::{Bounds, Parameter};
+
+use crate::fit::layout::Units;
+use crate::law::Law;
+use crate::machine::terms::Term;
+use crate::{Candidate, ForceRecord, IdentifyError};
+
+/// What a force along a motion is made of: a law, damping beside it, and what else acts or is measured along.
+///
+/// ```text
+/// F(t + τ) = (N + N₀) (µ + a |µ|) + c v + c₂ |v| v + c₃ v³ + m v' + k x + A sin x + B cos x + F₀
+/// ```
+///
+/// µ is the law, with the sign of the velocity; N is 1 without a measured load, so that levels are forces. A force record tells the
+/// levels of the two directions apart, a = (F₊ − F₋)/(F₊ + F₋), which a ring-down does not: there they are a level and a force that
+/// moves the rest position.
+///
+/// ```
+/// use fmm_identify::ForceModel;
+///
+/// let model = ForceModel::named("dahl + linear + zero + gravity")?;
+/// assert_eq!(model.name(), "dahl + linear + zero + gravity");
+/// assert_eq!(ForceModel::named("coulomb")?.with_zero().with_inertia().name(), "coulomb + zero + inertia");
+/// assert!(ForceModel::named("coulomb + cubic spring").is_err());
+/// # Ok::<(), fmm_identify::IdentifyError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct ForceModel {
+    pub(crate) law: Candidate,
+    has: [bool; Part::ALL.len()],
+    /// The longest delay to be looked for (s); none for twenty samples.
+    longest: Option<f64>,
+    /// Whether a static level is fitted; none for where a record rests.
+    fits_breakaway: Option<bool>,
+    /// Whether the bristles of each record begin somewhere that is to be found.
+    fits_deflections: bool,
+}
+
+/// What acts or is measured beside friction and damping.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Part {
+    Zero,
+    Inertia,
+    Stiffness,
+    Gravity,
+    Asymmetry,
+    LoadOffset,
+    Delay,
+}
+
+impl Part {
+    const ALL: [Self; 7] = [
+        Self::Zero,
+        Self::Inertia,
+        Self::Stiffness,
+        Self::Gravity,
+        Self::Asymmetry,
+        Self::LoadOffset,
+        Self::Delay,
+    ];
+
+    /// The word by which a model has it, after a plus sign.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Zero => "zero",
+            Self::Inertia => "inertia",
+            Self::Stiffness => "stiffness",
+            Self::Gravity => "gravity",
+            Self::Asymmetry => "asymmetry",
+            Self::LoadOffset => "load offset",
+            Self::Delay => "delay",
+        }
+    }
+}
+
+/// Samples of delay that are looked for unless it is said otherwise.
+const SAMPLES_OF_DELAY: f64 = 20.0;
+
+impl ForceModel {
+    /// Friction by `law`, with the damping that stands beside it.
+    ///
+    /// # Errors
+    /// [`IdentifyError::Contradiction`] for a term of a spring: the part `stiffness` is the spring of a force record.
+    pub fn of(law: Candidate) -> Result<Self, IdentifyError> {
+        if law.terms().has_spring() {
+            return Err(IdentifyError::contradiction(
+                "a spring that is not linear is a term of free vibrations; a force along a motion takes the part stiffness",
+            ));
+        }
+        if law.terms().has_linear_damping() && law.law().has_slope() {
+            return Err(IdentifyError::two_dampings(law.law_name()));
+        }
+        Ok(Self { law, has: [false; Part::ALL.len()], longest: None, fits_breakaway: None, fits_deflections: true })
+    }
+
+    /// The model called so: a law of the [catalogue](Candidate::catalogue), then after plus signs terms of damping (`linear`,
+    /// `quadratic`, `cubic`, `any sign`) and parts (`zero`, `inertia`, `stiffness`, `gravity`, `asymmetry`, `load offset`, `delay`).
+    ///
+    /// # Errors
+    /// [`IdentifyError::UnknownName`], with the names there are, and as for [`of`](Self::of).
+    pub fn named(name: &str) -> Result<Self, IdentifyError> {
+        let part = |word: &str| Part::ALL.into_iter().find(|part| part.name() == word.trim().replace('_', " "));
+        let law: Vec<&str> = name.split('+').filter(|word| part(word).is_none()).collect();
+        let candidate = Candidate::named(&law.join("+")).map_err(|error| match error {
+            IdentifyError::UnknownName { what } => {
+                let parts = Part::ALL.map(Part::name).join(", ");
+                IdentifyError::UnknownName { what: format!("{what}; parts of a force are: {parts}") }
+            }
+            other => other,
+        })?;
+        let model = Self::of(candidate)?;
+        Ok(name.split('+').filter_map(part).fold(model, Self::with))
+    }
+
+    fn with(mut self, part: Part) -> Self {
+        self.has[part as usize] = true;
+        self
+    }
+
+    /// The same with a zero of the force, F₀.
+    #[must_use]
+    pub fn with_zero(self) -> Self {
+        self.with(Part::Zero)
+    }
+
+    /// The same with the inertia m v' of what moves between the sensor and the contact.
+    #[must_use]
+    pub fn with_inertia(self) -> Self {
+        self.with(Part::Inertia)
+    }
+
+    /// The same with a stiffness k x.
+    #[must_use]
+    pub fn with_stiffness(self) -> Self {
+        self.with(Part::Stiffness)
+    }
+
+    /// The same with gravity on a joint, A sin x + B cos x, for angles x in rad.
+    #[must_use]
+    pub fn with_gravity(self) -> Self {
+        self.with(Part::Gravity)
+    }
+
+    /// The same with levels that differ by direction.
+    #[must_use]
+    pub fn with_asymmetry(self) -> Self {
+        self.with(Part::Asymmetry)
+    }
+
+    /// The same with a load N₀ (N) beside the measured one, which is friction that does not depend on the load.
+    #[must_use]
+    pub fn with_load_offset(self) -> Self {
+        self.with(Part::LoadOffset)
+    }
+
+    /// The same with a delay τ (s) of the force behind the motion, positive or negative, of at most twenty samples.
+    #[must_use]
+    pub fn with_delay(self) -> Self {
+        self.with(Part::Delay)
+    }
+
+    /// The same with a delay of the force of at most `longest` (s), positive or negative.
+    ///
+    /// # Errors
+    /// [`IdentifyError::OutOfRange`] if it is not positive and finite.
+    pub fn with_delay_up_to(mut self, longest: f64) -> Result<Self, IdentifyError> {
+        if !(longest > 0.0 && longest.is_finite()) {
+            return Err(IdentifyError::not_allowed("the longest delay of a force (s)", longest, "positive"));
+        }
+        self.longest = Some(longest);
+        Ok(self.with(Part::Delay))
+    }
+
+    /// The same with the fitted parameter called `name` held at `value`, in the unit in which it would be fitted.
+    ///
+    /// # Errors
+    /// [`IdentifyError::InvalidInput`] if the value is not finite.
+    pub fn holding(mut self, name: &str, value: f64) -> Result<Self, IdentifyError> {
+        self.law = self.law.holding(name, value)?;
+        Ok(self)
+    }
+
+    /// Name of the law with the terms and parts beside it.
+    pub fn name(&self) -> String {
+        let mut name = self.law.name();
+        let held = name.find(',').map_or_else(String::new, |at| name.split_off(at));
+        for part in self.parts() {
+            name.push_str(" + ");
+            name.push_str(part.name());
+        }
+        name + &held
+    }
+
+    fn parts(&self) -> impl Iterator<Item = Part> {
+        Part::ALL.into_iter().filter(|part| self.has[*part as usize])
+    }
+
+    /// Whether `part` is fitted.
+    pub(crate) fn has(&self, part: Part) -> bool {
+        self.has[part as usize]
+    }
+
+    /// The longest delay (s) that is looked for in `records`.
+    pub(crate) fn longest_delay(&self, records: &[ForceRecord]) -> f64 {
+        if !self.has(Part::Delay) {
+            return 0.0;
+        }
+        let shortest = records.iter().map(ForceRecord::interval).fold(f64::INFINITY, f64::min);
+        self.longest.unwrap_or(SAMPLES_OF_DELAY * shortest)
+    }
+
+    /// The law, with its static level fitted where a record rests.
+    pub(crate) fn law(&self, records: &[ForceRecord]) -> Law {
+        let law = *self.law.law();
+        let fits = self.fits_breakaway.unwrap_or_else(|| records.iter().any(ForceRecord::rests));
+        if fits { law.with_breakaway() } else { law }
+    }
+
+    /// The same with what depends on `records` as they ask for, for others as well.
+    pub(crate) fn settled(&self, records: &[ForceRecord]) -> Self {
+        Self {
+            longest: Some(self.longest_delay(records)),
+            fits_breakaway: Some(records.iter().any(ForceRecord::rests)),
+            ..self.clone()
+        }
+    }
+
+    /// The same for records to which it was not fitted, whose bristles begin as they go on.
+    pub(crate) fn of_others(&self) -> Self {
+        Self { fits_deflections: false, ..self.clone() }
+    }
+
+    /// Whether the deflection of the bristles at the beginning of each of `records` is fitted.
+    pub(crate) fn fits_deflections(&self, records: &[ForceRecord]) -> bool {
+        self.fits_deflections && !self.law(records).is_of_speed()
+    }
+
+    /// The parameters of a fit to `records`: those of the law, then [`shapes`](Self::shapes), asymmetry, load, delay and deflections.
+    pub(crate) fn parameters(&self, records: &[ForceRecord]) -> Result<Vec<Parameter>, IdentifyError> {
+        let law = self.law(records);
+        law.require_units()?;
+        let (position, force) = (records[0].position_unit(), records[0].force_unit());
+        let units = Units::of_positions(position);
+        let of_law = |parameter: &LawParameter| match records[0].loads {
+            None => units.fitted(parameter, Some(force)),
+            Some(_) => units.of_motion(&of_excess(parameter)),
+        };
+        let mut parameters: Vec<Parameter> = law.fitted().map(of_law).collect();
+        for shape in self.shapes() {
+            parameters.push(shape.parameter(position, force, self.law.terms().are_of_any_sign()));
+        }
+        for part in self.parts() {
+            match part {
+                Part::Asymmetry => {
+                    let bounds = Bounds::new(-1.0, 1.0)?;
+                    parameters.push(Parameter::new("asymmetry", "a", "1").bounded(bounds));
+                }
+                Part::LoadOffset => parameters.push(Parameter::new("load_offset", "N₀", "N")),
+                Part::Delay => {
+                    let longest = self.longest_delay(records);
+                    parameters.push(Parameter::new("delay", "τ", "s").bounded(Bounds::new(-longest, longest)?));
+                }
+                _ => {}
+            }
+        }
+        if self.fits_deflections(records) {
+            for record in 1..=records.len() {
+                let number = if records.len() == 1 { String::new() } else { format!("_{record}") };
+                let deflection = Parameter::named(format!("initial_deflection{number}"), "z₀/z_max", "1");
+                parameters.push(deflection.bounded(Bounds::new(-1.0, 1.0)?));
+            }
+        }
+        for (name, value) in self.law.terms().held() {
+            let Some(parameter) = parameters.iter_mut().find(|parameter| parameter.name() == name) else {
+                let known: Vec<&str> = parameters.iter().map(Parameter::name).collect();
+                return Err(IdentifyError::unknown_parameter(name, &known.join(", ")));
+            };
+            if !parameter.bounds().contains(value) {
+                let (lower, upper) = (parameter.bounds().lower(), parameter.bounds().upper());
+                return Err(IdentifyError::held_out_of_bounds(name, value, lower, upper));
+            }
+            *parameter = parameter.clone().bounded(Bounds::new(value, value)?);
+        }
+        Ok(parameters)
+    }
+
+    /// What the force is proportional to beside the law, in the order of the parameters.
+    pub(crate) fn shapes(&self) -> Vec<Shape> {
+        let mut shapes: Vec<Shape> = self.law.terms().iter().map(Shape::Damping).collect();
+        for part in self.parts() {
+            match part {
+                Part::Zero => shapes.push(Shape::Zero),
+                Part::Inertia => shapes.push(Shape::Inertia),
+                Part::Stiffness => shapes.push(Shape::Stiffness),
+                Part::Gravity => shapes.extend([Shape::GravitySine, Shape::GravityCosine]),
+                Part::Asymmetry | Part::LoadOffset | Part::Delay => {}
+            }
+        }
+        shapes
+    }
+}
+
+/// A parameter of a law as a coefficient; one that is stated as a level is fitted as what it lies above the sliding level by.
+fn of_excess(parameter: &LawParameter) -> Parameter {
+    let plain = parameter.parameter();
+    if !matches!(parameter.role(), Role::LevelAbove | Role::Breakaway) {
+        return plain.clone();
+    }
+    let name = plain.name().replace("coefficient", "excess_coefficient");
+    Parameter::named(name, plain.symbol().to_owned(), plain.unit().to_owned()).bounded(plain.bounds())
+}
+
+/// What a part of the force is proportional to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Shape {
+    Damping(Term),
+    Zero,
+    Inertia,
+    Stiffness,
+    GravitySine,
+    GravityCosine,
+}
+
+impl Shape {
+    /// Its factor, for positions and forces in these units.
+    fn parameter(self, position: &str, force: &str, any_sign: bool) -> Parameter {
+        let per_speed = |name: &'static str, symbol, power: &str| {
+            Parameter::named(name, symbol, format!("{force} s{power}/{position}{power}"))
+        };
+        let damping = if any_sign { Bounds::UNBOUNDED } else { Bounds::NOT_NEGATIVE };
+        match self {
+            Self::Damping(Term::QuadraticDamping) => per_speed("quadratic_damping", "c₂", "²").bounded(damping),
+            Self::Damping(Term::CubicDamping) => per_speed("cubic_damping", "c₃", "³").bounded(damping),
+            Self::Damping(_) => per_speed("damping", "c", "").bounded(damping),
+            Self::Zero => Parameter::named("zero", "F₀", force.to_owned()),
+            Self::Inertia => Parameter::named(
+                "inertia",
+                "m",
+                match (force, position) {
+                    ("N", "m") => "kg".to_owned(),
+                    ("N m", "rad") => "kg m²".to_owned(),
+                    _ => format!("{force} s²/{position}"),
+                },
+            ),
+            Self::Stiffness => Parameter::named("stiffness", "k", format!("{force}/{position}")),
+            Self::GravitySine => Parameter::named("gravity_sine", "A", force.to_owned()),
+            Self::GravityCosine => Parameter::named("gravity_cosine", "B", force.to_owned()),
+        }
+    }
+
+    /// Its value at position `x`, velocity `v` and acceleration `a`, and its slopes by these.
+    pub(crate) fn at(self, [x, v, a]: [f64; 3]) -> (f64, [f64; 3]) {
+        match self {
+            Self::Damping(Term::QuadraticDamping) => (v.abs() * v, [0.0, 2.0 * v.abs(), 0.0]),
+            Self::Damping(Term::CubicDamping) => (v * v * v, [0.0, 3.0 * v * v, 0.0]),
+            Self::Damping(_) => (v, [0.0, 1.0, 0.0]),
+            Self::Zero => (1.0, [0.0; 3]),
+            Self::Inertia => (a, [0.0, 0.0, 1.0]),
+            Self::Stiffness => (x, [1.0, 0.0, 0.0]),
+            Self::GravitySine => (x.sin(), [x.cos(), 0.0, 0.0]),
+            Self::GravityCosine => (x.cos(), [-x.sin(), 0.0, 0.0]),
+        }
+    }
+}

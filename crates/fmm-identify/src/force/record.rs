@@ -1,0 +1,255 @@
+//! A measured force along a measured motion.
+
+use fmm_fit::median_deviation;
+use fmm_model::ModelError;
+
+use crate::IdentifyError;
+
+/// A force (or torque) measured along a motion that something outside prescribes. Samples need not be equally spaced.
+///
+/// ```
+/// use fmm_identify::ForceRecord;
+///
+/// // Positions in rad, torques in N m; without velocities they follow from the positions.
+/// let record = ForceRecord::of_positions(&[0.0, 0.1, 0.25, 0.3], &[0.0, 0.01, 0.04, 0.05], &[0.0, 0.8, 1.1, 1.1])?
+///     .in_units("rad", "N m");
+/// assert_eq!((record.len(), record.position_unit()), (4, "rad"));
+/// assert!((record.velocities()[3] - 0.2).abs() < 1e-12);
+/// # Ok::<(), fmm_identify::IdentifyError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceRecord {
+    pub(crate) times: Vec<f64>,
+    pub(crate) positions: Vec<f64>,
+    pub(crate) velocities: Vec<f64>,
+    pub(crate) accelerations: Vec<f64>,
+    pub(crate) forces: Vec<f64>,
+    pub(crate) loads: Option<Vec<f64>>,
+    pub(crate) rest_speed: f64,
+    position_unit: String,
+    force_unit: String,
+}
+
+/// Fewest samples of a record: a parabola through three gives the velocity.
+const FEWEST_SAMPLES: usize = 3;
+/// Share of the largest speed up to which a contact is taken to rest unless it is said otherwise (1).
+const REST: f64 = 1e-3;
+
+impl ForceRecord {
+    /// A record of `positions` (m) and `forces` (N) at `times` (s). Velocities and accelerations are those of the parabola through a
+    /// sample and its neighbours, which noise of the positions enters: give measured ones where there are some.
+    ///
+    /// # Errors
+    /// [`IdentifyError::Contradiction`] if the lists differ in length, [`IdentifyError::OutOfRange`] if the times do not ascend,
+    /// [`IdentifyError::TooFew`], [`IdentifyError::InvalidInput`] for a number that is not finite, and [`IdentifyError::NotSeen`] if
+    /// nothing moves.
+    pub fn of_positions(times: &[f64], positions: &[f64], forces: &[f64]) -> Result<Self, IdentifyError> {
+        require_times(times)?;
+        require_series(times, positions, "position", "m")?;
+        require_series(times, forces, "force", "N")?;
+        let velocities = slopes(times, positions);
+        Self { times: times.to_vec(), positions: positions.to_vec(), forces: forces.to_vec(), ..Self::EMPTY }
+            .moving_at(velocities)
+    }
+
+    /// A record of which `velocities` (m/s) were measured beside the `forces` (N) at `times` (s), and no positions: these are the sum of
+    /// the velocities, from 0.
+    ///
+    /// # Errors
+    /// As for [`of_positions`](Self::of_positions).
+    pub fn of_velocities(times: &[f64], velocities: &[f64], forces: &[f64]) -> Result<Self, IdentifyError> {
+        require_times(times)?;
+        require_series(times, velocities, "velocity", "m/s")?;
+        require_series(times, forces, "force", "N")?;
+        let mut position = 0.0;
+        let mut positions = vec![position];
+        for (times, velocities) in times.windows(2).zip(velocities.windows(2)) {
+            position += 0.5 * (velocities[0] + velocities[1]) * (times[1] - times[0]);
+            positions.push(position);
+        }
+        Self { times: times.to_vec(), positions, forces: forces.to_vec(), ..Self::EMPTY }.moving_at(velocities.to_vec())
+    }
+
+    const EMPTY: Self = Self {
+        times: Vec::new(),
+        positions: Vec::new(),
+        velocities: Vec::new(),
+        accelerations: Vec::new(),
+        forces: Vec::new(),
+        loads: None,
+        rest_speed: 0.0,
+        position_unit: String::new(),
+        force_unit: String::new(),
+    };
+
+    fn moving_at(mut self, velocities: Vec<f64>) -> Result<Self, IdentifyError> {
+        let largest = velocities.iter().fold(0.0, |largest: f64, velocity| largest.max(velocity.abs()));
+        ModelError::require_finite("velocity", largest, "m/s")?;
+        if largest == 0.0 {
+            return Err(IdentifyError::no_motion(self.positions[0], "m"));
+        }
+        self.accelerations = slopes(&self.times, &velocities);
+        self.velocities = velocities;
+        self.rest_speed = REST * largest;
+        if self.position_unit.is_empty() {
+            return Ok(self.in_units("m", "N"));
+        }
+        Ok(self)
+    }
+
+    /// The same with measured `velocities` (m/s).
+    ///
+    /// # Errors
+    /// As for [`of_positions`](Self::of_positions).
+    pub fn with_velocities(self, velocities: &[f64]) -> Result<Self, IdentifyError> {
+        require_series(&self.times, velocities, "velocity", "m/s")?;
+        self.moving_at(velocities.to_vec())
+    }
+
+    /// The same with measured `accelerations` (m/s²).
+    ///
+    /// # Errors
+    /// As for [`of_positions`](Self::of_positions).
+    pub fn with_accelerations(mut self, accelerations: &[f64]) -> Result<Self, IdentifyError> {
+        require_series(&self.times, accelerations, "acceleration", "m/s²")?;
+        self.accelerations = accelerations.to_vec();
+        Ok(self)
+    }
+
+    /// The same with a measured normal load (N) at every sample, so that the levels of a law are coefficients.
+    ///
+    /// # Errors
+    /// As for [`of_positions`](Self::of_positions), and for a load that is negative.
+    pub fn under_loads(mut self, loads: &[f64]) -> Result<Self, IdentifyError> {
+        require_series(&self.times, loads, "normal load", "N")?;
+        for load in loads {
+            ModelError::require_not_negative("normal load", *load, "N")?;
+        }
+        self.loads = Some(loads.to_vec());
+        Ok(self)
+    }
+
+    /// The same taken to be at rest up to `speed` (m/s): there friction is what the force needs, up to the level of the law. It is a
+    /// thousandth of the largest speed unless it is given.
+    ///
+    /// # Errors
+    /// [`IdentifyError::InvalidInput`] if the speed is negative or not finite.
+    pub fn resting_up_to(mut self, speed: f64) -> Result<Self, IdentifyError> {
+        self.rest_speed = ModelError::require_not_negative("speed of rest", speed, "m/s")?;
+        Ok(self)
+    }
+
+    /// The same in other units than m and N, such as `"rad"` and `"N m"`: the numbers stay as they are.
+    #[must_use]
+    pub fn in_units(mut self, position: &str, force: &str) -> Self {
+        (self.position_unit, self.force_unit) = (position.to_owned(), force.to_owned());
+        self
+    }
+
+    /// How many samples there are.
+    pub fn len(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Whether there are none, which does not occur.
+    pub fn is_empty(&self) -> bool {
+        self.times.is_empty()
+    }
+
+    /// Times (s).
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Positions (m, or the unit given).
+    pub fn positions(&self) -> &[f64] {
+        &self.positions
+    }
+
+    /// Velocities (m/s, or by the unit given), measured or of the positions.
+    pub fn velocities(&self) -> &[f64] {
+        &self.velocities
+    }
+
+    /// Forces (N, or the unit given).
+    pub fn forces(&self) -> &[f64] {
+        &self.forces
+    }
+
+    /// Unit of the positions.
+    pub fn position_unit(&self) -> &str {
+        &self.position_unit
+    }
+
+    /// Unit of the forces.
+    pub fn force_unit(&self) -> &str {
+        &self.force_unit
+    }
+
+    /// Whether the motion rests anywhere for more than a reversal.
+    pub(crate) fn rests(&self) -> bool {
+        const SAMPLES: usize = 4;
+        self.velocities.windows(SAMPLES).any(|speeds| speeds.iter().all(|speed| speed.abs() <= self.rest_speed))
+    }
+
+    /// Standard deviation of what differs between neighbouring samples of the force, in its unit: its noise, or a step of its converter.
+    pub(crate) fn noise(&self) -> f64 {
+        // Of white noise a second difference has √6 times the deviation; of a median the deviation is 1.4826 times.
+        let bends: Vec<f64> = self.forces.windows(3).map(|f| f[0] - 2.0 * f[1] + f[2]).collect();
+        median_deviation(&bends, 0).unwrap_or(0.0) / 6.0_f64.sqrt()
+    }
+
+    /// The time (s) between two samples, in the mean.
+    pub(crate) fn interval(&self) -> f64 {
+        (self.times[self.len() - 1] - self.times[0]) / (self.len() - 1) as f64
+    }
+
+    /// The time (samples) from a reversal to the next but one, in the mean; all of it if there is none.
+    pub(crate) fn period(&self) -> f64 {
+        let moving = self.velocities.iter().filter(|velocity| velocity.abs() > self.rest_speed);
+        let (mut reversals, mut before) = (0_u32, 0.0);
+        for velocity in moving {
+            reversals += u32::from(velocity * before < 0.0);
+            before = *velocity;
+        }
+        2.0 * self.len() as f64 / f64::from(reversals + 1)
+    }
+}
+
+fn require_times(times: &[f64]) -> Result<(), IdentifyError> {
+    if times.len() < FEWEST_SAMPLES {
+        return Err(IdentifyError::too_short(times.len(), FEWEST_SAMPLES));
+    }
+    ModelError::require_finite("time", times[0], "s")?;
+    match times.windows(2).find(|pair| !(pair[1] > pair[0] && pair[1].is_finite())) {
+        Some(pair) => {
+            Err(IdentifyError::not_allowed("the time (s) of a sample", pair[1], &format!("after {} s", pair[0])))
+        }
+        None => Ok(()),
+    }
+}
+
+fn require_series(times: &[f64], values: &[f64], quantity: &'static str, unit: &'static str) -> Result<(), IdentifyError> {
+    if values.len() != times.len() {
+        return Err(IdentifyError::contradiction(format!(
+            "there are {} times, but {} values of {quantity}; give one for each",
+            times.len(),
+            values.len()
+        )));
+    }
+    for value in values {
+        ModelError::require_finite(quantity, *value, unit)?;
+    }
+    Ok(())
+}
+
+/// Slope of the parabola through each value and its neighbours; at the ends that of the line to the only one.
+fn slopes(times: &[f64], values: &[f64]) -> Vec<f64> {
+    let slope = |i: usize| (values[i + 1] - values[i]) / (times[i + 1] - times[i]);
+    let last = times.len() - 1;
+    let inside = (1..last).map(|i| {
+        let (before, after) = (times[i] - times[i - 1], times[i + 1] - times[i]);
+        (slope(i - 1) * after + slope(i) * before) / (before + after)
+    });
+    std::iter::once(slope(0)).chain(inside).chain(std::iter::once(slope(last - 1))).collect()
+}
