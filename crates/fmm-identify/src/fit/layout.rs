@@ -289,11 +289,7 @@ impl Units {
 
     /// Those of a motion with positions in `position`.
     pub(crate) fn of_positions(position: &str) -> Self {
-        Self {
-            position: position.into(),
-            velocity: format!("{position}/s"),
-            acceleration: format!("{position}/s²"),
-        }
+        Self { position: position.into(), velocity: format!("{position}/s"), acceleration: format!("{position}/s²") }
     }
 
     fn inverse_velocity(&self) -> String {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fmm_fit::{EvaluationError, Fit, Options, Outcome, Residuals, solve};
+use fmm_fit::{EvaluationError, Fit, Options, Residuals, solve};
 use fmm_friction::Role;
 
 use crate::fit::layout::named;
@@ -26,6 +26,7 @@ pub struct ForceIdentification {
     structure: ResidualStructure,
     force: f64,
     unit: String,
+    counted: usize,
 }
 
 /// How well a model says the forces of a record to which it was not fitted.
@@ -44,14 +45,17 @@ impl Validation {
     }
 }
 
+/// What rounding of doubles alone makes of a force, as a share of its deviation (1).
+const ROUNDING: f64 = 1e-9;
+
 /// Fits `model` to the forces of `records`, which share all parameters.
 ///
 /// Levels and what else the force is proportional to begin where a linear fit puts them, shapes where a search on a few scales of the
 /// motion does. Standard uncertainties hold for noise with the correlation that the residuals show.
 ///
-/// At rest a law of the speed that leaps there bounds friction and does not give it: such a sample counts only if its force lies outside
-/// the bounds, and one between two samples with velocities of opposite signs does not count. A law with internal state says friction
-/// there too; where its bristles are at the beginning of a record is fitted.
+/// At rest, and between two samples with velocities of opposite signs, a law of the speed that leaps there says no more than between which
+/// levels friction lies: such a sample does not count, and a static level is held at the sliding one. A law with internal state says
+/// friction there too; where its bristles are at the beginning of a record is fitted.
 ///
 /// ```
 /// use fmm_identify::{ForceModel, ForceRecord, identify_force};
@@ -80,25 +84,37 @@ pub fn identify_force(model: &ForceModel, records: &[ForceRecord]) -> Result<For
     let problem = ForceProblem::new(&model, records)?;
     let law = problem.law().name;
     let failure = |error: EvaluationError| IdentifyError::simulation(law, error);
+    let noise = records.iter().map(ForceRecord::noise).fold(0.0, f64::max);
+    let forces = deviation(records);
     let mut best: Option<Fit> = None;
-    for start in starts(&problem).map_err(failure)? {
+    let beginnings: Option<Vec<ForceRecord>> = records.iter().map(ForceRecord::beginning).collect();
+    let found = match &beginnings {
+        Some(beginnings) => starts(&ForceProblem::new(&model, beginnings)?),
+        None => starts(&problem),
+    };
+    for start in found.map_err(failure)? {
         let fit = solve(&problem, &start, &Options::default()).map_err(|source| IdentifyError::Fit { law, source })?;
-        let is_exact = fit.outcome() == Outcome::AtNoiseFloor;
+        // What is explained to its noise has no lower minimum.
+        let is_explained = !ResidualStructure::beside(&fit, noise, ROUNDING * forces).is_structured();
         if best.as_ref().is_none_or(|best| fit.sum_of_squares() < best.sum_of_squares()) {
             best = Some(fit);
         }
-        if is_exact {
+        if is_explained && best.as_ref().is_some_and(|best| best.outcome().is_success()) {
             break;
         }
     }
     let fit = best.ok_or_else(|| IdentifyError::missing("a model without a parameter cannot be fitted"))?;
-    let noise = records.iter().map(ForceRecord::noise).fold(0.0, f64::max);
-    let forces = deviation(records);
-    let structure = ResidualStructure::beside(&fit, noise, 1e-9 * forces);
+    // Samples that do not count leave no residual, but look like rows without noise.
+    let counted = problem.counted(fit.values());
+    let rank = fit.rank().min(counted.saturating_sub(1));
+    let spread =
+        (fit.residuals().len() - fit.rank().min(fit.residuals().len())) as f64 / (counted - rank).max(1) as f64;
+    let mut structure = ResidualStructure::beside(&fit, noise, ROUNDING * forces);
+    structure.residual *= spread.sqrt();
     let covariance = covariance(&problem, &fit, &structure).map_err(failure)?;
     let findings = fit.estimates().iter().enumerate().map(|(index, estimate)| {
         let at_bound = estimate.status().is_at_bound();
-        let variance = covariance.get(index, index);
+        let variance = covariance.get(index, index).map(|variance| spread * variance);
         Finding::new(
             estimate.parameter().clone(),
             estimate.value(),
@@ -108,12 +124,12 @@ pub fn identify_force(model: &ForceModel, records: &[ForceRecord]) -> Result<For
             problem.is_of_record(index),
         )
         .at_bound(
-            covariance.relaxed(index).filter(|_| at_bound).map(f64::sqrt),
+            covariance.relaxed(index).filter(|_| at_bound).map(|variance| (spread * variance).sqrt()),
             covariance.degrees_of_freedom(),
         )
     });
     let mut findings: Vec<Finding> = findings.collect();
-    findings.extend(levels_above(&problem, &fit, &covariance));
+    findings.extend(levels_above(&problem, &fit, &covariance, spread));
     let unit = records[0].force_unit().to_owned();
     let mut warnings = Vec::new();
     if structure.is_structured() {
@@ -124,10 +140,8 @@ pub fn identify_force(model: &ForceModel, records: &[ForceRecord]) -> Result<For
             inflation: covariance.inflation(),
         });
     } else if structure.is_correlated() {
-        warnings.push(Warning::ColouredNoise {
-            time: structure.autocorrelation_time,
-            inflation: covariance.inflation(),
-        });
+        warnings
+            .push(Warning::ColouredNoise { time: structure.autocorrelation_time, inflation: covariance.inflation() });
     }
     Warning::of_fit(&fit, &mut warnings);
     warnings.extend(
@@ -136,11 +150,11 @@ pub fn identify_force(model: &ForceModel, records: &[ForceRecord]) -> Result<For
             .held_breakaway()
             .map(|held| Warning::StaticLevelHeld { parameter: held.parameter().name().to_owned() }),
     );
-    Ok(ForceIdentification { model, fit, findings, warnings, structure, force: forces, unit })
+    Ok(ForceIdentification { model, fit, findings, warnings, structure, force: forces, unit, counted })
 }
 
-/// What is stated as an excess over the sliding level, as the level that it makes with it.
-fn levels_above(problem: &ForceProblem<'_>, fit: &Fit, covariance: &Covariance) -> Vec<Finding> {
+/// What is stated as an excess over the sliding level, as the level that it makes with it; variances are larger by `spread`.
+fn levels_above(problem: &ForceProblem<'_>, fit: &Fit, covariance: &Covariance, spread: f64) -> Vec<Finding> {
     let law = problem.law();
     let Some(level) = law.level() else { return Vec::new() };
     let is_above = |role: Role| matches!(role, Role::LevelAbove | Role::Breakaway);
@@ -150,7 +164,8 @@ fn levels_above(problem: &ForceProblem<'_>, fit: &Fit, covariance: &Covariance) 
         let variance = [(level, level), (level, place), (level, place), (place, place)]
             .iter()
             .map(|(i, j)| covariance.get(*i, *j))
-            .sum::<Option<f64>>();
+            .sum::<Option<f64>>()
+            .map(|variance| spread * variance);
         let unit = problem.parameters()[level].unit();
         let parameter = match problem.records()[0].loads {
             None => named(parameter.parameter(), "friction_force", unit),
@@ -193,7 +208,7 @@ fn covariance(
 
 /// Standard deviation of the forces of all `records`, in their unit.
 fn deviation(records: &[ForceRecord]) -> f64 {
-    let forces = || records.iter().flat_map(|record| record.forces());
+    let forces = || records.iter().flat_map(ForceRecord::forces);
     let count = forces().count() as f64;
     let mean = forces().sum::<f64>() / count;
     (forces().map(|force| (force - mean).powi(2)).sum::<f64>() / count).sqrt()
@@ -235,18 +250,31 @@ impl ForceIdentification {
         self.force
     }
 
-    /// The force that was found at each sample of `record`, whose bristles are taken to begin as after a long way in the direction in
-    /// which it begins; none where a delay asks for a motion before or after what was measured, and where a law that leaps turns. At rest such a law bounds
-    /// the force: what is said is the measured force or the bound that it exceeds.
+    /// The force that was found at each sample of `record`, to which nothing is fitted but where its bristles begin; none where a delay asks for a motion before or after what was measured, and at a sample that
+    /// [does not count](identify_force).
     ///
     /// # Errors
     /// As for [`identify_force`].
     pub fn predict(&self, record: &ForceRecord) -> Result<Vec<Option<f64>>, IdentifyError> {
+        let mut model = self.model.clone();
+        for finding in self.findings.iter().filter(|finding| !finding.is_of_record()) {
+            if matches!(finding.origin(), Origin::Fitted(_)) {
+                model = model.holding(finding.parameter().name(), finding.value())?;
+            }
+        }
         let records = std::slice::from_ref(record);
-        let problem = ForceProblem::new(&self.model.of_others(), records)?;
-        let failure = |error| IdentifyError::simulation(problem.law().name, error);
-        let shared = problem.parameters().len();
-        let predicted = problem.predicted(0, &self.fit.values()[..shared]).map_err(failure)?;
+        let problem = ForceProblem::new(&model, records)?;
+        let law = problem.law().name;
+        let mut values: Vec<f64> =
+            self.fit.values()[..problem.parameters().len().min(self.fit.values().len())].to_vec();
+        for (place, deflection) in problem.first_deflections() {
+            values[place] = deflection;
+        }
+        if values.iter().zip(problem.parameters()).any(|(_, parameter)| !parameter.bounds().is_fixed()) {
+            let fit = solve(&problem, &values, &Options::default());
+            values = fit.map_err(|source| IdentifyError::Fit { law, source })?.values().to_vec();
+        }
+        let predicted = problem.predicted(0, &values).map_err(|error| IdentifyError::simulation(law, error))?;
         let mut all = vec![None; record.len()];
         all[problem.rows()[0].clone()].copy_from_slice(&predicted);
         Ok(all)
@@ -273,7 +301,7 @@ impl fmt::Display for ForceIdentification {
             f,
             "  {}; {} samples, rank {} of {}, rms residual {:.4e} {}, {:.1} % of the force",
             fit.outcome(),
-            fit.residuals().len(),
+            self.counted,
             fit.rank(),
             fit.free_count(),
             self.rms_residual(),

@@ -1,6 +1,5 @@
 //! Friction out of a measured force along a measured motion: joints, tribometers, dampers.
 
-pub(crate) mod along;
 mod identification;
 mod model;
 mod problem;

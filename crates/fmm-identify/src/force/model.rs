@@ -4,7 +4,7 @@ use fmm_friction::{LawParameter, Role};
 use fmm_model::{Bounds, Parameter};
 
 use crate::fit::layout::Units;
-use crate::law::Law;
+use crate::law::dimension::is_force;
 use crate::machine::terms::Term;
 use crate::{Candidate, ForceRecord, IdentifyError};
 
@@ -33,10 +33,6 @@ pub struct ForceModel {
     has: [bool; Part::ALL.len()],
     /// The longest delay to be looked for (s); none for twenty samples.
     longest: Option<f64>,
-    /// Whether a static level is fitted; none for where a record rests.
-    fits_breakaway: Option<bool>,
-    /// Whether the bristles of each record begin somewhere that is to be found.
-    fits_deflections: bool,
 }
 
 /// What acts or is measured beside friction and damping.
@@ -52,15 +48,8 @@ pub(crate) enum Part {
 }
 
 impl Part {
-    const ALL: [Self; 7] = [
-        Self::Zero,
-        Self::Inertia,
-        Self::Stiffness,
-        Self::Gravity,
-        Self::Asymmetry,
-        Self::LoadOffset,
-        Self::Delay,
-    ];
+    const ALL: [Self; 7] =
+        [Self::Zero, Self::Inertia, Self::Stiffness, Self::Gravity, Self::Asymmetry, Self::LoadOffset, Self::Delay];
 
     /// The word by which a model has it, after a plus sign.
     const fn name(self) -> &'static str {
@@ -93,7 +82,7 @@ impl ForceModel {
         if law.terms().has_linear_damping() && law.law().has_slope() {
             return Err(IdentifyError::two_dampings(law.law_name()));
         }
-        Ok(Self { law, has: [false; Part::ALL.len()], longest: None, fits_breakaway: None, fits_deflections: true })
+        Ok(Self { law, has: [false; Part::ALL.len()], longest: None })
     }
 
     /// The model called so: a law of the [catalogue](Candidate::catalogue), then after plus signs terms of damping (`linear`,
@@ -212,41 +201,25 @@ impl ForceModel {
         self.longest.unwrap_or(SAMPLES_OF_DELAY * shortest)
     }
 
-    /// The law, with its static level fitted where a record rests.
-    pub(crate) fn law(&self, records: &[ForceRecord]) -> Law {
-        let law = *self.law.law();
-        let fits = self.fits_breakaway.unwrap_or_else(|| records.iter().any(ForceRecord::rests));
-        if fits { law.with_breakaway() } else { law }
-    }
-
-    /// The same with what depends on `records` as they ask for, for others as well.
+    /// The same with as long a delay for other records as for `records`.
     pub(crate) fn settled(&self, records: &[ForceRecord]) -> Self {
-        Self {
-            longest: Some(self.longest_delay(records)),
-            fits_breakaway: Some(records.iter().any(ForceRecord::rests)),
-            ..self.clone()
-        }
+        Self { longest: Some(self.longest_delay(records)), ..self.clone() }
     }
 
-    /// The same for records to which it was not fitted, whose bristles begin as they go on.
-    pub(crate) fn of_others(&self) -> Self {
-        Self { fits_deflections: false, ..self.clone() }
-    }
-
-    /// Whether the deflection of the bristles at the beginning of each of `records` is fitted.
-    pub(crate) fn fits_deflections(&self, records: &[ForceRecord]) -> bool {
-        self.fits_deflections && !self.law(records).is_of_speed()
+    /// Whether the deflection of the bristles at the beginning of each record is fitted.
+    pub(crate) fn fits_deflections(&self) -> bool {
+        !self.law.law().is_of_speed()
     }
 
     /// The parameters of a fit to `records`: those of the law, then [`shapes`](Self::shapes), asymmetry, load, delay and deflections.
     pub(crate) fn parameters(&self, records: &[ForceRecord]) -> Result<Vec<Parameter>, IdentifyError> {
-        let law = self.law(records);
+        let law = self.law.law();
         law.require_units()?;
         let (position, force) = (records[0].position_unit(), records[0].force_unit());
         let units = Units::of_positions(position);
         let of_law = |parameter: &LawParameter| match records[0].loads {
             None => units.fitted(parameter, Some(force)),
-            Some(_) => units.of_motion(&of_excess(parameter)),
+            Some(_) => units.of_motion(&of_contact(parameter)),
         };
         let mut parameters: Vec<Parameter> = law.fitted().map(of_law).collect();
         for shape in self.shapes() {
@@ -266,7 +239,7 @@ impl ForceModel {
                 _ => {}
             }
         }
-        if self.fits_deflections(records) {
+        if self.fits_deflections() {
             for record in 1..=records.len() {
                 let number = if records.len() == 1 { String::new() } else { format!("_{record}") };
                 let deflection = Parameter::named(format!("initial_deflection{number}"), "z₀/z_max", "1");
@@ -303,13 +276,15 @@ impl ForceModel {
     }
 }
 
-/// A parameter of a law as a coefficient; one that is stated as a level is fitted as what it lies above the sliding level by.
-fn of_excess(parameter: &LawParameter) -> Parameter {
+/// A parameter of a law for a load that is known, under a name that no part of the force has; a level above the sliding one is fitted as
+/// what it lies above it by.
+fn of_contact(parameter: &LawParameter) -> Parameter {
     let plain = parameter.parameter();
-    if !matches!(parameter.role(), Role::LevelAbove | Role::Breakaway) {
-        return plain.clone();
-    }
-    let name = plain.name().replace("coefficient", "excess_coefficient");
+    let name = match parameter.role() {
+        Role::LevelAbove | Role::Breakaway => plain.name().replace("coefficient", "excess_coefficient"),
+        role if is_force(role) && plain.unit() != "1" => format!("contact_{}", plain.name()),
+        _ => plain.name().to_owned(),
+    };
     Parameter::named(name, plain.symbol().to_owned(), plain.unit().to_owned()).bounded(plain.bounds())
 }
 

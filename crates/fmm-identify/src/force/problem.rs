@@ -6,15 +6,15 @@ use fmm_fit::{EvaluationError, Residuals};
 use fmm_model::{Dual, Parameter, Scalar};
 
 use crate::fit::pool::Pool;
-use crate::force::along::{Contact, Guide, Place, places};
 use crate::force::model::{Part, Shape};
+use crate::law::along::{Guide, Place, places};
 use crate::law::{DIRECTIONS, Law};
 use crate::{ForceModel, ForceRecord, IdentifyError};
 
 /// The residuals "model less force" of records, one after the other.
 ///
-/// Where the contact rests a law of the speed that leaps there says no more than between which bounds friction lies: the residual is
-/// what the force lacks to the nearer bound. Between two samples with velocities of opposite signs it says nothing.
+/// Where the contact rests or turns, friction by a law of the speed that leaps there lies anywhere between the levels: such a sample does
+/// not count.
 #[derive(Debug)]
 pub(crate) struct ForceProblem<'a> {
     records: &'a [ForceRecord],
@@ -53,7 +53,8 @@ struct Parts {
     /// x, v and a where the motion was.
     motion: [f64; 3],
     load: f64,
-    contact: Contact,
+    /// Whether the law says friction there.
+    counts: bool,
 }
 
 impl<'a> ForceProblem<'a> {
@@ -82,8 +83,8 @@ impl<'a> ForceProblem<'a> {
         }
         let parameters = model.parameters(records)?;
         let place = |name: &str| parameters.iter().position(|parameter| parameter.name() == name);
-        let law = model.law(records);
-        let first_deflection = parameters.len() - if model.fits_deflections(records) { records.len() } else { 0 };
+        let law = *model.law.law();
+        let first_deflection = parameters.len() - if model.fits_deflections() { records.len() } else { 0 };
         let layout = Places {
             shapes: law.fitted().count(),
             deflection: (first_deflection < parameters.len()).then_some(first_deflection),
@@ -131,11 +132,6 @@ impl<'a> ForceProblem<'a> {
         self.layout.deflection.is_some_and(|first| place >= first)
     }
 
-    /// How many parameters the force is proportional to beside those of the law.
-    pub(crate) fn shape_count(&self) -> usize {
-        self.shapes.len()
-    }
-
     pub(crate) fn delay(&self) -> Option<usize> {
         self.layout.delay
     }
@@ -159,17 +155,25 @@ impl<'a> ForceProblem<'a> {
         'a: 'g,
     {
         let has_delay = self.layout.delay.is_some();
-        Guide { record: &self.records[record], delay, has_delay, deflection, first: self.rows[record].start, places }
+        Guide {
+            motion: &self.records[record].motion,
+            delay,
+            has_delay,
+            deflection,
+            first: self.rows[record].start,
+            places,
+        }
     }
 
+    #[inline]
     fn parts(&self, record: usize, p: &[f64], leaps: bool, row: usize, place: Place) -> Parts {
         let data = &self.records[record];
         let guide = self.guide(record, Self::value(p, self.layout.delay), 0.0, &[]);
         let elapsed = guide.elapsed(row, place);
-        let motion = [&data.positions, &data.velocities, &data.accelerations]
+        let motion = [&data.motion.positions, &data.motion.velocities, &data.motion.accelerations]
             .map(|series| guide.between(series, place, elapsed));
         let load = data.loads.as_ref().map_or(1.0, |loads| loads[row]) + Self::value(p, self.layout.load_offset);
-        Parts { motion, load, contact: if leaps { place.contact } else { Contact::Slides } }
+        Parts { motion, load, counts: place.slides || !leaps }
     }
 
     /// What the shapes add to the force.
@@ -179,20 +183,38 @@ impl<'a> ForceProblem<'a> {
 
     /// Residual of a sample whose friction coefficient is `friction`, and its slopes by that coefficient at a load of one and by what
     /// stands beside friction.
+    #[inline]
     fn residual(&self, p: &[f64], parts: &Parts, friction: f64, force: f64) -> (f64, f64, f64) {
-        let beside = self.beside(p, parts.motion);
-        let asymmetry = Self::value(p, self.layout.asymmetry);
-        if parts.contact == Contact::Turns {
+        if !parts.counts {
             return (0.0, 0.0, 0.0);
         }
-        if parts.contact == Contact::Slides {
-            let slope = 1.0 + asymmetry * friction.signum();
-            return (parts.load * slope * friction + beside - force, slope, 1.0);
-        }
-        let needed = force - beside;
-        let slope = (1.0 + asymmetry * needed.signum()) * needed.signum();
-        let lack = parts.load * slope * friction - needed;
-        if lack * needed.signum() < 0.0 { (lack, slope, 1.0) } else { (0.0, 0.0, 0.0) }
+        let beside = self.beside(p, parts.motion);
+        let slope = 1.0 + Self::value(p, self.layout.asymmetry) * friction.signum();
+        (parts.load * slope * friction + beside - force, slope, 1.0)
+    }
+
+    /// Residuals, and with them what the force is proportional to: friction, then the shapes, each a column.
+    pub(crate) fn linear(&self, p: &[f64]) -> Result<(Vec<f64>, Vec<Vec<f64>>), EvaluationError> {
+        let mut residuals = vec![0.0; self.len()];
+        let mut columns = vec![vec![0.0; self.len()]; 1 + self.shapes.len()];
+        let leaps = self.leaps(p);
+        self.idle.lend(|buffers| {
+            for (record, series) in self.series.iter().enumerate() {
+                self.follow(record, p, buffers)?;
+                let forces = &self.records[record].forces;
+                let rows = self.rows[record].clone().zip(&buffers.places).zip(&buffers.plain);
+                for (at, ((row, place), friction)) in series.clone().zip(rows) {
+                    let parts = self.parts(record, p, leaps, row, *place);
+                    let (residual, by_friction, by_rest) = self.residual(p, &parts, *friction, forces[row]);
+                    residuals[at] = residual;
+                    columns[0][at] = parts.load * by_friction * friction;
+                    for (column, shape) in columns[1..].iter_mut().zip(&self.shapes) {
+                        column[at] = by_rest * shape.at(parts.motion).0;
+                    }
+                }
+            }
+            Ok((residuals, columns))
+        })
     }
 
     /// The deflections with which a fit begins, by their places.
@@ -200,15 +222,24 @@ impl<'a> ForceProblem<'a> {
         (0..self.records.len()).filter_map(|record| Some((self.deflection(record)?, self.first_deflection(record))))
     }
 
-    /// What the model says of the force at the samples of `record` that are compared: none while the contact turns, and where friction is
-    /// bounded the force within the bounds that is nearest to the measured one.
+    /// How many samples count.
+    pub(crate) fn counted(&self, p: &[f64]) -> usize {
+        let (leaps, mut at) = (self.leaps(p), Vec::new());
+        let of_record = |(record, rows): (&ForceRecord, &Range<usize>)| {
+            places(&record.motion, rows.clone(), Self::value(p, self.layout.delay), &mut at);
+            at.iter().filter(|place| place.slides || !leaps).count()
+        };
+        self.records.iter().zip(&self.rows).map(of_record).sum()
+    }
+
+    /// What the model says of the force at the samples of `record` that are compared: none where it says none.
     pub(crate) fn predicted(&self, record: usize, p: &[f64]) -> Result<Vec<Option<f64>>, EvaluationError> {
         let mut residuals = vec![0.0; self.len()];
         self.residuals(p, &mut residuals)?;
         let (data, rows) = (&self.records[record], &self.rows[record]);
         let mut at = Vec::new();
-        places(data, rows.clone(), Self::value(p, self.layout.delay), &mut at);
-        let is_known = |place: &Place| place.contact != Contact::Turns || !self.leaps(p);
+        places(&data.motion, rows.clone(), Self::value(p, self.layout.delay), &mut at);
+        let is_known = |place: &Place| place.slides || !self.leaps(p);
         let said = residuals[self.series[record].clone()].iter().zip(&data.forces[rows.clone()]).zip(&at);
         Ok(said.map(|((residual, force), place)| is_known(place).then_some(residual + force)).collect())
     }
@@ -222,12 +253,16 @@ impl<'a> ForceProblem<'a> {
     /// Deflection of the bristles (1) at the first sample of `record` unless it is fitted: they have come the way they go on.
     fn first_deflection(&self, record: usize) -> f64 {
         let data = &self.records[record];
-        data.velocities.iter().find(|velocity| velocity.abs() > data.rest_speed).map_or(0.0, |velocity| velocity.signum())
+        data.motion
+            .velocities
+            .iter()
+            .find(|velocity| velocity.abs() > data.motion.rest_speed)
+            .map_or(0.0, |velocity| velocity.signum())
     }
 
     fn follow(&self, record: usize, p: &[f64], buffers: &mut Buffers) -> Result<(), EvaluationError> {
         let delay = Self::value(p, self.layout.delay);
-        places(&self.records[record], self.rows[record].clone(), delay, &mut buffers.places);
+        places(&self.records[record].motion, self.rows[record].clone(), delay, &mut buffers.places);
         let deflection = self.deflection(record).map_or(self.first_deflection(record), |place| p[place]);
         let guide = self.guide(record, delay, deflection, &buffers.places);
         (self.law.along)(&self.law.values(&p[..self.layout.shapes]), guide, &mut buffers.plain)
@@ -295,7 +330,7 @@ impl Residuals for ForceProblem<'_> {
                 let data = &self.records[record];
                 let of_law = (0..self.layout.shapes).chain(self.layout.delay).chain(self.deflection(record));
                 let of_law: Vec<usize> = of_law.filter(is_free).collect();
-                places(data, self.rows[record].clone(), delay, &mut buffers.places);
+                places(&data.motion, self.rows[record].clone(), delay, &mut buffers.places);
                 if of_law.is_empty() {
                     self.follow(record, p, buffers)?;
                     buffers.seeded.clear();
@@ -342,16 +377,60 @@ impl Residuals for ForceProblem<'_> {
             Ok(true)
         })
     }
+
+    fn is_cheaper_combined(&self) -> bool {
+        // Most of a pass with derivatives is the passage of the motion, and nearly every step is taken.
+        self.layout.shapes <= DIRECTIONS
+    }
 }
 
 impl ForceProblem<'_> {
     /// How fast what stands beside friction changes (force per s) between a sample and the next.
     fn rate_beside(&self, record: usize, p: &[f64], node: usize, motion: [f64; 3]) -> f64 {
         let data = &self.records[record];
-        let duration = data.times[node + 1] - data.times[node];
-        let rates = [&data.positions, &data.velocities, &data.accelerations]
+        let duration = data.motion.times[node + 1] - data.motion.times[node];
+        let rates = [&data.motion.positions, &data.motion.velocities, &data.motion.accelerations]
             .map(|series| (series[node + 1] - series[node]) / duration);
         let slope = |shape: &Shape| -> f64 { shape.at(motion).1.iter().zip(rates).map(|(a, b)| a * b).sum() };
         self.shapes.iter().zip(&p[self.layout.shapes..]).map(|(shape, factor)| factor * slope(shape)).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fmm_fit::check_jacobian;
+
+    use super::*;
+
+    /// A motion to and fro at unequal steps under a load, with a force that need not fit.
+    fn record() -> ForceRecord {
+        let times: Vec<f64> = (0..300).map(|i| 0.01 * f64::from(i) + 1e-3 * f64::from(i % 3)).collect();
+        let column = |value: &dyn Fn(f64) -> f64| -> Vec<f64> { times.iter().map(|time| value(*time)).collect() };
+        let record =
+            ForceRecord::of_positions(&times, &column(&|t| 0.1 * (3.0 * t).sin()), &column(&|t| (2.9 * t).cos()))
+                .unwrap();
+        record.under_loads(&column(&|t| 5.0 + t)).unwrap()
+    }
+
+    /// Every parameter of a law with state and of one of the speed, with all that can stand beside it.
+    #[test]
+    fn derivatives_are_those_of_the_residuals() {
+        let beside = "quadratic + cubic + zero + inertia + stiffness + gravity + asymmetry + load offset + delay";
+        for (law, values) in [
+            ("dahl", vec![0.2, 150.0, 1.3]),
+            ("lugre", vec![0.2, 0.1, 0.05, 1.5, 150.0, 0.3, 0.1]),
+            ("maxwell_slip_2", vec![0.1, 200.0, 0.2, 30.0]),
+            ("stribeck", vec![0.2, 0.1, 0.05, 1.5, 0.1]),
+            ("makkar_dixon", vec![0.2, 40.0, 9.0, 0.1, 30.0, 0.1]),
+        ] {
+            let model = ForceModel::named(&format!("{law} + {beside}")).unwrap();
+            let records = [record()];
+            let problem = ForceProblem::new(&model, &records).unwrap();
+            let mut p = values;
+            p.extend([0.3, 0.2, 0.05, 0.4, 2.0, 0.1, -0.2, 0.15, 0.7, 2.3e-3]);
+            p.resize(problem.parameters().len(), 0.4);
+            let doubt = check_jacobian(&problem, &p).unwrap();
+            assert!(doubt.is_empty(), "{law}: {doubt:?}");
+        }
     }
 }

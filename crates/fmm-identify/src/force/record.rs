@@ -4,6 +4,7 @@ use fmm_fit::median_deviation;
 use fmm_model::ModelError;
 
 use crate::IdentifyError;
+use crate::law::along::MeasuredMotion;
 
 /// A force (or torque) measured along a motion that something outside prescribes. Samples need not be equally spaced.
 ///
@@ -19,13 +20,9 @@ use crate::IdentifyError;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceRecord {
-    pub(crate) times: Vec<f64>,
-    pub(crate) positions: Vec<f64>,
-    pub(crate) velocities: Vec<f64>,
-    pub(crate) accelerations: Vec<f64>,
+    pub(crate) motion: MeasuredMotion,
     pub(crate) forces: Vec<f64>,
     pub(crate) loads: Option<Vec<f64>>,
-    pub(crate) rest_speed: f64,
     position_unit: String,
     force_unit: String,
 }
@@ -48,8 +45,7 @@ impl ForceRecord {
         require_series(times, positions, "position", "m")?;
         require_series(times, forces, "force", "N")?;
         let velocities = slopes(times, positions);
-        Self { times: times.to_vec(), positions: positions.to_vec(), forces: forces.to_vec(), ..Self::EMPTY }
-            .moving_at(velocities)
+        Self::along(times, positions.to_vec(), forces).moving_at(velocities)
     }
 
     /// A record of which `velocities` (m/s) were measured beside the `forces` (N) at `times` (s), and no positions: these are the sum of
@@ -67,33 +63,25 @@ impl ForceRecord {
             position += 0.5 * (velocities[0] + velocities[1]) * (times[1] - times[0]);
             positions.push(position);
         }
-        Self { times: times.to_vec(), positions, forces: forces.to_vec(), ..Self::EMPTY }.moving_at(velocities.to_vec())
+        Self::along(times, positions, forces).moving_at(velocities.to_vec())
     }
 
-    const EMPTY: Self = Self {
-        times: Vec::new(),
-        positions: Vec::new(),
-        velocities: Vec::new(),
-        accelerations: Vec::new(),
-        forces: Vec::new(),
-        loads: None,
-        rest_speed: 0.0,
-        position_unit: String::new(),
-        force_unit: String::new(),
-    };
+    /// The record of forces along a motion whose velocities are said later.
+    fn along(times: &[f64], positions: Vec<f64>, forces: &[f64]) -> Self {
+        let motion = MeasuredMotion { times: times.to_vec(), positions, ..MeasuredMotion::default() };
+        let (position_unit, force_unit) = ("m".to_owned(), "N".to_owned());
+        Self { motion, forces: forces.to_vec(), loads: None, position_unit, force_unit }
+    }
 
     fn moving_at(mut self, velocities: Vec<f64>) -> Result<Self, IdentifyError> {
         let largest = velocities.iter().fold(0.0, |largest: f64, velocity| largest.max(velocity.abs()));
         ModelError::require_finite("velocity", largest, "m/s")?;
         if largest == 0.0 {
-            return Err(IdentifyError::no_motion(self.positions[0], "m"));
+            return Err(IdentifyError::no_motion(self.motion.positions[0], "m"));
         }
-        self.accelerations = slopes(&self.times, &velocities);
-        self.velocities = velocities;
-        self.rest_speed = REST * largest;
-        if self.position_unit.is_empty() {
-            return Ok(self.in_units("m", "N"));
-        }
+        self.motion.accelerations = slopes(&self.motion.times, &velocities);
+        self.motion.velocities = velocities;
+        self.motion.rest_speed = REST * largest;
         Ok(self)
     }
 
@@ -102,7 +90,7 @@ impl ForceRecord {
     /// # Errors
     /// As for [`of_positions`](Self::of_positions).
     pub fn with_velocities(self, velocities: &[f64]) -> Result<Self, IdentifyError> {
-        require_series(&self.times, velocities, "velocity", "m/s")?;
+        require_series(&self.motion.times, velocities, "velocity", "m/s")?;
         self.moving_at(velocities.to_vec())
     }
 
@@ -111,8 +99,8 @@ impl ForceRecord {
     /// # Errors
     /// As for [`of_positions`](Self::of_positions).
     pub fn with_accelerations(mut self, accelerations: &[f64]) -> Result<Self, IdentifyError> {
-        require_series(&self.times, accelerations, "acceleration", "m/s²")?;
-        self.accelerations = accelerations.to_vec();
+        require_series(&self.motion.times, accelerations, "acceleration", "m/s²")?;
+        self.motion.accelerations = accelerations.to_vec();
         Ok(self)
     }
 
@@ -121,7 +109,7 @@ impl ForceRecord {
     /// # Errors
     /// As for [`of_positions`](Self::of_positions), and for a load that is negative.
     pub fn under_loads(mut self, loads: &[f64]) -> Result<Self, IdentifyError> {
-        require_series(&self.times, loads, "normal load", "N")?;
+        require_series(&self.motion.times, loads, "normal load", "N")?;
         for load in loads {
             ModelError::require_not_negative("normal load", *load, "N")?;
         }
@@ -129,13 +117,13 @@ impl ForceRecord {
         Ok(self)
     }
 
-    /// The same taken to be at rest up to `speed` (m/s): there friction is what the force needs, up to the level of the law. It is a
+    /// The same taken to be at rest up to `speed` (m/s): there a law that leaps does not say friction. It is a
     /// thousandth of the largest speed unless it is given.
     ///
     /// # Errors
     /// [`IdentifyError::InvalidInput`] if the speed is negative or not finite.
     pub fn resting_up_to(mut self, speed: f64) -> Result<Self, IdentifyError> {
-        self.rest_speed = ModelError::require_not_negative("speed of rest", speed, "m/s")?;
+        self.motion.rest_speed = ModelError::require_not_negative("speed of rest", speed, "m/s")?;
         Ok(self)
     }
 
@@ -148,27 +136,27 @@ impl ForceRecord {
 
     /// How many samples there are.
     pub fn len(&self) -> usize {
-        self.times.len()
+        self.motion.times.len()
     }
 
     /// Whether there are none, which does not occur.
     pub fn is_empty(&self) -> bool {
-        self.times.is_empty()
+        self.motion.times.is_empty()
     }
 
     /// Times (s).
     pub fn times(&self) -> &[f64] {
-        &self.times
+        &self.motion.times
     }
 
     /// Positions (m, or the unit given).
     pub fn positions(&self) -> &[f64] {
-        &self.positions
+        &self.motion.positions
     }
 
     /// Velocities (m/s, or by the unit given), measured or of the positions.
     pub fn velocities(&self) -> &[f64] {
-        &self.velocities
+        &self.motion.velocities
     }
 
     /// Forces (N, or the unit given).
@@ -186,12 +174,6 @@ impl ForceRecord {
         &self.force_unit
     }
 
-    /// Whether the motion rests anywhere for more than a reversal.
-    pub(crate) fn rests(&self) -> bool {
-        const SAMPLES: usize = 4;
-        self.velocities.windows(SAMPLES).any(|speeds| speeds.iter().all(|speed| speed.abs() <= self.rest_speed))
-    }
-
     /// Standard deviation of what differs between neighbouring samples of the force, in its unit: its noise, or a step of its converter.
     pub(crate) fn noise(&self) -> f64 {
         // Of white noise a second difference has √6 times the deviation; of a median the deviation is 1.4826 times.
@@ -201,12 +183,35 @@ impl ForceRecord {
 
     /// The time (s) between two samples, in the mean.
     pub(crate) fn interval(&self) -> f64 {
-        (self.times[self.len() - 1] - self.times[0]) / (self.len() - 1) as f64
+        (self.motion.times[self.len() - 1] - self.motion.times[0]) / (self.len() - 1) as f64
+    }
+
+    /// Its first quarter, if that is long enough to show several reversals; none otherwise.
+    pub(crate) fn beginning(&self) -> Option<Self> {
+        /// Fewest samples of a beginning,
+        const FEWEST: usize = 2000;
+        /// and fewest periods in it.
+        const PERIODS: f64 = 2.0;
+        let count = self.len() / 4;
+        let cut = |values: &[f64]| values[..count].to_vec();
+        let part = (count >= FEWEST).then(|| Self {
+            motion: MeasuredMotion {
+                times: cut(&self.motion.times),
+                positions: cut(&self.motion.positions),
+                velocities: cut(&self.motion.velocities),
+                accelerations: cut(&self.motion.accelerations),
+                rest_speed: self.motion.rest_speed,
+            },
+            forces: cut(&self.forces),
+            loads: self.loads.as_deref().map(cut),
+            ..self.clone()
+        })?;
+        (part.period() * PERIODS <= count as f64).then_some(part)
     }
 
     /// The time (samples) from a reversal to the next but one, in the mean; all of it if there is none.
     pub(crate) fn period(&self) -> f64 {
-        let moving = self.velocities.iter().filter(|velocity| velocity.abs() > self.rest_speed);
+        let moving = self.motion.velocities.iter().filter(|velocity| velocity.abs() > self.motion.rest_speed);
         let (mut reversals, mut before) = (0_u32, 0.0);
         for velocity in moving {
             reversals += u32::from(velocity * before < 0.0);
@@ -229,7 +234,12 @@ fn require_times(times: &[f64]) -> Result<(), IdentifyError> {
     }
 }
 
-fn require_series(times: &[f64], values: &[f64], quantity: &'static str, unit: &'static str) -> Result<(), IdentifyError> {
+fn require_series(
+    times: &[f64],
+    values: &[f64],
+    quantity: &'static str,
+    unit: &'static str,
+) -> Result<(), IdentifyError> {
     if values.len() != times.len() {
         return Err(IdentifyError::contradiction(format!(
             "there are {} times, but {} values of {quantity}; give one for each",

@@ -1,7 +1,9 @@
 //! Where a fit of forces along motions begins.
 
 use fmm_fit::{EvaluationError, Residuals};
+use fmm_friction::Role;
 
+use crate::ForceRecord;
 use crate::fit::tangent::inverse_of_products;
 use crate::force::problem::ForceProblem;
 use crate::law::dimension::{Scales, is_force};
@@ -10,6 +12,8 @@ use crate::law::dimension::{Scales, is_force};
 const SHARPNESS: [f64; 7] = [1.0, 0.1, 0.3, 3.0, 10.0, 30.0, 100.0];
 /// Delays that are looked at, to either side of none.
 const DELAYS: i32 = 20;
+/// Share by which levels fall at most where they are set (1).
+const LARGEST_FALL: f64 = 0.9;
 /// Starts that are fitted, the nearest to the records first.
 const MOST_STARTS: usize = 3;
 
@@ -33,8 +37,7 @@ pub(crate) fn starts(problem: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, Evalua
     let has_bends = law.fitted().any(|parameter| law.bends(parameter));
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
     for sharpness in SHARPNESS.into_iter().take(if has_bends { SHARPNESS.len() } else { 1 }) {
-        let mut values: Vec<f64> =
-            law.fitted().map(|parameter| scales(sharpness).typical(law, parameter)).collect();
+        let mut values: Vec<f64> = law.fitted().map(|parameter| scales(sharpness).typical(law, parameter)).collect();
         values.resize(problem.parameters().len(), 0.0);
         for (place, deflection) in problem.first_deflections() {
             values[place] = deflection;
@@ -71,7 +74,7 @@ fn level(problem: &ForceProblem<'_>) -> f64 {
         let (mut sum, mut count) = (0.0, 0_usize);
         for record in problem.records() {
             for (force, velocity) in record.forces().iter().zip(record.velocities()) {
-                if velocity * sign > record.rest_speed {
+                if velocity * sign > record.motion.rest_speed {
                     sum += force;
                     count += 1;
                 }
@@ -85,28 +88,25 @@ fn level(problem: &ForceProblem<'_>) -> f64 {
         (None, Some(back)) => -back,
         (None, None) => 0.0,
     };
-    let all = problem.records().iter().flat_map(|record| record.forces());
+    let all = problem.records().iter().flat_map(ForceRecord::forces);
     level.max(1e-3 * all.fold(0.0, |largest, force| force.abs().max(largest)))
 }
 
-/// The sum of squares and `values` with what the force is proportional to, levels among it, set to what fits best.
+/// The sum of squares and `values` with what the force is proportional to, all levels together, set to what fits best.
 fn levelled(problem: &ForceProblem<'_>, mut values: Vec<f64>) -> Result<(f64, Vec<f64>), EvaluationError> {
-    let (rows, first) = (problem.len(), problem.first_shape());
-    let mut residuals = vec![0.0; rows];
-    let mut jacobian = vec![0.0; rows * values.len()];
-    problem.residuals_and_jacobian(&values, &mut residuals, &mut jacobian)?;
+    let first = problem.first_shape();
+    let (residuals, mut columns) = problem.linear(&values)?;
     let is_free = |j: usize| !problem.parameters()[j].bounds().is_fixed();
-    let fitted: Vec<bool> = problem.law().fitted().map(|parameter| is_force(parameter.role())).collect();
-    // All levels together, whose column is the sum of level times derivative.
-    let mut level = vec![0.0; rows];
-    for j in (0..first).filter(|j| fitted[*j] && is_free(*j)) {
-        for (level, slope) in level.iter_mut().zip(&jacobian[j * rows..][..rows]) {
-            *level += values[j] * slope;
+    let levels: Vec<bool> = problem.law().fitted().map(|parameter| is_proportional(parameter.role())).collect();
+    let is_level = |j: &usize| levels[*j] && is_free(*j);
+    if !(0..first).any(|j| is_level(&j)) {
+        columns[0].fill(0.0);
+    }
+    for (i, column) in columns.iter_mut().enumerate().skip(1) {
+        if !is_free(first + i - 1) {
+            column.fill(0.0);
         }
     }
-    let shapes: Vec<usize> = (first..first + problem.shape_count()).filter(|j| is_free(*j)).collect();
-    let mut columns = vec![level];
-    columns.extend(shapes.iter().map(|j| jacobian[j * rows..][..rows].to_vec()));
     let inverse = inverse_of_products(&columns);
     let products: Vec<f64> =
         columns.iter().map(|column| column.iter().zip(&residuals).map(|(a, r)| a * r).sum()).collect();
@@ -114,16 +114,23 @@ fn levelled(problem: &ForceProblem<'_>, mut values: Vec<f64>) -> Result<(f64, Ve
         inverse[i * columns.len()..][..columns.len()].iter().zip(&products).map(|(a, b)| a * b).sum()
     };
     // A level that would vanish is kept in sight.
-    let factor = (1.0 - step(0)).max(0.1);
-    for j in (0..first).filter(|j| fitted[*j] && is_free(*j)) {
-        values[j] *= factor;
+    let steps: Vec<f64> =
+        (0..columns.len()).map(|i| if i == 0 { step(i).min(LARGEST_FALL) } else { step(i) }).collect();
+    for j in (0..first).filter(is_level) {
+        values[j] *= 1.0 - steps[0];
     }
-    for (i, j) in shapes.iter().enumerate() {
-        values[*j] -= step(i + 1);
+    for (value, step) in values[first..].iter_mut().zip(&steps[1..]) {
+        *value -= step;
     }
     for (value, parameter) in values.iter_mut().zip(problem.parameters()) {
         *value = parameter.bounds().clamp(*value);
     }
-    problem.residuals(&values, &mut residuals)?;
-    Ok((residuals.iter().map(|r| r * r).sum(), values))
+    let left =
+        |row: usize| residuals[row] - columns.iter().zip(&steps).map(|(column, step)| step * column[row]).sum::<f64>();
+    Ok(((0..residuals.len()).map(|row| left(row).powi(2)).sum(), values))
+}
+
+/// Whether a role is proportional to friction, the viscous part included.
+fn is_proportional(role: Role) -> bool {
+    is_force(role) || role == Role::Slope
 }

@@ -1,5 +1,6 @@
 //! A law family as a value: what must know its type is the simulation alone, and all else is compiled once for all laws.
 
+pub(crate) mod along;
 mod candidate;
 pub(crate) mod dimension;
 pub(crate) mod friction_curve;
@@ -11,7 +12,7 @@ use fmm_friction::{LawFamily, LawKind, LawParameter, Role, SpecialCase};
 use fmm_model::{Dual, Oscillator, Scalar};
 use fmm_sim::{Excitation, Sampling, Scenario, Trajectory, simulate_into};
 
-use crate::force::along::{Along, along};
+use along::{Along, along};
 
 /// Directions of derivative that one simulation carries; a law with more parameters takes several.
 pub(crate) const DIRECTIONS: usize = 6;

@@ -446,10 +446,9 @@ impl fmt::Display for Warning {
                  which the uncertainties do not see",
                 100.0 * margin.abs()
             ),
-            Self::StaticLevelHeld { parameter } => write!(
-                f,
-                "{parameter} was held at the sliding level: a free decay depends on it only in where it stops"
-            ),
+            Self::StaticLevelHeld { parameter } => {
+                write!(f, "{parameter} was held at the sliding level: a motion depends on it only in where it stops")
+            }
             Self::OtherLaw { law, sentence } => write!(f, "{law}: {sentence}"),
             Self::NotFitted { laws } => {
                 write!(f, "{laws}: tried, but not fitted to the end; so far other laws describe the record better")

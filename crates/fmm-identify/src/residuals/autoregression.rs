@@ -1,5 +1,7 @@
 //! Autoregression of a series on its past values.
 
+use fmm_frf::Complex64;
+
 /// An autoregressive process that a series looks like.
 ///
 /// ```text
@@ -71,13 +73,9 @@ impl Autoregression {
 
     /// S at `frequency`, in cycles a sample: of white noise the variance at every frequency.
     pub(crate) fn density(&self, frequency: f64) -> f64 {
-        let (mut real, mut imaginary) = (1.0, 0.0);
-        for (j, coefficient) in self.coefficients.iter().enumerate() {
-            let (sin, cos) = (std::f64::consts::TAU * frequency * (j + 1) as f64).sin_cos();
-            real -= coefficient * cos;
-            imaginary += coefficient * sin;
-        }
-        self.innovation / (real * real + imaginary * imaginary)
+        let turn = Complex64::cis(-std::f64::consts::TAU * frequency);
+        let sum = self.coefficients.iter().rev().fold(Complex64::ZERO, |sum, coefficient| (sum + coefficient) * turn);
+        self.innovation / (Complex64::ONE - sum).norm_sqr()
     }
 }
 

@@ -215,12 +215,14 @@ impl SeriesNoise {
         let raw: Vec<f64> = self.spectrum(&unit).iter().map(|line| line.norm_sqr() / count as f64).collect();
         let taken = self.taken(series);
         let mut periodogram = raw.clone();
-        let mut regression = Autoregression::of(&self.autocovariances(&periodogram, count), count);
+        let length = self.transform.length();
+        let cosines: Vec<f64> = (0..length).map(|i| (TAU * i as f64 / length as f64).cos()).collect();
+        let mut regression = Autoregression::of(&self.autocovariances(&periodogram, &cosines, count), count);
         // What the parameters took from a line is a share of the density there, which is known better each time.
         for _ in 0..RESTORATIONS {
             self.density = self.densities(&regression);
             periodogram = raw.iter().zip(&taken).zip(&self.density).map(|((p, share), s)| p + share * s).collect();
-            regression = Autoregression::of(&self.autocovariances(&periodogram, count), count);
+            regression = Autoregression::of(&self.autocovariances(&periodogram, &cosines, count), count);
         }
         self.density = self.densities(&regression);
         let lines = self.density.len();
@@ -255,14 +257,17 @@ impl SeriesNoise {
         (0..self.transform.lines()).map(|k| regression.density(k as f64 / length)).collect()
     }
 
-    /// The autocovariances of a series of `count` values that belong to its `periodogram`.
-    fn autocovariances(&self, periodogram: &[f64], count: usize) -> Vec<f64> {
+    /// The autocovariances of a series of `count` values that belong to its `periodogram`; `cosines` are those of one turn.
+    fn autocovariances(&self, periodogram: &[f64], cosines: &[f64], count: usize) -> Vec<f64> {
         let length = self.transform.length();
         let last = periodogram.len() - 1;
         let at = |lag: usize| {
+            let mut turn = 0;
             let terms = periodogram.iter().enumerate().map(|(k, p)| {
                 let times = if k == 0 || (k == last && length.is_multiple_of(2)) { 1.0 } else { 2.0 };
-                times * p * (TAU * ((k * lag) % length) as f64 / length as f64).cos()
+                let term = times * p * cosines[turn];
+                turn = if turn + lag >= length { turn + lag - length } else { turn + lag };
+                term
             });
             terms.sum::<f64>() / length as f64
         };

@@ -94,7 +94,12 @@ impl Covariance {
     }
 
     /// That of a `fit` whose residuals show this `noise`; `columns` are the derivatives by the [`known`](Self::known) parameters.
-    pub(crate) fn of_noise(fit: &Fit, structure: &ResidualStructure, columns: &[Vec<f64>], noise: ResidualNoise) -> Self {
+    pub(crate) fn of_noise(
+        fit: &Fit,
+        structure: &ResidualStructure,
+        columns: &[Vec<f64>],
+        noise: ResidualNoise,
+    ) -> Self {
         let count = fit.values().len();
         let plain = |at: usize| Self::plain(fit, at / count, at % count);
         let mut elements: Vec<Option<f64>> = (0..count * count).map(plain).collect();

@@ -1,7 +1,7 @@
 //! Forces along motions: every law comes back out of what it makes of a motion, with its uncertainty.
 
 use fmm_friction::{BristleLaw, FamilyVisitor, LawFamily, LawVisitor, SlidingLaw, family_named};
-use fmm_identify::{ForceModel, ForceRecord, IdentifyError, identify_force};
+use fmm_identify::{ForceModel, ForceRecord, IdentifyError, Warning, identify_force};
 use fmm_sim::{Path, State, friction_along};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -32,11 +32,8 @@ impl<L> LawVisitor<f64, L> for AlongMotion<'_, L> {
         let at = |time: &f64| {
             let (speed, later) = (motion(*time).velocity, motion(*time + 1e-7).velocity);
             let losing = later.abs() < speed.abs();
-            let size = if losing {
-                self.law.coefficient_losing_speed(speed.abs())
-            } else {
-                self.law.coefficient(speed.abs())
-            };
+            let size =
+                if losing { self.law.coefficient_losing_speed(speed.abs()) } else { self.law.coefficient(speed.abs()) };
             size * speed.signum()
         };
         self.times.iter().map(at).collect()
@@ -71,25 +68,22 @@ const DELAY: f64 = 3.7e-3;
 const ZERO: f64 = 1.5;
 const NOISE: f64 = 0.05;
 
-/// What is the same for every seed: fine times and friction at them.
+/// What is the same for every seed: friction (N) at fine times.
 struct Truth {
-    times: Vec<f64>,
     friction: Vec<f64>,
 }
 
 impl Truth {
     fn of(name: &str, values: &[f64]) -> Self {
         let times: Vec<f64> = (0..=22_500).map(|i| FINE * f64::from(i)).collect();
-        let friction = family_named(name, &mut Friction(values, &times)).unwrap();
-        Self { times, friction }
+        Self { friction: family_named(name, &mut Friction(values, &times)).unwrap() }
     }
 
     /// 800 samples at unequal times, of which the force comes late.
     fn record(&self, seed: u64) -> ForceRecord {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let jitter = Uniform::new(-0.4, 0.4).unwrap();
-        let times: Vec<f64> =
-            (0..800).map(|i| 0.2 + 5e-3 * (f64::from(i) + jitter.sample(&mut random))).collect();
+        let times: Vec<f64> = (0..800).map(|i| 0.2 + 5e-3 * (f64::from(i) + jitter.sample(&mut random))).collect();
         let forces: Vec<f64> = times
             .iter()
             .map(|time| {
@@ -103,7 +97,6 @@ impl Truth {
         let states: Vec<State> = times.iter().map(|time| motion(*time)).collect();
         let positions: Vec<f64> = states.iter().map(|state| state.position).collect();
         let velocities: Vec<f64> = states.iter().map(|state| state.velocity).collect();
-        debug_assert!(self.times.len() == self.friction.len());
         ForceRecord::of_positions(&times, &positions, &forces).unwrap().with_velocities(&velocities).unwrap()
     }
 }
@@ -115,12 +108,7 @@ const CASES: &[Case] = &[
     ("viscous", &[], &[40.0], &[("damping", 40.0)]),
     ("coulomb", &[], &[5.0], &[("friction_force", 5.0)]),
     ("coulomb_viscous", &[], &[5.0, 20.0], &[("friction_force", 5.0), ("damping", 20.0)]),
-    (
-        "acceleration_coulomb",
-        &[],
-        &[5.5, 4.5],
-        &[("gaining_friction_force", 5.5), ("losing_friction_force", 4.5)],
-    ),
+    ("acceleration_coulomb", &[], &[5.5, 4.5], &[("gaining_friction_force", 5.5), ("losing_friction_force", 4.5)]),
     (
         "stribeck",
         &[],
@@ -175,32 +163,142 @@ const CASES: &[Case] = &[
     ),
 ];
 
+/// Records of each law; of 20 intervals of 95 % at least 15 hold but once in three thousand, and of all of them 90 to 99 % do.
+const RECORDS: u64 = 20;
+
+/// Unequal steps, a zero and a delay that are not known, noise: the intervals hold what the law was.
 #[test]
-fn explore() {
-    let only = std::env::var("ONLY").unwrap_or_default();
-    for (name, held, values, truths) in CASES.iter().filter(|case| only.is_empty() || case.0 == only) {
+fn each_law_comes_back() {
+    let (mut held, mut stated) = (0, 0);
+    for (name, fixed, values, truths) in CASES {
         let truth = Truth::of(name, values);
         let mut model = ForceModel::named(name).unwrap().with_zero().with_delay();
-        for (name, value) in *held {
-            model = model.holding(name, *value).unwrap();
+        for (parameter, value) in *fixed {
+            model = model.holding(parameter, *value).unwrap();
         }
-        let begun = std::time::Instant::now();
-        let seeds = std::env::var("SEEDS").map_or(10, |n| n.parse().unwrap());
+        // Laws without a closed form along a motion take a second a record.
+        let records = if *name == "bouc_wen" { 2 } else { RECORDS };
         let truths: Vec<(&str, f64)> = truths.iter().copied().chain([("zero", ZERO), ("delay", DELAY)]).collect();
         let mut inside = vec![(0, 0); truths.len()];
-        let mut last = None;
-        for seed in 0..seeds {
+        for seed in 0..records {
             let found = identify_force(&model, &[truth.record(seed)]).unwrap();
-            for (count, (name, truth)) in inside.iter_mut().zip(&truths) {
-                let finding = found.finding(name).unwrap_or_else(|| panic!("{name} of {found}"));
+            for (count, (parameter, truth)) in inside.iter_mut().zip(&truths) {
+                let finding = found.finding(parameter).unwrap_or_else(|| panic!("{parameter} of {found}"));
+                assert!(finding.value().is_finite());
                 if let Some((low, high)) = finding.interval(0.95) {
-                    count.1 += 1;
-                    count.0 += usize::from(low <= *truth && *truth <= high);
+                    *count = (count.0 + u64::from(low <= *truth && *truth <= high), count.1 + 1);
                 }
             }
-            last = Some(found);
         }
-        println!("{name}: {inside:?} {:.1} ms", begun.elapsed().as_secs_f64() * 1e3 / seeds as f64);
-        if let Some(found) = last { println!("{found}"); }
+        for (count, (parameter, _)) in inside.iter().zip(&truths) {
+            // Levels alone leap where the motion turns; what a delay does there has no derivative, and it is not determined.
+            let is_leap = *parameter == "delay" && name.contains("coulomb") && !name.contains("viscous");
+            assert!(is_leap || count.1 == records, "{name}: {parameter} is stated in {} of {records}", count.1);
+            assert!(4 * count.0 >= 3 * count.1, "{name}: {parameter} holds {count:?}");
+            (held, stated) = (held + count.0, stated + count.1);
+        }
     }
+    let share = held as f64 / stated as f64;
+    assert!((0.92..0.985).contains(&share), "{held} of {stated}");
+}
+
+/// 200 N along a slide: levels that differ by direction, inertia, a spring, a load that varies.
+#[test]
+fn what_stands_beside_friction_is_told_from_it() {
+    let times: Vec<f64> = (0..4000).map(|i| 1e-3 * f64::from(i)).collect();
+    let states: Vec<State> = times.iter().map(|time| motion(*time)).collect();
+    let accelerations: Vec<f64> =
+        times.iter().map(|time| (motion(time + 1e-6).velocity - motion(time - 1e-6).velocity) / 2e-6).collect();
+    let loads: Vec<f64> = times.iter().map(|time| 50.0 + 20.0 * (5.0 * time).sin()).collect();
+    let force = |at: usize| {
+        let State { position, velocity } = states[at];
+        let level = if velocity > 0.0 { 0.2 * 1.1 } else { -0.2 * 0.9 };
+        (loads[at] + 7.0) * level
+            + 12.0 * velocity * velocity.abs()
+            + 3.0 * accelerations[at]
+            + 400.0 * position
+            + 2.0 * position.sin()
+            - 5.0 * position.cos()
+    };
+    let forces: Vec<f64> = (0..times.len()).map(force).collect();
+    let positions: Vec<f64> = states.iter().map(|state| state.position).collect();
+    let velocities: Vec<f64> = states.iter().map(|state| state.velocity).collect();
+    let record = ForceRecord::of_positions(&times, &positions, &forces)
+        .and_then(|record| record.with_velocities(&velocities))
+        .and_then(|record| record.with_accelerations(&accelerations))
+        .and_then(|record| record.under_loads(&loads))
+        .unwrap();
+    let model = ForceModel::named("coulomb + quadratic").unwrap();
+    let model = model.with_inertia().with_stiffness().with_asymmetry().with_load_offset().with_zero();
+    let found = identify_force(&model, std::slice::from_ref(&record)).unwrap();
+    let wanted =
+        [("coefficient", 0.2), ("asymmetry", 0.1), ("load_offset", 7.0), ("quadratic_damping", 12.0), ("inertia", 3.0)];
+    for (name, truth) in wanted {
+        let value = found.finding(name).unwrap().value();
+        // A sine of 24 mm is a line but for 6e-5 of it, and the line is the stiffness.
+        assert!((value / truth - 1.0).abs() < 2e-3, "{name}: {value}, {truth}");
+    }
+    let stiffness = found.finding("stiffness").unwrap().value();
+    assert!((stiffness - 402.0).abs() < 0.1, "{stiffness} N/m");
+    // The same model says a record to which it was not fitted, and says which it is.
+    let said = found.validate_on(&record).unwrap();
+    assert!(said.share() < 1e-3 && (said.rms - found.rms_residual()).abs() < 1e-2 * said.rms.max(1e-9), "{said:?}");
+}
+
+/// A contact that rests: friction is whatever the force needs, and tells nothing of the levels.
+#[test]
+fn a_rest_is_no_sliding() {
+    let times: Vec<f64> = (0..3000).map(|i| 1e-3 * f64::from(i)).collect();
+    let velocity = |time: f64| if (1.0..2.0).contains(&time) { 0.0 } else { 0.05 };
+    let velocities: Vec<f64> = times.iter().map(|time| velocity(*time)).collect();
+    let force = |time: &f64| if velocity(*time) == 0.0 { 6.0 * (time - 1.0) } else { 4.0 + 1e-3 * (1e4 * time).sin() };
+    let forces: Vec<f64> = times.iter().map(force).collect();
+    let record = ForceRecord::of_velocities(&times, &velocities, &forces).unwrap();
+    let found = identify_force(&ForceModel::named("coulomb_static").unwrap(), std::slice::from_ref(&record)).unwrap();
+    assert!((found.finding("sliding_friction_force").unwrap().value() - 4.0).abs() < 1e-4, "{found}");
+    assert!(found.warnings().iter().any(|warning| matches!(warning, Warning::StaticLevelHeld { .. })), "{found}");
+    let said = found.predict(&record).unwrap();
+    assert!(said[1500].is_none() && said[500].is_some());
+}
+
+/// A friction damper on a test bench (CC BY-SA 4.0, examples/data/SOURCES.md): what a fit outside of this project leaves is 17.3 %.
+#[test]
+fn a_damper_is_described_as_well_as_by_others() {
+    let text = include_str!("../../../../examples/data/damper_1Hz_36lb_1amplitude.csv");
+    let mut columns = vec![Vec::new(); 4];
+    for line in text.lines().skip(1) {
+        for (column, cell) in columns.iter_mut().zip(line.split(',')) {
+            column.push(cell.parse::<f64>().unwrap());
+        }
+    }
+    let record = ForceRecord::of_positions(&columns[0], &columns[1], &columns[3]).unwrap();
+    let record = record.with_velocities(&columns[2]).unwrap();
+    let found = identify_force(&ForceModel::named("dahl+linear+asymmetry").unwrap(), &[record]).unwrap();
+    let share = found.rms_residual() / found.force_deviation();
+    assert!((0.16..0.173).contains(&share), "{share}");
+    assert!(found.warnings().iter().any(|warning| warning.to_string().contains("structured")));
+}
+
+#[test]
+fn what_is_no_record_is_refused() {
+    let (times, values) = ([0.0, 0.1, 0.2, 0.3], [0.0, 1.0, 0.5, 0.2]);
+    let record = |times: &[f64], positions: &[f64], forces: &[f64]| ForceRecord::of_positions(times, positions, forces);
+    assert!(matches!(record(&times[..2], &values[..2], &values[..2]), Err(IdentifyError::TooFew { .. })));
+    assert!(matches!(record(&times, &values[..3], &values), Err(IdentifyError::Contradiction { .. })));
+    assert!(matches!(record(&[0.0, 0.2, 0.2, 0.3], &values, &values), Err(IdentifyError::OutOfRange { .. })));
+    assert!(matches!(record(&times, &[f64::NAN; 4], &values), Err(IdentifyError::InvalidInput(_))));
+    assert!(matches!(record(&times, &[1.0; 4], &values), Err(IdentifyError::NotSeen { .. })));
+    let record = record(&times, &values, &values).unwrap();
+    assert!(record.clone().under_loads(&[-1.0; 4]).is_err() && record.clone().resting_up_to(-1.0).is_err());
+    let identify = |name: &str, records: &[ForceRecord]| identify_force(&ForceModel::named(name).unwrap(), records);
+    assert!(matches!(identify("coulomb", &[]), Err(IdentifyError::Missing { .. })));
+    assert!(matches!(
+        identify("coulomb + load offset", std::slice::from_ref(&record)),
+        Err(IdentifyError::Missing { .. })
+    ));
+    let angles = record.clone().in_units("rad", "N m");
+    assert!(matches!(identify("coulomb", &[record.clone(), angles]), Err(IdentifyError::WrongRecord { .. })));
+    assert!(matches!(identify("lugre + zero", &[record]), Err(IdentifyError::TooFew { .. })));
+    assert!(matches!(ForceModel::named("coulomb + wind"), Err(IdentifyError::UnknownName { .. })));
+    assert!(matches!(ForceModel::named("viscous + linear"), Err(IdentifyError::Contradiction { .. })));
 }

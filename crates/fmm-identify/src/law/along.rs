@@ -5,12 +5,25 @@ use fmm_friction::{BristleLaw, LawFamily, LawVisitor, Regime, SlidingLaw};
 use fmm_model::Scalar;
 use fmm_sim::{Path, friction_along};
 
-use crate::ForceRecord;
+/// A motion that was measured: one value a sample.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct MeasuredMotion {
+    /// s.
+    pub(crate) times: Vec<f64>,
+    /// m.
+    pub(crate) positions: Vec<f64>,
+    /// m/s.
+    pub(crate) velocities: Vec<f64>,
+    /// m/s².
+    pub(crate) accelerations: Vec<f64>,
+    /// Speed up to which the contact is taken to rest (m/s).
+    pub(crate) rest_speed: f64,
+}
 
 /// A measured motion, seen some time earlier than the force.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Guide<'a, D> {
-    pub(crate) record: &'a ForceRecord,
+    pub(crate) motion: &'a MeasuredMotion,
     /// By how much the force comes later than the motion (s).
     pub(crate) delay: D,
     /// Whether there is such a delay, known or to be found.
@@ -28,20 +41,12 @@ pub(crate) struct Guide<'a, D> {
 pub(crate) struct Place {
     /// The sample before it, or at it.
     pub(crate) node: usize,
-    pub(crate) contact: Contact,
+    /// Whether the contact slides there for certain: it does not rest, nor turn before the next sample.
+    pub(crate) slides: bool,
 }
 
-/// What a contact does, as far as the velocity says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Contact {
-    Slides,
-    /// Between two samples with velocities of opposite signs, nobody knows where.
-    Turns,
-    Rests,
-}
-
-/// Friction coefficient (1) at the sample of each place; of a law of the speed that leaps at rest the level there where the contact does
-/// not slide.
+/// Friction coefficient (1) at the sample of each place; of a law of the speed that leaps at rest none, 0, where the contact may not
+/// slide.
 pub(crate) type Along<D> = fn(&[D], Guide<'_, D>, &mut Vec<D>) -> Result<(), EvaluationError>;
 
 /// Friction of family `F` by these `values`.
@@ -59,9 +64,9 @@ pub(crate) fn along<F: LawFamily, D: Scalar>(
 const LONG: f64 = 20.0;
 
 /// Places of the samples `rows` for a `delay` (s).
-pub(crate) fn places(record: &ForceRecord, rows: std::ops::Range<usize>, delay: f64, places: &mut Vec<Place>) {
+pub(crate) fn places(motion: &MeasuredMotion, rows: std::ops::Range<usize>, delay: f64, places: &mut Vec<Place>) {
     places.clear();
-    let (times, velocities) = (&record.times, &record.velocities);
+    let (times, velocities) = (&motion.times, &motion.velocities);
     let mut node = 0;
     for row in rows {
         let time = times[row] - delay;
@@ -72,28 +77,31 @@ pub(crate) fn places(record: &ForceRecord, rows: std::ops::Range<usize>, delay: 
         let [begin, end] = [velocities[node], velocities[node + 1]];
         let velocity = begin + (end - begin) * elapsed / (times[node + 1] - times[node]);
         let turns = elapsed > 0.0 && begin * end <= 0.0;
-        let rests = velocity.abs() <= record.rest_speed;
-        let contact = if turns { Contact::Turns } else if rests { Contact::Rests } else { Contact::Slides };
-        places.push(Place { node, contact });
+        let rests = velocity.abs() <= motion.rest_speed;
+        places.push(Place { node, slides: !turns && !rests });
     }
 }
 
 impl<D: Scalar> Guide<'_, D> {
     /// The time (s) from the node of a place to the motion at sample `row`.
     pub(crate) fn elapsed(&self, row: usize, place: Place) -> D {
-        D::from(self.record.times[row] - self.record.times[place.node]) - self.delay
+        D::from(self.motion.times[row] - self.motion.times[place.node]) - self.delay
     }
 
     /// What a measured `series` is between two samples.
+    #[inline]
     pub(crate) fn between(&self, series: &[f64], place: Place, elapsed: D) -> D {
-        let (node, times) = (place.node, &self.record.times);
+        let (node, times) = (place.node, &self.motion.times);
+        if !self.has_delay && elapsed.value() == 0.0 {
+            return D::from(series[node]);
+        }
         let slope = (series[node + 1] - series[node]) / (times[node + 1] - times[node]);
         D::from(series[node]) + elapsed * slope
     }
 
     /// Friction of a law without a closed form, which is followed from sample to sample, and by straight lines between them.
     fn stepped<L: BristleLaw<D>>(&self, law: &L, friction: &mut Vec<D>) -> Result<(), EvaluationError> {
-        let (times, positions) = (&self.record.times, &self.record.positions);
+        let (times, positions) = (&self.motion.times, &self.motion.positions);
         // Bristles are at first as after a long way in the direction in which the record begins.
         let way = (0..law.states()).map(|index| law.bound(index).value()).fold(0.0, f64::max) * LONG;
         let direction = self.deflection.value().signum();
@@ -124,10 +132,10 @@ struct Leg {
 }
 
 impl Leg {
-    fn of(record: &ForceRecord, node: usize) -> Self {
+    fn of(motion: &MeasuredMotion, node: usize) -> Self {
         let change = |series: &[f64]| series[node + 1] - series[node];
-        let (duration, [begin, end]) = (change(&record.times), [0, 1].map(|next| record.velocities[node + next]));
-        let velocity = change(&record.positions) / duration - 0.5 * (end - begin);
+        let (duration, [begin, end]) = (change(&motion.times), [0, 1].map(|next| motion.velocities[node + next]));
+        let velocity = change(&motion.positions) / duration - 0.5 * (end - begin);
         let acceleration = (end - begin) / duration;
         let turn = -velocity / acceleration;
         Self { duration, velocity, acceleration, turn: Some(turn).filter(|turn| *turn > 0.0 && *turn < duration) }
@@ -140,9 +148,8 @@ impl Leg {
 
     /// Carries the state of a law through the first `elapsed` of it (s); whether the law has a closed form for that.
     fn carry<D: Scalar, L: BristleLaw<D>>(&self, law: &L, elapsed: D, state: &mut [D]) -> bool {
-        let go = |velocity: D, duration: D, state: &mut [D]| {
-            velocity.value() == 0.0 || law.carry(velocity, duration, state)
-        };
+        let go =
+            |velocity: D, duration: D, state: &mut [D]| velocity.value() == 0.0 || law.carry(velocity, duration, state);
         match self.turn.filter(|turn| *turn < elapsed.value()) {
             None => go(self.mean(elapsed), elapsed, state),
             Some(turn) => {
@@ -169,17 +176,15 @@ impl<D: Scalar, L> LawVisitor<D, L> for Following<'_, '_, D, L> {
         L: SlidingLaw<D>,
     {
         let Self { law, guide, friction } = self;
-        let (sliding, breakaway) = (law.coefficient(D::from(0.0)), law.breakaway());
-        let at_rest = if sliding.value() > breakaway.value() { sliding } else { breakaway };
-        let leaps = sliding.value() > 0.0;
+        let leaps = law.coefficient(D::from(0.0)).value() > 0.0;
         for (row, place) in (guide.first..).zip(guide.places) {
-            if leaps && place.contact != Contact::Slides {
-                friction.push(at_rest);
+            if leaps && !place.slides {
+                friction.push(D::from(0.0));
                 continue;
             }
             let elapsed = guide.elapsed(row, *place);
-            let velocity = guide.between(&guide.record.velocities, *place, elapsed);
-            let acceleration = guide.between(&guide.record.accelerations, *place, elapsed);
+            let velocity = guide.between(&guide.motion.velocities, *place, elapsed);
+            let acceleration = guide.between(&guide.motion.accelerations, *place, elapsed);
             let losing = velocity.value() * acceleration.value() < 0.0;
             let speed = velocity.abs();
             let size = if losing { law.coefficient_losing_speed(speed) } else { law.coefficient(speed) };
@@ -198,7 +203,7 @@ impl<D: Scalar, L> LawVisitor<D, L> for Following<'_, '_, D, L> {
         let mut at = 0;
         for (row, place) in (guide.first..).zip(guide.places) {
             while at < place.node {
-                let leg = Leg::of(guide.record, at);
+                let leg = Leg::of(guide.motion, at);
                 if !leg.carry(law, D::from(leg.duration), &mut state) {
                     return guide.stepped(law, friction);
                 }
@@ -208,10 +213,10 @@ impl<D: Scalar, L> LawVisitor<D, L> for Following<'_, '_, D, L> {
             here.copy_from_slice(&state);
             // A delay has its derivative even where no time has passed.
             let is_later = guide.has_delay || elapsed.value() != 0.0;
-            if is_later && !Leg::of(guide.record, at).carry(law, elapsed, &mut here) {
+            if is_later && !Leg::of(guide.motion, at).carry(law, elapsed, &mut here) {
                 return guide.stepped(law, friction);
             }
-            let velocity = guide.between(&guide.record.velocities, *place, elapsed);
+            let velocity = guide.between(&guide.motion.velocities, *place, elapsed);
             law.rate(velocity, &here, Regime::ALL_HOLD, &mut rate);
             friction.push(law.coefficient(velocity, &here, &rate));
         }
