@@ -17,7 +17,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use figure::{Layer, Panel, Role, label};
-use fmm_identify::{ForceIdentification, ForceModel, ForceRecord, identify_force};
+use fmm_identify::{Estimated, ForceIdentification, ForceModel, ForceRecord, SpeedBin, identify_force};
 use serde_json::{Value, json};
 use source::Source;
 
@@ -96,11 +96,27 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     let mut out = std::io::stdout().lock();
     if arguments.json {
+        let bins: Vec<Value> = records
+            .iter()
+            .map(|record| {
+                let bins = record.friction_over_speed(BINS);
+                let pair = |estimated: Estimated| [estimated.value, estimated.uncertainty];
+                let bin = |bin: &SpeedBin| {
+                    json!({
+                        "speed": bin.speed,
+                        "friction_u": pair(bin.friction),
+                        "offset_u": pair(bin.offset),
+                        "samples": bin.samples,
+                    })
+                };
+                bins.iter().map(bin).collect()
+            })
+            .collect();
         let models = found.iter().map(|found| document(found, &validated, &others)).collect::<Result<Vec<_>, _>>()?;
         writeln!(
             out,
             "{:#}",
-            json!({ "samples": records.iter().map(ForceRecord::len).sum::<usize>(), "models": models })
+            json!({ "samples": records.iter().map(ForceRecord::len).sum::<usize>(), "friction_over_speed": bins, "models": models })
         )?;
         return Ok(());
     }
@@ -148,7 +164,10 @@ fn document(found: &ForceIdentification, files: &[PathBuf], others: &[ForceRecor
     }))
 }
 
-/// Force over position and over velocity with the fit in, and what is left over time.
+/// Bins of the friction over the speed.
+const BINS: usize = 24;
+
+/// Force over position and over velocity with the fit in, friction over the speed without a law, and what is left over time.
 fn panels(record: &ForceRecord, found: &ForceIdentification) -> Result<Vec<Panel>, Box<dyn Error>> {
     let said = found.predict(record)?;
     let velocity = format!("{}/s", record.position_unit());
@@ -159,12 +178,19 @@ fn panels(record: &ForceRecord, found: &ForceIdentification) -> Result<Vec<Panel
             .with(Layer::new(Role::Measured, "measured", measured))
             .with(Layer::new(Role::Fitted, found.model(), fitted))
     };
+    let bins = record.friction_over_speed(BINS);
+    let bins = bins.iter().map(|bin| (bin.speed, bin.friction.value)).collect();
     let left = record.times().iter().zip(record.forces()).zip(&said);
     let left = left.filter_map(|((time, force), said)| Some((*time, (*said)? - force))).collect();
     let text = format!("fit − measured, {:.3e} {} rms", found.rms_residual(), record.force_unit());
     Ok(vec![
         against(record.positions(), "position", record.position_unit()),
         against(record.velocities(), "velocity", &velocity),
+        Panel::new(label("speed", &velocity), label("friction", record.force_unit()), 260.0).with(Layer::new(
+            Role::Points,
+            "half the difference of the directions, medians",
+            bins,
+        )),
         Panel::new("time / s", label("residual", record.force_unit()), 260.0).with(Layer::new(
             Role::Residual,
             text,

@@ -4,8 +4,10 @@ mod identification;
 mod model;
 mod problem;
 mod record;
+mod speed_curve;
 mod start;
 
 pub use identification::{ForceIdentification, Validation, identify_force};
 pub use model::ForceModel;
 pub use record::ForceRecord;
+pub use speed_curve::SpeedBin;

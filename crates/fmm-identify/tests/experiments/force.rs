@@ -279,6 +279,40 @@ fn a_damper_is_described_as_well_as_by_others() {
     assert!(found.warnings().iter().any(|warning| warning.to_string().contains("structured")));
 }
 
+/// Friction over the speed without a law: passes at five speeds to and fro, with noise that remembers half of itself.
+#[test]
+fn friction_over_speed_holds_what_it_states() {
+    let (speeds, pass) = ([0.01, 0.02, 0.04, 0.08, 0.16], 120);
+    let truth = |speed: f64| 3.0 + 2.0 * (-speed / 0.02f64).exp() + 5.0 * speed;
+    let (mut inside, mut all) = (0, 0);
+    for seed in 0..60 {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let (mut velocities, mut forces, mut noise) = (vec![], vec![], 0.0);
+        for at in 0..40 * pass {
+            let round = at / pass;
+            let speed = speeds[round / 2 % speeds.len()];
+            let sign = if round % 2 == 0 { 1.0 } else { -1.0 };
+            let draw: f64 = StandardNormal.sample(&mut random);
+            noise = 0.5 * noise + 0.1 * draw;
+            velocities.push(sign * speed);
+            forces.push(sign * truth(speed) + 0.7 + noise);
+        }
+        let times: Vec<f64> = (0..velocities.len()).map(|i| 1e-3 * i as f64).collect();
+        let record = ForceRecord::of_velocities(&times, &velocities, &forces).unwrap();
+        let bins = record.friction_over_speed(5);
+        assert_eq!(bins.len(), 5);
+        for (bin, speed) in bins.iter().zip(speeds) {
+            assert_eq!((bin.speed, bin.samples), (speed, 8 * pass));
+            for (found, truth) in [(bin.friction, truth(speed)), (bin.offset, 0.7)] {
+                all += 1;
+                inside += u32::from((found.value - truth).abs() < 1.96 * found.uncertainty);
+            }
+        }
+    }
+    let share = f64::from(inside) / f64::from(all);
+    assert!((0.92..0.98).contains(&share), "{inside} of {all}");
+}
+
 #[test]
 fn what_is_no_record_is_refused() {
     let (times, values) = ([0.0, 0.1, 0.2, 0.3], [0.0, 1.0, 0.5, 0.2]);
