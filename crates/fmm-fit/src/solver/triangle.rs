@@ -275,11 +275,12 @@ fn scratch_length(rows: usize, width: usize) -> usize {
 /// columns behind it into the multiples of the pivot to be taken off these.
 fn reflect(line: &mut [f64], products: &mut [f64]) {
     let (diagonal, square) = (line[0], products[0]);
-    if square == 0.0 {
+    let norm = (diagonal * diagonal + square).sqrt();
+    // Of a pivot whose square underflows, as derivatives that have died away do, nothing is left to be cleared.
+    if square == 0.0 || norm * norm < f64::MIN_POSITIVE {
         products.fill(0.0);
         return;
     }
-    let norm = (diagonal * diagonal + square).sqrt();
     let reflected = if diagonal > 0.0 { -norm } else { norm };
     let lead = diagonal - reflected;
     // 2/‖v‖² of the reflecting vector v = (lead, pivot).
@@ -382,6 +383,19 @@ mod tests {
         let jacobian = (0..6).flat_map(|j| (0..n).map(move |i| x(i).powi(j))).collect();
         let residuals = (0..n).map(|i| (7.0 * x(i)).sin()).collect();
         (jacobian, residuals)
+    }
+
+    /// The derivative by what the beginning of a record was has died away: 1, 1e-80, 1e-160, … and 1e-160 where nothing was before.
+    #[test]
+    fn derivatives_that_have_died_away_are_none() {
+        let n = 2500;
+        let dying: Vec<f64> = (0..n).map(|i| if i < 1000 { 0.0 } else { 1e-160 * f64::from(i % 7) }).collect();
+        let fading: Vec<f64> = (0..n).map(|i| 10f64.powi(-80 * (i / 400))).collect();
+        let jacobian = [fading, dying, vec![1.0; n as usize], vec![0.0; n as usize]].concat();
+        let mut triangle = Triangle::default();
+        triangle.factor(&jacobian, &[0, 1, 2, 3], &vec![0.5; n as usize], &mut Vec::new());
+        assert!(triangle.is_finite());
+        assert!((triangle.column_norm(0) - 20.0).abs() < 1e-12 && (triangle.column_norm(2) - 50.0).abs() < 1e-12);
     }
 
     #[test]

@@ -45,6 +45,8 @@ impl Validation {
     }
 }
 
+/// Iterations after which a fit that has not ended is led by something else than the records.
+const MOST_ITERATIONS: usize = 100;
 /// What rounding of doubles alone makes of a force, as a share of its deviation (1).
 const ROUNDING: f64 = 1e-9;
 
@@ -93,7 +95,8 @@ pub fn identify_force(model: &ForceModel, records: &[ForceRecord]) -> Result<For
         None => starts(&problem),
     };
     for start in found.map_err(failure)? {
-        let fit = solve(&problem, &start, &Options::default()).map_err(|source| IdentifyError::Fit { law, source })?;
+        let options = Options::default().with_max_iterations(MOST_ITERATIONS);
+        let fit = solve(&problem, &start, &options).map_err(|source| IdentifyError::Fit { law, source })?;
         // What is explained to its noise has no lower minimum.
         let is_explained = !ResidualStructure::beside(&fit, noise, ROUNDING * forces).is_structured();
         if best.as_ref().is_none_or(|best| fit.sum_of_squares() < best.sum_of_squares()) {

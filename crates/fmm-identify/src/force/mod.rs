@@ -4,6 +4,7 @@ mod identification;
 mod model;
 mod problem;
 mod record;
+mod smoothed;
 mod speed_curve;
 mod start;
 

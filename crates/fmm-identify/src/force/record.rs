@@ -4,6 +4,7 @@ use fmm_fit::median_deviation;
 use fmm_model::ModelError;
 
 use crate::IdentifyError;
+use crate::force::smoothed::Smoothed;
 use crate::law::along::MeasuredMotion;
 
 /// A force (or torque) measured along a motion that something outside prescribes. Samples need not be equally spaced.
@@ -33,8 +34,8 @@ const FEWEST_SAMPLES: usize = 3;
 const REST: f64 = 1e-3;
 
 impl ForceRecord {
-    /// A record of `positions` (m) and `forces` (N) at `times` (s). Velocities and accelerations are those of the parabola through a
-    /// sample and its neighbours, which noise of the positions enters: give measured ones where there are some.
+    /// A record of `positions` (m) and `forces` (N) at `times` (s). Noise and steps of the positions are averaged over as many samples as a
+    /// cubic follows; velocities and accelerations are the slopes of these cubics. Give measured ones where there are some.
     ///
     /// # Errors
     /// [`IdentifyError::Contradiction`] if the lists differ in length, [`IdentifyError::OutOfRange`] if the times do not ascend,
@@ -44,8 +45,8 @@ impl ForceRecord {
         require_times(times)?;
         require_series(times, positions, "position", "m")?;
         require_series(times, forces, "force", "N")?;
-        let velocities = slopes(times, positions);
-        Self::along(times, positions.to_vec(), forces).moving_at(velocities)
+        let Smoothed { values, slopes } = Smoothed::of(times, positions);
+        Self::along(times, values, forces).moving_at(&slopes)
     }
 
     /// A record of which `velocities` (m/s) were measured beside the `forces` (N) at `times` (s), and no positions: these are the sum of
@@ -63,7 +64,7 @@ impl ForceRecord {
             position += 0.5 * (velocities[0] + velocities[1]) * (times[1] - times[0]);
             positions.push(position);
         }
-        Self::along(times, positions, forces).moving_at(velocities.to_vec())
+        Self::along(times, positions, forces).moving_at(velocities)
     }
 
     /// The record of forces along a motion whose velocities are said later.
@@ -73,25 +74,25 @@ impl ForceRecord {
         Self { motion, forces: forces.to_vec(), loads: None, position_unit, force_unit }
     }
 
-    fn moving_at(mut self, velocities: Vec<f64>) -> Result<Self, IdentifyError> {
+    fn moving_at(mut self, velocities: &[f64]) -> Result<Self, IdentifyError> {
         let largest = velocities.iter().fold(0.0, |largest: f64, velocity| largest.max(velocity.abs()));
         ModelError::require_finite("velocity", largest, "m/s")?;
         if largest == 0.0 {
             return Err(IdentifyError::no_motion(self.motion.positions[0], "m"));
         }
-        self.motion.accelerations = slopes(&self.motion.times, &velocities);
-        self.motion.velocities = velocities;
+        self.motion.accelerations = Smoothed::of(&self.motion.times, velocities).slopes;
+        self.motion.velocities = velocities.to_vec();
         self.motion.rest_speed = REST * largest;
         Ok(self)
     }
 
-    /// The same with measured `velocities` (m/s).
+    /// The same with measured `velocities` (m/s), as they are; accelerations are the slopes of their cubics.
     ///
     /// # Errors
     /// As for [`of_positions`](Self::of_positions).
     pub fn with_velocities(self, velocities: &[f64]) -> Result<Self, IdentifyError> {
         require_series(&self.motion.times, velocities, "velocity", "m/s")?;
-        self.moving_at(velocities.to_vec())
+        self.moving_at(velocities)
     }
 
     /// The same with measured `accelerations` (m/s²).
@@ -251,15 +252,4 @@ fn require_series(
         ModelError::require_finite(quantity, *value, unit)?;
     }
     Ok(())
-}
-
-/// Slope of the parabola through each value and its neighbours; at the ends that of the line to the only one.
-fn slopes(times: &[f64], values: &[f64]) -> Vec<f64> {
-    let slope = |i: usize| (values[i + 1] - values[i]) / (times[i + 1] - times[i]);
-    let last = times.len() - 1;
-    let inside = (1..last).map(|i| {
-        let (before, after) = (times[i] - times[i - 1], times[i + 1] - times[i]);
-        (slope(i - 1) * after + slope(i) * before) / (before + after)
-    });
-    std::iter::once(slope(0)).chain(inside).chain(std::iter::once(slope(last - 1))).collect()
 }

@@ -431,6 +431,8 @@ impl fmt::Display for Warning {
             }
             Self::Spikes { count } => write!(f, "{count} isolated samples far off their neighbours were left out"),
             Self::AtBound { parameter, value } => {
+                // A bound that excludes zero lies just beside it.
+                let value = if value.abs() <= f64::MIN_POSITIVE { 0.0 } else { *value };
                 write!(
                     f,
                     "{parameter} ended on its bound {value}; it has no standard uncertainty, and the others hold for that value"

@@ -279,6 +279,51 @@ fn a_damper_is_described_as_well_as_by_others() {
     assert!(found.warnings().iter().any(|warning| warning.to_string().contains("structured")));
 }
 
+/// A robot's joint, of which an encoder tells the angle in steps of 0.1 mrad at 500 Hz and nothing tells speed or acceleration: differences
+/// of neighbours would find a twentieth of the inertia.
+#[test]
+fn a_joint_is_known_from_the_steps_of_its_encoder() {
+    let step = 1e-4;
+    let angle = |t: f64| 0.6 * (1.1 * t).sin() + 0.25 * (2.7 * t + 0.4).sin();
+    let times: Vec<f64> = (0..5000).map(|i| 2e-3 * f64::from(i)).collect();
+    let angles: Vec<f64> = times.iter().map(|t| (angle(*t) / step).round() * step).collect();
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let torques: Vec<f64> = times
+        .iter()
+        .map(|t| {
+            let speed = 0.66 * (1.1 * t).cos() + 0.675 * (2.7 * t + 0.4).cos();
+            let acceleration = -0.726 * (1.1 * t).sin() - 1.8225 * (2.7 * t + 0.4).sin();
+            let noise: f64 = StandardNormal.sample(&mut random);
+            (1.5 + 0.8 * (-speed.abs() * 10.0).exp()) * speed.signum()
+                + 0.6 * speed
+                + 0.15 * acceleration
+                + 3.0 * angle(*t).sin()
+                + 0.4 * angle(*t).cos()
+                + 0.05 * noise
+        })
+        .collect();
+    let record = ForceRecord::of_positions(&times, &angles, &torques).unwrap().in_units("rad", "N m");
+    let model = ForceModel::named("berger + linear + inertia + gravity").unwrap();
+    let found = identify_force(&model, std::slice::from_ref(&record)).unwrap();
+    let wanted = [
+        ("friction_force", 1.5, 0.03),
+        ("excess_friction_force", 0.8, 0.03),
+        ("decay", 10.0, 1.0),
+        ("damping", 0.6, 0.03),
+        ("inertia", 0.15, 0.003),
+        ("gravity_sine", 3.0, 0.01),
+        ("gravity_cosine", 0.4, 0.01),
+    ];
+    for (name, truth, off) in wanted {
+        let finding = found.finding(name).unwrap();
+        assert!((finding.value() - truth).abs() < off, "{name}: {}", finding.value());
+    }
+    assert_eq!(found.finding("inertia").unwrap().parameter().unit(), "kg m²");
+    // Bristles stiffer than the steps can show do not keep a fit from being made.
+    let rigid = identify_force(&ForceModel::named("lugre + inertia + gravity").unwrap(), &[record]).unwrap();
+    assert!((rigid.finding("inertia").unwrap().value() - 0.15).abs() < 0.02, "{rigid}");
+}
+
 /// Friction over the speed without a law: passes at five speeds to and fro, with noise that remembers half of itself.
 #[test]
 fn friction_over_speed_holds_what_it_states() {

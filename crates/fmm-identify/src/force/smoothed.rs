@@ -1,0 +1,157 @@
+//! A series at unequal times, with its noise averaged, and its slope.
+
+/// Values and slopes of a series by cubics through each sample and its neighbours.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Smoothed {
+    pub(crate) values: Vec<f64>,
+    /// Per s.
+    pub(crate) slopes: Vec<f64>,
+}
+
+/// Neighbours to either side that are tried, the fewest first.
+const WIDTHS: [usize; 13] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128];
+/// What cubics leave of a series grows with the fourth power of the neighbours where they do not follow it, and not at all where it is white
+/// noise; up to this power it is taken for noise. Steps, which stay while the series is slow, lie between.
+const GROWTH: f64 = 0.7;
+/// Samples, spread over the series, by which that is decided.
+const LOOKED_AT: usize = 2000;
+
+/// A cubic through neighbours: value and slope at the sample, and the squares that it leaves, over its degrees of freedom.
+struct Cubic {
+    value: f64,
+    slope: f64,
+    variance: f64,
+}
+
+impl Smoothed {
+    /// That of `values` at `times` (s), at least three, which ascend. A series without noise stays as it is, and has the slopes of the
+    /// parabola through a sample and its neighbours.
+    pub(crate) fn of(times: &[f64], values: &[f64]) -> Self {
+        let count = times.len();
+        let stride = count.div_ceil(LOOKED_AT);
+        // The median, so that a series that leaps is judged by what lies between.
+        let left = |width: usize| {
+            let cubics = (0..count).step_by(stride).filter_map(|at| cubic(times, values, at, width));
+            let mut variances: Vec<f64> = cubics.map(|cubic| cubic.variance).collect();
+            variances.sort_by(f64::total_cmp);
+            variances.get(variances.len() / 2).map_or(0.0, |variance| variance.sqrt())
+        };
+        let most = WIDTHS.iter().take_while(|width| 2 * **width < count).count();
+        let mut chosen = None;
+        let mut before = if most > 1 { left(WIDTHS[0]) } else { 0.0 };
+        for pair in WIDTHS[..most].windows(2) {
+            let after = left(pair[1]);
+            if before == 0.0 || (after / before).ln() > GROWTH * (pair[1] as f64 / pair[0] as f64).ln() {
+                break;
+            }
+            (chosen, before) = (Some(pair[1]), after);
+        }
+        let cubics =
+            chosen.map(|width| (0..count).map(|at| cubic(times, values, at, width)).collect::<Option<Vec<_>>>());
+        match cubics.flatten() {
+            Some(cubics) => Self {
+                values: cubics.iter().map(|cubic| cubic.value).collect(),
+                slopes: cubics.iter().map(|cubic| cubic.slope).collect(),
+            },
+            None => Self { values: values.to_vec(), slopes: slopes(times, values) },
+        }
+    }
+}
+
+/// The cubic of least squares through `width` neighbours to either side of sample `at`, as far as there are any; none if they do not
+/// determine it.
+fn cubic(times: &[f64], values: &[f64], at: usize, width: usize) -> Option<Cubic> {
+    const ORDER: usize = 4;
+    // At the ends as many neighbours, of one side.
+    let first = at.saturating_sub(width).min(times.len() - 2 * width - 1);
+    let around = first..first + 2 * width + 1;
+    let scale = times[around.end - 1] - times[first];
+    let mut normal = [[0.0; ORDER + 1]; ORDER];
+    let mut square = 0.0;
+    for i in around.clone() {
+        let (t, y) = ((times[i] - times[at]) / scale, values[i] - values[at]);
+        let powers = [1.0, t, t * t, t * t * t];
+        for (row, a) in normal.iter_mut().zip(powers) {
+            for (element, b) in row.iter_mut().zip(powers) {
+                *element += a * b;
+            }
+            row[ORDER] += a * y;
+        }
+        square += y * y;
+    }
+    let right = normal.map(|row| row[ORDER]);
+    // Positive definite: no pivot need be looked for.
+    for pivot in 0..ORDER {
+        if normal[pivot][pivot] <= 1e-14 {
+            return None;
+        }
+        let row = normal[pivot];
+        for below in &mut normal[pivot + 1..] {
+            let factor = below[pivot] / row[pivot];
+            below.iter_mut().zip(row).for_each(|(element, a)| *element -= factor * a);
+        }
+    }
+    let mut solution = [0.0; ORDER];
+    for i in (0..ORDER).rev() {
+        let known: f64 = (i + 1..ORDER).map(|j| normal[i][j] * solution[j]).sum();
+        solution[i] = (normal[i][ORDER] - known) / normal[i][i];
+    }
+    let explained: f64 = solution.iter().zip(right).map(|(a, b)| a * b).sum();
+    let variance = (square - explained).max(0.0) / (around.len() - ORDER) as f64;
+    Some(Cubic { value: values[at] + solution[0], slope: solution[1] / scale, variance })
+}
+
+/// Slope of the parabola through each value and its neighbours; at the ends that of the line to the only one.
+fn slopes(times: &[f64], values: &[f64]) -> Vec<f64> {
+    let slope = |i: usize| (values[i + 1] - values[i]) / (times[i + 1] - times[i]);
+    let last = times.len() - 1;
+    let inside = (1..last).map(|i| {
+        let (before, after) = (times[i] - times[i - 1], times[i + 1] - times[i]);
+        (slope(i - 1) * after + slope(i) * before) / (before + after)
+    });
+    std::iter::once(slope(0)).chain(inside).chain(std::iter::once(slope(last - 1))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn times() -> Vec<f64> {
+        (0..2000).map(|i| 1e-3 * (f64::from(i) + 0.3 * f64::from(i % 3))).collect()
+    }
+
+    fn rms(found: &[f64], wanted: impl Iterator<Item = f64>) -> f64 {
+        (found.iter().zip(wanted).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / found.len() as f64).sqrt()
+    }
+
+    #[test]
+    fn what_has_no_noise_stays_as_it_is() {
+        let times = times();
+        let values: Vec<f64> = times.iter().map(|t| (20.0 * t).sin()).collect();
+        let found = Smoothed::of(&times, &values);
+        assert_eq!(found.values, values);
+        assert!(rms(&found.slopes, times.iter().map(|t| 20.0 * (20.0 * t).cos())) < 1e-2);
+    }
+
+    /// Steps of an encoder: the slope of neighbours is off by 0.5, as steps of 1e-3 in 1 ms are.
+    #[test]
+    fn steps_are_averaged() {
+        let times = times();
+        let values: Vec<f64> = times.iter().map(|t| ((5.0 * t).sin() / 1e-3).round() * 1e-3).collect();
+        let found = Smoothed::of(&times, &values);
+        let slope = || times.iter().map(|t| 5.0 * (5.0 * t).cos());
+        let off = rms(&found.values, times.iter().map(|t| (5.0 * t).sin()));
+        assert!(off < 1.5e-4, "{off}");
+        let (smooth, rough) = (rms(&found.slopes, slope()), rms(&slopes(&times, &values), slope()));
+        assert!(smooth < 0.02 && rough > 0.2, "{smooth}, {rough}");
+    }
+
+    #[test]
+    fn few_values_stay_as_they_are() {
+        for count in 3..7 {
+            let times: Vec<f64> = (0..count).map(f64::from).collect();
+            let found = Smoothed::of(&times, &times);
+            assert_eq!((found.values, found.slopes), (times.clone(), vec![1.0; times.len()]));
+        }
+    }
+}
