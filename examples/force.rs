@@ -128,8 +128,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         writeln!(out, "\n{found}")?;
         for (file, record) in validated.iter().zip(&others) {
             let said = found.validate_on(record)?;
-            let (rms, unit, share) = (said.rms, record.force_unit(), 100.0 * said.share());
-            writeln!(out, "  not fitted: {}: rms {rms:.4e} {unit}, {share:.1} % of the force", file.display())?;
+            let (rms, unit) = (said.rms, record.force_unit());
+            let share = said.share().map_or_else(String::new, |share| format!(", {:.1} % of the force", 100.0 * share));
+            writeln!(out, "  not fitted: {}: rms {rms:.4e} {unit}{share}", file.display())?;
         }
     }
     Ok(())

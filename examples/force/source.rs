@@ -48,27 +48,20 @@ impl Source {
         // Numbered samples stand for the clock, so that the times are a column like any other and their steps may differ.
         let file = Reader::default().rate(1.0).open(path)?;
         let first = file.channels()?.first().map_or(0, |channel| channel.position);
-        let labels: Vec<Label> = file.channel(first)?.columns.iter().map(|name| Label::of(name)).collect();
-        let names = file.channel(first)?.columns;
-        let is_time = |label: &Label| {
-            let name = label.name().to_lowercase();
-            name == "t"
-                || name.starts_with("time")
-                || name.starts_with("t [")
-                || name.starts_with("t_")
-                || name.starts_with("t(")
-        };
+        let offered = file.channel(first)?;
+        let names = offered.columns;
+        let labels: Vec<Label> = names.iter().map(|name| Label::of(name)).collect();
         let column = |given: &Option<String>, meant: &dyn Fn(&Label) -> bool| match given {
             Some(name) => Some(name.parse::<usize>().map_or_else(|_| Column::from(name.as_str()), Column::Index)),
             None => labels.iter().position(meant).map(|place| Column::from(names[place].as_str())),
         };
-        let of = |quantity: Quantity| move |label: &Label| label.quantity() == Some(quantity) && !is_time(label);
+        let of = |quantity: Quantity| move |label: &Label| label.quantity() == Some(quantity);
         let all = || names.join(", ");
         let missing = |what: &str| {
             format!("{}: no column is the {what}; name it by --{what}; there are: {}", path.display(), all())
         };
-        let times = column(&self.time, &is_time).ok_or_else(|| missing("time"))?;
-        let times = series(&file, times)?.values;
+        let time = column(&self.time, &|_| false).or(offered.time.map(Column::Name)).ok_or_else(|| missing("time"))?;
+        let times = file.channel(time)?.seconds()?;
         let forces = column(&self.force, &of(Quantity::Force)).ok_or_else(|| missing("force"))?;
         let forces = series(&file, forces)?;
         let positions =
@@ -98,6 +91,9 @@ impl Source {
 fn series(file: &DataFile, column: Column) -> Result<Series, Box<dyn Error>> {
     let reading = file.channel(column)?;
     let label = Label::from(&reading);
+    if let Some(unit) = label.unknown_unit() {
+        return Err(format!("{} is in \"{unit}\", which is no unit that is known; convert it", reading.channel).into());
+    }
     let (factor, unit) = label.unit().map_or((1.0, None), |unit| (unit.factor(), Some(unit.si())));
     Ok(Series { values: reading.record.values().iter().map(|value| factor * value).collect(), unit })
 }

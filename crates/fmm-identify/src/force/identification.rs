@@ -39,9 +39,9 @@ pub struct Validation {
 }
 
 impl Validation {
-    /// The one over the other (1).
-    pub fn share(&self) -> f64 {
-        self.rms / self.force
+    /// The one over the other (1); none if the force does not change.
+    pub fn share(&self) -> Option<f64> {
+        (self.force > 0.0).then(|| self.rms / self.force)
     }
 }
 
@@ -253,8 +253,13 @@ impl ForceIdentification {
         self.force
     }
 
-    /// The force that was found at each sample of `record`, to which nothing is fitted but where its bristles begin; none where a delay asks for a motion before or after what was measured, and at a sample that
-    /// [does not count](identify_force).
+    /// Root mean square of the residuals over the standard deviation of the forces (1); none if these do not change.
+    fn share(&self) -> Option<f64> {
+        Validation { rms: self.rms_residual(), force: self.force }.share()
+    }
+
+    /// The force that was found at each sample of `record`, to which nothing is fitted but where its bristles begin; none where a delay
+    /// asks for a motion before or after what was measured, and at a sample that [does not count](identify_force).
     ///
     /// # Errors
     /// As for [`identify_force`].
@@ -268,8 +273,7 @@ impl ForceIdentification {
         let records = std::slice::from_ref(record);
         let problem = ForceProblem::new(&model, records)?;
         let law = problem.law().name;
-        let mut values: Vec<f64> =
-            self.fit.values()[..problem.parameters().len().min(self.fit.values().len())].to_vec();
+        let mut values = self.fit.values()[..problem.parameters().len()].to_vec();
         for (place, deflection) in problem.first_deflections() {
             values[place] = deflection;
         }
@@ -286,10 +290,15 @@ impl ForceIdentification {
     /// How well it says the forces of a record to which it was not fitted.
     ///
     /// # Errors
-    /// As for [`identify_force`].
+    /// As for [`identify_force`], and [`IdentifyError::NotSeen`] if no sample of it counts.
     pub fn validate_on(&self, record: &ForceRecord) -> Result<Validation, IdentifyError> {
         let predicted = self.predict(record)?;
         let both = || predicted.iter().zip(record.forces()).filter_map(|(said, force)| Some(((*said)?, *force)));
+        if both().next().is_none() {
+            return Err(IdentifyError::not_seen(
+                "the contact slides at no sample of the record, so that no force is said",
+            ));
+        }
         let squares: f64 = both().map(|(said, force)| (said - force).powi(2)).sum();
         let rms = (squares / both().count() as f64).sqrt();
         Ok(Validation { rms, force: deviation(std::slice::from_ref(record)) })
@@ -302,14 +311,14 @@ impl fmt::Display for ForceIdentification {
         writeln!(f, "Force along a motion by {}", self.model())?;
         writeln!(
             f,
-            "  {}; {} samples, rank {} of {}, rms residual {:.4e} {}, {:.1} % of the force",
+            "  {}; {} samples, rank {} of {}, rms residual {:.4e} {}{}",
             fit.outcome(),
             self.counted,
             fit.rank(),
             fit.free_count(),
             self.rms_residual(),
             self.unit,
-            100.0 * self.rms_residual() / self.force
+            self.share().map_or_else(String::new, |share| format!(", {:.1} % of the force", 100.0 * share))
         )?;
         let width = name_width(self.findings());
         for finding in self.findings() {

@@ -108,12 +108,14 @@ impl ForceRecord {
     /// The same with a measured normal load (N) at every sample, so that the levels of a law are coefficients.
     ///
     /// # Errors
-    /// As for [`of_positions`](Self::of_positions), and for a load that is negative.
+    /// As for [`of_positions`](Self::of_positions), and for a load that is negative or zero throughout.
     pub fn under_loads(mut self, loads: &[f64]) -> Result<Self, IdentifyError> {
         require_series(&self.motion.times, loads, "normal load", "N")?;
         for load in loads {
             ModelError::require_not_negative("normal load", *load, "N")?;
         }
+        let largest = loads.iter().fold(0.0, |largest: f64, load| largest.max(*load));
+        ModelError::require_positive("largest normal load", largest, "N")?;
         self.loads = Some(loads.to_vec());
         Ok(self)
     }

@@ -104,7 +104,7 @@ pub enum Warning {
         /// When (s).
         time: f64,
     },
-    /// A static level was asked for, which a free decay does not determine.
+    /// A static level was asked for, which a motion that is not driven through the breakaway does not determine.
     StaticLevelHeld {
         /// Name of the parameter of the law.
         parameter: String,

@@ -242,7 +242,10 @@ fn what_stands_beside_friction_is_told_from_it() {
     assert!((stiffness - 402.0).abs() < 0.1, "{stiffness} N/m");
     // The same model says a record to which it was not fitted, and says which it is.
     let said = found.validate_on(&record).unwrap();
-    assert!(said.share() < 1e-3 && (said.rms - found.rms_residual()).abs() < 1e-2 * said.rms.max(1e-9), "{said:?}");
+    assert!(
+        said.share().unwrap() < 1e-3 && (said.rms - found.rms_residual()).abs() < 1e-2 * said.rms.max(1e-9),
+        "{said:?}"
+    );
 }
 
 /// A contact that rests: friction is whatever the force needs, and tells nothing of the levels.
@@ -259,6 +262,9 @@ fn a_rest_is_no_sliding() {
     assert!(found.warnings().iter().any(|warning| matches!(warning, Warning::StaticLevelHeld { .. })), "{found}");
     let said = found.predict(&record).unwrap();
     assert!(said[1500].is_none() && said[500].is_some());
+    // Of a record that only rests nothing is said.
+    let resting = record.resting_up_to(1.0).unwrap();
+    assert!(matches!(found.validate_on(&resting), Err(IdentifyError::NotSeen { .. })));
 }
 
 /// A friction damper on a test bench (CC BY-SA 4.0, examples/data/SOURCES.md): what a fit outside of this project leaves is 17.3 %.
@@ -368,7 +374,8 @@ fn what_is_no_record_is_refused() {
     assert!(matches!(record(&times, &[f64::NAN; 4], &values), Err(IdentifyError::InvalidInput(_))));
     assert!(matches!(record(&times, &[1.0; 4], &values), Err(IdentifyError::NotSeen { .. })));
     let record = record(&times, &values, &values).unwrap();
-    assert!(record.clone().under_loads(&[-1.0; 4]).is_err() && record.clone().resting_up_to(-1.0).is_err());
+    assert!(record.clone().under_loads(&[-1.0; 4]).is_err() && record.clone().under_loads(&[0.0; 4]).is_err());
+    assert!(record.clone().under_loads(&[0.0, 1.0, 0.0, 2.0]).is_ok() && record.clone().resting_up_to(-1.0).is_err());
     let identify = |name: &str, records: &[ForceRecord]| identify_force(&ForceModel::named(name).unwrap(), records);
     assert!(matches!(identify("coulomb", &[]), Err(IdentifyError::Missing { .. })));
     assert!(matches!(

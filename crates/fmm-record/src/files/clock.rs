@@ -1,9 +1,9 @@
 //! The time that the name of a column or variable tells.
 
-use crate::RecordError;
 use crate::files::reading::seconds_in;
 use crate::units::label::{is_remark, without_groups};
 use crate::units::word::words;
+use crate::{Reading, RecordError};
 
 /// What a name says of time.
 #[derive(Debug, Clone, PartialEq)]
@@ -130,6 +130,29 @@ impl Clock {
             _ => {}
         }
         Ok(())
+    }
+}
+
+impl Reading {
+    /// The values of a column of time stamps in s, as the unit in its name says: for a table whose times are not equally spaced, of which
+    /// no [`Record`](crate::Record) is made. Read it at any [`rate`](crate::Reader::rate).
+    ///
+    /// ```
+    /// use fmm_record::Reader;
+    ///
+    /// let table = "t [ms],force [N]\n0,1.5\n10,1.7\n25,1.6\n";
+    /// let file = Reader::default().rate(1.0).parse(table)?;
+    /// let name = file.channel("force [N]")?.time.expect("a column that is called time");
+    /// assert_eq!(file.channel(&*name)?.seconds()?, [0.0, 0.01, 0.025]);
+    /// # Ok::<(), fmm_record::RecordError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`RecordError::TimeAxis`] if the unit is none of time, or if the column counts samples.
+    pub fn seconds(&self) -> Result<Vec<f64>, RecordError> {
+        let mut times = self.record.values().to_vec();
+        Clock::of(&self.channel).to_seconds(&self.channel, false, &mut times)?;
+        Ok(times)
     }
 }
 
