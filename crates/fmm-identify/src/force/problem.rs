@@ -250,7 +250,7 @@ impl<'a> ForceProblem<'a> {
         self.law.is_of_speed() && at_rest().is_some_and(|level| level > 0.0)
     }
 
-    /// Deflection of the bristles (1) at the first sample of `record` unless it is fitted: they have come the way they go on.
+    /// Deflection of the bristles (1) at the first sample of `record` with which a fit begins: they have come the way they go on.
     fn first_deflection(&self, record: usize) -> f64 {
         let data = &self.records[record];
         data.motion
@@ -263,7 +263,7 @@ impl<'a> ForceProblem<'a> {
     fn follow(&self, record: usize, p: &[f64], buffers: &mut Buffers) -> Result<(), EvaluationError> {
         let delay = Self::value(p, self.layout.delay);
         places(&self.records[record].motion, self.rows[record].clone(), delay, &mut buffers.places);
-        let deflection = self.deflection(record).map_or(self.first_deflection(record), |place| p[place]);
+        let deflection = Self::value(p, self.deflection(record));
         let guide = self.guide(record, delay, deflection, &buffers.places);
         (self.law.along)(&self.law.values(&p[..self.layout.shapes]), guide, &mut buffers.plain)
     }
@@ -279,7 +279,7 @@ impl<'a> ForceProblem<'a> {
         let seeded = |j: usize| Dual::variable(p[j], columns.iter().position(|c| *c == j).unwrap_or(DIRECTIONS));
         let fitted: Vec<Dual<DIRECTIONS>> = (0..self.layout.shapes).map(seeded).collect();
         let delay = self.layout.delay.map_or(Dual::from(0.0), seeded);
-        let deflection = self.deflection(record).map_or(Dual::from(self.first_deflection(record)), seeded);
+        let deflection = self.deflection(record).map_or(Dual::from(0.0), seeded);
         let guide = self.guide(record, delay, deflection, &buffers.places);
         (self.law.along_with_derivatives)(&self.law.values(&fitted), guide, &mut buffers.seeded)
     }

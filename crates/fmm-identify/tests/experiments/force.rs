@@ -179,9 +179,10 @@ fn each_law_comes_back() {
         // Laws without a closed form along a motion take a second a record.
         let records = if *name == "bouc_wen" { 2 } else { RECORDS };
         let truths: Vec<(&str, f64)> = truths.iter().copied().chain([("zero", ZERO), ("delay", DELAY)]).collect();
-        let mut inside = vec![(0, 0); truths.len()];
+        let (mut inside, mut squares) = (vec![(0, 0); truths.len()], 0.0f64);
         for seed in 0..records {
             let found = identify_force(&model, &[truth.record(seed)]).unwrap();
+            squares += found.rms_residual().powi(2) / records as f64;
             for (count, (parameter, truth)) in inside.iter_mut().zip(&truths) {
                 let finding = found.finding(parameter).unwrap_or_else(|| panic!("{parameter} of {found}"));
                 assert!(finding.value().is_finite());
@@ -190,6 +191,8 @@ fn each_law_comes_back() {
                 }
             }
         }
+        // A sample on the wrong side of a leap would show: 0.08 N and more.
+        assert!((squares.sqrt() / NOISE - 1.0).abs() < 0.05, "{name}: {} N", squares.sqrt());
         for (count, (parameter, _)) in inside.iter().zip(&truths) {
             // Levels alone leap where the motion turns; what a delay does there has no derivative, and it is not determined.
             let is_leap = *parameter == "delay" && name.contains("coulomb") && !name.contains("viscous");
@@ -254,11 +257,17 @@ fn a_rest_is_no_sliding() {
     let times: Vec<f64> = (0..3000).map(|i| 1e-3 * f64::from(i)).collect();
     let velocity = |time: f64| if (1.0..2.0).contains(&time) { 0.0 } else { 0.05 };
     let velocities: Vec<f64> = times.iter().map(|time| velocity(*time)).collect();
-    let force = |time: &f64| if velocity(*time) == 0.0 { 6.0 * (time - 1.0) } else { 4.0 + 1e-3 * (1e4 * time).sin() };
-    let forces: Vec<f64> = times.iter().map(force).collect();
+    let mut random = ChaCha8Rng::seed_from_u64(2);
+    let mut noise = || -> f64 { StandardNormal.sample(&mut random) };
+    let mut force = |time: &f64| if velocity(*time) == 0.0 { 6.0 * (time - 1.0) } else { 4.0 + 0.01 * noise() };
+    let forces: Vec<f64> = times.iter().map(&mut force).collect();
     let record = ForceRecord::of_velocities(&times, &velocities, &forces).unwrap();
     let found = identify_force(&ForceModel::named("coulomb_static").unwrap(), std::slice::from_ref(&record)).unwrap();
-    assert!((found.finding("sliding_friction_force").unwrap().value() - 4.0).abs() < 1e-4, "{found}");
+    let level = found.finding("sliding_friction_force").unwrap();
+    assert!((level.value() - 4.0).abs() < 1e-3, "{found}");
+    // 2000 of the 3000 samples count: σ/√2000.
+    assert!((level.uncertainty().unwrap() / (0.01 / 2000.0f64.sqrt()) - 1.0).abs() < 0.08, "{found}");
+    assert!((found.rms_residual() / 0.01 - 1.0).abs() < 0.05, "{found}");
     assert!(found.warnings().iter().any(|warning| matches!(warning, Warning::StaticLevelHeld { .. })), "{found}");
     let said = found.predict(&record).unwrap();
     assert!(said[1500].is_none() && said[500].is_some());
