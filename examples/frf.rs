@@ -138,7 +138,7 @@ fn document(trials: &[Trial], analysis: &Analysis) -> serde_json::Value {
         let part = |part: fn(&fmm_frf::Complex64) -> f64| response.values().iter().map(part).collect::<Vec<_>>();
         json!({ "real": part(|value| value.re), "imag": part(|value| value.im) })
     };
-    let measured = |value: fmm_frf::Measured| json!({ "value": value.value, "u": value.uncertainty });
+    let measured = |value: fmm_frf::Estimated| json!({ "value": value.value, "u": value.uncertainty });
     let modes = analysis.peaks.iter().filter_map(|peak| {
         let mode = peak.fit.as_ref()?.mode;
         Some(json!({

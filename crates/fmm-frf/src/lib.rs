@@ -72,7 +72,6 @@ mod error;
 mod friction;
 mod impulse;
 mod least_squares;
-mod measured;
 mod modal;
 mod response;
 
@@ -81,7 +80,7 @@ pub use average::{
 };
 pub use channel::Channel;
 pub use error::FrfError;
-pub use fmm_model::ModelError;
+pub use fmm_model::{Estimated, ModelError};
 pub use fmm_record::{Complex64, RealTransform};
 pub use friction::{
     CoulombLine, FrictionSpectrum, Harmonic, coulomb_impact_duration, equivalent_damping_of_friction,
@@ -89,7 +88,6 @@ pub use friction::{
     peak_receptance_of_coulomb_impact, peak_receptance_of_viscous_coulomb_impact,
 };
 pub use impulse::{Hit, Pulse, Quadrature, impulse, impulse_by, impulse_of_record};
-pub use measured::Measured;
 pub use modal::{Background, CircleFit, Mode, PeakFit, RationalFit};
 pub use response::{FrequencyResponse, Resonance, ResponseForm, SingleDegreeOfFreedom, resonances};
 

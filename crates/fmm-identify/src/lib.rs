@@ -107,6 +107,7 @@ pub use estimators::{
 };
 pub use experiment::{Drive, Experiment, Offset, Preparation, RecordSummary, Sensor};
 pub use fit::{FittedMotion, Identification, MachineProblem, Problem, identify, identify_observed, identify_with};
+pub use fmm_model::Estimated;
 pub use force::{ForceIdentification, ForceModel, ForceRecord, SpeedBin, Validation, identify_force};
 pub use impact::{
     ImpactDomain, ImpactIdentification, ImpactMachine, ImpactOptions, ImpactProblem, ImpactSummary, ImpactTrial,
@@ -117,7 +118,7 @@ pub use judgement::{
 };
 pub use law::Candidate;
 pub use machine::{Known, Machine, Scale, Terms};
-pub use report::{Estimated, Finding, Origin, Warning};
+pub use report::{Finding, Origin, Warning};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

@@ -29,9 +29,9 @@
 //! | stiffness, stress, allowed deflection, parasitic motion of a guide | [`Flexure`], [`LeafSpring`] |
 //! | the lean of a shaft from two displacements | [`Tilt`] |
 //! | name, symbol, unit and limits of what is to be found | [`Parameter`], [`Bounds`] |
-//! | which powers of metre and second a unit is, and how much of them | [`Dimension`] |
+//! | units that multiply and print, and what they are made of | [`Unit`], [`Dimension`] |
 //! | a formula with exact derivatives | write it over [`Scalar`], evaluate it at [`Dual`] |
-//! | a value as a report writes it | [`Rounded`] |
+//! | a value with its standard uncertainty, and how a report writes it | [`Estimated`], [`Rounded`] |
 //!
 //! # Units and conventions
 //!
@@ -75,6 +75,7 @@ mod damping;
 mod dimension;
 mod dual;
 mod error;
+mod estimated;
 mod flexure;
 mod leaf_spring;
 mod math;
@@ -84,12 +85,14 @@ mod restoring;
 mod rounded;
 mod scalar;
 mod tilt;
+mod unit;
 
 pub use bounds::Bounds;
 pub use damping::Damping;
 pub use dimension::Dimension;
 pub use dual::Dual;
 pub use error::ModelError;
+pub use estimated::Estimated;
 pub use flexure::Flexure;
 pub use leaf_spring::LeafSpring;
 pub use oscillator::Oscillator;
@@ -98,6 +101,7 @@ pub use restoring::Restoring;
 pub use rounded::Rounded;
 pub use scalar::Scalar;
 pub use tilt::Tilt;
+pub use unit::Unit;
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 use std::fmt;
 
-use crate::least_squares::triangle::Triangle;
-use crate::{FrfError, Measured, ModelError};
+use crate::least_squares::{Equations, Solution};
+use crate::{Estimated, FrfError, ModelError};
 
 /// The straight line of receptance peaks over impulses, and the friction force of its slope.
 ///
@@ -33,11 +33,11 @@ use crate::{FrfError, Measured, ModelError};
 #[non_exhaustive]
 pub struct CoulombLine {
     /// s, slope (m/N per N s).
-    pub slope: Measured,
+    pub slope: Estimated,
     /// b, peak (m/N) at zero impulse.
-    pub intercept: Measured,
+    pub intercept: Estimated,
     /// F, kinetic friction force (N). Its uncertainty is that of the slope alone.
-    pub friction_force: Measured,
+    pub friction_force: Estimated,
     /// R², share of the variance of the peaks that the line explains.
     pub r_squared: f64,
 }
@@ -63,16 +63,15 @@ impl CoulombLine {
             means[1] += ModelError::require_positive("peak receptance", peak, "m/N")? / count;
         }
         // Both relative to their means, so that any unit will do.
-        let mut triangle = Triangle::new();
+        let mut line = Equations::new();
         let mut spread = 0.0;
         for (impulse, peak) in impulses.iter().zip(peaks) {
             let height = peak / means[1] - 1.0;
             spread += height * height;
-            triangle.add([1.0, impulse / means[0] - 1.0], height);
+            line.add([1.0, impulse / means[0] - 1.0], height);
         }
         let undetermined = || FrfError::undetermined("line of peaks over impulses", impulses.len());
-        let ([level, steepness], Some(covariance)) =
-            (triangle.solve().ok_or_else(undetermined)?, triangle.covariance())
+        let Some(Solution { values: [level, steepness], covariance: Some(covariance), sum_of_squares }) = line.solve()
         else {
             return Err(undetermined());
         };
@@ -82,13 +81,13 @@ impl CoulombLine {
         let intercept_variance = covariance[0][0] - 2.0 * covariance[0][1] + covariance[1][1];
         let friction_force = friction_force_of_slope(slope, mass, natural_angular_frequency)?;
         Ok(Self {
-            slope: Measured::new(slope, slope * relative),
-            intercept: Measured::new(
+            slope: Estimated::new(slope, slope * relative),
+            intercept: Estimated::new(
                 means[1] * (1.0 + level - steepness),
                 means[1] * intercept_variance.max(0.0).sqrt(),
             ),
-            friction_force: Measured::new(friction_force, friction_force * relative),
-            r_squared: 1.0 - triangle.rest / spread,
+            friction_force: Estimated::new(friction_force, friction_force * relative),
+            r_squared: 1.0 - sum_of_squares / spread,
         })
     }
 }

@@ -4,10 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 use fmm_record::Complex64;
 
-use crate::least_squares::gauss_newton::gauss_newton;
-use crate::least_squares::triangle::Triangle;
+use crate::least_squares::{Equations, minimise};
 use crate::modal::band::Band;
-use crate::{FrequencyResponse, FrfError, Measured, Mode, ResponseForm};
+use crate::{Estimated, FrequencyResponse, FrfError, Mode, ResponseForm};
 
 const NAME: &str = "circle fit";
 
@@ -42,11 +41,11 @@ pub struct CircleFit {
     pub mode: Mode,
     /// c, viscous coefficient (N s/m), as if the machine had one degree of freedom and were driven where it is measured:
     /// the reciprocal of the diameter, less what an exponential window adds.
-    pub damping: Measured,
+    pub damping: Estimated,
     /// z, centre (m/(N s)) of the mobility circle.
     pub centre: Complex64,
     /// r, radius (m/(N s)).
-    pub radius: Measured,
+    pub radius: Estimated,
     /// α, angle (rad) by which the circle is turned; zero for one degree of freedom.
     pub rotation: f64,
 }
@@ -66,16 +65,14 @@ impl CircleFit {
         let none = || FrfError::no_mode(NAME, low, high);
 
         let start = algebraic_circle(&points).ok_or_else(undetermined)?;
-        let circle = gauss_newton(start, |circle| Some(distances(&points, circle))).ok_or_else(unsettled)?;
-        let [x, y, radius] = circle.parameters;
+        let circle = minimise(start, points.len(), |circle| Some(distances(&points, circle))).ok_or_else(unsettled)?;
+        let [x, y, radius] = circle.values;
         let centre = Complex64::new(x, y);
         let angles: Vec<f64> = points.iter().map(|point| (point - centre).arg()).collect();
         let start = starting_mode(&band, &angles).ok_or_else(none)?;
-        let turning = gauss_newton(start, |mode| sweep(&band.ratios, &angles, mode)).ok_or_else(unsettled)?;
-        let ([q0, q1, rotation], covariance) = (turning.parameters, turning.triangle.covariance());
-        let ([[a, b, _], [_, c, _], _], Some(of_circle)) =
-            (covariance.ok_or_else(undetermined)?, circle.triangle.covariance())
-        else {
+        let turning = minimise(start, angles.len(), |mode| sweep(&band.ratios, &angles, mode)).ok_or_else(unsettled)?;
+        let [q0, q1, rotation] = turning.values;
+        let (Some([[a, b, _], [_, c, _], _]), Some(of_circle)) = (turning.covariance, circle.covariance) else {
             return Err(undetermined());
         };
         let mode = Mode::new([q0, q1], &[[a, b], [b, c]], band.unit, band.decay_rate, none)?;
@@ -85,9 +82,9 @@ impl CircleFit {
         let damping = apparent * (1.0 - 2.0 * band.decay_rate / (q1 * band.unit));
         Ok(Self {
             mode,
-            damping: Measured::new(damping, apparent * relative),
+            damping: Estimated::new(damping, apparent * relative),
             centre: centre * size,
-            radius: Measured::new(radius * size, radius * size * relative),
+            radius: Estimated::new(radius * size, radius * size * relative),
             rotation,
         })
     }
@@ -95,25 +92,25 @@ impl CircleFit {
 
 /// Centre and radius for which the sum of (|z − centre|² − r²)² is least, a linear problem.
 fn algebraic_circle(points: &[Complex64]) -> Option<[f64; 3]> {
-    let mut triangle = Triangle::new();
+    let mut equations = Equations::new();
     for point in points {
-        triangle.add([2.0 * point.re, 2.0 * point.im, 1.0], point.norm_sqr());
+        equations.add([2.0 * point.re, 2.0 * point.im, 1.0], point.norm_sqr());
     }
-    let [x, y, power] = triangle.solve()?;
+    let [x, y, power] = equations.solve()?.values;
     let square = power + x * x + y * y;
     (square > 0.0).then(|| [x, y, square.sqrt()])
 }
 
 /// Distances of `points` from a circle (centre, radius), linearised.
-fn distances(points: &[Complex64], &[x, y, radius]: &[f64; 3]) -> Triangle<3> {
-    let mut triangle = Triangle::new();
+fn distances(points: &[Complex64], &[x, y, radius]: &[f64; 3]) -> Equations<3> {
+    let mut equations = Equations::new();
     for point in points {
         let from_centre = point - Complex64::new(x, y);
         let distance = from_centre.norm();
         let direction = if distance > 0.0 { from_centre / distance } else { Complex64::ONE };
-        triangle.add([-direction.re, -direction.im, -1.0], radius - distance);
+        equations.add([-direction.re, -direction.im, -1.0], radius - distance);
     }
-    triangle
+    equations
 }
 
 /// q₀, q₁ and α to begin with: the highest line is taken for the resonance, and the others tell how fast the angle turns.
@@ -135,18 +132,18 @@ fn starting_mode(band: &Band, angles: &[f64]) -> Option<[f64; 3]> {
 }
 
 /// Angles on the circle against those of a mode (q₀, q₁, α), linearised; none for a mode that does not exist.
-fn sweep(ratios: &[f64], angles: &[f64], &[q0, q1, rotation]: &[f64; 3]) -> Option<Triangle<3>> {
+fn sweep(ratios: &[f64], angles: &[f64], &[q0, q1, rotation]: &[f64; 3]) -> Option<Equations<3>> {
     if !(q0 > 0.0 && q1 > 0.0) {
         return None;
     }
-    let mut triangle = Triangle::new();
+    let mut equations = Equations::new();
     for (&w, angle) in ratios.iter().zip(angles) {
         let (elastic, viscous) = (q0 - w * w, q1 * w);
         let square = elastic * elastic + viscous * viscous;
         let model = rotation + 2.0 * elastic.atan2(viscous);
-        triangle.add([2.0 * viscous / square, -2.0 * elastic * w / square, 1.0], wrapped(angle - model));
+        equations.add([2.0 * viscous / square, -2.0 * elastic * w / square, 1.0], wrapped(angle - model));
     }
-    Some(triangle)
+    Some(equations)
 }
 
 /// The same angle between −π and π.

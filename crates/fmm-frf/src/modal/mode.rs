@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use crate::least_squares::triangle::variance_of;
-use crate::{FrfError, Measured};
+use crate::least_squares::variance_of;
+use crate::{Estimated, FrfError};
 
 /// Natural frequency and damping of a mode, with the damping of an exponential window taken out.
 ///
@@ -18,9 +18,9 @@ use crate::{FrfError, Measured};
 #[non_exhaustive]
 pub struct Mode {
     /// f₀, undamped natural frequency (Hz).
-    pub natural_frequency: Measured,
+    pub natural_frequency: Estimated,
     /// ζ, damping ratio (1).
-    pub damping_ratio: Measured,
+    pub damping_ratio: Estimated,
 }
 
 impl Mode {
@@ -49,8 +49,8 @@ impl Mode {
         let of_ratio = [-0.5 * ratio / p0, 0.5 / root + 0.5 * ratio * sigma / p0];
         let hertz = unit / TAU;
         Ok(Self {
-            natural_frequency: Measured::new(hertz * root, hertz * variance_of(of_frequency, covariance).sqrt()),
-            damping_ratio: Measured::new(ratio, variance_of(of_ratio, covariance).sqrt()),
+            natural_frequency: Estimated::new(hertz * root, hertz * variance_of(of_frequency, covariance).sqrt()),
+            damping_ratio: Estimated::new(ratio, variance_of(of_ratio, covariance).sqrt()),
         })
     }
 }

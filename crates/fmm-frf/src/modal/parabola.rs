@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::least_squares::triangle::Triangle;
+use crate::least_squares::{Equations, Solution};
 use crate::modal::band::Band;
 use crate::{FrequencyResponse, FrfError, Mode, ResponseForm};
 
@@ -53,19 +53,20 @@ impl PeakFit {
         let derivatives = i32::from(response.form().derivatives());
         let magnitudes: Vec<f64> = receptance.values().iter().map(|value| value.norm()).collect();
         let largest = magnitudes.iter().copied().fold(0.0, f64::max);
-        let mut triangle = Triangle::new();
+        let mut parabola = Equations::new();
         for (&magnitude, &ratio) in magnitudes.iter().zip(&given.ratios) {
             // d(1/|H|²) = −2|H|⁻³ d|H|, and noise of the given form is 1/ωᵖ of that in the receptance.
             let relative = magnitude / largest;
             let weight = relative.powi(3) * ratio.powi(derivatives);
             let u = ratio * ratio - 1.0;
             if weight > 0.0 {
-                triangle.add([u * u, u, 1.0].map(|term| term * weight), weight / (relative * relative));
+                parabola.add([u * u, u, 1.0].map(|term| term * weight), weight / (relative * relative));
             }
         }
-        let undetermined = || FrfError::undetermined(NAME, triangle.rows);
-        let [a, b, d] = triangle.solve().ok_or_else(undetermined)?;
-        let covariance = triangle.covariance().ok_or_else(undetermined)?;
+        let undetermined = || FrfError::undetermined(NAME, parabola.len());
+        let Some(Solution { values: [a, b, d], covariance: Some(covariance), .. }) = parabola.solve() else {
+            return Err(undetermined());
+        };
         // a u² + b u + d = a (w² + (q₁² − 2q₀) w + q₀²) with w = 1 + u, without cancellation near the peak.
         let e = (d - b) / a;
         let q0 = (1.0 + e).sqrt();

@@ -4,10 +4,9 @@ use std::f64::consts::TAU;
 
 use fmm_record::Complex64;
 
-use crate::least_squares::gauss_newton::{Minimum, gauss_newton};
-use crate::least_squares::triangle::{Triangle, variance_of};
+use crate::least_squares::{Equations, Solution, minimise, variance_of};
 use crate::modal::band::Band;
-use crate::{FrequencyResponse, FrfError, Measured, Mode};
+use crate::{Estimated, FrequencyResponse, FrfError, Mode};
 
 const NAME: &str = "rational fraction fit";
 
@@ -58,7 +57,7 @@ pub struct RationalFit {
     pub mode: Mode,
     /// Mass (kg), viscous coefficient (N s/m) and stiffness (N/m) of the machine with this mode alone, if there is no
     /// background; of the driving point if it is a mode of many.
-    pub machine: Option<[Measured; 3]>,
+    pub machine: Option<[Estimated; 3]>,
     /// Root mean square (unit of the response given) of what the fit leaves over at a line.
     pub residual: f64,
     curve: Curve,
@@ -116,9 +115,11 @@ impl<const P: usize> Fitting<P> {
         let undetermined = || FrfError::undetermined(NAME, self.band.values.len());
         let none = || FrfError::no_mode(NAME, low, high);
         let start = self.start().ok_or_else(undetermined)?;
-        let minimum = gauss_newton(start, |parameters| self.linearise(parameters));
-        let Minimum { parameters, triangle } = minimum.ok_or(FrfError::not_converged(NAME))?;
-        let covariance = triangle.covariance().ok_or_else(undetermined)?;
+        // A line is a complex equation, which is two real ones.
+        let minimum = minimise(start, 2 * self.band.values.len(), |parameters| self.linearise(parameters));
+        let Solution { values: parameters, covariance, sum_of_squares } =
+            minimum.ok_or(FrfError::not_converged(NAME))?;
+        let covariance = covariance.ok_or_else(undetermined)?;
         let (q0, q1) = (parameters[0], parameters[1]);
         let of_mode = [[covariance[0][0], covariance[0][1]], [covariance[1][0], covariance[1][1]]];
         // The lines were taken at their true s, so that there is no window to take out.
@@ -135,7 +136,7 @@ impl<const P: usize> Fitting<P> {
                 for (at, slope) in gradient {
                     full[at] += slope;
                 }
-                Measured::new(value, variance_of(full, &covariance).sqrt())
+                Estimated::new(value, variance_of(full, &covariance).sqrt())
             };
             let (damping, stiffness) = (mass * unit, mass * unit * unit);
             Some([
@@ -150,7 +151,7 @@ impl<const P: usize> Fitting<P> {
         numerator.iter_mut().zip(&parameters[2..]).for_each(|(to, from)| *to = *from);
         let (form, size, decay_rate) = (self.form, self.size, self.band.decay_rate);
         let curve = Curve { denominator: [q0, q1], numerator, form, unit, size, decay_rate };
-        let residual = self.size * (triangle.total / self.band.values.len() as f64).sqrt();
+        let residual = self.size * (sum_of_squares / self.band.values.len() as f64).sqrt();
         Ok(RationalFit { mode, machine, residual, curve })
     }
 
@@ -168,24 +169,24 @@ impl<const P: usize> Fitting<P> {
         const ITERATIONS: usize = 10;
         let mut parameters = [0.0; P];
         for iteration in 0..ITERATIONS {
-            let mut triangle = Triangle::new();
+            let mut equations = Equations::new();
             for (s, form, value) in self.lines() {
                 let denominator = s * s + s * parameters[1] + parameters[0];
                 let weight = if iteration == 0 { 1.0 } else { denominator.norm().recip() };
                 if weight.is_finite() {
                     let powers = [Complex64::ONE, s, s * s];
                     let column = |i: usize| if i < 2 { value * powers[i] } else { -form * powers[i - 2] };
-                    add(&mut triangle, std::array::from_fn(|i| column(i) * weight), -value * s * s * weight);
+                    add(&mut equations, std::array::from_fn(|i| column(i) * weight), -value * s * s * weight);
                 }
             }
-            parameters = triangle.solve()?;
+            parameters = equations.solve()?.values;
         }
         Some(parameters)
     }
 
     /// Residuals H_measured − H with their derivatives.
-    fn linearise(&self, parameters: &[f64; P]) -> Option<Triangle<P>> {
-        let mut triangle = Triangle::new();
+    fn linearise(&self, parameters: &[f64; P]) -> Option<Equations<P>> {
+        let mut equations = Equations::new();
         for (s, form, value) in self.lines() {
             let denominator = s * s + s * parameters[1] + parameters[0];
             let numerator = parameters[2..].iter().rev().fold(Complex64::ZERO, |sum, n| sum * s + n);
@@ -195,14 +196,14 @@ impl<const P: usize> Fitting<P> {
             }
             let powers = [Complex64::ONE, s, s * s];
             let slope = |i: usize| if i < 2 { -model * powers[i] } else { form * powers[i - 2] };
-            add(&mut triangle, std::array::from_fn(|i| slope(i) / denominator), value - model);
+            add(&mut equations, std::array::from_fn(|i| slope(i) / denominator), value - model);
         }
-        Some(triangle)
+        Some(equations)
     }
 }
 
 /// Adds a complex equation as two real ones.
-fn add<const P: usize>(triangle: &mut Triangle<P>, row: [Complex64; P], right: Complex64) {
-    triangle.add(row.map(|entry| entry.re), right.re);
-    triangle.add(row.map(|entry| entry.im), right.im);
+fn add<const P: usize>(equations: &mut Equations<P>, row: [Complex64; P], right: Complex64) {
+    equations.add(row.map(|entry| entry.re), right.re);
+    equations.add(row.map(|entry| entry.im), right.im);
 }

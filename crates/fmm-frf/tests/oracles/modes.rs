@@ -1,7 +1,7 @@
 //! Modal estimates of the four impacts (m = 10.391 kg, c = 8 N s/m, k = 1982 N/m, noise on both channels), against
 //! independent fits of the same lines.
 
-use fmm_frf::{AverageOptions, Background, CircleFit, Estimator, FrequencyResponse, Measured, PeakFit, RationalFit};
+use fmm_frf::{AverageOptions, Background, CircleFit, Estimated, Estimator, FrequencyResponse, PeakFit, RationalFit};
 
 use crate::estimates::truncated;
 use crate::table::impacts;
@@ -18,7 +18,7 @@ fn mobility() -> FrequencyResponse {
 const LEAKAGE: f64 = 2.1e-3;
 
 /// Within `tolerance` of the truth, and but for the leakage within four of its own standard uncertainties.
-fn near(found: Measured, truth: f64, tolerance: f64, what: &str) {
+fn near(found: Estimated, truth: f64, tolerance: f64, what: &str) {
     let error = (found.value - truth).abs();
     assert!(error < tolerance * truth, "{what}: {found}, not {truth}");
     assert!(error < 4.0 * found.uncertainty + LEAKAGE * truth, "{what}: {found}, not {truth}");

@@ -8,6 +8,7 @@ use fmm_record::{Quantity, Record, noise, quantisation_step};
 
 use crate::estimators::half_swings::{bridged, check_reversals, reversals};
 use crate::estimators::weak_equations::{Equations, Motion};
+use crate::law::naming::Units;
 use crate::{Estimated, Experiment, IdentifyError};
 
 /// Friction and damping without a derivative of the record, without smoothing and without a simulation.
@@ -235,18 +236,14 @@ impl WeakForm {
             Some(frequency) => held(Some((2.0 * PI * frequency).powi(2))),
             None => Bounds::POSITIVE,
         };
-        let unit = record.unit();
-        let (length, acceleration) = match (record.quantity(), unit.strip_suffix("/s")) {
-            (Quantity::Displacement, _) => (unit.to_owned(), format!("{unit}/s²")),
-            (_, Some(base)) => (base.to_owned(), format!("{base}/s²")),
-            (_, None) => (format!("({unit} s)"), format!("{unit}/s")),
-        };
+        let units = Units::of(record);
         [
             Parameter::new("damping_per_mass", "c/m", "1/s").bounded(held(self.damping)),
             Parameter::new("stiffness_per_mass", "k/m", "1/s²").bounded(stiffness),
-            Parameter::named("friction_per_mass", "F/m", acceleration),
-            Parameter::named("quadratic_damping_per_mass", "c₂/m", format!("1/{length}")).bounded(held(quadratic)),
-            Parameter::named("offset", "b", unit.to_owned()).bounded(held(offset)),
+            Parameter::named("friction_per_mass", "F/m", units.acceleration().to_string()),
+            Parameter::named("quadratic_damping_per_mass", "c₂/m", units.position.power(-1).to_string())
+                .bounded(held(quadratic)),
+            Parameter::named("offset", "b", record.unit().to_owned()).bounded(held(offset)),
         ]
     }
 }

@@ -7,6 +7,7 @@ use fmm_model::{Bounds, Dual, Parameter, Scalar};
 use fmm_record::Quantity;
 
 use crate::fit::free_vibration::FreeVibration;
+use crate::law::naming::Units;
 use crate::{Estimated, Experiment, IdentifyError};
 
 /// The viscous fit over one window.
@@ -199,11 +200,7 @@ impl<'a> WindowProblem<'a> {
         let kept = decay.kept().iter().cloned().flatten().filter(inside).collect();
         let unit = decay.record().unit();
         let displacement = decay.record().quantity() == Quantity::Displacement;
-        let (position, velocity) = match (displacement, unit.strip_suffix("/s")) {
-            (true, _) => (unit.to_owned(), format!("{unit}/s")),
-            (false, Some(base)) => (base.to_owned(), unit.to_owned()),
-            (false, None) => (format!("{unit} s"), unit.to_owned()),
-        };
+        let units = Units::of(decay.record());
         let held = |is_held: bool| {
             if is_held { Bounds::new(0.0, 0.0).unwrap_or(Bounds::UNBOUNDED) } else { Bounds::UNBOUNDED }
         };
@@ -211,8 +208,10 @@ impl<'a> WindowProblem<'a> {
         let parameters = [
             Parameter::new("natural_frequency_hz", "f₀", "Hz").bounded(decay.frequency_bounds()),
             Parameter::new("damping_per_mass", "c/m", "1/s"),
-            Parameter::named("initial_position", "x₀", position).bounded(held(holds_first_sample && displacement)),
-            Parameter::named("initial_velocity", "v₀", velocity).bounded(held(holds_first_sample && !displacement)),
+            Parameter::named("initial_position", "x₀", units.position.to_string())
+                .bounded(held(holds_first_sample && displacement)),
+            Parameter::named("initial_velocity", "v₀", units.velocity().to_string())
+                .bounded(held(holds_first_sample && !displacement)),
             Parameter::named("offset", "b", unit.to_owned()).bounded(offset.unwrap_or(Bounds::UNBOUNDED)),
         ];
         Self { decay, samples, kept, holds_first_sample, parameters }

@@ -8,11 +8,12 @@ use fmm_sim::{Event, EventKind, Trajectory};
 
 use crate::experiment::nuisance::Nuisance;
 use crate::experiment::scaled;
-use crate::fit::layout::{Layout, named};
+use crate::fit::layout::Layout;
 use crate::fit::problem::Problem;
 use crate::fit::stages::{Near, fit_in_stages, fit_near};
 use crate::fit::tangent::Tangent;
 use crate::law::Law;
+use crate::law::naming::{Level, level_name};
 use crate::machine::terms::LINEAR;
 use crate::report::finding::{Finding, findings};
 use crate::residuals::drift::{as_fitted, with_drift};
@@ -424,8 +425,8 @@ impl Identification {
             .fitted()
             .filter(|parameter| matches!(parameter.role(), Role::LevelAbove | Role::Excess | Role::Breakaway));
         let at_rest = at_rest.filter_map(|parameter| {
-            let quantities = ["mu", "friction_force", "friction_per_mass"];
-            let names = quantities.map(|quantity| named(parameter.parameter(), quantity, "").name().to_owned());
+            let names =
+                [Level::Mu, Level::Force, Level::PerMass].map(|level| level_name(parameter.parameter().name(), level));
             names.iter().find_map(|name| self.finding(name).filter(|finding| finding.parameter().unit() == unit))
         });
         std::iter::once(sliding).chain(at_rest).collect()
@@ -435,8 +436,7 @@ impl Identification {
     fn level_names(&self) -> Vec<String> {
         let Some(level) = self.family.level() else { return Vec::new() };
         let Some(parameter) = self.family.fitted().nth(level) else { return Vec::new() };
-        let quantities = ["friction_per_mass", "friction_force", "mu"];
-        quantities.map(|quantity| named(parameter.parameter(), quantity, "").name().to_owned()).to_vec()
+        [Level::PerMass, Level::Force, Level::Mu].map(|level| level_name(parameter.parameter().name(), level)).to_vec()
     }
 
     /// Sum of squares below which a fit reproduces its records to rounding, and none is better than another.

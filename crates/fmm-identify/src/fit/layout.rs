@@ -4,15 +4,13 @@ use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use fmm_fit::EvaluationError;
-use fmm_friction::{LawParameter, Role};
 use fmm_model::{Bounds, Damping, Oscillator, Parameter, Restoring, Scalar};
-use fmm_record::Quantity;
 
 use crate::experiment::reference;
-use crate::law::dimension::is_force;
+use crate::law::naming::{Level, Units};
 use crate::law::{Law, Motion};
 use crate::machine::Scale;
-use crate::machine::terms::{LINEAR, Term};
+use crate::machine::terms::Term;
 use crate::{Experiment, IdentifyError, Machine, Terms};
 
 /// Order of the parameters: oscillator, damping beside the law, law, then for each record its initial state and, unless it
@@ -24,8 +22,8 @@ pub(crate) struct Layout {
     pub(crate) oscillator: usize,
     /// The terms beside the law, whose parameters follow those of the oscillator.
     pub(crate) terms: Terms,
-    /// Unit of a position.
-    pub(crate) position: String,
+    /// Units of the motion and of forces.
+    pub(crate) units: Units,
     /// Index of the first parameter of the law.
     pub(crate) law: usize,
     /// Parameters of oscillator, damping and law: those that all records share.
@@ -54,8 +52,9 @@ impl Layout {
         let reference = reference(decays);
         let is_driven = decays.iter().any(|decay| decay.drive().is_some());
         let family = if is_driven { family.with_breakaway() } else { family };
-        let units = Units::of(reference);
+        let units = Units::of(reference.record());
         let unknown_scale = machine.scale() == Scale::Unknown;
+        let level = if unknown_scale { Level::Force } else { Level::PerMass };
         let mut parameters = if unknown_scale {
             vec![
                 Parameter::new("mass", "m", "kg").bounded(Bounds::POSITIVE),
@@ -68,7 +67,7 @@ impl Layout {
         let oscillator = parameters.len();
         parameters.extend(terms.parameters(&units.position));
         let law = parameters.len();
-        parameters.extend(family.fitted().map(|parameter| units.fitted(parameter, unknown_scale.then_some("N"))));
+        parameters.extend(family.fitted().map(|parameter| units.fitted(parameter, level)));
         let shared = parameters.len();
         let mut own = Vec::with_capacity(decays.len());
         for (index, decay) in decays.iter().enumerate() {
@@ -77,8 +76,8 @@ impl Layout {
                 _ => Cow::Owned(format!("{name}_{}", index + 1)),
             };
             own.push(parameters.len());
-            parameters.push(Parameter::named(of_record("initial_position"), "x₀", units.position.clone()));
-            parameters.push(Parameter::named(of_record("initial_velocity"), "v₀", units.velocity.clone()));
+            parameters.push(Parameter::named(of_record("initial_position"), "x₀", units.position.to_string()));
+            parameters.push(Parameter::named(of_record("initial_velocity"), "v₀", units.velocity().to_string()));
             if decay.fixed_offset().is_none() {
                 parameters.push(Parameter::named(of_record("offset"), "b", decay.record().unit().to_owned()));
             }
@@ -106,7 +105,7 @@ impl Layout {
             }
             parameters[index] = parameters[index].clone().bounded(Bounds::new(value, value)?);
         }
-        Ok((Self { family, oscillator, terms: terms.clone(), position: units.position, law, shared, own }, parameters))
+        Ok((Self { family, oscillator, terms: terms.clone(), units, law, shared, own }, parameters))
     }
 
     /// How many parameters the motion of one record depends on: the shared ones and its initial state.
@@ -215,106 +214,4 @@ pub(crate) fn mass<D: Scalar>(scale: Scale, natural_frequency: D) -> Option<D> {
 pub(crate) fn mass_of_stiffness<D: Scalar>(stiffness: D, natural_frequency: D) -> D {
     let angular = natural_frequency * (2.0 * PI);
     stiffness / (angular * angular)
-}
-
-/// A law's coefficient under the name and unit it has as a force: `coefficient` becomes `friction_force`,
-/// `static_coefficient` becomes `static_friction_force`.
-pub(crate) fn named(parameter: &Parameter, quantity: &'static str, unit: &str) -> Parameter {
-    let stem =
-        parameter.name().strip_suffix("coefficient").map_or_else(|| format!("{}_", parameter.name()), str::to_owned);
-    let symbol = match (quantity, stem.as_str()) {
-        ("friction_per_mass", "") => "F/m",
-        ("friction_force", "") => "F",
-        _ => parameter.symbol(),
-    };
-    Parameter::named(format!("{stem}{quantity}"), symbol.to_owned(), unit.to_owned())
-}
-
-/// Units of position, velocity and acceleration that belong to the unit of a record.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Units {
-    pub(crate) position: String,
-    pub(crate) velocity: String,
-    pub(crate) acceleration: String,
-}
-
-impl Units {
-    /// A parameter of a law as a fit has it: as a force in its unit if that is given, or else per mass.
-    pub(crate) fn fitted(&self, law_parameter: &LawParameter, force: Option<&str>) -> Parameter {
-        let parameter = law_parameter.parameter();
-        let quantity = if force.is_some() { "friction_force" } else { "friction_per_mass" };
-        let level = force.unwrap_or(&self.acceleration);
-        let renamed = match (law_parameter.role(), parameter.unit()) {
-            (Role::Slope, _) => match force {
-                Some(force) => Parameter::named("damping", "c", self.damping(force)),
-                None => Parameter::new(LINEAR, "c/m", "1/s"),
-            },
-            (Role::LevelAbove | Role::Breakaway, _) => {
-                let name = parameter.name().replace("coefficient", "excess_coefficient");
-                named(&Parameter::named(name, parameter.symbol().to_owned(), "1"), quantity, level)
-            }
-            (role, "1") if is_force(role) => named(parameter, quantity, level),
-            (role, unit) if is_force(role) => {
-                let name = format!("contact_{}{}", parameter.name(), if force.is_some() { "" } else { "_per_mass" });
-                let unit = match (unit, force) {
-                    ("1/m", Some(force)) => format!("{force}/{}", self.position),
-                    ("1/m", None) => "1/s²".to_owned(),
-                    ("s/m", Some(force)) => self.damping(force),
-                    ("s/m", None) => "1/s".to_owned(),
-                    _ => format!("{level} {unit}"),
-                };
-                Parameter::named(name, parameter.symbol().to_owned(), unit)
-            }
-            _ => self.of_motion(parameter),
-        };
-        renamed.bounded(parameter.bounds())
-    }
-
-    /// A parameter that does not scale with the force, with the units of the record in place of m and m/s.
-    pub(crate) fn of_motion(&self, parameter: &Parameter) -> Parameter {
-        let unit = match parameter.unit() {
-            "m/s" => self.velocity.clone(),
-            "s/m" => self.inverse_velocity(),
-            "1/m" => format!("1/{}", self.position),
-            "1/m^n" => format!("1/{}^n", self.position),
-            other => other.to_owned(),
-        };
-        Parameter::named(parameter.name().to_owned(), parameter.symbol().to_owned(), unit).bounded(parameter.bounds())
-    }
-
-    /// Unit of a damping with forces in `force`.
-    pub(crate) fn damping(&self, force: &str) -> String {
-        format!("{force} s/{}", self.position)
-    }
-
-    /// Those of a motion with positions in `position`.
-    pub(crate) fn of_positions(position: &str) -> Self {
-        Self { position: position.into(), velocity: format!("{position}/s"), acceleration: format!("{position}/s²") }
-    }
-
-    fn inverse_velocity(&self) -> String {
-        match self.velocity.strip_suffix("/s") {
-            Some(base) => format!("s/{base}"),
-            None => format!("1/{}", self.velocity),
-        }
-    }
-
-    pub(crate) fn of(decay: &Experiment) -> Self {
-        let unit = decay.record().unit();
-        if decay.record().quantity() == Quantity::Displacement {
-            return Self::of_positions(unit);
-        }
-        if decay.record().quantity() == Quantity::Acceleration {
-            return match unit.strip_suffix("/s²").or_else(|| unit.strip_suffix("/s^2")) {
-                Some(base) => Self { position: base.into(), velocity: format!("{base}/s"), acceleration: unit.into() },
-                None => {
-                    Self { position: format!("{unit} s²"), velocity: format!("{unit} s"), acceleration: unit.into() }
-                }
-            };
-        }
-        match unit.strip_suffix("/s") {
-            Some(base) => Self { position: base.into(), velocity: unit.into(), acceleration: format!("{base}/s²") },
-            None => Self { position: format!("{unit} s"), velocity: unit.into(), acceleration: format!("{unit}/s") },
-        }
-    }
 }

@@ -5,8 +5,8 @@ use std::fmt;
 use fmm_fit::{EvaluationError, Fit, Options, Residuals, solve};
 use fmm_friction::Role;
 
-use crate::fit::layout::named;
 use crate::fit::tangent::inverse_of_products;
+use crate::force::model::naming;
 use crate::force::problem::ForceProblem;
 use crate::force::start::starts;
 use crate::report::{name_width, write_warnings};
@@ -169,11 +169,8 @@ fn levels_above(problem: &ForceProblem<'_>, fit: &Fit, covariance: &Covariance, 
             .map(|(i, j)| covariance.get(*i, *j))
             .sum::<Option<f64>>()
             .map(|variance| spread * variance);
-        let unit = problem.parameters()[level].unit();
-        let parameter = match problem.records()[0].loads {
-            None => named(parameter.parameter(), "friction_force", unit),
-            Some(_) => parameter.parameter().clone(),
-        };
+        let (units, as_level) = naming(problem.records());
+        let parameter = units.stated(parameter, as_level);
         let freedom = covariance.degrees_of_freedom();
         Finding::new(parameter, value, variance.map(|v| (v, v)), freedom, Origin::Derived, false)
     });

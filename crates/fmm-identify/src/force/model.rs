@@ -1,10 +1,8 @@
 //! What a force along a motion is made of.
 
-use fmm_friction::{LawParameter, Role};
-use fmm_model::{Bounds, Parameter};
+use fmm_model::{Bounds, Parameter, Unit};
 
-use crate::fit::layout::Units;
-use crate::law::dimension::is_force;
+use crate::law::naming::{Level, Units};
 use crate::machine::terms::Term;
 use crate::{Candidate, ForceRecord, IdentifyError};
 
@@ -215,15 +213,10 @@ impl ForceModel {
     pub(crate) fn parameters(&self, records: &[ForceRecord]) -> Result<Vec<Parameter>, IdentifyError> {
         let law = self.law.law();
         law.require_units()?;
-        let (position, force) = (records[0].position_unit(), records[0].force_unit());
-        let units = Units::of_positions(position);
-        let of_law = |parameter: &LawParameter| match records[0].loads {
-            None => units.fitted(parameter, Some(force)),
-            Some(_) => units.of_motion(&of_contact(parameter)),
-        };
-        let mut parameters: Vec<Parameter> = law.fitted().map(of_law).collect();
+        let (units, level) = naming(records);
+        let mut parameters: Vec<Parameter> = law.fitted().map(|parameter| units.fitted(parameter, level)).collect();
         for shape in self.shapes() {
-            parameters.push(shape.parameter(position, force, self.law.terms().are_of_any_sign()));
+            parameters.push(shape.parameter(&units, self.law.terms().are_of_any_sign()));
         }
         for part in self.parts() {
             match part {
@@ -276,16 +269,10 @@ impl ForceModel {
     }
 }
 
-/// A parameter of a law for a load that is known, under a name that no part of the force has; a level above the sliding one is fitted as
-/// what it lies above it by.
-fn of_contact(parameter: &LawParameter) -> Parameter {
-    let plain = parameter.parameter();
-    let name = match parameter.role() {
-        Role::LevelAbove | Role::Breakaway => plain.name().replace("coefficient", "excess_coefficient"),
-        role if is_force(role) && plain.unit() != "1" => format!("contact_{}", plain.name()),
-        _ => plain.name().to_owned(),
-    };
-    Parameter::named(name, plain.symbol().to_owned(), plain.unit().to_owned()).bounded(plain.bounds())
+/// Units of the motion and of the force in `records`, and what a level of a law is stated as: a force, or, with a load, a coefficient.
+pub(crate) fn naming(records: &[ForceRecord]) -> (Units, Level) {
+    let level = if records[0].loads.is_none() { Level::Force } else { Level::Coefficient };
+    (Units::new(records[0].position_unit(), records[0].force_unit()), level)
 }
 
 /// What a part of the force is proportional to.
@@ -301,29 +288,26 @@ pub(crate) enum Shape {
 
 impl Shape {
     /// Its factor, for positions and forces in these units.
-    fn parameter(self, position: &str, force: &str, any_sign: bool) -> Parameter {
-        let per_speed = |name: &'static str, symbol, power: &str| {
-            Parameter::named(name, symbol, format!("{force} s{power}/{position}{power}"))
-        };
+    fn parameter(self, units: &Units, any_sign: bool) -> Parameter {
+        let Units { position, force } = units;
         let damping = if any_sign { Bounds::UNBOUNDED } else { Bounds::NOT_NEGATIVE };
-        match self {
-            Self::Damping(Term::QuadraticDamping) => per_speed("quadratic_damping", "c₂", "²").bounded(damping),
-            Self::Damping(Term::CubicDamping) => per_speed("cubic_damping", "c₃", "³").bounded(damping),
-            Self::Damping(_) => per_speed("damping", "c", "").bounded(damping),
-            Self::Zero => Parameter::named("zero", "F₀", force.to_owned()),
-            Self::Inertia => Parameter::named(
-                "inertia",
-                "m",
-                match (force, position) {
-                    ("N", "m") => "kg".to_owned(),
-                    ("N m", "rad") => "kg m²".to_owned(),
-                    _ => format!("{force} s²/{position}"),
-                },
-            ),
-            Self::Stiffness => Parameter::named("stiffness", "k", format!("{force}/{position}")),
-            Self::GravitySine => Parameter::named("gravity_sine", "A", force.to_owned()),
-            Self::GravityCosine => Parameter::named("gravity_cosine", "B", force.to_owned()),
-        }
+        let per_speed = |power| (force.per(&units.velocity().power(power)), damping);
+        let (name, symbol, (unit, bounds)) = match self {
+            Self::Damping(Term::QuadraticDamping) => ("quadratic_damping", "c₂", per_speed(2)),
+            Self::Damping(Term::CubicDamping) => ("cubic_damping", "c₃", per_speed(3)),
+            Self::Damping(_) => ("damping", "c", per_speed(1)),
+            Self::Zero => ("zero", "F₀", (force.clone(), Bounds::UNBOUNDED)),
+            Self::Inertia => {
+                // An angle is a number here: a torque by an angular acceleration is kg m².
+                let force = force.with("N", &Unit::of("kg m/s²"));
+                let unit = force.per(&units.acceleration()).with("rad", &Unit::default());
+                ("inertia", "m", (unit, Bounds::UNBOUNDED))
+            }
+            Self::Stiffness => ("stiffness", "k", (force.per(position), Bounds::UNBOUNDED)),
+            Self::GravitySine => ("gravity_sine", "A", (force.clone(), Bounds::UNBOUNDED)),
+            Self::GravityCosine => ("gravity_cosine", "B", (force.clone(), Bounds::UNBOUNDED)),
+        };
+        Parameter::named(name, symbol, unit.to_string()).bounded(bounds)
     }
 
     /// Its value at position `x`, velocity `v` and acceleration `a`, and its slopes by these.

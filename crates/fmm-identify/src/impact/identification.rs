@@ -4,15 +4,15 @@ use std::ops::ControlFlow;
 
 use fmm_fit::{EvaluationError, Fit};
 use fmm_friction::{Coulomb, LawFamily, Role};
-use fmm_model::Parameter;
 
 use crate::fit::identification::FittedMotion;
-use crate::fit::layout::named;
 use crate::fit::stages::best_fit;
 use crate::impact::covariance::ImpactCovariance;
 use crate::impact::parameters::{DAMPING, LAW, LOAD, MASS, RESPONSE_GAIN, STIFFNESS};
 use crate::impact::simulation::ImpactLaw;
 use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactProblem, ImpactSummary, ImpactTrial, warnings};
+use crate::law::dimension::is_coefficient;
+use crate::law::naming::{Level, Units};
 use crate::report::finding::{Finding, Origin};
 use crate::{IdentifyError, Warning};
 
@@ -169,10 +169,10 @@ fn findings(problem: &ImpactProblem<'_>, fit: &Fit, covariance: &ImpactCovarianc
     let is_one = |index: usize| layout.values[index] == 1.0 && layout.uncertainties[index] == 0.0;
     if layout.is_held(LOAD) && !is_one(LOAD) {
         for (index, parameter) in law.zip(problem.law().fitted()) {
-            if matches!(parameter.role(), Role::Level | Role::Excess) && parameter.parameter().unit() == "1" {
+            if matches!(parameter.role(), Role::Level | Role::Excess) && is_coefficient(parameter) {
                 let value = fit.values()[LOAD] * fit.values()[index];
                 let variances = covariance.variances_times_load(index, fit.values());
-                let force: Parameter = named(parameter.parameter(), "friction_force", "N");
+                let force = Units::new("m", "N").stated(parameter, Level::Force);
                 findings.push(Finding::new(force, value, variances, freedom, Origin::Derived, false));
             }
         }

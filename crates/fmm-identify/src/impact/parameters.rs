@@ -2,11 +2,11 @@
 
 use std::borrow::Cow;
 
-use fmm_friction::Role;
 use fmm_model::{Bounds, Parameter};
 
 use crate::impact::{ImpactMachine, ImpactOptions, ImpactTrial};
 use crate::law::Law;
+use crate::law::naming::{Level, Units};
 use crate::{IdentifyError, Known};
 
 /// Indices of the parameters before those of the law.
@@ -66,18 +66,9 @@ impl Parameters {
         let gain = options.response_gain_uncertainty;
         let mut uncertainties: Vec<f64> = known.iter().map(Known::uncertainty).chain([gain]).collect();
         let mut all = SHARED.to_vec();
+        let units = Units::new("m", "N");
         for law_parameter in law.fitted() {
-            let parameter = law_parameter.parameter();
-            let name = match law_parameter.role() {
-                Role::LevelAbove => parameter.name().replace("coefficient", "excess_coefficient"),
-                // Some laws have a stiffness too.
-                _ if SHARED.iter().any(|shared| shared.name() == parameter.name()) => {
-                    format!("contact_{}", parameter.name())
-                }
-                _ => parameter.name().to_owned(),
-            };
-            let (symbol, unit) = (parameter.symbol().to_owned(), parameter.unit().to_owned());
-            all.push(Parameter::named(name, symbol, unit).bounded(parameter.bounds()));
+            all.push(units.fitted(law_parameter, Level::Coefficient));
             values.push(0.0);
             uncertainties.push(0.0);
         }

@@ -1,7 +1,7 @@
 //! What the parameters of a law scale with.
 
 use fmm_friction::{LawParameter, Role};
-use fmm_model::Dimension;
+use fmm_model::Unit;
 
 use crate::IdentifyError;
 use crate::law::Law;
@@ -38,7 +38,7 @@ impl Powers {
             let named = |parameter: &&LawParameter| parameter.parameter().symbol() == symbol;
             law.parameters.iter().find(named).map(LawParameter::typical)
         };
-        let unit = Dimension::of(parameter.parameter().unit(), exponent).filter(|unit| unit.mass() == 0.0)?;
+        let unit = Unit::of(parameter.parameter().unit()).dimension(exponent).filter(|unit| unit.mass() == 0.0)?;
         Some(Self { position: unit.length() + unit.angle(), time: unit.time(), factor: unit.factor() })
     }
 
@@ -104,6 +104,11 @@ impl Scales {
 /// Whether `role` is proportional to the friction force.
 pub(crate) fn is_force(role: Role) -> bool {
     matches!(role, Role::Level | Role::Excess | Role::LevelAbove | Role::Breakaway)
+}
+
+/// Whether `parameter` is a friction coefficient, a force by the normal load.
+pub(crate) fn is_coefficient(parameter: &LawParameter) -> bool {
+    is_force(parameter.role()) && Unit::of(parameter.parameter().unit()) == Unit::default()
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ pub(crate) mod along;
 mod candidate;
 pub(crate) mod dimension;
 pub(crate) mod friction_curve;
+pub(crate) mod naming;
 
 pub use candidate::Candidate;
 
@@ -13,6 +14,7 @@ use fmm_model::{Dual, Oscillator, Scalar};
 use fmm_sim::{Excitation, Sampling, Scenario, Trajectory, simulate_into};
 
 use along::{Along, along};
+use dimension::is_coefficient;
 
 /// Directions of derivative that one simulation carries; a law with more parameters takes several.
 pub(crate) const DIRECTIONS: usize = 6;
@@ -118,8 +120,7 @@ impl Law {
     /// The place of its sliding level among the [`fitted`](Self::fitted) parameters: of several levels the one that is called so, or
     /// else the first.
     pub(crate) fn level(&self) -> Option<usize> {
-        let is_level =
-            |parameter: &LawParameter| parameter.role() == Role::Level && parameter.parameter().unit() == "1";
+        let is_level = |parameter: &LawParameter| parameter.role() == Role::Level && is_coefficient(parameter);
         let is_named = |parameter: &LawParameter| {
             is_level(parameter) && matches!(parameter.parameter().name(), "coefficient" | "sliding_coefficient")
         };

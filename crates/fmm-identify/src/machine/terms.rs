@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fmm_model::{Bounds, ModelError, Parameter};
+use fmm_model::{Bounds, ModelError, Parameter, Unit};
 
 /// Damping and spring terms of the machine that are fitted beside the law, and parameters that are held.
 ///
@@ -68,24 +68,24 @@ impl Term {
     }
 
     /// The stiffness that a term of the spring adds, k k₃/m or k k₅/m, for positions in units of `position`.
-    pub(crate) fn stiffness_per_mass(self, position: &str) -> Parameter {
+    pub(crate) fn stiffness_per_mass(self, position: &Unit) -> Parameter {
         let (name, symbol, power) = match self {
-            Self::QuinticSpring => ("quintic_stiffness_per_mass", "k k₅/m", '⁴'),
-            _ => ("cubic_stiffness_per_mass", "k k₃/m", '²'),
+            Self::QuinticSpring => ("quintic_stiffness_per_mass", "k k₅/m", 4),
+            _ => ("cubic_stiffness_per_mass", "k k₃/m", 2),
         };
-        Parameter::named(name, symbol, format!("1/(s² {position}{power})"))
+        Parameter::named(name, symbol, Unit::of("1/s²").per(&position.power(power)).to_string())
     }
 
     /// Its parameter, for positions in units of `position`.
-    fn parameter(self, position: &str) -> Parameter {
+    fn parameter(self, position: &Unit) -> Parameter {
         let (name, symbol, unit) = match self {
-            Self::LinearDamping => (LINEAR, "c/m", "1/s".to_owned()),
-            Self::QuadraticDamping => (QUADRATIC, "c₂/m", format!("1/{position}")),
-            Self::CubicDamping => ("cubic_damping_per_mass", "c₃/m", format!("s/{position}²")),
-            Self::CubicSpring => ("cubic_spring", "k₃", format!("1/{position}²")),
-            Self::QuinticSpring => ("quintic_spring", "k₅", format!("1/{position}⁴")),
+            Self::LinearDamping => (LINEAR, "c/m", Unit::of("1/s")),
+            Self::QuadraticDamping => (QUADRATIC, "c₂/m", position.power(-1)),
+            Self::CubicDamping => ("cubic_damping_per_mass", "c₃/m", Unit::of("s").per(&position.power(2))),
+            Self::CubicSpring => ("cubic_spring", "k₃", position.power(-2)),
+            Self::QuinticSpring => ("quintic_spring", "k₅", position.power(-4)),
         };
-        Parameter::named(name, symbol, unit)
+        Parameter::named(name, symbol, unit.to_string())
     }
 }
 
@@ -192,7 +192,7 @@ impl Terms {
     }
 
     /// The parameters of the terms, for positions in units of `position`.
-    pub(crate) fn parameters(&self, position: &str) -> impl Iterator<Item = Parameter> {
+    pub(crate) fn parameters(&self, position: &Unit) -> impl Iterator<Item = Parameter> {
         let damping = if self.any_sign { Bounds::UNBOUNDED } else { Bounds::NOT_NEGATIVE };
         let bounds = move |term: Term| if term.is_spring() { Bounds::UNBOUNDED } else { damping };
         self.iter().map(move |term| term.parameter(position).bounded(bounds(term)))

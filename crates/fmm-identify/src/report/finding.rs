@@ -4,12 +4,13 @@ use fmm_fit::{EstimateStatus, Fit, coverage_factor};
 use fmm_friction::Role;
 use fmm_model::{Bounds, Dual, Parameter, Rounded, Scalar};
 
-use crate::fit::layout::{Layout, mass_of_stiffness, named};
-use crate::law::dimension::is_force;
-use crate::law::{DIRECTIONS, Law};
+use crate::Machine;
+use crate::fit::layout::{Layout, mass_of_stiffness};
+use crate::law::DIRECTIONS;
+use crate::law::dimension::{is_coefficient, is_force};
+use crate::law::naming::{Level, Units};
 use crate::machine::Scale;
 use crate::residuals::structure::Covariance;
-use crate::{Machine, Terms};
 
 /// Where the value of a finding comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -141,19 +142,9 @@ impl Finding {
 struct Inputs<'a> {
     machine: &'a Machine,
     shared: &'a [f64],
-    family: Law,
-    terms: &'a Terms,
-    /// Unit of a position.
-    position: &'a str,
-    /// Index of the first parameter of the law.
-    law: usize,
-    /// Unit of a force per mass.
-    acceleration: &'a str,
+    layout: &'a Layout,
     gain_uncertainty: f64,
 }
-
-/// Unit of a force per mass of a record in metres.
-pub(crate) const SI_ACCELERATION: &str = "m/s²";
 
 /// Inputs that were not fitted: scale of the machine, normal load, gain of the instrument.
 const KNOWN: usize = 3;
@@ -170,7 +161,7 @@ impl Inputs<'_> {
 
     /// Whether forces per mass are accelerations in SI, so that a mass makes forces of them.
     fn is_si(&self) -> bool {
-        self.machine.scale() == Scale::Unknown || self.acceleration == SI_ACCELERATION
+        self.machine.scale() == Scale::Unknown || self.layout.units.is_metric()
     }
 
     /// The derived quantities, as numbers whose directions from `first` on are the shared values, then the inputs.
@@ -193,10 +184,10 @@ impl Inputs<'_> {
             }
         };
         if self.machine.scale() != Scale::Unknown {
-            for (place, term) in self.terms.iter().enumerate().filter(|(_, term)| term.is_spring()) {
+            for (place, term) in self.layout.terms.iter().enumerate().filter(|(_, term)| term.is_spring()) {
                 let value = variable(self.shared[1 + place], 1 + place);
                 let per_mass = value / mass_of_stiffness(D::from(1.0), natural_frequency);
-                derived.push((term.stiffness_per_mass(self.position), per_mass));
+                derived.push((term.stiffness_per_mass(&self.layout.units.position), per_mass));
             }
         }
         // With an unknown scale the fitted values are forces already, whatever they are worth.
@@ -206,38 +197,31 @@ impl Inputs<'_> {
         };
         let load = self.machine.normal_load().map(|load| variable(load.value(), self.shared.len() + 1));
         let gain = variable(1.0, self.shared.len() + 2);
-        let law_value = |index: usize| variable(self.shared[self.law + index], self.law + index);
-        let level = self.family.level().map(law_value);
-        for (i, law_parameter) in self.family.fitted().enumerate() {
-            let (parameter, role) = (law_parameter.parameter(), law_parameter.role());
+        let Layout { family, units, law, .. } = self.layout;
+        let law_value = |index: usize| variable(self.shared[law + index], law + index);
+        let level = family.level().map(law_value);
+        // Forces that a mass makes of forces per mass.
+        let metric = Units::new("m", "N");
+        for (i, law_parameter) in family.fitted().enumerate() {
+            let role = law_parameter.role();
             let mut value = law_value(i);
             if let (Role::LevelAbove | Role::Breakaway, Some(level)) = (role, level) {
                 value += level;
-                if self.machine.scale() == Scale::Unknown {
-                    derived.push((named(parameter, "friction_force", "N").bounded(parameter.bounds()), value));
-                } else {
-                    derived.push((
-                        named(parameter, "friction_per_mass", self.acceleration).bounded(parameter.bounds()),
-                        value / gain,
-                    ));
-                }
+                derived.push(match self.machine.scale() {
+                    Scale::Unknown => (units.stated(law_parameter, Level::Force), value),
+                    _ => (units.stated(law_parameter, Level::PerMass), value / gain),
+                });
             }
-            let Some(to_force) = to_force else { continue };
-            let force = value * to_force;
-            if role == Role::Slope && mass.is_some() {
-                derived.push((Parameter::new("damping", "c", "N s/m").bounded(parameter.bounds()), force));
-            } else if is_force(role) && parameter.unit() == "1" && self.is_si() {
-                let force = force / gain;
-                let bounded = |quantity, unit| named(parameter, quantity, unit).bounded(parameter.bounds());
-                if mass.is_some() {
-                    derived.push((bounded("friction_force", "N"), force));
+            let Some(force) = to_force.map(|to_force| value * to_force) else { continue };
+            let stated = |level: Level| metric.stated(law_parameter, level);
+            if is_coefficient(law_parameter) {
+                if self.is_si() {
+                    let force = force / gain;
+                    derived.extend(mass.map(|_| (stated(Level::Force), force)));
+                    derived.extend(load.map(|load| (stated(Level::Mu), force / load)));
                 }
-                if let Some(load) = load {
-                    derived.push((bounded("mu", "1"), force / load));
-                }
-            } else if is_force(role) && parameter.unit() == "1/m" && mass.is_some() && self.is_si() {
-                let name = format!("contact_{}", parameter.name());
-                derived.push((Parameter::named(name, parameter.symbol().to_owned(), "N/m"), force));
+            } else if mass.is_some() && (role == Role::Slope || is_force(role) && self.is_si()) {
+                derived.push((stated(Level::Force), force));
             }
         }
         derived
@@ -276,12 +260,7 @@ pub(crate) fn findings(
     });
     let mut findings: Vec<Finding> = estimated.collect();
     let shared = &fit.values()[..layout.shared];
-    let force = layout.family.fitted().position(|parameter| is_force(parameter.role()));
-    let acceleration = force.map_or("", |index| fit.estimates()[layout.law + index].parameter().unit());
-    let position = &layout.position;
-    let (family, law) = (layout.family, layout.law);
-    let inputs =
-        Inputs { machine, shared, family, terms: &layout.terms, position, law, acceleration, gain_uncertainty };
+    let inputs = Inputs { machine, shared, layout, gain_uncertainty };
     let directions = layout.shared + KNOWN;
     let values = inputs.derived::<f64>(0);
     let mut gradients = vec![vec![0.0; directions]; values.len()];

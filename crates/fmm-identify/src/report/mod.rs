@@ -1,12 +1,10 @@
 //! The reports, on one screen each.
 
-mod estimated;
 pub(crate) mod finding;
 #[cfg(feature = "serde")]
 mod serialised;
 mod warning;
 
-pub use estimated::Estimated;
 pub use finding::{Finding, Origin};
 pub use warning::Warning;
 

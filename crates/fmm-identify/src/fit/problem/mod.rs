@@ -9,7 +9,8 @@ use fmm_sim::{Channels, Sampling, Trajectory};
 
 use crate::experiment::sight::{Seen, Sight};
 use crate::experiment::{Drive, scaled};
-use crate::fit::layout::{Layout, Units};
+use crate::fit::layout::Layout;
+use crate::law::naming::Units;
 use crate::law::{Law, Simulate};
 use crate::machine::Scale;
 use crate::{Experiment, IdentifyError, Machine, Terms};
@@ -70,7 +71,7 @@ impl<'a> Problem<'a> {
     ) -> Result<Self, IdentifyError> {
         let describe = |decay: &Experiment| format!("{} in {}", decay.record().quantity(), decay.record().unit());
         let first = decays.first().ok_or(IdentifyError::no_record())?;
-        let length = |decay: &Experiment| Units::of(decay).position;
+        let length = |decay: &Experiment| Units::of(decay.record()).position;
         if let Some(other) = decays.iter().find(|decay| length(decay) != length(first)) {
             return Err(IdentifyError::wrong_record(format!(
                 "records fitted together must agree in quantity and unit: one is {}, another {}",
@@ -78,7 +79,7 @@ impl<'a> Problem<'a> {
                 describe(other)
             )));
         }
-        let is_metric = length(first) == "m";
+        let is_metric = Units::of(first.record()).is_metric();
         let has_force = decays.iter().any(|decay| decay.drive().is_some_and(Drive::is_force));
         if has_force && machine.scale() == Scale::PerUnitMass {
             return Err(IdentifyError::contradiction(

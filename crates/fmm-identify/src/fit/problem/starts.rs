@@ -12,7 +12,7 @@ use crate::experiment::reference;
 use crate::fit::first_guess::Dissipation;
 use crate::fit::layout::{Layout, mass_of_stiffness};
 use crate::judgement::sign::Addition;
-use crate::law::dimension::{Scales, is_force};
+use crate::law::dimension::{Scales, is_coefficient, is_force};
 use crate::law::friction_curve::FrictionCurve;
 use crate::machine::terms::Term;
 use crate::{Drive, Experiment, Identification, Sign};
@@ -200,7 +200,7 @@ impl Problem<'_> {
         start.extend(self.law().fitted().map(|parameter| match (parameter.role(), excess) {
             (Role::Excess | Role::LevelAbove, Some(excess)) => excess * friction,
             (Role::Breakaway, _) => FIRST_STATIC_EXCESS * friction,
-            (Role::Level, Some(_)) if parameter.parameter().unit() == "1" => friction,
+            (Role::Level, Some(_)) if is_coefficient(parameter) => friction,
             _ => scales.typical(self.law(), parameter),
         }));
     }

@@ -1,17 +1,17 @@
 //! A number and how well it is known.
 
-use std::fmt;
+use core::fmt;
 
-use fmm_model::Rounded;
+use crate::Rounded;
 
 /// An estimate with its standard uncertainty, both in the unit that stands beside the field.
 ///
 /// `Display` writes it rounded to what is known of it.
 ///
 /// ```
-/// use fmm_identify::Estimated;
+/// use fmm_model::Estimated;
 ///
-/// let friction = Estimated { value: 0.029_918, uncertainty: 6.1e-4 };
+/// let friction = Estimated::new(0.029_918, 6.1e-4);
 /// assert_eq!(friction.to_string(), "0.02992 ± 0.00061");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,8 +23,14 @@ pub struct Estimated {
 }
 
 impl Estimated {
+    /// `value` with its standard `uncertainty`, in the same unit.
+    pub const fn new(value: f64, uncertainty: f64) -> Self {
+        Self { value, uncertainty }
+    }
+
     /// Both times `factor`.
-    pub(crate) fn scaled(self, factor: f64) -> Self {
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
         Self { value: self.value * factor, uncertainty: self.uncertainty * factor.abs() }
     }
 }

@@ -1,4 +1,0 @@
-//! Least squares of a few unknowns.
-
-pub(crate) mod gauss_newton;
-pub(crate) mod triangle;
