@@ -6,6 +6,11 @@ use crate::solver::triangle::Triangle;
 /// Singular value decomposition `R S⁻¹ = U Σ Vᵀ` with `S` the column norms of `R`, by one-sided Jacobi rotations,
 /// which find small singular values to high relative accuracy.
 ///
+/// # Why not a library
+/// nalgebra's decomposition by bidiagonal form is the quicker one, 0.7 µs against 0.8 at 3 columns, 9 against 26 at 12. A fit
+/// decomposes once, at its end, where a single evaluation takes longer; what counts there is that the smallest value, which says what
+/// the data cannot tell, keeps its digits. `benches/peers` of the workspace measures it.
+///
 /// # References
 /// J. Demmel, K. Veselić, "Jacobi's method is more accurate than QR", SIAM J. Matrix Anal. Appl. 13 (1992) 1204,
 /// <https://doi.org/10.1137/0613074>.

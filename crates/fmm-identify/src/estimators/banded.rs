@@ -1,6 +1,10 @@
 //! Cholesky's factor of a banded matrix, to make correlated equations independent.
 
 /// Lower factor L of a symmetric positive definite matrix Σ = L Lᵀ with few diagonals.
+///
+/// # Why not a library
+/// nalgebra and faer factor full matrices: with 8 diagonals beside the main one nalgebra takes 4.6 times as long at 100 rows and 58 times
+/// at 400. `benches/peers` of the workspace measures it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct BandedFactor {
     /// Row i holds L_{i, i−width} … L_{i,i}; what lies before the first column is zero.

@@ -80,7 +80,8 @@ fn cubic(times: &[f64], values: &[f64], at: usize, width: usize) -> Option<Cubic
         square += y * y;
     }
     let right = normal.map(|row| row[ORDER]);
-    // Positive definite: no pivot need be looked for. Four rows are eliminated here, once a sample and a width that is tried.
+    // Positive definite: no pivot need be looked for. Four rows are eliminated here, once a sample and a width that is tried;
+    // nalgebra would be a dependency of the crate for these lines alone.
     for pivot in 0..ORDER {
         if normal[pivot][pivot] <= 1e-14 {
             return None;

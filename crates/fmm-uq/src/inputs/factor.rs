@@ -5,7 +5,7 @@ use crate::Inputs;
 /// L with L Lᵀ = R for the correlation matrix R of some `members` of `inputs`, lower triangular, row by row.
 ///
 /// R may be singular: a column whose pivot is zero to rounding is left zero, as Cholesky's method would have it in
-/// exact numbers.
+/// exact numbers; nalgebra's refuses such a matrix.
 pub(crate) fn correlation_root(inputs: &Inputs, members: &[usize]) -> Vec<Vec<f64>> {
     let n = members.len();
     let mut root = vec![vec![0.0; n]; n];

@@ -12,6 +12,10 @@ const BITS: u32 = 32;
 /// distributed in the cube, sets of 2^k points stay as even as before, and different seeds give independent sets whose
 /// scatter is an honest error.
 ///
+/// # Why not a library
+/// A shard begins at any index, and errors are honest through Owen's scrambling, both in double precision: the crate sobol gives points
+/// one after the other and unscrambled, sobol_burley scrambled ones in single precision.
+///
 /// # References
 /// I. M. Sobol', USSR Comput. Math. Math. Phys. 7 (1967) 86; A. B. Owen, "Randomly permuted (t, m, s)-nets and (t, s)-
 /// sequences", Lecture Notes in Statistics 106 (1995) 299.
