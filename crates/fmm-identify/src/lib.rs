@@ -42,12 +42,12 @@
 //! | Damping of the machine beside the law? | known: [`Machine::with_damping`]; to be found: [`identify_with`] and [`Terms`] |
 //! | Several records? | give them together: the law and the frequency are shared, initial states and offsets are not |
 //! | An accelerometer? | its record is a ring-down like any other; a filter of the sensor is stated or fitted, [`Sensor`] |
-//! | A shaker, a motor, a moving base? | [`Experiment::driven`] with the measured [`Drive`] |
+//! | A shaker, a motor, a moving base? | [`Experiment::driven`] with the measured [`Drive`]; its gain and a delay of the response can be fitted |
 //! | Experiments of several kinds, without contact, under other loads? | one slice: [`Experiment::without_contact`], [`Experiment::with_load_factor`] |
 //! | A static level? | a slow force through the breakaway, [`Experiment::driven`]; a ring-down does not tell it |
 //! | How does damping depend on velocity? | [`decrements`] cycle by cycle, [`Windows`] a few cycles at a time |
 //! | Friction without a simulation? | [`WeakForm`]; [`EnergyMethod`] for its curve, [`half_swing_losses`] per half swing |
-//! | Friction out of hammer blows? | [`ImpactTrial`], [`identify_impact`], to the mobility, the time record or both |
+//! | Friction out of hammer blows? | [`ImpactTrial`], [`identify_impact`], to the mobility, the time record or both; beside ring-downs and compared by law, [`Experiment::impact`] |
 //! | A force measured along a motion: a joint, a tribometer, a damper? | [`ForceRecord`], [`identify_force`]; [`ForceModel`] says what acts beside friction, [`ForceRecord::friction_over_speed`] shows it without a law |
 //! | What if mass, stiffness or damping were others? | [`MachineProblem`] with [`Sensitivity`](fmm_fit::Sensitivity) or [`Refit`](fmm_fit::Refit) |
 //! | Between which values does it lie? | [`Finding::interval`], by Student's t with the degrees of freedom of all that is uncertain |

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use fmm_fit::EvaluationError;
-use fmm_model::Scalar;
+use fmm_model::{ModelError, Scalar};
 use fmm_record::{Quantity, Record};
 use fmm_sim::Excitation;
 
 use crate::IdentifyError;
+use crate::machine::Scale;
 
 /// What drives a machine during a record, measured on the same time axis.
 ///
@@ -17,6 +18,8 @@ use crate::IdentifyError;
 pub struct Drive {
     record: Record,
     kind: Kind,
+    gain_uncertainty: f64,
+    longest_delay: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,7 +38,7 @@ impl Drive {
             let found = format!("{} in {}", record.quantity(), record.unit());
             return Err(IdentifyError::drive("a force in N", &found));
         }
-        Ok(Self { record: record.clone(), kind: Kind::Force })
+        Ok(Self { record: record.clone(), kind: Kind::Force, gain_uncertainty: 0.0, longest_delay: 0.0 })
     }
 
     /// The measured motion of a base to which spring and counterface are fixed; best its acceleration. A velocity is differentiated
@@ -53,7 +56,44 @@ impl Drive {
                 return Err(IdentifyError::drive("an acceleration, a velocity or a displacement", &found));
             }
         };
-        Ok(Self { record, kind: Kind::Base })
+        Ok(Self { record, kind: Kind::Base, gain_uncertainty: 0.0, longest_delay: 0.0 })
+    }
+
+    /// The same read by a channel of this relative standard uncertainty (1). Its gain, what it reads by what acts, is fitted if the
+    /// machine tells it: of a force beside a mass or a stiffness that is known, of a base always. A force on a machine of unknown
+    /// mass tells that mass, and all forces are as uncertain as its channel.
+    ///
+    /// # Errors
+    /// [`IdentifyError::InvalidInput`] for one that is negative or not finite.
+    pub fn with_gain_uncertainty(self, uncertainty: f64) -> Result<Self, IdentifyError> {
+        let gain_uncertainty =
+            ModelError::require_not_negative("uncertainty of the gain of a drive", uncertainty, "1")?;
+        Ok(Self { gain_uncertainty, ..self })
+    }
+
+    /// The same with a response that is up to `longest` (s) late or early, by a delay that is fitted. One that is known is that of the
+    /// [`Sensor`](crate::Sensor).
+    ///
+    /// # Errors
+    /// [`IdentifyError::InvalidInput`] for one that is negative or not finite.
+    pub fn with_free_delay(self, longest: f64) -> Result<Self, IdentifyError> {
+        let longest_delay = ModelError::require_not_negative("longest delay of a response", longest, "s")?;
+        Ok(Self { longest_delay, ..self })
+    }
+
+    /// Relative standard uncertainty of the gain of its channel (1).
+    pub fn gain_uncertainty(&self) -> f64 {
+        self.gain_uncertainty
+    }
+
+    /// Whether its gain is fitted on a machine of this `scale`.
+    pub(crate) fn fits_gain(&self, scale: Scale) -> bool {
+        self.gain_uncertainty > 0.0 && !(self.is_force() && scale == Scale::Unknown)
+    }
+
+    /// The longest delay (s) that is fitted; 0 if none is.
+    pub fn longest_delay(&self) -> f64 {
+        self.longest_delay
     }
 
     /// The record of the drive: of a base its acceleration.
@@ -78,28 +118,51 @@ impl Drive {
         Ok(())
     }
 
-    /// Its values from `start` (s) on, one every interval of its record: forces in N, or the acceleration of the base with its sign
-    /// reversed, which is the force on a unit of mass.
-    pub(crate) fn values_from(&self, start: f64) -> Vec<f64> {
+    /// Its values from `start` (s) on, one every interval of its record, for a response that is `delay` (s) late: forces in N, or the
+    /// acceleration of the base with its sign reversed, which is the force on a unit of mass.
+    pub(crate) fn values_from<D: Scalar>(&self, start: f64, delay: D) -> Vec<D> {
+        /// Samples on one grid differ by rounding.
+        const ON_GRID: f64 = 1e-6;
         let values = self.record.values();
-        let place = ((start - self.record.start()) / self.record.interval()).max(0.0);
-        let (first, mut share) = (place.floor() as usize, place.fract());
-        // Samples on one grid differ by rounding.
-        if share < 1e-6 {
-            share = 0.0;
+        let interval = self.record.interval();
+        let place = D::from((start - self.record.start()) / interval) - delay / interval;
+        let first = (place.value() + ON_GRID).floor();
+        let mut share = place - first;
+        if share.value() < ON_GRID {
+            share -= share.value();
         }
-        let (first, share) = if share > 1.0 - 1e-6 { (first + 1, 0.0) } else { (first, share) };
         let sign = if self.is_force() { 1.0 } else { -1.0 };
-        let at = |index: usize| {
-            let after = values.get(index + 1).copied().unwrap_or(values[index]);
-            sign * (values[index] + share * (after - values[index]))
-        };
-        (first.min(values.len() - 1)..values.len()).map(at).collect()
+        let last = values.len() as isize - 1;
+        let at = |index: isize| sign * values[index.clamp(0, last) as usize];
+        let first = first as isize;
+        (first..=last.max(first)).map(|index| share * (at(index + 1) - at(index)) + at(index)).collect()
     }
 
-    /// The excitation of a motion that begins with the first of `values`, each times `factor`.
-    pub(crate) fn excitation<D: Scalar>(&self, values: &[f64], factor: D) -> Result<Excitation<D>, EvaluationError> {
-        let values: Arc<[D]> = values.iter().map(|value| factor * *value).collect();
+    /// The excitation of a motion that begins at `start` (s), in units of `per` times that of the drive.
+    pub(crate) fn excitation<D: Scalar>(&self, start: f64, delay: D, per: D) -> Result<Excitation<D>, EvaluationError> {
+        let values: Arc<[D]> = self.values_from(start, delay).into_iter().map(|value| value * per).collect();
         Ok(Excitation::sampled_force(self.record.interval(), values)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fmm_model::Dual;
+
+    use super::*;
+
+    #[test]
+    fn a_late_response_is_one_to_a_late_drive() {
+        let record = Record::new(2.0, 0.1, vec![0.0, 1.0, 4.0, 9.0, 16.0], Quantity::Force, "N").unwrap();
+        let drive = Drive::force(&record).unwrap();
+        // Response from 2.2 s on, on the grid of the drive to rounding.
+        assert_eq!(drive.values_from(2.2 - 1e-12, 0.0), [4.0, 9.0, 16.0]);
+        let late = drive.values_from(2.2, Dual::<1>::variable(0.025, 0));
+        for (value, (wanted, slope)) in late.iter().zip([(3.25, -30.0), (7.75, -50.0), (14.25, -70.0), (16.0, 0.0)]) {
+            assert!((value.value() - wanted).abs() < 1e-12 && (value.partial(0) - slope).abs() < 1e-9, "{value:?}");
+        }
+        // Before its beginning a drive is what it was there, and so is it after its end.
+        assert_eq!(drive.values_from(1.9, 0.0)[..3], [0.0, 0.0, 1.0]);
+        assert_eq!(drive.values_from(2.4, -0.3), [16.0]);
     }
 }

@@ -66,7 +66,7 @@ impl Experiment {
         // A ramp does not oscillate; its whole duration stands for half a period.
         let frequency = swings.frequency().unwrap_or(0.5 / record.duration());
         let noise = noise(record.values());
-        let values = drive.values_from(record.start());
+        let values = drive.values_from(record.start(), 0.0);
         let guess = DrivenGuess::of(&record, &drive, &values, frequency, noise);
         let summary = RecordSummary {
             from: record.start(),
@@ -104,7 +104,7 @@ impl Experiment {
             summary,
             sensor: super::Sensor::default(),
             load_factor: 1.0,
-            driven: Some(Driven { drive, values, guess }),
+            driven: Some(Driven { drive, guess, is_at_rest: false }),
         })
     }
 }

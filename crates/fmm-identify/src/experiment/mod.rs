@@ -2,6 +2,7 @@
 
 mod drive;
 mod driven;
+mod impact;
 pub(crate) mod nuisance;
 mod preparation;
 mod ring_down;
@@ -49,9 +50,9 @@ pub struct Experiment {
 #[derive(Debug, Clone, PartialEq)]
 struct Driven {
     drive: Drive,
-    /// The drive from the first sample of the record on.
-    values: Vec<f64>,
     guess: DrivenGuess,
+    /// Whether the machine is at rest where its spring is free of force until the drive begins.
+    is_at_rest: bool,
 }
 
 /// Fewest samples that can show two half swings.
@@ -116,9 +117,9 @@ impl Experiment {
         self.driven.as_ref().map(|driven| &driven.drive)
     }
 
-    /// The samples of the drive from the first one of the record on, with the drive.
-    pub(crate) fn driven_values(&self) -> Option<(&Drive, &[f64])> {
-        self.driven.as_ref().map(|driven| (&driven.drive, driven.values.as_slice()))
+    /// Whether it begins at rest where the spring is free of force.
+    pub(crate) fn begins_at_rest(&self) -> bool {
+        self.driven.as_ref().is_some_and(|driven| driven.is_at_rest)
     }
 
     /// The same, begun at rest where the spring is free of force if it is driven.
@@ -160,6 +161,9 @@ impl Experiment {
 
     /// Initial position and velocity to begin a fit with, given what the contact loses.
     pub(crate) fn first_state(&self, dissipation: Dissipation) -> (f64, f64) {
+        if self.begins_at_rest() {
+            return (0.0, 0.0);
+        }
         self.driven.as_ref().map_or_else(|| self.guess.initial_state(dissipation), |driven| driven.guess.initial)
     }
 

@@ -4,9 +4,11 @@ use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use fmm_fit::EvaluationError;
+use fmm_friction::Role;
 use fmm_model::{Bounds, Damping, Oscillator, Parameter, Restoring, Scalar};
 
 use crate::experiment::reference;
+use crate::law::dimension::is_force;
 use crate::law::naming::{Level, Units};
 use crate::law::{Law, Motion};
 use crate::machine::Scale;
@@ -28,8 +30,14 @@ pub(crate) struct Layout {
     pub(crate) law: usize,
     /// Parameters of oscillator, damping and law: those that all records share.
     pub(crate) shared: usize,
-    /// For each record, the index of its initial position; velocity and offset follow.
+    /// For each record, the index of its initial position; initial velocity, gain and delay of its drive, and offset follow.
     pub(crate) own: Vec<usize>,
+    /// For each record, how many parameters of its own its motion depends on.
+    of_motion: Vec<usize>,
+    /// For each parameter of a record, the power of the gain of the record to which it is proportional.
+    powers: Vec<f64>,
+    /// Relative standard uncertainty (1) of all forces that a measured force sets the scale of.
+    pub(crate) force_uncertainty: f64,
 }
 
 impl Layout {
@@ -70,24 +78,51 @@ impl Layout {
         parameters.extend(family.fitted().map(|parameter| units.fitted(parameter, level)));
         let shared = parameters.len();
         let mut own = Vec::with_capacity(decays.len());
+        let mut of_motion = Vec::with_capacity(decays.len());
+        let mut powers = Vec::new();
+        let mut force_uncertainty = 0.0f64;
         for (index, decay) in decays.iter().enumerate() {
             let of_record = |name: &'static str| match decays.len() {
                 1 => Cow::Borrowed(name),
                 _ => Cow::Owned(format!("{name}_{}", index + 1)),
             };
             own.push(parameters.len());
-            parameters.push(Parameter::named(of_record("initial_position"), "x₀", units.position.to_string()));
-            parameters.push(Parameter::named(of_record("initial_velocity"), "v₀", units.velocity().to_string()));
+            let mut push = |parameter: Parameter, power: f64| {
+                parameters.push(parameter);
+                powers.push(power);
+            };
+            let initial = if decay.begins_at_rest() { Bounds::new(0.0, 0.0)? } else { Bounds::UNBOUNDED };
+            let position = Parameter::named(of_record("initial_position"), "x₀", units.position.to_string());
+            let velocity = Parameter::named(of_record("initial_velocity"), "v₀", units.velocity().to_string());
+            push(position.bounded(initial), 1.0);
+            push(velocity.bounded(initial), 1.0);
+            let mut count = 2;
+            if let Some(drive) = decay.drive() {
+                if drive.is_force() && unknown_scale {
+                    force_uncertainty = force_uncertainty.max(drive.gain_uncertainty());
+                }
+                if drive.fits_gain(machine.scale()) {
+                    let name = if drive.is_force() { "force_gain" } else { "base_gain" };
+                    push(Parameter::named(of_record(name), "g", "1").bounded(Bounds::POSITIVE), -1.0);
+                    count += 1;
+                }
+                let longest = drive.longest_delay();
+                if longest > 0.0 {
+                    push(Parameter::named(of_record("delay"), "τ", "s").bounded(Bounds::new(-longest, longest)?), 0.0);
+                    count += 1;
+                }
+            }
+            of_motion.push(count);
             if decay.fixed_offset().is_none() {
-                parameters.push(Parameter::named(of_record("offset"), "b", decay.record().unit().to_owned()));
+                push(Parameter::named(of_record("offset"), "b", decay.record().unit().to_owned()), 1.0);
             }
             let number = if decays.len() == 1 { String::new() } else { format!("_{}", index + 1) };
-            let disturbances = decay.nuisances().iter().enumerate();
-            parameters
-                .extend(disturbances.map(|(at, nuisance)| nuisance.parameter(at, &number, decay.record().unit())));
+            for (at, nuisance) in decay.nuisances().iter().enumerate() {
+                push(nuisance.parameter(at, &number, decay.record().unit()), 1.0);
+            }
             if decay.sensor().has_free_corner() {
                 let corner = Parameter::named(of_record("sensor_corner_hz"), "f_c", "Hz");
-                parameters.push(corner.bounded(decay.corner_bounds()));
+                push(corner.bounded(decay.corner_bounds()), 0.0);
             }
         }
         for (name, value) in terms.held() {
@@ -105,17 +140,24 @@ impl Layout {
             }
             parameters[index] = parameters[index].clone().bounded(Bounds::new(value, value)?);
         }
-        Ok((Self { family, oscillator, terms: terms.clone(), units, law, shared, own }, parameters))
+        let terms = terms.clone();
+        let layout = Self { family, oscillator, terms, units, law, shared, own, of_motion, powers, force_uncertainty };
+        Ok((layout, parameters))
     }
 
-    /// How many parameters the motion of one record depends on: the shared ones and its initial state.
-    pub(crate) fn directions(&self) -> usize {
-        self.shared + 2
+    /// How many parameters the motion of record number `record` depends on: the shared ones, its initial state and its drive.
+    pub(crate) fn directions(&self, record: usize) -> usize {
+        self.shared + self.of_motion[record]
+    }
+
+    /// Index of the offset of record number `record`, if it is fitted.
+    pub(crate) fn offset(&self, record: usize) -> usize {
+        self.own[record] + self.of_motion[record]
     }
 
     /// Index of the first disturbance of record number `record`, which is `decay`.
     pub(crate) fn nuisance(&self, record: usize, decay: &Experiment) -> usize {
-        self.own[record] + 2 + usize::from(decay.fixed_offset().is_none())
+        self.offset(record) + usize::from(decay.fixed_offset().is_none())
     }
 
     /// Index of the corner frequency of the sensor of record number `record`, which is `decay`, if it is fitted.
@@ -131,7 +173,7 @@ impl Layout {
     /// The power of the gain of the record to which the parameter at `index` is proportional.
     pub(crate) fn power_of_gain(&self, index: usize) -> f64 {
         if index >= self.shared {
-            return 1.0;
+            return self.powers[index - self.shared];
         }
         match index.checked_sub(self.law) {
             Some(index) => {
@@ -143,7 +185,15 @@ impl Layout {
         }
     }
 
-    /// The motion of one `experiment`, of the shared `values` with its initial position and velocity behind them.
+    /// Whether the parameter at `index` is proportional to the forces, of which a measured one sets the scale.
+    pub(crate) fn is_scaled_by_force(&self, index: usize) -> bool {
+        let of_law = |index| {
+            self.family.fitted().nth(index).is_some_and(|law| is_force(law.role()) || law.role() == Role::Slope)
+        };
+        index < self.oscillator || (self.law..self.shared).contains(&index) && of_law(index - self.law)
+    }
+
+    /// The motion of one `experiment`, of the shared `values` with its own behind them, in the order of the parameters.
     pub(crate) fn motion<D: Scalar>(
         &self,
         machine: &Machine,
@@ -167,17 +217,25 @@ impl Layout {
         let damping = Damping::of_any_sign(damping, per_mass(Term::QuadraticDamping))?;
         let damping =
             if terms.has(Term::CubicDamping) { damping.with_cubic(per_mass(Term::CubicDamping))? } else { damping };
-        let force = match experiment.driven_values() {
+        let force = match experiment.drive() {
             None => None,
-            Some((drive, sampled)) => {
+            Some(drive) => {
                 let is_relative = !drive.is_force() || machine.scale() == Scale::Unknown;
                 let of_mass = mass(machine.scale(), values[0]).filter(|_| !is_relative);
-                let factor = match of_mass {
+                let mut per = match of_mass {
                     Some(mass) => D::from(1.0) / mass,
                     None if drive.is_force() => D::from(1.0),
                     None => oscillator.mass(),
                 };
-                Some(drive.excitation(sampled, factor)?)
+                let mut own = values[self.shared + 2..].iter();
+                if drive.fits_gain(machine.scale()) {
+                    per = per / *own.next().unwrap_or(&D::from(1.0));
+                }
+                let mut delay = D::from(experiment.sensor().delay());
+                if drive.longest_delay() > 0.0 {
+                    delay += *own.next().unwrap_or(&D::from(0.0));
+                }
+                Some(drive.excitation(experiment.record().start(), delay, per)?)
             }
         };
         let spring = |term: Term, known: f64| beside(term).map_or(D::from(known), |fitted| fitted + known);

@@ -146,8 +146,8 @@ struct Inputs<'a> {
     gain_uncertainty: f64,
 }
 
-/// Inputs that were not fitted: scale of the machine, normal load, gain of the instrument.
-const KNOWN: usize = 3;
+/// Inputs that were not fitted: scale of the machine, normal load, gain of the instrument, gain of a measured force.
+const KNOWN: usize = 4;
 
 impl Inputs<'_> {
     /// Standard uncertainties of the inputs that were not fitted.
@@ -156,7 +156,8 @@ impl Inputs<'_> {
             Scale::Mass(known) | Scale::Stiffness(known) => known.uncertainty(),
             Scale::PerUnitMass | Scale::Unknown => 0.0,
         };
-        [scale, self.machine.normal_load().map_or(0.0, |load| load.uncertainty()), self.gain_uncertainty]
+        let load = self.machine.normal_load().map_or(0.0, |load| load.uncertainty());
+        [scale, load, self.gain_uncertainty, self.layout.force_uncertainty]
     }
 
     /// Whether forces per mass are accelerations in SI, so that a mass makes forces of them.
@@ -190,9 +191,10 @@ impl Inputs<'_> {
                 derived.push((term.stiffness_per_mass(&self.layout.units.position), per_mass));
             }
         }
-        // With an unknown scale the fitted values are forces already, whatever they are worth.
+        // With an unknown scale the fitted values are forces already, by the channel of a measured one if there is one.
+        let by_force = variable(1.0, self.shared.len() + 3);
         let to_force = match self.machine.scale() {
-            Scale::Unknown => Some(D::from(1.0)),
+            Scale::Unknown => Some(by_force),
             _ => mass,
         };
         let load = self.machine.normal_load().map(|load| variable(load.value(), self.shared.len() + 1));
@@ -208,7 +210,7 @@ impl Inputs<'_> {
             if let (Role::LevelAbove | Role::Breakaway, Some(level)) = (role, level) {
                 value += level;
                 derived.push(match self.machine.scale() {
-                    Scale::Unknown => (units.stated(law_parameter, Level::Force), value),
+                    Scale::Unknown => (units.stated(law_parameter, Level::Force), value * by_force),
                     _ => (units.stated(law_parameter, Level::PerMass), value / gain),
                 });
             }
@@ -242,10 +244,11 @@ pub(crate) fn findings(
     let estimated = fit.estimates().iter().enumerate().map(|(index, estimate)| {
         // What is proportional to a power of the record is uncertain with its gain.
         let gain = gain_uncertainty * layout.power_of_gain(index) * estimate.value();
+        let by_force = if layout.is_scaled_by_force(index) { layout.force_uncertainty * estimate.value() } else { 0.0 };
         Finding::new(
             estimate.parameter().clone(),
             estimate.value(),
-            covariance.get(index, index).map(|variance| (variance, variance + gain * gain)),
+            covariance.get(index, index).map(|variance| (variance, variance + gain * gain + by_force * by_force)),
             covariance.degrees_of_freedom(),
             Origin::Fitted(estimate.status()),
             index >= layout.shared,

@@ -124,7 +124,7 @@ impl<'a> Problem<'a> {
 
     /// Shared values and initial state of `record` as numbers of type `D`, direction `first` being direction 0.
     fn values<D: Scalar>(&self, record: usize, p: &[f64], first: usize) -> Vec<D> {
-        (0..self.layout.directions())
+        (0..self.layout.directions(record))
             .map(|direction| {
                 let value = p[self.layout.index(record, direction)];
                 // A direction below `first` wraps to one that no number carries, which makes it a constant.
@@ -220,7 +220,7 @@ impl<'a> Problem<'a> {
     }
 
     fn offset(&self, record: usize, p: &[f64]) -> f64 {
-        self.decays[record].fixed_offset().unwrap_or_else(|| p[self.layout.own[record] + 2])
+        self.decays[record].fixed_offset().unwrap_or_else(|| p[self.layout.offset(record)])
     }
 
     /// Size and shape of the disturbances of `record`.
@@ -293,9 +293,9 @@ impl<'a> Problem<'a> {
 /// One block per record: the parameters of its motion and its offset.
 fn blocks(layout: &Layout, decays: &[Experiment]) -> Vec<Block> {
     let block = |(record, decay): (usize, &Experiment)| {
-        let mut parameters: Vec<usize> = (0..layout.directions()).map(|j| layout.index(record, j)).collect();
+        let mut parameters: Vec<usize> = (0..layout.directions(record)).map(|j| layout.index(record, j)).collect();
         if decay.fixed_offset().is_none() {
-            parameters.push(layout.own[record] + 2);
+            parameters.push(layout.offset(record));
         }
         let first = layout.nuisance(record, decay);
         parameters.extend(first..first + decay.nuisances().len());

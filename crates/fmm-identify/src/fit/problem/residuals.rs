@@ -92,8 +92,8 @@ impl Residuals for Problem<'_> {
         let mut elements = 0;
         for (record, base) in self.bases() {
             let rows = self.decays[record].summary().samples;
-            for first in (0..self.layout.directions()).step_by(DIRECTIONS) {
-                let carried = (self.layout.directions() - first).min(DIRECTIONS);
+            for first in (0..self.layout.directions(record)).step_by(DIRECTIONS) {
+                let carried = (self.layout.directions(record) - first).min(DIRECTIONS);
                 let kept = self.decays[record].kept();
                 self.simulate(
                     self.law().with_derivatives,
@@ -124,11 +124,11 @@ impl Residuals for Problem<'_> {
                 }
             }
             if self.decays[record].fixed_offset().is_none() {
-                let start = elements + self.layout.directions() * rows;
+                let start = elements + self.layout.directions(record) * rows;
                 jacobian[start..start + rows].fill(1.0);
             }
             let decay = &self.decays[record];
-            let beside = self.layout.directions() + usize::from(decay.fixed_offset().is_none());
+            let beside = self.layout.directions(record) + usize::from(decay.fixed_offset().is_none());
             for (column, shape) in decay.shapes().iter().enumerate() {
                 let start = elements + (beside + column) * rows;
                 let kept = decay.kept().iter().flat_map(|range| &shape[range.clone()]);

@@ -78,6 +78,10 @@ impl Problem<'_> {
         for decay in self.decays {
             let (position, velocity) = decay.first_state(dissipation);
             start.extend([position, velocity]);
+            if let Some(drive) = decay.drive() {
+                start.extend(drive.fits_gain(self.machine.scale()).then_some(1.0));
+                start.extend((drive.longest_delay() > 0.0).then_some(0.0));
+            }
             if decay.fixed_offset().is_none() {
                 start.push(decay.first_offset(dissipation));
             }
