@@ -4,9 +4,9 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::{
-    AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, Hyperbolic,
-    Karnopp, LawFamily, LuGre, MakkarDixon, MaxwellSlipOf, PowerLaw, RegularisedStribeck, Shifted, Stribeck,
-    StribeckLorentzian, Viscous,
+    AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, GmsOf,
+    Hyperbolic, Karnopp, LawFamily, LuGre, MakkarDixon, MaxwellSlipOf, PowerLaw, RegularisedStribeck, Shifted,
+    Stribeck, StribeckLorentzian, Viscous,
 };
 
 /// What is done with each family of a catalogue.
@@ -74,6 +74,7 @@ catalogue!(
     MaxwellSlipOf<2>,
     MaxwellSlipOf<3>,
     MaxwellSlipOf<4>,
+    GmsOf<2>,
 );
 
 #[cfg(test)]
@@ -101,7 +102,7 @@ mod tests {
         assert_eq!(family_named("glue", &mut NameAndKind), None);
         let of_kind = |kind| all.iter().filter(|(_, other)| *other == kind).count();
         assert_eq!(of_kind(LawKind::PiecewiseLinear), 5);
-        assert_eq!(of_kind(LawKind::Bristle), 3);
+        assert_eq!(of_kind(LawKind::Bristle), 4);
         assert_eq!(of_kind(LawKind::Elements), 4);
     }
 }

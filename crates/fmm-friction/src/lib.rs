@@ -63,8 +63,8 @@
 //! # Neighbours
 //!
 //! [`fmm-sim`](https://docs.rs/fmm-sim) moves a machine under a law, [`fmm-identify`](https://docs.rs/fmm-identify) finds
-//! its parameters in a record, but for those of [`Gms`], which are a list and no [`LawFamily`] ([`MaxwellSlipOf`] is that of
-//! [`MaxwellSlip`]);
+//! its parameters in a record; laws that are a list of elements, [`MaxwellSlip`] and [`Gms`], are the families [`MaxwellSlipOf`] and
+//! [`GmsOf`] for a given number of them;
 //! [`fmm-model`](https://docs.rs/fmm-model) has the number types.
 //!
 //! # Features
@@ -94,6 +94,7 @@ mod error;
 mod exponential_pair;
 mod family;
 mod gms;
+mod gms_family;
 mod hyperbolic;
 mod karnopp;
 mod kind;
@@ -129,6 +130,7 @@ pub use error::LawError;
 pub use exponential_pair::ExponentialPair;
 pub use family::{FamilyMember, LawFamily, LawParameter, Role, SpecialCase};
 pub use gms::Gms;
+pub use gms_family::GmsOf;
 pub use hyperbolic::Hyperbolic;
 pub use karnopp::Karnopp;
 pub use kind::{LawKind, LawVisitor};

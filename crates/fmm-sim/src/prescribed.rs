@@ -204,3 +204,32 @@ pub fn friction_along<D: Scalar, L: BristleLaw<D>>(
     })?;
     Ok(points)
 }
+
+#[cfg(test)]
+mod tests {
+    use fmm_friction::{GmsOf, LawFamily};
+    use fmm_model::Dual;
+
+    use super::*;
+
+    /// Elements that slide steadily show nothing of how fast they follow the curve, but their derivatives do: these decay within
+    /// milliseconds here, and steps of a second would let them grow instead.
+    #[test]
+    fn derivatives_of_a_steady_slide_stay_what_they_are() {
+        let values = [0.2, 0.3, 0.02, 2.0, 0.1, 20.0, 6000.0, 800.0, 0.5];
+        let at = |direction: usize| {
+            let law: Vec<Dual<1>> =
+                values.iter().enumerate().map(|(j, value)| Dual::variable(*value, j.wrapping_sub(direction))).collect();
+            let times = [0.0, 20.0, 20.1].map(Dual::from);
+            let path = Path::lines(&times, &[0.0, 80.0, 80.4].map(Dual::from)).unwrap();
+            let points = friction_along(&GmsOf::<2>::at(&law).unwrap(), Dual::from(3.0), &path).unwrap();
+            points[2].force
+        };
+        // F = N (μ_c + β v): the curve has fallen to its end.
+        for (direction, slope) in [(0, 3.0), (1, 0.0), (4, 12.0), (5, 0.0), (6, 0.0), (8, 0.0)] {
+            let force = at(direction);
+            assert!((force.value() - 1.8).abs() < 1e-10, "{}", force.value());
+            assert!((force.partial(0) - slope).abs() < 1e-8, "direction {direction}: {}", force.partial(0));
+        }
+    }
+}

@@ -3,7 +3,7 @@
 use fmm_fit::EvaluationError;
 use fmm_friction::{BristleLaw, LawFamily, LawVisitor, Regime, SlidingLaw};
 use fmm_model::Scalar;
-use fmm_sim::{Path, friction_along};
+use fmm_sim::{Path, State, friction_along};
 
 /// A motion that was measured: one value a sample.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -60,8 +60,17 @@ pub(crate) fn along<F: LawFamily, D: Scalar>(
     F::visit(Following { law: &law, guide, friction })
 }
 
-/// A way of so many largest deflections makes bristles slide; it takes as many seconds.
+/// A way of so many largest deflections makes bristles slide.
 const LONG: f64 = 20.0;
+/// Share of the largest speed (1) at which they are made to, if the record begins at rest.
+const SLOWEST: f64 = 1e-2;
+
+impl MeasuredMotion {
+    /// Largest speed (m/s).
+    fn fastest(&self) -> f64 {
+        self.velocities.iter().fold(f64::MIN_POSITIVE, |most, velocity| most.max(velocity.abs()))
+    }
+}
 
 /// Places of the samples `rows` for a `delay` (s).
 pub(crate) fn places(motion: &MeasuredMotion, rows: std::ops::Range<usize>, delay: f64, places: &mut Vec<Place>) {
@@ -99,22 +108,34 @@ impl<D: Scalar> Guide<'_, D> {
         D::from(series[node]) + elapsed * slope
     }
 
-    /// Friction of a law without a closed form, which is followed from sample to sample, and by straight lines between them.
+    /// Friction of a law without a closed form, which is followed from sample to sample; between them it is taken to be straight.
     fn stepped<L: BristleLaw<D>>(&self, law: &L, friction: &mut Vec<D>) -> Result<(), EvaluationError> {
-        let (times, positions) = (&self.motion.times, &self.motion.positions);
-        // Bristles are at first as after a long way in the direction in which the record begins.
-        let way = (0..law.states()).map(|index| law.bound(index).value()).fold(0.0, f64::max) * LONG;
-        let direction = self.deflection.value().signum();
-        let before = std::iter::once((0.0, positions[0] - direction * way));
-        let after = times.iter().zip(positions).map(|(time, position)| (time - times[0] + LONG, *position));
-        let (since, positions): (Vec<D>, Vec<D>) =
-            before.chain(after).map(|(time, position)| (D::from(time), D::from(position))).unzip();
-        let points = friction_along(law, D::from(1.0), &Path::lines(&since, &positions)?)?;
-        let points = &points[1..];
+        let MeasuredMotion { times, positions, .. } = self.motion;
+        // Bristles are at first as after a long way in the direction in which the record begins, as fast as it begins.
+        let mut slopes = vec![D::from(0.0); law.states()];
+        law.rate(D::from(1.0), &slopes.clone(), Regime::ALL_HOLD, &mut slopes);
+        let lengths = slopes.iter().enumerate().map(|(index, slope)| law.bound(index).value() / slope.value());
+        let way = lengths.fold(0.0, f64::max) * LONG;
+        let speed = self.motion.velocities[0].abs().max(SLOWEST * self.motion.fastest());
+        let (approach, direction) = (way / speed, self.deflection.value().signum());
+        let first = [positions[0] - direction * way, positions[0]].map(|position| (position, direction * speed));
+        let mut path = vec![(0.0, first[0]), (approach, first[1])];
+        let since = |node: usize| approach + (times[node] - times[0]);
+        for node in 0..times.len() - 1 {
+            let leg = Leg::of(self.motion, node);
+            path.push((since(node), (positions[node], leg.velocity)));
+            let end = leg.velocity + leg.acceleration * leg.duration;
+            path.push((since(node + 1), (positions[node + 1], end)));
+        }
+        let state =
+            |(position, velocity): (f64, f64)| State { position: D::from(position), velocity: D::from(velocity) };
+        let (since, states): (Vec<D>, Vec<_>) = path.into_iter().map(|(since, at)| (D::from(since), state(at))).unzip();
+        let points = friction_along(law, D::from(1.0), &Path::through(&since, &states)?)?;
         friction.clear();
         for (row, place) in (self.first..).zip(self.places) {
-            let share = self.elapsed(row, *place) / (times[place.node + 1] - times[place.node]);
-            let [begin, end] = [0, 1].map(|next| points[place.node + next].force);
+            let node = place.node.min(times.len() - 2);
+            let share = self.elapsed(row, Place { node, ..*place }) / (times[node + 1] - times[node]);
+            let [begin, end] = [2, 3].map(|point| points[2 * node + point].force);
             friction.push(begin + (end - begin) * share);
         }
         Ok(())

@@ -161,6 +161,17 @@ const CASES: &[Case] = &[
         &[3.0, 6000.0, 2.0, 800.0],
         &[("level_1_friction_force", 3.0), ("contact_stiffness_1", 6000.0), ("contact_stiffness_2", 800.0)],
     ),
+    (
+        "gms_2",
+        &[("exponent", 2.0), ("contact_attraction", 200.0)],
+        &[4.0, 6.0, 0.02, 2.0, 10.0, 200.0, 6000.0, 800.0, 0.5],
+        &[
+            ("sliding_friction_force", 4.0),
+            ("stribeck_speed", 0.02),
+            ("contact_stiffness_1", 6000.0),
+            ("share_ratio_2", 0.5),
+        ],
+    ),
 ];
 
 /// Records of each law; of 20 intervals of 95 % at least 15 hold but once in three thousand, and of all of them 90 to 99 % do.

@@ -1,9 +1,9 @@
 //! Every law of the catalogue back from records without noise, from start values that nobody gave.
 
 use fmm_friction::{
-    AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, Hyperbolic,
-    Karnopp, LawFamily, LuGre, MakkarDixon, MaxwellSlipOf, PowerLaw, RegularisedStribeck, Shifted, Stribeck,
-    StribeckLorentzian, Viscous,
+    AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, GmsOf,
+    Hyperbolic, Karnopp, LawFamily, LuGre, MakkarDixon, MaxwellSlipOf, PowerLaw, RegularisedStribeck, Shifted,
+    Stribeck, StribeckLorentzian, Viscous,
 };
 use fmm_identify::{Candidate, Identification, Known, Machine, Terms, Warning, compare, identify};
 
@@ -114,6 +114,15 @@ fn power_law() {
 fn maxwell_slip() {
     recovers_from_one::<MaxwellSlipOf<1>>(&[0.25, 2000.0]);
     recovers_from_one::<MaxwellSlipOf<2>>(&[0.15, 4000.0, 0.1, 500.0]);
+}
+
+/// What a sliding element follows the curve by is held: a free decay hardly shows it.
+#[test]
+fn gms() {
+    let values = [0.2, 0.3, 0.05, 2.0, 0.1, 20.0, 2000.0, 300.0, 0.7];
+    let terms =
+        holding("exponent", 2.0).holding("contact_attraction_per_mass", expected::<GmsOf<2>>(&values)[5]).unwrap();
+    recovers::<GmsOf<2>>(&values, terms, &RELEASES[1..]);
 }
 
 /// No element alone is the coefficient.

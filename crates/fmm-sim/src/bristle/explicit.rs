@@ -5,9 +5,13 @@ use fmm_model::Scalar;
 
 use super::field::{Branch, Field};
 use super::motion::{Motion, ROUNDING, Solved, Span};
+use super::pace::STABLE;
 use super::radau::{Columns, NODES, STAGES, product};
 use crate::dormand_prince::{END, Rates, dense_stages, error, errors, mean_rate, nested, step};
 use crate::drive::Piece;
+
+/// Order of the method.
+const ORDER: i32 = 8;
 
 /// The error allowed in a step, in units of the tolerance: many short steps add up to more than a few long ones.
 const SAFETY: f64 = 0.1;
@@ -59,7 +63,13 @@ impl<D: Scalar> Explicit<D> {
         if !error.is_finite() {
             return None;
         }
-        let (stiffness, variation) = (self.stiffness(motion, length), self.variation(motion));
+        let (mut error, mut stiffness) = (error, self.stiffness(motion, length));
+        if field.guided && self.is_settled(motion) {
+            stiffness = stiffness.max(length * self.return_rate(motion, field, branch, piece.force(time + length)));
+            // Along a path the values stay where they are however long the step, and move nothing, but derivatives and rounding grow in one that is not stable.
+            error = error.max((stiffness / STABLE).powi(ORDER));
+        }
+        let variation = self.variation(motion);
         // A step too long for the method is no use, but for what it says of an event within.
         let followed = error <= 1.0 || self.passes(motion, field.belt.value());
         if followed {
@@ -95,6 +105,40 @@ impl<D: Scalar> Explicit<D> {
             states += state * state;
         }
         if states > 0.0 { length * (rates / states).sqrt() } else { 0.0 }
+    }
+
+    /// Whether the states are where they stay: their values show nothing of how fast they would return there, but their derivatives
+    /// do return.
+    fn is_settled(&self, motion: &Motion<D>) -> bool {
+        /// Changes below, in units of the scales, do not count beside that of the position.
+        const UNSEEN: f64 = 1e-9;
+        let states = self.end.iter().zip(&self.state).enumerate().skip(2);
+        let mut states =
+            states.map(|(component, (end, state))| ((*end - *state).value() / motion.scale(component)).abs());
+        states.all(|change| change <= UNSEEN)
+    }
+
+    /// The rate (1/s) at which states that are settled would return to where they are.
+    fn return_rate<L: BristleLaw<D>>(
+        &mut self,
+        motion: &Motion<D>,
+        field: &mut Field<D, L>,
+        branch: Branch,
+        force: D,
+    ) -> f64 {
+        /// How far they are moved, in units of their scales.
+        const APART: f64 = 1e-6;
+        field.rates(force, branch, &self.end, &mut self.rate);
+        let settled: Vec<f64> = self.rate.iter().map(|rate| rate.value()).collect();
+        self.state.copy_from_slice(&self.end);
+        for (component, state) in self.state.iter_mut().enumerate().skip(2) {
+            *state += APART * motion.scale(component);
+        }
+        field.rates(force, branch, &self.state, &mut self.rate);
+        let changes = self.rate.iter().zip(settled).enumerate().skip(2);
+        changes.fold(0.0, |most, (component, (rate, settled))| {
+            most.max(((rate.value() - settled) / (APART * motion.scale(component))).abs())
+        })
     }
 
     /// By how much the rates of the states have changed over the step, in units of themselves.

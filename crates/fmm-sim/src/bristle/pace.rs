@@ -6,7 +6,7 @@ use super::motion::Solved;
 const AT_LIMIT: f64 = 0.5;
 
 /// Step times stiffness above which explicit steps are as long as they are for the sake of stability.
-const STABLE: f64 = 4.0;
+pub(super) const STABLE: f64 = 4.0;
 
 /// Change of the rates of the states over a step, in units of step times stiffness, below which they follow the motion; a
 /// transient changes as much as it is stiff.
