@@ -132,10 +132,15 @@ impl Drive {
             share -= share.value();
         }
         let sign = if self.is_force() { 1.0 } else { -1.0 };
-        let last = values.len() as isize - 1;
-        let at = |index: isize| sign * values[index.clamp(0, last) as usize];
-        let first = first as isize;
-        (first..=last.max(first)).map(|index| share * (at(index + 1) - at(index)) + at(index)).collect()
+        let last = values.len() - 1;
+        // Before its first sample and after its last it is what it is there.
+        let at = |index: f64| sign * values[index.clamp(0.0, last as f64) as usize];
+        let count = (last as f64 - first).max(0.0) as usize;
+        let between = |step: usize| {
+            let index = first + step as f64;
+            share * (at(index + 1.0) - at(index)) + at(index)
+        };
+        (0..=count).map(between).collect()
     }
 
     /// The excitation of a motion that begins at `start` (s), in units of `per` times that of the drive.

@@ -229,7 +229,7 @@ impl Layout {
                 };
                 let mut own = values[self.shared + 2..].iter();
                 if drive.fits_gain(machine.scale()) {
-                    per = per / *own.next().unwrap_or(&D::from(1.0));
+                    per /= *own.next().unwrap_or(&D::from(1.0));
                 }
                 let mut delay = D::from(experiment.sensor().delay());
                 if drive.longest_delay() > 0.0 {
