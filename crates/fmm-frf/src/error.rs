@@ -1,4 +1,4 @@
-//! What can be wrong with a record, a response and an oscillator.
+//! Errors of records, responses and oscillators.
 
 use fmm_model::ModelError;
 

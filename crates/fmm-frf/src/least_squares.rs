@@ -16,7 +16,7 @@ pub(crate) struct Equations<const P: usize> {
 #[derive(Debug, Clone)]
 pub(crate) struct Solution<const P: usize> {
     pub(crate) values: [f64; P],
-    /// Covariance by the variance that the residuals tell; none without a degree of freedom.
+    /// Covariance by the variance that the residuals tell; `None` without a degree of freedom.
     pub(crate) covariance: Option<[[f64; P]; P]>,
     pub(crate) sum_of_squares: f64,
 }
@@ -37,7 +37,7 @@ impl<const P: usize> Equations<P> {
         self.right.len()
     }
 
-    /// Their solution; none if they do not determine all unknowns.
+    /// Their solution; `None` if they do not determine all unknowns.
     pub(crate) fn solve(&self) -> Option<Solution<P>> {
         let columns: Vec<(&str, &[f64])> = self.columns.iter().map(|column| ("unknown", column.as_slice())).collect();
         let found = LinearRegression::fit(&columns, &self.right, Weighting::Equal).ok()?;
@@ -49,7 +49,7 @@ impl<const P: usize> Equations<P> {
     }
 }
 
-/// The matrix of these elements; none if one is not there.
+/// The matrix of these elements; `None` if one is not there.
 fn matrix<const P: usize>(element: impl Fn(usize, usize) -> Option<f64>) -> Option<[[f64; P]; P]> {
     let mut matrix = [[0.0; P]; P];
     for (i, row) in matrix.iter_mut().enumerate() {
@@ -60,7 +60,7 @@ fn matrix<const P: usize>(element: impl Fn(usize, usize) -> Option<f64>) -> Opti
     Some(matrix)
 }
 
-/// Minimises the sum of squares of `count` residuals from `start` on; none if that does not settle or leaves unknowns undetermined.
+/// Minimises the sum of squares of `count` residuals from `start` on; `None` if that does not settle or leaves unknowns undetermined.
 ///
 /// `linearise` gives, for unknowns that it finds possible, the rows J of derivatives of a model with data minus model as right
 /// sides, so that their solution is the step of Gauss and Newton.

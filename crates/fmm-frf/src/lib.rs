@@ -36,7 +36,7 @@
 //! * **[`RationalFit`]** unless there is a reason: complex values, other modes as a background. [`CircleFit`] shows whether
 //!   it is a circle; [`PeakFit`] does without phases, for an unknown delay. All are of *linear* modes: the damping that
 //!   they find in a response with friction depends on the blow.
-//! * **Windows**: none for a motion that stops within the record, as it does with friction. An [`ExponentialWindow`] is for
+//! * **Windows**: `None` for a motion that stops within the record, as it does with friction. An [`ExponentialWindow`] is for
 //!   linear machines that ring longer: its damping is taken out again.
 //! * **Do not average blows of different strength** on a machine with friction: it is another machine each time.
 //!

@@ -1,4 +1,4 @@
-//! What every law with internal states promises, at random parameters.
+//! Properties of every law with internal states, at random parameters.
 
 use fmm_model::Scalar;
 use rand::RngExt;

@@ -39,7 +39,7 @@ macro_rules! catalogue {
             vec![$(visitor.visit::<$law>()),+]
         }
 
-        /// What `visitor` makes of the family called `name`; none if no family is called so.
+        /// What `visitor` makes of the family called `name`; `None` if no family is called so.
         pub fn family_named<V: FamilyVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
             $(
                 if name == <$law>::NAME {

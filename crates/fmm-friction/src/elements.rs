@@ -1,4 +1,4 @@
-//! What the elements of [`MaxwellSlip`](crate::MaxwellSlip) and [`Gms`](crate::Gms) have to be.
+//! Requirements on the elements of [`MaxwellSlip`](crate::MaxwellSlip) and [`Gms`](crate::Gms).
 
 use alloc::format;
 

@@ -1,4 +1,4 @@
-//! What can be wrong with the parameters of a law.
+//! Errors of the parameters of a law.
 
 use alloc::string::String;
 use core::error::Error;

@@ -197,7 +197,7 @@ pub trait LawFamily: 'static {
     }
 
     /// Friction coefficient (1) of steady sliding by `law` at `speed` ≥ 0 (m/s), in the limit of a speed that grows slowly or, if it
-    /// is `losing`, falls; none for laws with internal state that do not say it.
+    /// is `losing`, falls; `None` for laws with internal state that do not say it.
     fn steady_coefficient<D: Scalar>(law: &Self::At<D>, speed: D, losing: bool) -> Option<D> {
         Self::visit(SteadyCoefficient { law, speed, losing })
     }

@@ -1,4 +1,4 @@
-//! What an engine asks of a law.
+//! Traits of laws: the questions that an engine asks.
 
 use fmm_model::Scalar;
 
@@ -115,7 +115,7 @@ pub trait BristleLaw<D: Scalar> {
     /// Half width of the invariant interval of state `index`.
     fn bound(&self, index: usize) -> D;
 
-    /// Friction coefficient (1) of steady sliding at `speed` ≥ 0 (m/s); none for laws that have no closed form for it, or state
+    /// Friction coefficient (1) of steady sliding at `speed` ≥ 0 (m/s); `None` for laws that have no closed form for it, or state
     /// none.
     fn steady_coefficient(&self, speed: D) -> Option<D> {
         let _ = speed;

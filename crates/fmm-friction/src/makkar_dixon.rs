@@ -79,7 +79,7 @@ impl<D: Scalar> MakkarDixon<D> {
         Self::six(difference, rise, fall, level, level_rise, D::from(0.0))
     }
 
-    /// Speed (m/s) and coefficient (1) of the Stribeck peak, the first maximum over the speed. None if the
+    /// Speed (m/s) and coefficient (1) of the Stribeck peak, the first maximum over the speed. `None` if the
     /// coefficient only grows.
     ///
     /// It is sought up to 20/γ₃, where the fall is complete to rounding, and found if the coefficient falls over more

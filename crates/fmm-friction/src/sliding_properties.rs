@@ -1,4 +1,4 @@
-//! What every sliding law promises, at random parameters.
+//! Properties of every sliding law, at random parameters.
 
 use fmm_model::{Dual, Scalar};
 use rand::{RngExt, SeedableRng};

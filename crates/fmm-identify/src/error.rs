@@ -119,7 +119,7 @@ impl IdentifyError {
         Self::wrong_record(format!("{estimator} needs a velocity, but the record is: {quantity}"))
     }
 
-    /// What was given as a drive is none.
+    /// The record given as a drive is neither a force nor a motion.
     pub(crate) fn drive(expected: &str, found: &str) -> Self {
         Self::wrong_record(format!("the drive of an experiment must be {expected}, but is: {found}"))
     }

@@ -63,7 +63,7 @@ impl Dimension {
     }
 }
 
-/// Dimension of one symbol; none for one that is not known.
+/// Dimension of one symbol; `None` for one that is not known.
 pub(crate) fn of_symbol(symbol: &str) -> Option<Dimension> {
     const BASE: [(&str, [f64; 4]); 7] = [
         ("m", [1.0, 0.0, 0.0, 0.0]),

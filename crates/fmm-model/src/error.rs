@@ -1,4 +1,4 @@
-//! What can be wrong with the description of a machine.
+//! Errors of the description of a machine.
 
 use core::error::Error;
 use core::fmt;

@@ -121,7 +121,7 @@ impl<D: Scalar> Oscillator<D> {
         self.damping.linear_coefficient() / ((self.stiffness * self.mass).sqrt() * 2.0)
     }
 
-    /// ω_d = √(ω₀² − (c₁/2m)²), angular frequency of the damped free vibration (rad/s); none at or above critical
+    /// ω_d = √(ω₀² − (c₁/2m)²), angular frequency of the damped free vibration (rad/s); `None` at or above critical
     /// damping, where nothing oscillates.
     pub fn damped_angular_frequency(&self) -> Option<D> {
         let rate = self.damping.linear_coefficient() / (self.mass * 2.0);
@@ -129,12 +129,12 @@ impl<D: Scalar> Oscillator<D> {
         (square.value() > 0.0).then(|| square.sqrt())
     }
 
-    /// ω_d/2π, frequency of the damped free vibration (Hz); none at or above critical damping.
+    /// ω_d/2π, frequency of the damped free vibration (Hz); `None` at or above critical damping.
     pub fn damped_frequency(&self) -> Option<D> {
         self.damped_angular_frequency().map(|angular| angular / (2.0 * PI))
     }
 
-    /// δ = π c₁/(m ω_d), natural logarithm of the ratio of successive maxima, for the linear damping (1); none at
+    /// δ = π c₁/(m ω_d), natural logarithm of the ratio of successive maxima, for the linear damping (1); `None` at
     /// or above critical damping.
     pub fn logarithmic_decrement(&self) -> Option<D> {
         let damped = self.damped_angular_frequency()?;

@@ -1,4 +1,4 @@
-//! How numbers are written in reports: rounded to what is known of them.
+//! Rounded numbers: values as reports write them, to the digits that are known.
 
 use alloc::borrow::ToOwned;
 use alloc::format;

@@ -32,7 +32,7 @@ pub struct Unit {
 struct Factor {
     symbol: String,
     power: f64,
-    /// Symbol of the parameter by which the power is multiplied; none if the power is a number.
+    /// Symbol of the parameter by which the power is multiplied; `None` if the power is a number.
     exponent: Option<String>,
 }
 
@@ -83,7 +83,7 @@ impl Unit {
         result
     }
 
-    /// Its powers of length, time, mass and angle; `exponent` gives the value of a power that is a parameter. None for a symbol or a
+    /// Its powers of length, time, mass and angle; `exponent` gives the value of a power that is a parameter. `None` for a symbol or a
     /// power that is not known.
     pub fn dimension(&self, exponent: impl Fn(&str) -> Option<f64>) -> Option<Dimension> {
         self.factors.iter().try_fold(Dimension::NONE, |dimension, factor| {

@@ -1,4 +1,4 @@
-//! Whether a contact at rest stays so for good.
+//! Contact at rest: whether it stays so for good.
 
 use fmm_model::{Oscillator, Scalar};
 

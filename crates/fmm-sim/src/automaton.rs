@@ -121,7 +121,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         let (held, held_slope) = self.static_force(piece, time);
         let (held, held_slope) = (held.value(), held_slope.value());
         let rate = resting.slope_now().value();
-        // What an exact comparison would decide by rounding is decided by where the load is going.
+        // Within rounding of the level, the rate of change of the load decides.
         let rounding = if resting.is_plainly_free() { 0.0 } else { rounding(self.oscillator, &resting, time, state) };
         let direction = Direction::of(if load.abs() <= rounding { rate } else { load });
         let growing = rate * direction.sign() > held_slope;

@@ -1,4 +1,4 @@
-//! Which engine simulates a law when nobody chooses one.
+//! Choice of the engine for a law.
 
 use fmm_friction::{BristleLaw, FamilyMember, LawFamily, LawVisitor, PiecewiseLinearLaw, SlidingLaw};
 use fmm_model::Scalar;

@@ -144,7 +144,7 @@ impl<D: Scalar> Decay<D> {
         state.position.value().abs() + sine.abs() + state.velocity.value().abs() + velocity_sine.abs()
     }
 
-    /// Time (s) until the velocity is zero again, the zero at which `state` may sit left aside; none if it never is.
+    /// Time (s) until the velocity is zero again, the zero at which `state` may sit left aside; `None` if it never is.
     pub(crate) fn time_to_zero_velocity(&self, state: State<D>) -> Option<D> {
         let velocity = state.velocity;
         if velocity.value() == 0.0 {

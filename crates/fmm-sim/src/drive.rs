@@ -186,7 +186,7 @@ impl<'a, D: Scalar> Drive<'a, D> {
     }
 
     /// The derivatives of the time at which the force jumps at the beginning of the piece of this `index`, their value being zero;
-    /// none if it does not jump.
+    /// `None` if it does not jump.
     pub(crate) fn time_of_jump(&self, index: usize) -> Option<D> {
         self.jumps(index).max_by(|a, b| a.0.value().abs().total_cmp(&b.0.value().abs())).map(|(_, late)| late)
     }

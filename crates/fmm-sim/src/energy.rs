@@ -28,7 +28,7 @@ impl<L> Scenario<f64, L> {
 }
 
 impl Trajectory {
-    /// The energy at sample `index` of this motion of `scenario`; none unless position, velocity and
+    /// The energy at sample `index` of this motion of `scenario`; `None` unless position, velocity and
     /// [work](crate::Sampling::with_work) were sampled.
     ///
     /// ```
@@ -53,7 +53,7 @@ impl Trajectory {
     }
 
     /// How far energy is from being conserved: the greatest |E + W_friction + W_viscous − W_external − E₀| over the samples,
-    /// relative to the greatest sum of the magnitudes of these terms; none if [`energy`](Self::energy) has none.
+    /// relative to the greatest sum of the magnitudes of these terms; `None` if [`energy`](Self::energy) has none.
     ///
     /// It checks a simulation from outside: states and works are found independently of each other.
     pub fn energy_imbalance<L>(&self, scenario: &Scenario<f64, L>) -> Option<f64> {

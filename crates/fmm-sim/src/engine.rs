@@ -1,4 +1,4 @@
-//! What all engines have in common.
+//! Engines: what all of them have in common.
 
 use fmm_model::Scalar;
 

@@ -1,4 +1,4 @@
-//! What can be wrong with a simulation.
+//! Errors of a simulation.
 
 use fmm_model::{ModelError, Oscillator, Scalar};
 

@@ -43,7 +43,7 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// The direction in which it slides; none if it holds.
+    /// The direction in which it slides; `None` if it holds.
     pub const fn direction(self) -> Option<Direction> {
         match self {
             Self::Slip(direction) | Self::Gaining(direction) | Self::Steady(direction) | Self::Losing(direction) => {

@@ -1,4 +1,4 @@
-//! What acts on the machine from outside: forces over time, a shaking base, a moving counterface.
+//! Excitation from outside: forces over time, a shaking base, a moving counterface.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What methods of fixed step share: events on the grid, and the force at times that ascend.
+//! Methods of fixed step: events on the grid, and the force at times that ascend.
 
 use fmm_model::Oscillator;
 

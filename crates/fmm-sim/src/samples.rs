@@ -139,7 +139,7 @@ impl<D: Scalar> Samples<D> {
         &self.values
     }
 
-    /// The partial derivatives in `direction`, one per sample; none if the number type does not carry it or the
+    /// The partial derivatives in `direction`, one per sample; `None` if the number type does not carry it or the
     /// quantity was not asked for.
     pub fn partial(&self, direction: usize) -> Option<&[f64]> {
         let count = self.values.len();

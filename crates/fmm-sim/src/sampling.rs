@@ -109,7 +109,7 @@ impl Sampling {
         self
     }
 
-    /// The part of the samples whose index lies in `window`, cut to those that exist; none if nothing is left.
+    /// The part of the samples whose index lies in `window`, cut to those that exist; `None` if nothing is left.
     pub fn window(&self, window: std::ops::Range<usize>) -> Option<Self> {
         let end = window.end.min(self.count);
         (window.start < end).then(|| Self {
@@ -119,7 +119,7 @@ impl Sampling {
         })
     }
 
-    /// Time between samples (s); none if the times are not uniform.
+    /// Time between samples (s); `None` if the times are not uniform.
     pub fn interval(&self) -> Option<f64> {
         match self.grid {
             Grid::Uniform { interval } => Some(interval),

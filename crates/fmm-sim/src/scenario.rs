@@ -1,4 +1,4 @@
-//! What is simulated: machine, contact and how the motion begins.
+//! Scenario of a simulation: machine, contact and beginning of the motion.
 
 use std::sync::Arc;
 

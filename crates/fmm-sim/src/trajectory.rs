@@ -168,12 +168,12 @@ impl<D: Scalar> Trajectory<D> {
         &self.acceleration
     }
 
-    /// Sampled internal states of a bristle law, in the law's order; none for other laws.
+    /// Sampled internal states of a bristle law, in the law's order; `None` for other laws.
     pub fn states(&self) -> &[Samples<D>] {
         &self.states
     }
 
-    /// Work done up to sample `index` (J); none unless [`Sampling::with_work`] asked for it, and none by the methods of fixed
+    /// Work done up to sample `index` (J); `None` unless [`Sampling::with_work`] asked for it, and none by the methods of fixed
     /// step, which keep no account of it.
     pub fn work(&self, index: usize) -> Option<Work> {
         let [friction, viscous, external] = &self.work;

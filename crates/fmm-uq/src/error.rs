@@ -1,4 +1,4 @@
-//! What can be wrong with inputs, with a model and with a question put to a budget.
+//! Errors of inputs, of models and of questions to a budget.
 
 use std::error::Error;
 

@@ -54,7 +54,7 @@
 //!
 //! * The bits of a run depend on seed, inputs, model and number of trials: not on the number of threads, nor on how blocks
 //!   are spread over machines of one kind.
-//! * Nothing is reported in silence that does not hold: impossible correlations, results that are no numbers, degrees of
+//! * Invalid results are errors or flagged: impossible correlations, results that are no numbers, degrees of
 //!   freedom outside the Welch–Satterthwaite formula, a first-order uncertainty of zero, and failed trials are told apart.
 //! * One trial that fails is an error, unless [a share](MonteCarlo::with_allowed_failures) is allowed; then all are
 //!   counted.

@@ -1,4 +1,4 @@
-//! How models are compared.
+//! Options of a comparison of models.
 
 /// How many independent residuals a comparison counts.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -1,4 +1,4 @@
-//! Which of several models.
+//! Comparison of models.
 
 mod comparing;
 mod contender;

@@ -1,4 +1,4 @@
-//! Whether a further parameter is worth having.
+//! Comparison of two nested models: value of a further parameter.
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
@@ -13,7 +13,7 @@ impl Fit {
     ///
     /// k counts the directions that the residuals determine, as a reparametrised model is the same model, and one
     /// for the variance. Only differences between fits to the same data mean anything; a difference of 10 is
-    /// strong. None if n ≤ k + 1 or if the residuals are all zero.
+    /// strong. `None` if n ≤ k + 1 or if the residuals are all zero.
     ///
     /// # References
     /// C. M. Hurvich, C.-L. Tsai, "Regression and time series model selection in small samples", Biometrika 76

@@ -1,4 +1,4 @@
-//! Whether data decide between models.
+//! Verdict of a comparison: decided between models, or not.
 
 /// What a comparison of models comes to. Models are meant by their index in the comparison.
 #[derive(Debug, Clone, PartialEq)]
@@ -7,7 +7,7 @@ pub enum Verdict {
     Decided {
         /// The model.
         winner: usize,
-        /// By how much its score is below that of the next; none if there is no other.
+        /// By how much its score is below that of the next; `None` if there is no other.
         lead: Option<f64>,
     },
     /// The data do not decide.

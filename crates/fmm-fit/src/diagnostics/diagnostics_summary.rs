@@ -1,4 +1,4 @@
-//! What residuals say of the model that left them, on one screen.
+//! Summary of all diagnostics of the residuals of a fit, on one screen.
 
 use std::fmt;
 
@@ -35,7 +35,7 @@ pub struct ResidualDiagnostics {
 const UNLIKELY: f64 = 0.01;
 
 impl ResidualDiagnostics {
-    /// Looks at `residuals` in their order; none if there are none, or if one is not finite.
+    /// Looks at `residuals` in their order; `None` if there are none, or if one is not finite.
     pub fn of(residuals: &[f64]) -> Option<Self> {
         let count = residuals.len();
         let squares = residuals.iter().map(|r| r * r).sum::<f64>();
@@ -105,7 +105,7 @@ impl ResidualDiagnostics {
 }
 
 impl Fit {
-    /// What the residuals say of the model; none if the fit has no residuals.
+    /// What the residuals say of the model; `None` if the fit has no residuals.
     pub fn residual_diagnostics(&self) -> Option<ResidualDiagnostics> {
         ResidualDiagnostics::of(self.residuals())
     }

@@ -1,4 +1,4 @@
-//! Whether residuals are noise.
+//! Diagnostics of residuals: tests against noise.
 
 mod diagnostics_summary;
 mod normality;

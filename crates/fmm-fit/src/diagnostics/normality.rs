@@ -1,4 +1,4 @@
-//! Whether residuals are normally distributed.
+//! Test of residuals for a normal distribution.
 
 use std::f64::consts::{PI, SQRT_2};
 
@@ -15,7 +15,7 @@ pub struct NormalityTest {
     pub p_value: f64,
 }
 
-/// Tests whether residuals are normal, with mean and variance taken from them. None for fewer than eight residuals, if
+/// Tests whether residuals are normal, with mean and variance taken from them. `None` for fewer than eight residuals, if
 /// they are all equal, or not finite.
 ///
 /// ```text

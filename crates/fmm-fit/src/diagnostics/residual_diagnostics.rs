@@ -1,10 +1,10 @@
-//! Whether residuals are noise: their correlation from one to the next.
+//! Correlation of residuals from one to the next.
 
 /// Lags looked at before the series is halved.
 const LAGS: usize = 32;
 
 /// Durbin and Watson's statistic: 2 for independent residuals, towards 0 if neighbours are alike, towards 4 if they
-/// alternate. None for fewer than two residuals, or if they are all zero or not finite.
+/// alternate. `None` for fewer than two residuals, or if they are all zero or not finite.
 ///
 /// ```text
 /// d = Σ (rᵢ − rᵢ₋₁)² / Σ rᵢ²
@@ -32,7 +32,7 @@ pub fn durbin_watson(residuals: &[f64]) -> Option<f64> {
 /// The autocorrelations ρ are about zero, where residuals belong, not about their mean. If the pairs stay positive
 /// for 32 lags, neighbours are averaged in twos and the sum taken on the averages, whose long-run variance is the
 /// same; the cost is thus linear in the number of residuals however long they are correlated. The result is at
-/// least 1: residuals that alternate are not counted as more than there are. None for fewer than two residuals, or
+/// least 1: residuals that alternate are not counted as more than there are. `None` for fewer than two residuals, or
 /// if they are all zero or not finite.
 ///
 /// # References

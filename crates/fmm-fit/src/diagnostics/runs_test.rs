@@ -1,4 +1,4 @@
-//! Whether the signs of residuals change as often as those of noise.
+//! Runs test: number of changes of sign of residuals beside that of noise.
 
 use statrs::distribution::{ContinuousCDF, Normal};
 use statrs::function::factorial::ln_binomial;
@@ -24,7 +24,7 @@ pub struct RunsTest {
     pub is_exact: bool,
 }
 
-/// Counts the runs of equal sign among residuals in their order; zeros are left out. None unless both signs occur.
+/// Counts the runs of equal sign among residuals in their order; zeros are left out. `None` unless both signs occur.
 ///
 /// ```text
 /// P(R = 2k)     = 2 C(n₊−1, k−1) C(n₋−1, k−1)/C(n₊+n₋, n₊)

@@ -1,4 +1,4 @@
-//! Which residuals depend on which parameters.
+//! Blocks of residuals with the parameters that they depend on.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What a wrapper of a problem hands on unchanged, so that no wrapper forgets a part of it.
+//! Forwarding of a problem by a wrapper, in one place so that no wrapper forgets a part.
 
 /// Hands on the shape of a problem, for a wrapper that changes values only: `forward_shape!(self => self.problem)`.
 macro_rules! forward_shape {

@@ -1,4 +1,4 @@
-//! What a caller can do wrong when joining problems.
+//! Errors of a joint problem.
 
 use fmm_model::Rounded;
 

@@ -1,4 +1,4 @@
-//! What is fitted: residuals as a function of parameters, and ways to write them.
+//! Least-squares problems: residuals as a function of parameters, and ways to write them.
 
 mod automatic;
 pub(crate) mod block;

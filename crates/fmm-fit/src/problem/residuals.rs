@@ -1,4 +1,4 @@
-//! What a least-squares problem is: residuals as a function of parameters.
+//! Least-squares problem: residuals as a function of parameters.
 
 use std::error::Error;
 use std::fmt;

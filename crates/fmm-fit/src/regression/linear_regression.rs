@@ -133,13 +133,13 @@ impl LinearRegression {
         &self.coefficients
     }
 
-    /// Standard uncertainty of the coefficient of column `j`; none if it is not determined, or without a degree of
+    /// Standard uncertainty of the coefficient of column `j`; `None` if it is not determined, or without a degree of
     /// freedom to tell s.
     pub fn standard_uncertainty(&self, j: usize) -> Option<f64> {
         self.covariance(j, j).map(f64::sqrt)
     }
 
-    /// Covariance of the coefficients of columns `i` and `j`, by the formula of the [`Weighting`]; none if either is
+    /// Covariance of the coefficients of columns `i` and `j`, by the formula of the [`Weighting`]; `None` if either is
     /// not determined, or without a degree of freedom to tell s.
     pub fn covariance(&self, i: usize, j: usize) -> Option<f64> {
         if !(*self.is_determined.get(i)? && *self.is_determined.get(j)?) {
@@ -176,13 +176,13 @@ impl LinearRegression {
         self.residuals.len() - self.rank()
     }
 
-    /// s = √(S/ν); none without a degree of freedom.
+    /// s = √(S/ν); `None` without a degree of freedom.
     pub fn residual_standard_deviation(&self) -> Option<f64> {
         let freedom = self.degrees_of_freedom();
         (freedom > 0).then(|| (self.sum_of_squares / freedom as f64).sqrt())
     }
 
-    /// Share of the scatter of the observations that the columns explain; none if there is no scatter.
+    /// Share of the scatter of the observations that the columns explain; `None` if there is no scatter.
     ///
     /// ```text
     /// R² = 1 − S/Σᵢ ((yᵢ − ȳ)/uᵢ)²        with a constant among the columns, ȳ the weighted mean
@@ -209,7 +209,7 @@ impl LinearRegression {
         &self.null_directions
     }
 
-    /// The prediction where the columns have the values `row`; none if the row has not one value per column, if it has
+    /// The prediction where the columns have the values `row`; `None` if the row has not one value per column, if it has
     /// a part that the data do not determine, or without a degree of freedom to tell s.
     pub fn predict(&self, row: &[f64]) -> Option<Prediction> {
         if row.len() != self.coefficients.len() {

@@ -130,7 +130,7 @@ impl Polynomial {
         if self.lowest > 0 { sum * t } else { sum }
     }
 
-    /// The prediction at `x`; none without a degree of freedom to tell s.
+    /// The prediction at `x`; `None` without a degree of freedom to tell s.
     pub fn predict(&self, x: f64) -> Option<Prediction> {
         let t = (x - self.centre) / self.scale;
         let first = if self.lowest > 0 { t } else { 1.0 };

@@ -147,13 +147,13 @@ impl PowerLaw {
     }
 
     /// Standard uncertainty of coefficient, exponent or offset, for `j` of 0, 1 or 2, by the formula of the
-    /// [`Weighting`]; none if it is fixed, at a bound or not determined.
+    /// [`Weighting`]; `None` if it is fixed, at a bound or not determined.
     pub fn standard_uncertainty(&self, j: usize) -> Option<f64> {
         Some(self.unit_deviation()? * self.fit.unit_covariance(j, j)?.sqrt())
     }
 
     /// Share of the scatter of the observations that the law explains, about their mean or, without offset, about zero;
-    /// none if there is no scatter.
+    /// `None` if there is no scatter.
     pub fn r_squared(&self) -> Option<f64> {
         self.total.map(|total| 1.0 - self.fit.sum_of_squares() / total)
     }
@@ -163,7 +163,7 @@ impl PowerLaw {
         self.coefficient() * x.powf(self.exponent()) + self.offset()
     }
 
-    /// The prediction at `x`, not negative; none if the law has no value there, a parameter is not determined, or
+    /// The prediction at `x`, not negative; `None` if the law has no value there, a parameter is not determined, or
     /// without a degree of freedom to tell s.
     pub fn predict(&self, x: f64) -> Option<Prediction> {
         let gradient = gradient(x, self.fit.values());

@@ -23,7 +23,7 @@ const CORRECTIONS: usize = 12;
 /// from it, cancellation of ten digits included.
 const NEGLIGIBLE: f64 = 1e-27;
 
-/// Solves `min ‖y − X β‖²` by QR factorisation and iterative refinement; none if the numbers overflow.
+/// Solves `min ‖y − X β‖²` by QR factorisation and iterative refinement; `None` if the numbers overflow.
 ///
 /// ```text
 /// β ← β + R⁻¹ R⁻ᵀ Xᵀ (y − X β)

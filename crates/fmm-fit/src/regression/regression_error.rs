@@ -1,4 +1,4 @@
-//! What a caller can do wrong when asking for a regression.
+//! Errors of a request for a regression.
 
 use crate::FitError;
 use fmm_model::Rounded;

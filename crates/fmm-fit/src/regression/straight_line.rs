@@ -45,12 +45,12 @@ impl StraightLine {
         self.polynomial.coefficients()[1]
     }
 
-    /// Standard uncertainty of the intercept; none without a degree of freedom to tell s.
+    /// Standard uncertainty of the intercept; `None` without a degree of freedom to tell s.
     pub fn intercept_uncertainty(&self) -> Option<f64> {
         self.regression().standard_uncertainty(0)
     }
 
-    /// Standard uncertainty of the slope; none without a degree of freedom to tell s.
+    /// Standard uncertainty of the slope; `None` without a degree of freedom to tell s.
     pub fn slope_uncertainty(&self) -> Option<f64> {
         self.regression().standard_uncertainty(1)
     }
@@ -65,7 +65,7 @@ impl StraightLine {
         self.polynomial.value(x)
     }
 
-    /// The prediction at `x`; none without a degree of freedom to tell s.
+    /// The prediction at `x`; `None` without a degree of freedom to tell s.
     pub fn predict(&self, x: f64) -> Option<Prediction> {
         self.polynomial.predict(x)
     }

@@ -1,4 +1,4 @@
-//! What is known of the uncertainty of the observations of a regression.
+//! Weights of the observations of a regression.
 
 use crate::RegressionError;
 
@@ -34,7 +34,7 @@ impl Weighting<'_> {
         matches!(self, Self::Absolute(_))
     }
 
-    /// The factors 1/uᵢ of `count` observations; none if all are 1.
+    /// The factors 1/uᵢ of `count` observations; `None` if all are 1.
     pub(crate) fn factors(&self, count: usize) -> Result<Option<Vec<f64>>, RegressionError> {
         let (Self::Relative(uncertainties) | Self::Absolute(uncertainties)) = self else { return Ok(None) };
         check_length("standard uncertainties", uncertainties, count)?;

@@ -147,13 +147,13 @@ impl YorkLine {
     }
 
     /// √(S/(n − 2)), about 1 if line and uncertainties are right. If the uncertainties are known only up to a factor,
-    /// this is the factor, and multiplies u(a) and u(b). None for two points.
+    /// this is the factor, and multiplies u(a) and u(b). `None` for two points.
     pub fn scale(&self) -> Option<f64> {
         let freedom = self.degrees_of_freedom();
         (freedom > 0).then(|| (self.sum_of_squares / freedom as f64).sqrt())
     }
 
-    /// Probability of an S at least as large if line and uncertainties are right; none for two points.
+    /// Probability of an S at least as large if line and uncertainties are right; `None` for two points.
     pub fn p_value(&self) -> Option<f64> {
         let freedom = self.degrees_of_freedom();
         if freedom == 0 { None } else { Some(ChiSquared::new(freedom as f64).ok()?.sf(self.sum_of_squares)) }

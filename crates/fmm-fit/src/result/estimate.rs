@@ -1,4 +1,4 @@
-//! What a fit says about one parameter.
+//! Estimate of one parameter.
 
 use fmm_model::Parameter;
 
@@ -62,13 +62,13 @@ impl Estimate {
         self.status
     }
 
-    /// Standard uncertainty, in the unit of the parameter; none unless the value is determined and there are more
+    /// Standard uncertainty, in the unit of the parameter; `None` unless the value is determined and there are more
     /// residuals than determined parameters.
     pub fn standard_uncertainty(&self) -> Option<f64> {
         self.standard_uncertainty
     }
 
-    /// How fast half the sum of squares would change if the bound that the value lies on moved up; none for a
+    /// How fast half the sum of squares would change if the bound that the value lies on moved up; `None` for a
     /// value that is not at a bound.
     ///
     /// ```text

@@ -155,7 +155,7 @@ impl Fit {
         self.residuals.len() - self.rank
     }
 
-    /// s = √(S/ν), standard deviation of a residual; none without a degree of freedom.
+    /// s = √(S/ν), standard deviation of a residual; `None` without a degree of freedom.
     pub fn residual_standard_deviation(&self) -> Option<f64> {
         let freedom = self.degrees_of_freedom();
         (freedom > 0).then(|| (self.sum_of_squares / freedom as f64).sqrt())
@@ -185,7 +185,7 @@ impl Fit {
         &self.null_directions
     }
 
-    /// Covariance of the estimates of parameters `i` and `j`, in the product of their units; none if either is
+    /// Covariance of the estimates of parameters `i` and `j`, in the product of their units; `None` if either is
     /// fixed, at a bound or not determined, or without a degree of freedom.
     pub fn covariance(&self, i: usize, j: usize) -> Option<f64> {
         Some(self.residual_standard_deviation()?.powi(2) * self.unit_covariance(i, j)?)
@@ -212,7 +212,7 @@ impl Fit {
         Some(self.residual_standard_deviation()?.powi(2) * unit?)
     }
 
-    /// Correlation coefficient of the estimates of parameters `i` and `j`; none where there is no covariance or no
+    /// Correlation coefficient of the estimates of parameters `i` and `j`; `None` where there is no covariance or no
     /// variance.
     pub fn correlation(&self, i: usize, j: usize) -> Option<f64> {
         let variances = self.covariance(i, i)? * self.covariance(j, j)?;
@@ -225,7 +225,7 @@ impl Fit {
     /// θ ± t_{(1 + level)/2, ν} u(θ)
     /// ```
     ///
-    /// None for an unknown name, a level outside (0, 1), or an estimate without an uncertainty. The bounds of the
+    /// `None` for an unknown name, a level outside (0, 1), or an estimate without an uncertainty. The bounds of the
     /// parameter do not cut the interval.
     pub fn interval(&self, name: &str, level: f64) -> Option<(f64, f64)> {
         self.estimates.iter().position(|estimate| estimate.name() == name).and_then(|j| self.interval_of(j, level))
@@ -270,7 +270,7 @@ impl Fit {
         self.model_error.as_deref()
     }
 
-    /// What had no finite value at the last trial point that was given up for this; none if all had one. In a fit that
+    /// What had no finite value at the last trial point that was given up for this; `None` if all had one. In a fit that
     /// ended as [`Outcome::NonFinite`] it is what stood in the way.
     pub fn non_finite(&self) -> Option<&NonFinite> {
         self.non_finite.as_ref()

@@ -1,4 +1,4 @@
-//! What came out: estimates with their uncertainties, and what the data could not tell.
+//! Result of a fit: estimates with their uncertainties, and directions that the data leave free.
 
 mod estimate;
 mod fit;

@@ -1,4 +1,4 @@
-//! How much a residual counts, depending on its size.
+//! Loss functions: the weight of a residual as a function of its size.
 
 /// How much a residual r of scale s counts: `s² ρ(z)` with `z = (r/s)²` instead of r².
 ///

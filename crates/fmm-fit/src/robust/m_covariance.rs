@@ -7,7 +7,7 @@ use crate::solver::triangle::Triangle;
 use crate::uncertainty::definite::{add_square, inverse, quadratic_form};
 use crate::{Fit, Residuals, Robust};
 
-/// The covariance of the estimates of `fit` to `problem`, as a square matrix over all parameters; none where a
+/// The covariance of the estimates of `fit` to `problem`, as a square matrix over all parameters; `None` where a
 /// parameter is fixed, at a bound or not determined, or where the residuals cannot tell.
 ///
 /// ```text
@@ -73,7 +73,7 @@ impl Coordinates {
         }
     }
 
-    /// The covariance over the columns; none if the point is not a minimum or a residual has no freedom.
+    /// The covariance over the columns; `None` if the point is not a minimum or a residual has no freedom.
     fn covariance<P: Residuals>(
         self,
         problem: &Robust<P>,

@@ -85,7 +85,7 @@ impl<P: Residuals> Robust<P> {
     }
 
     fn replaced(&self, residual: f64) -> f64 {
-        // A value that is not there must not become one that is.
+        // Residuals that are not finite pass unchanged: clamping would hide them.
         if !residual.is_finite() || self.loss == Loss::Squares {
             return residual;
         }

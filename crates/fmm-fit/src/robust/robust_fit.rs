@@ -26,7 +26,7 @@ pub enum Scale {
 /// 1.4826 times the median of the magnitudes of the residuals, the standard deviation of their good ones if these
 /// are normal; as `fitted` parameters make about as many residuals small, that many of the smallest are left out.
 ///
-/// None if there are not more residuals than that.
+/// `None` if there are not more residuals than that.
 ///
 /// # References
 /// P. J. Rousseeuw, C. Croux, J. Am. Stat. Assoc. 88 (1993) 1273, <https://doi.org/10.1080/01621459.1993.10476408>.
@@ -241,7 +241,7 @@ impl RobustFit {
         (0..self.residuals.len()).filter(|&i| self.residuals[i].abs() > limit).collect()
     }
 
-    /// Covariance of the estimates of parameters `i` and `j`, in the product of their units; none where a parameter
+    /// Covariance of the estimates of parameters `i` and `j`, in the product of their units; `None` where a parameter
     /// is fixed, at a bound or not determined, without a degree of freedom, where the slopes ψ′ show no minimum, or
     /// where the fit would go elsewhere without one of the residuals (hᵢ ≥ 1), which happens in small samples to losses
     /// that forget.
@@ -256,7 +256,7 @@ impl RobustFit {
     }
 
     /// The interval that covers the parameter called `name` with probability `level`, by Student's t with n − rank
-    /// degrees of freedom; none for an unknown name, a level outside (0, 1) or an estimate without an uncertainty.
+    /// degrees of freedom; `None` for an unknown name, a level outside (0, 1) or an estimate without an uncertainty.
     pub fn interval(&self, name: &str, level: f64) -> Option<(f64, f64)> {
         let index = self.fit.estimates().iter().position(|estimate| estimate.name() == name)?;
         let uncertainty = self.standard_uncertainty(index)?;

@@ -64,7 +64,7 @@ impl BoundedLevenbergMarquardt {
         Self { minimizer: Minimizer::new(options) }
     }
 
-    /// How the fit ended; none if the executor stopped it.
+    /// How the fit ended; `None` if the executor stopped it.
     pub fn outcome(&self) -> Option<Outcome> {
         self.minimizer.outcome()
     }

@@ -1,4 +1,4 @@
-//! What of a fit is stored, so that another process can take it up.
+//! Checkpoint of a fit, from which another process can continue it.
 
 use std::time::Instant;
 

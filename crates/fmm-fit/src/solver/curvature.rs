@@ -1,4 +1,4 @@
-//! What the linear model of the residuals cannot see of the sum of squares: its own curvature.
+//! Curvature of the residuals, which their linear model lacks.
 //!
 //! ```text
 //! ½ ∇∇S = Jᵀ J + Σᵢ rᵢ ∇∇rᵢ

@@ -89,7 +89,7 @@ impl Evaluator {
         self.probe[j] = point.values[j];
     }
 
-    /// A difference over `step`, to both sides or to one; none if the model is finite on neither.
+    /// A difference over `step`, to both sides or to one; `None` if the model is finite on neither.
     fn step<P: Residuals + ?Sized>(&mut self, problem: &P, point: &Point, j: usize, step: f64) -> Option<Slope> {
         let value = point.values[j];
         let (below, above) = (value - self.lower[j], self.upper[j] - value);
@@ -198,7 +198,7 @@ impl Evaluator {
     }
 
     /// The derivative at `point` of the parabola through the residuals there and at two other values of parameter
-    /// `j`; of the line through two points if one of the values is that of `point`. None if the residuals are not finite
+    /// `j`; of the line through two points if one of the values is that of `point`. `None` if the residuals are not finite
     /// at the two values.
     fn slope<P: Residuals + ?Sized>(&mut self, problem: &P, point: &Point, j: usize, at: [f64; 2]) -> Option<Slope> {
         let [first, second] = at.map(|target| target.max(self.lower[j]).min(self.upper[j]));

@@ -1,4 +1,4 @@
-//! What a caller can do wrong when asking for a fit.
+//! Errors of a request for a fit.
 
 use fmm_model::Rounded;
 use std::error::Error;

@@ -213,7 +213,7 @@ impl Evaluator {
         self.model_error = Some(error);
     }
 
-    /// Residuals and derivatives of `problem` at `values`, by central differences if it has none of its own; none if they
+    /// Residuals and derivatives of `problem` at `values`, by central differences if it has none of its own; `None` if they
     /// are not finite. The columns of fixed parameters are meaningless.
     pub(crate) fn linearise<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Option<Linearised> {
         let mut evaluator = Self::default();

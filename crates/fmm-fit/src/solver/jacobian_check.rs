@@ -1,4 +1,4 @@
-//! Whether the derivatives of a problem are those of its residuals.
+//! Comparison of the derivatives of a problem with differences of its residuals.
 
 use std::fmt;
 

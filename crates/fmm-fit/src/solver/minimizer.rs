@@ -155,7 +155,7 @@ impl Minimizer {
         self.evaluator.jacobian_evaluations
     }
 
-    /// How the fit ended; none before it has.
+    /// How the fit ended; `None` before it has.
     pub fn outcome(&self) -> Option<Outcome> {
         if let Phase::Done(outcome) = self.phase { Some(outcome) } else { None }
     }

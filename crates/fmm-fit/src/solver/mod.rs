@@ -1,4 +1,4 @@
-//! How it is fitted: a trust region in a box, on a factor of the Jacobian.
+//! Solver: a trust region within bounds, on a factor of the Jacobian.
 
 mod argmin_solver;
 #[cfg(feature = "serde")]

@@ -1,4 +1,4 @@
-//! What had no finite value at a trial point.
+//! Number of a problem that is not finite at a trial point.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! How near to a minimum a point is.
+//! Optimality: distance of a point from a minimum.
 
 use crate::solver::evaluation::{Evaluator, Point};
 use crate::solver::spectrum::{Spectrum, is_surely_of_full_rank};

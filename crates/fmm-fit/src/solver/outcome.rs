@@ -1,4 +1,4 @@
-//! How a fit ended.
+//! Outcome of a fit.
 
 use std::fmt;
 

@@ -9,7 +9,7 @@ use crate::solver::sums::products;
 /// Numbers per block at most: the block and its copy share the first-level cache.
 const BLOCK: usize = 1536;
 
-/// Sums that are kept side by side: two of the vectors of four that are in each of two pipes.
+/// Accumulators side by side: eight, which are two vectors of four numbers.
 const LANES: usize = 8;
 
 /// The least square of the sine between a column and those before it for which scalar products are exact enough: what is

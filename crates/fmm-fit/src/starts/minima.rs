@@ -1,4 +1,4 @@
-//! Which fits ended at the same minimum.
+//! Minima: fits of many starts, grouped by where they end.
 
 use crate::solver::triangle::Triangle;
 use crate::{EstimateStatus, Fit, FitError, Outcome};
@@ -80,7 +80,7 @@ impl Minima {
         &self.found
     }
 
-    /// The fit of the lowest minimum; none if no start led to one.
+    /// The fit of the lowest minimum; `None` if no start led to one.
     pub fn best(&self) -> Option<&Fit> {
         self.found.first().map(Minimum::fit)
     }

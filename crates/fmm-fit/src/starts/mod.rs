@@ -1,4 +1,4 @@
-//! Where to begin, and which of many ends is the lowest.
+//! Start values of a search, and the lowest of its minima.
 
 mod minima;
 mod multi_start;

@@ -1,4 +1,4 @@
-//! Where to begin: points spread over a region, and points around one.
+//! Start points: spread over a region, or around one point.
 
 use fmm_model::Parameter;
 use rand::{RngExt, SeedableRng};

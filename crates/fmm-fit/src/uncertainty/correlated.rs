@@ -64,7 +64,7 @@ const LEAST_LEFT: f64 = 1e-3;
 struct Whole {
     /// A = (JᵀJ)⁺ over the parameters that are determined.
     unit: Vec<f64>,
-    /// Its inverse, with the squares of the diagonal of the factor of that; none if A is singular but for rounding.
+    /// Its inverse, with the squares of the diagonal of the factor of that; `None` if A is singular but for rounding.
     information: Option<(Vec<f64>, Vec<f64>)>,
     factored: Vec<f64>,
     moved: Vec<f64>,
@@ -104,7 +104,7 @@ impl CorrelatedCovariance {
     /// Takes the residuals of `fit` to `problem` in windows of `span`; windows never reach from one of `series`
     /// into the next. The series are ranges of residuals, such as one per record.
     ///
-    /// None if the problem gives no derivatives of its own, if nothing is determined, or if no series holds a window.
+    /// `None` if the problem gives no derivatives of its own, if nothing is determined, or if no series holds a window.
     ///
     /// # Errors
     /// [`EvaluationError`] if the problem has no derivatives at the fitted values.
@@ -174,7 +174,7 @@ impl CorrelatedCovariance {
         Ok(Some(Self { count, degrees_of_freedom, elements }))
     }
 
-    /// Covariance of the estimates of parameters `i` and `j`, in the product of their units; none where the fit has
+    /// Covariance of the estimates of parameters `i` and `j`, in the product of their units; `None` where the fit has
     /// none.
     pub fn covariance(&self, i: usize, j: usize) -> Option<f64> {
         if i < self.count && j < self.count { self.elements[i * self.count + j] } else { None }

@@ -1,4 +1,4 @@
-//! How many standard uncertainties an interval reaches.
+//! Coverage factor: the number of standard uncertainties that an interval reaches.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
@@ -10,7 +10,7 @@ const MANY_FOR_FISHER: f64 = 1e4;
 /// The coverage factor k (1): an estimate with standard uncertainty u and `degrees_of_freedom` ν > 0 lies within ± k u with
 /// probability `level`, by Student's t (JCGM 100:2008, G.3.2); by the normal distribution if ν is infinite.
 ///
-/// None for a level outside (0, 1), or degrees of freedom that are not positive.
+/// `None` for a level outside (0, 1), or degrees of freedom that are not positive.
 ///
 /// ```
 /// use fmm_fit::coverage_factor;

@@ -48,7 +48,7 @@ pub(crate) fn solve(factored: &[f64], right: &mut [f64]) {
     }
 }
 
-/// The inverse; none unless the matrix is positive definite by more than rounding.
+/// The inverse; `None` unless the matrix is positive definite by more than rounding.
 pub(crate) fn inverse(matrix: &[f64], order: usize) -> Option<Vec<f64>> {
     let mut factored = matrix.to_vec();
     factor(&mut factored, order, |j| 1e-12 * matrix[j * order + j].abs()).then(|| {

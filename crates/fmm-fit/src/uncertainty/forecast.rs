@@ -1,4 +1,4 @@
-//! Where a minimum goes when what was held fixed changes, foreseen without a fit.
+//! Forecast of a minimum for other values of what is held fixed, without a fit.
 
 /// The estimates as a polynomial in the inputs about those of a fit.
 ///

@@ -1,4 +1,4 @@
-//! How a minimum follows values that are held fixed.
+//! Derivatives of a minimum with respect to values that are held fixed.
 
 use fmm_model::Parameter;
 

@@ -1,4 +1,4 @@
-//! How sure it is, beyond the covariance of independent residuals about a linear model.
+//! Uncertainty of a fit beyond the covariance of independent residuals about a linear model.
 
 mod correlated;
 pub(crate) mod coverage;

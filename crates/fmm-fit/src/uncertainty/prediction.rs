@@ -1,4 +1,4 @@
-//! What a fitted model says of a new observation, and how well it says it.
+//! Prediction of a new observation by a fitted model, with its uncertainty.
 
 use crate::uncertainty::coverage::{coverage_factor, simultaneous_coverage_factor};
 use crate::{Estimate, EstimateStatus, Fit};
@@ -32,7 +32,7 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// None unless all is finite and there is a degree of freedom.
+    /// `None` unless all is finite and there is a degree of freedom.
     pub(crate) fn new(
         value: f64,
         variance: f64,
@@ -55,20 +55,20 @@ impl Prediction {
         self.standard_uncertainty
     }
 
-    /// The interval that holds the value of the model at this one point with probability `level`; none for a level
+    /// The interval that holds the value of the model at this one point with probability `level`; `None` for a level
     /// outside (0, 1).
     pub fn confidence(&self, level: f64) -> Option<(f64, f64)> {
         Some(self.around(coverage_factor(level, self.freedom)? * self.standard_uncertainty))
     }
 
     /// The interval of Working, Hotelling and Scheffé: the intervals at *all* points hold the model with probability
-    /// `level`, as does a band drawn through them. None for a level outside (0, 1).
+    /// `level`, as does a band drawn through them. `None` for a level outside (0, 1).
     pub fn simultaneous(&self, level: f64) -> Option<(f64, f64)> {
         let factor = simultaneous_coverage_factor(level, self.rank, self.freedom)?;
         Some(self.around(factor * self.standard_uncertainty))
     }
 
-    /// The interval that holds a new observation at this point with probability `level`; none for a level outside
+    /// The interval that holds a new observation at this point with probability `level`; `None` for a level outside
     /// (0, 1), or an uncertainty that is negative.
     ///
     /// `uncertainty` is the standard uncertainty of the new observation in the measure in which those of the fitted
@@ -91,7 +91,7 @@ impl Fit {
     /// The prediction of a quantity whose `value` at the fitted parameters and whose `gradient`, one derivative per
     /// parameter, are given.
     ///
-    /// None if the gradient has not one number per parameter, if it has a component along a parameter that is not
+    /// `None` if the gradient has not one number per parameter, if it has a component along a parameter that is not
     /// determined, or without a degree of freedom. Parameters that are fixed or at a bound count as known.
     ///
     /// ```
@@ -121,7 +121,7 @@ impl Fit {
         Prediction::new(value, variance, deviation, self.rank(), self.degrees_of_freedom() as f64)
     }
 
-    /// gᵀ (Jᵀ J)⁺ g; none for a gradient of another length, or along a parameter that is not determined.
+    /// gᵀ (Jᵀ J)⁺ g; `None` for a gradient of another length, or along a parameter that is not determined.
     pub(crate) fn unit_variance(&self, gradient: &[f64]) -> Option<f64> {
         let is_lost = |(g, estimate): (&f64, &Estimate)| *g != 0.0 && estimate.status() == EstimateStatus::Undetermined;
         if gradient.len() != self.estimates().len() || gradient.iter().zip(self.estimates()).any(is_lost) {

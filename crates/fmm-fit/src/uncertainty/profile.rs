@@ -231,7 +231,7 @@ impl<P: Residuals + ?Sized> Profile<'_, P> {
         Ok(ProfileEnd::At(0.5 * (ends[0].0 + ends[1].0)))
     }
 
-    /// The best fit with the parameter held at `value`, from the points of `trace`; none if the model has no value.
+    /// The best fit with the parameter held at `value`, from the points of `trace`; `None` if the model has no value.
     fn point(&mut self, value: f64, trace: &[Trace]) -> Result<Option<Trace>, ProfileError> {
         let Ok(held) = Held::new(self.problem, [(self.index, value)]) else { return Ok(None) };
         let last = &trace[trace.len() - 1];

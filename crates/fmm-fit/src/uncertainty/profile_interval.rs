@@ -28,7 +28,7 @@ pub enum ProfileEnd {
 }
 
 impl ProfileEnd {
-    /// The value at which the interval ends; none if it is open.
+    /// The value at which the interval ends; `None` if it is open.
     pub fn value(self) -> Option<f64> {
         match self {
             Self::At(value) | Self::Bound(value) | Self::Edge(value) => Some(value),

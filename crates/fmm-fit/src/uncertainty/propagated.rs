@@ -1,4 +1,4 @@
-//! What uncertain inputs do to estimates, and why that may be impossible to tell.
+//! Covariance of estimates by uncertain inputs, and the reasons why there may be none.
 
 use crate::FitError;
 
@@ -16,7 +16,7 @@ impl PropagatedCovariance {
         Self { count, elements }
     }
 
-    /// Covariance of the estimates of parameters `i` and `j`, in the product of their units; none if either is fixed or
+    /// Covariance of the estimates of parameters `i` and `j`, in the product of their units; `None` if either is fixed or
     /// not determined.
     pub fn covariance(&self, i: usize, j: usize) -> Option<f64> {
         if i < self.count && j < self.count { self.elements[i * self.count + j] } else { None }
@@ -54,7 +54,7 @@ pub enum SensitivityError {
         "the second derivatives at the fitted values are not those of a minimum, so that these do not follow the inputs"
     )]
     NotAMinimum,
-    /// What was given as the covariance of the inputs is none.
+    /// The covariance of the inputs is not positive semidefinite, not symmetric, or of the wrong size.
     #[error("the covariance of the inputs {reason}; it needs {inputs} rows and columns")]
     InvalidCovariance {
         /// What is wrong with it.

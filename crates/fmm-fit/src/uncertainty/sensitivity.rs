@@ -1,4 +1,4 @@
-//! What values held fixed in a fit do to its estimates.
+//! Sensitivity of the estimates of a fit to values that are held fixed.
 
 use std::fmt;
 
@@ -64,7 +64,7 @@ use crate::{Fit, PropagatedCovariance, Residuals, SensitivityError};
 pub struct Sensitivity {
     pub(crate) parameters: Vec<Parameter>,
     pub(crate) inputs: Vec<usize>,
-    /// For each parameter and input, row by row; none for inputs themselves and for what is not determined.
+    /// For each parameter and input, row by row; `None` for inputs themselves and for what is not determined.
     pub(crate) coefficients: Vec<Option<f64>>,
 }
 
@@ -100,7 +100,7 @@ impl Sensitivity {
     }
 
     /// Derivative of the estimate of parameter `estimate` by the fixed value of parameter `input`, in the quotient of
-    /// their units; none if the one is fixed or not determined, or if the other is not fixed.
+    /// their units; `None` if the one is fixed or not determined, or if the other is not fixed.
     pub fn coefficient(&self, estimate: usize, input: usize) -> Option<f64> {
         let column = self.inputs.iter().position(|&index| index == input)?;
         self.coefficients.get(estimate * self.inputs.len() + column).copied().flatten()

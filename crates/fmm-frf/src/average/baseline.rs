@@ -1,4 +1,4 @@
-//! What a sensor shows when nothing happens.
+//! Baseline: the reading of a sensor when nothing happens.
 
 use std::ops::Range;
 

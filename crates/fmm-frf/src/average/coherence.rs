@@ -1,4 +1,4 @@
-//! How much of a response comes from the force.
+//! Coherence: the share of a response that comes from the force.
 
 use std::sync::Arc;
 
@@ -39,7 +39,7 @@ impl Coherence {
         self.averages > 1.0
     }
 
-    /// The median of γ² over the lines from `low` to `high` (Hz), both ends included; none if no line lies there.
+    /// The median of γ² over the lines from `low` to `high` (Hz), both ends included; `None` if no line lies there.
     pub fn median(&self, low: f64, high: f64) -> Option<f64> {
         let lines = self.frequencies.iter().zip(&self.values);
         let inside = lines.filter(|(frequency, _)| (low..=high).contains(*frequency));

@@ -1,4 +1,4 @@
-//! Which quotient of averaged spectra is the response.
+//! Estimators of a response: quotients of averaged spectra.
 
 use fmm_record::Complex64;
 

@@ -1,4 +1,4 @@
-//! How trials are treated and averaged.
+//! Options of an average of trials.
 
 use crate::average::window::Windows;
 use crate::{Baseline, ExponentialWindow, ForceWindow, FrfError, ModelError, Taper};

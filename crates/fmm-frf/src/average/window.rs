@@ -143,7 +143,7 @@ pub(crate) struct Windows {
 }
 
 impl Windows {
-    /// Weights of the response for `length` samples every `interval` (s); none if all are one.
+    /// Weights of the response for `length` samples every `interval` (s); `None` if all are one.
     pub(crate) fn response_weights(&self, length: usize, interval: f64) -> Option<Vec<f64>> {
         if self.taper == Taper::Rectangular && self.exponential.is_none() {
             return None;
@@ -153,7 +153,7 @@ impl Windows {
         Some((0..length).map(weight).collect())
     }
 
-    /// Weights of the force; none if all are one.
+    /// Weights of the force; `None` if all are one.
     ///
     /// # Errors
     /// [`FrfError::Outside`] if none but zero is left.

@@ -1,4 +1,4 @@
-//! What a blow looks like: level, width, and whether it is one clean pulse.
+//! Pulse of a blow: level, width, further hits.
 
 use std::ops::Range;
 

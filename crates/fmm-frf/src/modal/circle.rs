@@ -131,7 +131,7 @@ fn starting_mode(band: &Band, angles: &[f64]) -> Option<[f64; 3]> {
     Some([1.0, *estimates.get(estimates.len() / 2)?, rotation])
 }
 
-/// Angles on the circle against those of a mode (q₀, q₁, α), linearised; none for a mode that does not exist.
+/// Angles on the circle against those of a mode (q₀, q₁, α), linearised; `None` for a mode that does not exist.
 fn sweep(ratios: &[f64], angles: &[f64], &[q0, q1, rotation]: &[f64; 3]) -> Option<Equations<3>> {
     if !(q0 > 0.0 && q1 > 0.0) {
         return None;

@@ -159,7 +159,7 @@ impl FrequencyResponse {
     }
 
     /// Frequency (Hz) and magnitude (SI unit of the form) of the line of largest magnitude, the first of equals;
-    /// none if there are no lines.
+    /// `None` if there are no lines.
     pub fn peak(&self) -> Option<(f64, f64)> {
         let lines = self.frequencies.iter().zip(&self.values).map(|(&frequency, value)| (frequency, value.norm()));
         lines.reduce(|highest, line| if line.1 > highest.1 { line } else { highest })

@@ -1,4 +1,4 @@
-//! Which lines of a response stand out.
+//! Resonances: lines of a response that stand out.
 
 use crate::FrequencyResponse;
 

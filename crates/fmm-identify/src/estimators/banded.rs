@@ -13,7 +13,7 @@ pub(crate) struct BandedFactor {
 }
 
 impl BandedFactor {
-    /// The factor of the matrix of `count` rows with `element(i, j)` for i − width ≤ j ≤ i; none unless it is positive
+    /// The factor of the matrix of `count` rows with `element(i, j)` for i − width ≤ j ≤ i; `None` unless it is positive
     /// definite beyond rounding.
     pub(crate) fn of(count: usize, width: usize, element: impl Fn(usize, usize) -> f64) -> Option<Self> {
         let mut factor = Self { rows: Vec::with_capacity(count), width };

@@ -50,7 +50,7 @@ struct Equation {
 
 impl Equations {
     /// The equations of `motion`, their noise being that of about this `damping` (1/s) and `stiffness` (1/s²); the
-    /// `offset` enters |x′| x′. None if they are not independent.
+    /// `offset` enters |x′| x′. `None` if they are not independent.
     pub(crate) fn of(motion: &Motion<'_>, damping: f64, stiffness: f64, offset: f64) -> Option<Self> {
         let rows = motion.equations(damping, stiffness, offset);
         let factor = BandedFactor::of(rows.len(), WIDTH, |i, j| product(&rows[i], &rows[j]))?;

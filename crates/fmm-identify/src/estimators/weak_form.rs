@@ -94,7 +94,7 @@ pub struct WeakFormEstimate {
     /// Half swings used, pieces at the ends included.
     pub half_swings: usize,
     /// White noise (unit of the record) that would explain the misfit of the equations; well above the noise of the record
-    /// it says that the law misses something. None without more equations than unknowns.
+    /// it says that the law misses something. `None` without more equations than unknowns.
     pub explained_noise: Option<f64>,
     /// The fit of the equations: covariance, correlations, rank.
     pub fit: Fit,

@@ -112,7 +112,7 @@ impl Experiment {
         self.load_factor
     }
 
-    /// What drives it; none if it vibrates freely.
+    /// What drives it; `None` if it vibrates freely.
     pub fn drive(&self) -> Option<&Drive> {
         self.driven.as_ref().map(|driven| &driven.drive)
     }
@@ -167,7 +167,7 @@ impl Experiment {
         self.driven.as_ref().map_or_else(|| self.guess.initial_state(dissipation), |driven| driven.guess.initial)
     }
 
-    /// Corner frequency of the sensor (Hz), or where a fit of it begins; none without a filter.
+    /// Corner frequency of the sensor (Hz), or where a fit of it begins; `None` without a filter.
     pub(crate) fn first_corner(&self) -> Option<f64> {
         let corner = self.sensor.first_corner(self.guess.frequency())?;
         Some(if self.sensor.has_free_corner() { self.corner_bounds().clamp(corner) } else { corner })
@@ -223,7 +223,7 @@ impl Experiment {
         &self.kept
     }
 
-    /// Samples in a row among those that are kept over which the values stay within one step of the converter; none if the steps do
+    /// Samples in a row among those that are kept over which the values stay within one step of the converter; empty if the steps do
     /// not exceed the noise.
     pub(crate) fn stays(&self) -> Vec<Range<usize>> {
         let Some(step) = self.summary.resolution.filter(|_| self.summary.is_rounded()) else { return Vec::new() };
@@ -243,7 +243,7 @@ impl Experiment {
         stays
     }
 
-    /// The same ring-down up to its last peak; none if that leaves nothing out or too little.
+    /// The same ring-down up to its last peak; `None` if that leaves nothing out or too little.
     ///
     /// In the displacement a stop one swing too early or too late shows as a jump, over which no gradient leads. Without
     /// the end of the motion there is no such jump.
@@ -260,7 +260,7 @@ impl Experiment {
         self.up_to(end).unwrap_or_else(|| self.clone())
     }
 
-    /// The part up to `end` (s); none if that leaves nothing out or too little.
+    /// The part up to `end` (s); `None` if that leaves nothing out or too little.
     fn up_to(&self, end: f64) -> Option<Self> {
         let record = self.record.crop(self.record.start(), end).ok()?;
         let count = record.len();

@@ -1,4 +1,4 @@
-//! What adds itself to the measured motion without being motion: hum and drift.
+//! Disturbances beside the measured motion: hum and drift.
 
 use std::f64::consts::TAU;
 

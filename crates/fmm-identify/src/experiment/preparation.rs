@@ -1,4 +1,4 @@
-//! How a record is made ready for identification, and what was seen on the way.
+//! Preparation of a record for identification, and a summary of what it shows.
 
 use std::fmt;
 
@@ -85,7 +85,7 @@ pub struct RecordSummary {
     pub quantity: Quantity,
     /// Its unit.
     pub unit: String,
-    /// The offset that is held, in the unit of the record; none if it is fitted.
+    /// The offset that is held, in the unit of the record; `None` if it is fitted.
     pub held_offset: Option<f64>,
     /// Relative standard uncertainty of the instrument's gain (1).
     pub gain_uncertainty: f64,
@@ -101,7 +101,7 @@ pub struct RecordSummary {
     pub noise: f64,
     /// Step of the converter, in the unit of the record, if the values lie on a lattice.
     pub resolution: Option<f64>,
-    /// When the values come to rest within their noise (s), without any law; none if the record ends before.
+    /// When the values come to rest within their noise (s), without any law; `None` if the record ends before.
     pub rest_from: Option<f64>,
     /// Isolated samples that were left out.
     pub spikes: usize,

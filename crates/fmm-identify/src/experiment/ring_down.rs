@@ -177,7 +177,7 @@ fn beginning(swings: &Swings, rest_end: f64, quantity: Quantity) -> f64 {
     candidates.find(|time| *time > rest_end).unwrap_or(rest_end)
 }
 
-/// The velocity of an `acceleration`, less what drifts more slowly than a period; none if nothing swings.
+/// The velocity of an `acceleration`, less what drifts more slowly than a period; `None` if nothing swings.
 ///
 /// Of a record that ends in rest, the rest tells the offset and that the velocity is zero. Otherwise the integral of an offset is a
 /// slope, and that of noise a walk: both are in the mean over a period, the motion is not.
@@ -221,7 +221,7 @@ fn velocity_of(acceleration: &Record) -> Option<Record> {
     Record::new(velocity.start(), velocity.interval(), values, Quantity::Velocity, velocity.unit()).ok()
 }
 
-/// Mean of the last eighth of an `acceleration` and the first sample of the rest that it is part of; none if it moves there.
+/// Mean of the last eighth of an `acceleration` and the first sample of the rest that it is part of; `None` if it moves there.
 fn offset_of_rest(acceleration: &Record) -> Option<(f64, usize)> {
     /// Standard deviations of a mean.
     const FAR: f64 = 5.0;
@@ -306,7 +306,7 @@ fn between(range: Range<usize>, holes: &[Range<usize>]) -> Vec<Range<usize>> {
 }
 
 /// When `record` comes to rest (s): from there on its values stay within their noise and a `resolution` for at least half a period of
-/// the motion; none if they do not.
+/// the motion; `None` if they do not.
 fn rest_from(record: &Record, resolution: f64, frequency: f64) -> Option<f64> {
     /// The range of a thousand normal values, in standard deviations, with some to spare.
     const RANGE: f64 = 8.0;

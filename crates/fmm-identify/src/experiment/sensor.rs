@@ -31,7 +31,7 @@ pub struct Sensor {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct LowPass {
     order: usize,
-    /// Hz; none if it is to be found.
+    /// Hz; `None` if it is to be found.
     corner: Option<f64>,
 }
 
@@ -81,7 +81,7 @@ impl Sensor {
         self.low_pass.is_some_and(|filter| filter.corner.is_none())
     }
 
-    /// Corner frequency (Hz) to begin with for a motion of this `frequency` (Hz); none without a filter.
+    /// Corner frequency (Hz) to begin with for a motion of this `frequency` (Hz); `None` without a filter.
     pub(crate) fn first_corner(&self, frequency: f64) -> Option<f64> {
         self.low_pass.map(|filter| filter.corner.unwrap_or(FIRST_CORNER * frequency))
     }
@@ -130,7 +130,7 @@ pub(crate) struct Filter {
 #[derive(Debug, Clone, Copy)]
 struct Section {
     angular: f64,
-    /// ζ; none of a real pole.
+    /// ζ; `None` for a real pole.
     damping: Option<f64>,
     /// What a free motion of [y, y′] becomes within an interval.
     step: [[f64; 2]; 2],

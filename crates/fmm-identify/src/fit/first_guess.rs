@@ -41,7 +41,7 @@ const ENOUGH_TURNS: usize = 4;
 /// Shifts of the centre by friction, as shares of the amplitude, to begin with where the amplitudes do not tell.
 const SHARES: [f64; 6] = [0.0, 0.03, 0.06, 0.12, 0.2, 0.3];
 
-/// Slope and intercept of the least-squares line through `points`; none for fewer than two distinct abscissae.
+/// Slope and intercept of the least-squares line through `points`; `None` for fewer than two distinct abscissae.
 fn line(points: impl Iterator<Item = (f64, f64)> + Clone) -> Option<(f64, f64)> {
     let count = points.clone().count() as f64;
     let mean = |of: fn((f64, f64)) -> f64| points.clone().map(of).sum::<f64>() / count;

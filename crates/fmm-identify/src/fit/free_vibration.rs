@@ -19,7 +19,7 @@ pub(crate) struct FreeVibration<D> {
 }
 
 impl<D: Scalar> FreeVibration<D> {
-    /// From f₀ (Hz), c/m (1/s) and the initial state; none at or above critical damping.
+    /// From f₀ (Hz), c/m (1/s) and the initial state; `None` at or above critical damping.
     pub(crate) fn new(frequency: D, damping: D, position: D, velocity: D) -> Option<Self> {
         let (natural, rate) = (frequency * (2.0 * PI), damping * 0.5);
         let square = natural * natural - rate * rate;

@@ -50,7 +50,7 @@ impl FittedMotion {
         decided.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
     }
 
-    /// When the contact stops for good, on the time axis of the record (s); none if it does not before the end.
+    /// When the contact stops for good, on the time axis of the record (s); `None` if it does not before the end.
     pub fn stop_time(&self) -> Option<f64> {
         self.stop_time
     }
@@ -213,7 +213,7 @@ pub(crate) fn identify_by(
     Ok(identification)
 }
 
-/// By how many standard uncertainties the linear damping would leave the bound that it lies on; none if it lies on none.
+/// By how many standard uncertainties the linear damping would leave the bound that it lies on; `None` if it lies on none.
 fn pull_at_bound(problem: &Problem<'_>, fit: &Fit, covariance: &Covariance) -> Option<f64> {
     let index = fit.estimates().iter().position(|estimate| estimate.name() == LINEAR)?;
     fit.estimates()[index].status().is_at_bound().then_some(())?;
@@ -221,7 +221,7 @@ fn pull_at_bound(problem: &Problem<'_>, fit: &Fit, covariance: &Covariance) -> O
     Some(step / covariance.relaxed(index)?.sqrt())
 }
 
-/// F/m at rest that fitted `values` stand for: the sliding level of the law with what lies above it; none for laws without.
+/// F/m at rest that fitted `values` stand for: the sliding level of the law with what lies above it; `None` for laws without.
 fn friction_at_rest(layout: &Layout, values: &[f64]) -> Option<f64> {
     let parameters = || layout.family.fitted().zip(&values[layout.law..]);
     let (_, level) = parameters().nth(layout.family.level()?)?;
@@ -254,7 +254,7 @@ impl Identification {
         &self.terms
     }
 
-    /// F/m at rest, in the unit of the friction per mass: the sliding level with what the law adds to it at zero speed; none for
+    /// F/m at rest, in the unit of the friction per mass: the sliding level with what the law adds to it at zero speed; `None` for
     /// laws without a level.
     pub fn friction_at_rest(&self) -> Option<f64> {
         self.friction_at_rest
@@ -318,7 +318,7 @@ impl Identification {
     }
 
     /// What the law says for every sample of record number `record` of `decays`, which must be those of the
-    /// identification; none for another number.
+    /// identification; `None` for another number.
     pub fn model(&self, decays: &[Experiment], record: usize) -> Option<Vec<f64>> {
         if record >= decays.len() || decays.len() != self.motions.len() {
             return None;
@@ -369,7 +369,7 @@ impl Identification {
         self.covariance.degrees_of_freedom() + self.fit.rank() as f64
     }
 
-    /// What the parameters of this fit to `problem` can follow, those on a bound included; none if the derivatives cannot be had.
+    /// What the parameters of this fit to `problem` can follow, those on a bound included; `None` if the derivatives cannot be had.
     pub(crate) fn tangent(&self, problem: &Problem<'_>) -> Option<Tangent> {
         Tangent::of(problem, &self.fit)
     }

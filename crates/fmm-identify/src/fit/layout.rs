@@ -1,4 +1,4 @@
-//! Which parameters an identification has, in which order, and how a simulation is made of them.
+//! Parameters of an identification in their order, and the motion that they describe.
 
 use std::borrow::Cow;
 use std::f64::consts::PI;

@@ -15,7 +15,7 @@ pub(crate) struct Tangent {
 }
 
 impl Tangent {
-    /// That of `fit`, which is one to `problem`; none if the derivatives cannot be had.
+    /// That of `fit`, which is one to `problem`; `None` if the derivatives cannot be had.
     pub(crate) fn of(problem: &Problem<'_>, fit: &Fit) -> Option<Self> {
         let known: Vec<usize> = (0..fit.values().len()).filter(|i| fit.relaxed_covariance(*i, *i).is_some()).collect();
         let columns = problem.columns(fit.values(), &known).ok()?;

@@ -39,7 +39,7 @@ pub struct Validation {
 }
 
 impl Validation {
-    /// The one over the other (1); none if the force does not change.
+    /// The one over the other (1); `None` if the force does not change.
     pub fn share(&self) -> Option<f64> {
         (self.force > 0.0).then(|| self.rms / self.force)
     }
@@ -250,12 +250,12 @@ impl ForceIdentification {
         self.force
     }
 
-    /// Root mean square of the residuals over the standard deviation of the forces (1); none if these do not change.
+    /// Root mean square of the residuals over the standard deviation of the forces (1); `None` if these do not change.
     fn share(&self) -> Option<f64> {
         Validation { rms: self.rms_residual(), force: self.force }.share()
     }
 
-    /// The force that was found at each sample of `record`, to which nothing is fitted but where its bristles begin; none where a delay
+    /// The force that was found at each sample of `record`, to which nothing is fitted but where its bristles begin; `None` where a delay
     /// asks for a motion before or after what was measured, and at a sample that [does not count](identify_force).
     ///
     /// # Errors

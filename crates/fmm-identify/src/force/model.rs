@@ -1,4 +1,4 @@
-//! What a force along a motion is made of.
+//! Model of a force along a motion.
 
 use fmm_model::{Bounds, Parameter, Unit};
 
@@ -29,7 +29,7 @@ use crate::{Candidate, ForceRecord, IdentifyError};
 pub struct ForceModel {
     pub(crate) law: Candidate,
     has: [bool; Part::ALL.len()],
-    /// The longest delay to be looked for (s); none for twenty samples.
+    /// The longest delay to be looked for (s); `None` for twenty samples.
     longest: Option<f64>,
 }
 

@@ -122,7 +122,7 @@ impl<'a> ForceProblem<'a> {
         self.layout.shapes
     }
 
-    /// The place of the deflection at the beginning of `record`; none if it is not fitted.
+    /// The place of the deflection at the beginning of `record`; `None` if it is not fitted.
     fn deflection(&self, record: usize) -> Option<usize> {
         self.layout.deflection.map(|first| first + record)
     }
@@ -232,7 +232,7 @@ impl<'a> ForceProblem<'a> {
         self.records.iter().zip(&self.rows).map(of_record).sum()
     }
 
-    /// What the model says of the force at the samples of `record` that are compared: none where it says none.
+    /// What the model says of the force at the samples of `record` that are compared: `None` for a sample of which it says nothing.
     pub(crate) fn predicted(&self, record: usize, p: &[f64]) -> Result<Vec<Option<f64>>, EvaluationError> {
         let mut residuals = vec![0.0; self.len()];
         self.residuals(p, &mut residuals)?;

@@ -189,7 +189,7 @@ impl ForceRecord {
         (self.motion.times[self.len() - 1] - self.motion.times[0]) / (self.len() - 1) as f64
     }
 
-    /// Its first quarter, if that is long enough to show several reversals; none otherwise.
+    /// Its first quarter, if that is long enough to show several reversals; `None` otherwise.
     pub(crate) fn beginning(&self) -> Option<Self> {
         /// Fewest samples of a beginning,
         const FEWEST: usize = 2000;

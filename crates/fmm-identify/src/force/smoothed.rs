@@ -58,7 +58,7 @@ impl Smoothed {
     }
 }
 
-/// The cubic of least squares through `width` neighbours to either side of sample `at`, as far as there are any; none if they do not
+/// The cubic of least squares through `width` neighbours to either side of sample `at`, as far as there are any; `None` if they do not
 /// determine it.
 fn cubic(times: &[f64], values: &[f64], at: usize, width: usize) -> Option<Cubic> {
     const ORDER: usize = 4;

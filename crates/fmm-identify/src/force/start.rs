@@ -1,4 +1,4 @@
-//! Where a fit of forces along motions begins.
+//! Start values of a fit of forces along motions.
 
 use fmm_fit::{EvaluationError, Residuals};
 use fmm_friction::Role;

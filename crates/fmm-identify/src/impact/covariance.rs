@@ -1,4 +1,4 @@
-//! How uncertain what was found in blows is: by noise, and by everything that was held.
+//! Covariance of the estimates of blows: by noise, and by everything that is held.
 
 use std::ops::Range;
 
@@ -21,7 +21,7 @@ pub(crate) struct ImpactCovariance {
     sensitivity: Option<Sensitivity>,
     inputs: Vec<f64>,
     propagated: Option<PropagatedCovariance>,
-    /// Why it is not known how the estimates follow what was held.
+    /// Reason why the sensitivities of the estimates to fixed inputs are not known.
     pub(crate) unpropagated: Option<String>,
     /// Root mean square of the residuals, and of what remains of them when everything uncertain is allowed for (m/s).
     pub(crate) residual: f64,

@@ -249,7 +249,7 @@ impl ImpactIdentification {
     }
 
     /// Velocity (m/s) that the law gives for every sample of `trial`, which must be one of the `trials` of the identification;
-    /// none for another number.
+    /// `None` for another number.
     pub fn model(&self, trials: &[ImpactTrial], trial: usize) -> Option<Vec<f64>> {
         if trial >= trials.len() || trials.len() != self.trials.len() {
             return None;

@@ -1,4 +1,4 @@
-//! What is known of a machine that is hit.
+//! Machine that is hit: all that is known of it.
 
 use fmm_model::{ModelError, Oscillator};
 

@@ -1,4 +1,4 @@
-//! How blows are fitted.
+//! Options of a fit of blows.
 
 use fmm_fit::Options;
 use fmm_model::ModelError;

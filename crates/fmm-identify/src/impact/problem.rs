@@ -152,7 +152,7 @@ impl<'a> ImpactProblem<'a> {
         self.trials
     }
 
-    /// Frequencies (Hz) of the lines of `trial` that lie in the band; none for a trial that is not there.
+    /// Frequencies (Hz) of the lines of `trial` that lie in the band; `None` for a trial that is not there.
     pub fn frequencies(&self, trial: usize) -> impl Iterator<Item = f64> + '_ {
         self.lines.get(trial).into_iter().flat_map(Lines::frequencies)
     }

@@ -1,4 +1,4 @@
-//! What is known of the pulses beforehand, as residuals of the fit.
+//! Prior knowledge of the pulses, as residuals of the fit.
 
 use crate::impact::parameters::{PER_TRIAL, Parameters};
 

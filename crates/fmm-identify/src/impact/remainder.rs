@@ -1,4 +1,4 @@
-//! What remains of the residuals when everything that is held is allowed to be as uncertain as it is.
+//! Remainder of the residuals after everything uncertain that is held has been allowed for.
 
 use std::ops::Range;
 

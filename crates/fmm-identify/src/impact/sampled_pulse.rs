@@ -1,4 +1,4 @@
-//! What samples leave open of a pulse: its impulse, and when it acts.
+//! Uncertainty of a sampled pulse: of its impulse and of its time.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What a law says of a blow: its motion simulated, seen as samples and lines, with derivatives.
+//! Simulation of a blow by a law, as samples and lines, with derivatives.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Where a fit of blows begins.
+//! Start values of a fit of blows.
 
 use std::f64::consts::{PI, TAU};
 
@@ -14,7 +14,7 @@ const DAMPING_RATIO: f64 = 1e-3;
 const VISCOUS_SHARE: f64 = 0.1;
 
 impl ImpactProblem<'_> {
-    /// Height (m/N) of the peak of the measured receptance of `trial` in the band; none for a trial that is not there.
+    /// Height (m/N) of the peak of the measured receptance of `trial` in the band; `None` for a trial that is not there.
     ///
     /// Of a record that ends before the motion it is too low.
     pub fn peak_receptance(&self, trial: usize) -> Option<f64> {
@@ -28,7 +28,7 @@ impl ImpactProblem<'_> {
     }
 
     /// Friction force (N) that the closed form of [`friction_force_of_viscous_coulomb_impact`] makes of the receptance peak of
-    /// `trial`; none for a trial that is not there, or whose peak is higher than the damping alone allows.
+    /// `trial`; `None` for a trial that is not there, or whose peak is higher than the damping alone allows.
     ///
     /// It takes friction as independent of velocity, and the record as long enough for the motion to end. With that it is good to
     /// 0.5 % and some more between lines that miss the peak.

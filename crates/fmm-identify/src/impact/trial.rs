@@ -92,7 +92,7 @@ pub struct ImpactSummary {
     pub speed: f64,
     /// Samples of the velocity that were bridged, as isolated ones far off their neighbours.
     pub spikes: usize,
-    /// When motion is last seen above the noise (s); none if that is so near the end of the record that it may go on.
+    /// When motion is last seen above the noise (s); `None` if that is so near the end of the record that it may go on.
     pub rest: Option<f64>,
 }
 

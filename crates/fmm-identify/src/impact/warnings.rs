@@ -1,4 +1,4 @@
-//! What limits what was found in blows.
+//! Warnings about the findings of blows.
 
 use std::f64::consts::PI;
 use std::fmt;

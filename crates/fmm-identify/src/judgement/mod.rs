@@ -80,7 +80,7 @@ pub(crate) fn shortcomings(place: usize, candidates: &[Candidate], identificatio
 }
 
 impl Judgement {
-    /// The judgement of `candidates` by their `identifications` from the same records; none without any.
+    /// The judgement of `candidates` by their `identifications` from the same records; `None` without any.
     ///
     /// ```text
     /// D_i = (S_i − S_b)/σ_i²,     σ_i² = δᵀΣδ/δᵀδ,     δ = r_i − r_b

@@ -130,7 +130,7 @@ pub(crate) fn signs(base: &Identification, decays: &[Experiment]) -> Result<Vec<
     Ok(changes.into_iter().filter_map(|(addition, changed)| sign(base, &tangent, addition, &changed)).collect())
 }
 
-/// The sign for an `addition` whose small step makes the residuals `changed`; none if the parameters can follow it, or if the
+/// The sign for an `addition` whose small step makes the residuals `changed`; `None` if the parameters can follow it, or if the
 /// residuals are rounding.
 fn sign(base: &Identification, tangent: &Tangent, addition: Addition, changed: &[f64]) -> Option<Sign> {
     /// What is left below this share is rounding and curvature.

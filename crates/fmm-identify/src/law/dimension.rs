@@ -1,4 +1,4 @@
-//! What the parameters of a law scale with.
+//! Scales of the parameters of a law, by their units.
 
 use fmm_friction::{LawParameter, Role};
 use fmm_model::Unit;
@@ -32,7 +32,7 @@ pub(crate) struct Powers {
 }
 
 impl Powers {
-    /// Of the unit in which `law` states `parameter`; none for one of which it is not known what it scales with.
+    /// Of the unit in which `law` states `parameter`; `None` for one of which it is not known what it scales with.
     fn of(law: &Law, parameter: &LawParameter) -> Option<Self> {
         let exponent = |symbol: &str| {
             let named = |parameter: &&LawParameter| parameter.parameter().symbol() == symbol;
@@ -42,7 +42,7 @@ impl Powers {
         Some(Self { position: unit.length() + unit.angle(), time: unit.time(), factor: unit.factor() })
     }
 
-    /// The power of a speed that it is; none if it is none.
+    /// The power of a speed that it is; `None` if it is none.
     pub(crate) fn of_speed(&self) -> Option<f64> {
         (self.position != 0.0 && self.time == -self.position).then_some(self.position)
     }

@@ -25,7 +25,7 @@ struct Point {
 const SPEEDS: u32 = 40;
 
 impl FrictionCurve {
-    /// The curve of a law in `layout` with `terms` by fitted `values`, up to the `peak` speed; none if the law states none. The
+    /// The curve of a law in `layout` with `terms` by fitted `values`, up to the `peak` speed; `None` if the law states none. The
     /// speeds lie closer near rest, where laws bend.
     pub(crate) fn of(layout: &Layout, terms: &Terms, values: &[f64], peak: f64) -> Option<Self> {
         let at = |(step, losing): (u32, bool)| {
@@ -38,7 +38,7 @@ impl FrictionCurve {
     }
 
     /// The values of a law in `layout` with `terms` that follow this curve best, of those that a search from `starts` finds; what
-    /// lies outside damping and law is left as it is. None if the law states no curve.
+    /// lies outside damping and law is left as it is. `None` if the law states no curve.
     pub(crate) fn followed(
         &self,
         layout: &Layout,

@@ -19,7 +19,7 @@ use dimension::is_coefficient;
 /// Directions of derivative that one simulation carries; a law with more parameters takes several.
 pub(crate) const DIRECTIONS: usize = 6;
 
-/// A motion of which everything is said but what the values of the law mean.
+/// Inputs of a simulation: machine, load and initial state as they are, the law as plain parameter values.
 #[derive(Debug, Clone)]
 pub(crate) struct Motion<D> {
     pub(crate) oscillator: Oscillator<D>,
@@ -89,7 +89,7 @@ impl Law {
     }
 
     /// Friction of steady sliding by the law of these [`fitted`](Self::fitted) values, in their unit of force, at a `speed` that grows
-    /// or, if it is `losing`, falls; none if the family does not say.
+    /// or, if it is `losing`, falls; `None` if the family does not say.
     pub(crate) fn steady(&self, fitted: &[f64], speed: f64, losing: bool) -> Option<f64> {
         (self.steady)(&self.values(fitted), speed, losing)
     }
@@ -104,7 +104,7 @@ impl Law {
         Self { fits_breakaway: true, ..self }
     }
 
-    /// The static level that is held; none if it is fitted or has none of its own.
+    /// The static level that is held; `None` if it is fitted or has none of its own.
     pub(crate) fn held_breakaway(&self) -> impl Iterator<Item = &'static LawParameter> + use<> {
         let is_held = !self.fits_breakaway;
         self.parameters.iter().filter(move |parameter| is_held && parameter.role() == Role::Breakaway)
@@ -127,14 +127,14 @@ impl Law {
         self.fitted().position(is_named).or_else(|| self.fitted().position(is_level))
     }
 
-    /// The share of the largest speed at which the law typically bends, of the first parameter that says so; none for laws without.
+    /// The share of the largest speed at which the law typically bends, of the first parameter that says so; `None` for laws without.
     pub(crate) fn bend(&self) -> Option<f64> {
         self.fitted().filter(|parameter| parameter.role() == Role::Shape).find_map(|parameter| {
             self.powers(parameter).of_speed().map(|power| parameter.typical().powf(power.recip()))
         })
     }
 
-    /// Name of what is left of it without its viscous part; none if that is nothing.
+    /// Name of what is left of it without its viscous part; `None` if that is nothing.
     pub(crate) fn dry_name(&self) -> Option<&'static str> {
         let is_slope = |parameter: &LawParameter| parameter.role() == Role::Slope;
         let slopes = self.parameters.iter().filter(|parameter| is_slope(parameter)).count();

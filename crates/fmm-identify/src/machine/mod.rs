@@ -1,4 +1,4 @@
-//! What is known about the machine besides its record.
+//! Machine: knowledge beside the records.
 
 mod known;
 pub(crate) mod terms;

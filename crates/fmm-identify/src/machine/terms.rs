@@ -166,7 +166,7 @@ impl Terms {
         self.has[term as usize]
     }
 
-    /// The place of `term` among those that are fitted; none if it is not.
+    /// The place of `term` among those that are fitted; `None` if it is not.
     pub(crate) fn place(&self, term: Term) -> Option<usize> {
         self.iter().position(|fitted| fitted == term)
     }

@@ -89,7 +89,7 @@ impl Finding {
         self.value
     }
 
-    /// u, its standard uncertainty, in the unit of the parameter; none if the record does not determine it.
+    /// u, its standard uncertainty, in the unit of the parameter; `None` if the record does not determine it.
     pub fn uncertainty(&self) -> Option<f64> {
         self.uncertainty
     }
@@ -101,7 +101,7 @@ impl Finding {
 
     /// The interval that covers the quantity with probability `level`, in the unit of the parameter: value ± k u by Student's t
     /// with the [degrees of freedom](Self::degrees_of_freedom) (JCGM 100:2008, G.4), as far as the bounds of the parameter allow; of
-    /// a value on its bound what lies within the bounds. None without an uncertainty, for what was held, or for a level outside
+    /// a value on its bound what lies within the bounds. `None` without an uncertainty, for what was held, or for a level outside
     /// (0, 1).
     pub fn interval(&self, level: f64) -> Option<(f64, f64)> {
         if self.origin == Origin::Fitted(EstimateStatus::Fixed) {
@@ -285,7 +285,7 @@ pub(crate) fn findings(
     findings
 }
 
-/// gᵀ V g over the fitted values, and that with the variances of the inputs; none if a value that matters has none.
+/// gᵀ V g over the fitted values, and that with the variances of the inputs; `None` if a value that matters has none.
 fn variances(
     covariance: impl Fn(usize, usize) -> Option<f64>,
     gradient: &[f64],

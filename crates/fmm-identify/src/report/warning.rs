@@ -1,4 +1,4 @@
-//! What a reader of the results has to know before using them.
+//! Warnings: limits of the results that a reader has to know.
 
 use std::fmt;
 
@@ -255,7 +255,7 @@ pub enum Warning {
         /// By what share a peak of the receptance is too low for that (1).
         lost: f64,
     },
-    /// What the uncertainty of what was held does to the findings could not be found out.
+    /// Uncertainty of fixed inputs that could not be propagated to the findings.
     InputsNotPropagated {
         /// Why, as a sentence.
         reason: String,

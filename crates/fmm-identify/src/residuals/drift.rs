@@ -16,7 +16,7 @@ const NEAR: f64 = 2.0;
 const BETWEEN: [f64; 6] = [1.5, 2.5, 3.5, 4.5, 5.5, 6.5];
 
 /// The `decays` with a slow polynomial to be fitted beside the motion of each whose residuals, those of `found`, hold more of it than of
-/// vibrations just above the motion; none if no record shows any.
+/// vibrations just above the motion; `None` if no record shows any.
 ///
 /// ```text
 /// F = Σ (qᵀr)²/3 : Σ (cᵀr)²/12,     q polynomials of degree 1 to 3, c cosines and sines at 1.5, 2.5 … 6.5 f₀

@@ -1,4 +1,4 @@
-//! What a fit leaves of the records: its noise, its structure, and what that says of sensor, instrument and surroundings.
+//! Residuals of a fit: noise, structure, and signs of sensor, instrument and surroundings.
 
 mod autoregression;
 pub(crate) mod correlation;

@@ -68,7 +68,7 @@ struct SeriesNoise {
     /// Independent ordinates of the periodogram behind each line of the density.
     ordinates: Vec<f64>,
     is_white: bool,
-    /// The residuals of each stay, none where no steps exceed the noise.
+    /// The residuals of each stay; empty where no steps exceed the noise.
     stays: Vec<Stay>,
 }
 

@@ -23,7 +23,7 @@ const EVIDENCE: f64 = 6.0;
 const STEPS: usize = 4;
 
 impl NoiseGrowth {
-    /// The growth that `residuals` beside `signal`, with a `period` in samples, show; none if they show none.
+    /// The growth that `residuals` beside `signal`, with a `period` in samples, show; `None` if they show none.
     pub(crate) fn of(residuals: &[f64], signal: &[f64], period: f64) -> Option<Self> {
         let squares: Vec<f64> = residuals.iter().map(|r| r * r).collect();
         let constant = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
@@ -91,7 +91,7 @@ fn likelihood(squares: &[f64], variance: impl Fn(usize) -> f64) -> f64 {
 }
 
 /// The variances of the constant part and of the `active` ones of two growing parts, by Fisher's scoring from a `constant`
-/// variance; none if a part comes out at zero.
+/// variance; `None` if a part comes out at zero.
 fn variances(
     squares: &[f64],
     instantaneous: &[f64],

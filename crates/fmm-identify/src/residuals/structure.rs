@@ -1,4 +1,4 @@
-//! Whether the residuals are noise, and the covariance of the estimates either way.
+//! Structure of the residuals, and the covariance of the estimates with or without it.
 
 use fmm_fit::{EvaluationError, Fit, autocorrelation_time};
 
@@ -166,7 +166,7 @@ impl Covariance {
         ResidualNoise::of(fit.residuals(), &series)
     }
 
-    /// Covariance of parameters `i` and `j`; none where the record does not determine them, or for those on a bound.
+    /// Covariance of parameters `i` and `j`; `None` where the record does not determine them, or for those on a bound.
     pub(crate) fn get(&self, i: usize, j: usize) -> Option<f64> {
         if self.is_inside[i] && self.is_inside[j] { self.elements[i * self.count + j] } else { None }
     }

@@ -133,9 +133,9 @@ fn gain_and_delay_of_a_drive_are_found() {
     let motion =
         Motion { damping, law: &law, load: LOAD, initial, force: Some(&force), samples: SAMPLES * FINE, interval };
     let velocity = motion.of::<CoulombViscous>().velocity().values().to_vec();
-    const LATE: usize = 68;
+    let late = 68;
     let every = |values: &[f64], first: usize| values[first..].iter().copied().step_by(FINE).collect::<Vec<f64>>();
-    let read: Vec<f64> = every(&force, LATE + 20).iter().map(|force| 1.02 * force).collect();
+    let read: Vec<f64> = every(&force, late + 20).iter().map(|force| 1.02 * force).collect();
     let force = Record::new(0.0, INTERVAL, read, Quantity::Force, "N").unwrap();
     let response = record(&every(&velocity, 20), 1e-3, 9, Quantity::Velocity, "m/s").crop(0.1, 2.9).unwrap();
     let of = |drive: Drive| Experiment::driven(&response, drive, &Preparation::default()).unwrap();

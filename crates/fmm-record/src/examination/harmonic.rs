@@ -21,7 +21,7 @@ pub(crate) struct Harmonic {
 }
 
 impl Harmonic {
-    /// Fit with the half swing `half` (samples) known and the centre unknown; none if the samples do not
+    /// Fit with the half swing `half` (samples) known and the centre unknown; `None` if the samples do not
     /// determine it.
     pub(crate) fn fit(values: &[f64], range: Range<usize>, origin: f64, half: f64) -> Option<Self> {
         if range.len() < 3 {
@@ -120,7 +120,7 @@ impl Harmonic {
     }
 }
 
-/// Solves a symmetric system of two equations; none if it is singular to rounding.
+/// Solves a symmetric system of two equations; `None` if it is singular to rounding.
 fn solve(aa: f64, ab: f64, bb: f64, ay: f64, by: f64) -> Option<(f64, f64)> {
     let determinant = aa * bb - ab * ab;
     (determinant > 1e-12 * aa * bb).then(|| ((bb * ay - ab * by) / determinant, (aa * by - ab * ay) / determinant))

@@ -51,7 +51,7 @@ const SMALLEST: f64 = 0.3;
 pub(crate) const MOST_SAMPLES: usize = 1 << 18;
 
 /// The lines in `record` that go on unchanged while its motion decays, and after it has stopped: hum of the mains at
-/// 50 Hz or 60 Hz, their multiples, or any other constant line. The largest comes first; none if there is none.
+/// 50 Hz or 60 Hz, their multiples, or any other constant line. The largest comes first; `None` if there is none.
 ///
 /// A line counts if
 ///

@@ -1,4 +1,4 @@
-//! What must be known of a record before a model is fitted: rest and release, swings, and what disturbs them.
+//! Examination of a record before a fit: rest and release, swings, disturbances.
 
 pub(crate) mod further_release;
 pub(crate) mod harmonic;

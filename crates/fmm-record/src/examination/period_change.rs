@@ -14,7 +14,7 @@ const PARTS: usize = 6;
 /// Quantiles of Student's t for a two-sided probability of 0.001, by degrees of freedom from 1 on.
 const STUDENT: [f64; 12] = [636.6, 31.6, 12.92, 8.61, 6.87, 5.96, 5.41, 5.04, 4.78, 4.59, 4.44, 4.32];
 
-/// Relative change of the period (1) from the first sixth of the turning points to the last; none if it is not
+/// Relative change of the period (1) from the first sixth of the turning points to the last; `None` if it is not
 /// significant, or less than half a percent, which is more than a good spring shows, and (Λ/π)². A pendulum, a spring that
 /// stiffens, and a contact that creeps before it slides have one. (Λ is the logarithm of the ratio of the first two swings.
 /// Viscous damping makes periods longer by (Λ/π)²/2; if it grows with the speed, that changes during the decay.)

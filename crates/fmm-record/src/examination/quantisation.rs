@@ -1,6 +1,6 @@
 //! The resolution of a converter.
 
-/// The step of the lattice on which all of `values` lie, in their unit; none if they lie on none.
+/// The step of the lattice on which all of `values` lie, in their unit; `None` if they lie on none.
 ///
 /// The step is the smallest difference between values that occur, or a whole fraction of it down to an eighth,
 /// such that all differences are multiples of it within 5 % (so that a lattice printed with few digits is still
@@ -38,7 +38,7 @@ pub fn quantisation_step(values: &[f64]) -> Option<f64> {
     (1..=FRACTIONS).find_map(|fraction| lattice(&sorted, smallest / fraction as f64, rounding))
 }
 
-/// The step of the lattice through `sorted` that is near `step`, refined on the way as the distances grow; none if
+/// The step of the lattice through `sorted` that is near `step`, refined on the way as the distances grow; `None` if
 /// a value misses the lattice.
 fn lattice(sorted: &[f64], step: f64, rounding: f64) -> Option<f64> {
     const TOLERANCE: f64 = 0.05;

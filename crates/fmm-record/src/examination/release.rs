@@ -27,7 +27,7 @@ const SHORTEST: usize = 20;
 const PERSISTENT: usize = 4;
 
 impl Release {
-    /// Finds the rest that `record` begins with; none if it begins in motion, never moves, or rests for fewer than
+    /// Finds the rest that `record` begins with; `None` if it begins in motion, never moves, or rests for fewer than
     /// twenty samples.
     ///
     /// Motion has begun where four samples in a row lie off the mean of the rest on the same side, by more than a

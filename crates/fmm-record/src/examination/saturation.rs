@@ -15,7 +15,7 @@ pub struct Saturation {
     pub lower: Option<f64>,
 }
 
-/// Finds samples cut off at the largest or smallest value; none if there are none.
+/// Finds samples cut off at the largest or smallest value; `None` if there are none.
 ///
 /// Three equal samples or more at the extreme are cut off if the motion arrives and leaves as a cut sine does: at
 /// half the length of the run from its ends it is farther away than the flat top of a parabola in the resolution

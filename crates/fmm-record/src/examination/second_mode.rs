@@ -53,7 +53,7 @@ pub(crate) fn beats(record: &Record) -> bool {
 }
 
 impl SecondMode {
-    /// Looks for a second mode in `record`; none if the record shows one vibration that decays.
+    /// Looks for a second mode in `record`; `None` if the record shows one vibration that decays.
     ///
     /// Two signs are looked for. A mode far from the first has a line of its own in the spectrum of the motion, of its
     /// first half, quarter or eighth: above the noise as in [`hum`](crate::hum()), of 1 % of the motion at least, and not at a

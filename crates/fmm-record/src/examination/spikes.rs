@@ -108,7 +108,7 @@ fn runs(values: &[f64]) -> Vec<Range<usize>> {
 }
 
 /// The shortest run within `suspect` which, bridged, leaves nothing that is off. On a slope a spike shifts the
-/// medians of its neighbours, which become suspects too. None if the longest spike does not explain the suspects.
+/// medians of its neighbours, which become suspects too. `None` if the longest spike does not explain the suspects.
 fn culprit(values: &[f64], suspect: Range<usize>, limit: f64) -> Option<Range<usize>> {
     if suspect.len() > LONGEST + 2 * SIDE {
         return None;

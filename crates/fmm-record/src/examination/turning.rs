@@ -37,7 +37,7 @@ pub(crate) fn turning_points(values: &[f64], noise: f64, step: f64, bridged: usi
     longest_regular(&smooth, &found, bridged)
 }
 
-/// Length of a half swing (samples) of the largest regular oscillation; none if nothing oscillates.
+/// Length of a half swing (samples) of the largest regular oscillation; `None` if nothing oscillates.
 ///
 /// Two turning points show no regularity. They are taken all the same if nothing regular is found and the swing between
 /// them spans most of the range: a motion that dry friction stops after two half swings.

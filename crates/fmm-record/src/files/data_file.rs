@@ -74,7 +74,7 @@ pub struct Channel {
     pub label: Label,
     /// By what [`DataFile::channel`] reads it, whether or not names are alike. The time counts as well.
     pub position: usize,
-    /// Its sampling rate (Hz); none if the file does not tell it, or if the channel is no record over time.
+    /// Its sampling rate (Hz); `None` if the file does not tell it, or if the channel is no record over time.
     pub rate: Option<f64>,
 }
 
@@ -154,7 +154,7 @@ impl DataFile {
         }
     }
 
-    /// The real numeric arrays of a MATLAB, HDF5 or NumPy file, in the order of the file; none of others.
+    /// The real numeric arrays of a MATLAB, HDF5 or NumPy file, in the order of the file; empty for other files.
     #[cfg(any(feature = "mat", feature = "npy"))]
     pub fn arrays(&self) -> &[Array] {
         match &self.content {

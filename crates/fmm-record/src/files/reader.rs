@@ -1,4 +1,4 @@
-//! What is said of a file beside what it tells itself.
+//! Reader: statements about a file beside its own.
 
 use std::path::Path;
 

@@ -32,7 +32,7 @@ const INTERVALS: [&str; 10] = [
 /// How far two statements of the rate may differ, relative.
 const AGREEMENT: f64 = 1e-3;
 
-/// What scalars with their names say about the rate (Hz); none if they say nothing.
+/// What scalars with their names say about the rate (Hz); `None` if they say nothing.
 pub(crate) fn stated<'a>(
     scalars: impl Iterator<Item = (&'a str, f64)>,
 ) -> Result<Option<(f64, Sampling)>, RecordError> {

@@ -14,7 +14,7 @@ pub(crate) struct LeastSquares<const P: usize> {
 }
 
 impl<const P: usize> LeastSquares<P> {
-    /// The fit of points, each its weight, its value and the functions there; none if they do not determine it.
+    /// The fit of points, each its weight, its value and the functions there; `None` if they do not determine it.
     pub(crate) fn of(points: &[(f64, f64, [f64; P])]) -> Option<Self> {
         let freedom = points.len().checked_sub(P).filter(|freedom| *freedom > 0)? as f64;
         // The normal equations with the right hand side and a unit matrix behind, reduced by Gauss and Jordan.

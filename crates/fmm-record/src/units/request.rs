@@ -94,7 +94,7 @@ impl Request {
         Ok(Meaning { quantity, factor, unit: unit.si(), is_assumed: false })
     }
 
-    /// The unit that was said or is written, and the factor to its SI unit; none if there is no unit at all.
+    /// The unit that was said or is written, and the factor to its SI unit; `None` if there is no unit at all.
     fn unit_in_use<'a>(&'a self, label: &'a Label) -> Result<Option<(f64, &'a Unit)>, MeaningError> {
         let channel = || label.name().to_owned();
         if let (Some(unit), Some(scale)) = (&self.unit, self.scale) {

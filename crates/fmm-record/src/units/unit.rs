@@ -70,7 +70,7 @@ impl Unit {
         self.si == other.si && self.factor == other.factor
     }
 
-    /// The SI unit of a quantity of linear motion, or of the angular one; none for other quantities.
+    /// The SI unit of a quantity of linear motion, or of the angular one; `None` for other quantities.
     pub(crate) fn of_motion(quantity: Quantity, angular: bool) -> Option<&'static str> {
         let order = match quantity {
             Quantity::Displacement => 0,

@@ -63,7 +63,7 @@ impl<D: Scalar> Collocation<D> {
         (self.guess_length, self.guess_begin) = (length, begin);
     }
 
-    /// Solves the step over `span`. None if Newton's method does not converge.
+    /// Solves the step over `span`. `None` if Newton's method does not converge.
     ///
     /// The values are iterated first, by rules that look at nothing but values, and then left alone while the derivatives
     /// are iterated: the values are those of plain numbers to the last bit.

@@ -1,4 +1,4 @@
-//! What runs cost in steps, whatever the stiffness.
+//! Cost of runs in steps, at any stiffness.
 
 use fmm_friction::{BoucWen, BristleLaw, Dahl, LuGre};
 use fmm_model::Oscillator;

@@ -33,7 +33,7 @@ impl<D: Scalar> Explicit<D> {
         Self { rates: vec![[D::from(0.0); 16]; size], state: zeros.clone(), end: zeros.clone(), rate: zeros }
     }
 
-    /// Takes the step over `span`. None if it leaves the range of numbers.
+    /// Takes the step over `span`. `None` if it leaves the range of numbers.
     pub(super) fn take<L: BristleLaw<D>>(
         &mut self,
         motion: &mut Motion<D>,

@@ -1,4 +1,4 @@
-//! What ends a smooth branch.
+//! Guards: ends of a smooth branch.
 
 /// A quantity that is positive on a smooth branch and zero at its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! Where within a step of a run its guards reach zero.
+//! Zeros of the guards within a step of a run.
 
 use fmm_friction::BristleLaw;
 use fmm_model::Scalar;
@@ -12,7 +12,7 @@ use super::run::Run;
 /// How large the last Legendre coefficient of a guard on a step may be, relative to the guard.
 const SMOOTH: f64 = 1e-4;
 
-/// What is left of a step when an event has been landed on is covered by its tangent if it is no more than this.
+/// Rest of a step behind a located event, up to which the state is continued along its tangent.
 const TANGENT: f64 = 1e-9;
 
 /// How far from the end of a step (in its units) its polynomial says something of a zero.

@@ -1,4 +1,4 @@
-//! Whether a law is the mirror image of itself, as the engine takes it to be.
+//! Test that a law is the mirror image of itself, as the engine takes it to be.
 
 use fmm_friction::{BristleLaw, Regime};
 use fmm_model::Scalar;

@@ -1,4 +1,4 @@
-//! How long the next step is to be, and by which method.
+//! Pace: length and method of the next step.
 
 use super::motion::Solved;
 

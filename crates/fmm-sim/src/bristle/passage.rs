@@ -89,7 +89,7 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
         if slope == 0.0 { D::from(0.0) } else { -(reserve - reserve.value()) / slope }
     }
 
-    /// The direction in which the contact leaves relative rest; none if nothing drives it.
+    /// The direction in which the contact leaves relative rest; `None` if nothing drives it.
     ///
     /// That is the sign of the acceleration, or of its first derivative that is not zero within rounding: at u = 0 the
     /// bristles stand still, so only the force and a moving counterface change the load.

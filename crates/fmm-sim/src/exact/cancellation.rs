@@ -1,4 +1,4 @@
-//! How many digits the closed form has left: on a weak spring it is a small difference of large numbers.
+//! Cancellation in the closed form: on a weak spring it is a small difference of large numbers.
 
 use fmm_model::{Oscillator, Scalar};
 

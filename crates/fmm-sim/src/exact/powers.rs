@@ -23,7 +23,7 @@ const LONGEST: usize = 256;
 const STRIDE: usize = 16;
 
 impl Powers {
-    /// Powers for the swings of `decay` at the times of `sampling`; none if it does not oscillate or the times are not
+    /// Powers for the swings of `decay` at the times of `sampling`; `None` if it does not oscillate or the times are not
     /// uniform.
     pub(super) fn for_swings<D: Scalar>(decay: &Decay<D>, sampling: &Sampling) -> Option<Self> {
         let (half_swing, interval) = (decay.half_swing()?, sampling.interval()?);

@@ -37,7 +37,7 @@ pub(super) struct BySpeed<D> {
 }
 
 impl<D: Scalar> BySpeed<D> {
-    /// Follows the motion over `taken`, which begins at `at`; none if its speed turns or hardly changes.
+    /// Follows the motion over `taken`, which begins at `at`; `None` if its speed turns or hardly changes.
     pub(super) fn follow<L: SlidingLaw<D>>(
         field: &Field<D, L>,
         phase: &Phase<D>,

@@ -1,4 +1,4 @@
-//! What ends a smooth part of a stretch of sliding.
+//! Guards: ends of a smooth part of a stretch of sliding.
 
 use super::field::Side;
 use crate::automaton::{Branch, Phase};

@@ -36,7 +36,7 @@ impl Refiner {
         Self { allowed: (SUSPICIOUS * tolerance).min(MOST), angular, greatest: vec![0.0; directions] }
     }
 
-    /// Puts the derivatives at the end of `step`, which begins at `at`, right, and gives those within; none if the step has
+    /// Puts the derivatives at the end of `step`, which begins at `at`, right, and gives those within; `None` if the step has
     /// good ones, or if its speed is no measure of time.
     pub(super) fn refine<D: Scalar, L: SlidingLaw<D>>(
         &mut self,

@@ -211,7 +211,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         let time = D::from(at.time + step.length);
         let value = self.guard(phase, at.side, step, guard);
         let rate = self.rate(phase, at, step, guard);
-        // What is rounding at a slope like this may as well be zero a period away.
+        // The slope is too flat to locate the zero: rounding moves it by as much as a period.
         let flat = rate.abs() <= 4.0 * f64::EPSILON.sqrt() * self.rate_scale(step, guard);
         let late = if flat { D::from(0.0) } else { -value / rate };
         // A zero within rounding of the step's end is at its end.

@@ -104,7 +104,7 @@ fn rate_of<D: Scalar>(mut accelerate: impl FnMut(f64, State<D>) -> D) -> impl Fn
     }
 }
 
-/// The first θ in (0, 1] at which the polynomial, positive before it, reaches zero; none if it stays positive.
+/// The first θ in (0, 1] at which the polynomial, positive before it, reaches zero; `None` if it stays positive.
 ///
 /// The coefficients in the Bernstein basis enclose the polynomial. Where they are not all positive the interval is halved,
 /// so that no pair of zeros hides between two samples.

@@ -13,7 +13,7 @@ pub(crate) struct Beta {
 }
 
 impl Beta {
-    /// The caller has seen to positive shapes and a < b; none for shapes that cannot be sampled.
+    /// The caller has seen to positive shapes and a < b; `None` for shapes that cannot be sampled.
     pub(crate) fn new(shapes: (f64, f64), limits: (f64, f64)) -> Option<Self> {
         let sampler = rand_distr::Beta::new(shapes.0, shapes.1).ok()?;
         Some(Self { shapes, limits, sampler })

@@ -1,4 +1,4 @@
-//! What is known about a quantity, as a probability distribution.
+//! Distributions: knowledge about a quantity as a probability distribution.
 
 mod arc_sine;
 mod beta;

@@ -1,4 +1,4 @@
-//! How distributions are written.
+//! Text of distributions.
 
 use std::fmt;
 

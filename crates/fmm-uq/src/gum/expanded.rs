@@ -50,7 +50,7 @@ impl Budget {
     /// An ensemble ([`Inputs::with_ensemble`](crate::Inputs::with_ensemble)) counts as one contribution, correlations
     /// within it included, which is exact: any linear function of simultaneous means has n − 1 degrees of freedom.
     ///
-    /// None where the Welch–Satterthwaite formula does not hold: if an input of finite degrees of freedom is
+    /// `None` where the Welch–Satterthwaite formula does not hold: if an input of finite degrees of freedom is
     /// correlated with another outside its ensemble, both with a contribution; and if u(y) is zero although
     /// inputs are uncertain. Correlation among inputs of infinite degrees of freedom does no harm.
     pub fn effective_degrees_of_freedom(&self) -> Option<f64> {

@@ -1,4 +1,4 @@
-//! Whether a first-order uncertainty may be believed.
+//! Linearisation: validity of a first-order uncertainty.
 
 use crate::SecondOrder;
 use crate::gum::second_order::Curvature;

@@ -1,4 +1,4 @@
-//! What the curvature of a model does to its result.
+//! Second order: effect of the curvature of a model on its result.
 
 use crate::inputs::factor::correlation_root;
 use crate::model::derivatives::{Derivatives, Expansion};
@@ -29,7 +29,7 @@ pub struct SecondOrder {
 /// What curvature is known of an output.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Curvature {
-    /// The second-order terms; none where they are not finite, make a variance negative, or are not those of the model
+    /// The second-order terms; `None` where they are not finite, make a variance negative, or are not those of the model
     /// within the uncertainties of its inputs.
     pub(crate) terms: Option<SecondOrder>,
     /// Whether the output stands still though its inputs move and its slopes do not vanish: what they do cancels.

@@ -1,4 +1,4 @@
-//! Whether an interval of the GUM holds what a Monte Carlo finds.
+//! Validation of an interval of the GUM by a Monte Carlo.
 
 use crate::{Interval, UncertaintyError, numerical_tolerance};
 

@@ -1,4 +1,4 @@
-//! How the uncertainty of an input was found.
+//! Evaluation of the uncertainty of an input, type A or B.
 
 use std::fmt;
 

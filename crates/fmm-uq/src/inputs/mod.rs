@@ -192,7 +192,7 @@ impl Inputs {
         &self.all
     }
 
-    /// Correlation coefficient of two inputs by name (1), 1 of an input with itself; none if a name is unknown.
+    /// Correlation coefficient of two inputs by name (1), 1 of an input with itself; `None` if a name is unknown.
     pub fn correlation(&self, first: &str, second: &str) -> Option<f64> {
         Some(self.correlation_at(self.position(first).ok()?, self.position(second).ok()?))
     }

@@ -1,4 +1,4 @@
-//! Where the derivatives of a model come from.
+//! Source of the derivatives of a model.
 
 use crate::{Input, Inputs, UncertaintyError};
 
@@ -31,7 +31,7 @@ pub(crate) struct Slopes {
 pub(crate) trait Derivatives {
     /// First derivatives with respect to every input.
     fn slopes(&self) -> Result<Slopes, UncertaintyError>;
-    /// The outputs for any values of the inputs; none where the model fails.
+    /// The outputs for any values of the inputs; `None` where the model fails.
     fn outputs_at(&self, x: &[f64]) -> Option<Vec<f64>>;
     /// Derivatives up to the third order along two directions, for every output; along the first alone if there is
     /// no second.

@@ -1,4 +1,4 @@
-//! What a model does as far away from its estimates as its inputs may be.
+//! Excursion of a model: its values as far from the estimates as the inputs may be.
 
 use crate::gum::linearisation::TOLERATED;
 use crate::model::derivatives::{Derivatives, Expansion};

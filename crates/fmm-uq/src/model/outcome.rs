@@ -1,4 +1,4 @@
-//! What a model may give back.
+//! Outcome of a model: the types it may return.
 
 use std::error::Error;
 

@@ -1,4 +1,4 @@
-//! How many trials are enough.
+//! Adaptive number of trials.
 
 use crate::gum::coverage::{coverage_factor, valid_level};
 use crate::monte_carlo::block::BLOCK_TRIALS;

@@ -1,4 +1,4 @@
-//! How many trials may fail.
+//! Allowed number of trials that fail.
 
 use crate::{Failures, UncertaintyError};
 

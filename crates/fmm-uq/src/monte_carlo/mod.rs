@@ -88,7 +88,7 @@ type Watch<'a> = dyn Fn(Progress) -> ControlFlow<()> + Sync + 'a;
 pub struct Progress {
     /// Trials done, by all threads.
     pub done: u64,
-    /// Trials in all; none for an adaptive run, which does not know.
+    /// Trials in all; `None` for an adaptive run, which does not know.
     pub planned: Option<u64>,
 }
 
@@ -224,7 +224,7 @@ impl<'a> MonteCarlo<'a> {
         self.finish_plan(partial)
     }
 
-    /// The values of the inputs in one trial, such as that of a [`Failure`](crate::Failure); none if the block has no
+    /// The values of the inputs in one trial, such as that of a [`Failure`](crate::Failure); `None` if the block has no
     /// such trial.
     pub fn trial_inputs(&self, block: u64, trial: usize) -> Option<Vec<f64>> {
         (trial < BLOCK_TRIALS).then(|| Block::inputs(self.seed, block, trial, &self.sampler))

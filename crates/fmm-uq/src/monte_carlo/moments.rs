@@ -31,7 +31,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// The moments of `values`; none if there are no values, or the moments are not finite or too small for a number.
+    /// The moments of `values`; `None` if there are no values, or the moments are not finite or too small for a number.
     pub fn of(values: &[f64]) -> Option<Self> {
         let moments = Self::of_values(values).if_finite()?;
         (!values.is_empty() && !moments.lost(values)).then_some(moments)
@@ -79,13 +79,13 @@ impl Moments {
         self.mean
     }
 
-    /// s, standard deviation with n − 1 (unit of the values); none for a single value.
+    /// s, standard deviation with n − 1 (unit of the values); `None` for a single value.
     pub fn standard_deviation(&self) -> Option<f64> {
         (self.count > 1).then(|| (self.sum_of_squares / (self.count - 1) as f64).sqrt())
     }
 
     /// Standard error of s (unit of the values), from the fourth moment and so right for any distribution that has
-    /// one; none for a single value.
+    /// one; `None` for a single value.
     ///
     /// ```text
     /// u(s) = (s/2) √((m₄/m₂² − 1)/n)

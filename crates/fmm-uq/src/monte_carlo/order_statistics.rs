@@ -47,7 +47,7 @@ fn tail(values: &[f64], count: usize, key: impl Fn(f64) -> f64) -> Vec<f64> {
     tail
 }
 
-/// The values under a `key` that do not exceed a limit; none if there are more than `most`.
+/// The values under a `key` that do not exceed a limit; `None` if there are more than `most`.
 fn below(values: &[f64], limit: f64, most: usize, key: impl Fn(f64) -> f64) -> Vec<f64> {
     let (mut found, mut count) = (vec![0.0; most + 1], 0);
     for &value in values {

@@ -1,4 +1,4 @@
-//! What the trials of a Monte Carlo gave.
+//! Sample of outputs of the trials of a Monte Carlo.
 
 use crate::monte_carlo::heavy_tail::HeavyTail;
 use crate::monte_carlo::order_statistics::{largest, ranked, smallest};

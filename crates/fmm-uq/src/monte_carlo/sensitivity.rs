@@ -1,4 +1,4 @@
-//! Which input the spread of a result comes from.
+//! Sensitivity indices: shares of the inputs in the spread of a result.
 
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;

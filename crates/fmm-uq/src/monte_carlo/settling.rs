@@ -1,4 +1,4 @@
-//! How far the ends of the shortest interval still wander.
+//! Settling of the ends of the shortest interval.
 
 use crate::monte_carlo::output_sample::shortest;
 use crate::{Moments, UncertaintyError, coverage_factor};

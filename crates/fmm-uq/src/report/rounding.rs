@@ -8,7 +8,7 @@ const STATED: u8 = 2;
 /// Estimate, uncertainty, expanded uncertainty and the ends of intervals all end at it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Rounding {
-    /// Exponent of ten of the last digit; none for an uncertainty of zero, which rounds nothing.
+    /// Exponent of ten of the last digit; `None` for an uncertainty of zero, which rounds nothing.
     last: Option<i32>,
 }
 

@@ -38,7 +38,7 @@ pub struct Statement {
     pub coverage_factor: f64,
     /// p, coverage probability (1).
     pub level: f64,
-    /// ν_eff (1), none where it is infinite.
+    /// ν_eff (1), `None` where it is infinite.
     pub effective_degrees_of_freedom: Option<f64>,
     /// U = k u(y) (unit of the result).
     pub expanded_uncertainty: f64,
@@ -116,7 +116,7 @@ pub struct TrialStatement {
     pub failed: u64,
     /// Seed of the run.
     pub seed: u64,
-    /// What an adaptive run is stable to (unit of the result); none for a fixed number of trials.
+    /// What an adaptive run is stable to (unit of the result); `None` for a fixed number of trials.
     pub tolerance: Option<f64>,
 }
 

@@ -18,7 +18,7 @@ impl Problem<'_> {
         self.decays.iter().map(|decay| decay.beginning(share)).collect()
     }
 
-    /// The ring-downs with so few of their samples that a search among many starts is quick and yet sees every swing; none if
+    /// The ring-downs with so few of their samples that a search among many starts is quick and yet sees every swing; `None` if
     /// they have no more.
     pub(crate) fn thinned(&self) -> Option<Vec<Experiment>> {
         let stride = |decay: &Experiment| {

@@ -152,7 +152,7 @@ impl Problem<'_> {
     }
 
     /// Start values that put this law where `other` has ended: the same friction over the speed, as nearly as it can, and what else has
-    /// the same name there or in one of `others`; none if one of the two laws states no friction over the speed.
+    /// the same name there or in one of `others`; `None` if one of the two laws states no friction over the speed.
     pub(crate) fn beside(
         &self,
         other: &Identification,

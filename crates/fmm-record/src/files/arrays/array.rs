@@ -29,7 +29,7 @@ impl Array {
         &self.name
     }
 
-    /// Rows, columns and further dimensions: at least two in MATLAB; in NumPy one for a vector, none for a single number.
+    /// Rows, columns and further dimensions: at least two in MATLAB; in NumPy one for a vector, `None` for a single number.
     pub fn shape(&self) -> &[usize] {
         &self.shape
     }
@@ -69,7 +69,7 @@ impl Array {
         }
     }
 
-    /// The numbers of a series; none if the array does not have it, or is a matrix and no series is chosen.
+    /// The numbers of a series; `None` if the array does not have it, or is a matrix and no series is chosen.
     pub(super) fn series(&self, series: Series) -> Option<Vec<f64>> {
         let Some((rows, columns)) = self.matrix() else {
             // A vector is its own row or column.

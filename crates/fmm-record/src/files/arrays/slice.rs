@@ -1,4 +1,4 @@
-//! Which numbers of a file: a vector, or a row or column of a matrix.
+//! Slice of an array in a file: a vector, or a row or column of a matrix.
 
 use super::reader::leaf;
 use super::{Array, Notation};

@@ -1,4 +1,4 @@
-//! What stands above a table: the names of its columns, their units, and what is stated of the sampling.
+//! Header of a table: names of the columns, their units, statements about the sampling.
 
 use super::fields::{Separator, split, text};
 use super::layout::{Kind, Row};

@@ -1,4 +1,4 @@
-//! Where the table of a text file begins, how its columns are separated, and what they are called.
+//! Layout of a text file: beginning of the table, separator, names of the columns.
 
 use std::ops::Range;
 

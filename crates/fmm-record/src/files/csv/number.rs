@@ -2,7 +2,7 @@
 
 use super::fields::Separator;
 
-/// Which decimal mark a number had; none if it had no fraction.
+/// Which decimal mark a number had; `None` if it had no fraction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Mark {
     Point,

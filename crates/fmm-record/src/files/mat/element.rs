@@ -89,7 +89,7 @@ impl<'a> Variables<'a> {
         Self { file, endian, at: HEADER, budget: MOST_INFLATED }
     }
 
-    /// The next variable; none at the end of the file.
+    /// The next variable; `None` at the end of the file.
     ///
     /// # Errors
     /// Those after which it is not known where the next one begins.

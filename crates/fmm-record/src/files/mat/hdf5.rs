@@ -220,7 +220,7 @@ fn check_storage(dataset: &Dataset, sizes: &[u64], bytes: u64, length: u64) -> R
     Ok(())
 }
 
-/// What a variable is by the class that MATLAB gave it, or, in a file of another program, by what it stores; none if
+/// What a variable is by the class that MATLAB gave it, or, in a file of another program, by what it stores; `None` if
 /// it is real and numeric.
 fn kind(class: Option<&str>, stored: &DType) -> Option<Kind> {
     use DType::{

@@ -1,4 +1,4 @@
-//! What a variable is that is not a real numeric array.
+//! Kind of a variable that is not a real numeric array.
 
 /// What a variable is that is not a real numeric array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,7 +13,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// The kind of a class of arrays by its number; none for the numeric classes, 6 to 15.
+    /// The kind of a class of arrays by its number; `None` for the numeric classes, 6 to 15.
     pub(super) fn of_class(class: u32) -> Option<Self> {
         match class {
             1 => Some(Self::Cell),

@@ -146,7 +146,7 @@ struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    /// The next piece; none if the body ends before the piece does.
+    /// The next piece; `None` if the body ends before the piece does.
     fn next(&mut self) -> Option<Part<'a>> {
         let rest = self.body.get(self.at..)?;
         let word = self.endian.u32(*rest.first_chunk()?);

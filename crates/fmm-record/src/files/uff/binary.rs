@@ -65,7 +65,7 @@ impl Layout {
         self.abscissa + self.ordinate * self.parts
     }
 
-    /// How many bytes `count` points have; none if no memory has as many.
+    /// How many bytes `count` points have; `None` if no memory has as many.
     fn bytes(self, count: u64) -> Option<usize> {
         usize::try_from(count).ok()?.checked_mul(self.point())
     }

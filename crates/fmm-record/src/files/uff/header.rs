@@ -1,4 +1,4 @@
-//! What the header of a data set 58 tells beside the form of its points.
+//! Header of a data set 58 beside the form of its points.
 
 use super::{DataType, FunctionType};
 

@@ -60,7 +60,7 @@ impl Points {
         (0..self.len()).filter(|index| !finite(*index)).count()
     }
 
-    /// The abscissae, none if they are even, and the ordinates.
+    /// The abscissae, `None` if they are even, and the ordinates.
     pub(super) fn into_parts(self) -> (Vec<f64>, Ordinate) {
         (self.abscissae, self.ordinate)
     }

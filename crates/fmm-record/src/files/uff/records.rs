@@ -27,7 +27,7 @@ impl Form {
     }
 }
 
-/// Reads a header; none if the file ends before it does.
+/// Reads a header; `None` if the file ends before it does.
 pub(super) fn read(lines: &mut Lines) -> Result<Option<(Header, Form)>, RecordError> {
     let mut records = Vec::with_capacity(LINES);
     while records.len() < LINES {

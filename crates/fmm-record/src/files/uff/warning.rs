@@ -1,4 +1,4 @@
-//! What a file says that its points do not bear out.
+//! Warnings: statements of a file that its points contradict.
 
 /// Something in a Universal File that is not as it should be and did not keep it from being read.
 ///

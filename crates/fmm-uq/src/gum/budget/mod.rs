@@ -151,7 +151,7 @@ impl Budget {
         })
     }
 
-    /// The second-order terms; none if they were not asked for or are not finite.
+    /// The second-order terms; `None` if they were not asked for or are not finite.
     pub const fn second_order(&self) -> Option<SecondOrder> {
         self.second_order
     }

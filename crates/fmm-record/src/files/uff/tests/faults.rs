@@ -1,4 +1,4 @@
-//! What programs do to the format, and what happens to files.
+//! Faults of programs and damage of files.
 
 use super::*;
 use crate::RecordError;
