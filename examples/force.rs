@@ -30,8 +30,8 @@ struct Arguments {
     #[command(flatten)]
     source: Source,
     /// Models to fit, separated by commas: a law, then after plus signs damping (linear, quadratic, cubic, any sign) and what else acts
-    /// or is measured (zero, inertia, stiffness, gravity, asymmetry, load offset, delay)
-    #[arg(long, value_delimiter = ',', default_value = "coulomb + linear + asymmetry,dahl + linear + asymmetry")]
+    /// or is measured (zero, inertia, stiffness, gravity, asymmetry, load offset, channels, delay)
+    #[arg(long, value_delimiter = ',')]
     model: Vec<String>,
     /// Hold a parameter at a value, in the unit in which it is fitted
     #[arg(long, value_name = "NAME=VALUE", value_parser = held)]
@@ -56,8 +56,12 @@ fn held(text: &str) -> Result<(String, f64), String> {
     Ok((name.trim().to_owned(), value))
 }
 
-/// The bundled records: a friction damper moved by 25 mm to and fro, fitted and predicted.
+/// The bundled records: a band brake moved by 25 mm to and fro, fitted and predicted.
 const BUNDLED: [&str; 2] = ["damper_1Hz_36lb_1amplitude.csv", "damper_1Hz_30lb_1amplitude.csv"];
+/// Models that are fitted unless others are given.
+const MODELS: [&str; 2] = ["coulomb + linear + asymmetry", "dahl + linear + asymmetry"];
+/// The model of a band brake: its two bands hold, each on one way of the motion.
+const BRAKE: &str = "coulomb + linear + zero + inertia + channels";
 
 fn main() -> ExitCode {
     match run(&Arguments::parse()) {
@@ -75,10 +79,17 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         [] => (vec![bundled[0].clone()], vec![bundled[1].clone()]),
         files => (files.to_vec(), arguments.validate.clone()),
     };
-    let read = |files: &[PathBuf]| files.iter().map(|file| arguments.source.read(file)).collect::<Result<Vec<_>, _>>();
+    let source =
+        if arguments.files.is_empty() { arguments.source.clone().of_brake() } else { arguments.source.clone() };
+    let read = |files: &[PathBuf]| files.iter().map(|file| source.read(file)).collect::<Result<Vec<_>, _>>();
     let (records, others) = (read(&files)?, read(&validated)?);
-    let mut found = Vec::with_capacity(arguments.model.len());
-    for name in &arguments.model {
+    let mut models: Vec<&str> = arguments.model.iter().map(String::as_str).collect();
+    if models.is_empty() {
+        models.extend(MODELS);
+        models.extend(arguments.files.is_empty().then_some(BRAKE));
+    }
+    let mut found = Vec::with_capacity(models.len());
+    for name in models {
         let mut model = ForceModel::named(name)?;
         for (parameter, value) in &arguments.hold {
             model = model.holding(parameter, *value)?;

@@ -8,7 +8,7 @@ use fmm_identify::ForceRecord;
 use fmm_record::{Column, DataFile, Label, Quantity, Reader};
 
 /// Which columns of a table are what.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct Source {
     /// The column of times (s), by name or number; found by its name unless given
     #[arg(long, value_name = "NAME|INDEX")]
@@ -25,6 +25,12 @@ pub(crate) struct Source {
     /// The column of normal loads, so that levels are coefficients
     #[arg(long, value_name = "NAME|INDEX")]
     load: Option<String>,
+    /// Columns of what else was measured, of which a model with channels has a share: the actuators of a brake
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    channels: Vec<String>,
+    /// Time over which hum and noise of these columns are averaged, in s
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    average: f64,
     /// Unit of position that the numbers are in, if the table does not say it
     #[arg(long, value_name = "UNIT", default_value = "m")]
     position_unit: String,
@@ -43,6 +49,11 @@ struct Series {
 }
 
 impl Source {
+    /// The same for the bundled brake, whose two bands were measured beside the force, with hum of 256 Hz.
+    pub(crate) fn of_brake(self) -> Self {
+        Self { channels: ["band_1", "band_2"].map(str::to_owned).into(), average: 0.02, ..self }
+    }
+
     /// The record in the table at `path`.
     pub(crate) fn read(&self, path: &Path) -> Result<ForceRecord, Box<dyn Error>> {
         // Numbered samples stand for the clock, so that the times are a column like any other and their steps may differ.
@@ -51,8 +62,13 @@ impl Source {
         let offered = file.channel(first)?;
         let names = offered.columns;
         let labels: Vec<Label> = names.iter().map(|name| Label::of(name)).collect();
+        // A column may be named without its unit.
+        let whole = |name: &str| {
+            let is_meant = |whole: &&String| whole.split(['[', '(']).next().is_some_and(|bare| bare.trim() == name);
+            Column::from(names.iter().find(is_meant).map_or(name, String::as_str))
+        };
         let column = |given: &Option<String>, meant: &dyn Fn(&Label) -> bool| match given {
-            Some(name) => Some(name.parse::<usize>().map_or_else(|_| Column::from(name.as_str()), Column::Index)),
+            Some(name) => Some(name.parse::<usize>().map_or_else(|_| whole(name), Column::Index)),
             None => labels.iter().position(meant).map(|place| Column::from(names[place].as_str())),
         };
         let of = |quantity: Quantity| move |label: &Label| label.quantity() == Some(quantity);
@@ -80,6 +96,9 @@ impl Source {
         }
         if let Some(load) = column(&self.load, &|_| false) {
             record = record.under_loads(&series(&file, load)?.values)?;
+        }
+        for name in &self.channels {
+            record = record.with_channel(name, &series(&file, whole(name))?.values, self.average)?;
         }
         if let Some(speed) = self.rest_speed {
             record = record.resting_up_to(speed)?;

@@ -9,12 +9,12 @@ use crate::{Candidate, ForceRecord, IdentifyError};
 /// What a force along a motion is made of: a law, damping beside it, and what else acts or is measured along.
 ///
 /// ```text
-/// F(t + τ) = (N + N₀) (µ + a |µ|) + c v + c₂ |v| v + c₃ v³ + m v' + k x + A sin x + B cos x + F₀
+/// F(t + τ) = (N + N₀) (µ + a |µ|) + c v + c₂ |v| v + c₃ v³ + m v' + k x + A sin x + B cos x + F₀ + Σ κᵢ yᵢ(t + τ)
 /// ```
 ///
 /// µ is the law, with the sign of the velocity; N is 1 without a measured load, so that levels are forces. A force record tells the
 /// levels of the two directions apart, a = (F₊ − F₋)/(F₊ + F₋), which a ring-down does not: there they are a level and a force that
-/// moves the rest position.
+/// moves the rest position. yᵢ are what was measured beside the force, [`ForceRecord::with_channel`].
 ///
 /// ```
 /// use fmm_identify::ForceModel;
@@ -42,12 +42,21 @@ pub(crate) enum Part {
     Gravity,
     Asymmetry,
     LoadOffset,
+    Channels,
     Delay,
 }
 
 impl Part {
-    const ALL: [Self; 7] =
-        [Self::Zero, Self::Inertia, Self::Stiffness, Self::Gravity, Self::Asymmetry, Self::LoadOffset, Self::Delay];
+    const ALL: [Self; 8] = [
+        Self::Zero,
+        Self::Inertia,
+        Self::Stiffness,
+        Self::Gravity,
+        Self::Asymmetry,
+        Self::LoadOffset,
+        Self::Channels,
+        Self::Delay,
+    ];
 
     /// The word by which a model has it, after a plus sign.
     const fn name(self) -> &'static str {
@@ -58,6 +67,7 @@ impl Part {
             Self::Gravity => "gravity",
             Self::Asymmetry => "asymmetry",
             Self::LoadOffset => "load offset",
+            Self::Channels => "channels",
             Self::Delay => "delay",
         }
     }
@@ -84,7 +94,7 @@ impl ForceModel {
     }
 
     /// The model called so: a law of the [catalogue](Candidate::catalogue), then after plus signs terms of damping (`linear`,
-    /// `quadratic`, `cubic`, `any sign`) and parts (`zero`, `inertia`, `stiffness`, `gravity`, `asymmetry`, `load offset`, `delay`).
+    /// `quadratic`, `cubic`, `any sign`) and parts (`zero`, `inertia`, `stiffness`, `gravity`, `asymmetry`, `load offset`, `channels`, `delay`).
     ///
     /// # Errors
     /// [`IdentifyError::UnknownName`], with the names there are, and as for [`of`](Self::of).
@@ -141,6 +151,12 @@ impl ForceModel {
     #[must_use]
     pub fn with_load_offset(self) -> Self {
         self.with(Part::LoadOffset)
+    }
+
+    /// The same with shares κᵢ of all [channels](ForceRecord::with_channel) that were measured beside the force.
+    #[must_use]
+    pub fn with_channels(self) -> Self {
+        self.with(Part::Channels)
     }
 
     /// The same with a delay τ (s) of the force behind the motion, positive or negative, of at most twenty samples.
@@ -215,8 +231,8 @@ impl ForceModel {
         law.require_units()?;
         let (units, level) = naming(records);
         let mut parameters: Vec<Parameter> = law.fitted().map(|parameter| units.fitted(parameter, level)).collect();
-        for shape in self.shapes() {
-            parameters.push(shape.parameter(&units, self.law.terms().are_of_any_sign()));
+        for shape in self.shapes(&records[0]) {
+            parameters.push(shape.parameter(&units, &records[0], self.law.terms().are_of_any_sign()));
         }
         for part in self.parts() {
             match part {
@@ -253,8 +269,8 @@ impl ForceModel {
         Ok(parameters)
     }
 
-    /// What the force is proportional to beside the law, in the order of the parameters.
-    pub(crate) fn shapes(&self) -> Vec<Shape> {
+    /// What the force of `record` is proportional to beside the law, in the order of the parameters.
+    pub(crate) fn shapes(&self, record: &ForceRecord) -> Vec<Shape> {
         let mut shapes: Vec<Shape> = self.law.terms().iter().map(Shape::Damping).collect();
         for part in self.parts() {
             match part {
@@ -262,6 +278,7 @@ impl ForceModel {
                 Part::Inertia => shapes.push(Shape::Inertia),
                 Part::Stiffness => shapes.push(Shape::Stiffness),
                 Part::Gravity => shapes.extend([Shape::GravitySine, Shape::GravityCosine]),
+                Part::Channels => shapes.extend((0..record.channels.len()).map(Shape::Channel)),
                 Part::Asymmetry | Part::LoadOffset | Part::Delay => {}
             }
         }
@@ -284,11 +301,13 @@ pub(crate) enum Shape {
     Stiffness,
     GravitySine,
     GravityCosine,
+    /// What was measured beside the force, by its place.
+    Channel(usize),
 }
 
 impl Shape {
-    /// Its factor, for positions and forces in these units.
-    fn parameter(self, units: &Units, any_sign: bool) -> Parameter {
+    /// Its factor, for positions and forces in these units and the channels of `record`.
+    fn parameter(self, units: &Units, record: &ForceRecord, any_sign: bool) -> Parameter {
         let Units { position, force } = units;
         let damping = if any_sign { Bounds::UNBOUNDED } else { Bounds::NOT_NEGATIVE };
         let per_speed = |power| (force.per(&units.velocity().power(power)), damping);
@@ -306,12 +325,16 @@ impl Shape {
             Self::Stiffness => ("stiffness", "k", (force.per(position), Bounds::UNBOUNDED)),
             Self::GravitySine => ("gravity_sine", "A", (force.clone(), Bounds::UNBOUNDED)),
             Self::GravityCosine => ("gravity_cosine", "B", (force.clone(), Bounds::UNBOUNDED)),
+            Self::Channel(place) => {
+                let name = record.channels[place].0.replace([' ', '-'], "_");
+                return Parameter::named(format!("share_of_{name}"), "κ", "1");
+            }
         };
         Parameter::named(name, symbol, unit.to_string()).bounded(bounds)
     }
 
-    /// Its value at position `x`, velocity `v` and acceleration `a`, and its slopes by these.
-    pub(crate) fn at(self, [x, v, a]: [f64; 3]) -> (f64, [f64; 3]) {
+    /// Its value at position `x`, velocity `v` and acceleration `a` with what was measured beside the force, and its slopes by these three.
+    pub(crate) fn at(self, [x, v, a]: [f64; 3], channel: impl Fn(usize) -> f64) -> (f64, [f64; 3]) {
         match self {
             Self::Damping(Term::QuadraticDamping) => (v.abs() * v, [0.0, 2.0 * v.abs(), 0.0]),
             Self::Damping(Term::CubicDamping) => (v * v * v, [0.0, 3.0 * v * v, 0.0]),
@@ -321,6 +344,7 @@ impl Shape {
             Self::Stiffness => (x, [1.0, 0.0, 0.0]),
             Self::GravitySine => (x.sin(), [x.cos(), 0.0, 0.0]),
             Self::GravityCosine => (x.cos(), [-x.sin(), 0.0, 0.0]),
+            Self::Channel(place) => (channel(place), [0.0; 3]),
         }
     }
 }

@@ -49,12 +49,22 @@ struct Buffers {
 }
 
 /// Friction at a sample, and what the force is made of beside it.
-struct Parts {
+struct Parts<'p> {
     /// x, v and a where the motion was.
     motion: [f64; 3],
+    /// What was measured beside the force, and the sample.
+    channels: &'p [(String, Vec<f64>)],
+    row: usize,
     load: f64,
     /// Whether the law says friction there.
     counts: bool,
+}
+
+impl Parts<'_> {
+    /// A shape there, and its slopes by x, v and a.
+    fn of(&self, shape: Shape) -> (f64, [f64; 3]) {
+        shape.at(self.motion, |channel| self.channels[channel].1[self.row])
+    }
 }
 
 impl<'a> ForceProblem<'a> {
@@ -72,6 +82,14 @@ impl<'a> ForceProblem<'a> {
                     record.force_unit()
                 )));
             }
+            let names = |record: &ForceRecord| record.channels.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+            if model.has(Part::Channels) && names(record) != names(first) {
+                return Err(IdentifyError::contradiction(format!(
+                    "the records have different channels beside the force: {:?} and {:?}",
+                    names(first),
+                    names(record)
+                )));
+            }
             if record.loads.is_some() != first.loads.is_some() {
                 return Err(IdentifyError::contradiction(
                     "some of the records have a normal load and some have not; give all of them, or none",
@@ -80,6 +98,11 @@ impl<'a> ForceProblem<'a> {
         }
         if model.has(Part::LoadOffset) && first.loads.is_none() {
             return Err(IdentifyError::missing("a load offset needs a normal load that was measured"));
+        }
+        if model.has(Part::Channels) && first.channels.is_empty() {
+            return Err(IdentifyError::missing(
+                "the model has channels beside the force, but none was given with a record",
+            ));
         }
         let parameters = model.parameters(records)?;
         let place = |name: &str| parameters.iter().position(|parameter| parameter.name() == name);
@@ -106,7 +129,7 @@ impl<'a> ForceProblem<'a> {
             end += range.len();
             rows.push(range);
         }
-        Ok(Self { records, law, parameters, rows, series, shapes: model.shapes(), layout, idle: Pool::default() })
+        Ok(Self { records, law, parameters, rows, series, shapes: model.shapes(first), layout, idle: Pool::default() })
     }
 
     pub(crate) fn records(&self) -> &'a [ForceRecord] {
@@ -166,29 +189,29 @@ impl<'a> ForceProblem<'a> {
     }
 
     #[inline]
-    fn parts(&self, record: usize, p: &[f64], leaps: bool, row: usize, place: Place) -> Parts {
+    fn parts(&self, record: usize, p: &[f64], leaps: bool, row: usize, place: Place) -> Parts<'a> {
         let data = &self.records[record];
         let guide = self.guide(record, Self::value(p, self.layout.delay), 0.0, &[]);
         let elapsed = guide.elapsed(row, place);
         let motion = [&data.motion.positions, &data.motion.velocities, &data.motion.accelerations]
             .map(|series| guide.between(series, place, elapsed));
         let load = data.loads.as_ref().map_or(1.0, |loads| loads[row]) + Self::value(p, self.layout.load_offset);
-        Parts { motion, load, counts: place.slides || !leaps }
+        Parts { motion, channels: &data.channels, row, load, counts: place.slides || !leaps }
     }
 
     /// What the shapes add to the force.
-    fn beside(&self, p: &[f64], motion: [f64; 3]) -> f64 {
-        self.shapes.iter().zip(&p[self.layout.shapes..]).map(|(shape, factor)| factor * shape.at(motion).0).sum()
+    fn beside(&self, p: &[f64], parts: &Parts<'_>) -> f64 {
+        self.shapes.iter().zip(&p[self.layout.shapes..]).map(|(shape, factor)| factor * parts.of(*shape).0).sum()
     }
 
     /// Residual of a sample whose friction coefficient is `friction`, and its slopes by that coefficient at a load of one and by what
     /// stands beside friction.
     #[inline]
-    fn residual(&self, p: &[f64], parts: &Parts, friction: f64, force: f64) -> (f64, f64, f64) {
+    fn residual(&self, p: &[f64], parts: &Parts<'_>, friction: f64, force: f64) -> (f64, f64, f64) {
         if !parts.counts {
             return (0.0, 0.0, 0.0);
         }
-        let beside = self.beside(p, parts.motion);
+        let beside = self.beside(p, parts);
         let slope = 1.0 + Self::value(p, self.layout.asymmetry) * friction.signum();
         (parts.load * slope * friction + beside - force, slope, 1.0)
     }
@@ -209,7 +232,7 @@ impl<'a> ForceProblem<'a> {
                     residuals[at] = residual;
                     columns[0][at] = parts.load * by_friction * friction;
                     for (column, shape) in columns[1..].iter_mut().zip(&self.shapes) {
-                        column[at] = by_rest * shape.at(parts.motion).0;
+                        column[at] = by_rest * parts.of(*shape).0;
                     }
                 }
             }
@@ -360,7 +383,7 @@ impl Residuals for ForceProblem<'_> {
                             continue;
                         }
                         for (j, shape) in (self.layout.shapes..).zip(&self.shapes) {
-                            jacobian[j * rows + at] = shape.at(parts.motion).0;
+                            jacobian[j * rows + at] = parts.of(*shape).0;
                         }
                         if let Some(j) = self.layout.asymmetry {
                             jacobian[j * rows + at] = parts.load * friction.value().abs();
@@ -369,7 +392,7 @@ impl Residuals for ForceProblem<'_> {
                             jacobian[j * rows + at] = by_friction * friction.value();
                         }
                         if let Some(j) = self.layout.delay.filter(is_free) {
-                            jacobian[j * rows + at] -= self.rate_beside(record, p, place.node, parts.motion);
+                            jacobian[j * rows + at] -= self.rate_beside(record, p, place.node, &parts);
                         }
                     }
                 }
@@ -386,12 +409,12 @@ impl Residuals for ForceProblem<'_> {
 
 impl ForceProblem<'_> {
     /// How fast what stands beside friction changes (force per s) between a sample and the next.
-    fn rate_beside(&self, record: usize, p: &[f64], node: usize, motion: [f64; 3]) -> f64 {
+    fn rate_beside(&self, record: usize, p: &[f64], node: usize, parts: &Parts<'_>) -> f64 {
         let data = &self.records[record];
         let duration = data.motion.times[node + 1] - data.motion.times[node];
         let rates = [&data.motion.positions, &data.motion.velocities, &data.motion.accelerations]
             .map(|series| (series[node + 1] - series[node]) / duration);
-        let slope = |shape: &Shape| -> f64 { shape.at(motion).1.iter().zip(rates).map(|(a, b)| a * b).sum() };
+        let slope = |shape: &Shape| -> f64 { parts.of(*shape).1.iter().zip(rates).map(|(a, b)| a * b).sum() };
         self.shapes.iter().zip(&p[self.layout.shapes..]).map(|(shape, factor)| factor * slope(shape)).sum()
     }
 }

@@ -24,6 +24,8 @@ pub struct ForceRecord {
     pub(crate) motion: MeasuredMotion,
     pub(crate) forces: Vec<f64>,
     pub(crate) loads: Option<Vec<f64>>,
+    /// What was measured beside the force, by name.
+    pub(crate) channels: Vec<(String, Vec<f64>)>,
     position_unit: String,
     force_unit: String,
 }
@@ -71,7 +73,7 @@ impl ForceRecord {
     fn along(times: &[f64], positions: Vec<f64>, forces: &[f64]) -> Self {
         let motion = MeasuredMotion { times: times.to_vec(), positions, ..MeasuredMotion::default() };
         let (position_unit, force_unit) = ("m".to_owned(), "N".to_owned());
-        Self { motion, forces: forces.to_vec(), loads: None, position_unit, force_unit }
+        Self { motion, forces: forces.to_vec(), loads: None, channels: Vec::new(), position_unit, force_unit }
     }
 
     fn moving_at(mut self, velocities: &[f64]) -> Result<Self, IdentifyError> {
@@ -117,6 +119,35 @@ impl ForceRecord {
         let largest = loads.iter().fold(0.0, |largest: f64, load| largest.max(*load));
         ModelError::require_positive("largest normal load", largest, "N")?;
         self.loads = Some(loads.to_vec());
+        Ok(self)
+    }
+
+    /// The same with `values` of a channel called `name` that was measured beside the force, of which the force holds a share: the
+    /// actuator of a brake, the other end of a band, a second load cell. Hum and noise are averaged over `seconds` around each sample, by
+    /// the cubic of least squares; with 0 the values stay as they are.
+    ///
+    /// # Errors
+    /// As for [`of_positions`](Self::of_positions), and [`IdentifyError::Contradiction`] for a name that is there or a time that is
+    /// neither 0 nor between five samples and the whole record.
+    pub fn with_channel(mut self, name: &str, values: &[f64], seconds: f64) -> Result<Self, IdentifyError> {
+        require_series(&self.motion.times, values, "channel", "of a force")?;
+        if self.channels.iter().any(|(other, _)| other == name) {
+            return Err(IdentifyError::contradiction(format!("there is a channel called {name:?} already")));
+        }
+        let values = if seconds == 0.0 {
+            values.to_vec()
+        } else {
+            let width = (0.5 * seconds / self.interval()).round() as usize;
+            let refused = || {
+                IdentifyError::contradiction(format!(
+                    "a channel cannot be averaged over {seconds} s in a record of {} samples every {} s",
+                    self.len(),
+                    self.interval()
+                ))
+            };
+            Smoothed::by_cubics(&self.motion.times, values, width).ok_or_else(refused)?.values
+        };
+        self.channels.push((name.to_owned(), values));
         Ok(self)
     }
 
@@ -207,6 +238,7 @@ impl ForceRecord {
             },
             forces: cut(&self.forces),
             loads: self.loads.as_deref().map(cut),
+            channels: self.channels.iter().map(|(name, values)| (name.clone(), cut(values))).collect(),
             ..self.clone()
         })?;
         (part.period() * PERIODS <= count as f64).then_some(part)

@@ -46,15 +46,21 @@ impl Smoothed {
             }
             (chosen, before) = (Some(pair[1]), after);
         }
+        let plain = || Self { values: values.to_vec(), slopes: slopes(times, values) };
+        chosen.and_then(|width| Self::by_cubics(times, values, width)).unwrap_or_else(plain)
+    }
+
+    /// That of `values` by cubics through `width` neighbours to either side; `None` if there are not enough samples for that.
+    pub(crate) fn by_cubics(times: &[f64], values: &[f64], width: usize) -> Option<Self> {
+        let count = times.len();
+        let is_enough = width >= WIDTHS[0] && 2 * width < count;
         let cubics =
-            chosen.map(|width| (0..count).map(|at| cubic(times, values, at, width)).collect::<Option<Vec<_>>>());
-        match cubics.flatten() {
-            Some(cubics) => Self {
-                values: cubics.iter().map(|cubic| cubic.value).collect(),
-                slopes: cubics.iter().map(|cubic| cubic.slope).collect(),
-            },
-            None => Self { values: values.to_vec(), slopes: slopes(times, values) },
-        }
+            is_enough.then(|| (0..count).map(|at| cubic(times, values, at, width)).collect::<Option<Vec<_>>>());
+        let cubics = cubics.flatten()?;
+        Some(Self {
+            values: cubics.iter().map(|cubic| cubic.value).collect(),
+            slopes: cubics.iter().map(|cubic| cubic.slope).collect(),
+        })
     }
 }
 

@@ -408,3 +408,50 @@ fn what_is_no_record_is_refused() {
     assert!(matches!(ForceModel::named("coulomb + wind"), Err(IdentifyError::UnknownName { .. })));
     assert!(matches!(ForceModel::named("viscous + linear"), Err(IdentifyError::Contradiction { .. })));
 }
+
+/// A brake whose force is what its two actuators hold, each with a share of its own, beside friction of its bearing.
+#[test]
+fn what_was_measured_beside_the_force_has_a_share() {
+    let times: Vec<f64> = (0..3000).map(|i| 1e-3 * f64::from(i)).collect();
+    let states: Vec<State> = times.iter().map(|time| motion(*time)).collect();
+    let positions: Vec<f64> = states.iter().map(|state| state.position).collect();
+    let velocities: Vec<f64> = states.iter().map(|state| state.velocity).collect();
+    // An actuator holds on one way of the motion, and follows it with a lag.
+    let mut held = [0.0, 0.0];
+    let mut bands = [Vec::new(), Vec::new()];
+    for (time, velocity) in times.iter().zip(&velocities) {
+        for (side, (held, band)) in held.iter_mut().zip(&mut bands).enumerate() {
+            let wanted = if (*velocity > 0.0) == (side == 0) { 60.0 + 10.0 * (7.0 * time).sin() } else { 0.0 };
+            *held += 0.02 * (wanted - *held);
+            band.push(*held);
+        }
+    }
+    let mut random = ChaCha8Rng::seed_from_u64(11);
+    let mut noise = |size: f64| -> f64 { size * Distribution::<f64>::sample(&StandardNormal, &mut random) };
+    let forces: Vec<f64> = (0..times.len())
+        .map(|i| 2.05 * bands[0][i] - 1.9 * bands[1][i] + 3.0 * velocities[i].signum() + noise(0.1))
+        .collect();
+    let mut record = ForceRecord::of_positions(&times, &positions, &forces).unwrap();
+    record = record.with_velocities(&velocities).unwrap();
+    for (name, band) in ["forth", "back"].iter().zip(&bands) {
+        let read: Vec<f64> = band.iter().map(|value| value + noise(1.0)).collect();
+        record = record.with_channel(name, &read, 0.011).unwrap();
+    }
+    let found =
+        identify_force(&ForceModel::named("coulomb + channels").unwrap(), std::slice::from_ref(&record)).unwrap();
+    for (name, truth) in [("share_of_forth", 2.05), ("share_of_back", -1.9), ("friction_force", 3.0)] {
+        let value = found.finding(name).unwrap().value();
+        assert!((value / truth - 1.0).abs() < 0.02, "{name}: {value}");
+    }
+    assert!(found.validate_on(&record).unwrap().share().unwrap() < 0.05);
+    let without = identify_force(&ForceModel::named("coulomb").unwrap(), std::slice::from_ref(&record)).unwrap();
+    assert!(without.rms_residual() > 10.0 * found.rms_residual());
+    assert!(record.clone().with_channel("back", &forces, 0.0).is_err(), "the same name twice");
+    assert!(
+        record.clone().with_channel("third", &forces, 1e-3).is_err()
+            && record.with_channel("third", &forces, 9.0).is_err()
+    );
+    let bare = ForceRecord::of_positions(&times, &positions, &forces).unwrap();
+    let refused = identify_force(&ForceModel::named("coulomb + channels").unwrap(), &[bare]);
+    assert!(matches!(refused, Err(IdentifyError::Missing { .. })), "{refused:?}");
+}
