@@ -124,7 +124,7 @@ impl ForceRecord {
 
     /// The same with `values` of a channel called `name` that was measured beside the force, of which the force holds a share: the
     /// actuator of a brake, the other end of a band, a second load cell. Hum and noise are averaged over `seconds` around each sample, by
-    /// the cubic of least squares; with 0 the values stay as they are.
+    /// the cubic of least squares; with 0 the values stay as they are. Noise that is left in them makes shares a little too small.
     ///
     /// # Errors
     /// As for [`of_positions`](Self::of_positions), and [`IdentifyError::Contradiction`] for a name that is there or a time that is

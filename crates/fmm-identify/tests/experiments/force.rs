@@ -434,7 +434,7 @@ fn what_was_measured_beside_the_force_has_a_share() {
     let mut record = ForceRecord::of_positions(&times, &positions, &forces).unwrap();
     record = record.with_velocities(&velocities).unwrap();
     for (name, band) in ["forth", "back"].iter().zip(&bands) {
-        let read: Vec<f64> = band.iter().map(|value| value + noise(1.0)).collect();
+        let read: Vec<f64> = band.iter().map(|value| value + noise(0.2)).collect();
         record = record.with_channel(name, &read, 0.011).unwrap();
     }
     let found =
