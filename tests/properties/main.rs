@@ -1,6 +1,7 @@
 //! What must hold for every machine: laws of mechanics and of arithmetic on random parameters, with fixed seeds.
 
 mod case;
+mod catalogue;
 mod driven;
 mod energy;
 mod engines;

@@ -124,14 +124,17 @@ pub(crate) struct Filter {
     states: Vec<[f64; 2]>,
     /// The input before, once there was one.
     before: Option<f64>,
-    interval: f64,
+    /// Samples a second.
+    rate: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Section {
     angular: f64,
-    /// ζ; `None` for a real pole.
-    damping: Option<f64>,
+    /// Whether it is a pair of poles, or a real one.
+    is_pair: bool,
+    /// By how much an input that grows comes out late (s): 2ζ/ω, of a real pole 1/ω.
+    lag: f64,
     /// What a free motion of [y, y′] becomes within an interval.
     step: [[f64; 2]; 2],
 }
@@ -152,19 +155,17 @@ impl Section {
                 ]
             }
         };
-        Self { angular, damping, step }
+        let lag = damping.map_or(1.0, |damping| 2.0 * damping) / angular;
+        Self { angular, is_pair: damping.is_some(), lag, step }
     }
 
     /// y and y′ after an interval in which the input grows from `from` to `to` at `slope`.
     fn advance(&self, [y, rate]: [f64; 2], from: f64, to: f64, slope: f64) -> [f64; 2] {
-        let lag = self.damping.map_or(1.0, |damping| 2.0 * damping) * slope / self.angular;
+        let lag = self.lag * slope;
         let free = [y - (from - lag), rate - slope];
         let [a, b] = self.step;
         let value = a[0] * free[0] + a[1] * free[1] + to - lag;
-        let rate = match self.damping {
-            None => self.angular * (to - value),
-            Some(_) => b[0] * free[0] + b[1] * free[1] + slope,
-        };
+        let rate = if self.is_pair { b[0] * free[0] + b[1] * free[1] + slope } else { self.angular * (to - value) };
         [value, rate]
     }
 }
@@ -177,7 +178,7 @@ impl Filter {
             Section::new(angular, Some(damping), interval)
         });
         let sections: Vec<Section> = real.into_iter().chain(pairs).collect();
-        Self { states: vec![[0.0; 2]; sections.len()], sections, before: None, interval }
+        Self { states: vec![[0.0; 2]; sections.len()], sections, before: None, rate: interval.recip() }
     }
 
     /// Appends what becomes of the next samples of `input` to `output`: the filtered series or, if it is wanted, its rate of change
@@ -194,7 +195,7 @@ impl Filter {
         let (mut from, mut to) = (before, value);
         let mut rate = 0.0;
         for (section, state) in self.sections.iter().zip(&mut self.states) {
-            let after = section.advance(*state, from, to, (to - from) / self.interval);
+            let after = section.advance(*state, from, to, (to - from) * self.rate);
             (from, to, rate) = (state[0], after[0], after[1]);
             *state = after;
         }

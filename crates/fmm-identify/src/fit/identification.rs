@@ -10,7 +10,7 @@ use crate::experiment::nuisance::Nuisance;
 use crate::experiment::scaled;
 use crate::fit::layout::Layout;
 use crate::fit::problem::Problem;
-use crate::fit::stages::{Near, fit_in_stages, fit_near};
+use crate::fit::stages::{Near, best_fit, fit_in_stages, fit_near};
 use crate::fit::tangent::Tangent;
 use crate::law::Law;
 use crate::law::naming::{Level, level_name};
@@ -144,22 +144,38 @@ pub fn identify_observed<F: LawFamily>(
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Identification, IdentifyError> {
-    identify_by(Law::of::<F>(), machine, terms, decays, None, options, observer)
+    identify_by(Law::of::<F>(), machine, terms, decays, Begin::Anywhere, options, observer)
 }
 
-/// As [`identify_observed`], by a law that is known at run time, near another fit if there is one.
+/// Where a fit begins.
+#[derive(Clone, Copy)]
+pub(crate) enum Begin<'a> {
+    /// Wherever the records say.
+    Anywhere,
+    /// Near another fit.
+    Near(&'a Near<'a>),
+    /// Where a fit by the same law to the same records has ended, of which now the sensors filter.
+    Behind(&'a Identification),
+}
+
+/// As [`identify_observed`], by a law that is known at run time.
 pub(crate) fn identify_by(
     law: Law,
     machine: &Machine,
     terms: &Terms,
     decays: &[Experiment],
-    near: Option<&Near<'_>>,
+    begin: Begin<'_>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Identification, IdentifyError> {
     let problem = Problem::of(law, *machine, terms.clone(), decays)?;
-    let fit = match near {
-        Some(near) if !terms.has_spring() => fit_near(&problem.clone().bending_in_sight(), near, options, observer)?,
+    let fit = match begin {
+        Begin::Near(near) if !terms.has_spring() => {
+            fit_near(&problem.clone().bending_in_sight(), near, options, observer)?
+        }
+        Begin::Behind(plain) => {
+            best_fit(&problem, law.name, vec![problem.behind_sensors(plain.fit().values())], options, observer)?
+        }
         _ => fit_in_stages(&problem, options, observer)?,
     };
     // One instrument for all records; the worst statement counts.

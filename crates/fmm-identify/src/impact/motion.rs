@@ -3,9 +3,10 @@
 use fmm_frf::Channel;
 use fmm_record::{Record, noise, quantisation_step, spikes};
 
-use crate::impact::trial::{FEWEST_QUIET, mean};
 use crate::{Estimated, IdentifyError};
 
+/// Fewer samples than this are too few to know an offset from.
+pub(crate) const FEWEST_QUIET: usize = 16;
 /// A motion is seen this far above the noise (standard deviations), or this share of its largest velocity.
 const SEEN: f64 = 6.0;
 const SEEN_SHARE: f64 = 1e-3;
@@ -17,6 +18,12 @@ const LONGEST_MEAN: usize = 64;
 const ROUNDING: f64 = 1e-12;
 /// A motion is followed for this share of its duration after it was last seen.
 const AFTER: f64 = 0.1;
+
+/// Mean of the samples with its uncertainty if they have white noise of this standard deviation.
+pub(crate) fn mean<'a>(samples: impl Iterator<Item = &'a f64>, deviation: f64) -> Estimated {
+    let (sum, count) = samples.fold((0.0, 0.0), |(sum, count), sample| (sum + sample, count + 1.0));
+    Estimated::new(sum / count, deviation / f64::sqrt(count))
+}
 
 /// The values of a record with its spikes bridged by straight lines, and how many samples those are.
 pub(crate) fn bridged(record: &Record) -> (Vec<f64>, usize) {

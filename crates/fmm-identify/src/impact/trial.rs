@@ -6,12 +6,10 @@ use std::sync::Arc;
 use fmm_frf::{Baseline, Channel, Hit, Pulse};
 use fmm_record::{Quantity, Record, noise, quantisation_step, saturation};
 
-use crate::impact::motion::{Motion, bridged};
+use crate::impact::motion::{FEWEST_QUIET, Motion, bridged, mean};
 use crate::impact::sampled_pulse::SampledPulse;
 use crate::{Estimated, IdentifyError};
 
-/// Fewer samples than this are too few to know an offset from.
-pub(crate) const FEWEST_QUIET: usize = 16;
 /// A pulse stands this far above the noise (standard deviations),
 const SIGNIFICANT: f64 = 20.0;
 /// and ends where the force has fallen to this, or to that share of its level.
@@ -203,12 +201,6 @@ fn require_together(force: &Record, velocity: &Record) -> Result<(), IdentifyErr
     }
     Channel::Response.require(velocity, Quantity::Velocity, force.rate())?;
     Ok(Channel::require_together(force, velocity)?)
-}
-
-/// Mean of the samples with its uncertainty if they have white noise of this standard deviation.
-pub(crate) fn mean<'a>(samples: impl Iterator<Item = &'a f64>, deviation: f64) -> Estimated {
-    let (sum, count) = samples.fold((0.0, 0.0), |(sum, count), sample| (sum + sample, count + 1.0));
-    Estimated { value: sum / count, uncertainty: deviation / f64::sqrt(count) }
 }
 
 /// The force of a blow.

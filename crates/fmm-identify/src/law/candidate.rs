@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use fmm_fit::{Options, Progress};
 use fmm_friction::{Coulomb, CoulombViscous, FamilyVisitor, LawFamily, SpecialCase, Viscous, catalogue, family_named};
 
-use crate::fit::identification::identify_by;
+use crate::fit::identification::{Begin, identify_by};
 use crate::fit::layout::Layout;
 use crate::fit::stages::Near;
 use crate::law::Law;
@@ -174,7 +174,7 @@ impl Candidate {
         options: &Options,
         observer: &mut Observer<'_>,
     ) -> Result<Identification, IdentifyError> {
-        identify_by(self.law, machine, &self.terms, decays, None, options, observer)
+        identify_by(self.law, machine, &self.terms, decays, Begin::Anywhere, options, observer)
     }
 
     /// As [`identify`](Self::identify), begun near other fits of the same records.
@@ -186,7 +186,8 @@ impl Candidate {
         options: &Options,
         observer: &mut Observer<'_>,
     ) -> Result<Identification, IdentifyError> {
-        identify_by(self.law, machine, &self.terms, decays, near, options, observer)
+        let begin = near.map_or(Begin::Anywhere, Begin::Near);
+        identify_by(self.law, machine, &self.terms, decays, begin, options, observer)
     }
 
     pub(crate) const fn law(&self) -> &Law {

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use fmm_fit::Options;
 
-use crate::fit::identification::{closest, identify_by};
+use crate::fit::identification::{Begin, closest, identify_by};
 use crate::{Experiment, Identification, Sensor, Warning};
 
 /// Order of the filter that is tried: that of most sensors with one.
@@ -64,7 +64,8 @@ pub(crate) fn behind_filter(
     let options = Options::default().with_max_iterations(MOST_ITERATIONS);
     let (machine, terms) = (simple.machine(), simple.terms());
     let mut observer = |_: &fmm_fit::Progress<'_>| ControlFlow::Continue(());
-    let found = identify_by(simple.family(), machine, terms, &seen, None, &options, &mut observer).ok()?;
+    let found =
+        identify_by(simple.family(), machine, terms, &seen, Begin::Behind(simple), &options, &mut observer).ok()?;
     let settled = decays.iter().map(|decay| sensor.settling(decay.guess().frequency())).fold(0.0, f64::max);
     Some((found, settled))
 }

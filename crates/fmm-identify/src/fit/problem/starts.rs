@@ -91,6 +91,20 @@ impl Problem<'_> {
         self.clamped(&start)
     }
 
+    /// The `values` of a fit to the same records by sensors that do not filter, with corners to begin with.
+    pub(crate) fn behind_sensors(&self, values: &[f64]) -> Vec<f64> {
+        let (shared, mut own) = values.split_at(self.layout.shared);
+        let mut start = shared.to_vec();
+        for (record, decay) in self.decays.iter().enumerate() {
+            let (of_record, others) =
+                own.split_at(self.layout.nuisance(record, decay) - self.layout.own[record] + decay.nuisances().len());
+            start.extend_from_slice(of_record);
+            start.extend(decay.first_corner().filter(|_| decay.sensor().has_free_corner()));
+            own = others;
+        }
+        self.clamped(&start)
+    }
+
     /// Start values that continue a fit of `simple`, which has a level and a viscous part: the same losses, put into the law
     /// in as many ways as it offers.
     pub(crate) fn continued(&self, simple: &Problem<'_>, values: &[f64]) -> Vec<Vec<f64>> {
