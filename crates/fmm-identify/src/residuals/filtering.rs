@@ -15,6 +15,8 @@ const TOLD: f64 = 5.0;
 const AS_GOOD: f64 = 1.02;
 /// Residuals that exceed the noise by this factor leave something to explain, however short it lasts.
 const EXCESS: f64 = 1.1;
+/// Samples of a period that are enough to see what a filter rounds.
+const ENOUGH_SAMPLES: f64 = 400.0;
 /// Iterations after which the filter is no plain explanation.
 const MOST_ITERATIONS: usize = 60;
 
@@ -60,7 +62,12 @@ pub(crate) fn behind_filter(
         return None;
     }
     let sensor = Sensor::default().with_free_low_pass(ORDER).ok()?;
-    let seen = decays.iter().map(|decay| decay.clone().seen_by(sensor)).collect::<Result<Vec<_>, _>>().ok()?;
+    let behind = |decay: &Experiment| {
+        let stride = (decay.record().rate() / (ENOUGH_SAMPLES * decay.guess().frequency())) as usize;
+        let thinned = (stride > 1).then(|| decay.thinned(stride)).flatten();
+        thinned.unwrap_or_else(|| decay.clone()).seen_by(sensor)
+    };
+    let seen = decays.iter().map(behind).collect::<Result<Vec<_>, _>>().ok()?;
     let options = Options::default().with_max_iterations(MOST_ITERATIONS);
     let (machine, terms) = (simple.machine(), simple.terms());
     let mut observer = |_: &fmm_fit::Progress<'_>| ControlFlow::Continue(());
