@@ -42,7 +42,7 @@ impl Unit {
     pub fn of(text: &str) -> Self {
         let mut rest = text.trim();
         let whole = || Self { factors: [Factor::of(text.trim())].into() };
-        product(&mut rest).filter(|_| rest.is_empty()).unwrap_or_else(whole)
+        product(&mut rest, DEEPEST).filter(|_| rest.is_empty()).unwrap_or_else(whole)
     }
 
     /// Its product with `other`.
@@ -191,8 +191,11 @@ fn powered(f: &mut Formatter<'_>, symbol: &str, power: f64) -> fmt::Result {
     }
 }
 
-/// Symbols and parentheses as far as the text or a closing parenthesis.
-fn product(rest: &mut &str) -> Option<Unit> {
+/// Parentheses within each other that are read: units come from files, where there may be any number.
+const DEEPEST: usize = 8;
+
+/// Symbols and parentheses, up to `depth` within each other, as far as the text or a closing parenthesis.
+fn product(rest: &mut &str, depth: usize) -> Option<Unit> {
     let mut unit = Unit::default();
     let mut sign = 1.0;
     let mut count = 0;
@@ -206,7 +209,7 @@ fn product(rest: &mut &str) -> Option<Unit> {
         }
         let inner = if first == '(' {
             *rest = &rest[1..];
-            let inner = product(rest)?;
+            let inner = product(rest, depth.checked_sub(1)?)?;
             *rest = rest.strip_prefix(')')?;
             inner
         } else {
@@ -254,7 +257,7 @@ fn power<'a>(rest: &mut &'a str) -> Option<(f64, Option<&'a str>)> {
         *rest = &rest[rest.chars().next().map_or(0, char::len_utf8)..];
     }
     match value {
-        Some(value) => Some((if negative { -value } else { value }, None)),
+        Some(value) => f64::is_finite(value).then_some((if negative { -value } else { value }, None)),
         None => (!negative).then_some((1.0, None)),
     }
 }
@@ -297,7 +300,8 @@ mod tests {
 
     #[test]
     fn what_is_no_product_is_one_symbol() {
-        for text in ["counts per turn/", "m^", "(m", "m⁻", "a)"] {
+        let (deep, high) = ("(".repeat(100_000) + "m" + &")".repeat(100_000), "m".to_owned() + &"⁹".repeat(400));
+        for text in ["counts per turn/", "m^", "(m", "m⁻", "a)", &deep, &high] {
             assert_eq!(Unit::of(text).to_string(), text);
             assert_eq!(Unit::of(text).dimension(|_| Some(1.0)), None, "{text}");
         }

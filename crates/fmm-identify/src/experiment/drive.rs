@@ -75,10 +75,21 @@ impl Drive {
     /// [`Sensor`](crate::Sensor).
     ///
     /// # Errors
-    /// [`IdentifyError::InvalidInput`] for one that is negative or not finite.
+    /// [`IdentifyError::InvalidInput`] for one that is negative or not finite, [`IdentifyError::OutOfRange`] for one longer than the
+    /// record of the drive.
     pub fn with_free_delay(self, longest: f64) -> Result<Self, IdentifyError> {
         let longest_delay = ModelError::require_not_negative("longest delay of a response", longest, "s")?;
+        self.require_delay(longest_delay)?;
         Ok(Self { longest_delay, ..self })
+    }
+
+    /// That a response may be late by `delay` (s): not by more than the drive lasts.
+    pub(crate) fn require_delay(&self, delay: f64) -> Result<(), IdentifyError> {
+        if delay <= self.record.duration() {
+            return Ok(());
+        }
+        let subject = "the delay (s) of the response to a drive";
+        Err(IdentifyError::not_allowed(subject, delay, "no longer than the record of the drive"))
     }
 
     /// Relative standard uncertainty of the gain of its channel (1).

@@ -81,13 +81,16 @@ impl Experiment {
     /// The same seen by `sensor`. What its filter remembers of the time before the record is left out of the fit.
     ///
     /// # Errors
-    /// [`IdentifyError::OutOfRange`] for a corner above half the sampling rate, [`IdentifyError::TooFew`] if the filter leaves nothing.
+    /// [`IdentifyError::OutOfRange`] for a corner above half the sampling rate or, behind a drive, a delay longer than that, [`IdentifyError::TooFew`] if the filter leaves nothing.
     pub fn seen_by(mut self, sensor: Sensor) -> Result<Self, IdentifyError> {
         let frequency = self.guess.frequency();
         let limit = 0.5 * self.record.rate();
         if let Some(value) = sensor.low_pass().and_then(|(_, corner)| corner).filter(|corner| *corner > limit) {
             let subject = "the corner frequency of a sensor (Hz)";
             return Err(IdentifyError::not_allowed(subject, value, "below half the sampling rate"));
+        }
+        if let Some(drive) = self.drive() {
+            drive.require_delay(sensor.delay())?;
         }
         let settled = (sensor.settling(frequency) * self.record.rate()).ceil() as usize;
         for range in &mut self.kept {

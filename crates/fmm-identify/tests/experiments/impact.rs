@@ -163,4 +163,7 @@ fn gain_and_delay_of_a_drive_are_found() {
     assert!(unknowing.rms_residual() > 1.5 * found.rms_residual());
     assert!(unknowing.warnings().iter().any(|warning| warning.to_string().contains("structured")));
     assert!(plain().with_gain_uncertainty(-1.0).is_err() && plain().with_free_delay(f64::NAN).is_err());
+    // No longer than the drive is known: what is asked of it is as much as the delay.
+    assert!(plain().with_free_delay(1e12).is_err());
+    assert!(of(plain()).seen_by(Sensor::default().with_delay(1e12).unwrap()).is_err());
 }
