@@ -72,6 +72,9 @@ fn the_calibration_of_the_hammer_is_that_of_all_forces() {
     let pulse = summary.impulse.uncertainty / summary.impulse.value;
     let blow = Experiment::impact(&trial).unwrap();
     assert_eq!(blow.drive().unwrap().gain_uncertainty(), pulse);
+    // Twelve samples of contact count for nothing, and all others do.
+    let left_out: usize = blow.record().len() - blow.kept().iter().map(std::ops::Range::len).sum::<usize>();
+    assert!((12..=16).contains(&left_out), "{left_out}: {:?}", blow.kept());
     let machine = Machine::unknown().with_normal_load(Known::exact(LOAD).unwrap()).unwrap();
     let found = identify::<CoulombViscous>(&machine, &[blow]).unwrap();
     println!("{found}");
@@ -166,4 +169,33 @@ fn gain_and_delay_of_a_drive_are_found() {
     // No longer than the drive is known: what is asked of it is as much as the delay.
     assert!(plain().with_free_delay(1e12).is_err());
     assert!(of(plain()).seen_by(Sensor::default().with_delay(1e12).unwrap()).is_err());
+}
+
+/// A response that is read 3 % wrong makes the gain of a force as wrong the other way, and no delay; the gain of a base is found as well.
+#[test]
+fn the_gain_of_the_response_is_in_that_of_the_drive() {
+    const SAMPLES: usize = 3000;
+    let force: Vec<f64> = (0..SAMPLES).map(|i| 9.0 * (11e-3 * i as f64).sin()).collect();
+    let (damping, initial, law) = (0.0, (0.0, 0.0), [0.25, 0.1]);
+    let motion =
+        Motion { damping, law: &law, load: LOAD, initial, force: Some(&force), samples: SAMPLES, interval: INTERVAL };
+    let response = record(motion.of::<CoulombViscous>().velocity().values(), 1e-3, 4, Quantity::Velocity, "m/s");
+    let free = |drive: Drive| drive.with_gain_uncertainty(0.05).unwrap().with_free_delay(5e-3).unwrap();
+    let by_force =
+        free(Drive::force(&Record::new(0.0, INTERVAL, force.clone(), Quantity::Force, "N").unwrap()).unwrap());
+    let found = |drive: &Drive, preparation: &Preparation| {
+        let experiment = Experiment::driven(&response, drive.clone(), preparation).unwrap();
+        identify::<CoulombViscous>(&machine(), &[experiment]).unwrap()
+    };
+    let sure = found(&by_force, &Preparation::default());
+    let unsure = found(&by_force, &Preparation::default().gain_uncertainty(0.03));
+    let gain = sure.finding("force_gain").unwrap().value();
+    assert!((u(&unsure, "force_gain") / u(&sure, "force_gain").hypot(0.03 * gain) - 1.0).abs() < 1e-9);
+    assert_eq!(u(&unsure, "delay"), u(&sure, "delay"));
+    // The same motion by a base of which 2 % too much is read.
+    let base: Vec<f64> = force.iter().map(|force| -1.02 * force / MASS).collect();
+    let base = free(Drive::base(&Record::new(0.0, INTERVAL, base, Quantity::Acceleration, "m/s²").unwrap()).unwrap());
+    let by_base = found(&base, &Preparation::default());
+    let gain = by_base.finding("base_gain").unwrap();
+    assert!((gain.value() - 1.02).abs() < 4.0 * u(&by_base, "base_gain") && u(&by_base, "base_gain") < 0.005);
 }
