@@ -59,7 +59,7 @@ struct Arguments {
     #[arg(long)]
     unit: Option<Unit>,
     /// The laws to compare, such as coulomb,berger+quadratic: names with terms of the machine beside them (linear, quadratic,
-    /// cubic, any sign; cubic spring, quintic spring), or all (viscous, coulomb and both); without it, as many as the record asks for. An unknown name is
+    /// cubic, power, any sign; cubic spring, quintic spring, stop, gap), or all (viscous, coulomb and both); without it, as many as the record asks for. An unknown name is
     /// answered with the list of laws
     #[arg(long, value_name = "NAME,..|all", value_delimiter = ',')]
     law: Vec<String>,

@@ -98,6 +98,16 @@ enum Spring {
         #[serde(default)]
         quintic: f64,
     },
+    Stop {
+        /// m.
+        distance: f64,
+        /// Stiffness beyond the stop as a multiple of that before it.
+        ratio: f64,
+    },
+    Gap {
+        /// m, on either side.
+        gap: f64,
+    },
 }
 
 impl Machine {
@@ -121,6 +131,8 @@ impl Machine {
             Spring::Linear => Restoring::Linear,
             Spring::Sine { length } => Restoring::sine(length)?,
             Spring::Polynomial { cubic, quintic } => Restoring::polynomial(cubic, quintic)?,
+            Spring::Stop { distance, ratio } => Restoring::stop(distance, ratio)?,
+            Spring::Gap { gap } => Restoring::gap(gap)?,
         };
         Ok(Oscillator::new(self.mass, self.stiffness)?.with_damping(damping).with_restoring(restoring))
     }

@@ -21,7 +21,8 @@ pub(crate) const HELP: &str = r#"A scenario, all SI; only oscillator and an end 
   oscillator   mass, stiffness, damping, restoring
   damping      linear, quadratic, cubic, power {coefficient, exponent}, which add up; instead of linear and quadratic
                peak_velocity_line {intercept, slope}; default none
-  restoring    "linear" (default), {"sine": {"length": 1.0}} or {"polynomial": {"cubic": 1.5, "quintic": 0.0}}
+  restoring    "linear" (default), {"sine": {"length": 1.0}}, {"polynomial": {"cubic": 1.5, "quintic": 0.0}},
+               {"stop": {"distance": 0.02, "ratio": 5.0}} (5 times as stiff beyond 20 mm) or {"gap": {"gap": 0.001}}
   law          an object with one key, see --laws; default no friction
   normal_load  default 1, with which a coefficient is a force
   excitation   a list of: sampled_force {interval, values}, half_sine {peak, duration}, constant {force}, ramp {rate},

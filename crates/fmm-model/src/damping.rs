@@ -108,7 +108,7 @@ impl<D: Scalar> Damping<D> {
     pub fn with_power(mut self, coefficient: D, exponent: D) -> Result<Self, ModelError> {
         ModelError::require_not_negative("power-law damping", coefficient.value(), "N (s/m)^p")?;
         ModelError::require_positive("damping exponent", exponent.value(), "(dimensionless)")?;
-        self.power = (coefficient.value() != 0.0).then_some((coefficient, exponent));
+        self.power = (!vanishes(coefficient)).then_some((coefficient, exponent));
         Ok(self)
     }
 
@@ -134,8 +134,6 @@ impl<D: Scalar> Damping<D> {
 
     /// Whether there is no part but the linear one, in value and in every derivative.
     pub fn is_linear(&self) -> bool {
-        let vanishes =
-            |number: D| number.value() == 0.0 && (0..D::DIRECTIONS).all(|direction| number.partial(direction) == 0.0);
         vanishes(self.quadratic) && vanishes(self.cubic) && self.power.is_none()
     }
 
@@ -171,6 +169,11 @@ impl<D: Scalar> Damping<D> {
             None => polynomial,
         }
     }
+}
+
+/// Whether `number` is zero in value and in every derivative.
+fn vanishes<D: Scalar>(number: D) -> bool {
+    number.value() == 0.0 && (0..D::DIRECTIONS).all(|direction| number.partial(direction) == 0.0)
 }
 
 /// (2/π) ∫₀^{π/2} sin^p θ dθ, the mean of |sin θ|ᵖ over a cycle.

@@ -1,8 +1,8 @@
-//! Restoring force: a linear spring, one that hardens or softens, or the sine of a pendulum.
+//! Restoring force: a linear spring, one that hardens or softens, one with a stop or a gap, or the sine of a pendulum.
 
 use crate::{ModelError, Scalar};
 
-/// How the restoring force depends on the position; its slope at the origin is the stiffness k.
+/// How the restoring force depends on the position; its slope at the origin is the stiffness k, but for a spring with a gap.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Restoring<D = f64> {
@@ -21,6 +21,16 @@ pub enum Restoring<D = f64> {
         cubic: D,
         /// k₅ (1/m⁴).
         quintic: D,
+    },
+    /// F = k (a x + (b − a)(|x| − g)₊ sgn x), a spring with a corner on both sides: a stop, a preload or a gap.
+    #[non_exhaustive]
+    Bilinear {
+        /// g, the distance of the corners from the origin (m).
+        corner: D,
+        /// a, the slope inside as a multiple of k (1).
+        inner: D,
+        /// b, the slope outside as a multiple of k (1).
+        outer: D,
     },
 }
 
@@ -45,10 +55,57 @@ impl<D: Scalar> Restoring<D> {
         Ok(Self::Polynomial { cubic, quintic })
     }
 
+    /// A spring of the stiffness k up to the `distance` g (m) from the origin on both sides, and of `ratio` b times k (1) beyond:
+    /// a flexure that meets a stop (b > 1), or a preloaded joint that opens (b < 1).
+    ///
+    /// ```text
+    /// F = k x for |x| ≤ g,   F = k (g + b (|x| − g)) sgn x beyond
+    /// ```
+    ///
+    /// # Errors
+    /// [`ModelError::NotPositive`] for the distance, [`ModelError::Negative`] for the ratio.
+    pub fn stop(distance: D, ratio: D) -> Result<Self, ModelError> {
+        ModelError::require_positive("distance of the stop", distance.value(), "m")?;
+        ModelError::require_not_negative("stiffness ratio of the stop", ratio.value(), "(dimensionless)")?;
+        Ok(Self::Bilinear { corner: distance, inner: D::from(1.0), outer: ratio })
+    }
+
+    /// A spring with backlash, F = k (|x| − g)₊ sgn x: no force within the `gap` g (m) on either side of the origin. The stiffness k
+    /// and the natural frequency of the [oscillator](crate::Oscillator) are those beyond the gap.
+    ///
+    /// # Errors
+    /// [`ModelError::Negative`].
+    pub fn gap(gap: D) -> Result<Self, ModelError> {
+        ModelError::require_not_negative("gap", gap.value(), "m")?;
+        Ok(Self::Bilinear { corner: gap, inner: D::from(0.0), outer: D::from(1.0) })
+    }
+
+    /// The distance from the origin (m) at which the slope of the force leaps on either side, if it does.
+    pub fn corner(&self) -> Option<D> {
+        match self {
+            Self::Bilinear { corner, .. } => Some(*corner),
+            Self::Linear | Self::Sine { .. } | Self::Polynomial { .. } => None,
+        }
+    }
+
+    /// The same spring with every number made one of another kind.
+    pub fn map<E: Scalar>(self, mut number: impl FnMut(D) -> E) -> Restoring<E> {
+        match self {
+            Self::Linear => Restoring::Linear,
+            Self::Sine { length } => Restoring::Sine { length: number(length) },
+            Self::Polynomial { cubic, quintic } => {
+                Restoring::Polynomial { cubic: number(cubic), quintic: number(quintic) }
+            }
+            Self::Bilinear { corner, inner, outer } => {
+                Restoring::Bilinear { corner: number(corner), inner: number(inner), outer: number(outer) }
+            }
+        }
+    }
+
     /// Whether the force at `position` (m) points back to the origin. A pendulum that goes over the top turns on; a spring does not.
     pub fn restores(&self, position: D) -> bool {
         match self {
-            Self::Linear | Self::Sine { .. } => true,
+            Self::Linear | Self::Sine { .. } | Self::Bilinear { .. } => true,
             Self::Polynomial { cubic, quintic } => {
                 let square = position.value() * position.value();
                 (quintic.value() * square + cubic.value()) * square > -1.0
@@ -70,6 +127,10 @@ impl<D: Scalar> Restoring<D> {
                 let bend = (*quintic * square * 20.0 + *cubic * 6.0) * position;
                 (stiffness * slope, stiffness * bend)
             }
+            Self::Bilinear { corner, inner, outer } => {
+                let is_outside = position.value().abs() > corner.value();
+                (stiffness * if is_outside { *outer } else { *inner }, D::from(0.0))
+            }
         }
     }
 
@@ -81,6 +142,9 @@ impl<D: Scalar> Restoring<D> {
             Self::Polynomial { cubic, quintic } => {
                 let square = position * position;
                 stiffness * position * ((*quintic * square + *cubic) * square + 1.0)
+            }
+            Self::Bilinear { inner, outer, .. } => {
+                stiffness * (*inner * position + (*outer - *inner) * self.beyond(position))
             }
         }
     }
@@ -98,6 +162,18 @@ impl<D: Scalar> Restoring<D> {
                 let square = position * position;
                 stiffness * square * ((*quintic * square * (1.0 / 6.0) + *cubic * 0.25) * square + 0.5)
             }
+            Self::Bilinear { inner, outer, .. } => {
+                let beyond = self.beyond(position);
+                stiffness * (*inner * position * position + (*outer - *inner) * beyond * beyond) * 0.5
+            }
+        }
+    }
+
+    /// (|x| − g)₊ sgn x, how far `position` (m) is beyond a corner.
+    fn beyond(&self, position: D) -> D {
+        match self.corner() {
+            Some(corner) if position.value().abs() > corner.value() => position - corner * position.value().signum(),
+            _ => D::from(0.0),
         }
     }
 }
@@ -128,5 +204,22 @@ mod tests {
         assert!(soft.restores(0.4) && !soft.restores(0.6) && soft.restores(0.0) && unit.restores(4.0));
         assert!(Restoring::polynomial(f64::NAN, 0.0).is_err());
         assert!(Restoring::sine(0.0).is_err() && Restoring::sine(f64::NAN).is_err());
+    }
+
+    /// Force and energy on either side of the corners, by hand.
+    #[test]
+    fn corners_are_on_both_sides() {
+        let (stop, gap) = (Restoring::stop(0.5, 3.0).unwrap(), Restoring::gap(0.5).unwrap());
+        for side in [-1.0, 1.0] {
+            assert_eq!((stop.force(8.0, 0.5 * side), stop.force(8.0, 0.75 * side)), (4.0 * side, 10.0 * side));
+            assert_eq!((stop.energy(8.0, 0.5 * side), stop.energy(8.0, 0.75 * side)), (1.0, 2.75));
+            assert_eq!((gap.force(8.0, 0.4 * side), gap.force(8.0, 0.75 * side)), (0.0, 2.0 * side));
+            assert_eq!((gap.energy(8.0, 0.4 * side), gap.energy(8.0, 0.75 * side)), (0.0, 0.25));
+            assert_eq!((stop.slope(8.0, 0.4 * side).0, stop.slope(8.0, 0.6 * side).0), (8.0, 24.0));
+            assert_eq!((gap.slope(8.0, 0.4 * side).0, gap.slope(8.0, 0.6 * side).0), (0.0, 8.0));
+        }
+        assert_eq!(stop.map(|number| number), stop);
+        assert!(Restoring::stop(0.0, 1.0).is_err() && Restoring::stop(1.0, -0.1).is_err());
+        assert!(Restoring::gap(-1.0).is_err() && Restoring::gap(f64::NAN).is_err());
     }
 }

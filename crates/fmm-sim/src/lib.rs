@@ -139,6 +139,7 @@ mod runge_kutta;
 mod samples;
 mod sampling;
 mod scenario;
+mod spring;
 mod thesis;
 mod trajectory;
 mod within;

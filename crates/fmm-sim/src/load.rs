@@ -26,11 +26,13 @@ pub(crate) fn load<D: Scalar>(
             let angular = velocity.abs() / length;
             load.waves.push(Wave { angular, cosine: -(force * sin), sine: -(force * cos) * sign });
         }
-        Restoring::Linear if velocity.value() != 0.0 => {
-            load.constant -= oscillator.stiffness() * position;
-            load.slope -= oscillator.stiffness() * velocity;
+        restoring => {
+            // Of a spring that is not linear the slope holds for this instant; engines refuse to hold it on a moving counterface.
+            load.constant -= oscillator.restoring_force(position);
+            if velocity.value() != 0.0 {
+                load.slope -= restoring.slope(oscillator.stiffness(), position).0 * velocity;
+            }
         }
-        _ => load.constant -= oscillator.restoring_force(position),
     }
     load
 }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use fmm_fit::EvaluationError;
 use fmm_friction::Role;
-use fmm_model::{Bounds, Damping, Oscillator, Parameter, Restoring, Scalar};
+use fmm_model::{Bounds, Damping, Oscillator, Parameter, Scalar};
 
 use crate::experiment::reference;
 use crate::law::dimension::is_force;
@@ -52,10 +52,8 @@ impl Layout {
         if terms.has_linear_damping() && family.has_slope() {
             return Err(IdentifyError::two_dampings(family.name));
         }
-        if terms.has_spring() && matches!(machine.restoring(), Restoring::Sine { .. }) {
-            return Err(IdentifyError::contradiction(
-                "a pendulum has the sine for its restoring force; leave out the pendulum, or the terms of the spring",
-            ));
+        if let Some(contradiction) = terms.spring_contradiction(machine.restoring()) {
+            return Err(IdentifyError::contradiction(contradiction));
         }
         let reference = reference(decays);
         let is_driven = decays.iter().any(|decay| decay.drive().is_some());
@@ -170,8 +168,8 @@ impl Layout {
         if direction < self.shared { direction } else { self.own[record] + direction - self.shared }
     }
 
-    /// The power of the gain of the record to which the parameter at `index` is proportional.
-    pub(crate) fn power_of_gain(&self, index: usize) -> f64 {
+    /// The power of the gain of the record to which the parameter at `index`, of these `values`, is proportional.
+    pub(crate) fn power_of_gain(&self, index: usize, values: &[f64]) -> f64 {
         if index >= self.shared {
             return self.powers[index - self.shared];
         }
@@ -179,9 +177,12 @@ impl Layout {
             Some(index) => {
                 self.family.fitted().nth(index).map_or(0.0, |parameter| self.family.power_of_gain(parameter))
             }
-            None => index
-                .checked_sub(self.oscillator)
-                .map_or(0.0, |place| self.terms.iter().nth(place).map_or(0.0, Term::power_of_gain)),
+            None => {
+                let exponent =
+                    self.terms.place(Term::PowerExponent).map_or(1.0, |place| values[self.oscillator + place]);
+                let term = index.checked_sub(self.oscillator).and_then(|place| self.terms.iter().nth(place));
+                term.map_or(0.0, |term| term.power_of_gain(exponent))
+            }
         }
     }
 
@@ -217,6 +218,10 @@ impl Layout {
         let damping = Damping::of_any_sign(damping, per_mass(Term::QuadraticDamping))?;
         let damping =
             if terms.has(Term::CubicDamping) { damping.with_cubic(per_mass(Term::CubicDamping))? } else { damping };
+        let damping = match beside(Term::PowerExponent) {
+            Some(exponent) => damping.with_power(per_mass(Term::PowerDamping), exponent)?,
+            None => damping,
+        };
         let force = match experiment.drive() {
             None => None,
             Some(drive) => {
@@ -238,17 +243,7 @@ impl Layout {
                 Some(drive.excitation(experiment.record().start(), delay, per)?)
             }
         };
-        let spring = |term: Term, known: f64| beside(term).map_or(D::from(known), |fitted| fitted + known);
-        let restoring = match machine.restoring() {
-            Restoring::Sine { length } => Restoring::sine(D::from(length))?,
-            Restoring::Polynomial { cubic, quintic } => {
-                Restoring::polynomial(spring(Term::CubicSpring, cubic), spring(Term::QuinticSpring, quintic))?
-            }
-            _ if terms.has_spring() => {
-                Restoring::polynomial(spring(Term::CubicSpring, 0.0), spring(Term::QuinticSpring, 0.0))?
-            }
-            _ => Restoring::Linear,
-        };
+        let restoring = terms.spring(machine.restoring(), beside)?;
         Ok(Motion {
             oscillator: oscillator.with_damping(damping).with_restoring(restoring),
             law: self.family.values(&values[self.law..self.shared]),

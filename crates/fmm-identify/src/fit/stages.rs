@@ -122,6 +122,9 @@ fn fit_simple(
     if problem.decays().iter().any(|decay| decay.drive().is_some()) {
         starts = lowest(problem, starts, MOST_DRIVEN_STARTS);
     }
+    if problem.has_corners() {
+        return fit_with_corners(problem, starts, options, observer);
+    }
     if let Some(swinging) = problem.up_to_last_peaks() {
         let problem = problem.with_records(&swinging);
         if let Ok(fit) = best_fit(&problem, problem.name(), problem.starts(), options, observer) {
@@ -138,6 +141,30 @@ fn fit_simple(
             }
         }
         starts.extend(begun);
+    }
+    best_fit(problem, problem.name(), starts, options, observer)
+}
+
+/// The best end of the fits from `starts` of a spring with corners: all of them to few swings, the best of these to more and more.
+fn fit_with_corners(
+    problem: &Problem<'_>,
+    mut starts: Vec<Vec<f64>>,
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, IdentifyError> {
+    for share in BEGINNINGS {
+        let beginning = problem.beginnings(share);
+        let problem = problem.with_records(&beginning);
+        let fits = starts.iter().filter_map(|start| {
+            let fit = solve_observed(&problem, start, options, |progress| observer(progress)).ok()?;
+            Some((fit.sum_of_squares(), fit.values().to_vec()))
+        });
+        let mut ends: Vec<_> = fits.collect();
+        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+        ends.truncate((starts.len() / 3).max(2));
+        if !ends.is_empty() {
+            starts = ends.into_iter().map(|(_, values)| values).collect();
+        }
     }
     best_fit(problem, problem.name(), starts, options, observer)
 }

@@ -80,11 +80,17 @@ impl ForceModel {
     /// Friction by `law`, with the damping that stands beside it.
     ///
     /// # Errors
-    /// [`IdentifyError::Contradiction`] for a term of a spring: the part `stiffness` is the spring of a force record.
+    /// [`IdentifyError::Contradiction`] for a term of a spring, as the part `stiffness` is the spring of a force record, and for damping
+    /// with a free power, as that is a law.
     pub fn of(law: Candidate) -> Result<Self, IdentifyError> {
         if law.terms().has_spring() {
             return Err(IdentifyError::contradiction(
                 "a spring that is not linear is a term of free vibrations; a force along a motion takes the part stiffness",
+            ));
+        }
+        if law.terms().has(Term::PowerDamping) {
+            return Err(IdentifyError::contradiction(
+                "damping with a free power is a term of free vibrations; a force along a motion takes the law power_law",
             ));
         }
         if law.terms().has_linear_damping() && law.law().has_slope() {

@@ -95,7 +95,7 @@ impl Candidate {
                     return Err(IdentifyError::UnknownName {
                         what: format!(
                             "there is no term called {term:?} to put beside a law; the terms are: {}, any sign",
-                            Term::ALL.map(Term::name).join(", ")
+                            Term::names().collect::<Vec<_>>().join(", ")
                         ),
                     });
                 }

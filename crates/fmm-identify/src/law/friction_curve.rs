@@ -65,7 +65,8 @@ fn friction(layout: &Layout, terms: &Terms, values: &[f64], speed: f64, losing: 
     let further = beside(Term::QuadraticDamping) + beside(Term::CubicDamping) * speed;
     let damping = beside(Term::LinearDamping) + further * speed;
     let steady = layout.family.steady(&values[layout.law..layout.shared], speed, losing)?;
-    Some(steady + damping * speed)
+    let power = beside(Term::PowerDamping) * speed.powf(beside(Term::PowerExponent));
+    Some(steady + damping * speed + power)
 }
 
 /// The least-squares problem of a law that follows a curve.

@@ -185,10 +185,10 @@ impl Inputs<'_> {
             }
         };
         if self.machine.scale() != Scale::Unknown {
-            for (place, term) in self.layout.terms.iter().enumerate().filter(|(_, term)| term.is_spring()) {
+            for (place, term) in self.layout.terms.iter().enumerate() {
+                let Some(parameter) = term.stiffness_per_mass(&self.layout.units.position) else { continue };
                 let value = variable(self.shared[1 + place], 1 + place);
-                let per_mass = value / mass_of_stiffness(D::from(1.0), natural_frequency);
-                derived.push((term.stiffness_per_mass(&self.layout.units.position), per_mass));
+                derived.push((parameter, value / mass_of_stiffness(D::from(1.0), natural_frequency)));
             }
         }
         // With an unknown scale the fitted values are forces already, by the channel of a measured one if there is one.
@@ -243,7 +243,7 @@ pub(crate) fn findings(
 ) -> Vec<Finding> {
     let estimated = fit.estimates().iter().enumerate().map(|(index, estimate)| {
         // What is proportional to a power of the record is uncertain with its gain.
-        let gain = gain_uncertainty * layout.power_of_gain(index) * estimate.value();
+        let gain = gain_uncertainty * layout.power_of_gain(index, fit.values()) * estimate.value();
         let by_force = if layout.is_scaled_by_force(index) { layout.force_uncertainty * estimate.value() } else { 0.0 };
         Finding::new(
             estimate.parameter().clone(),

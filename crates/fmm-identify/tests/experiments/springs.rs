@@ -13,8 +13,11 @@ use crate::simulated::{INTERVAL, machine, record};
 
 /// 2 Hz at small amplitude, released at 0.3 rad.
 fn motion(cubic: f64, quintic: f64, damping: Damping) -> Vec<f64> {
-    let machine = Oscillator::per_unit_mass(2.0).unwrap().with_damping(damping);
-    let machine = machine.with_restoring(Restoring::polynomial(cubic, quintic).unwrap());
+    swing(Restoring::polynomial(cubic, quintic).unwrap(), damping)
+}
+
+fn swing(spring: Restoring, damping: Damping) -> Vec<f64> {
+    let machine = Oscillator::per_unit_mass(2.0).unwrap().with_damping(damping).with_restoring(spring);
     let scenario = Scenario::new(machine, CoulombViscous::new(0.2, 0.1).unwrap(), 1.0).unwrap();
     let motion = simulate(&scenario.starting_at(0.3, 0.0).unwrap(), &Sampling::uniform(INTERVAL, 6000).unwrap());
     motion.unwrap().position().values().to_vec()
@@ -39,16 +42,49 @@ fn springs_come_back() {
     }
 }
 
-#[test]
-fn cubic_damping_comes_back() {
-    let motion = motion(0.0, 0.0, Damping::none().with_cubic(0.05).unwrap());
-    let record = record(&motion, 1e-4, 6, Quantity::Displacement, "rad");
+/// The findings of these names lie within four of their uncertainties of the truth, which are less than the last number.
+fn come_back(motion: &[f64], seed: u64, terms: &Terms, truths: &[(&str, f64, f64)]) {
+    let record = record(motion, 1e-4, seed, Quantity::Displacement, "rad");
     let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
-    let terms = Terms::default().with_cubic_damping();
-    let found = identify_with::<CoulombViscous>(&Machine::per_unit_mass(), &terms, &[experiment]).unwrap();
-    let finding = found.finding("cubic_damping_per_mass").unwrap();
-    let (error, u) = ((finding.value() - 0.05).abs(), finding.uncertainty().unwrap());
-    assert!(error < 4.0 * u && u < 0.01, "{found}");
+    let found = identify_with::<CoulombViscous>(&Machine::per_unit_mass(), terms, &[experiment]).unwrap();
+    for (name, truth, most) in truths {
+        let finding = found.finding(name).unwrap();
+        let (error, u) = ((finding.value() - truth).abs(), finding.uncertainty().unwrap());
+        assert!(error < 4.0 * u && u < *most, "{name} for {truth}:\n{found}");
+    }
+}
+
+#[test]
+fn damping_terms_come_back() {
+    let cubic = motion(0.0, 0.0, Damping::none().with_cubic(0.05).unwrap());
+    come_back(&cubic, 6, &Terms::default().with_cubic_damping(), &[("cubic_damping_per_mass", 0.05, 0.01)]);
+    let power = motion(0.0, 0.0, Damping::none().with_power(0.1, 2.4).unwrap());
+    let truths = [("power_damping_per_mass", 0.1, 0.02), ("power_damping_exponent", 2.4, 0.3)];
+    come_back(&power, 8, &Terms::default().with_power_damping(), &truths);
+}
+
+/// Stops that are harder or softer than the spring, and backlash.
+#[test]
+fn corners_of_a_spring_come_back() {
+    for (distance, ratio) in [(0.2, 3.0), (0.12, 0.6)] {
+        let motion = swing(Restoring::stop(distance, ratio).unwrap(), Damping::none());
+        let truths = [
+            ("stop_distance", distance, 1e-3),
+            ("stop_stiffness_ratio", ratio, 0.02),
+            ("friction_per_mass", 0.2, 1e-2),
+        ];
+        come_back(&motion, 9, &Terms::default().with_stop(), &truths);
+    }
+    let motion = swing(Restoring::gap(0.03).unwrap(), Damping::none());
+    let truths = [("gap", 0.03, 1e-3), ("natural_frequency_hz", 2.0, 1e-2), ("friction_per_mass", 0.2, 1e-2)];
+    come_back(&motion, 10, &Terms::default().with_gap(), &truths);
+    for together in ["coulomb+stop+gap", "coulomb+stop+cubic spring"] {
+        let record = record(&motion, 1e-4, 11, Quantity::Displacement, "rad");
+        let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+        let candidates = [Candidate::named(together).unwrap()];
+        let refused = compare(&Machine::per_unit_mass(), &[experiment], &candidates);
+        assert!(matches!(refused, Err(IdentifyError::Contradiction { .. })), "{refused:?}");
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@ use fmm_friction::{BristleLaw, Regime};
 use fmm_model::{Oscillator, Scalar};
 
 use crate::Direction;
+use crate::spring::Spring;
 
 /// On which smooth branch of the law the contact moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,6 +31,8 @@ const FAST: f64 = 1e6;
 /// so it is behind the zero of a state, where the law may have a corner.
 pub(super) struct Field<'a, D, L> {
     pub(super) oscillator: &'a Oscillator<D>,
+    /// The spring on the side of its corners on which the step is.
+    pub(super) spring: Spring<'a, D>,
     pub(super) normal_load: D,
     pub(super) belt: D,
     pub(super) law: &'a L,
@@ -55,6 +58,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
         let zeros = vec![D::from(0.0); law.states()];
         Self {
             oscillator,
+            spring: Spring::new(oscillator),
             normal_load,
             belt,
             law,
@@ -186,7 +190,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
             Some(coefficient) => v * coefficient,
             None => self.oscillator.damping().force(v),
         };
-        let balance = (force - damping - self.oscillator.restoring_force(x) - friction) * self.per_mass;
+        let balance = (force - damping - self.spring.force(x) - friction) * self.per_mass;
         if self.guided { force } else { balance }
     }
 
@@ -223,7 +227,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
     pub(super) fn force_size(&mut self, force: D, branch: Branch, state: &[D]) -> f64 {
         let friction = self.friction(branch, state).value().abs();
         let damping = self.oscillator.damping().force(state[1]).value().abs();
-        force.value().abs() + damping + self.oscillator.restoring_force(state[0]).value().abs() + friction
+        force.value().abs() + damping + self.spring.force(state[0]).value().abs() + friction
     }
 
     /// Writes the Jacobian of `rates` in the values at `state`, row by row, into `jacobian`. `speed` (m/s) is a typical
@@ -237,7 +241,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
 
         let x = state[0].value();
         let reach = (DIFFERENCE * x.abs().max(f64::MIN_POSITIVE / DIFFERENCE)).copysign(x);
-        let restoring = |x: f64| self.oscillator.restoring_force(D::from(x)).value();
+        let restoring = |x: f64| self.spring.force(D::from(x)).value();
         jacobian[size] = -slope(restoring(x + reach) - restoring(x), x + reach - x) / mass;
 
         let u = D::from(self.mirror(branch, state).value());

@@ -1,5 +1,7 @@
 //! Guards: ends of a smooth branch.
 
+use crate::spring::Range;
+
 /// A quantity that is positive on a smooth branch and zero at its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Guard {
@@ -9,6 +11,8 @@ pub(super) enum Guard {
     Reserve(usize),
     /// The velocity, or a state of the law, passes zero, where damping or law may have a corner. This is no event.
     Corner(usize),
+    /// The position passes the corner of the spring behind which it is in this range. This is no event.
+    SpringCorner(Range),
 }
 
 /// A guard whose zero steps are being shortened or stretched to.

@@ -23,9 +23,13 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
     /// zero.
     pub(super) fn first_guard(&mut self, at_zero: bool) -> Option<(f64, Guard)> {
         let mut first: Option<(f64, Guard)> = None;
-        let mut look = |coefficients, guard| {
-            let root =
-                if at_zero && guard == Guard::Speed { next_root(coefficients) } else { first_root(coefficients) };
+        let mut look = |coefficients: [f64; STAGES + 1], guard| {
+            let begins_there = match guard {
+                Guard::Speed => at_zero,
+                Guard::SpringCorner(_) => coefficients[0] == 0.0,
+                Guard::Reserve(_) | Guard::Corner(_) => false,
+            };
+            let root = if begins_there { next_root(coefficients) } else { first_root(coefficients) };
             if let Some(tau) = root
                 && first.is_none_or(|(earliest, _)| tau < earliest)
             {
@@ -44,6 +48,10 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
             if may_bend && self.step.begin[component].value() != 0.0 {
                 look(self.guard_polynomial(Guard::Corner(component)), Guard::Corner(component));
             }
+        }
+        for corner in self.field.spring.ends() {
+            let guard = Guard::SpringCorner(corner.next);
+            look(self.guard_polynomial(guard), guard);
         }
         first
     }
@@ -75,6 +83,12 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
                 let sign = step.begin[component].value().signum();
                 step.bernstein_of(component, 0.0, sign)
             }
+            Guard::SpringCorner(range) => {
+                let corner = field.spring.end_towards(range);
+                let (position, before) =
+                    corner.map_or((f64::INFINITY, -1.0), |corner| (corner.position, corner.before));
+                step.bernstein_of(0, position, before)
+            }
         }
     }
 
@@ -83,7 +97,7 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
         let coefficients = self.guard_polynomial(guard);
         let slope = match guard {
             Guard::Speed => self.step.end_slope(1) * self.branch.direction.sign(),
-            Guard::Reserve(_) | Guard::Corner(_) => end_slope(coefficients),
+            Guard::Reserve(_) | Guard::Corner(_) | Guard::SpringCorner(_) => end_slope(coefficients),
         };
         let [.., before, last, end] = coefficients;
         let curvature = (STAGES * (STAGES - 1)) as f64 * (end - 2.0 * last + before);
@@ -92,6 +106,7 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
             Guard::Speed => 1,
             Guard::Reserve(index) => 2 + index,
             Guard::Corner(component) => component,
+            Guard::SpringCorner(_) => 0,
         };
         // A guard is zero within what a step may be off.
         let is_zero = end.abs() <= self.tolerance * size.max(self.step.scale(component));

@@ -40,6 +40,16 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
                 *y -= y.value();
                 Ok(())
             }
+            Guard::SpringCorner(range) => {
+                if let Some(corner) = self.field.spring.end_towards(range) {
+                    let position = &mut self.step.begin[0];
+                    // The value is the corner to the last digit, whatever rounding makes of a sum.
+                    *position = *position - position.value() + corner.position;
+                }
+                self.field.spring.enter(range);
+                self.collocation.forget();
+                Ok(())
+            }
         }
     }
 

@@ -138,6 +138,8 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         self.collocation.forget();
         self.field.release();
         self.field.begin(self.branch, &self.step.begin);
+        let leaving = D::from(self.branch.direction.sign());
+        self.field.spring.begin(State { position: self.step.begin[0], velocity: leaving });
         self.pace.turn();
     }
 

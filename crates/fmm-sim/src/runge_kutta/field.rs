@@ -8,12 +8,15 @@ use crate::automaton::{Branch, Phase};
 use crate::drive::Drive;
 use crate::first_zero::ROUNDING;
 use crate::load::{load, rounding};
+use crate::spring::Spring;
 use crate::work::Power;
 use crate::{Scenario, State};
 
 /// The right-hand side of the equation of motion.
 pub(super) struct Field<'a, D, L> {
     pub(super) oscillator: &'a Oscillator<D>,
+    /// The spring on the side of its corners on which the step is.
+    pub(super) spring: Spring<'a, D>,
     law: &'a L,
     normal_load: D,
     /// Whether the normal load varies in time.
@@ -52,6 +55,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Field<'a, D, L> {
         let capture = scenario.law().capture_speed();
         Self {
             oscillator,
+            spring: Spring::new(oscillator),
             law: scenario.law(),
             normal_load: scenario.normal_load(),
             load_varies: scenario.sampled_load().is_some(),
@@ -136,7 +140,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Field<'a, D, L> {
             None => self.oscillator.damping().force(state.velocity),
         };
         let friction = outside.normal_load * self.coefficient(phase, side, speed) * phase.direction.sign();
-        let mut sum = -friction - damping - self.oscillator.restoring_force(state.position);
+        let mut sum = -friction - damping - self.spring.force(state.position);
         if let Some(force) = outside.force {
             sum += force;
         }

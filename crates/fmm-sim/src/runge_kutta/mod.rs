@@ -88,9 +88,10 @@ impl<D: Scalar, L: SlidingLaw<D>> Engine<D, L> for RungeKutta {
         trajectory: &mut Trajectory<D>,
     ) -> Result<(), SimulationError> {
         let drive = Drive::of(scenario);
-        if drive.has_belt() && matches!(scenario.oscillator().restoring(), Restoring::Polynomial { .. }) {
-            let what =
-                "a spring that hardens or softens on a moving counterface: what holds the mass is no line in time";
+        let restoring = scenario.oscillator().restoring();
+        if drive.has_belt() && !matches!(restoring, Restoring::Linear | Restoring::Sine { .. }) {
+            let what = "a spring that hardens or softens, or has a corner, on a moving counterface: \
+                        what holds the mass is no line in time";
             return Err(SimulationError::NotSupported { engine: "runge_kutta", what });
         }
         let contact = Contact::new(scenario, Sliding(scenario.law()), &drive)?;

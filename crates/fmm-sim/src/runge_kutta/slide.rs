@@ -12,6 +12,7 @@ use crate::automaton::{Ended, Ending, Phase, Slide};
 use crate::drive::Drive;
 use crate::load::load;
 use crate::recorder::Recorder;
+use crate::spring::Range;
 use crate::within::{COEFFICIENTS, Within};
 use crate::{Scenario, SimulationError, State};
 
@@ -193,6 +194,37 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         step
     }
 
+    /// The step from `at` that ends at the `corner` (m) of the spring beyond which `step` has gone. `None` if none is found.
+    ///
+    /// The force is continuous there: nothing shifts with the inputs, but no polynomial follows a motion across it.
+    fn to_corner(&self, phase: &Phase<D>, at: &Progress<D>, step: &Step<D>, corner: f64) -> Option<Step<D>> {
+        let [from, to] = [at.state, step.end].map(|state| state.position.value());
+        let mut length = step.length * (corner - from) / (to - from);
+        for _ in 0..LANDINGS {
+            let landed = self.take(phase, at, length);
+            if self.is_near(corner, landed.end) {
+                return Some(landed);
+            }
+            length -= (landed.end.position.value() - corner) / landed.end.velocity.value();
+            if !(length > 0.0 && length < step.length) {
+                break;
+            }
+        }
+        None
+    }
+
+    /// Goes on behind a corner of the spring.
+    fn pass(&mut self, phase: &Phase<D>, at: &mut Progress<D>, range: Range) {
+        self.field.spring.enter(range);
+        // A step counts its first acceleration as much as any: what it has of the range before is an error.
+        at.acceleration = self.field.acceleration(phase, at.side, at.time, at.state);
+    }
+
+    /// Whether a motion passes `corner` (m) so near to `state` that a straight line reaches it.
+    fn is_near(&self, corner: f64, state: State<D>) -> bool {
+        (state.position.value() - corner).abs() <= state.velocity.value().abs() * self.close()
+    }
+
     /// A size of the rate of the guard, as long as it does not turn there.
     fn rate_scale(&self, step: &Step<D>, guard: Guard) -> f64 {
         let acceleration = self.scale(step.end, step.last_acceleration()).velocity * self.angular;
@@ -277,6 +309,20 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         self.length = if length < self.length { self.length.max(proposed) } else { proposed };
     }
 
+    /// Proposes `length` for the step from `at`, which has failed with a longer one.
+    fn shorten(&mut self, at: &Progress<D>, length: f64) -> Result<(), SimulationError> {
+        self.length = length;
+        if at.time + length > at.time {
+            return Ok(());
+        }
+        let finite = at.acceleration.value().is_finite() && at.state.position.value().is_finite();
+        Err(if finite {
+            SimulationError::step_too_small(self.tolerance, at.time)
+        } else {
+            SimulationError::NotFinite { time: at.time }
+        })
+    }
+
     /// The longest step that resolves the machine and every wave (s).
     fn longest(&self, phase: &Phase<D>) -> f64 {
         1.0 / phase.piece.frequencies().fold(self.angular, f64::max)
@@ -291,6 +337,7 @@ fn factor(error: f64) -> f64 {
 
 impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
     fn slide(&mut self, phase: &Phase<D>, recorder: &mut Recorder<D>) -> Result<Ended<D>, SimulationError> {
+        self.field.spring.begin(phase.state);
         let mut at = self.depart(phase, phase.time, phase.state, self.field.first_side(phase));
         let longest = self.longest(phase);
         while at.time < phase.limit {
@@ -307,6 +354,18 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
                 .checked_sub(1)
                 .ok_or_else(|| SimulationError::step_budget(STEP_BUDGET, recorder.sampling.end()))?;
             let mut step = self.take(phase, &at, length);
+            let left = self.field.spring.left_at(step.end.position.value());
+            if let Some(corner) = left {
+                if self.is_near(corner.position, at.state) {
+                    self.pass(phase, &mut at, corner.next);
+                    continue;
+                }
+                let Some(landed) = self.to_corner(phase, &at, &step, corner.position) else {
+                    self.shorten(&at, 0.5 * length)?;
+                    continue;
+                };
+                (length, step) = (landed.length, landed);
+            }
             let mut scale = self.scale(at.state, at.acceleration);
             if self.field.is_driven {
                 // A motion may begin from nothing; then it is as large as the force makes it.
@@ -341,15 +400,7 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
                 (length, error) = (step.length, error.max(NOT_LANDED));
             }
             if !(error <= 1.0) {
-                self.length = length * if error.is_finite() { factor(error).clamp(0.1, 0.9) } else { 0.1 };
-                if at.time + self.length <= at.time {
-                    let finite = at.acceleration.value().is_finite() && at.state.position.value().is_finite();
-                    return Err(if finite {
-                        SimulationError::step_too_small(self.tolerance, at.time)
-                    } else {
-                        SimulationError::NotFinite { time: at.time }
-                    });
-                }
+                self.shorten(&at, length * if error.is_finite() { factor(error).clamp(0.1, 0.9) } else { 0.1 })?;
                 continue;
             }
             self.adapt(length, 5.0, error);
@@ -360,6 +411,9 @@ impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
             self.record(phase, &at, &mut step, by_speed.as_ref(), (next, stop), recorder)?;
             at = Progress { time: next, state: step.end, acceleration: step.last_acceleration(), side: at.side };
             SimulationError::require_restoring(self.field.oscillator, at.time, at.state.position)?;
+            if let Some(corner) = left {
+                self.pass(phase, &mut at, corner.next);
+            }
         }
         let first = recorder.written;
         recorder.samples(phase.samples_end(), |_| at.state)?;

@@ -13,6 +13,7 @@ use crate::fit::layout::Layout;
 use crate::law::naming::Units;
 use crate::law::{Law, Simulate};
 use crate::machine::Scale;
+use crate::machine::terms::Term;
 use crate::{Experiment, IdentifyError, Machine, Terms};
 
 mod parts;
@@ -103,6 +104,11 @@ impl<'a> Problem<'a> {
     /// Name of the law.
     pub(crate) fn name(&self) -> &'static str {
         self.law().name
+    }
+
+    /// Whether the spring is fitted as one with a stop or a gap.
+    pub(crate) fn has_corners(&self) -> bool {
+        self.terms.has(Term::Stop) || self.terms.has(Term::Gap)
     }
 
     /// Whether terms of the spring are fitted.

@@ -50,7 +50,30 @@ impl Problem<'_> {
         if starts.is_empty() {
             starts.extend(hypotheses.first().map(|hypothesis| self.start(*hypothesis)));
         }
-        starts
+        self.with_corners(starts)
+    }
+
+    /// The `starts` with corners of the spring where there may be some: a distance that no motion shows, and a spring that does not
+    /// change there, say nothing of where to go.
+    fn with_corners(&self, starts: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        let length = reference(self.decays).scales().0;
+        let at = |term: Term| self.terms.place(term).map(|place| self.layout.oscillator + place);
+        let corners: Vec<Vec<(usize, f64)>> = match (at(Term::Stop), at(Term::StopRatio), at(Term::Gap)) {
+            (Some(distance), Some(ratio), _) => {
+                let pairs = [0.3, 0.6, 0.85].into_iter().flat_map(|share| [(share, 0.5), (share, 2.0)]);
+                pairs.map(|(share, stiffness)| vec![(distance, share * length), (ratio, stiffness)]).collect()
+            }
+            (.., Some(gap)) => [0.01, 0.05, 0.2].map(|share| vec![(gap, share * length)]).to_vec(),
+            _ => return starts,
+        };
+        let moved = |start: &Vec<f64>, changes: &[(usize, f64)]| {
+            let mut start = start.clone();
+            for (index, value) in changes {
+                start[*index] = *value;
+            }
+            start
+        };
+        starts.iter().flat_map(|start| corners.iter().map(|changes| moved(start, changes))).collect()
     }
 
     fn has_linear_damping(&self) -> bool {
@@ -212,7 +235,12 @@ impl Problem<'_> {
             Term::LinearDamping => damping,
             Term::QuadraticDamping => 0.1 * (damping + friction / speed) / speed,
             Term::CubicDamping => 0.1 * (damping + friction / speed) / (speed * speed),
+            Term::PowerDamping => 0.1 * (damping + friction / speed) / speed,
+            Term::PowerExponent => 2.0,
             Term::CubicSpring | Term::QuinticSpring => 0.0,
+            Term::Stop => 0.5 * length,
+            Term::StopRatio => 1.0,
+            Term::Gap => 0.0,
         }));
         let scales = Scales { length, speed, friction, damping, sharpness };
         start.extend(self.law().fitted().map(|parameter| match (parameter.role(), excess) {
