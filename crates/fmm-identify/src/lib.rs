@@ -48,7 +48,8 @@
 //! | How does damping depend on velocity? | [`decrements`] cycle by cycle, [`Windows`] a few cycles at a time |
 //! | Friction without a simulation? | [`WeakForm`]; [`EnergyMethod`] for its curve, [`half_swing_losses`] per half swing |
 //! | Friction out of hammer blows? | [`ImpactTrial`], [`identify_impact`], to the mobility, the time record or both; beside ring-downs and compared by law, [`Experiment::impact`] |
-//! | A force measured along a motion: a joint, a tribometer, a damper? | [`ForceRecord`], [`identify_force`]; [`ForceModel`] says what acts beside friction, [`ForceRecord::friction_over_speed`] shows it without a law |
+//! | A force measured along a motion: a joint, a tribometer, a damper? | [`ForceRecord`], [`identify_force`]; [`ForceModel`] says what acts beside friction, [`compare_force`] which model the records prefer |
+//! | The same without a law? | [`ForceRecord::friction_over_speed`] and [`friction_over_speed_and_load`](ForceRecord::friction_over_speed_and_load), [`ForceRecord::loops`], [`ForceRecord::onsets`] |
 //! | What if mass, stiffness or damping were others? | [`MachineProblem`] with [`Sensitivity`](fmm_fit::Sensitivity) or [`Refit`](fmm_fit::Refit) |
 //! | Between which values does it lie? | [`Finding::interval`], by Student's t with the degrees of freedom of all that is uncertain |
 //! | Are the uncertainties to be trusted? | read the [`warnings`](Identification::warnings): they name what breaks them |
@@ -108,7 +109,10 @@ pub use estimators::{
 pub use experiment::{Drive, Experiment, Offset, Preparation, RecordSummary, Sensor};
 pub use fit::{FittedMotion, Identification, MachineProblem, Problem, identify, identify_observed, identify_with};
 pub use fmm_model::Estimated;
-pub use force::{ForceIdentification, ForceModel, ForceRecord, SpeedBin, Validation, identify_force};
+pub use force::{
+    ForceComparison, ForceIdentification, ForceLoop, ForceModel, ForceRecord, Onset, SpeedBin, Validation,
+    compare_force, identify_force,
+};
 pub use impact::{
     ImpactDomain, ImpactIdentification, ImpactMachine, ImpactOptions, ImpactProblem, ImpactSummary, ImpactTrial,
     identify_impact,

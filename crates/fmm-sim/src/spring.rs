@@ -64,7 +64,7 @@ impl<'a, D: Scalar> Spring<'a, D> {
 
     /// The corners at which this range ends.
     pub(crate) fn ends(&self) -> impl Iterator<Item = Corner> + use<D> {
-        let distance = self.oscillator.restoring().corner().map(|corner| corner.value());
+        let distance = self.oscillator.restoring().corner().map(Scalar::value);
         let sides = match self.range {
             Range::Between => [Some((1.0, -1.0, Range::Beyond(true))), Some((-1.0, 1.0, Range::Beyond(false)))],
             Range::Beyond(true) => [Some((1.0, 1.0, Range::Between)), None],

@@ -173,17 +173,12 @@ impl Layout {
         if index >= self.shared {
             return self.powers[index - self.shared];
         }
-        match index.checked_sub(self.law) {
-            Some(index) => {
-                self.family.fitted().nth(index).map_or(0.0, |parameter| self.family.power_of_gain(parameter))
-            }
-            None => {
-                let exponent =
-                    self.terms.place(Term::PowerExponent).map_or(1.0, |place| values[self.oscillator + place]);
-                let term = index.checked_sub(self.oscillator).and_then(|place| self.terms.iter().nth(place));
-                term.map_or(0.0, |term| term.power_of_gain(exponent))
-            }
+        if let Some(index) = index.checked_sub(self.law) {
+            return self.family.fitted().nth(index).map_or(0.0, |parameter| self.family.power_of_gain(parameter));
         }
+        let exponent = self.terms.place(Term::PowerExponent).map_or(1.0, |place| values[self.oscillator + place]);
+        let term = index.checked_sub(self.oscillator).and_then(|place| self.terms.iter().nth(place));
+        term.map_or(0.0, |term| term.power_of_gain(exponent))
     }
 
     /// Whether the parameter at `index` is proportional to the forces, of which a measured one sets the scale.

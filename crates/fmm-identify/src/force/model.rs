@@ -203,6 +203,14 @@ impl ForceModel {
         name + &held
     }
 
+    /// Whether this model is a special case of `other`: some values of the parameters of `other` make it this one.
+    pub(crate) fn is_nested_in(&self, other: &Self) -> bool {
+        let law = self.law.is_nested_in(&other.law);
+        let parts = Part::ALL.iter().filter(|part| self.has(**part) != other.has(**part));
+        let mut added = parts.map(|part| other.has(*part)).peekable();
+        (law || self.law.name() == other.law.name() && added.peek().is_some()) && added.all(|is_added| is_added)
+    }
+
     fn parts(&self) -> impl Iterator<Item = Part> {
         Part::ALL.into_iter().filter(|part| self.has[*part as usize])
     }

@@ -233,14 +233,12 @@ impl Problem<'_> {
         let Dissipation { friction, damping } = dissipation;
         start.extend(self.terms.iter().map(|term| match term {
             Term::LinearDamping => damping,
-            Term::QuadraticDamping => 0.1 * (damping + friction / speed) / speed,
+            Term::QuadraticDamping | Term::PowerDamping => 0.1 * (damping + friction / speed) / speed,
             Term::CubicDamping => 0.1 * (damping + friction / speed) / (speed * speed),
-            Term::PowerDamping => 0.1 * (damping + friction / speed) / speed,
             Term::PowerExponent => 2.0,
-            Term::CubicSpring | Term::QuinticSpring => 0.0,
+            Term::CubicSpring | Term::QuinticSpring | Term::Gap => 0.0,
             Term::Stop => 0.5 * length,
             Term::StopRatio => 1.0,
-            Term::Gap => 0.0,
         }));
         let scales = Scales { length, speed, friction, damping, sharpness };
         start.extend(self.law().fitted().map(|parameter| match (parameter.role(), excess) {
