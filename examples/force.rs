@@ -17,7 +17,9 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use figure::{Layer, Panel, Role, label};
-use fmm_identify::{Estimated, ForceIdentification, ForceModel, ForceRecord, SpeedBin, identify_force};
+use fmm_identify::{
+    Estimated, ForceIdentification, ForceLoop, ForceModel, ForceRecord, Onset, SpeedBin, compare_force,
+};
 use serde_json::{Value, json};
 use source::Source;
 
@@ -88,7 +90,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         models.extend(MODELS);
         models.extend(arguments.files.is_empty().then_some(BRAKE));
     }
-    let mut found = Vec::with_capacity(models.len());
+    let mut described = Vec::with_capacity(models.len());
     for name in models {
         let mut model = ForceModel::named(name)?;
         for (parameter, value) in &arguments.hold {
@@ -97,8 +99,10 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         if let Some(longest) = arguments.longest_delay {
             model = model.with_delay_up_to(longest)?;
         }
-        found.push(identify_force(&model, &records)?);
+        described.push(model);
     }
+    let compared = compare_force(&described, &records)?;
+    let found = compared.identifications();
     if let Some(folder) = &arguments.figures {
         std::fs::create_dir_all(folder)?;
         for (index, found) in found.iter().enumerate() {
@@ -107,35 +111,27 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        let bins: Vec<Value> = records
-            .iter()
-            .map(|record| {
-                let bins = record.friction_over_speed(BINS);
-                let pair = |estimated: Estimated| [estimated.value, estimated.uncertainty];
-                let bin = |bin: &SpeedBin| {
-                    json!({
-                        "speed": bin.speed,
-                        "friction_u": pair(bin.friction),
-                        "offset_u": pair(bin.offset),
-                        "samples": bin.samples,
-                    })
-                };
-                bins.iter().map(bin).collect()
-            })
-            .collect();
         let models = found.iter().map(|found| document(found, &validated, &others)).collect::<Result<Vec<_>, _>>()?;
-        writeln!(
-            out,
-            "{:#}",
-            json!({ "samples": records.iter().map(ForceRecord::len).sum::<usize>(), "friction_over_speed": bins, "models": models })
-        )?;
+        let document = json!({
+            "samples": records.iter().map(ForceRecord::len).sum::<usize>(),
+            "friction_over_speed": records.iter().map(speeds).collect::<Vec<_>>(),
+            "loops": records.iter().map(loops).collect::<Vec<_>>(),
+            "onsets": records.iter().map(onsets).collect::<Vec<_>>(),
+            "models": models,
+            "preferred": compared.preferred().model(),
+            "is_decided": compared.is_decided(),
+        });
+        writeln!(out, "{document:#}")?;
         return Ok(());
     }
     for (file, record) in files.iter().zip(&records) {
         let unit = record.force_unit();
         writeln!(out, "{}: {} samples, forces in {unit}", file.display(), record.len())?;
+        for line in without_a_law(record) {
+            writeln!(out, "  {line}")?;
+        }
     }
-    for found in &found {
+    for found in found {
         writeln!(out, "\n{found}")?;
         for (file, record) in validated.iter().zip(&others) {
             let said = found.validate_on(record)?;
@@ -144,7 +140,83 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             writeln!(out, "  not fitted: {}: rms {rms:.4e} {unit}{share}", file.display())?;
         }
     }
+    if found.len() > 1 {
+        writeln!(out, "\n{compared}")?;
+    }
     Ok(())
+}
+
+/// What loops and onsets say, in lines.
+fn without_a_law(record: &ForceRecord) -> Vec<String> {
+    let (force, position) = (record.force_unit(), record.position_unit());
+    let mut lines = Vec::new();
+    let median = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied()
+    };
+    let loops = record.loops();
+    let of_loops = |value: fn(&ForceLoop) -> f64| median(loops.iter().map(value).collect());
+    if let (Some(energy), Some(friction)) = (of_loops(|a| a.energy.value), of_loops(|a| a.friction.value)) {
+        let count = loops.len();
+        lines.push(format!(
+            "loops: {count}, in the median {energy:.4e} {force} {position} each, {friction:.4e} {force} in the mean of the way"
+        ));
+    }
+    let onsets = record.onsets();
+    let of_onsets = |value: fn(&Onset) -> f64| median(onsets.iter().map(value).collect());
+    if let (Some(stiffness), Some(breakaway)) = (of_onsets(|a| a.stiffness.value), of_onsets(|a| a.breakaway.value)) {
+        let count = onsets.len();
+        lines.push(format!(
+            "onsets of sliding: {count}, in the median {stiffness:.4e} {force}/{position} of presliding stiffness, breakaway at \
+             {breakaway:.4e} {force}"
+        ));
+    }
+    lines
+}
+
+fn pair(estimated: Estimated) -> [f64; 2] {
+    [estimated.value, estimated.uncertainty]
+}
+
+fn speeds(record: &ForceRecord) -> Value {
+    let bin = |bin: &SpeedBin| {
+        json!({
+            "speed": bin.speed,
+            "friction_u": pair(bin.friction),
+            "offset_u": pair(bin.offset),
+            "load": bin.load,
+            "coefficient_u": bin.coefficient().map(pair),
+            "samples": bin.samples,
+        })
+    };
+    record.friction_over_speed_and_load(BINS, LOADS).iter().map(bin).collect()
+}
+
+fn loops(record: &ForceRecord) -> Value {
+    let cycle = |cycle: &ForceLoop| {
+        json!({
+            "span": cycle.span,
+            "range": cycle.range,
+            "energy_u": pair(cycle.energy),
+            "friction_u": pair(cycle.friction),
+            "stiffness_u": pair(cycle.stiffness),
+        })
+    };
+    record.loops().iter().map(cycle).collect()
+}
+
+fn onsets(record: &ForceRecord) -> Value {
+    let onset = |onset: &Onset| {
+        json!({
+            "begin": onset.begin,
+            "direction": onset.direction,
+            "stiffness_u": pair(onset.stiffness),
+            "breakaway_u": pair(onset.breakaway),
+            "sliding_u": pair(onset.sliding),
+            "displacement": onset.displacement,
+        })
+    };
+    record.onsets().iter().map(onset).collect()
 }
 
 fn document(found: &ForceIdentification, files: &[PathBuf], others: &[ForceRecord]) -> Result<Value, Box<dyn Error>> {
@@ -178,8 +250,11 @@ fn document(found: &ForceIdentification, files: &[PathBuf], others: &[ForceRecor
 
 /// Bins of the friction over the speed.
 const BINS: usize = 24;
+/// Groups of the normal load, where it was measured.
+const LOADS: usize = 3;
 
-/// Force over position and over velocity with the fit in, friction over the speed without a law, and what is left over time.
+/// Force over position and over velocity with the fit in, friction over the speed without a law, and what is left over time and over
+/// the phase of the motion.
 fn panels(record: &ForceRecord, found: &ForceIdentification) -> Result<Vec<Panel>, Box<dyn Error>> {
     let said = found.predict(record)?;
     let velocity = format!("{}/s", record.position_unit());
@@ -190,15 +265,25 @@ fn panels(record: &ForceRecord, found: &ForceIdentification) -> Result<Vec<Panel
             .with(Layer::new(Role::Measured, "measured", measured))
             .with(Layer::new(Role::Fitted, found.model(), fitted))
     };
-    let bins = record.friction_over_speed(BINS);
-    let bins = bins.iter().map(|bin| (bin.speed, bin.friction.value)).collect();
-    let left = record.times().iter().zip(record.forces()).zip(&said);
-    let left = left.filter_map(|((time, force), said)| Some((*time, (*said)? - force))).collect();
+    let bins = record.friction_over_speed_and_load(BINS, LOADS);
+    let (speed, friction, bins) = if bins.iter().any(|bin| bin.coefficient().is_some()) {
+        let point = |bin: &SpeedBin| Some((bin.speed_by_load()?, bin.coefficient()?.value));
+        (format!("{velocity}/N"), label("friction by load", "1"), bins.iter().filter_map(point).collect())
+    } else {
+        let points = bins.iter().map(|bin| (bin.speed, bin.friction.value)).collect();
+        (velocity.clone(), label("friction", record.force_unit()), points)
+    };
+    let of_speed = if speed == velocity { "speed" } else { "speed by load" };
+    let residuals: Vec<Option<f64>> =
+        record.forces().iter().zip(&said).map(|(force, said)| Some((*said)? - force)).collect();
+    let left = |abscissae: &[f64]| -> Vec<(f64, f64)> {
+        abscissae.iter().zip(&residuals).filter_map(|(at, left)| Some((*at, (*left)?))).collect()
+    };
     let text = format!("fit − measured, {:.3e} {} rms", found.rms_residual(), record.force_unit());
     Ok(vec![
         against(record.positions(), "position", record.position_unit()),
         against(record.velocities(), "velocity", &velocity),
-        Panel::new(label("speed", &velocity), label("friction", record.force_unit()), 260.0).with(Layer::new(
+        Panel::new(label(of_speed, &speed), friction, 260.0).with(Layer::new(
             Role::Points,
             "half the difference of the directions, medians",
             bins,
@@ -206,7 +291,26 @@ fn panels(record: &ForceRecord, found: &ForceIdentification) -> Result<Vec<Panel
         Panel::new("time / s", label("residual", record.force_unit()), 260.0).with(Layer::new(
             Role::Residual,
             text,
-            left,
+            left(record.times()),
+        )),
+        Panel::new("phase of the motion / °", label("residual", record.force_unit()), 260.0).with(Layer::new(
+            Role::ResidualPoints,
+            "0° at the greatest velocity, 90° at the greatest position",
+            left(&phases(record)),
         )),
     ])
+}
+
+/// The phase of the motion at each sample (°), from 0 to 360: the angle of velocity and position, each as a share of its half range.
+fn phases(record: &ForceRecord) -> Vec<f64> {
+    let ends =
+        |values: &[f64]| values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(*x), b.max(*x)]);
+    let ([low, high], [slow, fast]) = (ends(record.positions()), ends(record.velocities()));
+    let share = |value: f64, centre: f64, half: f64| if half > 0.0 { (value - centre) / half } else { 0.0 };
+    let reach = fast.max(-slow);
+    let phase = |(x, v): (&f64, &f64)| {
+        let position = share(*x, 0.5 * (low + high), 0.5 * (high - low));
+        position.atan2(share(*v, 0.0, reach)).to_degrees().rem_euclid(360.0)
+    };
+    record.positions().iter().zip(record.velocities()).map(phase).collect()
 }

@@ -131,6 +131,8 @@ const WITH_SPRING: [&str; 3] = [
     "coulomb_viscous+cubic spring+quintic spring",
     "coulomb_viscous+quadratic+cubic spring+quintic spring",
 ];
+/// The same on a spring with a stop, a preload or a gap, where a smooth one leaves something.
+const WITH_CORNERS: [&str; 2] = ["coulomb_viscous+stop", "coulomb_viscous+gap"];
 /// Presliding over less of the amplitude than this (1) is none that a record shows.
 const LEAST_PRESLIDING: f64 = 2e-3;
 /// Steps of a converter that presliding must exceed to be seen.
@@ -147,7 +149,9 @@ const WITH_STATE_FURTHER: [&str; 2] = ["lugre,exponent=2", "bouc_wen+linear,ampl
 /// Identifies `decays` by as many laws as they ask for.
 ///
 /// First viscous damping, Coulomb friction and both. If the residuals of these show signs of something else, or are alike where they
-/// should be noise, laws whose friction changes with speed, and springs that harden or soften if there are signs of one; then further
+/// should be noise, laws whose friction changes with speed, and springs that harden, soften, meet a stop or have a gap if there are
+/// signs of one; then
+/// further
 /// families, each begun where its friction over the speed follows
 /// that of the best law so far; and laws with presliding if there are signs of that. What was looked for is in [`Comparison::signs`].
 /// Laws that could not be fitted to the end, and that are then far from what others reach, are left out; a warning names them.
@@ -196,13 +200,20 @@ pub fn search_observed(
         if found.is_structured() && signs.iter().any(is_bent) && !is_filtered() {
             let bent = run.fit(run.candidates(&WITH_SPRING)?, found.near(&signs, &[], 0).as_ref())?;
             found.add(bent);
+            if found.is_structured() {
+                let with_corners = run.fit(run.candidates(&WITH_CORNERS)?, None)?;
+                found.add(with_corners);
+            }
         }
         let limited = |most: usize| options.clone().with_max_iterations(most.min(options.max_iterations()));
         let (of_speed, limited_more) = (limited(MOST_ITERATIONS), limited(MOST_ITERATIONS_WITH_STATE));
         let run = Run { options: &of_speed, ..run };
-        let further = found.unfinished().chain(run.candidates(&OF_SPEED_FURTHER)?).collect();
-        let further = run.fit(further, found.near(&signs, &[|_| true], 1).as_ref())?;
-        found.add(further);
+        // What a spring explains, no friction of the speed does.
+        if found.is_structured() || !found.is_bent() {
+            let further = found.unfinished().chain(run.candidates(&OF_SPEED_FURTHER)?).collect();
+            let further = run.fit(further, found.near(&signs, &[|_| true], 1).as_ref())?;
+            found.add(further);
+        }
         // A converter hides what is not longer than a few of its steps, and its steps look like presliding: neither moves where the
         // machine turns.
         let steps = decays.iter().map(|decay| {
@@ -301,8 +312,17 @@ impl Found {
 
     /// Whether the residuals of the best law are alike where they should be noise.
     fn is_structured(&self) -> bool {
-        let judgement = Judgement::of(&self.candidates, &self.identifications);
-        judgement.is_some_and(|judgement| self.identifications[judgement.preferred].structure().is_correlated())
+        self.preferred().is_some_and(|preferred| preferred.structure().is_correlated())
+    }
+
+    /// Whether the best law is one on a spring that is not linear.
+    fn is_bent(&self) -> bool {
+        self.preferred().is_some_and(|preferred| preferred.terms().has_spring())
+    }
+
+    fn preferred(&self) -> Option<&Identification> {
+        let judgement = Judgement::of(&self.candidates, &self.identifications)?;
+        Some(&self.identifications[judgement.preferred])
     }
 
     /// The fit by Coulomb and viscous friction, whatever is held of it; it is among the first.

@@ -8,7 +8,7 @@ use fmm_model::Restoring;
 
 use crate::machine::Scale;
 use crate::machine::terms::{LINEAR, QUADRATIC};
-use crate::{Experiment, FittedMotion, Identification, Machine, RecordSummary};
+use crate::{Experiment, FittedMotion, Identification, RecordSummary};
 
 /// Something that limits what the record can tell, or that was done to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -278,7 +278,8 @@ impl Warning {
             _ => {}
         }
         for decay in decays {
-            Self::of_record(decay.summary(), machine, &mut warnings);
+            let is_bent = machine.restoring() != Restoring::Linear || identification.terms().has_spring();
+            Self::of_record(decay.summary(), is_bent, &mut warnings);
         }
         Self::of_fit(identification.fit(), &mut warnings);
         Self::of_damping(identification, &mut warnings);
@@ -299,7 +300,8 @@ impl Warning {
         narrowest.map(|(margin, time)| Self::NarrowStop { margin, time })
     }
 
-    fn of_record(summary: &RecordSummary, machine: &Machine, warnings: &mut Vec<Self>) {
+    /// What limits what a record tells of a machine, whose spring `is_bent` or a straight line.
+    fn of_record(summary: &RecordSummary, is_bent: bool, warnings: &mut Vec<Self>) {
         let (first, last) = summary.amplitudes;
         // Two turning points give one amplitude.
         if last >= first && summary.half_swings > 2 && !summary.is_driven {
@@ -308,8 +310,8 @@ impl Warning {
         if summary.half_swings < ENOUGH_HALF_SWINGS && !summary.is_driven {
             warnings.push(Self::FewHalfSwings { count: summary.half_swings });
         }
-        // A pendulum that is taken for one has such a period.
-        let period_change = summary.period_change.filter(|_| machine.restoring() == Restoring::Linear);
+        // A pendulum that is taken for one, or a spring that is fitted, has such a period.
+        let period_change = summary.period_change.filter(|_| !is_bent);
         warnings.extend(period_change.map(|change| Self::PeriodDependsOnAmplitude { change }));
         warnings.extend(summary.saturation.map(|saturation| Self::Saturated { count: saturation.samples }));
         warnings.extend(summary.offset_step.map(|step| Self::OffsetStep {
@@ -409,8 +411,8 @@ impl fmt::Display for Warning {
             Self::PeriodDependsOnAmplitude { change } => write!(
                 f,
                 "the period changes by {:+.2} % as the amplitude falls: the amplitude is too large for a linear spring \
-                 (a pendulum, whose restoring force is a sine, or a spring that hardens or softens); take it for a pendulum, or fit the spring \
-                 (law + cubic spring), or use a part of smaller amplitude",
+                 (a pendulum, whose restoring force is a sine, or a spring that hardens, softens or meets a stop); take it for a pendulum, or fit \
+                 the spring (law + cubic spring, or law + stop), or use a part of smaller amplitude",
                 100.0 * change
             ),
             Self::NoDecay => write!(f, "the amplitude does not fall: there is no dissipation to identify"),
