@@ -1,5 +1,6 @@
 //! The crates together: real records, synthetic ones of known truth, and records that should be refused.
 
+mod backbone;
 mod bad_input;
 mod brake;
 mod document;

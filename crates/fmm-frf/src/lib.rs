@@ -24,6 +24,7 @@
 //! | noise between blows, responses longer than the record? | [`ForceWindow`], [`ExponentialWindow`] |
 //! | in which form? | [`FrequencyResponse`]: receptance, mobility, accelerance; delays; bands |
 //! | which modes? | [`resonances`], [`PeakFit`], [`CircleFit`], [`RationalFit`] |
+//! | which modes does a decay have, and how do frequency and damping go with the amplitude? | [`decay_modes`], [`Backbone`] and its [`Suggestion`] |
 //! | how much friction? | [`friction_force_of_coulomb_impact`], [`friction_force_of_viscous_coulomb_impact`], [`CoulombLine`] |
 //! | is it friction at all? | [`FrictionSpectrum`]: odd harmonics, against the linear response of [`SingleDegreeOfFreedom`] |
 //!
@@ -68,6 +69,7 @@
 
 mod average;
 mod channel;
+mod decay;
 mod error;
 mod friction;
 mod impulse;
@@ -79,6 +81,9 @@ pub use average::{
     AverageOptions, Averaging, Baseline, Coherence, Estimator, ExponentialWindow, ForceWindow, Taper, TrialAverage,
 };
 pub use channel::Channel;
+pub use decay::{
+    Backbone, BackboneOptions, BackbonePoint, DampingTerm, DampingTermKind, DecayMode, Suggestion, decay_modes,
+};
 pub use error::FrfError;
 pub use fmm_model::{Estimated, ModelError};
 pub use fmm_record::{Complex64, RealTransform};

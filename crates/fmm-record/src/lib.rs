@@ -107,6 +107,7 @@ pub use files::reading::{Column, Reading};
 pub use files::uff;
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 pub use files::{Channel, DataFile, Format, Reader, open};
+pub use numerics::fourier::{Spectrum, blackman_harris};
 pub use numerics::real_transform::RealTransform;
 pub use quantity::Quantity;
 pub use realfft::num_complex::Complex64;

@@ -16,7 +16,12 @@ pub(crate) const LOBE: f64 = 4.0;
 ///
 /// F. J. Harris, On the use of windows for harmonic analysis with the discrete Fourier transform, Proceedings of the
 /// IEEE 66 (1978), table 1. Its side lobes lie 92 dB below a line, so that a motion does not hide a hum.
-pub(crate) fn blackman_harris(length: usize) -> Vec<f64> {
+///
+/// ```
+/// let window = fmm_record::blackman_harris(8);
+/// assert!(window[0] < 0.01 && window[4] > 0.9 && window[0] == window[7]);
+/// ```
+pub fn blackman_harris(length: usize) -> Vec<f64> {
     const A: [f64; 4] = [0.358_75, 0.488_29, 0.141_28, 0.011_68];
     let phase = |i: usize| TAU * (i as f64 + 0.5) / length as f64;
     (0..length)
@@ -25,16 +30,28 @@ pub(crate) fn blackman_harris(length: usize) -> Vec<f64> {
 }
 
 /// Squared amplitudes of the frequencies from 0 to half the rate in windowed values.
-pub(crate) struct Spectrum {
+///
+/// ```
+/// use fmm_record::{Spectrum, blackman_harris};
+/// use std::f64::consts::TAU;
+///
+/// let values: Vec<f64> = (0..1000).map(|i| 3.0 * (TAU * 0.0503 * f64::from(i)).cos()).collect();
+/// let spectrum = Spectrum::of(&values, &blackman_harris(values.len()));
+/// let squares = &spectrum.squares;
+/// let k = (0..squares.len()).max_by(|a, b| squares[*a].total_cmp(&squares[*b])).unwrap();
+/// assert!((spectrum.refined(k) - 50.3).abs() < 0.01 && (squares[k].sqrt() - 3.0).abs() < 0.1);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spectrum {
     /// Squared amplitude per frequency, in the squared unit of the values: A² for a steady line of amplitude A.
-    pub(crate) squares: Vec<f64>,
+    pub squares: Vec<f64>,
     /// Distance between neighbouring frequencies, in units of 1/duration of the values (1); at most a half.
-    pub(crate) spacing: f64,
+    pub spacing: f64,
 }
 
 impl Spectrum {
     /// The spectrum of `values` less their mean, times `window`, which has their length.
-    pub(crate) fn of(values: &[f64], window: &[f64]) -> Self {
+    pub fn of(values: &[f64], window: &[f64]) -> Self {
         let length = (2 * values.len().max(1)).next_power_of_two().max(4);
         let sum: f64 = window.iter().sum();
         let weighted: f64 = values.iter().zip(window).map(|(y, w)| y * w).sum();
@@ -51,7 +68,7 @@ impl Spectrum {
 
     /// The place of the peak at `k`, between frequencies, in units of 1/duration: by the parabola through the
     /// logarithms of three of them, which a line in this window nearly is.
-    pub(crate) fn refined(&self, k: usize) -> f64 {
+    pub fn refined(&self, k: usize) -> f64 {
         let log = |k: usize| self.squares.get(k).copied().unwrap_or(0.0).max(f64::MIN_POSITIVE).ln();
         let (before, at, after) = (log(k.saturating_sub(1)), log(k), log(k + 1));
         let bend = before - 2.0 * at + after;

@@ -1,0 +1,315 @@
+//! Backbone of a decay: frequency and damping against the amplitude.
+
+use std::f64::consts::TAU;
+
+use fmm_model::{Estimated, ModelError, Unit};
+use fmm_record::{Quantity, Record};
+
+use crate::FrfError;
+use crate::decay::local::{Carrier, LocalRegression, LocalVibration};
+use crate::decay::modes::decay_modes;
+use crate::decay::spring::{bend, spring_terms};
+use crate::decay::suggestion::Suggestion;
+
+/// How a backbone is taken.
+///
+/// ```
+/// use fmm_frf::BackboneOptions;
+///
+/// let options = BackboneOptions::default().at(150.0)?.over(12.0)?;
+/// assert!(BackboneOptions::default().over(1.0).is_err());
+/// # let _ = options;
+/// # Ok::<(), fmm_frf::FrfError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct BackboneOptions {
+    frequency: Option<f64>,
+    cycles: Option<f64>,
+}
+
+impl BackboneOptions {
+    /// Of the mode nearest to `frequency` (Hz); of the strongest one unless it is given.
+    ///
+    /// # Errors
+    /// [`FrfError::OutOfRange`] if it is not positive.
+    pub fn at(mut self, frequency: f64) -> Result<Self, FrfError> {
+        self.frequency = Some(ModelError::require_positive("frequency of the mode", frequency, "Hz")?);
+        Ok(self)
+    }
+
+    /// With windows of so many `cycles`, two at least; a sixteenth of the record between 3 and 8 unless they are given, more where another mode is near.
+    ///
+    /// # Errors
+    /// [`FrfError::OutOfRange`] if they are fewer than two.
+    pub fn over(mut self, cycles: f64) -> Result<Self, FrfError> {
+        ModelError::require_positive(
+            "cycles of a window",
+            cycles - FEWEST_CYCLES + f64::MIN_POSITIVE,
+            "more than two",
+        )?;
+        self.cycles = Some(cycles);
+        Ok(self)
+    }
+}
+
+/// Amplitude, frequency and damping of a decay around one time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BackbonePoint {
+    /// The middle of its window (s).
+    pub time: f64,
+    /// A, of the displacement (m, or the unit of the record times a power of s).
+    pub amplitude: Estimated,
+    /// f (Hz).
+    pub frequency: Estimated,
+    /// c_eq/m, the viscous damping that takes as much from the amplitude (1/s).
+    pub damping: Estimated,
+}
+
+/// Frequency and equivalent damping of one mode against its amplitude, with standard uncertainties.
+///
+/// Around each of many times, vibrations of slowly changing amplitude and phase are fitted to the samples under a window: the mode, its
+/// second and third multiple, and other modes within reach. Its amplitude X in the record, decay rate and frequency are those of the
+/// envelope a₀ + a₁ u + a₂ u². For a velocity or an acceleration, A = X/ω or X/ω².
+///
+/// ```text
+/// c_eq/m = −J'/J = −2 A'/A − ω'/ω,     J = ω A²/2
+/// ```
+///
+/// J is the action, which viscous damping lets decay with c/m on any spring. How ω goes with A comes from the spring k (x + k₃ x³ + k₅ x⁵)
+/// that is fitted to the points; on a straight one ω' is zero. A is the amplitude of the first harmonic. Uncertainties hold for white
+/// noise.
+///
+/// ```
+/// use fmm_frf::{Backbone, BackboneOptions};
+/// use fmm_record::{Quantity, Record};
+///
+/// // 20 Hz, c/m of 0.8 1/s.
+/// let at = |t: f64| 1e-3 * (-0.4 * t).exp() * (125.663_706 * t).cos();
+/// let record = Record::sampled(2000.0, (0..8000).map(|i| at(f64::from(i) / 2000.0)).collect(), Quantity::Displacement, "m")?;
+/// let backbone = Backbone::of(&record, &BackboneOptions::default())?;
+/// for point in backbone.points() {
+///     assert!((point.frequency.value - 20.0).abs() < 1e-4 && (point.damping.value - 0.8).abs() < 1e-3);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # References
+/// M. S. Allen, R. L. Mayes, "Estimating the degree of nonlinearity in transient responses with zeroed early-time fast Fourier
+/// transforms", Mech. Syst. Signal Process. 24 (2010) 2049; for k₃ and k₅ A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979,
+/// section 2.3.
+#[derive(Debug, Clone)]
+pub struct Backbone {
+    points: Vec<BackbonePoint>,
+    window: f64,
+    unit: String,
+    spring: Vec<Estimated>,
+}
+
+/// Fewest cycles of a window.
+const FEWEST_CYCLES: f64 = 2.0;
+/// Cycles of a window in a short and in a long record.
+const CYCLES: (f64, f64) = (3.0, 8.0);
+/// Windows in the record, if cycles allow.
+const WINDOWS: f64 = 16.0;
+/// Other modes within this relative distance of the frequency are fitted beside.
+const NEAR: f64 = 0.5;
+/// Cycles of the beat with another mode that a window holds.
+const BEATS: f64 = 2.0;
+/// A mode of this share of the amplitude is none beside the first (1).
+const LEAST_OTHER: f64 = 1e-3;
+/// Amplitudes count that are so many times their uncertainty.
+const SEEN: f64 = 10.0;
+/// The phase that may be gained in half a window against the carrier before it is moved (rad).
+const SLIP: f64 = 0.3;
+
+/// Regressions until the carrier of a window is where its vibration is.
+const SETTLING: usize = 2;
+
+impl Backbone {
+    /// The backbone of the decay in `record`.
+    ///
+    /// # Errors
+    /// [`FrfError::NoFit`] if the record shows no line, or too few cycles for three windows.
+    pub fn of(record: &Record, options: &BackboneOptions) -> Result<Self, FrfError> {
+        let no_fit = |what: String| FrfError::NoFit { what };
+        let modes = decay_modes(record);
+        let distance = |frequency: f64| move |of: f64| (of / frequency).ln().abs();
+        let mode = match options.frequency {
+            None => modes.first(),
+            Some(frequency) => {
+                let away = distance(frequency);
+                modes.iter().min_by(|a, b| away(a.frequency).total_cmp(&away(b.frequency)))
+            }
+        };
+        let mode = mode.ok_or_else(|| no_fit("the record shows no vibration above its noise".to_owned()))?;
+        let frequency = mode.frequency;
+        let others: Vec<f64> = modes
+            .iter()
+            .filter(|other| other.frequency != frequency && other.amplitude > LEAST_OTHER * mode.amplitude)
+            .map(|other| other.frequency)
+            .filter(|other| (other / frequency - 1.0).abs() < NEAR)
+            .collect();
+        let cycles_in_all = frequency * record.duration();
+        let nearest = others.iter().map(|other| (other / frequency - 1.0).abs()).fold(1.0, f64::min);
+        let cycles = options.cycles.unwrap_or((cycles_in_all / WINDOWS).clamp(CYCLES.0, CYCLES.1).max(BEATS / nearest));
+        let half = (0.5 * cycles / frequency * record.rate()).round() as usize;
+        let values = record.values();
+        if values.len() < 4 * half + 2 || half < 4 {
+            return Err(no_fit(format!(
+                "a backbone needs three half windows of {cycles:.1} cycles at {frequency:.4} Hz, but the record has {cycles_in_all:.1}"
+            )));
+        }
+        let orders = match record.quantity() {
+            Quantity::Velocity => 1,
+            Quantity::Acceleration => 2,
+            _ => 0,
+        };
+        let taken = Taken { values, rate: record.rate(), half, others: &others };
+        let fixed = taken.regression(frequency).ok_or_else(|| {
+            no_fit(format!("a window of {cycles:.1} cycles does not tell the modes near {frequency:.4} Hz apart"))
+        })?;
+        let centres = (half..values.len() - half).step_by((half / 2).max(1));
+        let mut locals: Vec<Local> = centres.map(|centre| taken.local(centre, frequency, &fixed)).collect();
+        // A frequency that moves far within the record is followed.
+        let slips = |local: &Local| ((local.frequency - frequency) * half as f64 / record.rate() * TAU).abs() > SLIP;
+        if locals.iter().any(slips) {
+            let mut at = locals[0].frequency;
+            for local in &mut locals {
+                for _ in 0..SETTLING {
+                    let Some(moved) = taken.regression(at) else { break };
+                    *local = taken.local(local.centre, at, &moved);
+                    at = local.frequency.clamp(0.5 * at, 1.5 * at);
+                }
+            }
+        }
+        let locals = decaying(&locals, half);
+        let mut points: Vec<BackbonePoint> = locals.iter().map(|local| local.point(record, orders)).collect();
+        if points.is_empty() {
+            return Err(no_fit("no window lies between the greatest amplitude and the end of the decay".to_owned()));
+        }
+        let spring = spring_terms(&points);
+        for point in &mut points {
+            point.correct(&spring, orders);
+        }
+        let power = Unit::of(record.unit()).times(&Unit::of("s").power(orders));
+        Ok(Self { points, window: 2.0 * half as f64 * record.interval(), unit: power.to_string(), spring })
+    }
+
+    /// The points, in the order of time; neighbours share three quarters of their windows.
+    pub fn points(&self) -> &[BackbonePoint] {
+        &self.points
+    }
+
+    /// The length of a window (s). Nearer than half of it to the beginning and the end of the record there is no point.
+    pub fn window(&self) -> f64 {
+        self.window
+    }
+
+    /// The unit of the amplitudes.
+    pub fn unit(&self) -> &str {
+        &self.unit
+    }
+
+    /// f₀ (Hz), k₃ and k₅ (per square and fourth power of the unit of amplitude) that the frequencies show, without those that they do
+    /// not.
+    pub fn spring(&self) -> &[Estimated] {
+        &self.spring
+    }
+
+    /// The terms of damping and spring that explain these points.
+    pub fn suggestion(&self) -> Suggestion {
+        Suggestion::of(&self.points, &self.spring)
+    }
+}
+
+/// What all windows share.
+struct Taken<'a> {
+    values: &'a [f64],
+    rate: f64,
+    half: usize,
+    others: &'a [f64],
+}
+
+/// A window's vibration, with its uncertainties.
+#[derive(Debug, Clone, Copy)]
+struct Local {
+    centre: usize,
+    amplitude: Estimated,
+    frequency: f64,
+    frequency_uncertainty: f64,
+    rate: Estimated,
+}
+
+impl Taken<'_> {
+    /// The regression on a mode of `frequency` (Hz), its multiples and the other modes.
+    fn regression(&self, frequency: f64) -> Option<LocalRegression> {
+        let carrier = |frequency: f64, order: i32| Carrier { frequency: frequency / self.rate, order };
+        let mut carriers = vec![carrier(frequency, 2), carrier(0.0, 0)];
+        for multiple in [2.0, 3.0] {
+            let far = |other: &f64| (other / frequency - multiple).abs() > 0.2;
+            if multiple * frequency < 0.45 * self.rate && self.others.iter().all(far) {
+                carriers.push(carrier(multiple * frequency, 1));
+            }
+        }
+        carriers.extend(self.others.iter().map(|other| carrier(*other, 2)));
+        LocalRegression::new(self.half, &carriers)
+    }
+
+    /// The vibration around sample `centre`, by a `regression` on `frequency` (Hz).
+    fn local(&self, centre: usize, frequency: f64, regression: &LocalRegression) -> Local {
+        let LocalVibration { amplitude, slope, noise } = regression.at(self.values, centre);
+        let size = amplitude.norm();
+        let turn = slope / amplitude;
+        let per_second = self.rate / self.half as f64;
+        // d(a₁/a₀) = da₁/a₀ − (a₁/a₀) da₀/a₀, and d|a₀| = Re(da₀ ā₀)/|a₀|.
+        let by_first = -turn / amplitude;
+        let by_second = amplitude.inv();
+        let deviation = |gradient: [f64; 4]| noise * regression.variance(gradient).sqrt();
+        Local {
+            centre,
+            amplitude: Estimated::new(size, deviation([amplitude.re / size, amplitude.im / size, 0.0, 0.0])),
+            frequency: frequency + turn.im * per_second / TAU,
+            frequency_uncertainty: deviation([by_first.im, by_first.re, by_second.im, by_second.re]) * per_second / TAU,
+            rate: Estimated::new(
+                -turn.re * per_second,
+                deviation([by_first.re, -by_first.im, by_second.re, -by_second.im]) * per_second,
+            ),
+        }
+    }
+}
+
+/// Those of `locals` between the greatest amplitude and the end of the decay, with windows that hold neither what was before nor after.
+fn decaying(locals: &[Local], half: usize) -> Vec<Local> {
+    let size = |local: &Local| local.amplitude.value;
+    let first = (0..locals.len()).max_by(|a, b| size(&locals[*a]).total_cmp(&size(&locals[*b]))).unwrap_or(0);
+    let is_seen = |local: &Local| size(local) > SEEN * local.amplitude.uncertainty;
+    let last = locals[first..].iter().position(|local| !is_seen(local)).map_or(locals.len(), |count| first + count);
+    let begin = if first == 0 { 0 } else { locals[first].centre + half };
+    let end = locals.get(last).map_or(usize::MAX, |local| local.centre.saturating_sub(half));
+    locals[first..last].iter().filter(|local| local.centre >= begin && local.centre <= end).copied().collect()
+}
+
+impl Local {
+    /// The point, on a straight spring.
+    fn point(&self, record: &Record, orders: i32) -> BackbonePoint {
+        let per_displacement = (TAU * self.frequency).powi(orders);
+        BackbonePoint {
+            time: record.time(self.centre),
+            amplitude: self.amplitude.scaled(1.0 / per_displacement),
+            frequency: Estimated::new(self.frequency, self.frequency_uncertainty),
+            damping: self.rate.scaled(2.0),
+        }
+    }
+}
+
+impl BackbonePoint {
+    /// Takes into account that on a spring with terms k₃ and k₅ the action, not the square of the amplitude, decays with c/m, and that a
+    /// derivative of this many `orders` does not go with the amplitude.
+    fn correct(&mut self, spring: &[Estimated], orders: i32) {
+        let bend = bend(spring, self.amplitude.value);
+        let factor = (1.0 + 0.5 * bend) / (1.0 + f64::from(orders) * bend);
+        if factor > 0.0 {
+            self.damping = self.damping.scaled(factor);
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! Modes of a decay: the lines of its spectrum.
+
+use std::f64::consts::PI;
+
+use fmm_record::{Record, Spectrum, Swings, blackman_harris, period_change};
+
+/// A vibration of which a decay consists.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DecayMode {
+    /// f (Hz), about: a backbone finds it better.
+    pub frequency: f64,
+    /// Its greatest mean amplitude under a window over the record, its half, quarter or eighth, in the unit of the record.
+    pub amplitude: f64,
+    /// Its share of the energy of all lines (1), by the squares of the record.
+    pub share: f64,
+    /// Ratio of its amplitude to the mean of the noise around it (1).
+    pub above_noise: f64,
+    /// Which multiple of a stronger mode it is, as friction and springs that are not linear have them.
+    pub multiple: Option<u32>,
+}
+
+/// How often the median of the squares around it a line is at least; noise reaches that once in 10⁷ frequencies.
+const ABOVE_MEDIAN: f64 = 25.0;
+/// The median of the squares of noise over their mean, ln 2.
+const MEDIAN: f64 = core::f64::consts::LN_2;
+/// How often the least square between it and a larger line a line is at least.
+const PROMINENCE: f64 = 4.0;
+/// The band of the noise around a line, as a factor of its frequency.
+const AROUND: f64 = 1.4;
+/// A mode lies so many widths of a window away from the next at least.
+const WIDTH: f64 = 4.0;
+/// Parts of the record that are looked at: all of it, its half, its quarter and its eighth from the greatest amplitude on.
+const PARTS: usize = 4;
+/// Fewest samples of a part.
+const FEWEST: usize = 64;
+/// Most multiples of a frequency that are taken for its harmonics, and how near to one they lie (1).
+const MULTIPLES: f64 = 15.0;
+const NEAR_MULTIPLE: f64 = 0.01;
+/// The most a harmonic has of the amplitude (1).
+const HARMONIC: f64 = 0.1;
+/// What the end of a decay adds to the spectrum is less than so many times 1/(π Δf t)².
+const LEAKAGE: f64 = 3.0;
+/// How much farther than its change of frequency a mode reaches (1).
+const SWEPT: f64 = 1.5;
+/// Lines weaker than this share of the strongest are none of a machine (1).
+const LEAST: f64 = 1e-4;
+
+/// The modes of the decay in `record`, the strongest first; empty if nothing rises above its noise.
+///
+/// A mode is a line of the spectrum of the record, of its first half, quarter or eighth, that rises above the noise and above what a decay
+/// that ends, or whose frequency changes, spreads around its own line. Steady lines, such as hum, are in it as well.
+///
+/// ```
+/// use fmm_frf::decay_modes;
+/// use fmm_record::{Quantity, Record};
+/// use std::f64::consts::TAU;
+///
+/// let at = |t: f64| (-2.0 * t).exp() * (TAU * 150.0 * t).cos() + 0.2 * (-5.0 * t).exp() * (TAU * 556.0 * t).cos();
+/// let record = Record::sampled(5000.0, (0..10_000).map(|i| at(f64::from(i) / 5000.0)).collect(), Quantity::Acceleration, "m/s²")?;
+/// let modes = decay_modes(&record);
+/// assert!((modes[0].frequency - 150.0).abs() < 0.1 && (modes[1].frequency - 556.0).abs() < 0.3);
+/// assert_eq!(modes.len(), 2);
+/// # Ok::<(), fmm_record::RecordError>(())
+/// ```
+pub fn decay_modes(record: &Record) -> Vec<DecayMode> {
+    let values = record.values();
+    let mean = record.mean();
+    let size = |i: &usize| (values[*i] - mean).abs();
+    let Some(first) = (0..values.len()).max_by(|a, b| size(a).total_cmp(&size(b))) else { return Vec::new() };
+    // The greatest sample of a record that hums or is noise may be its last.
+    let first = if values.len() - first < FEWEST.max(values.len() / 4) { 0 } else { first };
+    let mut found: Vec<DecayMode> = Vec::new();
+    for part in 0..PARTS {
+        let count = (values.len() - first) >> part;
+        if count < FEWEST {
+            break;
+        }
+        let width = WIDTH * record.rate() / count as f64;
+        for line in lines(&values[first..first + count], record.rate()) {
+            let near = found.iter_mut().filter(|mode| (mode.frequency - line.frequency).abs() < width);
+            match near.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude)) {
+                Some(mode) if mode.amplitude < line.amplitude => {
+                    mode.amplitude = line.amplitude;
+                    mode.above_noise = mode.above_noise.max(line.above_noise);
+                }
+                Some(_) => {}
+                None => found.push(line),
+            }
+        }
+    }
+    found.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
+    let strongest = found.first().map_or(0.0, |mode| mode.amplitude);
+    found.retain(|mode| mode.amplitude > LEAST * strongest);
+    let length = effective_length(record, mean);
+    let swings = Swings::of(record);
+    let (times, around) = swings.turns(record.quantity());
+    let change = period_change(&times, &around).map_or(0.0, f64::abs);
+    let mut modes: Vec<DecayMode> = Vec::new();
+    for mut mode in found {
+        let is_own = modes.iter().all(|stronger| {
+            let away = (mode.frequency - stronger.frequency).abs();
+            let spread = stronger.amplitude * LEAKAGE / (PI * away * length).powi(2);
+            mode.amplitude > spread && away > SWEPT * change * stronger.frequency
+        });
+        if is_own {
+            mode.multiple = modes.iter().filter(|stronger| stronger.multiple.is_none()).find_map(|stronger| {
+                let ratio = mode.frequency / stronger.frequency;
+                let near = (ratio - ratio.round()).abs() < NEAR_MULTIPLE * ratio;
+                let is_harmonic =
+                    near && (1.5..MULTIPLES).contains(&ratio) && mode.amplitude < HARMONIC * stronger.amplitude;
+                is_harmonic.then_some(ratio.round() as u32)
+            });
+            modes.push(mode);
+        }
+    }
+    let energy: f64 = modes.iter().map(|mode| mode.amplitude * mode.amplitude).sum();
+    for mode in &mut modes {
+        mode.share = mode.amplitude * mode.amplitude / energy;
+    }
+    modes
+}
+
+/// Lines of the spectrum of `values` at this `rate` (Hz).
+fn lines(values: &[f64], rate: f64) -> Vec<DecayMode> {
+    let spectrum = Spectrum::of(values, &blackman_harris(values.len()));
+    let squares = &spectrum.squares;
+    let lobe = (WIDTH / spectrum.spacing).ceil() as usize;
+    let mut found = Vec::new();
+    for k in lobe..squares.len().saturating_sub(1) {
+        if !(squares[k] > squares[k - 1] && squares[k] >= squares[k + 1]) {
+            continue;
+        }
+        let (low, high) = ((k as f64 / AROUND) as usize, ((k as f64 * AROUND) as usize).min(squares.len()));
+        let (low, high) = (low.min(k.saturating_sub(4 * lobe)).max(1), high.max((k + 4 * lobe).min(squares.len())));
+        if squares[k] < ABOVE_MEDIAN * squares[low] && squares[k] < ABOVE_MEDIAN * squares[high - 1] {
+            continue;
+        }
+        let mut around: Vec<f64> = squares[low..high].to_vec();
+        let middle = around.len() / 2;
+        let median = *around.select_nth_unstable_by(middle, f64::total_cmp).1;
+        if squares[k] > ABOVE_MEDIAN * median && squares[k] > PROMINENCE * saddle(squares, k) {
+            found.push(DecayMode {
+                frequency: spectrum.refined(k) * rate / values.len() as f64,
+                amplitude: squares[k].sqrt(),
+                share: 0.0,
+                above_noise: (squares[k] * MEDIAN / median.max(f64::MIN_POSITIVE)).sqrt(),
+                multiple: None,
+            });
+        }
+    }
+    found
+}
+
+/// The least square on the way from `k` to a larger one, on the side where that is greater.
+fn saddle(squares: &[f64], k: usize) -> f64 {
+    let least = |side: &mut dyn Iterator<Item = f64>| {
+        let mut least = squares[k];
+        for square in side {
+            if square > squares[k] {
+                return Some(least);
+            }
+            least = least.min(square);
+        }
+        None
+    };
+    let left = least(&mut squares[..k].iter().rev().copied());
+    let right = least(&mut squares[k + 1..].iter().copied());
+    left.into_iter().chain(right).fold(0.0, f64::max)
+}
+
+/// Twice the mean time (s) of the squares of `record` about its `mean`, counted from its begin: how long it vibrates.
+fn effective_length(record: &Record, mean: f64) -> f64 {
+    let (mut squares, mut moments) = (0.0, 0.0);
+    for (i, value) in record.values().iter().enumerate() {
+        let square = (value - mean).powi(2);
+        squares += square;
+        moments += square * i as f64;
+    }
+    if squares > 0.0 { 2.0 * moments / squares * record.interval() } else { 0.0 }
+}

@@ -1,0 +1,169 @@
+//! Suggestion: which terms of damping and spring a backbone shows.
+
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+
+use fmm_fit::{LinearRegression, Weighting};
+use fmm_model::Estimated;
+
+use crate::BackbonePoint;
+
+/// How friction or damping takes energy from a vibration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DampingTermKind {
+    /// F/m, dry friction (m/s², in the units of the record): c_eq/m = 4 F/m/(π ω A).
+    Coulomb,
+    /// c/m, viscous damping (1/s).
+    Linear,
+    /// c₂/m, of the square of the velocity (1/m): c_eq/m = 8 c₂/m ω A/(3 π).
+    Quadratic,
+    /// c₃/m, of its cube (s/m²): c_eq/m = ¾ c₃/m (ω A)².
+    Cubic,
+}
+
+impl DampingTermKind {
+    const ALL: [Self; 4] = [Self::Coulomb, Self::Linear, Self::Quadratic, Self::Cubic];
+
+    /// c_eq/m (1/s) of a term of 1, of a vibration of this velocity amplitude ωA.
+    pub fn equivalent_damping(self, velocity: f64) -> f64 {
+        match self {
+            Self::Coulomb => 4.0 / (PI * velocity),
+            Self::Linear => 1.0,
+            Self::Quadratic => 8.0 * velocity / (3.0 * PI),
+            Self::Cubic => 0.75 * velocity * velocity,
+        }
+    }
+}
+
+/// A term of the damping with its share of the energy that the decay has lost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DampingTerm {
+    /// Which one.
+    pub kind: DampingTermKind,
+    /// Its coefficient per mass, in the unit that `kind` states.
+    pub coefficient: Estimated,
+    /// What it has taken of the energy between the first point and the last (1).
+    pub share: Estimated,
+}
+
+/// Terms of damping and spring that explain a backbone: where to begin a comparison of laws, which judges by the record itself.
+///
+/// Of the sums of Coulomb friction and linear, quadratic and cubic damping with coefficients above twice their uncertainty, the one with
+/// the least Bayesian criterion. `Display` says it in words.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Suggestion {
+    damping: Vec<DampingTerm>,
+    spring: Vec<Estimated>,
+}
+
+/// How well the closed forms hold the damping (1).
+const ACCURACY: f64 = 1e-3;
+/// How many of its uncertainties a coefficient is at least.
+pub(crate) const SIGNIFICANT: f64 = 2.0;
+/// Points that are told by one window: neighbours share three quarters of theirs.
+const POINTS_PER_WINDOW: f64 = 2.0;
+
+impl Suggestion {
+    /// The terms that explain `points`, beside those of the `spring`.
+    pub(crate) fn of(points: &[BackbonePoint], spring: &[Estimated]) -> Self {
+        let velocities: Vec<f64> =
+            points.iter().map(|point| TAU * point.frequency.value * point.amplitude.value).collect();
+        let mut best: Option<(f64, Vec<(DampingTermKind, Estimated)>)> = None;
+        for subset in 1_u32..1 << DampingTermKind::ALL.len() {
+            let kinds: Vec<DampingTermKind> =
+                (0..4).filter(|bit| subset >> bit & 1 == 1).map(|bit| DampingTermKind::ALL[bit as usize]).collect();
+            let columns: Vec<Vec<f64>> =
+                kinds.iter().map(|kind| velocities.iter().map(|v| kind.equivalent_damping(*v)).collect()).collect();
+            let dampings: Vec<Estimated> = points.iter().map(|point| point.damping).collect();
+            let Some((score, found)) = scored(&columns, &dampings, ACCURACY) else { continue };
+            let is_plain = |term: &Estimated| term.value > SIGNIFICANT * term.uncertainty;
+            if found.iter().all(is_plain) && best.as_ref().is_none_or(|(least, _)| score < *least) {
+                best = Some((score, kinds.into_iter().zip(found).collect()));
+            }
+        }
+        let terms = best.map_or_else(Vec::new, |(_, terms)| terms);
+        // Power c (ωA)² between neighbouring points.
+        let lost = |kind: DampingTermKind| -> f64 {
+            let power = |i: usize| kind.equivalent_damping(velocities[i]) * velocities[i].powi(2);
+            points
+                .windows(2)
+                .enumerate()
+                .map(|(i, pair)| 0.5 * (pair[1].time - pair[0].time) * (power(i) + power(i + 1)))
+                .sum()
+        };
+        let all: f64 = terms.iter().map(|(kind, term)| lost(*kind) * term.value).sum();
+        let term = |(kind, coefficient): &(DampingTermKind, Estimated)| {
+            let share = if all > 0.0 { coefficient.scaled(lost(*kind) / all) } else { Estimated::new(1.0, 0.0) };
+            DampingTerm { kind: *kind, coefficient: *coefficient, share }
+        };
+        Self { damping: terms.iter().map(term).collect(), spring: spring.to_vec() }
+    }
+
+    /// The terms of damping; empty if none explains the points.
+    pub fn damping(&self) -> &[DampingTerm] {
+        &self.damping
+    }
+
+    /// f₀ (Hz), k₃ and k₅, without those that the frequencies do not show.
+    pub fn spring(&self) -> &[Estimated] {
+        &self.spring
+    }
+
+    /// The name under which `fmm-identify` has this law with these terms, such as `coulomb_viscous + quadratic + cubic spring`.
+    pub fn model(&self) -> String {
+        let has = |kind: DampingTermKind| self.damping.iter().any(|term| term.kind == kind);
+        let law = match (has(DampingTermKind::Coulomb), has(DampingTermKind::Linear)) {
+            (true, true) => "coulomb_viscous",
+            (true, false) => "coulomb",
+            (false, _) => "viscous",
+        };
+        let further = [
+            (has(DampingTermKind::Quadratic), "quadratic"),
+            (has(DampingTermKind::Cubic), "cubic"),
+            (self.spring.len() > 1, "cubic spring"),
+            (self.spring.len() > 2, "quintic spring"),
+        ];
+        let further = further.into_iter().filter(|(has, _)| *has).map(|(_, name)| format!(" + {name}"));
+        std::iter::once(law.to_owned()).chain(further).collect()
+    }
+}
+
+impl fmt::Display for Suggestion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.model())?;
+        for (index, term) in self.damping.iter().enumerate() {
+            let name = match term.kind {
+                DampingTermKind::Coulomb => "dry friction",
+                DampingTermKind::Linear => "viscous damping",
+                DampingTermKind::Quadratic => "quadratic damping",
+                DampingTermKind::Cubic => "cubic damping",
+            };
+            let percent = term.share.scaled(100.0);
+            write!(f, "{} {name} takes {percent} % of the energy", if index == 0 { ":" } else { "," })?;
+        }
+        Ok(())
+    }
+}
+
+/// Coefficients of `columns` for `values`, and the Bayesian criterion of what they leave; `None` if they are not told apart.
+///
+/// Values are taken to be good to a relative `accuracy` (1) at best.
+pub(crate) fn scored(columns: &[Vec<f64>], values: &[Estimated], accuracy: f64) -> Option<(f64, Vec<Estimated>)> {
+    let count = values.len() as f64 / POINTS_PER_WINDOW;
+    if count < columns.len() as f64 + 1.0 {
+        return None;
+    }
+    let right: Vec<f64> = values.iter().map(|value| value.value).collect();
+    let weights: Vec<f64> =
+        values.iter().map(|value| value.uncertainty.hypot(accuracy * value.value).max(f64::MIN_POSITIVE)).collect();
+    let named: Vec<(&str, &[f64])> = columns.iter().map(|column| ("term", column.as_slice())).collect();
+    let regression = LinearRegression::fit(&named, &right, Weighting::Absolute(&weights)).ok()?;
+    // The points share samples, and are not better than their uncertainties.
+    let spread = (regression.sum_of_squares() / values.len() as f64).max(1.0);
+    let inflation = (POINTS_PER_WINDOW * spread).sqrt();
+    let found = (0..columns.len())
+        .map(|j| Some(Estimated::new(regression.coefficients()[j], inflation * regression.standard_uncertainty(j)?)));
+    let score = count * spread.ln() + columns.len() as f64 * count.ln();
+    Some((score, found.collect::<Option<_>>()?))
+}

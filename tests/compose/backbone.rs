@@ -1,0 +1,184 @@
+//! Backbones of simulated decays against closed forms, and the modes of a decay.
+
+use std::f64::consts::{PI, TAU};
+
+use fmm_frf::{Backbone, BackboneOptions, DampingTermKind, FrfError, decay_modes};
+use fmm_friction::{CoulombViscous, LawFamily};
+use fmm_model::{Damping, Estimated, Oscillator, Restoring};
+use fmm_record::{Quantity, Record};
+use fmm_sim::{Sampling, Scenario, simulate};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+
+const RATE: f64 = 2000.0;
+
+/// 20 Hz, a level (m/s²) and a viscous part (1/s), released at `amplitude`.
+fn decay(machine: Oscillator, levels: [f64; 2], amplitude: f64, quantity: Quantity, samples: usize) -> Vec<f64> {
+    let law = CoulombViscous::at(&levels).unwrap();
+    let scenario = Scenario::new(machine, law, 1.0).unwrap().starting_at(amplitude, 0.0).unwrap();
+    let motion = simulate(&scenario, &Sampling::uniform(1.0 / RATE, samples).unwrap()).unwrap();
+    match quantity {
+        Quantity::Velocity => motion.velocity().values().to_vec(),
+        _ => motion.position().values().to_vec(),
+    }
+}
+
+fn machine() -> Oscillator {
+    Oscillator::per_unit_mass(20.0).unwrap()
+}
+
+fn record(values: Vec<f64>, quantity: Quantity) -> Record {
+    let unit = if quantity == Quantity::Velocity { "m/s" } else { "m" };
+    Record::sampled(RATE, values, quantity, unit).unwrap()
+}
+
+fn largest_error(backbone: &Backbone, value: impl Fn(usize) -> f64, truth: impl Fn(usize) -> f64) -> f64 {
+    (0..backbone.points().len()).map(|i| (value(i) / truth(i) - 1.0).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn points_lie_on_the_closed_forms() {
+    let velocity = |backbone: &Backbone, i: usize| {
+        let point = backbone.points()[i];
+        TAU * point.frequency.value * point.amplitude.value
+    };
+    for quantity in [Quantity::Displacement, Quantity::Velocity] {
+        for (name, machine, levels, amplitude) in [
+            ("coulomb", machine(), [0.1, 0.0], 1e-2),
+            ("quadratic", machine().with_damping(Damping::new(0.0, 0.5).unwrap()), [0.0, 0.0], 1e-2),
+            ("duffing", machine().with_restoring(Restoring::polynomial(2e3, 0.0).unwrap()), [0.0, 0.4], 1e-2),
+            ("pendulum", machine().with_restoring(Restoring::sine(1.0).unwrap()), [0.0, 0.4], 0.6),
+        ] {
+            let values = decay(machine, levels, amplitude, quantity, 16_000);
+            let backbone = Backbone::of(&record(values, quantity), &BackboneOptions::default()).unwrap();
+            let points = backbone.points();
+            assert!(points.len() > 20, "{name}: {}", points.len());
+            let frequency = |i: usize| {
+                let square = points[i].amplitude.value.powi(2);
+                let of = |stiffening: f64| 20.0 * stiffening.sqrt();
+                match name {
+                    "duffing" => of(1.0 + 0.75 * 2e3 * square),
+                    "pendulum" => 20.0 / (1.0 + square / 16.0 + 11.0 * square * square / 3072.0),
+                    _ => 20.0,
+                }
+            };
+            let damping = |i: usize| match name {
+                "coulomb" => 4.0 * 0.1 / (PI * velocity(&backbone, i)),
+                "quadratic" => 8.0 * 0.5 * velocity(&backbone, i) / (3.0 * PI),
+                _ => 0.4,
+            };
+            // Below a tenth of the release Coulomb friction shifts the middle of each half swing by more than a percent of it.
+            let off_frequency = largest_error(&backbone, |i| points[i].frequency.value, frequency);
+            let large = |i: usize| name != "coulomb" || points[i].amplitude.value > 2e-3;
+            let off =
+                largest_error(&backbone, |i| if large(i) { points[i].damping.value } else { damping(i) }, damping);
+            assert!(off_frequency < 1e-3 && off < 1e-3, "{name}, {quantity:?}: f {off_frequency:.2e}, c {off:.2e}");
+        }
+    }
+}
+
+/// Uncertainties of amplitude, frequency and damping over draws of white noise, of a long record and of a short one.
+#[test]
+fn uncertainties_hold_what_they_say() {
+    let clean = decay(machine(), [0.1, 0.2], 1e-2, Quantity::Displacement, 8000);
+    for (samples, cycles, noise) in [(8000, 8.0, 2e-5), (1600, 4.0, 2e-5)] {
+        let clean = &clean[..samples];
+        let options = BackboneOptions::default().over(cycles).unwrap();
+        let truth = Backbone::of(&record(clean.to_vec(), Quantity::Displacement), &options).unwrap();
+        let (mut inside, mut all) = ([0.0; 3], 0.0);
+        for seed in 0..1000 {
+            let mut random = ChaCha8Rng::seed_from_u64(seed);
+            let noisy = |value: &f64| {
+                let draw: f64 = StandardNormal.sample(&mut random);
+                value + noise * draw
+            };
+            let values: Vec<f64> = clean.iter().map(noisy).collect();
+            let found = Backbone::of(&record(values, Quantity::Displacement), &options).unwrap();
+            for (found, truth) in found.points().iter().zip(truth.points()) {
+                assert_eq!(found.time, truth.time);
+                let holds = |found: Estimated, truth: f64| {
+                    f64::from(u8::from((found.value - truth).abs() < 1.96 * found.uncertainty))
+                };
+                inside[0] += holds(found.amplitude, truth.amplitude.value);
+                inside[1] += holds(found.frequency, truth.frequency.value);
+                inside[2] += holds(found.damping, truth.damping.value);
+                all += 1.0;
+            }
+        }
+        for share in inside.map(|count| count / all) {
+            assert!((0.92..0.98).contains(&share), "{samples} samples: {inside:?} of {all}");
+        }
+    }
+}
+
+/// A second mode 5 % away, with a tenth of the amplitude: both are listed, and the backbone of each is that of its own decay.
+#[test]
+fn close_modes_are_told_apart() {
+    let (rate, modes): (f64, [(f64, f64, f64); 2]) = (2000.0, [(20.0, 1.0, 0.12), (21.0, 0.1, 0.2)]);
+    let at = |t: f64| -> f64 { modes.iter().map(|(f, a, rate)| a * (-rate * t).exp() * (TAU * f * t).cos()).sum() };
+    let values: Vec<f64> = (0..20_000).map(|i| at(f64::from(i) / rate)).collect();
+    let record = Record::sampled(rate, values, Quantity::Acceleration, "m/s²").unwrap();
+    let found = decay_modes(&record);
+    assert_eq!(found.len(), 2, "{found:?}");
+    for (found, (frequency, ..)) in found.iter().zip(modes) {
+        assert!((found.frequency - frequency).abs() < 0.05, "{found:?}");
+    }
+    for (frequency, _, decay) in modes {
+        let backbone = Backbone::of(&record, &BackboneOptions::default().at(frequency).unwrap()).unwrap();
+        for point in backbone.points() {
+            let off = (point.frequency.value / frequency - 1.0).abs();
+            assert!(
+                off < 1e-4 && (point.damping.value / (2.0 * decay) - 1.0).abs() < 0.02,
+                "{frequency} Hz: {point:?}"
+            );
+        }
+    }
+}
+
+/// What a decay is made of is suggested, with the share of the energy that each term has taken.
+#[test]
+fn suggestions_name_what_is_there() {
+    let hardening = Restoring::polynomial(2e3, 0.0).unwrap();
+    for (name, damping, levels, spring) in [
+        ("coulomb", Damping::none(), [0.1, 0.0], Restoring::Linear),
+        ("viscous", Damping::none(), [0.0, 0.4], Restoring::Linear),
+        ("coulomb_viscous", Damping::none(), [0.1, 0.3], Restoring::Linear),
+        ("coulomb + quadratic", Damping::new(0.0, 0.5).unwrap(), [0.1, 0.0], Restoring::Linear),
+        ("coulomb_viscous + cubic spring", Damping::none(), [0.1, 0.3], hardening),
+    ] {
+        let machine = machine().with_damping(damping).with_restoring(spring);
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let values = decay(machine, levels, 1e-2, Quantity::Displacement, 16_000);
+        let noisy = |value: f64| {
+            let draw: f64 = StandardNormal.sample(&mut random);
+            value + 5e-6 * draw
+        };
+        let values = values.into_iter().map(noisy).collect();
+        let backbone = Backbone::of(&record(values, Quantity::Displacement), &BackboneOptions::default()).unwrap();
+        let suggestion = backbone.suggestion();
+        assert_eq!(suggestion.model(), name, "{suggestion}");
+        let all: f64 = suggestion.damping().iter().map(|term| term.share.value).sum();
+        assert!((all - 1.0).abs() < 1e-12, "{suggestion}");
+        for term in suggestion.damping() {
+            let truth = match term.kind {
+                DampingTermKind::Coulomb => levels[0],
+                DampingTermKind::Linear => levels[1],
+                _ => 0.5,
+            };
+            let off = (term.coefficient.value - truth).abs();
+            assert!(off < 4.0 * term.coefficient.uncertainty && off < 0.05 * truth, "{name}: {term:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_decay_has_no_backbone() {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let noise = (0..4000).map(|_| StandardNormal.sample(&mut random)).collect();
+    assert!(decay_modes(&record(noise, Quantity::Displacement)).is_empty());
+    for values in [vec![0.0; 1000], vec![1.0; 3], vec![0.0, 1.0, 0.0, -1.0]] {
+        let refused = Backbone::of(&record(values, Quantity::Velocity), &BackboneOptions::default());
+        assert!(matches!(refused, Err(FrfError::NoFit { .. })), "{refused:?}");
+    }
+}
