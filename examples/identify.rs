@@ -18,46 +18,30 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 use figure::{Layer, Panel, Role};
 use fmm_fit::{Options, Progress};
+use fmm_frf::IsolatedMode;
 use fmm_identify::{Candidate, Comparison, Drive, Experiment, Known, Machine, Preparation, Search, Sensor};
 use fmm_identify::{compare_observed, search_observed};
 use fmm_model::Restoring;
-use fmm_record::{Column, Quantity, Record, Request, Unit};
+use fmm_record::{Column, Quantity, Record, Request};
 use indicatif::{ProgressBar, ProgressStyle};
-use source::{Choice, Input};
+use source::{Choice, Given, ModeWanted, mode_wanted};
 
 /// Identifies the friction of a machine from the record of its free vibration.
 #[derive(Debug, Parser)]
 #[command(name = "identify", allow_negative_numbers = true)]
 struct Arguments {
-    /// The record: .csv, .tsv, .txt, .mat, .uff or .unv; without it, the bundled record of a bicycle fork
-    file: Option<PathBuf>,
-    /// The channel with the motion, by name or by number counted from 0; without it, the only one, or the one that --quantity
-    /// and --unit tell out, or the velocity or else the displacement by its unit
-    #[arg(long, value_name = "NAME|INDEX")]
-    channel: Option<Column>,
-    /// The channel with the time (s)
-    #[arg(long, value_name = "NAME|INDEX", conflicts_with = "rate")]
-    time: Option<Column>,
-    /// The sampling rate, if there is no time channel
-    #[arg(long, value_name = "HZ")]
-    rate: Option<f64>,
-    /// What the channel measures; found by its unit, as in "v [mm/s]" or "theta_rad", or by a word in its name
-    #[arg(long, value_enum)]
-    quantity: Option<Measured>,
-    /// Factor that turns the channel into --unit, both instead of a unit in the file; one in the name, as in "v [mm/s]", is
-    /// converted by itself
-    #[arg(long, value_name = "FACTOR")]
-    scale: Option<f64>,
+    #[command(flatten)]
+    given: Given,
+    /// Identify one mode of several, the so many-th strongest, from 1 on, or, with a unit, as in 150Hz, the one nearest to a frequency;
+    /// the others are filtered out
+    #[arg(long, value_name = "N|F Hz", value_parser = mode_wanted)]
+    mode: Option<ModeWanted>,
     /// Relative standard uncertainty of that factor, or of the gain of the instrument
     #[arg(long, value_name = "RELATIVE", default_value_t = 0.0)]
     scale_u: f64,
-    /// Unit of the channel, such as mm/s, rad or V, after scaling by --scale; needed if the file tells none. With --quantity
-    /// but no unit anywhere, SI units are taken
-    #[arg(long)]
-    unit: Option<Unit>,
     /// The laws to compare, such as coulomb,berger+quadratic: names with terms of the machine beside them (linear, quadratic,
     /// cubic, power, any sign; cubic spring, quintic spring, stop, gap), or all (viscous, coulomb and both); without it, as many as the record asks for. An unknown name is
     /// answered with the list of laws
@@ -124,23 +108,6 @@ struct Arguments {
     figures: Option<PathBuf>,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Measured {
-    Velocity,
-    Displacement,
-    Acceleration,
-}
-
-impl From<Measured> for Quantity {
-    fn from(measured: Measured) -> Self {
-        match measured {
-            Measured::Velocity => Self::Velocity,
-            Measured::Displacement => Self::Displacement,
-            Measured::Acceleration => Self::Acceleration,
-        }
-    }
-}
-
 /// Order and corner frequency (Hz) of a filter.
 fn low_pass(text: &str) -> Result<(usize, Option<f64>), String> {
     let (order, corner) = text.split_once(':').map_or((text, None), |(order, corner)| (order, Some(corner)));
@@ -150,34 +117,6 @@ fn low_pass(text: &str) -> Result<(usize, Option<f64>), String> {
     Ok((order, corner.transpose()?))
 }
 
-fn read(arguments: &Arguments) -> Result<Input, Box<dyn Error>> {
-    let mut request = Request::default();
-    if let Some(quantity) = arguments.quantity {
-        request = request.quantity(quantity.into());
-    }
-    if let Some(unit) = &arguments.unit {
-        request = request.unit(unit.clone());
-    }
-    if let Some(scale) = arguments.scale {
-        request = request.scale(scale);
-    }
-    let choice = Choice {
-        channel: arguments.channel.clone(),
-        time: arguments.time.clone(),
-        rate: arguments.rate,
-        request,
-        is_drive: false,
-    };
-    let input = match &arguments.file {
-        Some(file) => choice.read(file)?,
-        None => choice.read_bundled()?,
-    };
-    for warning in &input.warnings {
-        eprintln!("warning: {warning}");
-    }
-    Ok(input)
-}
-
 /// What drives the machine, if something does.
 fn drive(arguments: &Arguments) -> Result<Option<Drive>, Box<dyn Error>> {
     let (channel, quantity) = match (&arguments.force, &arguments.base) {
@@ -185,9 +124,9 @@ fn drive(arguments: &Arguments) -> Result<Option<Drive>, Box<dyn Error>> {
         (None, Some(channel)) => (channel, None),
         (None, None) => return Ok(None),
     };
-    let file = arguments.file.as_ref().ok_or("the bundled record is one of a free vibration; give a file")?;
+    let file = arguments.given.file.as_ref().ok_or("the bundled record is one of a free vibration; give a file")?;
     let request = quantity.map_or_else(Request::default, |quantity| Request::default().quantity(quantity));
-    let (time, rate) = (arguments.time.clone(), arguments.rate);
+    let (time, rate) = (arguments.given.time.clone(), arguments.given.rate);
     let choice = Choice { channel: Some(channel.clone()), time, rate, request, is_drive: true };
     let record = choice.read(file)?.record;
     Ok(Some(if quantity.is_some() { Drive::force(&record)? } else { Drive::base(&record)? }))
@@ -349,7 +288,15 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let input = read(arguments)?;
+    let mut input = arguments.given.read()?;
+    if let Some(mode) = arguments.mode {
+        let isolated = IsolatedMode::of(&input.record, &mode.options(&input.record)?)?;
+        let (frequency, edge) = (isolated.frequency, isolated.edge);
+        input.origin.push_str(&format!(
+            "; the mode at {frequency:.4} Hz, by a filter that looks {edge:.4} s in both directions, which are left out at both ends"
+        ));
+        input.record = isolated.record;
+    }
     let mut preparation = Preparation::default().gain_uncertainty(arguments.scale_u);
     if let Some(from) = arguments.from {
         preparation = preparation.from(from);

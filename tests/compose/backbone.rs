@@ -1,11 +1,13 @@
 //! Backbones of simulated decays against closed forms, and the modes of a decay.
 
 use std::f64::consts::{PI, TAU};
+use std::path::Path;
 
-use fmm_frf::{Backbone, BackboneOptions, DampingTermKind, FrfError, decay_modes};
+use fmm_frf::{Backbone, BackboneOptions, DampingTermKind, FrfError, IsolatedMode, decay_modes};
 use fmm_friction::{CoulombViscous, LawFamily};
+use fmm_identify::{Experiment, Machine, Preparation, identify};
 use fmm_model::{Damping, Estimated, Oscillator, Restoring};
-use fmm_record::{Quantity, Record};
+use fmm_record::{Quantity, Record, open};
 use fmm_sim::{Sampling, Scenario, simulate};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -180,5 +182,52 @@ fn what_is_no_decay_has_no_backbone() {
     for values in [vec![0.0; 1000], vec![1.0; 3], vec![0.0, 1.0, 0.0, -1.0]] {
         let refused = Backbone::of(&record(values, Quantity::Velocity), &BackboneOptions::default());
         assert!(matches!(refused, Err(FrfError::NoFit { .. })), "{refused:?}");
+    }
+}
+
+/// A mode with friction beside another one of a third of its amplitude: alone it gives its friction, together they do not.
+#[test]
+fn an_isolated_mode_gives_its_friction() {
+    let main = decay(machine(), [0.1, 0.3], 1e-2, Quantity::Displacement, 6000);
+    let mut random = ChaCha8Rng::seed_from_u64(2);
+    let with_other = |(i, value): (usize, &f64)| {
+        let t = i as f64 / RATE;
+        let draw: f64 = StandardNormal.sample(&mut random);
+        value + 3e-3 * (-0.5 * t).exp() * (TAU * 27.0 * t).cos() + 1e-6 * draw
+    };
+    let both = record(main.iter().enumerate().map(with_other).collect(), Quantity::Displacement);
+    let alone = IsolatedMode::of(&both, &BackboneOptions::default().at(20.0).unwrap()).unwrap();
+    let friction = |record: &Record| {
+        let decay = Experiment::ring_down(record, &Preparation::default()).unwrap();
+        let found = identify::<CoulombViscous>(&Machine::per_unit_mass(), &[decay]).unwrap();
+        found.finding("friction_per_mass").unwrap().value()
+    };
+    let off = (friction(&alone.record) / 0.1 - 1.0).abs();
+    let off_together = (friction(&both) / 0.1 - 1.0).abs();
+    assert!(off < 5e-3 && off_together > 10.0 * off, "{off} alone, {off_together} with the other mode");
+}
+
+/// The pendulum's record shows the sine, k₃ = −1/6 and k₅ = 1/120; what it and the fork suggest is what their fits prefer.
+#[test]
+fn real_records_show_their_springs_and_friction() {
+    let pendulum = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/single_pendulum_55s_1khz.csv");
+    let angle = open(pendulum).unwrap().channel("theta_rad").unwrap().record;
+    let angle = angle.with_quantity(Quantity::Displacement).with_unit("rad");
+    let backbone = Backbone::of(&angle, &BackboneOptions::default()).unwrap();
+    let spring = backbone.spring();
+    let off = |place: usize, truth: f64| (spring[place].value - truth).abs() / truth.abs();
+    // The series of the sine ends two terms later; the amplitude is 1.6 rad.
+    assert!(off(1, -1.0 / 6.0) < 0.02 && off(2, 1.0 / 120.0) < 0.15, "{spring:?}");
+
+    let fork = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/BrowserForkCompoundFirst1.mat");
+    let fork = open(fork).unwrap().channel("data").unwrap().record;
+    let fork = fork.with_quantity(Quantity::Velocity).with_unit("V");
+    let suggestion = Backbone::of(&fork, &BackboneOptions::default()).unwrap().suggestion();
+    assert!(suggestion.model().starts_with("coulomb_viscous"), "{suggestion}");
+    let decay = Experiment::ring_down(&fork, &Preparation::default()).unwrap();
+    let found = identify::<CoulombViscous>(&Machine::per_unit_mass(), &[decay]).unwrap();
+    for (term, name) in suggestion.damping().iter().zip(["friction_per_mass", "damping_per_mass"]) {
+        let fitted = found.finding(name).unwrap().value();
+        assert!((term.coefficient.value / fitted - 1.0).abs() < 0.1, "{name}: {term:?} and {fitted}");
     }
 }

@@ -24,7 +24,7 @@
 //! | noise between blows, responses longer than the record? | [`ForceWindow`], [`ExponentialWindow`] |
 //! | in which form? | [`FrequencyResponse`]: receptance, mobility, accelerance; delays; bands |
 //! | which modes? | [`resonances`], [`PeakFit`], [`CircleFit`], [`RationalFit`] |
-//! | which modes does a decay have, and how do frequency and damping go with the amplitude? | [`decay_modes`], [`Backbone`] and its [`Suggestion`] |
+//! | which modes does a decay have, and how do frequency and damping go with the amplitude? | [`decay_modes`], [`Backbone`] and its [`Suggestion`]; [`IsolatedMode`] takes one out |
 //! | how much friction? | [`friction_force_of_coulomb_impact`], [`friction_force_of_viscous_coulomb_impact`], [`CoulombLine`] |
 //! | is it friction at all? | [`FrictionSpectrum`]: odd harmonics, against the linear response of [`SingleDegreeOfFreedom`] |
 //!
@@ -82,7 +82,8 @@ pub use average::{
 };
 pub use channel::Channel;
 pub use decay::{
-    Backbone, BackboneOptions, BackbonePoint, DampingTerm, DampingTermKind, DecayMode, Suggestion, decay_modes,
+    Backbone, BackboneOptions, BackbonePoint, DampingTerm, DampingTermKind, DecayMode, IsolatedMode, Suggestion,
+    decay_modes,
 };
 pub use error::FrfError;
 pub use fmm_model::{Estimated, ModelError};

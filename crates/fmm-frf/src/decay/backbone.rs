@@ -37,16 +37,19 @@ impl BackboneOptions {
         Ok(self)
     }
 
-    /// With windows of so many `cycles`, two at least; a sixteenth of the record between 3 and 8 unless they are given, more where another mode is near.
+    /// With windows of so many `cycles`, two at least. Unless they are given, a window is a sixteenth of the record, between 3 and 8 cycles;
+    /// shorter in a record of few cycles, longer where another mode is near.
     ///
     /// # Errors
-    /// [`FrfError::OutOfRange`] if they are fewer than two.
+    /// [`FrfError::Outside`] if they are fewer than two.
     pub fn over(mut self, cycles: f64) -> Result<Self, FrfError> {
-        ModelError::require_positive(
-            "cycles of a window",
-            cycles - FEWEST_CYCLES + f64::MIN_POSITIVE,
-            "more than two",
-        )?;
+        if !(cycles >= FEWEST_CYCLES && cycles.is_finite()) {
+            return Err(FrfError::Outside {
+                what: format!(
+                    "a window of a backbone holds {FEWEST_CYCLES} cycles at least, but {cycles} were asked for"
+                ),
+            });
+        }
         self.cycles = Some(cycles);
         Ok(self)
     }
@@ -111,6 +114,8 @@ const FEWEST_CYCLES: f64 = 2.0;
 const CYCLES: (f64, f64) = (3.0, 8.0);
 /// Windows in the record, if cycles allow.
 const WINDOWS: f64 = 16.0;
+/// Windows that a short record holds at least.
+const FEWEST_WINDOWS: f64 = 2.2;
 /// Other modes within this relative distance of the frequency are fitted beside.
 const NEAR: f64 = 0.5;
 /// Cycles of the beat with another mode that a window holds.
@@ -122,6 +127,8 @@ const SEEN: f64 = 10.0;
 /// The phase that may be gained in half a window against the carrier before it is moved (rad).
 const SLIP: f64 = 0.3;
 
+/// The share of the greatest amplitude from which on a decay has begun (1).
+const GREATEST: f64 = 0.99;
 /// Regressions until the carrier of a window is where its vibration is.
 const SETTLING: usize = 2;
 
@@ -131,61 +138,36 @@ impl Backbone {
     /// # Errors
     /// [`FrfError::NoFit`] if the record shows no line, or too few cycles for three windows.
     pub fn of(record: &Record, options: &BackboneOptions) -> Result<Self, FrfError> {
-        let no_fit = |what: String| FrfError::NoFit { what };
-        let modes = decay_modes(record);
-        let distance = |frequency: f64| move |of: f64| (of / frequency).ln().abs();
-        let mode = match options.frequency {
-            None => modes.first(),
-            Some(frequency) => {
-                let away = distance(frequency);
-                modes.iter().min_by(|a, b| away(a.frequency).total_cmp(&away(b.frequency)))
-            }
-        };
-        let mode = mode.ok_or_else(|| no_fit("the record shows no vibration above its noise".to_owned()))?;
-        let frequency = mode.frequency;
-        let others: Vec<f64> = modes
-            .iter()
-            .filter(|other| other.frequency != frequency && other.amplitude > LEAST_OTHER * mode.amplitude)
-            .map(|other| other.frequency)
-            .filter(|other| (other / frequency - 1.0).abs() < NEAR)
-            .collect();
-        let cycles_in_all = frequency * record.duration();
-        let nearest = others.iter().map(|other| (other / frequency - 1.0).abs()).fold(1.0, f64::min);
-        let cycles = options.cycles.unwrap_or((cycles_in_all / WINDOWS).clamp(CYCLES.0, CYCLES.1).max(BEATS / nearest));
-        let half = (0.5 * cycles / frequency * record.rate()).round() as usize;
-        let values = record.values();
-        if values.len() < 4 * half + 2 || half < 4 {
-            return Err(no_fit(format!(
-                "a backbone needs three half windows of {cycles:.1} cycles at {frequency:.4} Hz, but the record has {cycles_in_all:.1}"
-            )));
-        }
+        let Prepared { taken, frequency, fixed } = Prepared::of(record, options)?;
+        let (half, values) = (taken.half, taken.values);
         let orders = match record.quantity() {
             Quantity::Velocity => 1,
             Quantity::Acceleration => 2,
             _ => 0,
         };
-        let taken = Taken { values, rate: record.rate(), half, others: &others };
-        let fixed = taken.regression(frequency).ok_or_else(|| {
-            no_fit(format!("a window of {cycles:.1} cycles does not tell the modes near {frequency:.4} Hz apart"))
-        })?;
         let centres = (half..values.len() - half).step_by((half / 2).max(1));
         let mut locals: Vec<Local> = centres.map(|centre| taken.local(centre, frequency, &fixed)).collect();
         // A frequency that moves far within the record is followed.
         let slips = |local: &Local| ((local.frequency - frequency) * half as f64 / record.rate() * TAU).abs() > SLIP;
         if locals.iter().any(slips) {
-            let mut at = locals[0].frequency;
+            // Where nothing vibrates, a window says any frequency.
+            let within = |found: f64| {
+                let is_near = (found / frequency - 1.0).abs() < NEAR;
+                if is_near { found } else { frequency }
+            };
+            let mut at = within(locals[0].frequency);
             for local in &mut locals {
                 for _ in 0..SETTLING {
                     let Some(moved) = taken.regression(at) else { break };
                     *local = taken.local(local.centre, at, &moved);
-                    at = local.frequency.clamp(0.5 * at, 1.5 * at);
+                    at = within(local.frequency);
                 }
             }
         }
         let locals = decaying(&locals, half);
         let mut points: Vec<BackbonePoint> = locals.iter().map(|local| local.point(record, orders)).collect();
         if points.is_empty() {
-            return Err(no_fit("no window lies between the greatest amplitude and the end of the decay".to_owned()));
+            return Err(no_fit("no window lies between the greatest amplitude and the end of the decay"));
         }
         let spring = spring_terms(&points);
         for point in &mut points {
@@ -222,12 +204,66 @@ impl Backbone {
     }
 }
 
+fn no_fit(what: impl Into<String>) -> FrfError {
+    FrfError::NoFit { what: what.into() }
+}
+
 /// What all windows share.
-struct Taken<'a> {
-    values: &'a [f64],
+pub(crate) struct Taken<'a> {
+    pub(crate) values: &'a [f64],
     rate: f64,
-    half: usize,
-    others: &'a [f64],
+    pub(crate) half: usize,
+    others: Vec<f64>,
+}
+
+/// A mode of a record, and the regression on it.
+pub(crate) struct Prepared<'a> {
+    pub(crate) taken: Taken<'a>,
+    /// Hz.
+    pub(crate) frequency: f64,
+    pub(crate) fixed: LocalRegression,
+}
+
+impl<'a> Prepared<'a> {
+    /// The mode that the `options` ask for, with windows that tell it from the others.
+    pub(crate) fn of(record: &'a Record, options: &BackboneOptions) -> Result<Self, FrfError> {
+        let modes = decay_modes(record);
+        let distance = |frequency: f64| move |of: f64| (of / frequency).ln().abs();
+        let mode = match options.frequency {
+            None => modes.first(),
+            Some(frequency) => {
+                let away = distance(frequency);
+                modes.iter().min_by(|a, b| away(a.frequency).total_cmp(&away(b.frequency)))
+            }
+        };
+        let mode = mode.ok_or_else(|| no_fit("the record shows no vibration above its noise"))?;
+        let frequency = mode.frequency;
+        let others: Vec<f64> = modes
+            .iter()
+            .filter(|other| other.frequency != frequency && other.amplitude > LEAST_OTHER * mode.amplitude)
+            .map(|other| other.frequency)
+            .filter(|other| (other / frequency - 1.0).abs() < NEAR)
+            .collect();
+        let cycles_in_all = frequency * record.duration();
+        let nearest = others.iter().map(|other| (other / frequency - 1.0).abs()).fold(1.0, f64::min);
+        let usual = (cycles_in_all / WINDOWS).clamp(CYCLES.0, CYCLES.1);
+        let fitting = usual.min(cycles_in_all / FEWEST_WINDOWS).max(FEWEST_CYCLES);
+        let cycles = options.cycles.unwrap_or(fitting.max(BEATS / nearest));
+        let half = (0.5 * cycles / frequency * record.rate()).round() as usize;
+        let values = record.values();
+        if values.len() / 4 < half || half < 4 {
+            return Err(no_fit(format!(
+                "two windows of {cycles:.1} cycles at {frequency:.4} Hz are needed, of four samples a half at least, but the record has \
+                 {cycles_in_all:.1} cycles at {:.4} Hz",
+                record.rate()
+            )));
+        }
+        let taken = Taken { values, rate: record.rate(), half, others };
+        let fixed = taken.regression(frequency).ok_or_else(|| {
+            no_fit(format!("a window of {cycles:.1} cycles does not tell the modes near {frequency:.4} Hz apart"))
+        })?;
+        Ok(Self { taken, frequency, fixed })
+    }
 }
 
 /// A window's vibration, with its uncertainties.
@@ -281,11 +317,12 @@ impl Taken<'_> {
 /// Those of `locals` between the greatest amplitude and the end of the decay, with windows that hold neither what was before nor after.
 fn decaying(locals: &[Local], half: usize) -> Vec<Local> {
     let size = |local: &Local| local.amplitude.value;
-    let first = (0..locals.len()).max_by(|a, b| size(&locals[*a]).total_cmp(&size(&locals[*b]))).unwrap_or(0);
+    let largest = locals.iter().map(size).fold(0.0, f64::max);
+    let first = locals.iter().position(|local| size(local) >= GREATEST * largest).unwrap_or(0);
     let is_seen = |local: &Local| size(local) > SEEN * local.amplitude.uncertainty;
     let last = locals[first..].iter().position(|local| !is_seen(local)).map_or(locals.len(), |count| first + count);
     let begin = if first == 0 { 0 } else { locals[first].centre + half };
-    let end = locals.get(last).map_or(usize::MAX, |local| local.centre.saturating_sub(half));
+    let end = locals.get(last).map_or(usize::MAX, |local| local.centre.saturating_sub(2 * half));
     locals[first..last].iter().filter(|local| local.centre >= begin && local.centre <= end).copied().collect()
 }
 

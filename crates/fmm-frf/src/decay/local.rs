@@ -109,6 +109,11 @@ impl LocalRegression {
         LocalVibration { amplitude, slope, noise: (squares / (sum * taken)).sqrt() }
     }
 
+    /// Re a₀ around every sample of `values` that has as many samples on either side: the first vibration without the others.
+    pub(crate) fn filtered(&self, values: &[f64]) -> Vec<f64> {
+        values.windows(2 * self.half + 1).map(|around| dot(&self.filters[0], around)).collect()
+    }
+
     /// Variance of Σ gᵢ over a₀ and a₁, real and imaginary in turn, for white noise of variance 1.
     pub(crate) fn variance(&self, gradient: [f64; 4]) -> f64 {
         let row = |i: usize| (0..4).map(|j| self.covariance[i][j] * gradient[j]).sum::<f64>();

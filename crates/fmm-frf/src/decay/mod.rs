@@ -1,11 +1,13 @@
 //! Free decays looked at before a fit: their modes, and how frequency and damping go with the amplitude.
 
 mod backbone;
+mod isolated;
 mod local;
 mod modes;
 mod spring;
 mod suggestion;
 
 pub use backbone::{Backbone, BackboneOptions, BackbonePoint};
+pub use isolated::IsolatedMode;
 pub use modes::{DecayMode, decay_modes};
 pub use suggestion::{DampingTerm, DampingTermKind, Suggestion};

@@ -125,19 +125,13 @@ fn lines(values: &[f64], rate: f64) -> Vec<DecayMode> {
     let spectrum = Spectrum::of(values, &blackman_harris(values.len()));
     let squares = &spectrum.squares;
     let lobe = (WIDTH / spectrum.spacing).ceil() as usize;
+    let floor = Floor::of(squares, lobe);
     let mut found = Vec::new();
     for k in lobe..squares.len().saturating_sub(1) {
         if !(squares[k] > squares[k - 1] && squares[k] >= squares[k + 1]) {
             continue;
         }
-        let (low, high) = ((k as f64 / AROUND) as usize, ((k as f64 * AROUND) as usize).min(squares.len()));
-        let (low, high) = (low.min(k.saturating_sub(4 * lobe)).max(1), high.max((k + 4 * lobe).min(squares.len())));
-        if squares[k] < ABOVE_MEDIAN * squares[low] && squares[k] < ABOVE_MEDIAN * squares[high - 1] {
-            continue;
-        }
-        let mut around: Vec<f64> = squares[low..high].to_vec();
-        let middle = around.len() / 2;
-        let median = *around.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let median = floor.at(k);
         if squares[k] > ABOVE_MEDIAN * median && squares[k] > PROMINENCE * saddle(squares, k) {
             found.push(DecayMode {
                 frequency: spectrum.refined(k) * rate / values.len() as f64,
@@ -149,6 +143,40 @@ fn lines(values: &[f64], rate: f64) -> Vec<DecayMode> {
         }
     }
     found
+}
+
+/// Median squares around the lines of a spectrum.
+struct Floor {
+    /// The middle of each band, and the median in it.
+    bands: Vec<(f64, f64)>,
+}
+
+impl Floor {
+    /// Of bands that are as wide as [`AROUND`] says, or as several lines of this half width `lobe`.
+    fn of(squares: &[f64], lobe: usize) -> Self {
+        let mut bands = Vec::new();
+        let mut middle = lobe.max(1) as f64;
+        while middle < squares.len() as f64 {
+            let reach = (4 * lobe) as f64;
+            let low = (middle / AROUND).min(middle - reach).max(1.0) as usize;
+            let high = ((middle * AROUND).max(middle + reach) as usize).min(squares.len());
+            if low < high {
+                let mut around = squares[low..high].to_vec();
+                let half = around.len() / 2;
+                bands.push((middle, *around.select_nth_unstable_by(half, f64::total_cmp).1));
+            }
+            middle = (middle * AROUND.sqrt()).max(middle + lobe as f64);
+        }
+        Self { bands }
+    }
+
+    /// The median around line `k`.
+    fn at(&self, k: usize) -> f64 {
+        let next = self.bands.partition_point(|(middle, _)| *middle < k as f64);
+        let near = [next.checked_sub(1), Some(next)].into_iter().flatten().filter_map(|place| self.bands.get(place));
+        let nearest = near.min_by(|a, b| (a.0 - k as f64).abs().total_cmp(&(b.0 - k as f64).abs()));
+        nearest.map_or(0.0, |(_, median)| *median)
+    }
 }
 
 /// The least square on the way from `k` to a larger one, on the side where that is greater.

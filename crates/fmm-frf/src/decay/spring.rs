@@ -57,10 +57,20 @@ pub(crate) fn spring_terms(points: &[BackbonePoint]) -> Vec<Estimated> {
     terms
 }
 
+/// k₃ and k₅ of the [terms](spring_terms), and all that goes with A⁴.
+fn powers(spring: &[Estimated]) -> (f64, f64) {
+    let [k3, k5] = [1, 2].map(|place| spring.get(place).map_or(0.0, |term| term.value));
+    (0.75 * k3, 0.625 * k5 + SECOND_ORDER * k3 * k3)
+}
+
+/// f²/f₀² at the amplitude `a` on a spring of these [terms](spring_terms).
+pub(crate) fn stiffening(spring: &[Estimated], a: f64) -> f64 {
+    let ((second, fourth), square) = (powers(spring), a * a);
+    (fourth * square + second) * square + 1.0
+}
+
 /// d ln ω/d ln A at the amplitude `a` on a spring of these [terms](spring_terms).
 pub(crate) fn bend(spring: &[Estimated], a: f64) -> f64 {
-    let [k3, k5] = [1, 2].map(|place| spring.get(place).map_or(0.0, |term| term.value));
-    let (square, fourth) = (a * a, 0.625 * k5 + SECOND_ORDER * k3 * k3);
-    let stiffening = (fourth * square + 0.75 * k3) * square + 1.0;
-    if stiffening > 0.0 { (2.0 * fourth * square + 0.75 * k3) * square / stiffening } else { 0.0 }
+    let ((second, fourth), square, stiffening) = (powers(spring), a * a, stiffening(spring, a));
+    if stiffening > 0.0 { (2.0 * fourth * square + second) * square / stiffening } else { 0.0 }
 }

@@ -7,6 +7,7 @@ use fmm_fit::{LinearRegression, Weighting};
 use fmm_model::Estimated;
 
 use crate::BackbonePoint;
+use crate::decay::spring::stiffening;
 
 /// How friction or damping takes energy from a vibration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -108,6 +109,16 @@ impl Suggestion {
     /// f₀ (Hz), k₃ and k₅, without those that the frequencies do not show.
     pub fn spring(&self) -> &[Estimated] {
         &self.spring
+    }
+
+    /// c_eq/m (1/s) of all terms together, of a vibration of this velocity amplitude ωA.
+    pub fn damping_at(&self, velocity: f64) -> f64 {
+        self.damping.iter().map(|term| term.coefficient.value * term.kind.equivalent_damping(velocity)).sum()
+    }
+
+    /// f (Hz) at an `amplitude` of the displacement; `None` if the points show no frequency.
+    pub fn frequency_at(&self, amplitude: f64) -> Option<f64> {
+        self.spring.first().map(|natural| natural.value * stiffening(&self.spring, amplitude).max(0.0).sqrt())
     }
 
     /// The name under which `fmm-identify` has this law with these terms, such as `coulomb_viscous + quadratic + cubic spring`.

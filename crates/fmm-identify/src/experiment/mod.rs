@@ -21,6 +21,7 @@ pub use preparation::{Offset, Preparation, RecordSummary};
 pub(crate) use sensor::Filter;
 pub use sensor::Sensor;
 
+use crate::Warning;
 use crate::experiment::nuisance::Nuisance;
 use crate::fit::first_guess::{Dissipation, FirstGuess};
 use crate::{IdentifyError, Machine};
@@ -214,6 +215,13 @@ impl Experiment {
     /// What the record is and what was seen in it.
     pub fn summary(&self) -> &RecordSummary {
         &self.summary
+    }
+
+    /// What limits what its record tells, whatever is fitted to it: what was found at its beginning, on its way and at its end.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        Warning::of_record(self.summary(), false, &mut warnings);
+        warnings
     }
 
     /// Time (s) and value of the turning points, maxima and minima by turns.

@@ -301,7 +301,7 @@ impl Warning {
     }
 
     /// What limits what a record tells of a machine, whose spring `is_bent` or a straight line.
-    fn of_record(summary: &RecordSummary, is_bent: bool, warnings: &mut Vec<Self>) {
+    pub(crate) fn of_record(summary: &RecordSummary, is_bent: bool, warnings: &mut Vec<Self>) {
         let (first, last) = summary.amplitudes;
         // Two turning points give one amplitude.
         if last >= first && summary.half_swings > 2 && !summary.is_driven {

@@ -23,10 +23,12 @@ pub(crate) const LOBE: f64 = 4.0;
 /// ```
 pub fn blackman_harris(length: usize) -> Vec<f64> {
     const A: [f64; 4] = [0.358_75, 0.488_29, 0.141_28, 0.011_68];
-    let phase = |i: usize| TAU * (i as f64 + 0.5) / length as f64;
-    (0..length)
-        .map(|i| A[0] - A[1] * phase(i).cos() + A[2] * (2.0 * phase(i)).cos() - A[3] * (3.0 * phase(i)).cos())
-        .collect()
+    let at = |i: usize| {
+        // cos 2φ = 2 c² − 1 and cos 3φ = 4 c³ − 3 c cost a third of three cosines.
+        let c = (TAU * (i as f64 + 0.5) / length as f64).cos();
+        A[0] - A[2] + c * (3.0 * A[3] - A[1] + c * (2.0 * A[2] - c * (4.0 * A[3])))
+    };
+    (0..length).map(at).collect()
 }
 
 /// Squared amplitudes of the frequencies from 0 to half the rate in windowed values.
