@@ -4,6 +4,8 @@
 //! damping and spring would explain that, and the command that fits them. Without FILE it runs on the bundled record of a bicycle fork.
 //! `--help` lists the options.
 
+#[path = "identify/arguments.rs"]
+mod arguments;
 #[path = "common/figure.rs"]
 #[expect(dead_code, reason = "other examples draw histograms and curves of other roles")]
 mod figure;
@@ -16,6 +18,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use arguments::{Given, ModeWanted, mode_wanted};
 use clap::Parser;
 use figure::{Layer, Panel, Role, label};
 use fmm_frf::{Backbone, BackboneOptions, BackbonePoint, DecayMode, Suggestion, decay_modes};
@@ -23,7 +26,6 @@ use fmm_identify::{Experiment, Preparation};
 use fmm_model::Estimated;
 use fmm_record::{Quantity, Record, Spectrum, blackman_harris};
 use serde_json::{Value, json};
-use source::{Given, ModeWanted, mode_wanted};
 
 /// Shows the modes of a decay, and how frequency and damping of one go with its amplitude.
 #[derive(Debug, Parser)]
@@ -94,17 +96,18 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         format!("{:#}", document(&decay, &modes, &backbone, &suggestion))
     } else {
         let summary = decay.summary();
-        let mut report = format!(
-            "{}\nused from {:.4} s to {:.4} s; --from and --to say otherwise\n\n{}",
+        let mut lines = vec![
             input.origin,
-            summary.from,
-            summary.to,
-            text(&record, &modes, &backbone, &suggestion)
-        );
-        for (index, warning) in decay.warnings().iter().enumerate() {
-            report.push_str(&format!("{}  - {warning}\n", if index == 0 { "\n\nWarnings\n" } else { "" }));
+            format!("used from {:.4} s to {:.4} s; --from and --to say otherwise", summary.from, summary.to),
+            String::new(),
+            text(&record, &modes, &backbone, &suggestion),
+        ];
+        let warnings = decay.warnings();
+        if !warnings.is_empty() {
+            lines.extend([String::new(), "Warnings".to_owned()]);
+            lines.extend(warnings.iter().map(|warning| format!("  - {warning}")));
         }
-        report.trim_end().to_owned()
+        lines.join("\n")
     };
     match writeln!(std::io::stdout(), "{report}") {
         // Whoever reads may stop reading.

@@ -5,6 +5,8 @@
 //! on the bundled record of a bicycle fork swinging as a pendulum. What a channel measured is told by its unit, or by a word
 //! in its name, or by options; what would be a guess is refused. `--help` lists the options.
 
+#[path = "identify/arguments.rs"]
+mod arguments;
 #[path = "common/figure.rs"]
 #[expect(dead_code, reason = "other examples draw curves of other roles")]
 mod figure;
@@ -18,6 +20,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
+use arguments::{Given, ModeWanted, mode_wanted};
 use clap::Parser;
 use figure::{Layer, Panel, Role};
 use fmm_fit::{Options, Progress};
@@ -27,7 +30,7 @@ use fmm_identify::{compare_observed, search_observed};
 use fmm_model::Restoring;
 use fmm_record::{Column, Quantity, Record, Request};
 use indicatif::{ProgressBar, ProgressStyle};
-use source::{Choice, Given, ModeWanted, mode_wanted};
+use source::Choice;
 
 /// Identifies the friction of a machine from the record of its free vibration.
 #[derive(Debug, Parser)]
@@ -292,9 +295,10 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if let Some(mode) = arguments.mode {
         let isolated = IsolatedMode::of(&input.record, &mode.options(&input.record)?)?;
         let (frequency, edge) = (isolated.frequency, isolated.edge);
-        input.origin.push_str(&format!(
-            "; the mode at {frequency:.4} Hz, by a filter that looks {edge:.4} s in both directions, which are left out at both ends"
-        ));
+        let how = format!(
+            "the mode at {frequency:.4} Hz, by a filter that looks {edge:.4} s in both directions, which are left out at both ends"
+        );
+        input.origin = format!("{}; {how}", input.origin);
         input.record = isolated.record;
     }
     let mut preparation = Preparation::default().gain_uncertainty(arguments.scale_u);

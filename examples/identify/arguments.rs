@@ -1,0 +1,118 @@
+//! The record and the mode of it that a command names.
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use fmm_frf::{BackboneOptions, decay_modes};
+use fmm_record::{Column, Quantity, Record, Request, Unit};
+
+use crate::source::{Choice, Input};
+
+/// Which file, which channel of it, and what that measured.
+#[derive(Debug, Args)]
+pub(crate) struct Given {
+    /// The record: .csv, .tsv, .txt, .mat, .uff or .unv; without it, the bundled record of a bicycle fork
+    pub(crate) file: Option<PathBuf>,
+    /// The channel with the motion, by name or by number counted from 0; without it, the only one, or the one that --quantity
+    /// and --unit tell out, or the velocity or else the displacement by its unit
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub(crate) channel: Option<Column>,
+    /// The channel with the time (s)
+    #[arg(long, value_name = "NAME|INDEX", conflicts_with = "rate")]
+    pub(crate) time: Option<Column>,
+    /// The sampling rate, if there is no time channel
+    #[arg(long, value_name = "HZ")]
+    pub(crate) rate: Option<f64>,
+    /// What the channel measures; found by its unit, as in "v [mm/s]" or "theta_rad", or by a word in its name
+    #[arg(long, value_enum)]
+    pub(crate) quantity: Option<Measured>,
+    /// Factor that turns the channel into --unit, both instead of a unit in the file; one in the name, as in "v [mm/s]", is
+    /// converted by itself
+    #[arg(long, value_name = "FACTOR")]
+    pub(crate) scale: Option<f64>,
+    /// Unit of the channel, such as mm/s, rad or V, after scaling by --scale; needed if the file tells none. With --quantity
+    /// but no unit anywhere, SI units are taken
+    #[arg(long)]
+    pub(crate) unit: Option<Unit>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum Measured {
+    Velocity,
+    Displacement,
+    Acceleration,
+}
+
+/// Which mode of a decay is meant.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum ModeWanted {
+    /// The so many-th strongest, from 1 on.
+    Number(usize),
+    /// The one nearest to this frequency (Hz).
+    Near(f64),
+}
+
+/// A number of a mode, or a frequency with its unit, Hz.
+pub(crate) fn mode_wanted(text: &str) -> Result<ModeWanted, String> {
+    let refused = || format!("{text:?} is no mode; give a number from 1 on, or a frequency with its unit, as in 150Hz");
+    match text.trim().strip_suffix("Hz") {
+        Some(frequency) => {
+            let frequency = frequency.trim().parse().ok().filter(|frequency: &f64| *frequency > 0.0);
+            frequency.filter(|frequency| frequency.is_finite()).map(ModeWanted::Near)
+        }
+        None => text.trim().parse().ok().filter(|number| *number > 0).map(ModeWanted::Number),
+    }
+    .ok_or_else(refused)
+}
+
+impl ModeWanted {
+    /// Options of a backbone of this mode of `record`.
+    pub(crate) fn options(self, record: &Record) -> Result<BackboneOptions, Box<dyn Error>> {
+        let frequency = match self {
+            Self::Near(frequency) => frequency,
+            Self::Number(number) => {
+                let modes = decay_modes(record);
+                let missing = || format!("there is no mode number {number}; the record shows {}", modes.len());
+                modes.get(number - 1).ok_or_else(missing)?.frequency
+            }
+        };
+        Ok(BackboneOptions::default().at(frequency)?)
+    }
+}
+
+impl From<Measured> for Quantity {
+    fn from(measured: Measured) -> Self {
+        match measured {
+            Measured::Velocity => Self::Velocity,
+            Measured::Displacement => Self::Displacement,
+            Measured::Acceleration => Self::Acceleration,
+        }
+    }
+}
+
+impl Given {
+    /// The record, with warnings on the screen.
+    pub(crate) fn read(&self) -> Result<Input, Box<dyn Error>> {
+        let mut request = Request::default();
+        if let Some(quantity) = self.quantity {
+            request = request.quantity(quantity.into());
+        }
+        if let Some(unit) = &self.unit {
+            request = request.unit(unit.clone());
+        }
+        if let Some(scale) = self.scale {
+            request = request.scale(scale);
+        }
+        let (channel, time, rate) = (self.channel.clone(), self.time.clone(), self.rate);
+        let choice = Choice { channel, time, rate, request, is_drive: false };
+        let input = match &self.file {
+            Some(file) => choice.read(file)?,
+            None => choice.read_bundled()?,
+        };
+        for warning in &input.warnings {
+            eprintln!("warning: {warning}");
+        }
+        Ok(input)
+    }
+}
