@@ -22,7 +22,7 @@ use arguments::{Given, ModeWanted, mode_wanted};
 use clap::Parser;
 use figure::{Layer, Panel, Role, label};
 use fmm_frf::{Backbone, BackboneOptions, BackbonePoint, DecayMode, Suggestion, decay_modes};
-use fmm_identify::{Experiment, Preparation};
+use fmm_identify::Experiment;
 use fmm_model::Estimated;
 use fmm_record::{Quantity, Record, Spectrum, blackman_harris};
 use serde_json::{Value, json};
@@ -40,12 +40,6 @@ struct Arguments {
     /// Cycles in each window; between 3 and 8 by the length of the record unless given, more where another mode is near
     #[arg(long, value_name = "CYCLES")]
     cycles: Option<f64>,
-    /// Use the record from this time on (s)
-    #[arg(long, value_name = "S")]
-    from: Option<f64>,
-    /// Use the record up to this time (s)
-    #[arg(long, value_name = "S")]
-    to: Option<f64>,
     /// Print one JSON document instead of the report
     #[arg(long)]
     json: bool,
@@ -69,14 +63,7 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let input = arguments.given.read()?;
-    let mut preparation = Preparation::default();
-    if let Some(from) = arguments.from {
-        preparation = preparation.from(from);
-    }
-    if let Some(to) = arguments.to {
-        preparation = preparation.to(to);
-    }
-    let decay = Experiment::ring_down(&input.record, &preparation)?;
+    let decay = Experiment::ring_down(&input.record, &arguments.given.preparation())?;
     let record = decay.record().clone();
     let mut options = match arguments.mode {
         Some(mode) => mode.options(&record)?,

@@ -97,12 +97,6 @@ struct Arguments {
     /// The sensor is late by this time
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     delay: f64,
-    /// Use the record from this time on
-    #[arg(long, value_name = "S")]
-    from: Option<f64>,
-    /// Use the record up to this time
-    #[arg(long, value_name = "S")]
-    to: Option<f64>,
     /// Print one JSON document instead of the report
     #[arg(long)]
     json: bool,
@@ -301,13 +295,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         input.origin = format!("{}; {how}", input.origin);
         input.record = isolated.record;
     }
-    let mut preparation = Preparation::default().gain_uncertainty(arguments.scale_u);
-    if let Some(from) = arguments.from {
-        preparation = preparation.from(from);
-    }
-    if let Some(to) = arguments.to {
-        preparation = preparation.to(to);
-    }
+    let preparation = arguments.given.preparation().gain_uncertainty(arguments.scale_u);
     if let Some(folder) = &arguments.figures {
         std::fs::create_dir_all(folder).map_err(|error| format!("cannot create {}: {error}", folder.display()))?;
     }

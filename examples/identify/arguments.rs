@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use fmm_frf::{BackboneOptions, decay_modes};
+use fmm_identify::Preparation;
 use fmm_record::{Column, Quantity, Record, Request, Unit};
 
 use crate::source::{Choice, Input};
@@ -35,6 +36,12 @@ pub(crate) struct Given {
     /// but no unit anywhere, SI units are taken
     #[arg(long)]
     pub(crate) unit: Option<Unit>,
+    /// Use the record from this time on
+    #[arg(long, value_name = "S")]
+    from: Option<f64>,
+    /// Use the record up to this time
+    #[arg(long, value_name = "S")]
+    to: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -92,6 +99,12 @@ impl From<Measured> for Quantity {
 }
 
 impl Given {
+    /// The preparation of the part that is used.
+    pub(crate) fn preparation(&self) -> Preparation {
+        let from = self.from.map_or_else(Preparation::default, |from| Preparation::default().from(from));
+        self.to.map_or(from, |to| from.to(to))
+    }
+
     /// The record, with warnings on the screen.
     pub(crate) fn read(&self) -> Result<Input, Box<dyn Error>> {
         let mut request = Request::default();
