@@ -46,6 +46,7 @@ fn is_loud(warnings: &[Warning]) -> bool {
                 | Warning::Misled { .. }
                 | Warning::Undecided
                 | Warning::FurtherRelease { .. }
+                | Warning::Interrupted { .. }
                 | Warning::SecondMode { .. }
                 | Warning::Hum { .. }
                 | Warning::Rounded { .. }

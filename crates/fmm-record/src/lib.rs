@@ -90,6 +90,7 @@ pub use calculus::smoothing::Smoothing;
 pub use error::RecordError;
 pub use examination::further_release::{FurtherRelease, further_releases};
 pub use examination::hum::{Hum, hum, without_lines};
+pub use examination::interruption::Interruption;
 pub use examination::noise::noise;
 pub use examination::offset_step::OffsetStep;
 pub use examination::period_change::period_change;

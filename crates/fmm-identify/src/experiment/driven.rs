@@ -90,6 +90,7 @@ impl Experiment {
             period_change: None,
             hum: Vec::new(),
             further_releases: Vec::new(),
+            interruption: None,
             second_mode: None,
             is_driven: true,
         };

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fmm_record::{Hum, OffsetStep, Quantity, Saturation, SecondMode};
+use fmm_record::{Hum, Interruption, OffsetStep, Quantity, Saturation, SecondMode};
 
 /// Choices in preparing a record. The default uses the record from the release to the next, and fits its offset.
 ///
@@ -115,6 +115,8 @@ pub struct RecordSummary {
     pub hum: Vec<Hum>,
     /// When the machine was released or pushed again (s). The record is used until shortly before the first of them.
     pub further_releases: Vec<f64>,
+    /// Where something else than the machine itself took the motion, after which the record was not used unless it was asked for.
+    pub interruption: Option<Interruption>,
     /// Another mode that vibrates beside the one that is fitted.
     pub second_mode: Option<SecondMode>,
     /// Whether the motion is driven; what is seen in a free vibration is then none.

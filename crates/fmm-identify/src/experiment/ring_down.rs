@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use fmm_model::ModelError;
 use fmm_record::{
-    OffsetStep, Peak, Quantity, Record, Release, SecondMode, Swings, further_releases, hum, noise, period_change,
-    quantisation_step, saturation, spikes, without_lines,
+    Interruption, OffsetStep, Peak, Quantity, Record, Release, SecondMode, Swings, further_releases, hum, noise,
+    period_change, quantisation_step, saturation, spikes, without_lines,
 };
 
 use super::{Experiment, Sensor, usable};
@@ -55,6 +55,11 @@ impl Experiment {
         let seen_quantity = seen.quantity();
         let further = further_releases(&seen);
         let until = further.first().map_or(record.end(), |next| next.sound_until);
+        let (record, cleaned) = (record.crop(record.start(), until)?, cleaned.crop(record.start(), until)?);
+        let seen = seen.crop(record.start(), until)?;
+        // Who says where to end knows what is there.
+        let interruption = if preparation.to.is_none() { Interruption::of(&seen) } else { None };
+        let until = interruption.map_or(until, |interruption| interruption.sound_until);
         let (record, cleaned) = (record.crop(record.start(), until)?, cleaned.crop(record.start(), until)?);
         let seen = seen.crop(record.start(), until)?;
         let swings = Swings::of(&seen);
@@ -118,6 +123,7 @@ impl Experiment {
             period_change: period_change(&times, &heights),
             hum,
             further_releases: further.iter().map(|release| release.time).collect(),
+            interruption,
             second_mode: SecondMode::of(&seen),
             is_driven: false,
         };

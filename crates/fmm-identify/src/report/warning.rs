@@ -58,6 +58,13 @@ pub enum Warning {
         /// That unit.
         unit: String,
     },
+    /// Something else than the machine, such as a hand, takes the motion; only the part before was used.
+    Interrupted {
+        /// The last turning point before it (s).
+        time: f64,
+        /// How often as much as those before it the next half swing loses (1).
+        ratio: f64,
+    },
     /// The machine was released or pushed again; only the part before that was used.
     FurtherRelease {
         /// When (s).

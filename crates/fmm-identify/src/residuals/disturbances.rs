@@ -21,7 +21,8 @@ impl Warning {
         });
         let rounded = summary.resolution.filter(|_| summary.is_rounded());
         let rounded = rounded.map(|step| Self::Rounded { step, unit: summary.unit.clone() });
-        further.into_iter().chain(second).chain(hum).chain(rounded)
+        let taken = summary.interruption.map(|taken| Self::Interrupted { time: taken.sound_until, ratio: taken.ratio });
+        further.into_iter().chain(taken).chain(second).chain(hum).chain(rounded)
     }
 
     /// What the noise of the records is like, as the residuals of `identification` show it, and whether a slow drift was fitted.
@@ -54,6 +55,11 @@ impl Warning {
             Self::FurtherRelease { time } => write!(
                 f,
                 "a second release at {time:.2} s: only the part before it was used; give --from for the part after it"
+            ),
+            Self::Interrupted { time, ratio } => write!(
+                f,
+                "something else than the machine takes its motion after {time:.3} s: the next half swing loses {ratio:.0} times as much as \
+                 those before it; only the part before was used; give --to to say otherwise"
             ),
             Self::SecondMode { frequency, share } => write!(
                 f,

@@ -3,6 +3,7 @@
 pub(crate) mod further_release;
 pub(crate) mod harmonic;
 pub(crate) mod hum;
+pub(crate) mod interruption;
 pub(crate) mod noise;
 pub(crate) mod offset_step;
 pub(crate) mod period_change;

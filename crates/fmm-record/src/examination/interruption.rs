@@ -1,0 +1,133 @@
+//! Interruption of a decay: a hand, a touch, a stop, that takes more than the machine's own friction.
+
+use crate::numerics::order::{median, range};
+use crate::{Record, Swings, noise};
+
+/// Where something else than the machine's own friction and damping takes the motion of a decay.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Interruption {
+    /// The last turning point before it (s): up to here the decay is free.
+    pub sound_until: f64,
+    /// How often as much as the half swings before it the next one has lost (1).
+    pub ratio: f64,
+}
+
+/// Half swings by which the usual loss is known: fewest and most.
+const KNOWN: (usize, usize) = (4, 8);
+/// A loss exceeds the usual one by this factor, and by so many of its deviations and of those of noise.
+const FACTOR: f64 = 4.0;
+const DEVIATIONS: f64 = 6.0;
+const NOISES: f64 = 8.0;
+/// The share of the height that is lost at least (1).
+const SHARE: f64 = 0.08;
+/// Half swings that the usual loss would leave: with fewer, friction that rises towards rest may do the same.
+const LEFT: f64 = 6.0;
+/// The share of the largest height that the half swing has at least (1).
+const LARGE: f64 = 0.1;
+/// Deviations from the median that are a standard deviation.
+const DEVIATION: f64 = 1.4826;
+
+impl Interruption {
+    /// Looks for an interruption of the decay in `record`; `None` if it is free to its end.
+    ///
+    /// The half swings of a free decay lose about as much as those before them: friction takes the same from each, damping less and less,
+    /// and friction that rises as the speed falls some more. One that loses four times the median loss of the eight before it, 8 % of its
+    /// height at least, while the machine would have gone on for six half swings more, has been taken hold of. So has a motion that ends at
+    /// once, in a record that goes on.
+    ///
+    /// ```
+    /// use fmm_record::{Interruption, Quantity, Record};
+    ///
+    /// // Somebody holds the machine after 4 s.
+    /// let held = |t: f64| if t < 4.0 { 1.0 } else { (-10.0 * (t - 4.0)).exp() };
+    /// let at = |t: f64| held(t) * (-0.15 * t).exp() * (18.85 * t).cos();
+    /// let record = Record::sampled(1000.0, (0..8000).map(|i| at(f64::from(i) * 1e-3)).collect(), Quantity::Velocity, "m/s")?;
+    /// let found = Interruption::of(&record).unwrap();
+    /// assert!((3.7..4.01).contains(&found.sound_until) && found.ratio > 4.0);
+    /// # Ok::<(), fmm_record::RecordError>(())
+    /// ```
+    pub fn of(record: &Record) -> Option<Self> {
+        let swings = Swings::of(record);
+        let peaks = swings.peaks();
+        let mut heights: Vec<f64> = peaks.windows(2).map(|pair| (pair[1].value - pair[0].value).abs()).collect();
+        // What is left of the motion after its last turning point, if the record goes on for a period.
+        let (first, last) = (peaks.first()?, peaks.last()?);
+        let half_swing = (last.index - first.index) as f64 / (peaks.len() - 1).max(1) as f64;
+        let (from, to) = (last.index + half_swing as usize, last.index + (3.0 * half_swing) as usize);
+        if to < record.len() && half_swing > 0.0 {
+            let (low, high) = range(&record.values()[from..to]);
+            heights.push(high - low);
+        }
+        let begin = (0..heights.len()).max_by(|a, b| heights[*a].total_cmp(&heights[*b]))?;
+        let largest = heights[begin];
+        let noise = noise(record.values());
+        let losses: Vec<f64> = heights[begin..].windows(2).map(|pair| pair[0] - pair[1]).collect();
+        (KNOWN.0..losses.len()).find_map(|k| {
+            let known = &losses[k.saturating_sub(KNOWN.1)..k];
+            let usual = median(&mut known.to_vec());
+            let deviation =
+                DEVIATION * median(&mut known.iter().map(|loss| (loss - usual).abs()).collect::<Vec<f64>>());
+            let usual = usual.max(0.0);
+            let (height, loss) = (heights[begin + k], losses[k]);
+            let is_large = height > LARGE * largest && height > LEFT * (usual + deviation + noise);
+            let is_lost = loss > FACTOR * usual
+                && loss > usual + DEVIATIONS * deviation + NOISES * noise
+                && loss > SHARE * height;
+            // What friction leaves of a half swing in which it stops lies where it stops.
+            (is_large && is_lost).then(|| Self {
+                sound_until: peaks[begin + k + 1].time,
+                ratio: loss / usual.max(noise).max(f64::MIN_POSITIVE),
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+    use crate::Quantity;
+    use crate::synthetic::Noise;
+
+    fn record(values: impl Fn(f64) -> f64, noise: f64) -> Record {
+        let mut random = Noise::new(4);
+        let values = (0..8000).map(|i| values(f64::from(i) * 1e-3) + noise * random.normal()).collect();
+        Record::sampled(1000.0, values, Quantity::Displacement, "m").unwrap()
+    }
+
+    fn decay(t: f64) -> f64 {
+        (-0.15 * t).exp() * (TAU * 3.0 * t).cos()
+    }
+
+    #[test]
+    fn hands_and_touches_are_found_where_they_are() {
+        let held = |t: f64| if t < 4.03 { 1.0 } else { (1.0 - (t - 4.03) / 0.4).max(0.0) };
+        let touched = |t: f64| if t < 4.0 { 1.0 } else { 0.6 };
+        let fixed = |t: f64| if t < 4.03 { decay(t) } else { decay(4.03) * (-20.0 * (t - 4.03)).exp() };
+        let cases: [&dyn Fn(f64) -> f64; 3] = [&|t| held(t) * decay(t), &|t| touched(t) * decay(t), &fixed];
+        for (index, values) in cases.into_iter().enumerate() {
+            for noise in [0.0, 2e-3] {
+                let found = Interruption::of(&record(values, noise)).unwrap();
+                assert!((3.6..=4.04).contains(&found.sound_until), "{index}: {found:?}");
+            }
+        }
+    }
+
+    /// Dry friction to its stop, damping of three kinds, friction that doubles towards rest, a beat, rest after the stop.
+    #[test]
+    fn free_decays_are_free() {
+        let line = |t: f64| (1.0 - t / 5.0).max(0.0) * (TAU * 3.0 * t).cos();
+        let quadratic = |t: f64| (TAU * 3.0 * t).cos() / (1.0 + t);
+        let strong = |t: f64| (-2.0 * t).exp() * (TAU * 3.0 * t).cos();
+        let rising = |t: f64| (1.0 - (t / 5.0).powi(3)).max(0.0) * (TAU * 3.0 * t).cos();
+        let beat = |t: f64| decay(t) + 0.3 * (-0.15 * t).exp() * (TAU * 3.4 * t).cos();
+        let cases: [&dyn Fn(f64) -> f64; 6] = [&decay, &line, &quadratic, &strong, &rising, &beat];
+        for (index, values) in cases.into_iter().enumerate() {
+            for noise in [0.0, 5e-3] {
+                assert_eq!(Interruption::of(&record(values, noise)), None, "{index} with {noise}");
+            }
+        }
+    }
+}
