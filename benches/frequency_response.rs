@@ -10,7 +10,11 @@ mod ratio;
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group};
-use fmm_frf::{AverageOptions, Complex64, Estimator, ForceWindow, ResponseForm, TrialAverage};
+use fmm_frf::{
+    AverageOptions, Backbone, BackboneOptions, Complex64, Estimator, ForceWindow, ResponseForm, TrialAverage,
+    decay_modes,
+};
+use fmm_record::{Quantity, Record};
 use ratio::print_ratio;
 use realfft::RealFftPlanner;
 
@@ -91,11 +95,45 @@ fn frequency_response(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, frequency_response);
+/// Three modes in noise, 131 072 samples: the search for modes, and the backbone of the strongest, which begins with that search.
+fn decay(criterion: &mut Criterion) {
+    const SAMPLES: usize = 131_072;
+    const RATE: f64 = 12_800.0;
+    let mode = |t: f64, amplitude: f64, rate: f64, angular: f64| amplitude * (-rate * t).exp() * (angular * t).cos();
+    let hash = |i: usize| ((i + 1).wrapping_mul(2_654_435_761) >> 7) % 65_536;
+    let value = |i: usize| {
+        let t = i as f64 / RATE;
+        let modes = mode(t, 1.0, 0.8, 942.5) + mode(t, 0.3, 2.0, 3493.0) + mode(t, 0.1, 1.0, 2100.0);
+        modes + 1e-3 * (hash(i) as f64 / 65_536.0 - 0.5)
+    };
+    let values: Vec<f64> = (0..SAMPLES).map(value).collect();
+    let record = Record::sampled(RATE, values, Quantity::Acceleration, "m/s²").expect("finite");
+    let mut group = criterion.benchmark_group("decay");
+    group.sample_size(20);
+    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(SAMPLES);
+    let (mut input, mut lines, mut scratch) = (plan.make_input_vec(), plan.make_output_vec(), plan.make_scratch_vec());
+    group.bench_function("bare_realfft", |bencher| {
+        bencher.iter(|| {
+            input.copy_from_slice(black_box(&record).values());
+            plan.process_with_scratch(&mut input, &mut lines, &mut scratch).expect("lengths fit");
+            black_box(&lines);
+        });
+    });
+    group.bench_function("modes", |bencher| bencher.iter(|| decay_modes(black_box(&record))));
+    let options = BackboneOptions::default();
+    group.bench_function("modes_and_backbone", |bencher| {
+        bencher.iter(|| Backbone::of(black_box(&record), &options).expect("a decay"));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, frequency_response, decay);
 
 fn main() {
     benches();
     Criterion::default().configure_from_args().final_summary();
     print_ratio("impact_test/h1_h2_coherence", "impact_test/bare_realfft", "at most 1.3");
     print_ratio("impact_test/band_to_20_hz", "impact_test/bare_realfft", "");
+    print_ratio("decay/modes", "decay/bare_realfft", "");
+    print_ratio("decay/modes_and_backbone", "decay/modes", "");
 }

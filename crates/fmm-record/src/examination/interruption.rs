@@ -21,6 +21,8 @@ const DEVIATIONS: f64 = 6.0;
 const NOISES: f64 = 8.0;
 /// The share of the height that is lost at least (1).
 const SHARE: f64 = 0.08;
+/// The share of the loss that is still lost in the half swing after it (1).
+const LASTING: f64 = 0.8;
 /// Half swings that the usual loss would leave: with fewer, friction that rises towards rest may do the same.
 const LEFT: f64 = 6.0;
 /// The share of the largest height that the half swing has at least (1).
@@ -74,8 +76,10 @@ impl Interruption {
             let is_lost = loss > FACTOR * usual
                 && loss > usual + DEVIATIONS * deviation + NOISES * noise
                 && loss > SHARE * height;
-            // What friction leaves of a half swing in which it stops lies where it stops.
-            (is_large && is_lost).then(|| Self {
+            // An offset that steps makes one half swing smaller or larger, and the next as large as it would have been.
+            let is_lasting = heights.get(begin + k + 2).is_none_or(|later| height - later > LASTING * loss)
+                && losses[k - 1] > -(DEVIATIONS * deviation + NOISES * noise);
+            (is_large && is_lost && is_lasting).then(|| Self {
                 sound_until: peaks[begin + k + 1].time,
                 ratio: loss / usual.max(noise).max(f64::MIN_POSITIVE),
             })
@@ -115,7 +119,7 @@ mod tests {
         }
     }
 
-    /// Dry friction to its stop, damping of three kinds, friction that doubles towards rest, a beat, rest after the stop.
+    /// Dry friction to its stop, damping of three kinds, friction that doubles towards rest, a beat, offsets that step up and down.
     #[test]
     fn free_decays_are_free() {
         let line = |t: f64| (1.0 - t / 5.0).max(0.0) * (TAU * 3.0 * t).cos();
@@ -123,7 +127,9 @@ mod tests {
         let strong = |t: f64| (-2.0 * t).exp() * (TAU * 3.0 * t).cos();
         let rising = |t: f64| (1.0 - (t / 5.0).powi(3)).max(0.0) * (TAU * 3.0 * t).cos();
         let beat = |t: f64| decay(t) + 0.3 * (-0.15 * t).exp() * (TAU * 3.4 * t).cos();
-        let cases: [&dyn Fn(f64) -> f64; 6] = [&decay, &line, &quadratic, &strong, &rising, &beat];
+        let stepped = |t: f64, height: f64| decay(t) + if t > 3.05 { height } else { 0.0 };
+        let (up, down) = (|t: f64| stepped(t, 0.2), |t: f64| stepped(t, -0.2));
+        let cases: [&dyn Fn(f64) -> f64; 8] = [&decay, &line, &quadratic, &strong, &rising, &beat, &up, &down];
         for (index, values) in cases.into_iter().enumerate() {
             for noise in [0.0, 5e-3] {
                 assert_eq!(Interruption::of(&record(values, noise)), None, "{index} with {noise}");
