@@ -55,13 +55,16 @@ impl Experiment {
         let seen_quantity = seen.quantity();
         let further = further_releases(&seen);
         let until = further.first().map_or(record.end(), |next| next.sound_until);
-        let (record, cleaned) = (record.crop(record.start(), until)?, cleaned.crop(record.start(), until)?);
-        let seen = seen.crop(record.start(), until)?;
+        let (mut record, mut cleaned) = (record.crop(record.start(), until)?, cleaned.crop(record.start(), until)?);
+        let mut seen = seen.crop(record.start(), until)?;
         // Who says where to end knows what is there.
         let interruption = if preparation.to.is_none() { Interruption::of(&seen) } else { None };
-        let until = interruption.map_or(until, |interruption| interruption.sound_until);
-        let (record, cleaned) = (record.crop(record.start(), until)?, cleaned.crop(record.start(), until)?);
-        let seen = seen.crop(record.start(), until)?;
+        if let Some(Interruption { sound_until, .. }) = interruption {
+            // In place: a long record is held once.
+            record = record.crop(record.start(), sound_until)?;
+            cleaned = cleaned.crop(record.start(), sound_until)?;
+            seen = seen.crop(record.start(), sound_until)?;
+        }
         let swings = Swings::of(&seen);
         let release = Release::of(&cleaned);
         let held_offset = match preparation.offset {
