@@ -24,7 +24,7 @@ use figure::{Layer, Panel, Role, label};
 use fmm_frf::{Backbone, BackboneOptions, BackbonePoint, DecayMode, Suggestion, decay_modes};
 use fmm_identify::Experiment;
 use fmm_model::Estimated;
-use fmm_record::{Quantity, Record, Spectrum, blackman_harris};
+use fmm_record::{Record, Spectrum, blackman_harris};
 use serde_json::{Value, json};
 
 /// Shows the modes of a decay, and how frequency and damping of one go with its amplitude.
@@ -198,14 +198,8 @@ fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggestion) -> Vec<
     let per_line = spectrum.spacing * record.rate() / count as f64;
     let decibels = |square: &f64| 10.0 * square.max(f64::MIN_POSITIVE).log10();
     let lines = spectrum.squares.iter().enumerate().skip(1).map(|(k, square)| (k as f64 * per_line, decibels(square)));
-    let orders = match record.quantity() {
-        Quantity::Velocity => 1,
-        Quantity::Acceleration => 2,
-        _ => 0,
-    };
     let points = backbone.points();
-    let seen = |point: &BackbonePoint| point.amplitude.value * (TAU * point.frequency.value).powi(orders);
-    let envelope = |sign: f64| points.iter().map(move |point| (point.time, sign * seen(point))).collect::<Vec<_>>();
+    let envelope = |sign: f64| backbone.envelope().map(move |(time, seen)| (time, sign * seen)).collect::<Vec<_>>();
     let velocity = |point: &BackbonePoint| TAU * point.frequency.value * point.amplitude.value;
     let said = |point: &BackbonePoint| suggestion.damping_at(velocity(point));
     let sprung = |point: &BackbonePoint| suggestion.frequency_at(point.amplitude.value).unwrap_or(f64::NAN);

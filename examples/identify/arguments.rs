@@ -56,7 +56,7 @@ pub(crate) enum Measured {
 pub(crate) enum ModeWanted {
     /// The so many-th strongest, from 1 on.
     Number(usize),
-    /// The one nearest to this frequency (Hz).
+    /// The one nearest to this frequency (Hz), if it is within a fifth of it.
     Near(f64),
 }
 

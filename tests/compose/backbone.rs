@@ -174,6 +174,20 @@ fn suggestions_name_what_is_there() {
     }
 }
 
+/// A mode that is asked for and not there is refused, with the nearest that is; it is not taken for another.
+#[test]
+fn a_mode_that_is_not_there_is_none() {
+    let at = |t: f64| (-0.2 * t).exp() * (TAU * 20.0 * t).cos();
+    let record = record((0..8000).map(|i| at(f64::from(i) / RATE)).collect(), Quantity::Displacement);
+    for (frequency, is_there) in [(20.0, true), (22.0, true), (60.0, false), (5.0, false)] {
+        let options = BackboneOptions::default().at(frequency).unwrap();
+        assert_eq!(Backbone::of(&record, &options).is_ok(), is_there, "{frequency} Hz");
+        assert_eq!(IsolatedMode::of(&record, &options).is_ok(), is_there, "{frequency} Hz");
+    }
+    let backbone = Backbone::of(&record, &BackboneOptions::default()).unwrap();
+    assert!(backbone.envelope().all(|(time, seen)| (seen / (-0.2 * time).exp() - 1.0).abs() < 1e-4));
+}
+
 #[test]
 fn what_is_no_decay_has_no_backbone() {
     let mut random = ChaCha8Rng::seed_from_u64(1);

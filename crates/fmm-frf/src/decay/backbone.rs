@@ -7,7 +7,7 @@ use fmm_record::{Quantity, Record};
 
 use crate::FrfError;
 use crate::decay::local::{Carrier, LocalRegression, LocalVibration};
-use crate::decay::modes::decay_modes;
+use crate::decay::modes::{DecayMode, decay_modes};
 use crate::decay::spring::{bend, spring_terms};
 use crate::decay::suggestion::Suggestion;
 
@@ -28,7 +28,7 @@ pub struct BackboneOptions {
 }
 
 impl BackboneOptions {
-    /// Of the mode nearest to `frequency` (Hz); of the strongest one unless it is given.
+    /// Of the mode nearest to `frequency` (Hz), within a fifth of it; of the strongest one unless it is given.
     ///
     /// # Errors
     /// [`FrfError::OutOfRange`] if it is not positive.
@@ -101,15 +101,15 @@ pub struct BackbonePoint {
 /// ```
 ///
 /// # References
-/// M. S. Allen, R. L. Mayes, "Estimating the degree of nonlinearity in transient responses with zeroed early-time fast Fourier
-/// transforms", Mech. Syst. Signal Process. 24 (2010) 2049; for k₃ and k₅ A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979,
-/// section 2.3.
+/// A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapter 2 (how ω goes with A).
 #[derive(Debug, Clone)]
 pub struct Backbone {
     points: Vec<BackbonePoint>,
     window: f64,
     unit: String,
     spring: Vec<Estimated>,
+    /// How many derivatives the record is of the displacement.
+    orders: i32,
 }
 
 /// Fewest cycles of a window.
@@ -130,7 +130,8 @@ const LEAST_OTHER: f64 = 1e-3;
 const SEEN: f64 = 10.0;
 /// The phase that may be gained in half a window against the carrier before it is moved (rad).
 const SLIP: f64 = 0.3;
-
+/// How near to the frequency that is wanted a mode is (1).
+const WANTED: f64 = 0.2;
 /// The share of the greatest amplitude from which on a decay has begun (1).
 const GREATEST: f64 = 0.99;
 /// Regressions until the carrier of a window is where its vibration is.
@@ -140,7 +141,8 @@ impl Backbone {
     /// The backbone of the decay in `record`.
     ///
     /// # Errors
-    /// [`FrfError::NoFit`] if the record shows no line, or too few cycles for three windows.
+    /// [`FrfError::NoFit`] if the record shows no line, too few cycles for two windows, or, if the `options` ask for a
+    /// frequency, no mode within a fifth of it.
     pub fn of(record: &Record, options: &BackboneOptions) -> Result<Self, FrfError> {
         let Prepared { taken, frequency, fixed } = Prepared::of(record, options)?;
         let (half, values) = (taken.half, taken.values);
@@ -178,7 +180,7 @@ impl Backbone {
             point.correct(&spring, orders);
         }
         let power = Unit::of(record.unit()).times(&Unit::of("s").power(orders));
-        Ok(Self { points, window: 2.0 * half as f64 * record.interval(), unit: power.to_string(), spring })
+        Ok(Self { points, window: 2.0 * half as f64 * record.interval(), unit: power.to_string(), spring, orders })
     }
 
     /// The points, in the order of time; neighbours share three quarters of their windows.
@@ -189,6 +191,12 @@ impl Backbone {
     /// The length of a window (s). Nearer than half of it to the beginning and the end of the record there is no point.
     pub fn window(&self) -> f64 {
         self.window
+    }
+
+    /// Times (s) and amplitudes in the unit of the record itself: its envelope.
+    pub fn envelope(&self) -> impl Iterator<Item = (f64, f64)> {
+        let seen = |point: &BackbonePoint| point.amplitude.value * (TAU * point.frequency.value).powi(self.orders);
+        self.points.iter().map(move |point| (point.time, seen(point)))
     }
 
     /// The unit of the amplitudes.
@@ -232,16 +240,16 @@ impl<'a> Prepared<'a> {
     /// The mode that the `options` ask for, with windows that tell it from the others.
     pub(crate) fn of(record: &'a Record, options: &BackboneOptions) -> Result<Self, FrfError> {
         let modes = decay_modes(record);
-        let distance = |frequency: f64| move |of: f64| (of / frequency).ln().abs();
-        let mode = match options.frequency {
-            None => modes.first(),
-            Some(frequency) => {
-                let away = distance(frequency);
-                modes.iter().min_by(|a, b| away(a.frequency).total_cmp(&away(b.frequency)))
-            }
-        };
-        let mode = mode.ok_or_else(|| no_fit("the record shows no vibration above its noise"))?;
+        let strongest = modes.first().ok_or_else(|| no_fit("the record shows no vibration above its noise"))?;
+        let wanted = options.frequency.unwrap_or(strongest.frequency);
+        let away = |mode: &DecayMode| (mode.frequency / wanted - 1.0).abs();
+        let mode = modes.iter().min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(strongest);
         let frequency = mode.frequency;
+        if away(mode) > WANTED {
+            return Err(no_fit(format!(
+                "the record shows no mode near {wanted} Hz; the nearest is at {frequency:.4} Hz"
+            )));
+        }
         let others: Vec<f64> = modes
             .iter()
             .filter(|other| other.frequency != frequency && other.amplitude > LEAST_OTHER * mode.amplitude)

@@ -41,7 +41,7 @@ impl IsolatedMode {
     /// ```
     ///
     /// # Errors
-    /// As for [`Backbone::of`](crate::Backbone::of).
+    /// As for [`Backbone::of`](crate::Backbone::of), but that nothing has to decay.
     pub fn of(record: &Record, options: &BackboneOptions) -> Result<Self, FrfError> {
         let Prepared { taken, frequency, fixed } = Prepared::of(record, options)?;
         let values = fixed.filtered(taken.values);

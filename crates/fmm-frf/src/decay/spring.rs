@@ -18,7 +18,7 @@ const ROUNDS: usize = 4;
 /// f² = f₀² (1 + ¾ k₃ A² + (⅝ k₅ + 3/128 k₃²) A⁴)
 /// ```
 ///
-/// A is the amplitude of the first harmonic. A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, section 2.3, to second order in
+/// A is the amplitude of the first harmonic. A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapter 2, to second order in
 /// k₃ and first in k₅.
 pub(crate) fn spring_terms(points: &[BackbonePoint]) -> Vec<Estimated> {
     let column = |power: i32| points.iter().map(|point| point.amplitude.value.powi(power)).collect::<Vec<f64>>();

@@ -1,13 +1,13 @@
 //! Suggestion: which terms of damping and spring a backbone shows.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::fmt;
 
 use fmm_fit::{LinearRegression, Weighting};
-use fmm_model::Estimated;
+use fmm_model::{Damping, Estimated, ModelError};
 
-use crate::BackbonePoint;
 use crate::decay::spring::stiffening;
+use crate::{BackbonePoint, equivalent_damping_of_friction};
 
 /// How friction or damping takes energy from a vibration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,11 +28,13 @@ impl DampingTermKind {
 
     /// c_eq/m (1/s) of a term of 1, of a vibration of this velocity amplitude ωA.
     pub fn equivalent_damping(self, velocity: f64) -> f64 {
+        let of = |damping: Result<Damping, ModelError>| damping.map(|damping| damping.cycle_equivalent(velocity));
         match self {
-            Self::Coulomb => 4.0 / (PI * velocity),
+            Self::Coulomb => equivalent_damping_of_friction(1.0, velocity).unwrap_or(f64::INFINITY),
             Self::Linear => 1.0,
-            Self::Quadratic => 8.0 * velocity / (3.0 * PI),
-            Self::Cubic => 0.75 * velocity * velocity,
+            // Coefficients of 1 are none that are refused.
+            Self::Quadratic => of(Damping::new(0.0, 1.0)).unwrap_or(f64::NAN),
+            Self::Cubic => of(Damping::none().with_cubic(1.0)).unwrap_or(f64::NAN),
         }
     }
 }
