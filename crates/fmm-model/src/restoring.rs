@@ -62,6 +62,16 @@ impl<D: Scalar> Restoring<D> {
     /// F = k x for |x| ≤ g,   F = k (g + b (|x| − g)) sgn x beyond
     /// ```
     ///
+    /// ```
+    /// use fmm_model::Restoring;
+    ///
+    /// // 2000 N/m up to 15 mm, five times as stiff beyond: 30 N at the stop, 60 N 3 mm behind it.
+    /// let spring = Restoring::stop(0.015, 5.0)?;
+    /// assert!((spring.force(2000.0, 0.015) - 30.0).abs() < 1e-12);
+    /// assert!((spring.force(2000.0, -0.018) + 60.0).abs() < 1e-12);
+    /// # Ok::<(), fmm_model::ModelError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`ModelError::NotPositive`] for the distance, [`ModelError::Negative`] for the ratio.
     pub fn stop(distance: D, ratio: D) -> Result<Self, ModelError> {
