@@ -21,10 +21,9 @@ pub use preparation::{Offset, Preparation, RecordSummary};
 pub(crate) use sensor::Filter;
 pub use sensor::Sensor;
 
-use crate::Warning;
 use crate::experiment::nuisance::Nuisance;
 use crate::fit::first_guess::{Dissipation, FirstGuess};
-use crate::{IdentifyError, Machine};
+use crate::{IdentifyError, Machine, Warning};
 
 /// An experiment on a machine: a ring-down ([`ring_down`](Self::ring_down)), or a motion that is driven by a measured force or by a
 /// measured motion of the base ([`driven`](Self::driven)).

@@ -352,6 +352,7 @@ pub(super) fn without(count: usize, holes: impl Iterator<Item = Range<usize>>) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Warning;
 
     #[test]
     fn holes_are_left_out() {
@@ -390,6 +391,28 @@ mod tests {
             assert!((summary.release.unwrap() - 0.3).abs() < 0.01, "{summary}");
             assert_eq!(found.values()[0], record.crop(found.start(), record.end()).unwrap().values()[0]);
         }
+    }
+
+    /// A decay that somebody stops by hand is used up to there, and a warning says so; who gives an end has it.
+    #[test]
+    fn a_hand_ends_a_decay() {
+        let held = |t: f64| if t < 4.0 { 1.0 } else { (-10.0 * (t - 4.0)).exp() };
+        let at = |t: f64| held(t) * (-0.15 * t).exp() * (18.85 * t).cos();
+        let values = (0..8000).map(|i| at(f64::from(i) * 1e-3)).collect();
+        let record = Record::sampled(1000.0, values, Quantity::Velocity, "m/s").unwrap();
+        let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+        assert!(
+            (3.7..4.01).contains(&decay.summary().to) && decay.summary().interruption.is_some(),
+            "{}",
+            decay.summary()
+        );
+        assert!(decay.warnings().iter().any(|warning| matches!(warning, Warning::Interrupted { .. })));
+        let asked = Experiment::ring_down(&record, &Preparation::default().to(5.0)).unwrap();
+        assert!(
+            (asked.summary().to - 5.0).abs() < 2e-3 && asked.summary().interruption.is_none(),
+            "{}",
+            asked.summary()
+        );
     }
 
     #[test]

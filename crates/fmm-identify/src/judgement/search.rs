@@ -150,9 +150,7 @@ const WITH_STATE_FURTHER: [&str; 2] = ["lugre,exponent=2", "bouc_wen+linear,ampl
 ///
 /// First viscous damping, Coulomb friction and both. If the residuals of these show signs of something else, or are alike where they
 /// should be noise, laws whose friction changes with speed, and springs that harden, soften, meet a stop or have a gap if there are
-/// signs of one; then
-/// further
-/// families, each begun where its friction over the speed follows
+/// signs of one; then, unless such a spring explains the records, further families, each begun where its friction over the speed follows
 /// that of the best law so far; and laws with presliding if there are signs of that. What was looked for is in [`Comparison::signs`].
 /// Laws that could not be fitted to the end, and that are then far from what others reach, are left out; a warning names them.
 ///

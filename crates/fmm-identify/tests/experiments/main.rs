@@ -3,6 +3,7 @@
 mod acceleration;
 mod driven;
 mod force;
+mod force_curves;
 mod impact;
 mod joint;
 mod simulated;

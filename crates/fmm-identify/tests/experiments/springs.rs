@@ -126,3 +126,39 @@ fn a_filter_is_no_spring() {
         assert!(!comparison.is_decided(), "{}", comparison.preferred());
     }
 }
+
+/// Without being asked, the search finds a stop; and where a spring is fitted, that the period changes is no warning.
+#[test]
+fn the_search_finds_a_stop() {
+    let motion = swing(Restoring::stop(0.2, 3.0).unwrap(), Damping::none());
+    let record = record(&motion[..2000], 1e-4, 12, Quantity::Displacement, "rad");
+    let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+    let warns = |warnings: &[Warning]| warnings.iter().any(|w| matches!(w, Warning::PeriodDependsOnAmplitude { .. }));
+    assert!(warns(&decay.warnings()));
+    let found = search(&Machine::per_unit_mass(), &[decay], &Search::default()).unwrap();
+    assert_eq!(found.preferred().law(), "coulomb_viscous + stop", "{found}");
+    assert!(!warns(found.preferred().warnings()) && !warns(found.warnings()), "{found}");
+}
+
+/// Lengths of a spring are uncertain with the gain of the record, ratios are not, and a power of the velocity is by one less than itself.
+#[test]
+fn lengths_are_uncertain_with_the_gain() {
+    let uncertain = |motion: &[f64], term: &str, gain: f64| {
+        let record = record(motion, 1e-5, 13, Quantity::Displacement, "rad");
+        let decay = Experiment::ring_down(&record, &Preparation::default().gain_uncertainty(gain)).unwrap();
+        let candidate = [Candidate::named(&format!("coulomb_viscous+{term}")).unwrap()];
+        compare(&Machine::per_unit_mass(), &[decay], &candidate).unwrap()
+    };
+    let share = |found: &fmm_identify::Comparison, name: &str| {
+        let finding = found.preferred().finding(name).unwrap();
+        finding.uncertainty().unwrap() / finding.value()
+    };
+    let stop = swing(Restoring::stop(0.2, 3.0).unwrap(), Damping::none());
+    let stop = uncertain(&stop[..2000], "stop", 0.01);
+    assert!((share(&stop, "stop_distance") / 0.01 - 1.0).abs() < 0.05 && share(&stop, "stop_stiffness_ratio") < 2e-3);
+    let power = motion(0.0, 0.0, Damping::none().with_power(0.4, 3.0).unwrap());
+    let [sharp, blurred] =
+        [0.0, 0.1].map(|gain| share(&uncertain(&power[..2000], "power", gain), "power_damping_per_mass"));
+    let added = (blurred * blurred - sharp * sharp).sqrt();
+    assert!((added / 0.2 - 1.0).abs() < 0.1, "{added}");
+}
