@@ -174,6 +174,32 @@ fn suggestions_name_what_is_there() {
     }
 }
 
+/// Ends of decays and frequencies that change spread over the spectrum; neither makes a mode. After a stop there is no point.
+#[test]
+fn one_mode_is_one() {
+    let pendulum = machine().with_restoring(Restoring::sine(1.0).unwrap());
+    for (machine, levels, amplitude) in
+        [(machine(), [1.0, 0.0], 1e-2), (machine(), [3.0, 0.5], 1e-2), (pendulum, [0.0, 0.4], 1.2)]
+    {
+        let values = decay(machine, levels, amplitude, Quantity::Displacement, 16_000);
+        let mut random = ChaCha8Rng::seed_from_u64(9);
+        let noisy = |value: f64| {
+            let draw: f64 = StandardNormal.sample(&mut random);
+            value + 1e-4 * amplitude * draw
+        };
+        let record = record(values.iter().copied().map(noisy).collect(), Quantity::Displacement);
+        let modes = decay_modes(&record);
+        assert!(modes[1..].iter().all(|mode| mode.multiple.is_some()), "{levels:?}: {modes:?}");
+        let backbone = Backbone::of(&record, &BackboneOptions::default()).unwrap();
+        let last_motion = values.windows(2).rposition(|pair| pair[0] != pair[1]).unwrap() as f64 / RATE;
+        let last = backbone.points().last().unwrap();
+        assert!(
+            last.time + 0.5 * backbone.window() < last_motion + 0.01,
+            "{levels:?}: {last:?}, stop at {last_motion} s"
+        );
+    }
+}
+
 /// A mode that is asked for and not there is refused, with the nearest that is; it is not taken for another.
 #[test]
 fn a_mode_that_is_not_there_is_none() {

@@ -36,6 +36,7 @@ const FEWEST: usize = 64;
 /// Most multiples of a frequency that are taken for its harmonics, and how near to one they lie (1).
 const MULTIPLES: f64 = 15.0;
 const NEAR_MULTIPLE: f64 = 0.01;
+const MOST_FROM_MULTIPLE: f64 = 0.3;
 /// The most a harmonic has of the amplitude (1).
 const HARMONIC: f64 = 0.1;
 /// What the end of a decay adds to the spectrum is less than so many times 1/(π Δf t)².
@@ -105,7 +106,9 @@ pub fn decay_modes(record: &Record) -> Vec<DecayMode> {
         if is_own {
             mode.multiple = modes.iter().filter(|stronger| stronger.multiple.is_none()).find_map(|stronger| {
                 let ratio = mode.frequency / stronger.frequency;
-                let near = (ratio - ratio.round()).abs() < NEAR_MULTIPLE * ratio;
+                // A frequency that changes is another one in another part of the record.
+                let reach = ((NEAR_MULTIPLE + change) * ratio).min(MOST_FROM_MULTIPLE);
+                let near = (ratio - ratio.round()).abs() < reach;
                 let is_harmonic =
                     near && (1.5..MULTIPLES).contains(&ratio) && mode.amplitude < HARMONIC * stronger.amplitude;
                 is_harmonic.then_some(ratio.round() as u32)

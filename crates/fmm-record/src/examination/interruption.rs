@@ -119,6 +119,18 @@ mod tests {
         }
     }
 
+    /// A stop within a few half swings of that by friction, a touch that takes little, and a hand on the last of a decay are none.
+    #[test]
+    fn what_may_be_the_machine_is_none() {
+        let sticky = |t: f64| if t < 4.5 { (1.0 - t / 5.0) * (TAU * 3.0 * t).cos() } else { 0.1 };
+        let light = |t: f64| (-0.002 * t).exp() * (TAU * 3.0 * t).cos() * if t < 4.03 { 1.0 } else { 0.97 };
+        let late = |t: f64| (-0.7 * t).exp() * (TAU * 3.0 * t).cos() * if t < 4.03 { 1.0 } else { 0.5 };
+        let cases: [&dyn Fn(f64) -> f64; 3] = [&sticky, &light, &late];
+        for (index, values) in cases.into_iter().enumerate() {
+            assert_eq!(Interruption::of(&record(values, 1e-5)), None, "{index}");
+        }
+    }
+
     /// Dry friction to its stop, damping of three kinds, friction that doubles towards rest, a beat, offsets that step up and down.
     #[test]
     fn free_decays_are_free() {

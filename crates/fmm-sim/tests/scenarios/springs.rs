@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use fmm_friction::{Berger, Coulomb, Dahl, SlidingLaw};
+use fmm_friction::{AccelerationCoulomb, Berger, Coulomb, Dahl, SlidingLaw};
 use fmm_model::{Dual, Oscillator, Restoring, Scalar};
 use fmm_sim::{Bristle, Engine, EventKind, Excitation, RungeKutta, Sampling, Scenario, SimulationError, simulate};
 
@@ -153,9 +153,12 @@ fn derivatives_know_the_spring() {
     let polynomial = |numbers: [Dual<2>; 2]| Restoring::polynomial(numbers[0], numbers[1]).unwrap();
     let stop = |numbers: [Dual<2>; 2]| Restoring::stop(numbers[0], numbers[1]).unwrap();
     let coulomb = Coulomb::new(Dual::from(0.8)).unwrap();
+    let by_acceleration = AccelerationCoulomb::new(Dual::from(0.8), Dual::from(0.5)).unwrap();
     let berger = Berger::new(Dual::from(0.8), Dual::from(0.1), Dual::from(0.05)).unwrap();
     agrees_with_differences([2.0, -1.0], polynomial, coulomb);
     agrees_with_differences([2.0, -1.0], polynomial, berger);
+    agrees_with_differences([2.0, -1.0], polynomial, by_acceleration);
+    agrees_with_differences([0.2, 5.0], stop, by_acceleration);
     agrees_with_differences([0.2, 5.0], stop, coulomb);
     agrees_with_differences([0.2, 0.3], stop, berger);
 }
