@@ -89,6 +89,18 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         load(self.oscillator, piece, time, State { position, velocity })
     }
 
+    /// Whether what a spring does at constant speed is neither a line nor a wave in time.
+    fn has_bent_spring(&self) -> bool {
+        !matches!(self.oscillator.restoring(), Restoring::Linear | Restoring::Sine { .. })
+    }
+
+    /// The load on a contact that has gone on at the velocity of `phase` for `elapsed` (s), counted from then.
+    fn load_after(&self, phase: &Phase<D>, elapsed: f64) -> Curve<'static, D> {
+        let time = D::from(phase.time.value() + elapsed);
+        let State { position, velocity } = phase.state;
+        self.load(phase.piece, time, position + velocity * (time - phase.time), velocity)
+    }
+
     /// Static friction force (N) at `time`, and its slope (N/s).
     fn static_force(&self, piece: &Piece<D>, time: D) -> (D, D) {
         let (load, slope) = piece.normal_load(time);
@@ -326,6 +338,11 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     ) -> Result<(Ended<D>, Mode), SimulationError> {
         let State { position, velocity } = phase.state;
         let load = self.load(phase.piece, phase.time, position, velocity);
+        let is_bent = steady.is_some() && self.has_bent_spring();
+        if is_bent && !phase.piece.waves().is_empty() {
+            let what = "a constant speed on a spring that is not linear under a force that swings";
+            return Err(SimulationError::NotSupported { engine: "runge_kutta", what });
+        }
         // Friction over the normal load lies between −below and above along the positive direction.
         let (above, below) = match steady {
             None => (self.levels.breakaway(), self.levels.breakaway()),
@@ -352,6 +369,18 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             // phase begins on a bound, as exactly as the engine has found it.
             let slack = excess > 0.0 && (steady.is_none() || excess <= ON_BOUND * bound.value().abs());
             let bound = if slack { bound + excess } else { bound };
+            if is_bent {
+                let last = leaving.map_or(span, |(elapsed, ..)| elapsed);
+                let reserve = |elapsed: f64| {
+                    let passed = self.load_after(phase, elapsed).now().value();
+                    bound.value() + bound_slope.value() * elapsed - sign * passed
+                };
+                let usual = (normal_load * (above + below)).value().abs() / plain.slope.abs();
+                if let Some(elapsed) = fallen(reserve, usual, last) {
+                    leaving = Some((elapsed, (bound, bound_slope), sign));
+                }
+                continue;
+            }
             // What is out of reach need not be searched for.
             let reach = reach + bound_slope.value().abs() * span;
             if bound.value() - sign * plain.constant > reach && span.is_finite() {
@@ -373,23 +402,37 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             recorder.samples(stop, |time| State { position: at(D::from(time)), velocity })?;
         }
         let (relative, damping) = (velocity - self.belt, self.oscillator.damping().force(velocity));
-        recorder.work(begin, stop.min(phase.limit), scale(&load), |time| {
-            let friction = load.at(-phase.time + time);
+        let end = stop.min(phase.limit);
+        let power = |time: f64| {
+            let friction =
+                if is_bent { self.load_after(phase, time - begin).now() } else { load.at(-phase.time + time) };
             let force = phase.piece.force(time);
             Power {
                 friction: friction * relative,
                 viscous: damping * velocity,
                 external: force * velocity - friction * self.belt,
             }
-        })?;
+        };
+        // Power is smooth between corners of the spring.
+        let mut from = begin;
+        for side in [-1.0, 1.0] {
+            let Some(corner) = self.oscillator.restoring().corner().filter(|_| is_bent) else { break };
+            let corner = corner.value() * side * velocity.value().signum();
+            let to = (begin + (corner - position.value()) / velocity.value()).clamp(from, end.max(from));
+            recorder.work(from, to, scale(&load), power)?;
+            from = to;
+        }
+        recorder.work(from, end, scale(&load), power)?;
         let Some((elapsed, (bound, bound_slope), sign)) = leaving else {
             let time = D::from(phase.limit);
             let state = State { position: at(time), velocity };
             return Ok((Ended { ending: Ending::Limit, time, state, grazing: false }, Mode::Stick));
         };
-        let mut reserve = load.scaled(D::from(-sign), bound);
+        let (load, start) =
+            if is_bent { (self.load_after(phase, elapsed), D::from(begin + elapsed)) } else { (load, phase.time) };
+        let mut reserve = load.scaled(D::from(-sign), bound + bound_slope * (start - phase.time));
         reserve.slope += bound_slope;
-        let (time, grazing) = crossing(&reserve, phase.time, begin + elapsed);
+        let (time, grazing) = crossing(&reserve, start, begin + elapsed);
         let state = State { position: at(time), velocity };
         let direction = if sign > 0.0 { Direction::Positive } else { Direction::Negative };
         let (ending, next) = match steady {
@@ -398,6 +441,28 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             Some(along) => (Ending::SteadySpeed, Mode::Losing(along)),
         };
         Ok((Ended { ending, time, state, grazing }, next))
+    }
+}
+
+/// When `reserve`, positive to begin with, falls to zero within `span`, looked for in steps of about a quarter of the `usual` time.
+fn fallen(reserve: impl Fn(f64) -> f64, usual: f64, span: f64) -> Option<f64> {
+    const STEPS: (f64, f64) = (64.0, 4096.0);
+    let step = (0.25 * usual).clamp(span / STEPS.1, span / STEPS.0);
+    // It may begin below zero by rounding.
+    let mut after = step;
+    while after < span && reserve(after) >= 0.0 {
+        after += step;
+    }
+    let (mut before, mut after) = ((after - step).max(0.0), after.min(span));
+    if reserve(after) >= 0.0 {
+        return None;
+    }
+    loop {
+        let middle = 0.5 * (before + after);
+        if middle <= before || middle >= after {
+            return Some(after);
+        }
+        if reserve(middle) > 0.0 { before = middle } else { after = middle }
     }
 }
 

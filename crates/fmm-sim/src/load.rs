@@ -27,7 +27,7 @@ pub(crate) fn load<D: Scalar>(
             load.waves.push(Wave { angular, cosine: -(force * sin), sine: -(force * cos) * sign });
         }
         restoring => {
-            // Of a spring that is not linear the slope holds for this instant; engines refuse to hold it on a moving counterface.
+            // Of a spring that is not linear the slope holds for this instant.
             load.constant -= oscillator.restoring_force(position);
             if velocity.value() != 0.0 {
                 load.slope -= restoring.slope(oscillator.stiffness(), position).0 * velocity;

@@ -4,7 +4,9 @@ use std::f64::consts::FRAC_PI_2;
 
 use fmm_friction::{AccelerationCoulomb, Berger, Coulomb, Dahl, SlidingLaw};
 use fmm_model::{Dual, Oscillator, Restoring, Scalar};
-use fmm_sim::{Bristle, Engine, EventKind, Excitation, RungeKutta, Sampling, Scenario, SimulationError, simulate};
+use fmm_sim::{
+    Bristle, Engine, EventKind, Excitation, Mode, RungeKutta, Sampling, Scenario, SimulationError, simulate,
+};
 
 const STIFFNESS: f64 = 50.0;
 const MASS: f64 = 2.0;
@@ -198,6 +200,29 @@ fn agrees_with_differences<L: SlidingLaw<Dual<2>> + Copy>(
         // A reversal, or the passage of a corner, may cross a sample within the step.
         let off = off.count();
         assert!(largest > 1e-3 && off <= 4, "{numbers:?}, direction {direction}: {off} samples differ");
+    }
+}
+
+/// Friction that is higher while the speed grows holds a constant speed from where the spring balances the one level to where it
+/// balances the other.
+#[test]
+fn constant_speeds_end_where_the_spring_says() {
+    let (gaining, losing) = (0.8, 0.5);
+    for machine in [machine(30.0, 0.0), machine(-1.0, 0.5), sprung(Restoring::stop(0.013, 3.0).unwrap())] {
+        let law = AccelerationCoulomb::new(gaining, losing).unwrap();
+        let scenario = Scenario::new(machine, law, 1.0).unwrap().starting_at(0.6, 0.0).unwrap();
+        let motion = simulate(&scenario, &Sampling::uniform(0.01, 301).unwrap().with_work()).unwrap();
+        let mut phases = 0;
+        for pair in motion.events().windows(2).filter(|pair| matches!(pair[0].next, Mode::Steady(_))) {
+            let [from, to] = [pair[0].position, pair[1].position].map(|x| machine.restoring_force(x).abs());
+            // Of the forces at the release, 20 to 400 N, the engine is good to some 1e-14.
+            assert!((from - gaining).abs() < 1e-11 && (to - losing).abs() < 1e-11, "{machine:?}: {from} N to {to} N");
+            let way = pair[0].velocity * (pair[1].time - pair[0].time);
+            assert!((pair[1].position - pair[0].position - way).abs() < 1e-13 && pair[0].velocity == pair[1].velocity);
+            phases += 1;
+        }
+        assert!(phases > 3, "{machine:?}: {phases} phases");
+        assert!(motion.energy_imbalance(&scenario).is_some_and(|imbalance| imbalance < 1e-11), "{machine:?}");
     }
 }
 
