@@ -178,14 +178,19 @@ fn suggestions_name_what_is_there() {
 #[test]
 fn one_mode_is_one() {
     let pendulum = machine().with_restoring(Restoring::sine(1.0).unwrap());
-    for (machine, levels, amplitude) in
-        [(machine(), [1.0, 0.0], 1e-2), (machine(), [3.0, 0.5], 1e-2), (pendulum, [0.0, 0.4], 1.2)]
-    {
+    for (machine, levels, amplitude, noise) in [
+        (machine(), [1.0, 0.0], 1e-2, 1e-4),
+        (machine(), [1.0, 0.0], 1e-2, 1e-7),
+        (machine(), [3.0, 0.5], 1e-2, 1e-4),
+        (machine(), [3.0, 0.5], 1e-2, 1e-7),
+        (pendulum, [0.0, 0.4], 1.2, 1e-4),
+        (pendulum, [0.0, 0.4], 1.2, 1e-7),
+    ] {
         let values = decay(machine, levels, amplitude, Quantity::Displacement, 16_000);
         let mut random = ChaCha8Rng::seed_from_u64(9);
         let noisy = |value: f64| {
             let draw: f64 = StandardNormal.sample(&mut random);
-            value + 1e-4 * amplitude * draw
+            value + noise * amplitude * draw
         };
         let record = record(values.iter().copied().map(noisy).collect(), Quantity::Displacement);
         let modes = decay_modes(&record);
@@ -212,6 +217,16 @@ fn a_mode_that_is_not_there_is_none() {
     }
     let backbone = Backbone::of(&record, &BackboneOptions::default()).unwrap();
     assert!(backbone.envelope().all(|(time, seen)| (seen / (-0.2 * time).exp() - 1.0).abs() < 1e-4));
+}
+
+/// Friction that falls as the speed rises looks like a negative damper, and no term is suggested that feeds the motion.
+#[test]
+fn no_term_feeds_the_motion() {
+    let falling = machine().with_damping(Damping::of_any_sign(-0.15, 0.0).unwrap());
+    let values = decay(falling, [0.2, 0.0], 1e-2, Quantity::Displacement, 8000);
+    let backbone = Backbone::of(&record(values, Quantity::Displacement), &BackboneOptions::default()).unwrap();
+    let suggestion = backbone.suggestion();
+    assert!(suggestion.damping().iter().all(|term| term.coefficient.value > 0.0), "{suggestion}");
 }
 
 #[test]

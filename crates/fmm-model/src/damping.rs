@@ -202,6 +202,15 @@ fn mean_of_sine_power<D: Scalar>(power: D) -> D {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Dual;
+
+    /// A coefficient that is zero but has a derivative is a part of the damping.
+    #[test]
+    fn a_power_that_is_zero_has_its_derivative() {
+        let power = |coefficient| Damping::none().with_power(coefficient, Dual::<1>::from(2.0)).unwrap();
+        assert!((power(Dual::variable(0.0, 0)).force(Dual::from(3.0)).partial(0) - 9.0).abs() < 1e-12);
+        assert!(power(Dual::from(0.0)).is_linear() && !power(Dual::variable(0.0, 0)).is_linear());
+    }
 
     #[test]
     fn cycle_equivalent_dissipates_as_much_as_both_parts() {

@@ -19,7 +19,7 @@ pub struct Onset {
     /// before it slides, so that it is as much too small as the force rises in a sample; what does
     /// not change with the direction is in it.
     pub breakaway: Estimated,
-    /// Median force along the direction while the contact slides, in the same unit.
+    /// Median force along the direction in the later half of the samples, while the contact slides, in the same unit.
     pub sliding: Estimated,
     /// The displacement in which the force would rise to the sliding one by the presliding stiffness (m, or the unit of position).
     pub displacement: f64,
@@ -86,8 +86,6 @@ impl ForceRecord {
         if !(stiffness > 0.0) || count - settled < FEWEST {
             return None;
         }
-        let slides = &along[settled..];
-        let sliding = median(&mut slides.to_vec());
         // The middle of three: a single sample is no level.
         let breakaway = along[..settled].windows(3).map(|three| median(&mut three.to_vec())).fold(sliding, f64::max);
         let by_noise = |samples: f64| noise / samples.sqrt();
@@ -96,7 +94,7 @@ impl ForceRecord {
             direction,
             stiffness: Estimated { value: stiffness, uncertainty: parabola.regression().standard_uncertainty(1)? },
             breakaway: Estimated { value: breakaway, uncertainty: by_noise(1.0) },
-            sliding: Estimated { value: sliding, uncertainty: by_noise(slides.len() as f64) },
+            sliding: Estimated { value: sliding, uncertainty: by_noise(0.5 * count as f64) },
             displacement,
         })
     }
