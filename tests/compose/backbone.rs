@@ -266,7 +266,13 @@ fn an_isolated_mode_gives_its_friction() {
 #[test]
 fn real_records_show_their_springs_and_friction() {
     let pendulum = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/single_pendulum_55s_1khz.csv");
-    let angle = open(pendulum).unwrap().channel("theta_rad").unwrap().record;
+    let file = open(pendulum).unwrap();
+    let rate = file.channel("omega_rad_per_s").unwrap().record.with_quantity(Quantity::Velocity).with_unit("rad/s");
+    // Each multiple moves with the frequency, by a sixth, and is listed once.
+    let mut listed: Vec<f64> = decay_modes(&rate).iter().map(|mode| mode.frequency).collect();
+    listed.sort_by(f64::total_cmp);
+    assert!(listed.windows(2).all(|pair| pair[1] / pair[0] > 1.1), "{listed:?}");
+    let angle = file.channel("theta_rad").unwrap().record;
     let angle = angle.with_quantity(Quantity::Displacement).with_unit("rad");
     let backbone = Backbone::of(&angle, &BackboneOptions::default()).unwrap();
     let spring = backbone.spring();
@@ -277,6 +283,9 @@ fn real_records_show_their_springs_and_friction() {
     let fork = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/BrowserForkCompoundFirst1.mat");
     let fork = open(fork).unwrap().channel("data").unwrap().record;
     let fork = fork.with_quantity(Quantity::Velocity).with_unit("V");
+    // The line that the end of the record leaves at twice the frequency is none.
+    let multiples: Vec<u32> = decay_modes(&fork).iter().filter_map(|mode| mode.multiple).collect();
+    assert_eq!(multiples, [15, 3, 5]);
     let suggestion = Backbone::of(&fork, &BackboneOptions::default()).unwrap().suggestion();
     assert!(suggestion.model().starts_with("coulomb_viscous"), "{suggestion}");
     let decay = Experiment::ring_down(&fork, &Preparation::default()).unwrap();
