@@ -108,11 +108,13 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 }
 
 fn text(record: &Record, modes: &[DecayMode], backbone: &Backbone, suggestion: &Suggestion) -> String {
-    let mut lines = vec!["Modes".to_owned(), "       Hz   amplitude   energy   above noise".to_owned()];
+    let mut lines = vec!["Modes".to_owned(), "       Hz   amplitude   energy   above noise   c/m / (1/s)".to_owned()];
     for mode in modes {
         let multiple = mode.multiple.map_or_else(String::new, |multiple| format!("  {multiple} times a stronger one"));
+        let steady = if mode.is_steady(record) { "  steady: no free vibration" } else { "" };
+        let damping = mode.damping.map_or_else(|| "not seen".to_owned(), |damping| format!("{damping:.3}"));
         lines.push(format!(
-            "{:9.4}   {:9.3e}   {:5.1} %   {:11.0}{multiple}",
+            "{:9.4}   {:9.3e}   {:5.1} %   {:11.0}   {damping:>11}{multiple}{steady}",
             mode.frequency,
             mode.amplitude,
             100.0 * mode.share,
@@ -152,6 +154,8 @@ fn document(decay: &Experiment, modes: &[DecayMode], backbone: &Backbone, sugges
             "amplitude": mode.amplitude,
             "share_of_energy": mode.share,
             "above_noise": mode.above_noise,
+            "damping": mode.damping,
+            "steady": mode.is_steady(decay.record()),
             "multiple": mode.multiple,
         })
     };

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
-use fmm_frf::{Backbone, BackboneOptions, DampingTermKind, FrfError, IsolatedMode, decay_modes};
+use fmm_frf::{Backbone, BackboneOptions, BackbonePoint, DampingTermKind, FrfError, IsolatedMode, decay_modes};
 use fmm_friction::{CoulombViscous, LawFamily};
 use fmm_identify::{Experiment, Machine, Preparation, identify};
 use fmm_model::{Damping, Estimated, Oscillator, Restoring};
@@ -80,13 +80,53 @@ fn points_lie_on_the_closed_forms() {
     }
 }
 
-/// Uncertainties of amplitude, frequency and damping over draws of white noise, of a long record and of a short one.
+/// Five cycles, told by half cycles: frequency and damping are those of the closed forms, and the terms are named.
+#[test]
+fn half_cycles_tell_short_records() {
+    for quantity in [Quantity::Displacement, Quantity::Velocity] {
+        for (levels, model) in [([0.0, 2.0], "viscous"), ([1.0, 0.0], "coulomb"), ([0.6, 1.5], "coulomb_viscous")] {
+            let mut random = ChaCha8Rng::seed_from_u64(3);
+            let noise = if quantity == Quantity::Velocity { 1e-4 } else { 1e-6 };
+            let noisy = |value: &f64| {
+                let draw: f64 = StandardNormal.sample(&mut random);
+                value + noise * draw
+            };
+            let values = decay(machine(), levels, 1e-2, quantity, 500).iter().map(noisy).collect();
+            let backbone = Backbone::of(&record(values, quantity), &BackboneOptions::default()).unwrap();
+            assert!(backbone.points().len() >= 6, "{backbone:?}");
+            for point in backbone.points() {
+                let velocity = TAU * point.frequency.value * point.amplitude.value;
+                let truth = 4.0 * levels[0] / (PI * velocity) + levels[1];
+                assert!(
+                    (point.damping.value / truth - 1.0).abs() < 0.02,
+                    "{levels:?}, {quantity:?}: {point:?}, {truth}"
+                );
+                assert!((point.frequency.value / 20.0 - 1.0).abs() < 1e-3, "{point:?}");
+            }
+            assert_eq!(backbone.suggestion().model(), model, "{quantity:?}: {}", backbone.suggestion());
+        }
+    }
+}
+
+/// Hum is listed as steady and is not taken for the machine, however strong.
+#[test]
+fn steady_lines_are_told_from_modes() {
+    let at = |t: f64| (-0.6 * t).exp() * (TAU * 20.0 * t).cos() + 2.0 * (TAU * 50.0 * t + 1.0).sin();
+    let record = record((0..8000).map(|i| at(f64::from(i) / RATE)).collect(), Quantity::Displacement);
+    let modes = decay_modes(&record);
+    assert!(modes[0].is_steady(&record) && (modes[0].frequency - 50.0).abs() < 0.01, "{modes:?}");
+    assert!(!modes[1].is_steady(&record) && (modes[1].damping.unwrap() - 1.2).abs() < 0.01, "{modes:?}");
+    let backbone = Backbone::of(&record, &BackboneOptions::default()).unwrap();
+    assert!(backbone.points().iter().all(|point| (point.frequency.value - 20.0).abs() < 1e-3));
+}
+
+/// Uncertainties of amplitude, frequency and damping over draws of white noise, of a long record, of a short one and of half cycles.
 #[test]
 fn uncertainties_hold_what_they_say() {
     let clean = decay(machine(), [0.1, 0.2], 1e-2, Quantity::Displacement, 8000);
-    for (samples, cycles, noise) in [(8000, 8.0, 2e-5), (1600, 4.0, 2e-5)] {
-        let clean = &clean[..samples];
-        let options = BackboneOptions::default().over(cycles).unwrap();
+    let windows = |cycles: f64| BackboneOptions::default().over(cycles).unwrap();
+    for (samples, options) in [(8000, windows(8.0)), (1600, windows(4.0)), (500, BackboneOptions::default())] {
+        let (clean, noise) = (&clean[..samples], 2e-5);
         let truth = Backbone::of(&record(clean.to_vec(), Quantity::Displacement), &options).unwrap();
         let (mut inside, mut all) = ([0.0; 3], 0.0);
         for seed in 0..1000 {
@@ -97,8 +137,10 @@ fn uncertainties_hold_what_they_say() {
             };
             let values: Vec<f64> = clean.iter().map(noisy).collect();
             let found = Backbone::of(&record(values, Quantity::Displacement), &options).unwrap();
-            for (found, truth) in found.points().iter().zip(truth.points()) {
-                assert_eq!(found.time, truth.time);
+            for found in found.points() {
+                // Noise may hide a turning point at the begin of the record.
+                let same = |truth: &&BackbonePoint| (truth.time - found.time).abs() < 1e-3;
+                let Some(truth) = truth.points().iter().find(same) else { panic!("{samples} samples: {found:?}") };
                 let holds = |found: Estimated, truth: f64| {
                     f64::from(u8::from((found.value - truth).abs() < 1.96 * found.uncertainty))
                 };

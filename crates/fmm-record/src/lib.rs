@@ -100,6 +100,7 @@ pub use examination::saturation::{Saturation, saturation};
 pub use examination::second_mode::SecondMode;
 pub use examination::spikes::{Spike, spikes};
 pub use examination::swings::{Crossing, Peak, Swings};
+pub use examination::upsampling::Upsampling;
 #[cfg(any(feature = "mat", feature = "npy"))]
 pub use files::arrays::Array;
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]

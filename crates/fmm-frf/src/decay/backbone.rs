@@ -6,6 +6,7 @@ use fmm_model::{Estimated, ModelError, Unit};
 use fmm_record::{Quantity, Record};
 
 use crate::FrfError;
+use crate::decay::half_cycles::half_cycle_points;
 use crate::decay::local::{Carrier, LocalRegression, LocalVibration};
 use crate::decay::modes::{DecayMode, decay_modes};
 use crate::decay::spring::{bend, spring_terms};
@@ -28,7 +29,7 @@ pub struct BackboneOptions {
 }
 
 impl BackboneOptions {
-    /// Of the mode nearest to `frequency` (Hz), within a fifth of it; of the strongest one unless it is given.
+    /// Of the mode nearest to `frequency` (Hz), within a fifth of it; of the strongest one that decays unless it is given.
     ///
     /// # Errors
     /// [`FrfError::OutOfRange`] if it is not positive.
@@ -82,6 +83,9 @@ pub struct BackbonePoint {
 /// that is fitted to the points; on a straight one ω' is zero. A is the amplitude of the first harmonic. Uncertainties hold for white
 /// noise.
 ///
+/// A displacement or velocity of fewer than seven cycles, if no mode and no window is asked for, is told by half cycles instead: by its
+/// turning points and its passages through the centre, which sines are fitted to.
+///
 /// What is not noise: of simulated decays by Coulomb friction, quadratic damping, a spring that hardens by 20 % and a pendulum of 0.6 rad,
 /// frequency and damping are within 6e-4 of the closed forms. Of two modes 5 % apart, one with a tenth of the amplitude of the other, the
 /// frequency of each is within 1e-4, and the damping within 2 %.
@@ -112,6 +116,9 @@ pub struct Backbone {
     orders: i32,
 }
 
+/// A record of fewer cycles is told by half cycles, of which so many make a point.
+const FEW_CYCLES: f64 = 7.0;
+const HALF_CYCLES: f64 = 1.5;
 /// Fewest cycles of a window.
 const FEWEST_CYCLES: f64 = 2.0;
 /// Cycles of a window in a short and in a long record.
@@ -126,6 +133,9 @@ const NEAR: f64 = 0.5;
 const BEATS: f64 = 2.0;
 /// A mode of this share of the amplitude is none beside the first (1).
 const LEAST_OTHER: f64 = 1e-3;
+/// Above this share of the amplitude, one at any higher frequency is fitted beside, the strongest first, so many at most.
+const LOUD: f64 = 0.02;
+const MOST_OTHERS: usize = 8;
 /// Amplitudes count that are so many times their uncertainty.
 const SEEN: f64 = 10.0;
 /// The phase that may be gained in half a window against the carrier before it is moved (rad).
@@ -144,13 +154,22 @@ impl Backbone {
     /// [`FrfError::NoFit`] if the record shows no line, too few cycles for two windows, or, if the `options` ask for a
     /// frequency, no mode within a fifth of it.
     pub fn of(record: &Record, options: &BackboneOptions) -> Result<Self, FrfError> {
-        let Prepared { taken, frequency, fixed } = Prepared::of(record, options)?;
-        let (half, values) = (taken.half, taken.values);
         let orders = match record.quantity() {
             Quantity::Velocity => 1,
             Quantity::Acceleration => 2,
             _ => 0,
         };
+        let prepared = Prepared::of(record, options);
+        let is_long = |prepared: &Prepared| prepared.frequency * record.duration() >= FEW_CYCLES;
+        if *options == BackboneOptions::default() && !prepared.as_ref().is_ok_and(is_long) {
+            let points = half_cycle_points(record);
+            if let [first, .., last] = points.as_slice() {
+                let window = HALF_CYCLES / f64::midpoint(first.frequency.value, last.frequency.value);
+                return Ok(Self::corrected(points, window, record, orders));
+            }
+        }
+        let Prepared { taken, frequency, fixed } = prepared?;
+        let (half, values) = (taken.half, taken.values);
         let centres = (half..values.len() - half).step_by((half / 2).max(1));
         let mut locals: Vec<Local> = centres.map(|centre| taken.local(centre, frequency, &fixed)).collect();
         // A frequency that moves far within the record is followed.
@@ -171,19 +190,24 @@ impl Backbone {
             }
         }
         let locals = decaying(&locals, half);
-        let mut points: Vec<BackbonePoint> = locals.iter().map(|local| local.point(record, orders)).collect();
+        let points: Vec<BackbonePoint> = locals.iter().map(|local| local.point(record, orders)).collect();
         if points.is_empty() {
             return Err(no_fit("no window lies between the greatest amplitude and the end of the decay"));
         }
+        Ok(Self::corrected(points, 2.0 * half as f64 * record.interval(), record, orders))
+    }
+
+    /// With the spring that `points` on a straight spring show.
+    fn corrected(mut points: Vec<BackbonePoint>, window: f64, record: &Record, orders: i32) -> Self {
         let spring = spring_terms(&points);
         for point in &mut points {
             point.correct(&spring, orders);
         }
         let power = Unit::of(record.unit()).times(&Unit::of("s").power(orders));
-        Ok(Self { points, window: 2.0 * half as f64 * record.interval(), unit: power.to_string(), spring, orders })
+        Self { points, window, unit: power.to_string(), spring, orders }
     }
 
-    /// The points, in the order of time; neighbours share three quarters of their windows.
+    /// The points, in the order of time; neighbours share three quarters of their windows, or two of three half cycles.
     pub fn points(&self) -> &[BackbonePoint] {
         &self.points
     }
@@ -240,7 +264,12 @@ impl<'a> Prepared<'a> {
     /// The mode that the `options` ask for, with windows that tell it from the others.
     pub(crate) fn of(record: &'a Record, options: &BackboneOptions) -> Result<Self, FrfError> {
         let modes = decay_modes(record);
-        let strongest = modes.first().ok_or_else(|| no_fit("the record shows no vibration above its noise"))?;
+        let decays = |mode: &&DecayMode| !mode.is_steady(record);
+        let strongest = modes
+            .iter()
+            .find(decays)
+            .or(modes.first())
+            .ok_or_else(|| no_fit("the record shows no vibration above its noise"))?;
         let wanted = options.frequency.unwrap_or(strongest.frequency);
         let away = |mode: &DecayMode| (mode.frequency / wanted - 1.0).abs();
         let mode = modes.iter().min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(strongest);
@@ -253,8 +282,14 @@ impl<'a> Prepared<'a> {
         let others: Vec<f64> = modes
             .iter()
             .filter(|other| other.frequency != frequency && other.amplitude > LEAST_OTHER * mode.amplitude)
+            .filter(|other| {
+                let is_near = (other.frequency / frequency - 1.0).abs() < NEAR;
+                // Farther away it would be taken for noise.
+                let is_loud = other.frequency > frequency && other.amplitude > LOUD * mode.amplitude;
+                is_near || (is_loud && other.multiple.is_none())
+            })
             .map(|other| other.frequency)
-            .filter(|other| (other / frequency - 1.0).abs() < NEAR)
+            .take(MOST_OTHERS)
             .collect();
         let cycles_in_all = frequency * record.duration();
         let nearest = others.iter().map(|other| (other / frequency - 1.0).abs()).fold(1.0, f64::min);

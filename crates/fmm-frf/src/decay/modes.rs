@@ -15,10 +15,25 @@ pub struct DecayMode {
     pub share: f64,
     /// Ratio of its amplitude to the mean of the noise around it (1).
     pub above_noise: f64,
+    /// c/m (1/s) by which its mean amplitude falls from one half of the record, or of its first half, quarter or eighth, to the next;
+    /// `None` where the second half does not show it, or another mode is too near.
+    pub damping: Option<f64>,
     /// Which multiple of a stronger mode it is, as friction and springs that are not linear have them.
     pub multiple: Option<u32>,
 }
 
+impl DecayMode {
+    /// Whether its amplitude stays the same through the record, as that of hum does.
+    pub fn is_steady(&self, record: &Record) -> bool {
+        let lost = |damping: f64| 0.5 * damping * record.duration();
+        self.multiple.is_none() && self.damping.is_some_and(|damping| lost(damping).abs() < STEADY)
+    }
+}
+
+/// What a steady line loses of its amplitude over the record at most (1).
+const STEADY: f64 = 0.05;
+/// How often the energy of the noise a line has in both halves of a part, for its damping.
+const SEEN_AGAIN: f64 = 4.0;
 /// How often the median of the squares around it a line is at least; noise reaches that once in 10⁷ frequencies.
 const ABOVE_MEDIAN: f64 = 25.0;
 /// The median of the squares of noise over their mean, ln 2.
@@ -49,7 +64,8 @@ const LEAST: f64 = 1e-4;
 /// The modes of the decay in `record`, the strongest first; empty if nothing rises above its noise.
 ///
 /// A mode is a line of the spectrum of the record, of its first half, quarter or eighth, that rises above the noise and above what a decay
-/// that ends, or whose frequency changes, spreads around its own line. Steady lines, such as hum, are in it as well.
+/// that ends, or whose frequency changes, spreads around its own line. Steady lines, such as hum, are in it as well; they
+/// [say so](DecayMode::is_steady).
 ///
 /// ```
 /// use fmm_frf::decay_modes;
@@ -61,6 +77,7 @@ const LEAST: f64 = 1e-4;
 /// let modes = decay_modes(&record);
 /// assert!((modes[0].frequency - 150.0).abs() < 0.1 && (modes[1].frequency - 556.0).abs() < 0.3);
 /// assert_eq!(modes.len(), 2);
+/// assert!((modes[0].damping.unwrap() - 4.0).abs() < 0.01 && (modes[1].damping.unwrap() - 10.0).abs() < 0.1);
 /// # Ok::<(), fmm_record::RecordError>(())
 /// ```
 pub fn decay_modes(record: &Record) -> Vec<DecayMode> {
@@ -116,6 +133,16 @@ pub fn decay_modes(record: &Record) -> Vec<DecayMode> {
             modes.push(mode);
         }
     }
+    let frequencies: Vec<f64> = modes.iter().map(|mode| mode.frequency).collect();
+    for part in 0..PARTS {
+        let count = (values.len() - first) >> part;
+        let Some(halves) = Halves::of(&values[first..first + count]) else { break };
+        for mode in modes.iter_mut().filter(|mode| mode.damping.is_none()) {
+            let others = frequencies.iter().filter(|other| **other != mode.frequency);
+            let far = others.map(|other| (other - mode.frequency).abs()).fold(mode.frequency, f64::min);
+            mode.damping = halves.damping(record.rate(), mode.frequency, change * mode.frequency, far);
+        }
+    }
     let energy: f64 = modes.iter().map(|mode| mode.amplitude * mode.amplitude).sum();
     for mode in &mut modes {
         mode.share = mode.amplitude * mode.amplitude / energy;
@@ -141,11 +168,52 @@ fn lines(values: &[f64], rate: f64) -> Vec<DecayMode> {
                 amplitude: squares[k].sqrt(),
                 share: 0.0,
                 above_noise: (squares[k] * MEDIAN / median.max(f64::MIN_POSITIVE)).sqrt(),
+                damping: None,
                 multiple: None,
             });
         }
     }
     found
+}
+
+/// Spectra of the two halves of a part of a record, with their noise.
+struct Halves {
+    /// Samples of each.
+    count: usize,
+    spectra: [Spectrum; 2],
+    floors: [Floor; 2],
+}
+
+impl Halves {
+    fn of(values: &[f64]) -> Option<Self> {
+        let count = values.len() / 2;
+        if count < FEWEST / 2 {
+            return None;
+        }
+        let weights = blackman_harris(count);
+        let spectra = [0, count].map(|begin| Spectrum::of(&values[begin..begin + count], &weights));
+        let lobe = (WIDTH / spectra[0].spacing).ceil() as usize;
+        let floors = [0, 1].map(|half| Floor::of(&spectra[half].squares, lobe));
+        Some(Self { count, spectra, floors })
+    }
+
+    /// c/m (1/s) of the line at `frequency` (Hz), which sweeps over `swept` (Hz), from its energies in the two halves; `None` if the second
+    /// does not show it, or the next line is not `far` (Hz).
+    fn damping(&self, rate: f64, frequency: f64, swept: f64, far: f64) -> Option<f64> {
+        let reach = WIDTH * rate / self.count as f64 + swept;
+        if far < 2.0 * reach {
+            return None;
+        }
+        let per_line = self.spectra[0].spacing * rate / self.count as f64;
+        let line = |frequency: f64| (frequency / per_line).round().max(0.0) as usize;
+        let band = line(frequency - reach).max(1)..(line(frequency + reach) + 1).min(self.spectra[0].squares.len());
+        let [before, after] = [0, 1].map(|half| {
+            let noise = self.floors[half].at(line(frequency)) / MEDIAN * band.len() as f64;
+            let energy = self.spectra[half].squares[band.clone()].iter().sum::<f64>() - noise;
+            (energy > SEEN_AGAIN * noise).then_some(energy)
+        });
+        Some((before? / after?).ln() * rate / self.count as f64)
+    }
 }
 
 /// Median squares around the lines of a spectrum.

@@ -91,6 +91,7 @@ impl Experiment {
             hum: Vec::new(),
             further_releases: Vec::new(),
             interruption: None,
+            upsampling: None,
             second_mode: None,
             is_driven: true,
         };

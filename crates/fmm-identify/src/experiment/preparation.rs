@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fmm_record::{Hum, Interruption, OffsetStep, Quantity, Saturation, SecondMode};
+use fmm_record::{Hum, Interruption, OffsetStep, Quantity, Saturation, SecondMode, Upsampling};
 
 /// Choices in preparing a record. The default uses the record from the release to the next, and fits its offset.
 ///
@@ -117,6 +117,8 @@ pub struct RecordSummary {
     pub further_releases: Vec<f64>,
     /// Where something else than the machine itself took the motion, after which the record was not used unless it was asked for.
     pub interruption: Option<Interruption>,
+    /// How the samples were multiplied before they were recorded; only the measured ones are used.
+    pub upsampling: Option<Upsampling>,
     /// Another mode that vibrates beside the one that is fitted.
     pub second_mode: Option<SecondMode>,
     /// Whether the motion is driven; what is seen in a free vibration is then none.

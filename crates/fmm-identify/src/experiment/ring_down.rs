@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use fmm_model::ModelError;
 use fmm_record::{
-    Interruption, OffsetStep, Peak, Quantity, Record, Release, SecondMode, Swings, further_releases, hum, noise,
-    period_change, quantisation_step, saturation, spikes, without_lines,
+    Interruption, OffsetStep, Peak, Quantity, Record, Release, SecondMode, Swings, Upsampling, further_releases, hum,
+    noise, period_change, quantisation_step, saturation, spikes, without_lines,
 };
 
 use super::{Experiment, Sensor, usable};
@@ -26,7 +26,8 @@ impl Experiment {
     ///
     /// If the record begins at rest, it is used from the first peak after the release on (of a displacement, from the
     /// first crossing), as whatever held the machine may act on for a while; otherwise from its beginning. If it is released or
-    /// pushed again, it is used until shortly before that. Spikes of one to three samples are left out, and where the steps of a
+    /// pushed again, it is used until shortly before that; if something else takes its motion, until then. Of samples that are held or
+    /// interpolated, the measured ones are used. Spikes of one to three samples are left out, and where the steps of a
     /// converter exceed the noise, what follows the last turning point. Nothing is smoothed and nothing is subtracted: smoothing
     /// would correlate the noise, and the offset is a parameter. Swings, release, spikes and noise are looked for in the record less
     /// its hum.
@@ -43,7 +44,11 @@ impl Experiment {
             let (subject, needed) = ("a ring-down", "a displacement, a velocity or an acceleration");
             return Err(IdentifyError::wrong_quantity(subject, needed, quantity));
         }
-        let (record, gain_uncertainty) = usable(record, preparation)?;
+        let (mut record, gain_uncertainty) = usable(record, preparation)?;
+        let upsampling = Upsampling::of(&record);
+        if let Some(upsampling) = upsampling {
+            record = upsampling.measured(&record)?;
+        }
         // Hum must not be taken for the machine; what is fitted is the record as it was measured.
         let hum = hum(&record);
         let cleaned = without_lines(&record, &hum);
@@ -127,6 +132,7 @@ impl Experiment {
             hum,
             further_releases: further.iter().map(|release| release.time).collect(),
             interruption,
+            upsampling,
             second_mode: SecondMode::of(&seen),
             is_driven: false,
         };
@@ -391,6 +397,18 @@ mod tests {
             assert!((summary.release.unwrap() - 0.3).abs() < 0.01, "{summary}");
             assert_eq!(found.values()[0], record.crop(found.start(), record.end()).unwrap().values()[0]);
         }
+    }
+
+    /// Held samples are used at the rate at which they were measured, and a warning says so.
+    #[test]
+    fn held_samples_are_used_once() {
+        let at =
+            |i: i32| (-0.004 * f64::from(i)).exp() * (0.1 * f64::from(i)).cos() + 1e-3 * (f64::from(i) * 77.7).sin();
+        let values = (0..4000).map(|i| at(i / 5)).collect();
+        let record = Record::sampled(1000.0, values, Quantity::Velocity, "m/s").unwrap();
+        let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+        assert!((decay.summary().rate - 200.0).abs() < 1e-9, "{}", decay.summary());
+        assert!(decay.warnings().iter().any(|warning| matches!(warning, Warning::Upsampled { factor: 5, .. })));
     }
 
     /// A decay that somebody stops by hand is used up to there, and a warning says so; who gives an end has it.

@@ -101,7 +101,7 @@ impl Serialize for ImpactSummary {
 /// What a record is: times in s, rates in Hz, values in `unit`.
 impl Serialize for RecordSummary {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut document = serializer.serialize_struct("RecordSummary", 25)?;
+        let mut document = serializer.serialize_struct("RecordSummary", 26)?;
         document.serialize_field("from_s", &self.from)?;
         document.serialize_field("to_s", &self.to)?;
         document.serialize_field("samples", &self.samples)?;
@@ -126,6 +126,7 @@ impl Serialize for RecordSummary {
         document.serialize_field("hum_hz_amplitude", &hum)?;
         document.serialize_field("further_releases_s", &self.further_releases)?;
         document.serialize_field("interrupted_after_s", &self.interruption.map(|taken| taken.sound_until))?;
+        document.serialize_field("samples_per_measured", &self.upsampling.map_or(1, |upsampling| upsampling.factor))?;
         document.serialize_field("second_mode_hz", &self.second_mode.map(|mode| mode.frequency))?;
         document.serialize_field("second_mode_share", &self.second_mode.map(|mode| mode.share))?;
         document.end()

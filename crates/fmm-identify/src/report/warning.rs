@@ -65,6 +65,13 @@ pub enum Warning {
         /// How often as much as those before it the next half swing loses (1).
         ratio: f64,
     },
+    /// Samples are held, or interpolated between others; only the measured ones were used.
+    Upsampled {
+        /// Samples for each measured one.
+        factor: usize,
+        /// Whether those between lie on straight lines; otherwise they repeat the one before.
+        is_interpolated: bool,
+    },
     /// The machine was released or pushed again; only the part before that was used.
     FurtherRelease {
         /// When (s).

@@ -22,7 +22,11 @@ impl Warning {
         let rounded = summary.resolution.filter(|_| summary.is_rounded());
         let rounded = rounded.map(|step| Self::Rounded { step, unit: summary.unit.clone() });
         let taken = summary.interruption.map(|taken| Self::Interrupted { time: taken.sound_until, ratio: taken.ratio });
-        further.into_iter().chain(taken).chain(second).chain(hum).chain(rounded)
+        let upsampled = summary.upsampling.map(|upsampling| Self::Upsampled {
+            factor: upsampling.factor,
+            is_interpolated: upsampling.is_interpolated,
+        });
+        upsampled.into_iter().chain(further).chain(taken).chain(second).chain(hum).chain(rounded)
     }
 
     /// What the noise of the records is like, as the residuals of `identification` show it, and whether a slow drift was fitted.
@@ -56,6 +60,15 @@ impl Warning {
                 f,
                 "a second release at {time:.2} s: only the part before it was used; give --from for the part after it"
             ),
+            Self::Upsampled { factor, is_interpolated } => {
+                let what =
+                    if *is_interpolated { "lie on straight lines between others" } else { "repeat the one before" };
+                write!(
+                    f,
+                    "of {factor} samples {} {what}: only each {factor}th, as it was measured, was used",
+                    factor - 1
+                )
+            }
             Self::Interrupted { time, ratio } => write!(
                 f,
                 "something else than the machine takes its motion after {time:.3} s: the next half swing loses {ratio:.0} times as much as \

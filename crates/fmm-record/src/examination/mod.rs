@@ -15,3 +15,4 @@ pub(crate) mod spikes;
 pub(crate) mod steadiness;
 pub(crate) mod swings;
 pub(crate) mod turning;
+pub(crate) mod upsampling;

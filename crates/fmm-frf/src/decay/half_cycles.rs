@@ -1,0 +1,65 @@
+//! Half cycles: the points of a backbone that has too few cycles for windows.
+
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+
+use fmm_model::Estimated;
+use fmm_record::{Quantity, Record, Swings, noise, quantisation_step};
+
+use crate::BackbonePoint;
+
+/// Amplitudes that a point needs: of three half swings in a row, the first and the last are compared.
+const COMPARED: usize = 3;
+/// Deviation of a turning point, against that of the mean of the samples it is fitted to.
+const TURNING_POINT: f64 = 1.5;
+/// Deviation of a passage, against that of the mean: its centre comes from four turning points with weights 1, 3, 3, 1, two of which the
+/// next passage but one has as well, √(1 + ½ 28/64 · 1.5²).
+const PASSAGE: f64 = 1.222;
+
+/// The points of a decay from its turning points and passages through the centre, for one of displacement or velocity.
+///
+/// ```text
+/// A_j = |e_{j+1} − e_j|/2          amplitude between two turning points e: no offset
+/// c_eq/m = 2 ln(A_j/A_{j+2})/T,    T from passage j to passage j + 2, at the amplitude √(A_j A_{j+2})
+/// ```
+///
+/// For viscous damping on a straight spring both are exact; dry friction F/k = d gives 0.67 (d/A)² too little. Damping is not yet corrected
+/// for the spring.
+pub(crate) fn half_cycle_points(record: &Record) -> Vec<BackbonePoint> {
+    let orders = match record.quantity() {
+        Quantity::Displacement => 0,
+        Quantity::Velocity => 1,
+        // An acceleration jumps where dry friction reverses, which is where it turns.
+        _ => return Vec::new(),
+    };
+    let swings = Swings::of(record);
+    let (peaks, crossings) = (swings.peaks(), swings.crossings());
+    let Some(frequency) = swings.frequency() else { return Vec::new() };
+    let step = quantisation_step(record.values()).unwrap_or(0.0);
+    let white = noise(record.values()).hypot(step / 12f64.sqrt());
+    // Peaks and passages are fitted to the samples within a twelfth of a period.
+    let samples = 2.0 * (record.rate() / (12.0 * frequency)).round().max(1.0) + 1.0;
+    let mean = white / samples.sqrt();
+    let u_amplitude = TURNING_POINT * mean * FRAC_1_SQRT_2;
+    let amplitude = |j: usize| 0.5 * (peaks[j + 1].value - peaks[j].value).abs();
+    let count = crossings.len().min(peaks.len().saturating_sub(1));
+    (0..(count + 1).saturating_sub(COMPARED))
+        .filter_map(|j| {
+            let (first, last) = (amplitude(j), amplitude(j + 2));
+            let period = crossings[j + 2].time - crossings[j].time;
+            if !(first > 0.0 && last > 0.0 && period > 0.0) {
+                return None;
+            }
+            let frequency = 1.0 / period;
+            let u_time = |amplitude: f64| PASSAGE * mean / (TAU * frequency * amplitude);
+            let of_damping = (u_amplitude / first).hypot(u_amplitude / last);
+            let middle = (first * last).sqrt();
+            let seen = Estimated::new(middle, 0.5 * middle * of_damping);
+            Some(BackbonePoint {
+                time: f64::midpoint(crossings[j].time, crossings[j + 2].time),
+                amplitude: seen.scaled((TAU * frequency).powi(-orders)),
+                frequency: Estimated::new(frequency, frequency * frequency * u_time(first).hypot(u_time(last))),
+                damping: Estimated::new((first / last).ln(), of_damping).scaled(2.0 * frequency),
+            })
+        })
+        .collect()
+}
