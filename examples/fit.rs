@@ -4,10 +4,6 @@
 //! [`fmm_fit::solve_observed`] and the near one by argmin's executor; a bound that the data push against; outliers; and
 //! several records with a parameter in common. `--problem` picks one of them.
 
-#[path = "common/figure.rs"]
-#[expect(dead_code, reason = "other examples draw histograms and mirrored curves")]
-mod figure;
-
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -19,7 +15,7 @@ use std::time::Duration;
 use argmin::core::observers::{Observe, ObserverMode};
 use argmin::core::{Executor, KV, State};
 use clap::{Parser, ValueEnum};
-use figure::{Layer, Panel, Role};
+use fmm_cli::figure::{self, Layer, Panel, Role};
 use fmm_fit::{
     Automatic, BoundedLevenbergMarquardt, EvaluationError, Fit, Joint, Loss, Model, Options, Residuals, Scale,
     solve_observed, solve_robust,

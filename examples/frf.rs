@@ -1,214 +1,30 @@
-//! The frequency response of an impact test: `cargo run --release --example frf -- FILES...`.
+//! The frequency response of an impact test, in a few lines: `cargo run --release --example frf`.
 //!
-//! Each file is one trial with a channel of force and one of the response: CSV, TSV, MATLAB, Universal File (data sets 58)
-//! or NumPy. Prints the impulses, the resonances with frequency, damping and coherence, and what is doubtful; with `--json`
-//! one document with all lines of H1, H2 and coherence. Without files it runs on three bundled hammer records. `--help`
-//! lists the options.
-
-#[path = "frf/analysis.rs"]
-mod analysis;
-#[path = "common/figure.rs"]
-#[expect(dead_code, reason = "other examples draw histograms and points")]
-mod figure;
-#[path = "frf/figures.rs"]
-mod figures;
-#[path = "frf/trials.rs"]
-mod trials;
+//! The program `fmm frf` does the same for any files, and draws it.
 
 use std::error::Error;
-use std::fmt::Write as _;
-use std::io::Write;
-use std::path::PathBuf;
-use std::process::ExitCode;
+use std::path::Path;
 
-use analysis::{Analysis, Window};
-use clap::{Parser, ValueEnum};
-use fmm_frf::{FrequencyResponse, ResponseForm};
-use fmm_record::Quantity;
-use serde_json::json;
-use trials::{Choice, Trial};
+use fmm_frf::{AverageOptions, Estimator, ResponseForm, TrialAverage, resonances};
+use fmm_record::{Quantity, open};
 
-/// Estimates the frequency response of a machine from impact tests.
-#[derive(Debug, Parser)]
-#[command(name = "frf", allow_negative_numbers = true)]
-struct Arguments {
-    /// The trials: .csv, .tsv, .txt, .mat, .uff, .unv, .58, .npy or .npz, all of one rate and length; without any, three
-    /// bundled hammer records
-    files: Vec<PathBuf>,
-    /// The channel with the force, by name or by number counted from 0 without time; as in data(:,2) for a matrix of
-    /// MATLAB, data[1] or data[:,1] for one of NumPy
-    #[arg(long, value_name = "NAME|INDEX")]
-    force: Option<String>,
-    /// The channel with the response
-    #[arg(long, value_name = "NAME|INDEX")]
-    response: Option<String>,
-    /// What the response is, if neither the file nor the name of the channel says it
-    #[arg(long, value_enum)]
-    quantity: Option<Measured>,
-    /// Factor that turns the force into N; needed if the file states another unit
-    #[arg(long, value_name = "FACTOR")]
-    force_scale: Option<f64>,
-    /// Factor that turns the response into SI units; needed if the file states others
-    #[arg(long, value_name = "FACTOR")]
-    response_scale: Option<f64>,
-    /// The sampling rate, if there is no time channel
-    #[arg(long, value_name = "HZ")]
-    rate: Option<f64>,
-    /// Weights on the samples
-    #[arg(long, value_enum, default_value = "none")]
-    window: Window,
-    /// What an exponential window has fallen to at the end of the record
-    #[arg(long, value_name = "FRACTION", default_value_t = 0.01)]
-    exponential_end: f64,
-    /// Print one JSON document instead of the report
-    #[arg(long)]
-    json: bool,
-    /// Write SVG figures into this folder
-    #[arg(long, value_name = "DIR")]
-    figures: Option<PathBuf>,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Measured {
-    Displacement,
-    Velocity,
-    Acceleration,
-}
-
-impl From<Measured> for Quantity {
-    fn from(measured: Measured) -> Self {
-        match measured {
-            Measured::Displacement => Self::Displacement,
-            Measured::Velocity => Self::Velocity,
-            Measured::Acceleration => Self::Acceleration,
-        }
+fn main() -> Result<(), Box<dyn Error>> {
+    // Three blows on a beam of steel, with force and acceleration as columns of a matrix.
+    let mut average = None;
+    for blow in 1..=3 {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/data/hammer_{blow}.mat"));
+        let file = open(file)?;
+        let force = file.channel("force")?.record.with_quantity(Quantity::Force).with_unit("N");
+        let response = file.channel("acceleration")?.record.with_quantity(Quantity::Acceleration).with_unit("m/s²");
+        let (form, options) = (ResponseForm::Accelerance, AverageOptions::default());
+        let empty = || TrialAverage::new(form, force.rate(), force.len(), &options);
+        average.get_or_insert(empty()?).add_records(&force, &response)?;
     }
-}
-
-/// The form of the response that all trials have.
-fn form(trials: &[Trial]) -> Result<ResponseForm, Box<dyn Error>> {
-    let quantity = trials.first().map_or(Quantity::Other, |trial| trial.response.quantity());
-    if let Some(other) = trials.iter().find(|trial| trial.response.quantity() != quantity) {
-        return Err(format!("{}: a {}, where others are a {quantity}", other.name, other.response.quantity()).into());
+    let average = average.ok_or("no blow")?;
+    let (response, coherence) = (average.estimate(Estimator::H1)?, average.coherence()?);
+    for peak in resonances(&response, 20.0) {
+        println!("{:8.2} Hz: |H| = {:.2} {}", peak.frequency, peak.magnitude, response.form().unit());
     }
-    match quantity {
-        Quantity::Displacement => Ok(ResponseForm::Receptance),
-        Quantity::Velocity => Ok(ResponseForm::Mobility),
-        Quantity::Acceleration => Ok(ResponseForm::Accelerance),
-        other => Err(format!("a response that is a {other} has no form").into()),
-    }
-}
-
-fn report(trials: &[Trial], analysis: &Analysis) -> Result<String, std::fmt::Error> {
-    let mut text = String::new();
-    let (form, unit) = (analysis.h1.form(), analysis.h1.form().unit());
-    writeln!(text, "{:<24} {:>12} {:>10} {:>11}", "trial", "impulse N s", "level N", "width ms")?;
-    for ((trial, pulse), impulse) in trials.iter().zip(&analysis.pulses).zip(&analysis.impulses) {
-        writeln!(text, "{:<24} {impulse:>12.6} {:>10.3} {:>11.4}", trial.name, pulse.level, 1e3 * pulse.width)?;
-    }
-    if let Some(trial) = trials.first() {
-        writeln!(text, "channels {}", trial.origin)?;
-    }
-    let lines = analysis.h1.frequencies();
-    let (step, last) = (lines.get(1).map_or(0.0, |second| second - lines[0]), lines[lines.len() - 1]);
-    writeln!(text, "\nH1, {form}: lines every {step:.6} Hz up to {last:.6} Hz, window {}", analysis.window)?;
-    if let Some(median) =
-        analysis.coherence.median(step, analysis.usable).filter(|_| analysis.coherence.is_meaningful())
-    {
-        let averages = analysis.coherence.averages();
-        writeln!(text, "coherence: median {median:.4} up to {:.4} Hz, {averages} averages", analysis.usable)?;
-    }
-    if !analysis.peaks.is_empty() {
-        let magnitude = format!("|H| {unit}");
-        writeln!(text, "\n{:>10} {magnitude:>12} {:>9}   mode", "peak Hz", "coherence")?;
-    }
-    for peak in &analysis.peaks {
-        let mode = peak.fit.as_ref().map_or_else(|| "-".to_owned(), |fit| fit.mode.to_string());
-        let (frequency, magnitude) = (peak.line.frequency, peak.line.magnitude);
-        writeln!(text, "{frequency:>10.4} {magnitude:>12.5} {:>9.4}   {mode}", peak.coherence)?;
-    }
-    for warning in &analysis.warnings {
-        writeln!(text, "warning: {warning}")?;
-    }
-    Ok(text)
-}
-
-fn document(trials: &[Trial], analysis: &Analysis) -> serde_json::Value {
-    let lines = |response: &FrequencyResponse| {
-        let part = |part: fn(&fmm_frf::Complex64) -> f64| response.values().iter().map(part).collect::<Vec<_>>();
-        json!({ "real": part(|value| value.re), "imag": part(|value| value.im) })
-    };
-    let measured = |value: fmm_frf::Estimated| json!({ "value": value.value, "u": value.uncertainty });
-    let modes = analysis.peaks.iter().filter_map(|peak| {
-        let mode = peak.fit.as_ref()?.mode;
-        Some(json!({
-            "peak_hz": peak.line.frequency,
-            "natural_frequency_hz": measured(mode.natural_frequency),
-            "damping_ratio": measured(mode.damping_ratio),
-        }))
-    });
-    let pulses = analysis.pulses.iter().map(|pulse| {
-        json!({
-            "level_n": pulse.level,
-            "time_s": pulse.time,
-            "width_s": pulse.width,
-            "further_hits": pulse.further_hits.len(),
-        })
-    });
-    json!({
-        "trials": trials.iter().map(|trial| &trial.name).collect::<Vec<_>>(),
-        "form": analysis.h1.form().to_string(),
-        "unit": analysis.h1.form().unit(),
-        "window": analysis.window,
-        "decay_rate_per_s": analysis.h1.decay_rate(),
-        "averages": analysis.coherence.averages(),
-        "impulses_ns": analysis.impulses,
-        "pulses": pulses.collect::<Vec<_>>(),
-        "frequencies_hz": analysis.h1.frequencies(),
-        "h1": lines(&analysis.h1),
-        "h1_u": analysis.uncertainty,
-        "h2": lines(&analysis.h2),
-        "coherence": analysis.coherence.values(),
-        "usable_hz": analysis.usable,
-        "resonances_hz": analysis.peaks.iter().map(|peak| peak.line.frequency).collect::<Vec<_>>(),
-        "modes": modes.collect::<Vec<_>>(),
-        "warnings": analysis.warnings,
-    })
-}
-
-fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let files = if arguments.files.is_empty() { trials::bundled() } else { arguments.files.clone() };
-    let choice = Choice {
-        force: arguments.force.as_deref(),
-        response: arguments.response.as_deref(),
-        quantity: arguments.quantity.map(Quantity::from),
-        force_scale: arguments.force_scale,
-        response_scale: arguments.response_scale,
-        rate: arguments.rate,
-    };
-    let read = |path: &PathBuf| choice.read(path).map_err(|error| format!("{}: {error}", path.display()));
-    let trials = files.iter().map(read).collect::<Result<Vec<Trial>, _>>()?;
-    let analysis = Analysis::of(&trials, form(&trials)?, arguments.window, arguments.exponential_end)?;
-    let text = if arguments.json { document(&trials, &analysis).to_string() } else { report(&trials, &analysis)? };
-    match writeln!(std::io::stdout(), "{}", text.trim_end()) {
-        // Whoever reads may stop reading.
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {}
-        written => written?,
-    }
-    if let Some(folder) = &arguments.figures {
-        std::fs::create_dir_all(folder).map_err(|error| format!("cannot create {}: {error}", folder.display()))?;
-        figures::draw(folder, &trials, &analysis)?;
-        eprintln!("figures: {}", folder.join("{trials,response,magnitude}.svg").display());
-    }
+    println!("median coherence {:?}", coherence.median(1.0, 1000.0));
     Ok(())
-}
-
-fn main() -> ExitCode {
-    match run(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
-        }
-    }
 }

@@ -4,16 +4,13 @@
 //! from what is known of them, one at a time and all together. The thesis' raw data are not published, so the record is
 //! simulated, with the thesis' machine, load and initial velocity. Printed figures of the thesis stand beside ours.
 
-#[path = "common/figure.rs"]
-#[expect(dead_code, reason = "other examples draw curves")]
-mod figure;
-
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use fmm_cli::figure;
 use fmm_fit::{Options, solve};
 use fmm_sim::Exact;
 use fmm_thesis::Found;

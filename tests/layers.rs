@@ -35,6 +35,19 @@ const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
     ("fmm-sim", &[PULP, THISERROR]),
     ("fmm-frf", &[PULP, THISERROR]),
     ("fmm-identify", &[THISERROR]),
+    (
+        "fmm-cli",
+        &[
+            ("clap", "reads the arguments and explains them"),
+            ("clap_complete", "writes the completions of shells"),
+            ("clap_mangen", "writes the manual pages"),
+            ("indicatif", "shows how far a search is"),
+            ("kuva", "draws the figures"),
+            ("serde", "writes motions and campaigns as documents"),
+            ("serde_json", "reads scenarios and writes documents"),
+            THISERROR,
+        ],
+    ),
 ];
 
 const MATFILE: (&str, &str) = ("matfile", "decodes the arrays of MATLAB files");

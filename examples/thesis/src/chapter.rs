@@ -3,7 +3,7 @@
 use std::fmt::{self, Write as _};
 
 use crate::Target;
-use crate::figure::{self, Panel};
+use fmm_cli::figure::{self, Panel};
 
 /// A chapter's results in the order in which they are shown.
 #[derive(Debug, Clone, Default)]

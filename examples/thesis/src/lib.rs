@@ -12,9 +12,6 @@ pub mod chapter_6_energy;
 pub mod chapter_7_friction;
 pub mod chapter_8_impact;
 pub mod chapter_9_future;
-#[path = "../../common/figure.rs"]
-#[expect(dead_code, reason = "other examples write files directly")]
-mod figure;
 pub mod printed;
 mod program;
 pub mod report;

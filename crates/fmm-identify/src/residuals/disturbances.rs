@@ -77,7 +77,7 @@ impl Warning {
             Self::SecondMode { frequency, share } => write!(
                 f,
                 "a second mode vibrates at {frequency:.3} Hz with about {:.0} % of the amplitude; the fit knows one mode only: use a \
-                 part in which one is left, or isolate one (`--mode` of the example, `IsolatedMode` of fmm-frf)",
+                 part in which one is left, or isolate one (`--mode` of `fmm identify`, `IsolatedMode` of fmm-frf)",
                 100.0 * share
             ),
             Self::Hum { frequency, amplitude, unit } => write!(

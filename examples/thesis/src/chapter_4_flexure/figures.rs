@@ -1,7 +1,7 @@
 //! Figures 3 to 6, as far as they can be computed.
 
 use super::motion::FreeVibration;
-use crate::figure::{Layer, Panel, Role, label};
+use fmm_cli::figure::{Layer, Panel, Role, label};
 use crate::{Chapter, Found};
 
 /// Draws the releases from 6 mm and from 22 mm.

@@ -5,7 +5,7 @@ use fmm_identify::{Experiment, Preparation, decrements};
 
 use super::program_a2;
 use super::simulated::{machine, motion, record};
-use crate::figure::{Layer, Panel, Role, label};
+use fmm_cli::figure::{Layer, Panel, Role, label};
 use crate::printed::{INSTANTANEOUS_SLOPE, MACHINE};
 use crate::{Chapter, Criterion, Found, Settings, Target};
 

@@ -7,7 +7,7 @@ use super::identifiability::NOISE;
 use super::regressions::table_1_line;
 use super::simulated::{a1_of_stiffness, machine, motion, record, rms, samples};
 use super::windows::Column;
-use crate::figure::{Layer, Panel, Role, label};
+use fmm_cli::figure::{Layer, Panel, Role, label};
 use crate::printed::{INSTANTANEOUS_SLOPE, MACHINE, TABLE_1};
 use crate::ring_down::INTERVAL;
 use crate::{Chapter, Found, Settings};

@@ -1,7 +1,7 @@
 //! What the columns of Table 3 are, by arithmetic alone.
 
 use super::computed::Computed;
-use crate::figure::label;
+use fmm_cli::figure::label;
 use crate::printed::{MACHINE_DEVIATIONS, TABLE_3};
 use crate::table_3::VARIED;
 use crate::{Chapter, Criterion, Target};

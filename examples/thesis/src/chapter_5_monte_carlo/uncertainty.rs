@@ -3,7 +3,7 @@
 use fmm_fit::{StraightLine, Weighting};
 
 use super::computed::{Computed, KICKS};
-use crate::figure;
+use fmm_cli::figure;
 use crate::printed::{MACHINE_DEVIATIONS, TABLE_1, TABLE_3};
 use crate::table_3::{ROWS, Row, TRUTH, VARIED};
 use crate::{Chapter, Criterion, Drawing, Found, Settings, Target};

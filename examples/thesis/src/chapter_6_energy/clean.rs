@@ -7,7 +7,7 @@ use fmm_sim::{Engine, Scenario, Thesis};
 use fmm_uq::Observations;
 
 use super::{Example, SLOWEST, friction};
-use crate::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Layer, Panel, Role};
 use crate::ring_down::{INTERVAL, over_time, velocity_record};
 use crate::target::number;
 use crate::{Chapter, Criterion, Found, Target};

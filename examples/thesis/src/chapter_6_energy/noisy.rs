@@ -5,7 +5,7 @@ use fmm_record::{EndRule, Record, Smoothing};
 use fmm_uq::Observations;
 
 use super::{Example, SLOWEST, friction};
-use crate::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Layer, Panel, Role};
 use crate::ring_down::{INTERVAL, over_time, velocity_record, with_noise};
 use crate::{Chapter, Criterion, Found, Settings, Target};
 

@@ -7,7 +7,7 @@ use fmm_record::Record;
 use fmm_sim::{Engine, Event, Exact, Mode, Sampling, Thesis};
 
 use super::{Known, LOAD_4, LOAD_5, Release, fit_panels, largest, seed, value};
-use crate::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Layer, Panel, Role};
 use crate::printed::TABLE_5;
 use crate::ring_down::{INTERVAL, Viscous};
 use crate::{Chapter, Criterion, Found, Settings, Target};

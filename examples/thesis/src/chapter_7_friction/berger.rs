@@ -5,7 +5,7 @@ use fmm_friction::{Berger, SlidingLaw};
 use fmm_uq::Observations;
 
 use super::{Known, LOAD_5, Release, fit_panels, largest, rms, seed, value};
-use crate::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Layer, Panel, Role};
 use crate::printed::TABLE_5;
 use crate::ring_down::Viscous;
 use crate::{Chapter, Criterion, Found, Settings, Target};

@@ -5,7 +5,7 @@ use fmm_friction::{Berger, Coulomb, LawFamily};
 use fmm_model::{Bounds, Parameter};
 
 use super::{Known, LOAD_4, LOAD_5, Release, largest, rms, value};
-use crate::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Layer, Panel, Role};
 use crate::printed::{TABLE_4, TABLE_5};
 use crate::ring_down::Viscous;
 use crate::{Chapter, Criterion, Found, Target};

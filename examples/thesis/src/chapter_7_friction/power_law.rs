@@ -3,7 +3,7 @@
 use fmm_fit::{PowerLaw, Weighting, f_test};
 
 use super::largest;
-use crate::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Layer, Panel, Role};
 use crate::printed::{EQUATION_7_2, TABLE_4};
 use crate::{Chapter, Criterion, Found, Target};
 

@@ -6,7 +6,7 @@ use fmm_record::Record;
 use fmm_sim::{Engine, Sampling, Thesis};
 
 use super::{Known, LOAD_5, Release, fit_panels, rms, seed, value};
-use crate::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Layer, Panel, Role};
 use crate::ring_down::{INTERVAL, Viscous, machine, motion, over_time, scenario};
 use crate::{Chapter, Criterion, Found, Settings, Target};
 

@@ -6,7 +6,7 @@ use fmm_uq::Observations;
 
 use super::blows::{Blow, DURATION, FORCE_NOISE, INTERVAL, LEVELS, NOISE, RATE, SPREAD, Test};
 use super::{COEFFICIENT, LOAD, friction_force};
-use crate::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Layer, Panel, Role};
 use crate::{Chapter, Criterion, Found, Target, printed};
 
 /// Mass on the shaft (kg), and gravity (m/s²).

@@ -9,7 +9,7 @@ use super::blows::{Blow, INTERVAL, NOISE, Spectra, Test, peak_receptance};
 use super::forces::{pulse, velocity_curve};
 use super::receptance::SHOWN;
 use super::{COEFFICIENT, LOAD, linear, parts};
-use crate::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Layer, Panel, Role};
 use crate::{Chapter, Criterion, Found, Settings, Target, printed};
 
 /// Assumed relative uncertainty of the hammer's calibration (1).

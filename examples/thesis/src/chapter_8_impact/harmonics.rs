@@ -9,7 +9,7 @@ use fmm_identify::identify_impact;
 use super::blows::{Blow, Spectra, Test};
 use super::friction::{as_in_the_thesis, known_machine};
 use super::{COEFFICIENT, LOAD, decibels, linear, over_frequency};
-use crate::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Layer, Panel, Role};
 use crate::{Chapter, Criterion, Found, Target};
 
 /// The highest order that is looked at.

@@ -11,7 +11,7 @@ mod receptance;
 
 use fmm_frf::{FrequencyResponse, SingleDegreeOfFreedom};
 
-use crate::figure::{Layer, Panel, Role, label};
+use fmm_cli::figure::{Layer, Panel, Role, label};
 use crate::{Chapter, Found, Settings, printed};
 use blows::{Blow, LEVELS, Spectra, Test};
 

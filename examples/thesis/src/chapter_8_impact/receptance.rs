@@ -8,7 +8,7 @@ use fmm_uq::Observations;
 
 use super::blows::{Blow, DURATION, LEVELS, RATE, SAMPLES, Spectra, Test, peak_receptance};
 use super::{COEFFICIENT, LOAD, decibels, friction_force, linear, over_frequency, parts};
-use crate::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Layer, Panel, Role};
 use crate::{Chapter, Criterion, Found, Target, printed};
 
 /// Expected largest receptances (mm/N) of the three levels.

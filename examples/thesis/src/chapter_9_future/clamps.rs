@@ -6,7 +6,7 @@ use fmm_identify::{Experiment, Offset, Preparation, WindowFit, Windows};
 use fmm_model::{Damping, Oscillator};
 use fmm_sim::{Engine as _, Exact, Excitation, Sampling, Scenario};
 
-use crate::figure::{Layer, Panel, Role, label};
+use fmm_cli::figure::{Layer, Panel, Role, label};
 use crate::printed::{EQUATION_5_5, INSTANTANEOUS_SLOPE, MACHINE, TABLE_1};
 use crate::ring_down::{INTERVAL, motion, scenario, velocity_record, with_noise};
 use crate::{Chapter, Criterion, Found, Settings, Target};

@@ -8,7 +8,7 @@ use fmm_record::Record;
 use fmm_sim::Sampling;
 
 use super::{candidates, side_by_side};
-use crate::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Layer, Panel, Role};
 use crate::printed::{LOADS, MACHINE};
 use crate::ring_down::{self, INTERVAL, Viscous, over_time, velocity_record, with_noise};
 use crate::{Chapter, Criterion, Found, Settings, Target};

@@ -17,6 +17,8 @@ mod law;
 mod motion;
 mod plan;
 mod run;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use catalogue::laws;
 pub(crate) use engine::EngineName;

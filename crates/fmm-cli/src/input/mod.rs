@@ -1,4 +1,9 @@
-//! The record and the mode of it that a command names.
+//! What a command is told: the record, a mode of it, the machine, the laws.
+
+mod question;
+mod source;
+#[cfg(test)]
+mod tests;
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -8,7 +13,8 @@ use fmm_frf::{BackboneOptions, decay_modes};
 use fmm_identify::Preparation;
 use fmm_record::{Column, Quantity, Record, Request, Unit};
 
-use crate::source::{Choice, Input};
+pub(crate) use question::Question;
+pub(crate) use source::{Choice, Input};
 
 /// Which file, which channel of it, and what that measured.
 #[derive(Debug, Args)]

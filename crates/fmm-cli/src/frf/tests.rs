@@ -1,4 +1,4 @@
-//! The example `frf`: the same blows from files of every format, and files that should be refused.
+//! The command `frf`: the same blows from files of every format, and files that should be refused.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -9,14 +9,9 @@ use fmm_record::{Quantity, Record};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-#[path = "../../examples/frf/analysis.rs"]
-#[expect(dead_code, reason = "the example reports more than is compared here")]
-mod analysis;
-#[path = "../../examples/frf/trials.rs"]
-mod trials;
 
-use analysis::{Analysis, Window};
-use trials::{Choice, Trial};
+use super::analysis::{Analysis, Window};
+use super::trials::{Choice, Trial};
 
 const ACCELERATION: Choice<'_> = Choice {
     force: None,
@@ -31,13 +26,18 @@ const VELOCITY: Choice<'_> = Choice { quantity: Some(Quantity::Velocity), ..ACCE
 
 /// A new folder for the files of a test.
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let folder = std::env::temp_dir().join("fmm-cli").join(name);
     std::fs::create_dir_all(&folder).unwrap();
     folder
 }
 
 fn workspace(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
+}
+
+/// The hammer records that come with the examples.
+fn hammers() -> Vec<PathBuf> {
+    (1..=3).map(|hit| workspace(&format!("examples/data/hammer_{hit}.mat"))).collect()
 }
 
 fn read(choice: &Choice<'_>, path: &Path) -> Trial {
@@ -49,7 +49,7 @@ fn refusal(choice: &Choice<'_>, path: &Path) -> String {
 }
 
 fn bundled() -> Vec<Trial> {
-    trials::bundled().iter().map(|path| read(&ACCELERATION, path)).collect()
+    hammers().iter().map(|path| read(&ACCELERATION, path)).collect()
 }
 
 /// The bytes of an npy file.
@@ -218,7 +218,7 @@ fn channels_that_are_not_there_or_not_what_they_should_be() {
 #[test]
 fn a_response_is_what_its_channel_says_or_refused() {
     const SILENT: Choice<'_> = Choice { quantity: None, ..ACCELERATION };
-    for path in trials::bundled() {
+    for path in hammers() {
         assert_eq!(read(&SILENT, &path).response.quantity(), Quantity::Acceleration);
     }
     let folder = folder("silent");

@@ -1,6 +1,6 @@
 //! Scenarios that should be refused, each with its reason and what would be right.
 
-use super::simulation::laws;
+use crate::scenario::laws;
 use super::{run, with};
 
 fn refused(scenario: &str) -> String {

@@ -6,7 +6,7 @@ use std::path::Path;
 use fmm_sim::SimulationError;
 
 use crate::figure::{self, Layer, Panel, Role};
-use crate::simulation::{Motion, Plan, ScenarioError, Simulation};
+use crate::scenario::{Motion, Plan, ScenarioError, Simulation};
 
 /// Points of a curve besides those at events.
 const POINTS: usize = 2000;

@@ -5,7 +5,7 @@ use std::path::Path;
 use fmm_frf::{Complex64, FrequencyResponse};
 
 use super::analysis::Analysis;
-use super::figure::{self, Layer, Panel, Role};
+use crate::figure::{self, Layer, Panel, Role};
 use super::trials::Trial;
 
 /// Draws force and response, real and imaginary part, and magnitude with phase and coherence, into `folder`.

@@ -1,9 +1,9 @@
-//! A motion and the catalogue of laws as text.
+//! A motion as text.
 
 use std::fmt;
 
 use crate::figure::label;
-use crate::simulation::{Motion, Simulation, laws};
+use crate::scenario::{Motion, Simulation};
 
 /// Events printed at most; the document of `--json` has them all.
 const MOST_EVENTS: usize = 60;
@@ -23,7 +23,7 @@ pub(crate) const HELP: &str = r#"A scenario, all SI; only oscillator and an end 
                peak_velocity_line {intercept, slope}; default none
   restoring    "linear" (default), {"sine": {"length": 1.0}}, {"polynomial": {"cubic": 1.5, "quintic": 0.0}},
                {"stop": {"distance": 0.02, "ratio": 5.0}} (5 times as stiff beyond 20 mm) or {"gap": {"gap": 0.001}}
-  law          an object with one key, see --laws; default no friction
+  law          an object with one key, see `fmm laws`; default no friction
   normal_load  default 1, with which a coefficient is a force
   excitation   a list of: sampled_force {interval, values}, half_sine {peak, duration}, constant {force}, ramp {rate},
                each with an optional delay; harmonic and base {amplitude, angular_frequency, phase}; belt {velocity}
@@ -32,26 +32,6 @@ pub(crate) const HELP: &str = r#"A scenario, all SI; only oscillator and an end 
   output       {"times": […]} or {"rate": …}; default 1000 samples
   engine       auto (default), exact, runge_kutta, bristle, thesis, moreau
   tolerance    relative, for runge_kutta and bristle"#;
-
-/// The laws with their parameters.
-pub(crate) struct Laws;
-
-impl fmt::Display for Laws {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        writeln!(f, "A parameter goes by its name or its symbol. With a normal load of 1 a coefficient is a force.")?;
-        for entry in laws() {
-            writeln!(f, "\n{}", entry.name)?;
-            for slot in (entry.slots)() {
-                let description = slot.description();
-                let mut others = slot.keys();
-                others.retain(|key| !description.contains(key.as_str()));
-                let others = if others.is_empty() { String::new() } else { format!(", also {}", others.join(", ")) };
-                writeln!(f, "    {description}{others}")?;
-            }
-        }
-        Ok(())
-    }
-}
 
 /// A motion for the eye.
 pub(crate) struct Report<'a> {

@@ -1,7 +1,7 @@
 //! Trials from files: two channels of each, as records of force and response.
 
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use fmm_record::{Channel, Column, Label, Quantity, Reader, Reading, Record};
 
@@ -26,12 +26,6 @@ pub(crate) struct Choice<'a> {
     pub(crate) force_scale: Option<f64>,
     pub(crate) response_scale: Option<f64>,
     pub(crate) rate: Option<f64>,
-}
-
-/// The hammer records that come with the examples.
-pub(crate) fn bundled() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data");
-    (1..=3).map(|hit| folder.join(format!("hammer_{hit}.mat"))).collect()
 }
 
 impl Choice<'_> {

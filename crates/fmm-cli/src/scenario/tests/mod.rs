@@ -1,4 +1,4 @@
-//! The example `simulate`: its scenario files, the reference solutions written as scenarios, and scenarios that should be
+//! Scenarios: the bundled scenario files, the reference solutions written as scenarios, and scenarios that should be
 //! refused.
 
 use std::path::{Path, PathBuf};
@@ -7,13 +7,11 @@ use serde_json::Value;
 
 mod references;
 mod refusals;
-#[path = "../../examples/simulate/mod.rs"]
-mod simulation;
 
-use simulation::{Motion, Plan, ScenarioError, Simulation};
+use super::{Motion, Plan, ScenarioError, Simulation};
 
 fn folder(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(name)
 }
 
 fn read(path: &Path) -> String {

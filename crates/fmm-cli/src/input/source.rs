@@ -1,7 +1,7 @@
 //! A ring-down from a file: which channel, what it measured, in which unit.
 
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use fmm_record::{Column, DataFile, Label, MeaningError, Quantity, Reader, Reading, Record, RecordError, Request};
 
@@ -28,28 +28,31 @@ pub(crate) struct Choice {
     pub(crate) is_drive: bool,
 }
 
-fn bundled() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/BrowserForkCompoundFirst1.mat")
-}
+/// A bicycle fork that swings as a pendulum, for those who have no record at hand.
+const BUNDLED: (&str, &[u8]) =
+    ("BrowserForkCompoundFirst1.mat", include_bytes!("../../data/BrowserForkCompoundFirst1.mat"));
 
 impl Choice {
-    /// Reads the record of a bicycle fork that comes with the examples.
+    /// Reads the record of a bicycle fork that comes with the program.
     pub(crate) fn read_bundled(&self) -> Result<Input, Box<dyn Error>> {
-        let path = bundled();
-        let (reading, _) = self.reading(&path)?;
+        let (name, bytes) = BUNDLED;
+        let (reading, _) = self.reading(|reader| reader.parse(bytes))?;
         // A gyro whose gain was not published.
         let label = Label::from(&reading).with_unit("V").with_quantity(Quantity::Velocity);
-        self.input(&path, &label, &reading, Vec::new())
+        self.input(Path::new(name), &label, &reading, Vec::new())
     }
 
     /// Reads a file of any format.
     pub(crate) fn read(&self, path: &Path) -> Result<Input, Box<dyn Error>> {
-        let (reading, file) = self.reading(path)?;
+        let (reading, file) = self.reading(|reader| reader.open(path))?;
         self.input(path, &Label::from(&reading), &reading, file.warnings())
     }
 
     /// The channel that was named, or else the one that the request tells out, and its file.
-    fn reading(&self, path: &Path) -> Result<(Reading, DataFile), Box<dyn Error>> {
+    fn reading(
+        &self,
+        open: impl FnOnce(&Reader) -> Result<DataFile, RecordError>,
+    ) -> Result<(Reading, DataFile), Box<dyn Error>> {
         let mut reader = Reader::default();
         if let Some(time) = &self.time {
             reader = reader.time(time.clone());
@@ -57,7 +60,7 @@ impl Choice {
         if let Some(rate) = self.rate {
             reader = reader.rate(rate);
         }
-        let file = reader.open(path)?;
+        let file = open(&reader)?;
         let reading = match &self.channel {
             Some(channel) => file.channel(channel.clone()),
             None => file.choose(&self.request),

@@ -29,13 +29,13 @@ const AROUND: f64 = 75.0;
 const MARGINS: (f64, f64) = (90.0, 24.0);
 
 /// The label of an axis, quantity over unit; a unit that is a product or quotient is put in brackets.
-pub(crate) fn label(quantity: impl std::fmt::Display, unit: &str) -> String {
+pub fn label(quantity: impl std::fmt::Display, unit: &str) -> String {
     if unit.contains(['/', ' ']) { format!("{quantity} / ({unit})") } else { format!("{quantity} / {unit}") }
 }
 
 /// What a layer of a panel shows; it decides colour and stroke.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Role {
+pub enum Role {
     /// A measured curve.
     Measured,
     /// More of the same, without a legend entry of its own.
@@ -72,7 +72,7 @@ impl Role {
 
 /// One curve or set of points.
 #[derive(Debug, Clone)]
-pub(crate) struct Layer {
+pub struct Layer {
     role: Role,
     label: String,
     points: Vec<(f64, f64)>,
@@ -80,7 +80,7 @@ pub(crate) struct Layer {
 
 impl Layer {
     /// A layer with its legend text.
-    pub(crate) fn new(role: Role, label: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+    pub fn new(role: Role, label: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         Self { role, label: label.into(), points: if role.is_points() { points } else { thinned(points) } }
     }
 
@@ -106,7 +106,7 @@ impl Layer {
 
 /// Axes with their layers.
 #[derive(Debug, Clone)]
-pub(crate) struct Panel {
+pub struct Panel {
     x_label: String,
     y_label: String,
     height: f64,
@@ -115,13 +115,13 @@ pub(crate) struct Panel {
 
 impl Panel {
     /// Empty axes, `height` pixels high.
-    pub(crate) fn new(x_label: impl Into<String>, y_label: impl Into<String>, height: f64) -> Self {
+    pub fn new(x_label: impl Into<String>, y_label: impl Into<String>, height: f64) -> Self {
         Self { x_label: x_label.into(), y_label: y_label.into(), height, layers: Vec::new() }
     }
 
     /// The same axes with another layer on top.
     #[must_use]
-    pub(crate) fn with(mut self, layer: Layer) -> Self {
+    pub fn with(mut self, layer: Layer) -> Self {
         self.layers.push(layer);
         self
     }
@@ -160,12 +160,12 @@ impl Panel {
 ///
 /// # Errors
 /// If the file cannot be written.
-pub(crate) fn stacked(path: &Path, panels: &[Panel]) -> std::io::Result<()> {
+pub fn stacked(path: &Path, panels: &[Panel]) -> std::io::Result<()> {
     std::fs::write(path, drawn(panels))
 }
 
 /// Panels one below the other, as SVG.
-pub(crate) fn drawn(panels: &[Panel]) -> String {
+pub fn drawn(panels: &[Panel]) -> String {
     let heights: Vec<f64> = panels.iter().map(|panel| panel.height).collect();
     let mut grid = Grid::new(panels.len(), 1)
         .with_plots(panels.iter().map(Panel::plots).collect())
@@ -182,12 +182,12 @@ pub(crate) fn drawn(panels: &[Panel]) -> String {
 ///
 /// # Errors
 /// If the file cannot be written.
-pub(crate) fn histogram(path: &Path, x_label: &str, name: &str, values: &[f64]) -> std::io::Result<()> {
+pub fn histogram(path: &Path, x_label: &str, name: &str, values: &[f64]) -> std::io::Result<()> {
     std::fs::write(path, drawn_histogram(x_label, name, values))
 }
 
 /// The histogram of `values` with the normal density of the same mean and standard deviation, as SVG.
-pub(crate) fn drawn_histogram(x_label: &str, name: &str, values: &[f64]) -> String {
+pub fn drawn_histogram(x_label: &str, name: &str, values: &[f64]) -> String {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     let deviation = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt();

@@ -49,11 +49,6 @@ struct Series {
 }
 
 impl Source {
-    /// The same for the bundled brake, whose two bands were measured beside the force, with hum of 256 Hz.
-    pub(crate) fn of_brake(self) -> Self {
-        Self { channels: ["band_1", "band_2"].map(str::to_owned).into(), average: 0.02, ..self }
-    }
-
     /// The record in the table at `path`.
     pub(crate) fn read(&self, path: &Path) -> Result<ForceRecord, Box<dyn Error>> {
         // Numbered samples stand for the clock, so that the times are a column like any other and their steps may differ.

@@ -1,0 +1,211 @@
+//! A first look at a decay: `fmm backbone FILE`.
+//!
+//! Lists the modes of a record, takes one of them, and gives out how its frequency and damping go with the amplitude, which terms of
+//! damping and spring would explain that, and the command that fits them.
+
+use std::error::Error;
+use std::f64::consts::TAU;
+
+use crate::input::{Given, ModeWanted, mode_wanted};
+use clap::Args;
+use crate::output::{Output, drawn, print};
+use crate::figure::{self, Layer, Panel, Role, label};
+use fmm_frf::{Backbone, BackboneOptions, BackbonePoint, DecayMode, Suggestion, decay_modes};
+use fmm_identify::Experiment;
+use fmm_model::Estimated;
+use fmm_record::{Record, Spectrum, blackman_harris};
+use serde_json::{Value, json};
+
+/// Shows the modes of a decay, and how frequency and damping of one go with its amplitude.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    given: Given,
+    /// Which mode, the so many-th strongest, from 1 on, or, with a unit, as in 150Hz, the one nearest to a frequency; the strongest
+    /// unless given
+    #[arg(long, value_name = "N|F Hz", value_parser = mode_wanted)]
+    mode: Option<ModeWanted>,
+    /// Cycles in each window; between 3 and 8 by the length of the record unless given, more where another mode is near
+    #[arg(long, value_name = "CYCLES")]
+    cycles: Option<f64>,
+    #[command(flatten)]
+    output: Output,
+}
+
+/// Points in the printed table at most.
+const ROWS: usize = 12;
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let input = arguments.given.read()?;
+    let decay = Experiment::ring_down(&input.record, &arguments.given.preparation())?;
+    let record = decay.record().clone();
+    let mut options = match arguments.mode {
+        Some(mode) => mode.options(&record)?,
+        None => BackboneOptions::default(),
+    };
+    if let Some(cycles) = arguments.cycles {
+        options = options.over(cycles)?;
+    }
+    let modes = decay_modes(&record);
+    let backbone = Backbone::of(&record, &options)?;
+    let suggestion = backbone.suggestion();
+    if let Some(folder) = arguments.output.folder()? {
+        figure::stacked(&folder.join("backbone.svg"), &panels(&record, &backbone, &suggestion))?;
+        drawn(folder, "backbone.svg");
+    }
+    let report = if arguments.output.json {
+        format!("{:#}", document(&decay, &modes, &backbone, &suggestion))
+    } else {
+        let summary = decay.summary();
+        let mut lines = vec![
+            input.origin,
+            format!("used from {:.4} s to {:.4} s; --from and --to say otherwise", summary.from, summary.to),
+            String::new(),
+            text(&record, &modes, &backbone, &suggestion),
+        ];
+        let warnings = decay.warnings();
+        if !warnings.is_empty() {
+            lines.extend([String::new(), "Warnings".to_owned()]);
+            lines.extend(warnings.iter().map(|warning| format!("  - {warning}")));
+        }
+        lines.join("\n")
+    };
+    print(report)
+}
+
+fn text(record: &Record, modes: &[DecayMode], backbone: &Backbone, suggestion: &Suggestion) -> String {
+    let mut lines = vec!["Modes".to_owned(), "       Hz   amplitude   energy   above noise   c/m / (1/s)".to_owned()];
+    for mode in modes {
+        let multiple = mode.multiple.map_or_else(String::new, |multiple| format!("  {multiple} times a stronger one"));
+        let steady = if mode.is_steady(record) { "  steady: no free vibration" } else { "" };
+        let damping = mode.damping.map_or_else(|| "not seen".to_owned(), |damping| format!("{damping:.3}"));
+        lines.push(format!(
+            "{:9.4}   {:9.3e}   {:5.1} %   {:11.0}   {damping:>11}{multiple}{steady}",
+            mode.frequency,
+            mode.amplitude,
+            100.0 * mode.share,
+            mode.above_noise
+        ));
+    }
+    lines.push(format!("amplitudes in {}", record.unit()));
+    lines.push(String::new());
+    lines.push(format!(
+        "Backbone, windows of {:.4} s; no point lies within half of one of the ends of the record",
+        backbone.window()
+    ));
+    lines.push(format!("  {:>9}   {:<22}   {:<24}   c/m / (1/s)", "time / s", label("A", backbone.unit()), "f / Hz"));
+    let points = backbone.points();
+    for point in points.iter().step_by(points.len().div_ceil(ROWS)) {
+        let BackbonePoint { time, amplitude, frequency, damping } = point;
+        let (amplitude, frequency) = (amplitude.to_string(), frequency.to_string());
+        lines.push(format!("  {time:9.4}   {amplitude:<22}   {frequency:<24}   {damping}"));
+    }
+    lines.push(String::new());
+    lines.push(format!("Suggested: {suggestion}"));
+    for (term, name) in backbone.spring().iter().zip(["f0 / Hz", "k3", "k5"]) {
+        lines.push(format!("  {name} = {term}"));
+    }
+    lines.push(format!(
+        "fit it, and others beside it, by: fmm identify --law \"{}\"; the suggestion does not judge",
+        suggestion.model()
+    ));
+    lines.join("\n")
+}
+
+fn document(decay: &Experiment, modes: &[DecayMode], backbone: &Backbone, suggestion: &Suggestion) -> Value {
+    let pair = |estimated: Estimated| [estimated.value, estimated.uncertainty];
+    let mode = |mode: &DecayMode| {
+        json!({
+            "frequency": mode.frequency,
+            "amplitude": mode.amplitude,
+            "share_of_energy": mode.share,
+            "above_noise": mode.above_noise,
+            "damping": mode.damping,
+            "steady": mode.is_steady(decay.record()),
+            "multiple": mode.multiple,
+        })
+    };
+    let point = |point: &BackbonePoint| {
+        json!({
+            "time": point.time,
+            "amplitude_u": pair(point.amplitude),
+            "frequency_u": pair(point.frequency),
+            "damping_u": pair(point.damping),
+        })
+    };
+    let damping: Vec<Value> = suggestion
+        .damping()
+        .iter()
+        .map(|term| {
+            json!({
+                "term": format!("{:?}", term.kind).to_lowercase(),
+                "per_mass_u": pair(term.coefficient),
+                "share_of_energy_u": pair(term.share),
+            })
+        })
+        .collect();
+    json!({
+        "unit": decay.record().unit(),
+        "from": decay.summary().from,
+        "to": decay.summary().to,
+        "warnings": decay.warnings().iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "modes": modes.iter().map(mode).collect::<Vec<_>>(),
+        "window": backbone.window(),
+        "unit_of_amplitude": backbone.unit(),
+        "points": backbone.points().iter().map(point).collect::<Vec<_>>(),
+        "suggestion": {
+            "model": suggestion.model(),
+            "damping": damping,
+            "spring_u": suggestion.spring().iter().map(|term| pair(*term)).collect::<Vec<_>>(),
+        },
+    })
+}
+
+/// Spectrum, record with its envelope, frequency and damping against the amplitude with what is suggested.
+fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggestion) -> Vec<Panel> {
+    let count = record.len();
+    let spectrum = Spectrum::of(record.values(), &blackman_harris(count));
+    let per_line = spectrum.spacing * record.rate() / count as f64;
+    let decibels = |square: &f64| 10.0 * square.max(f64::MIN_POSITIVE).log10();
+    let lines = spectrum.squares.iter().enumerate().skip(1).map(|(k, square)| (k as f64 * per_line, decibels(square)));
+    let points = backbone.points();
+    let envelope = |sign: f64| backbone.envelope().map(move |(time, seen)| (time, sign * seen)).collect::<Vec<_>>();
+    let velocity = |point: &BackbonePoint| TAU * point.frequency.value * point.amplitude.value;
+    let said = |point: &BackbonePoint| suggestion.damping_at(velocity(point));
+    let sprung = |point: &BackbonePoint| suggestion.frequency_at(point.amplitude.value).unwrap_or(f64::NAN);
+    let against = |value: &dyn Fn(&BackbonePoint) -> f64| -> Vec<(f64, f64)> {
+        points.iter().map(|point| (point.amplitude.value, value(point))).collect()
+    };
+    let amplitude = label("amplitude", backbone.unit());
+    let measured = record.times().zip(record.values().iter().copied()).collect();
+    let band = |of: fn(&BackbonePoint) -> Estimated, role: Role, panel: Panel| {
+        [-1.0, 1.0].into_iter().fold(panel, |panel, sign| {
+            let edge = move |point: &BackbonePoint| of(point).value + sign * 2.0 * of(point).uncertainty;
+            panel.with(Layer::new(role, "", against(&edge)))
+        })
+    };
+    let frequency = Panel::new(amplitude.clone(), "f / Hz", 300.0).with(Layer::new(
+        Role::Points,
+        "frequency, lines at two standard uncertainties",
+        against(&|point| point.frequency.value),
+    ));
+    let damping = Panel::new(amplitude, label("c/m", "1/s"), 300.0).with(Layer::new(
+        Role::Points,
+        "equivalent damping, lines at two standard uncertainties",
+        against(&|point| point.damping.value),
+    ));
+    let damping = band(|point| point.damping, Role::MeasuredAgain, damping);
+    vec![
+        Panel::new("frequency / Hz", "level / dB", 300.0).with(Layer::new(Role::Residual, "spectrum", lines.collect())),
+        Panel::new("time / s", label("record", record.unit()), 300.0)
+            .with(Layer::new(Role::Measured, "measured", measured))
+            .with(Layer::new(Role::Fitted, "envelope of the mode", envelope(1.0)))
+            .with(Layer::new(Role::FittedAgain, "", envelope(-1.0))),
+        band(|point| point.frequency, Role::MeasuredAgain, frequency).with(Layer::new(
+            Role::Fitted,
+            suggestion.model(),
+            against(&sprung).into_iter().filter(|(_, f)| f.is_finite()).collect(),
+        )),
+        damping.with(Layer::new(Role::Fitted, suggestion.model(), against(&said))),
+    ]
+}

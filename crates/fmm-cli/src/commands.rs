@@ -1,0 +1,122 @@
+//! The commands of the program, and what it tells the shell.
+
+use std::error::Error;
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser, Subcommand};
+use clap_complete::Shell;
+
+use crate::output::print;
+use crate::{backbone, force, formats, frf, identify, laws, simulate};
+
+/// Friction parameters out of ring-down, driven, force and impact records, with uncertainties that can be defended.
+#[derive(Debug, Parser)]
+#[command(name = "fmm", version, after_help = AFTER_HELP)]
+struct Program {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const AFTER_HELP: &str = "Exit codes: 0 found, 1 refused or failed, 2 wrong usage. Results go to standard output, everything else to \
+                          standard error. `fmm COMMAND --help` explains a command.";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Find the friction, damping and frequency of a machine from the record of its vibration
+    #[command(allow_negative_numbers = true)]
+    Identify(identify::Arguments),
+    /// Compare laws of friction by one record
+    #[command(allow_negative_numbers = true)]
+    Compare(identify::Arguments),
+    /// Fit friction to a measured force along a measured motion
+    #[command(allow_negative_numbers = true)]
+    Force(force::Arguments),
+    /// Show the modes of a decay, and how frequency and damping of one go with its amplitude
+    #[command(allow_negative_numbers = true)]
+    Backbone(backbone::Arguments),
+    /// Simulate a machine with a sliding contact
+    #[command(after_help = simulate::HELP)]
+    Simulate(simulate::Arguments),
+    /// Estimate the frequency response of a machine from impact tests
+    #[command(allow_negative_numbers = true)]
+    Frf(frf::Arguments),
+    /// List the laws of friction with their parameters
+    Laws,
+    /// List the file formats that are read
+    Formats,
+    /// Print the completions for a shell
+    Completions {
+        /// Which shell
+        shell: Shell,
+    },
+    /// Write the manual pages into a folder
+    Manual {
+        /// The folder
+        folder: PathBuf,
+    },
+}
+
+/// Runs the program with `arguments`, of which the first is its name, and says what the shell is told: 0 for a result, 1 for input that is
+/// refused or a search that fails, 2 for wrong usage.
+pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
+    let program = match Program::try_parse_from(arguments) {
+        Ok(program) => program,
+        Err(error) => {
+            // There is nowhere left to say that this could not be printed.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    let done = match &program.command {
+        Command::Identify(arguments) => identify::identify(arguments),
+        Command::Compare(arguments) => identify::compare(arguments),
+        Command::Force(arguments) => force::run(arguments),
+        Command::Backbone(arguments) => backbone::run(arguments),
+        Command::Simulate(arguments) => simulate::run(arguments),
+        Command::Frf(arguments) => frf::run(arguments),
+        Command::Laws => laws::run(),
+        Command::Formats => formats::run(),
+        Command::Completions { shell } => completions(*shell),
+        Command::Manual { folder } => manual(folder),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn completions(shell: Shell) -> Result<(), Box<dyn Error>> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Program::command(), "fmm", &mut script);
+    print(String::from_utf8_lossy(&script).trim_end())
+}
+
+fn manual(folder: &std::path::Path) -> Result<(), Box<dyn Error>> {
+    std::fs::create_dir_all(folder).map_err(|error| format!("cannot create {}: {error}", folder.display()))?;
+    clap_mangen::generate_to(Program::command(), folder)?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_commands_are_consistent() {
+        Program::command().debug_assert();
+    }
+
+    #[test]
+    fn wrong_usage_is_told_from_what_is_refused() {
+        let code = |arguments: &[&str]| format!("{:?}", run(arguments.iter().copied()));
+        assert_eq!(code(&["fmm", "laws"]), format!("{:?}", ExitCode::SUCCESS));
+        assert_eq!(code(&["fmm", "identify", "no such file.csv"]), format!("{:?}", ExitCode::FAILURE));
+        assert_eq!(code(&["fmm", "identify", "--no-such-option"]), format!("{:?}", ExitCode::from(2)));
+        assert_eq!(code(&["fmm", "--help"]), format!("{:?}", ExitCode::SUCCESS));
+    }
+}

@@ -1,0 +1,285 @@
+//! Friction out of a measured force along a measured motion: `fmm force FILES...`.
+//!
+//! Reads time, position or velocity, and force (or torque) of a joint, a tribometer or a damper, at equal or unequal steps; fits each
+//! model and gives out what was found. `--validate` tells how well a model says a record to which it was not fitted.
+
+mod source;
+
+use std::error::Error;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use crate::output::{Output, drawn, print};
+use crate::figure::{self, Layer, Panel, Role, label};
+use fmm_identify::{
+    Estimated, ForceIdentification, ForceLoop, ForceModel, ForceRecord, Onset, SpeedBin, compare_force,
+};
+use serde_json::{Value, json};
+use source::Source;
+
+/// Fits friction to a measured force along a measured motion.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Records that are fitted together: tables with time, position or velocity, and force
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    source: Source,
+    /// Models to fit, separated by commas: a law, then after plus signs damping (linear, quadratic, cubic, any sign) and what else acts
+    /// or is measured (zero, inertia, stiffness, gravity, asymmetry, load offset, channels, delay)
+    #[arg(long, value_delimiter = ',')]
+    model: Vec<String>,
+    /// Hold a parameter at a value, in the unit in which it is fitted
+    #[arg(long, value_name = "NAME=VALUE", value_parser = held)]
+    hold: Vec<(String, f64)>,
+    /// The longest delay between motion and force that is looked for, in s; twenty samples unless given
+    #[arg(long, value_name = "SECONDS")]
+    longest_delay: Option<f64>,
+    /// Records to which nothing is fitted, but whose forces are predicted
+    #[arg(long, value_name = "FILE")]
+    validate: Vec<PathBuf>,
+    #[command(flatten)]
+    output: Output,
+}
+
+fn held(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or_else(|| format!("{text:?} is not NAME=VALUE"))?;
+    let value = value.trim().parse().map_err(|_| format!("{value:?} is no number"))?;
+    Ok((name.trim().to_owned(), value))
+}
+
+/// Models that are fitted unless others are given.
+const MODELS: [&str; 2] = ["coulomb + linear + asymmetry", "dahl + linear + asymmetry"];
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let (source, validated) = (&arguments.source, &arguments.validate);
+    let read = |files: &[PathBuf]| files.iter().map(|file| source.read(file)).collect::<Result<Vec<_>, _>>();
+    let (records, others) = (read(&arguments.files)?, read(validated)?);
+    let mut models: Vec<&str> = arguments.model.iter().map(String::as_str).collect();
+    if models.is_empty() {
+        models.extend(MODELS);
+    }
+    let mut described = Vec::with_capacity(models.len());
+    for name in models {
+        let mut model = ForceModel::named(name)?;
+        for (parameter, value) in &arguments.hold {
+            model = model.holding(parameter, *value)?;
+        }
+        if let Some(longest) = arguments.longest_delay {
+            model = model.with_delay_up_to(longest)?;
+        }
+        described.push(model);
+    }
+    let compared = compare_force(&described, &records)?;
+    let found = compared.identifications();
+    if let Some(folder) = arguments.output.folder()? {
+        for (index, found) in found.iter().enumerate() {
+            figure::stacked(&folder.join(format!("force_{}.svg", index + 1)), &panels(&records[0], found)?)?;
+        }
+        drawn(folder, "force_*.svg");
+    }
+    if arguments.output.json {
+        let models = found.iter().map(|found| document(found, validated, &others)).collect::<Result<Vec<_>, _>>()?;
+        let document = json!({
+            "samples": records.iter().map(ForceRecord::len).sum::<usize>(),
+            "friction_over_speed": records.iter().map(speeds).collect::<Vec<_>>(),
+            "loops": records.iter().map(loops).collect::<Vec<_>>(),
+            "onsets": records.iter().map(onsets).collect::<Vec<_>>(),
+            "models": models,
+            "preferred": compared.preferred().model(),
+            "is_decided": compared.is_decided(),
+        });
+        return print(format_args!("{document:#}"));
+    }
+    let mut out = String::new();
+    for (file, record) in arguments.files.iter().zip(&records) {
+        let unit = record.force_unit();
+        writeln!(out, "{}: {} samples, forces in {unit}", file.display(), record.len())?;
+        for line in without_a_law(record) {
+            writeln!(out, "  {line}")?;
+        }
+    }
+    for found in found {
+        writeln!(out, "\n{found}")?;
+        for (file, record) in validated.iter().zip(&others) {
+            let said = found.validate_on(record)?;
+            let (rms, unit) = (said.rms, record.force_unit());
+            let share = said.share().map_or_else(String::new, |share| format!(", {:.1} % of the force", 100.0 * share));
+            writeln!(out, "  not fitted: {}: rms {rms:.4e} {unit}{share}", file.display())?;
+        }
+    }
+    if found.len() > 1 {
+        writeln!(out, "\n{compared}")?;
+    }
+    print(out.trim_end())
+}
+
+/// What loops and onsets say, in lines.
+fn without_a_law(record: &ForceRecord) -> Vec<String> {
+    let (force, position) = (record.force_unit(), record.position_unit());
+    let mut lines = Vec::new();
+    let median = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied()
+    };
+    let loops = record.loops();
+    let of_loops = |value: fn(&ForceLoop) -> f64| median(loops.iter().map(value).collect());
+    if let (Some(energy), Some(friction)) = (of_loops(|a| a.energy.value), of_loops(|a| a.friction.value)) {
+        let count = loops.len();
+        lines.push(format!(
+            "loops: {count}, in the median {energy:.4e} {force} {position} each, {friction:.4e} {force} in the mean of the way"
+        ));
+    }
+    let onsets = record.onsets();
+    let of_onsets = |value: fn(&Onset) -> f64| median(onsets.iter().map(value).collect());
+    if let (Some(stiffness), Some(breakaway)) = (of_onsets(|a| a.stiffness.value), of_onsets(|a| a.breakaway.value)) {
+        let count = onsets.len();
+        lines.push(format!(
+            "onsets of sliding: {count}, in the median {stiffness:.4e} {force}/{position} of presliding stiffness, breakaway at \
+             {breakaway:.4e} {force}"
+        ));
+    }
+    lines
+}
+
+fn pair(estimated: Estimated) -> [f64; 2] {
+    [estimated.value, estimated.uncertainty]
+}
+
+fn speeds(record: &ForceRecord) -> Value {
+    let bin = |bin: &SpeedBin| {
+        json!({
+            "speed": bin.speed,
+            "friction_u": pair(bin.friction),
+            "offset_u": pair(bin.offset),
+            "load": bin.load,
+            "coefficient_u": bin.coefficient().map(pair),
+            "samples": bin.samples,
+        })
+    };
+    record.friction_over_speed_and_load(BINS, LOADS).iter().map(bin).collect()
+}
+
+fn loops(record: &ForceRecord) -> Value {
+    let cycle = |cycle: &ForceLoop| {
+        json!({
+            "span": cycle.span,
+            "range": cycle.range,
+            "energy_u": pair(cycle.energy),
+            "friction_u": pair(cycle.friction),
+            "stiffness_u": pair(cycle.stiffness),
+        })
+    };
+    record.loops().iter().map(cycle).collect()
+}
+
+fn onsets(record: &ForceRecord) -> Value {
+    let onset = |onset: &Onset| {
+        json!({
+            "begin": onset.begin,
+            "direction": onset.direction,
+            "stiffness_u": pair(onset.stiffness),
+            "breakaway_u": pair(onset.breakaway),
+            "sliding_u": pair(onset.sliding),
+            "displacement": onset.displacement,
+        })
+    };
+    record.onsets().iter().map(onset).collect()
+}
+
+fn document(found: &ForceIdentification, files: &[PathBuf], others: &[ForceRecord]) -> Result<Value, Box<dyn Error>> {
+    let findings: Vec<Value> = found
+        .findings()
+        .iter()
+        .map(|finding| {
+            json!({
+                "name": finding.parameter().name(),
+                "unit": finding.parameter().unit(),
+                "value": finding.value(),
+                "u": finding.uncertainty(),
+                "interval_95": finding.interval(0.95).map(|(low, high)| [low, high]),
+            })
+        })
+        .collect();
+    let mut validated = Vec::new();
+    for (file, record) in files.iter().zip(others) {
+        let said = found.validate_on(record)?;
+        validated.push(json!({ "file": file.display().to_string(), "rms": said.rms, "share_of_force": said.share() }));
+    }
+    Ok(json!({
+        "model": found.model(),
+        "rms_residual": found.rms_residual(),
+        "share_of_force": found.rms_residual() / found.force_deviation(),
+        "findings": findings,
+        "not_fitted": validated,
+        "warnings": found.warnings().iter().map(ToString::to_string).collect::<Vec<_>>(),
+    }))
+}
+
+/// Bins of the friction over the speed.
+const BINS: usize = 24;
+/// Groups of the normal load, where it was measured.
+const LOADS: usize = 3;
+
+/// Force over position and over velocity with the fit in, friction over the speed without a law, and what is left over time and over
+/// the phase of the motion.
+fn panels(record: &ForceRecord, found: &ForceIdentification) -> Result<Vec<Panel>, Box<dyn Error>> {
+    let said = found.predict(record)?;
+    let velocity = format!("{}/s", record.position_unit());
+    let against = |abscissae: &[f64], name: &str, unit: &str| {
+        let measured = abscissae.iter().copied().zip(record.forces().iter().copied()).collect();
+        let fitted = abscissae.iter().zip(&said).filter_map(|(x, said)| Some((*x, (*said)?))).collect();
+        Panel::new(label(name, unit), label("force", record.force_unit()), 420.0)
+            .with(Layer::new(Role::Measured, "measured", measured))
+            .with(Layer::new(Role::Fitted, found.model(), fitted))
+    };
+    let bins = record.friction_over_speed_and_load(BINS, LOADS);
+    let (speed, friction, bins) = if bins.iter().any(|bin| bin.coefficient().is_some()) {
+        let point = |bin: &SpeedBin| Some((bin.speed_by_load()?, bin.coefficient()?.value));
+        (format!("{velocity}/N"), label("friction by load", "1"), bins.iter().filter_map(point).collect())
+    } else {
+        let points = bins.iter().map(|bin| (bin.speed, bin.friction.value)).collect();
+        (velocity.clone(), label("friction", record.force_unit()), points)
+    };
+    let of_speed = if speed == velocity { "speed" } else { "speed by load" };
+    let residuals: Vec<Option<f64>> =
+        record.forces().iter().zip(&said).map(|(force, said)| Some((*said)? - force)).collect();
+    let left = |abscissae: &[f64]| -> Vec<(f64, f64)> {
+        abscissae.iter().zip(&residuals).filter_map(|(at, left)| Some((*at, (*left)?))).collect()
+    };
+    let text = format!("fit − measured, {:.3e} {} rms", found.rms_residual(), record.force_unit());
+    Ok(vec![
+        against(record.positions(), "position", record.position_unit()),
+        against(record.velocities(), "velocity", &velocity),
+        Panel::new(label(of_speed, &speed), friction, 260.0).with(Layer::new(
+            Role::Points,
+            "half the difference of the directions, medians",
+            bins,
+        )),
+        Panel::new("time / s", label("residual", record.force_unit()), 260.0).with(Layer::new(
+            Role::Residual,
+            text,
+            left(record.times()),
+        )),
+        Panel::new("phase of the motion / °", label("residual", record.force_unit()), 260.0).with(Layer::new(
+            Role::ResidualPoints,
+            "0° at the greatest velocity, 90° at the greatest position",
+            left(&phases(record)),
+        )),
+    ])
+}
+
+/// The phase of the motion at each sample (°), from 0 to 360: the angle of velocity and position, each as a share of its half range.
+fn phases(record: &ForceRecord) -> Vec<f64> {
+    let ends =
+        |values: &[f64]| values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(*x), b.max(*x)]);
+    let ([low, high], [slow, fast]) = (ends(record.positions()), ends(record.velocities()));
+    let share = |value: f64, centre: f64, half: f64| if half > 0.0 { (value - centre) / half } else { 0.0 };
+    let reach = fast.max(-slow);
+    let phase = |(x, v): (&f64, &f64)| {
+        let position = share(*x, 0.5 * (low + high), 0.5 * (high - low));
+        position.atan2(share(*v, 0.0, reach)).to_degrees().rem_euclid(360.0)
+    };
+    record.positions().iter().zip(record.velocities()).map(phase).collect()
+}

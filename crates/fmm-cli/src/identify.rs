@@ -1,0 +1,170 @@
+//! Friction out of the record of a vibration: `fmm identify FILE` and `fmm compare FILE`.
+//!
+//! Reads a record of displacement, velocity or acceleration, prepares it, fits it by one law or by several, and gives out what was found,
+//! how sure it is, and what the record could not tell. What a channel measured is told by its unit, or by a word in its name, or by
+//! options; what would be a guess is refused.
+
+use std::error::Error;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::Duration;
+
+use crate::input::{Choice, Given, ModeWanted, Question, mode_wanted};
+use clap::Args;
+use crate::output::{Output, drawn, print};
+use crate::figure::{self, Layer, Panel, Role};
+use fmm_fit::{Options, Progress};
+use fmm_frf::IsolatedMode;
+use fmm_identify::{Candidate, Comparison, Drive, Experiment, Preparation, compare_observed, search_observed};
+use fmm_record::{Column, Quantity, Record, Request};
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Identifies the friction of a machine from the record of its free vibration.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    given: Given,
+    /// Identify one mode of several, the so many-th strongest, from 1 on, or, with a unit, as in 150Hz, the one nearest to a frequency;
+    /// the others are filtered out
+    #[arg(long, value_name = "N|F Hz", value_parser = mode_wanted)]
+    mode: Option<ModeWanted>,
+    #[command(flatten)]
+    question: Question,
+    /// The channel with the measured force (N) that drives the machine; without it and --base, the machine vibrates freely. Without
+    /// mass and stiffness, both are found
+    #[arg(long, value_name = "NAME|INDEX", conflicts_with = "base")]
+    force: Option<Column>,
+    /// The channel with the measured motion of the base that drives the machine, best its acceleration
+    #[arg(long, value_name = "NAME|INDEX")]
+    base: Option<Column>,
+    #[command(flatten)]
+    output: Output,
+}
+
+/// What drives the machine, if something does.
+fn drive(arguments: &Arguments) -> Result<Option<Drive>, Box<dyn Error>> {
+    let (channel, quantity) = match (&arguments.force, &arguments.base) {
+        (Some(channel), _) => (channel, Some(Quantity::Force)),
+        (None, Some(channel)) => (channel, None),
+        (None, None) => return Ok(None),
+    };
+    let file = arguments.given.file.as_ref().ok_or("the bundled record is one of a free vibration; give a file")?;
+    let request = quantity.map_or_else(Request::default, |quantity| Request::default().quantity(quantity));
+    let (time, rate) = (arguments.given.time.clone(), arguments.given.rate);
+    let choice = Choice { channel: Some(channel.clone()), time, rate, request, is_drive: true };
+    let record = choice.read(file)?.record;
+    Ok(Some(if quantity.is_some() { Drive::force(&record)? } else { Drive::base(&record)? }))
+}
+
+/// The experiment of the record, with its drive and its sensor.
+fn experiment(arguments: &Arguments, record: &Record, preparation: &Preparation) -> Result<Experiment, Box<dyn Error>> {
+    let experiment = match drive(arguments)? {
+        Some(drive) => Experiment::driven(record, drive, preparation)?,
+        None => Experiment::ring_down(record, preparation)?,
+    };
+    arguments.question.seen(experiment)
+}
+
+/// Fits all candidates while a line on standard error shows how far they are.
+fn fitted(arguments: &Arguments, decay: &Experiment, candidates: &[Candidate]) -> Result<Comparison, Box<dyn Error>> {
+    let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {msg}")?);
+    bar.enable_steady_tick(Duration::from_millis(100));
+    let decays = std::slice::from_ref(decay);
+    let samples = decay.summary().samples as f64;
+    let show = |law: &str, progress: &Progress<'_>| {
+        let rms = (progress.sum_of_squares() / samples).sqrt();
+        bar.set_message(format!("{law}: step {}, rms residual {rms:.4e}", progress.iterations()));
+        ControlFlow::Continue(())
+    };
+    let (machine, options) = (arguments.question.machine(arguments.force.is_some())?, Options::default());
+    let comparison = if candidates.is_empty() {
+        search_observed(&machine, decays, &arguments.question.search()?, &options, show)
+    } else {
+        compare_observed(&machine, decays, candidates, &options, show)
+    };
+    bar.finish_and_clear();
+    Ok(comparison?)
+}
+
+/// Draws the record with the preferred fit, the decay of its amplitude, and the residuals.
+fn draw(folder: &Path, decay: &Experiment, comparison: &Comparison) -> Result<(), Box<dyn Error>> {
+    let preferred = comparison.preferred();
+    let record = decay.record();
+    let model = preferred.model(std::slice::from_ref(decay), 0).ok_or("the fitted motion cannot be drawn")?;
+    let (unit, quantity) = (record.unit(), record.quantity());
+    let curve = |values: &[f64]| record.times().zip(values.iter().copied()).collect::<Vec<_>>();
+    let residuals: Vec<f64> = record.values().iter().zip(&model).map(|(measured, model)| measured - model).collect();
+
+    let motion = Panel::new("", figure::label(quantity, unit), 330.0)
+        .with(Layer::new(Role::Measured, "measured", curve(record.values())))
+        .with(Layer::new(Role::Fitted, format!("fit by {}", preferred.law()), curve(&model)));
+    let remainder = Panel::new("time / s", figure::label("residual", unit), 210.0).with(Layer::new(
+        Role::Residual,
+        "measured − fit",
+        curve(&residuals),
+    ));
+    figure::stacked(&folder.join("fit.svg"), &[motion, remainder])?;
+
+    let offset = preferred.finding("offset").map_or(0.0, fmm_identify::Finding::value);
+    let measured = decay.peaks().iter().map(|(time, value)| (*time, (value - offset).abs())).collect();
+    let swings = fmm_record::Swings::of(&Record::new(record.start(), record.interval(), model, quantity, unit)?);
+    let fitted = swings.peaks().iter().map(|peak| (peak.time, (peak.value - offset).abs())).collect();
+    let amplitudes = Panel::new("time / s", figure::label("amplitude of each half swing", unit), 380.0)
+        .with(Layer::new(Role::Points, "measured", measured))
+        .with(Layer::new(Role::Fitted, format!("envelope of {}", preferred.law()), fitted));
+    figure::stacked(&folder.join("amplitude.svg"), &[amplitudes])?;
+
+    figure::histogram(&folder.join("residuals.svg"), &figure::label("residual", unit), "residuals", &residuals)?;
+    Ok(())
+}
+
+/// A record, as it was prepared and fitted.
+struct Found {
+    origin: String,
+    decay: Experiment,
+    comparison: Comparison,
+}
+
+/// Reads, prepares and fits the record; by a search unless there are `candidates`.
+fn found(arguments: &Arguments, candidates: &[Candidate]) -> Result<Found, Box<dyn Error>> {
+    let mut input = arguments.given.read()?;
+    if let Some(mode) = arguments.mode {
+        let isolated = IsolatedMode::of(&input.record, &mode.options(&input.record)?)?;
+        let (frequency, edge) = (isolated.frequency, isolated.edge);
+        let how = format!(
+            "the mode at {frequency:.4} Hz, by a filter that looks {edge:.4} s in both directions, which are left out at both ends"
+        );
+        input.origin = format!("{}; {how}", input.origin);
+        input.record = isolated.record;
+    }
+    let preparation = arguments.given.preparation().gain_uncertainty(arguments.question.scale_u);
+    let decay = experiment(arguments, &input.record, &preparation)?;
+    let comparison = fitted(arguments, &decay, candidates)?;
+    Ok(Found { origin: input.origin, decay, comparison })
+}
+
+/// Finds the law that explains a record, or the parameters of those that are named.
+pub(crate) fn identify(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    give_out(arguments, &arguments.question.candidates()?)
+}
+
+/// Compares the laws that are named, or else viscous, dry and both.
+pub(crate) fn compare(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let (candidates, standard) = (arguments.question.candidates()?, Candidate::standard());
+    give_out(arguments, if candidates.is_empty() { &standard } else { &candidates })
+}
+
+fn give_out(arguments: &Arguments, candidates: &[Candidate]) -> Result<(), Box<dyn Error>> {
+    let folder = arguments.output.folder()?;
+    let Found { origin, decay, comparison } = found(arguments, candidates)?;
+    if arguments.output.json {
+        print(serde_json::to_string_pretty(&comparison)?)?;
+    } else {
+        print(format_args!("{origin}\n{comparison}"))?;
+    }
+    if let Some(folder) = folder {
+        draw(folder, &decay, &comparison)?;
+        drawn(folder, "{fit,amplitude,residuals}.svg");
+    }
+    Ok(())
+}

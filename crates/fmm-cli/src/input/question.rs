@@ -1,0 +1,163 @@
+//! What is asked of a record: the machine, the laws, the sensor.
+
+use std::error::Error;
+use std::time::Duration;
+
+use clap::Args;
+use fmm_identify::{Candidate, Experiment, Known, Machine, Search, Sensor};
+use fmm_model::Restoring;
+
+/// The machine, the laws and the sensor.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct Question {
+    /// Relative standard uncertainty of that factor, or of the gain of the instrument
+    #[arg(long, value_name = "RELATIVE", default_value_t = 0.0)]
+    pub(crate) scale_u: f64,
+    /// The laws to compare, such as coulomb,berger+quadratic: names with terms of the machine beside them (linear, quadratic,
+    /// cubic, power, any sign; cubic spring, quintic spring, stop, gap), or all (viscous, coulomb and both); without it, as many as the record asks for. An unknown name is
+    /// answered with the list of laws
+    #[arg(long, value_name = "NAME,..|all", value_delimiter = ',')]
+    pub(crate) law: Vec<String>,
+    /// Begin no further law after so many seconds
+    #[arg(long, value_name = "S", conflicts_with = "law")]
+    time_limit: Option<f64>,
+    /// Hold a fitted parameter of the laws at a value, as in exponent=2; of one law alone as in stribeck.exponent=2
+    #[arg(long, value_name = "[LAW.]NAME=VALUE")]
+    hold: Vec<String>,
+    /// The machine is a pendulum; for a record that is no angle in radians, with the length of the arc that makes one radian
+    #[arg(long, value_name = "LENGTH", num_args = 0..=1, default_missing_value = "1")]
+    pendulum: Option<f64>,
+    /// The moving mass
+    #[arg(long, value_name = "KG", conflicts_with = "stiffness")]
+    mass: Option<f64>,
+    /// Standard uncertainty of the mass
+    #[arg(long, value_name = "KG", requires = "mass", default_value_t = 0.0)]
+    mass_u: f64,
+    /// The stiffness
+    #[arg(long, value_name = "N/M")]
+    stiffness: Option<f64>,
+    /// Standard uncertainty of the stiffness
+    #[arg(long, value_name = "N/M", requires = "stiffness", default_value_t = 0.0)]
+    stiffness_u: f64,
+    /// The machine's own linear damping (N s/m; 1/s if neither mass nor stiffness is given)
+    #[arg(long, value_name = "N S/M")]
+    damping: Option<f64>,
+    /// Standard uncertainty of the damping
+    #[arg(long, value_name = "N S/M", requires = "damping", default_value_t = 0.0)]
+    damping_u: f64,
+    /// The normal load on the contact
+    #[arg(long, value_name = "N")]
+    normal_load: Option<f64>,
+    /// Standard uncertainty of the normal load
+    #[arg(long, value_name = "N", requires = "normal_load", default_value_t = 0.0)]
+    normal_load_u: f64,
+    /// The sensor filters by a Butterworth low-pass filter of this order, with its corner frequency or, without it, one that is
+    /// fitted
+    #[arg(long, value_name = "ORDER[:HZ]", value_parser = low_pass)]
+    low_pass: Option<(usize, Option<f64>)>,
+    /// The sensor is late by this time
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    delay: f64,
+}
+
+/// Order and corner frequency (Hz) of a filter.
+fn low_pass(text: &str) -> Result<(usize, Option<f64>), String> {
+    let (order, corner) = text.split_once(':').map_or((text, None), |(order, corner)| (order, Some(corner)));
+    let order =
+        order.trim().parse().map_err(|_| format!("{order:?} is no order; give ORDER or ORDER:HZ, such as 2:44"))?;
+    let corner = corner.map(|corner| corner.trim().parse().map_err(|_| format!("{corner:?} is no frequency in Hz")));
+    Ok((order, corner.transpose()?))
+}
+
+impl Question {
+    /// The experiment as its sensor sees it.
+    pub(crate) fn seen(&self, experiment: Experiment) -> Result<Experiment, Box<dyn Error>> {
+        let sensor = Sensor::default().with_delay(self.delay)?;
+        let sensor = match self.low_pass {
+            Some((order, Some(corner))) => sensor.with_low_pass(order, corner)?,
+            Some((order, None)) => sensor.with_free_low_pass(order)?,
+            None => sensor,
+        };
+        Ok(experiment.seen_by(sensor)?)
+    }
+
+    /// The machine; of one whose driving force is measured, mass and stiffness may be unknown.
+    pub(crate) fn machine(&self, force_is_measured: bool) -> Result<Machine, Box<dyn Error>> {
+    let mut machine = match (self.mass, self.stiffness) {
+        (Some(mass), _) => Machine::of_mass(Known::new(mass, self.mass_u)?)?,
+        (None, Some(stiffness)) => Machine::of_stiffness(Known::new(stiffness, self.stiffness_u)?)?,
+        (None, None) if force_is_measured => Machine::unknown(),
+        (None, None) => Machine::per_unit_mass(),
+    };
+    if let Some(damping) = self.damping {
+        machine = machine.with_damping(Known::new(damping, self.damping_u)?)?;
+    }
+    if let Some(load) = self.normal_load {
+        machine = machine.with_normal_load(Known::new(load, self.normal_load_u)?)?;
+    }
+    if let Some(length) = self.pendulum {
+        machine = machine.with_restoring(Restoring::sine(length)?);
+    }
+    Ok(machine)
+}
+
+    /// The laws that are named.
+    pub(crate) fn candidates(&self) -> Result<Vec<Candidate>, Box<dyn Error>> {
+    let mut candidates = Vec::new();
+    for law in &self.law {
+        if law == "all" {
+            candidates.extend(Candidate::standard());
+        } else {
+            candidates.push(Candidate::named(law)?);
+        }
+    }
+    for Held { law, name, value } in self.held()? {
+        let mut is_meant = false;
+        for candidate in &mut candidates {
+            if law.as_ref().is_none_or(|law| law == candidate.law_name()) {
+                *candidate = candidate.clone().holding(&name, value)?;
+                is_meant = true;
+            }
+        }
+        if let (false, Some(law)) = (is_meant, law) {
+            return Err(format!("--hold {law}.{name}: {law} is none of the laws to compare").into());
+        }
+    }
+    Ok(candidates)
+}
+
+fn held(&self) -> Result<Vec<Held>, Box<dyn Error>> {
+    let parse = |held: &String| {
+        let (name, value) =
+            held.split_once('=').ok_or("--hold wants NAME=VALUE or LAW.NAME=VALUE, such as exponent=2")?;
+        let value: f64 = value.trim().parse().map_err(|_| format!("--hold {held}: {value:?} is no number"))?;
+        let (law, name) = match name.split_once('.') {
+            Some((law, name)) => (Some(law.trim().to_owned()), name),
+            None => (None, name),
+        };
+        Ok(Held { law, name: name.trim().to_owned(), value })
+    };
+    self.hold.iter().map(parse).collect()
+}
+
+    /// The search for a law, where none is named.
+    pub(crate) fn search(&self) -> Result<Search, Box<dyn Error>> {
+    let mut search = Search::default();
+    for Held { law, name, value } in self.held()? {
+        search = search.holding(law.as_deref(), &name, value);
+    }
+    if let Some(seconds) = self.time_limit {
+        let limit =
+            Duration::try_from_secs_f64(seconds).map_err(|_| format!("--time-limit {seconds}: give seconds"))?;
+        search = search.within(limit);
+    }
+    Ok(search)
+}
+}
+
+/// A parameter that is held, of one law or of all.
+struct Held {
+    law: Option<String>,
+    name: String,
+    value: f64,
+}

@@ -1,0 +1,27 @@
+//! The program `fmm`: friction out of records, from a terminal.
+//!
+//! A thin face of the other crates: it reads arguments and files, shows how far it is, and writes text, JSON, figures and pages; all
+//! mathematics is theirs. `fmm --help` lists the commands.
+//!
+//! [`run`] is the program as a function, and [`figure`] the one place that draws.
+//!
+//! ```
+//! # use std::process::ExitCode;
+//! // What a shell would call as `fmm formats`.
+//! assert_eq!(fmm_cli::run(["fmm", "formats"]), ExitCode::SUCCESS);
+//! ```
+
+mod backbone;
+mod commands;
+pub mod figure;
+mod force;
+mod formats;
+mod frf;
+mod identify;
+mod input;
+mod laws;
+mod output;
+mod scenario;
+mod simulate;
+
+pub use commands::run;

@@ -1,0 +1,43 @@
+//! Where results go: standard output, and folders of figures.
+
+use std::error::Error;
+use std::fmt::Display;
+use std::io::{BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+/// How a result is given out.
+#[derive(Debug, Args)]
+pub(crate) struct Output {
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Write SVG figures into this folder
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+}
+
+impl Output {
+    /// The folder for figures, which exists, if they are asked for.
+    pub(crate) fn folder(&self) -> Result<Option<&Path>, Box<dyn Error>> {
+        let Some(folder) = &self.figures else { return Ok(None) };
+        std::fs::create_dir_all(folder).map_err(|error| format!("cannot create {}: {error}", folder.display()))?;
+        Ok(Some(folder))
+    }
+}
+
+/// Says which figures were written.
+pub(crate) fn drawn(folder: &Path, names: &str) {
+    eprintln!("figures: {}", folder.join(names).display());
+}
+
+/// Prints a result and the end of its line.
+pub(crate) fn print(result: impl Display) -> Result<(), Box<dyn Error>> {
+    let mut out = BufWriter::new(std::io::stdout().lock());
+    match writeln!(out, "{result}").and_then(|()| out.flush()) {
+        // Whoever reads may stop reading.
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        written => Ok(written?),
+    }
+}
