@@ -19,7 +19,13 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let backbone = Backbone::of(&record, &BackboneOptions::default())?;
     for point in backbone.points().iter().step_by(8) {
-        println!("A = {} {}, f = {} Hz, c/m = {} 1/s", point.amplitude, backbone.unit(), point.frequency, point.damping);
+        println!(
+            "A = {} {}, f = {} Hz, c/m = {} 1/s",
+            point.amplitude,
+            backbone.unit(),
+            point.frequency,
+            point.damping
+        );
     }
     println!("suggested: {}", backbone.suggestion());
     // The series of the sine begins with k3 = -1/6.

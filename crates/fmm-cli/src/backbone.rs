@@ -6,10 +6,10 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use crate::input::{Given, ModeWanted, mode_wanted};
-use clap::Args;
-use crate::output::{Output, drawn, print};
 use crate::figure::{self, Layer, Panel, Role, label};
+use crate::input::{Given, ModeWanted, mode_wanted};
+use crate::output::{Output, drawn, print};
+use clap::Args;
 use fmm_frf::{Backbone, BackboneOptions, BackbonePoint, DecayMode, Suggestion, decay_modes};
 use fmm_identify::Experiment;
 use fmm_model::Estimated;
@@ -162,7 +162,7 @@ fn document(decay: &Experiment, modes: &[DecayMode], backbone: &Backbone, sugges
 }
 
 /// Spectrum, record with its envelope, frequency and damping against the amplitude with what is suggested.
-fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggestion) -> Vec<Panel> {
+pub(crate) fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggestion) -> Vec<Panel> {
     let count = record.len();
     let spectrum = Spectrum::of(record.values(), &blackman_harris(count));
     let per_line = spectrum.spacing * record.rate() / count as f64;

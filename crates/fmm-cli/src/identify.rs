@@ -6,13 +6,15 @@
 
 use std::error::Error;
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use crate::figure;
 use crate::input::{Choice, Given, ModeWanted, Question, mode_wanted};
-use clap::Args;
 use crate::output::{Output, drawn, print};
-use crate::figure::{self, Layer, Panel, Role};
+use crate::pictures::Pictures;
+use crate::report;
+use clap::Args;
 use fmm_fit::{Options, Progress};
 use fmm_frf::IsolatedMode;
 use fmm_identify::{Candidate, Comparison, Drive, Experiment, Preparation, compare_observed, search_observed};
@@ -39,6 +41,9 @@ pub(crate) struct Arguments {
     base: Option<Column>,
     #[command(flatten)]
     output: Output,
+    /// Write a page with everything into this file: record, fit, residuals, findings, laws, warnings, and how it was made
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
 }
 
 /// What drives the machine, if something does.
@@ -86,43 +91,22 @@ fn fitted(arguments: &Arguments, decay: &Experiment, candidates: &[Candidate]) -
     Ok(comparison?)
 }
 
-/// Draws the record with the preferred fit, the decay of its amplitude, and the residuals.
+/// Writes the record with the preferred fit, the decay of its amplitude, and the residuals as figures.
 fn draw(folder: &Path, decay: &Experiment, comparison: &Comparison) -> Result<(), Box<dyn Error>> {
-    let preferred = comparison.preferred();
-    let record = decay.record();
-    let model = preferred.model(std::slice::from_ref(decay), 0).ok_or("the fitted motion cannot be drawn")?;
-    let (unit, quantity) = (record.unit(), record.quantity());
-    let curve = |values: &[f64]| record.times().zip(values.iter().copied()).collect::<Vec<_>>();
-    let residuals: Vec<f64> = record.values().iter().zip(&model).map(|(measured, model)| measured - model).collect();
-
-    let motion = Panel::new("", figure::label(quantity, unit), 330.0)
-        .with(Layer::new(Role::Measured, "measured", curve(record.values())))
-        .with(Layer::new(Role::Fitted, format!("fit by {}", preferred.law()), curve(&model)));
-    let remainder = Panel::new("time / s", figure::label("residual", unit), 210.0).with(Layer::new(
-        Role::Residual,
-        "measured − fit",
-        curve(&residuals),
-    ));
-    figure::stacked(&folder.join("fit.svg"), &[motion, remainder])?;
-
-    let offset = preferred.finding("offset").map_or(0.0, fmm_identify::Finding::value);
-    let measured = decay.peaks().iter().map(|(time, value)| (*time, (value - offset).abs())).collect();
-    let swings = fmm_record::Swings::of(&Record::new(record.start(), record.interval(), model, quantity, unit)?);
-    let fitted = swings.peaks().iter().map(|peak| (peak.time, (peak.value - offset).abs())).collect();
-    let amplitudes = Panel::new("time / s", figure::label("amplitude of each half swing", unit), 380.0)
-        .with(Layer::new(Role::Points, "measured", measured))
-        .with(Layer::new(Role::Fitted, format!("envelope of {}", preferred.law()), fitted));
-    figure::stacked(&folder.join("amplitude.svg"), &[amplitudes])?;
-
-    figure::histogram(&folder.join("residuals.svg"), &figure::label("residual", unit), "residuals", &residuals)?;
+    let pictures = Pictures::of(decay, comparison)?;
+    figure::stacked(&folder.join("fit.svg"), &pictures.fit)?;
+    figure::stacked(&folder.join("amplitude.svg"), &pictures.amplitude)?;
+    let unit = figure::label("residual", decay.record().unit());
+    figure::histogram(&folder.join("residuals.svg"), &unit, "residuals", &pictures.residuals)?;
     Ok(())
 }
 
 /// A record, as it was prepared and fitted.
-struct Found {
-    origin: String,
-    decay: Experiment,
-    comparison: Comparison,
+pub(crate) struct Found {
+    /// The file, the channel, what it was taken for.
+    pub(crate) origin: String,
+    pub(crate) decay: Experiment,
+    pub(crate) comparison: Comparison,
 }
 
 /// Reads, prepares and fits the record; by a search unless there are `candidates`.
@@ -156,15 +140,20 @@ pub(crate) fn compare(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 
 fn give_out(arguments: &Arguments, candidates: &[Candidate]) -> Result<(), Box<dyn Error>> {
     let folder = arguments.output.folder()?;
-    let Found { origin, decay, comparison } = found(arguments, candidates)?;
+    let found = found(arguments, candidates)?;
     if arguments.output.json {
-        print(serde_json::to_string_pretty(&comparison)?)?;
+        print(serde_json::to_string_pretty(&found.comparison)?)?;
     } else {
-        print(format_args!("{origin}\n{comparison}"))?;
+        print(format_args!("{}\n{}", found.origin, found.comparison))?;
     }
     if let Some(folder) = folder {
-        draw(folder, &decay, &comparison)?;
+        draw(folder, &found.decay, &found.comparison)?;
         drawn(folder, "{fit,amplitude,residuals}.svg");
+    }
+    if let Some(path) = &arguments.report {
+        let page = report::document(&found, arguments.given.bytes()?.as_ref())?;
+        std::fs::write(path, page).map_err(|error| format!("cannot write {}: {error}", path.display()))?;
+        eprintln!("report: {}", path.display());
     }
     Ok(())
 }

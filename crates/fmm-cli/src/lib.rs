@@ -21,6 +21,9 @@ mod identify;
 mod input;
 mod laws;
 mod output;
+pub mod page;
+mod pictures;
+mod report;
 mod scenario;
 mod simulate;
 

@@ -146,8 +146,8 @@ pub use comparison::{
     NestedComparison, ResidualCount, Verdict, f_tail, f_test,
 };
 pub use diagnostics::{
-    NormalityTest, ResidualDiagnostics, RunsTest, anderson_darling, autocorrelation_time, durbin_watson,
-    effective_count, runs_test,
+    NormalityTest, ResidualDiagnostics, RunsTest, anderson_darling, autocorrelation, autocorrelation_time,
+    durbin_watson, effective_count, runs_test,
 };
 pub use fmm_model::{Bounds, Dual, ModelError, Parameter, Scalar};
 pub use problem::{

@@ -9,9 +9,9 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use clap::Args;
-use crate::output::{Output, drawn, print};
 use crate::figure::{self, Layer, Panel, Role, label};
+use crate::output::{Output, drawn, print};
+use clap::Args;
 use fmm_identify::{
     Estimated, ForceIdentification, ForceLoop, ForceModel, ForceRecord, Onset, SpeedBin, compare_force,
 };

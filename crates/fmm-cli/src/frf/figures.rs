@@ -5,8 +5,8 @@ use std::path::Path;
 use fmm_frf::{Complex64, FrequencyResponse};
 
 use super::analysis::Analysis;
-use crate::figure::{self, Layer, Panel, Role};
 use super::trials::Trial;
+use crate::figure::{self, Layer, Panel, Role};
 
 /// Draws force and response, real and imaginary part, and magnitude with phase and coherence, into `folder`.
 ///

@@ -13,9 +13,9 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use crate::output::{Output, drawn, print};
 use analysis::{Analysis, Window};
 use clap::{Args, ValueEnum};
-use crate::output::{Output, drawn, print};
 use fmm_frf::{FrequencyResponse, ResponseForm};
 use fmm_record::Quantity;
 use serde_json::json;
@@ -176,7 +176,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let read = |path: &PathBuf| choice.read(path).map_err(|error| format!("{}: {error}", path.display()));
     let trials = arguments.files.iter().map(read).collect::<Result<Vec<Trial>, _>>()?;
     let analysis = Analysis::of(&trials, form(&trials)?, arguments.window, arguments.exponential_end)?;
-    let text = if arguments.output.json { document(&trials, &analysis).to_string() } else { report(&trials, &analysis)? };
+    let text =
+        if arguments.output.json { document(&trials, &analysis).to_string() } else { report(&trials, &analysis)? };
     print(text.trim_end())?;
     if let Some(folder) = arguments.output.folder()? {
         figures::draw(folder, &trials, &analysis)?;
@@ -184,4 +185,3 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     Ok(())
 }
-

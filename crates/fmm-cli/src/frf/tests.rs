@@ -9,7 +9,6 @@ use fmm_record::{Quantity, Record};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-
 use super::analysis::{Analysis, Window};
 use super::trials::{Choice, Trial};
 

@@ -5,6 +5,7 @@ mod source;
 #[cfg(test)]
 mod tests;
 
+use std::borrow::Cow;
 use std::error::Error;
 use std::path::PathBuf;
 
@@ -14,6 +15,7 @@ use fmm_identify::Preparation;
 use fmm_record::{Column, Quantity, Record, Request, Unit};
 
 pub(crate) use question::Question;
+use source::BUNDLED;
 pub(crate) use source::{Choice, Input};
 
 /// Which file, which channel of it, and what that measured.
@@ -109,6 +111,16 @@ impl Given {
     pub(crate) fn preparation(&self) -> Preparation {
         let from = self.from.map_or_else(Preparation::default, |from| Preparation::default().from(from));
         self.to.map_or(from, |to| from.to(to))
+    }
+
+    /// The bytes of the file.
+    pub(crate) fn bytes(&self) -> Result<Cow<'static, [u8]>, Box<dyn Error>> {
+        Ok(match &self.file {
+            None => Cow::Borrowed(BUNDLED.1),
+            Some(file) => {
+                Cow::Owned(std::fs::read(file).map_err(|error| format!("cannot read {}: {error}", file.display()))?)
+            }
+        })
     }
 
     /// The record, with warnings on the screen.

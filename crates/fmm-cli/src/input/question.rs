@@ -83,76 +83,76 @@ impl Question {
 
     /// The machine; of one whose driving force is measured, mass and stiffness may be unknown.
     pub(crate) fn machine(&self, force_is_measured: bool) -> Result<Machine, Box<dyn Error>> {
-    let mut machine = match (self.mass, self.stiffness) {
-        (Some(mass), _) => Machine::of_mass(Known::new(mass, self.mass_u)?)?,
-        (None, Some(stiffness)) => Machine::of_stiffness(Known::new(stiffness, self.stiffness_u)?)?,
-        (None, None) if force_is_measured => Machine::unknown(),
-        (None, None) => Machine::per_unit_mass(),
-    };
-    if let Some(damping) = self.damping {
-        machine = machine.with_damping(Known::new(damping, self.damping_u)?)?;
+        let mut machine = match (self.mass, self.stiffness) {
+            (Some(mass), _) => Machine::of_mass(Known::new(mass, self.mass_u)?)?,
+            (None, Some(stiffness)) => Machine::of_stiffness(Known::new(stiffness, self.stiffness_u)?)?,
+            (None, None) if force_is_measured => Machine::unknown(),
+            (None, None) => Machine::per_unit_mass(),
+        };
+        if let Some(damping) = self.damping {
+            machine = machine.with_damping(Known::new(damping, self.damping_u)?)?;
+        }
+        if let Some(load) = self.normal_load {
+            machine = machine.with_normal_load(Known::new(load, self.normal_load_u)?)?;
+        }
+        if let Some(length) = self.pendulum {
+            machine = machine.with_restoring(Restoring::sine(length)?);
+        }
+        Ok(machine)
     }
-    if let Some(load) = self.normal_load {
-        machine = machine.with_normal_load(Known::new(load, self.normal_load_u)?)?;
-    }
-    if let Some(length) = self.pendulum {
-        machine = machine.with_restoring(Restoring::sine(length)?);
-    }
-    Ok(machine)
-}
 
     /// The laws that are named.
     pub(crate) fn candidates(&self) -> Result<Vec<Candidate>, Box<dyn Error>> {
-    let mut candidates = Vec::new();
-    for law in &self.law {
-        if law == "all" {
-            candidates.extend(Candidate::standard());
-        } else {
-            candidates.push(Candidate::named(law)?);
-        }
-    }
-    for Held { law, name, value } in self.held()? {
-        let mut is_meant = false;
-        for candidate in &mut candidates {
-            if law.as_ref().is_none_or(|law| law == candidate.law_name()) {
-                *candidate = candidate.clone().holding(&name, value)?;
-                is_meant = true;
+        let mut candidates = Vec::new();
+        for law in &self.law {
+            if law == "all" {
+                candidates.extend(Candidate::standard());
+            } else {
+                candidates.push(Candidate::named(law)?);
             }
         }
-        if let (false, Some(law)) = (is_meant, law) {
-            return Err(format!("--hold {law}.{name}: {law} is none of the laws to compare").into());
+        for Held { law, name, value } in self.held()? {
+            let mut is_meant = false;
+            for candidate in &mut candidates {
+                if law.as_ref().is_none_or(|law| law == candidate.law_name()) {
+                    *candidate = candidate.clone().holding(&name, value)?;
+                    is_meant = true;
+                }
+            }
+            if let (false, Some(law)) = (is_meant, law) {
+                return Err(format!("--hold {law}.{name}: {law} is none of the laws to compare").into());
+            }
         }
+        Ok(candidates)
     }
-    Ok(candidates)
-}
 
-fn held(&self) -> Result<Vec<Held>, Box<dyn Error>> {
-    let parse = |held: &String| {
-        let (name, value) =
-            held.split_once('=').ok_or("--hold wants NAME=VALUE or LAW.NAME=VALUE, such as exponent=2")?;
-        let value: f64 = value.trim().parse().map_err(|_| format!("--hold {held}: {value:?} is no number"))?;
-        let (law, name) = match name.split_once('.') {
-            Some((law, name)) => (Some(law.trim().to_owned()), name),
-            None => (None, name),
+    fn held(&self) -> Result<Vec<Held>, Box<dyn Error>> {
+        let parse = |held: &String| {
+            let (name, value) =
+                held.split_once('=').ok_or("--hold wants NAME=VALUE or LAW.NAME=VALUE, such as exponent=2")?;
+            let value: f64 = value.trim().parse().map_err(|_| format!("--hold {held}: {value:?} is no number"))?;
+            let (law, name) = match name.split_once('.') {
+                Some((law, name)) => (Some(law.trim().to_owned()), name),
+                None => (None, name),
+            };
+            Ok(Held { law, name: name.trim().to_owned(), value })
         };
-        Ok(Held { law, name: name.trim().to_owned(), value })
-    };
-    self.hold.iter().map(parse).collect()
-}
+        self.hold.iter().map(parse).collect()
+    }
 
     /// The search for a law, where none is named.
     pub(crate) fn search(&self) -> Result<Search, Box<dyn Error>> {
-    let mut search = Search::default();
-    for Held { law, name, value } in self.held()? {
-        search = search.holding(law.as_deref(), &name, value);
+        let mut search = Search::default();
+        for Held { law, name, value } in self.held()? {
+            search = search.holding(law.as_deref(), &name, value);
+        }
+        if let Some(seconds) = self.time_limit {
+            let limit =
+                Duration::try_from_secs_f64(seconds).map_err(|_| format!("--time-limit {seconds}: give seconds"))?;
+            search = search.within(limit);
+        }
+        Ok(search)
     }
-    if let Some(seconds) = self.time_limit {
-        let limit =
-            Duration::try_from_secs_f64(seconds).map_err(|_| format!("--time-limit {seconds}: give seconds"))?;
-        search = search.within(limit);
-    }
-    Ok(search)
-}
 }
 
 /// A parameter that is held, of one law or of all.

@@ -29,7 +29,7 @@ pub(crate) struct Choice {
 }
 
 /// A bicycle fork that swings as a pendulum, for those who have no record at hand.
-const BUNDLED: (&str, &[u8]) =
+pub(super) const BUNDLED: (&str, &[u8]) =
     ("BrowserForkCompoundFirst1.mat", include_bytes!("../../data/BrowserForkCompoundFirst1.mat"));
 
 impl Choice {

@@ -23,6 +23,21 @@ pub fn durbin_watson(residuals: &[f64]) -> Option<f64> {
     (residuals.len() > 1 && squares > 0.0 && changes.is_finite() && squares.is_finite()).then(|| changes / squares)
 }
 
+/// ρ_k, the autocorrelation of the residuals at this `lag` (samples), about zero; of white noise within ±1.96/√n in 95 of 100 cases.
+/// `None` for a lag that leaves no pair, or if the residuals are all zero or not finite.
+///
+/// ```text
+/// ρ_k = Σ rᵢ rᵢ₊ₖ / Σ rᵢ²
+/// ```
+///
+/// ```
+/// assert_eq!(fmm_fit::autocorrelation(&[1.0, -1.0, 1.0, -1.0], 1), Some(-0.75));
+/// ```
+pub fn autocorrelation(residuals: &[f64], lag: usize) -> Option<f64> {
+    let variance = mean_product(residuals, 0);
+    (lag < residuals.len() && variance > 0.0 && variance.is_finite()).then(|| mean_product(residuals, lag) / variance)
+}
+
 /// Integrated autocorrelation time of the residuals, in samples: how many neighbours tell no more than one.
 ///
 /// ```text

@@ -1,8 +1,8 @@
 //! Figures 3 to 6, as far as they can be computed.
 
 use super::motion::FreeVibration;
-use fmm_cli::figure::{Layer, Panel, Role, label};
 use crate::{Chapter, Found};
+use fmm_cli::figure::{Layer, Panel, Role, label};
 
 /// Draws the releases from 6 mm and from 22 mm.
 pub(super) fn draw(chapter: &mut Chapter, six: &FreeVibration, twenty_two: &FreeVibration) -> Found<()> {

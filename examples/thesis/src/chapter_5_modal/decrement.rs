@@ -5,9 +5,9 @@ use fmm_identify::{Experiment, Preparation, decrements};
 
 use super::program_a2;
 use super::simulated::{machine, motion, record};
-use fmm_cli::figure::{Layer, Panel, Role, label};
 use crate::printed::{INSTANTANEOUS_SLOPE, MACHINE};
 use crate::{Chapter, Criterion, Found, Settings, Target};
+use fmm_cli::figure::{Layer, Panel, Role, label};
 
 /// White noise (m/s) of the record of the targets and of Fig. 10.
 const NOISE: f64 = 1e-5;

@@ -7,10 +7,10 @@ use super::identifiability::NOISE;
 use super::regressions::table_1_line;
 use super::simulated::{a1_of_stiffness, machine, motion, record, rms, samples};
 use super::windows::Column;
-use fmm_cli::figure::{Layer, Panel, Role, label};
 use crate::printed::{INSTANTANEOUS_SLOPE, MACHINE, TABLE_1};
 use crate::ring_down::INTERVAL;
 use crate::{Chapter, Found, Settings};
+use fmm_cli::figure::{Layer, Panel, Role, label};
 
 /// Release of the record of Figs 8 and 9 (m), that of program A1.
 const RELEASE: f64 = 0.02;

@@ -1,10 +1,10 @@
 //! What the columns of Table 3 are, by arithmetic alone.
 
 use super::computed::Computed;
-use fmm_cli::figure::label;
 use crate::printed::{MACHINE_DEVIATIONS, TABLE_3};
 use crate::table_3::VARIED;
 use crate::{Chapter, Criterion, Target};
+use fmm_cli::figure::label;
 
 /// Columns 3 to 5 as printed.
 pub(super) fn of_table_3(chapter: &mut Chapter, computed: &Computed) {

@@ -3,10 +3,10 @@
 use fmm_fit::{StraightLine, Weighting};
 
 use super::computed::{Computed, KICKS};
-use fmm_cli::figure;
 use crate::printed::{MACHINE_DEVIATIONS, TABLE_1, TABLE_3};
 use crate::table_3::{ROWS, Row, TRUTH, VARIED};
 use crate::{Chapter, Criterion, Drawing, Found, Settings, Target};
+use fmm_cli::figure;
 
 /// u(μ) of each row from derivatives in 256-bit arithmetic and the printed standard deviations (10⁻⁶).
 const GOLDEN: [f64; 4] = [67.517, 5.732, 237.63, 247.10];

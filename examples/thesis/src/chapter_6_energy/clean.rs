@@ -7,10 +7,10 @@ use fmm_sim::{Engine, Scenario, Thesis};
 use fmm_uq::Observations;
 
 use super::{Example, SLOWEST, friction};
-use fmm_cli::figure::{Layer, Panel, Role};
 use crate::ring_down::{INTERVAL, over_time, velocity_record};
 use crate::target::number;
 use crate::{Chapter, Criterion, Found, Target};
+use fmm_cli::figure::{Layer, Panel, Role};
 
 pub(super) fn add(chapter: &mut Chapter, example: &Example) -> Found<()> {
     let difference = exact_difference(example)?;

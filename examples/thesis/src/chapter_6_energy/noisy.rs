@@ -5,9 +5,9 @@ use fmm_record::{EndRule, Record, Smoothing};
 use fmm_uq::Observations;
 
 use super::{Example, SLOWEST, friction};
-use fmm_cli::figure::{Layer, Panel, Role};
 use crate::ring_down::{INTERVAL, over_time, velocity_record, with_noise};
 use crate::{Chapter, Criterion, Found, Settings, Target};
+use fmm_cli::figure::{Layer, Panel, Role};
 
 /// White noise of the velocity (m/s).
 const NOISE: [f64; 4] = [0.0, 1e-5, 1e-4, 1e-3];

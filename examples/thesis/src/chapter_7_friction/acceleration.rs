@@ -7,10 +7,10 @@ use fmm_record::Record;
 use fmm_sim::{Engine, Event, Exact, Mode, Sampling, Thesis};
 
 use super::{Known, LOAD_4, LOAD_5, Release, fit_panels, largest, seed, value};
-use fmm_cli::figure::{Layer, Panel, Role};
 use crate::printed::TABLE_5;
 use crate::ring_down::{INTERVAL, Viscous};
 use crate::{Chapter, Criterion, Found, Settings, Target};
+use fmm_cli::figure::{Layer, Panel, Role};
 
 /// Truth of the law where it holds: μ₁ while the speed grows, μ₂ while it falls.
 const HYSTERETIC: [f64; 2] = [0.27, 0.23];

@@ -5,10 +5,10 @@ use fmm_friction::{Berger, SlidingLaw};
 use fmm_uq::Observations;
 
 use super::{Known, LOAD_5, Release, fit_panels, largest, rms, seed, value};
-use fmm_cli::figure::{Layer, Panel, Role};
 use crate::printed::TABLE_5;
 use crate::ring_down::Viscous;
 use crate::{Chapter, Criterion, Found, Settings, Target};
+use fmm_cli::figure::{Layer, Panel, Role};
 
 /// White noise of the tests (m/s).
 const NOISE: f64 = 5e-4;

@@ -5,10 +5,10 @@ use fmm_record::{EndRule, Smoothing};
 use fmm_uq::Observations;
 
 use super::{Known, LOAD_4, Release, fit_panels, largest, rms, seed, value};
-use fmm_cli::figure::{Layer, Panel, Role};
 use crate::printed::{MACHINE, TABLE_4};
 use crate::ring_down::{INTERVAL, Viscous, over_time, velocity_record};
 use crate::{Chapter, Criterion, Found, Settings, Target};
+use fmm_cli::figure::{Layer, Panel, Role};
 
 /// White noise of the round trip (m/s).
 const NOISE: f64 = 2e-4;

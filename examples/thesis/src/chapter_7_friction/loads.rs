@@ -5,10 +5,10 @@ use fmm_friction::{Berger, Coulomb, LawFamily};
 use fmm_model::{Bounds, Parameter};
 
 use super::{Known, LOAD_4, LOAD_5, Release, largest, rms, value};
-use fmm_cli::figure::{Layer, Panel, Role};
 use crate::printed::{TABLE_4, TABLE_5};
 use crate::ring_down::Viscous;
 use crate::{Chapter, Criterion, Found, Target};
+use fmm_cli::figure::{Layer, Panel, Role};
 
 /// The loads that are tried (N).
 const LOADS: [f64; 2] = [LOAD_4, LOAD_5];

@@ -18,9 +18,9 @@ use fmm_model::Bounds;
 use fmm_record::Record;
 use fmm_sim::Sampling;
 
-use fmm_cli::figure::{Layer, Panel, Role};
 use crate::ring_down::{INTERVAL, Viscous, machine, motion, over_time, scenario, velocity_record, with_noise};
 use crate::{Chapter, Found, Settings, printed};
+use fmm_cli::figure::{Layer, Panel, Role};
 
 /// The numbers of chapter 7 beside ours.
 ///

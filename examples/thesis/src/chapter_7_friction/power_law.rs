@@ -3,9 +3,9 @@
 use fmm_fit::{PowerLaw, Weighting, f_test};
 
 use super::largest;
-use fmm_cli::figure::{Layer, Panel, Role};
 use crate::printed::{EQUATION_7_2, TABLE_4};
 use crate::{Chapter, Criterion, Found, Target};
+use fmm_cli::figure::{Layer, Panel, Role};
 
 pub(super) fn add(chapter: &mut Chapter) -> Found<()> {
     let columns = TABLE_4.iter().map(|row| (row.1, row.2));

@@ -6,9 +6,9 @@ use fmm_record::Record;
 use fmm_sim::{Engine, Sampling, Thesis};
 
 use super::{Known, LOAD_5, Release, fit_panels, rms, seed, value};
-use fmm_cli::figure::{Layer, Panel, Role};
 use crate::ring_down::{INTERVAL, Viscous, machine, motion, over_time, scenario};
 use crate::{Chapter, Criterion, Found, Settings, Target};
+use fmm_cli::figure::{Layer, Panel, Role};
 
 /// Where A6 starts: γ₁ to γ₅, and γ₆ = 0.
 const A6: [f64; 6] = [0.25, 100.0, 10.0, 0.1, 100.0, 0.0];

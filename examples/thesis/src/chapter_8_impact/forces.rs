@@ -6,8 +6,8 @@ use fmm_uq::Observations;
 
 use super::blows::{Blow, DURATION, FORCE_NOISE, INTERVAL, LEVELS, NOISE, RATE, SPREAD, Test};
 use super::{COEFFICIENT, LOAD, friction_force};
-use fmm_cli::figure::{Layer, Panel, Role};
 use crate::{Chapter, Criterion, Found, Target, printed};
+use fmm_cli::figure::{Layer, Panel, Role};
 
 /// Mass on the shaft (kg), and gravity (m/s²).
 const HUNG: f64 = 0.680;

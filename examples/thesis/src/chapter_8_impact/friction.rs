@@ -9,8 +9,8 @@ use super::blows::{Blow, INTERVAL, NOISE, Spectra, Test, peak_receptance};
 use super::forces::{pulse, velocity_curve};
 use super::receptance::SHOWN;
 use super::{COEFFICIENT, LOAD, linear, parts};
-use fmm_cli::figure::{Layer, Panel, Role};
 use crate::{Chapter, Criterion, Found, Settings, Target, printed};
+use fmm_cli::figure::{Layer, Panel, Role};
 
 /// Assumed relative uncertainty of the hammer's calibration (1).
 const HAMMER: f64 = 0.02;

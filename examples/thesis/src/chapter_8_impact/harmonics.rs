@@ -9,8 +9,8 @@ use fmm_identify::identify_impact;
 use super::blows::{Blow, Spectra, Test};
 use super::friction::{as_in_the_thesis, known_machine};
 use super::{COEFFICIENT, LOAD, decibels, linear, over_frequency};
-use fmm_cli::figure::{Layer, Panel, Role};
 use crate::{Chapter, Criterion, Found, Target};
+use fmm_cli::figure::{Layer, Panel, Role};
 
 /// The highest order that is looked at.
 const HIGHEST: u32 = 9;

@@ -11,9 +11,9 @@ mod receptance;
 
 use fmm_frf::{FrequencyResponse, SingleDegreeOfFreedom};
 
-use fmm_cli::figure::{Layer, Panel, Role, label};
 use crate::{Chapter, Found, Settings, printed};
 use blows::{Blow, LEVELS, Spectra, Test};
+use fmm_cli::figure::{Layer, Panel, Role, label};
 
 /// The numbers of chapter 8 beside ours.
 ///

@@ -8,8 +8,8 @@ use fmm_uq::Observations;
 
 use super::blows::{Blow, DURATION, LEVELS, RATE, SAMPLES, Spectra, Test, peak_receptance};
 use super::{COEFFICIENT, LOAD, decibels, friction_force, linear, over_frequency, parts};
-use fmm_cli::figure::{Layer, Panel, Role};
 use crate::{Chapter, Criterion, Found, Target, printed};
+use fmm_cli::figure::{Layer, Panel, Role};
 
 /// Expected largest receptances (mm/N) of the three levels.
 const EXPECTED: [f64; 3] = [3.510, 5.034, 5.787];

@@ -6,10 +6,10 @@ use fmm_identify::{Experiment, Offset, Preparation, WindowFit, Windows};
 use fmm_model::{Damping, Oscillator};
 use fmm_sim::{Engine as _, Exact, Excitation, Sampling, Scenario};
 
-use fmm_cli::figure::{Layer, Panel, Role, label};
 use crate::printed::{EQUATION_5_5, INSTANTANEOUS_SLOPE, MACHINE, TABLE_1};
 use crate::ring_down::{INTERVAL, motion, scenario, velocity_record, with_noise};
 use crate::{Chapter, Criterion, Found, Settings, Target};
+use fmm_cli::figure::{Layer, Panel, Role, label};
 
 /// White noise (m/s), displacement (m), and length (s) of the longest record.
 const NOISE: f64 = 5e-4;

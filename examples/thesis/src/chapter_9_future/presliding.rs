@@ -8,10 +8,10 @@ use fmm_record::Record;
 use fmm_sim::Sampling;
 
 use super::{candidates, side_by_side};
-use fmm_cli::figure::{Layer, Panel, Role};
 use crate::printed::{LOADS, MACHINE};
 use crate::ring_down::{self, INTERVAL, Viscous, over_time, velocity_record, with_noise};
 use crate::{Chapter, Criterion, Found, Settings, Target};
+use fmm_cli::figure::{Layer, Panel, Role};
 
 /// Normal load (N), displacement (m), white noise (m/s), and samples of a record.
 const LOAD: f64 = LOADS[1];

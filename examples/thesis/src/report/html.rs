@@ -2,38 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use fmm_cli::page::{cell, escaped, figure as picture, marked, table, text_cell};
+
 use super::errata::Erratum;
-use super::svg;
-use super::text::{escaped, marked};
 use crate::{Drawing, Finding, Table, Target};
-
-/// Rows of cells that are HTML already, under headings that are text.
-pub(super) fn table(class: &str, headings: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let head = headings.iter().map(|heading| format!("<th scope=\"col\">{}</th>", escaped(heading)));
-    let body = rows.into_iter().map(|cells| format!("<tr>{}</tr>\n", cells.concat()));
-    let [head, body] = [head.collect::<Vec<_>>(), body.collect()].map(|parts| parts.concat());
-    // The table may be wider than a small screen, the page not.
-    format!(
-        "<div class=\"wide\"><table class=\"{class}\">\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table></div>\n"
-    )
-}
-
-/// A cell of HTML.
-pub(super) fn cell(html: &str) -> String {
-    format!("<td>{html}</td>")
-}
-
-/// A cell with text, kept on one line if it is a number.
-pub(super) fn text_cell(text: &str) -> String {
-    let class = if is_number(text) { " class=\"number\"" } else { "" };
-    format!("<td{class}>{}</td>", escaped(text))
-}
-
-/// Whether the text is a number, perhaps with a sign, a tolerance or a per cent sign, or stands for none.
-fn is_number(text: &str) -> bool {
-    let first = text.split([' ', '±', '%']).next().unwrap_or_default();
-    matches!(text, "–" | "") || first.replace('−', "-").parse::<f64>().is_ok()
-}
 
 /// A table of the thesis beside ours.
 pub(super) fn printed_table(content: &Table) -> String {
@@ -114,12 +86,7 @@ pub(super) fn whole_erratum(erratum: &Erratum, known: impl Fn(&str) -> bool) -> 
 
 /// A picture with its caption; `id` must be unique within the page.
 pub(super) fn figure(drawing: &Drawing, id: &str) -> String {
-    let label = format!("{id}-caption");
-    format!(
-        "<figure id=\"{id}\">{}\n<figcaption id=\"{label}\">{}</figcaption></figure>\n",
-        svg::inline(&drawing.svg, id, &label),
-        escaped(&drawing.caption)
-    )
+    picture(&drawing.svg, &drawing.caption, id)
 }
 
 /// A link to a target or an erratum.
@@ -131,19 +98,4 @@ pub(super) fn reference(id: &str) -> String {
 /// With a full stop, if it does not end with one.
 fn sentence(text: &str) -> String {
     if text.ends_with('.') { text.to_owned() } else { format!("{text}.") }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_told_from_words() {
-        for number in ["1.5", "−0.00023763", "552 ± 1.2", "+5.2 %", "6.75123e−5", "–"] {
-            assert!(is_number(number), "{number}");
-        }
-        for words in ["six", "inferred: steel", "≤ 5.0", "length / mm", "3, 5, 7"] {
-            assert!(!is_number(words), "{words}");
-        }
-    }
 }

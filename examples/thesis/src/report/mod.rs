@@ -4,8 +4,6 @@ mod errata;
 mod html;
 mod page;
 mod program;
-mod svg;
-mod text;
 mod versions;
 
 pub use errata::{Erratum, errata};

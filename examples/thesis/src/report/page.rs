@@ -2,16 +2,14 @@
 
 use std::collections::BTreeSet;
 
+use fmm_cli::page::{cell, escaped, page as whole_page, table, text_cell};
+
 use super::errata::Erratum;
-use super::html::{
-    cell, figure, finding, printed_table, reference, short_erratum, table, target_row, text_cell, whole_erratum,
-};
-use super::text::escaped;
+use super::html::{figure, finding, printed_table, reference, short_erratum, target_row, whole_erratum};
 use super::versions::versions;
 use super::{Outcome, Report};
 use crate::{Chapter, Kind, Target};
 
-const STYLE: &str = include_str!("style.css");
 const TITLE: &str = "Friction measurement during free vibration: the thesis and ours";
 
 /// The kinds of numbers and what each is worth.
@@ -31,15 +29,13 @@ pub(super) fn page(report: &Report, errata: &[Erratum]) -> String {
     let mut anchored = BTreeSet::new();
     let chapters: String = report.outcomes.iter().map(|outcome| chapter(outcome, errata, &mut anchored)).collect();
     let all: String = errata.iter().map(|erratum| whole_erratum(erratum, |id| known.contains(id))).collect();
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
-         <style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n{}{chapters}\
-         <section id=\"errata\"><h2>Errata</h2>\n{all}</section>\n{}</main>\n</body>\n</html>\n",
+    let body = format!(
+        "<h1>{}</h1>\n{}{chapters}<section id=\"errata\"><h2>Errata</h2>\n{all}</section>\n{}",
+        escaped(TITLE),
         head(report),
-        making(report),
-        title = escaped(TITLE),
-    )
+        making(report)
+    );
+    whole_page(TITLE, &body)
 }
 
 /// Verdict, counts, how to read it, and the way to the chapters.

@@ -1,7 +1,7 @@
 //! Scenarios that should be refused, each with its reason and what would be right.
 
-use crate::scenario::laws;
 use super::{run, with};
+use crate::scenario::laws;
 
 fn refused(scenario: &str) -> String {
     run(scenario).expect_err(scenario).to_string()

@@ -9,7 +9,9 @@ pub(super) fn inline(svg: &str, prefix: &str, label: &str) -> String {
     let body = svg[start..]
         .replace(" id=\"", &format!(" id=\"{prefix}-"))
         .replace("url(#", &format!("url(#{prefix}-"))
-        .replace("href=\"#", &format!("href=\"#{prefix}-"));
+        .replace("href=\"#", &format!("href=\"#{prefix}-"))
+        // HTML knows the name of the language by itself.
+        .replace(" xmlns=\"http://www.w3.org/2000/svg\"", "");
     let opening = body.split('>').next().unwrap_or_default();
     // Without a view box a picture that is made narrower is cut off instead.
     let view_box = match (attribute(opening, "width"), attribute(opening, "height")) {
@@ -33,7 +35,7 @@ mod tests {
     #[test]
     fn ids_of_two_pictures_differ() {
         let svg = concat!(
-            r##"<?xml version="1.0"?><svg width="90" height="50"><clipPath id="c0"/>"##,
+            r##"<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg" width="90" height="50"><clipPath id="c0"/>"##,
             r##"<g clip-path="url(#c0)"/><use href="#c0"/></svg>"##
         );
         let expected = concat!(

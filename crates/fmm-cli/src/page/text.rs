@@ -1,7 +1,7 @@
 //! Text that is safe inside HTML.
 
 /// `text` with the characters that mean something to HTML written as entities.
-pub(super) fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
         match character {
@@ -17,7 +17,7 @@ pub(super) fn escaped(text: &str) -> String {
 }
 
 /// The same, with what stands between backquotes as code.
-pub(super) fn marked(text: &str) -> String {
+pub fn marked(text: &str) -> String {
     let parts = text.split('`').enumerate();
     // An odd number of backquotes leaves the last one as it is.
     let pairs = text.matches('`').count() / 2 * 2;

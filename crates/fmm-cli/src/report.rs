@@ -1,0 +1,182 @@
+//! The report of one record as a page: what was found, how sure it is, and how it was made.
+
+use std::error::Error;
+
+use fmm_fit::{EstimateStatus, autocorrelation, coverage_factor};
+use fmm_frf::{Backbone, BackboneOptions};
+use fmm_identify::{Finding, FittedMotion, Origin};
+use fmm_model::Rounded;
+use sha2::{Digest, Sha256};
+
+use crate::backbone;
+use crate::figure::{Layer, Panel, Role, drawn, drawn_histogram, label};
+use crate::identify::Found;
+use crate::page::{cell, escaped, figure, page, table, text_cell};
+use crate::pictures::Pictures;
+
+/// Coverage probability of intervals (1).
+const LEVEL: f64 = 0.95;
+/// Below this probability a law counts as excluded (1).
+const EXCLUDED: f64 = 5e-4;
+/// Periods over which residuals are correlated with themselves, and points drawn of that.
+const PERIODS: f64 = 2.0;
+const LAGS: usize = 300;
+
+/// The page on what was `found` in a record with these bytes. The same input makes the same page.
+pub(crate) fn document(found: &Found, bytes: &[u8]) -> Result<String, Box<dyn Error>> {
+    let Found { origin, decay, comparison } = found;
+    let name = origin.split(", channel").next().unwrap_or(origin);
+    let pictures = Pictures::of(decay, comparison)?;
+    let json = serde_json::to_string(comparison)?;
+    let title = format!("Friction of {name}");
+    let body = [
+        format!("<h1>{}</h1>\n<p class=\"verdict\">{}</p>\n", escaped(&title), escaped(&comparison.headline())),
+        format!("<p>{}. {}.</p>\n", escaped(origin), escaped(&decay.summary().to_string())),
+        section("Findings", &findings(found)),
+        section("Limits", &warnings(found)),
+        section(
+            "Record and fit",
+            &figure(
+                &drawn(&pictures.fit),
+                "Above: the record, and the motion that is fitted to it. Below: what is left over.",
+                "fit",
+            ),
+        ),
+        section("Laws", &laws(found)),
+        section("Residuals", &residuals(found, &pictures)),
+        section("Amplitude", &amplitude(found, &pictures)),
+        section("How this was made", &making(found, bytes)),
+        // What closes a script ends it, wherever it stands.
+        format!("<script type=\"application/json\" id=\"result\">{}</script>\n", json.replace("</", "<\\/")),
+    ];
+    Ok(page(&title, &body.concat()))
+}
+
+fn section(title: &str, html: &str) -> String {
+    format!("<section><h2>{}</h2>\n{html}</section>\n", escaped(title))
+}
+
+/// Each quantity with its standard uncertainty, and expanded as the GUM asks.
+fn findings(found: &Found) -> String {
+    let row = |finding: &Finding| {
+        let parameter = finding.parameter();
+        let (value, u) = (finding.value(), finding.uncertainty());
+        let rounded = Rounded::new(value, u);
+        let freedom = finding.degrees_of_freedom();
+        let factor = coverage_factor(LEVEL, freedom);
+        let interval = finding.interval(LEVEL).map(|(low, high)| rounded.interval(low, high));
+        let expanded = u.zip(factor).map(|(u, k)| Rounded::new(k * u, None).to_string());
+        let origin = match finding.origin() {
+            Origin::Fitted(EstimateStatus::Fixed) => "held",
+            Origin::Fitted(EstimateStatus::Undetermined) => "not determined",
+            Origin::Fitted(status) if status.is_at_bound() => "at its bound",
+            Origin::Fitted(_) => "fitted",
+            _ => "derived",
+        };
+        let or_none = |text: Option<String>| text_cell(&text.unwrap_or_else(|| "–".to_owned()));
+        vec![
+            format!("<th scope=\"row\">{}</th>", escaped(&parameter.name().replace('_', " "))),
+            text_cell(&rounded.to_string()),
+            text_cell(parameter.unit()),
+            or_none(interval),
+            or_none(factor.filter(|_| u.is_some()).map(|k| format!("{k:.2}"))),
+            or_none(expanded),
+            or_none(u.map(|_| if freedom < 1e5 { format!("{freedom:.0}") } else { "∞".to_owned() })),
+            cell(origin),
+        ]
+    };
+    let headings = ["quantity", "value ± u", "unit", "95 % interval", "k", "U = k u", "ν", "origin"];
+    let preferred = found.comparison.preferred();
+    format!(
+        "<p>By the law {}. u is a standard uncertainty with ν degrees of freedom, U the expanded uncertainty for a coverage probability of \
+         95 % with the coverage factor k (JCGM 100:2008, clauses 6 and G.4).</p>\n{}",
+        escaped(preferred.law()),
+        table("findings", &headings, preferred.findings().iter().map(row))
+    )
+}
+
+fn warnings(found: &Found) -> String {
+    let items: String = found
+        .comparison
+        .warnings()
+        .iter()
+        .map(|warning| format!("<li>{}</li>\n", escaped(&warning.to_string())))
+        .collect();
+    if items.is_empty() { "<p>None was found.</p>\n".to_owned() } else { format!("<ul>\n{items}</ul>\n") }
+}
+
+/// The laws that were tried.
+fn laws(found: &Found) -> String {
+    let comparison = &found.comparison;
+    let best = comparison.scores().iter().copied().fold(f64::INFINITY, f64::min);
+    let standings = comparison.scores().iter().zip(comparison.probabilities());
+    let rows = comparison.identifications().iter().zip(standings).map(|(law, (score, probability))| {
+        let stop = law.motions().iter().find_map(FittedMotion::stop_time);
+        vec![
+            format!("<th scope=\"row\">{}</th>", escaped(law.law())),
+            text_cell(&format!("{:.4e}", law.rms_residual())),
+            text_cell(&law.fit().rank().to_string()),
+            text_cell(&law.motions().iter().map(FittedMotion::half_swings).sum::<usize>().to_string()),
+            text_cell(&stop.map_or_else(|| "–".to_owned(), |time| format!("{time:.4}"))),
+            text_cell(&format!("{:.1}", score - best)),
+            if *probability < EXCLUDED { cell("excluded") } else { text_cell(&format!("{probability:.3}")) },
+        ]
+    });
+    let unit = found.decay.record().unit();
+    let rms = label("rms residual", unit);
+    let headings = ["law", &rms, "rank", "half swings", "rest from / s", "misfit + 2 rank", "probability"];
+    table("laws", &headings, rows)
+}
+
+fn residuals(found: &Found, pictures: &Pictures) -> String {
+    let unit = found.decay.record().unit();
+    let histogram = drawn_histogram(&label("residual", unit), "residuals", &pictures.residuals);
+    let summary = found.decay.summary();
+    let count = pictures.residuals.len();
+    let last = ((PERIODS * summary.rate / summary.frequency) as usize).clamp(1, count.saturating_sub(1).max(1));
+    let correlation = |lag: usize| Some((lag as f64 / summary.rate, autocorrelation(&pictures.residuals, lag)?));
+    let points = (1..=last).step_by(last.div_ceil(LAGS)).filter_map(correlation).collect();
+    let of_noise = 1.96 / (count as f64).sqrt();
+    let ends = |value: f64| vec![(0.0, value), (last as f64 / summary.rate, value)];
+    let panel = Panel::new("lag / s", "autocorrelation", 260.0)
+        .with(Layer::new(Role::Residual, "residuals", points))
+        .with(Layer::new(Role::Reference, "95 % of white noise", ends(of_noise)))
+        .with(Layer::new(Role::ReferenceAgain, "", ends(-of_noise)));
+    figure(
+        &histogram,
+        "The distribution of the residuals, with the normal density of the same mean and deviation.",
+        "histogram",
+    ) + &figure(&drawn(&[panel]), "How the residuals go with themselves at a later time.", "autocorrelation")
+}
+
+/// The amplitudes, and the backbone if the record shows one.
+fn amplitude(found: &Found, pictures: &Pictures) -> String {
+    let amplitudes =
+        figure(&drawn(&pictures.amplitude), "The amplitude of each half swing, measured and fitted.", "amplitude");
+    let record = found.decay.record();
+    let backbone = Backbone::of(record, &BackboneOptions::default()).ok().filter(|_| found.decay.drive().is_none());
+    let backbone = backbone.map_or_else(String::new, |backbone| {
+        let suggestion = backbone.suggestion();
+        let caption = format!(
+            "Without a law: the spectrum, the envelope of the strongest mode, and its frequency and equivalent damping against the \
+             amplitude, with {suggestion}."
+        );
+        figure(&drawn(&backbone::panels(record, &backbone, &suggestion)), &caption, "backbone")
+    });
+    amplitudes + &backbone
+}
+
+/// Version, command, input.
+fn making(found: &Found, bytes: &[u8]) -> String {
+    let digest: String = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+    let command = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
+    let entries = [
+        ("Program", format!("fmm {}", env!("CARGO_PKG_VERSION"))),
+        ("Command", format!("fmm {command}")),
+        ("Input", found.origin.clone()),
+        ("SHA-256 of the input", digest),
+        ("Result for programs", "one JSON document in the element with the id \"result\" of this file".to_owned()),
+    ];
+    let entries = entries.map(|(name, text)| format!("<dt>{name}</dt><dd><code>{}</code></dd>", escaped(&text)));
+    format!("<dl>{}</dl>\n", entries.concat())
+}
