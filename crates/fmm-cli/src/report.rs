@@ -65,7 +65,9 @@ fn findings(found: &Found) -> String {
         let freedom = finding.degrees_of_freedom();
         let factor = coverage_factor(LEVEL, freedom);
         let interval = finding.interval(LEVEL).map(|(low, high)| rounded.interval(low, high));
-        let expanded = u.zip(factor).map(|(u, k)| Rounded::new(k * u, None).to_string());
+        // To the places that an uncertainty of its size deserves.
+        let expanded = u.zip(factor).map(|(u, k)| Rounded::new(0.0, Some(k * u)).to_string());
+        let expanded = expanded.and_then(|text| Some(text.split_once(" ± ")?.1.to_owned()));
         let origin = match finding.origin() {
             Origin::Fitted(EstimateStatus::Fixed) => "held",
             Origin::Fitted(EstimateStatus::Undetermined) => "not determined",

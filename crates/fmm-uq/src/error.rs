@@ -151,6 +151,14 @@ impl UncertaintyError {
         }
     }
 
+    /// Fewer than two groups, or one without observations.
+    pub(crate) fn no_groups(groups: usize) -> Self {
+        let what = format!(
+            "two groups or more are needed, each with an observation at least, but {groups} were given, or one is empty"
+        );
+        Self::Inputs { what }
+    }
+
     /// No trials at all.
     pub(crate) fn no_trials() -> Self {
         Self::OutOfRange { what: "at least one trial is needed, but none was asked for".to_owned(), value: 0.0 }

@@ -84,6 +84,7 @@
 
 mod distributions;
 mod error;
+mod groups;
 mod gum;
 mod inputs;
 mod interval;
@@ -95,6 +96,7 @@ mod report;
 pub use distributions::Distribution;
 pub use error::UncertaintyError;
 pub use fmm_model::Scalar;
+pub use groups::{AnalysisOfVariance, Consensus, Influence, Outlier, Precision, RandomEffects};
 pub use gum::{
     Budget, Contribution, Expanded, Gum, Linearisation, Propagation, SecondOrder, Validation, coverage_factor,
     propagate, validate,

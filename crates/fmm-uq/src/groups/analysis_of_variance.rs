@@ -1,0 +1,158 @@
+//! Analysis of variance of one factor.
+
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+
+use crate::UncertaintyError;
+
+/// Analysis of variance of observations in groups, of equal or unequal numbers.
+///
+/// ```text
+/// SS_b = Σ n_i (ȳ_i − ȳ)²,   ν_b = p − 1            between p groups of n_i observations
+/// SS_w = Σ Σ (y_ij − ȳ_i)²,   ν_w = N − p           within
+/// F = (SS_b/ν_b)/(SS_w/ν_w)
+/// ```
+///
+/// Sums are taken of differences from the first observation and corrected for their rounding, so that a large constant in all
+/// observations costs no digits that they have.
+///
+/// ```
+/// use fmm_uq::AnalysisOfVariance;
+///
+/// let runs = [vec![10.1, 10.3, 10.2], vec![10.6, 10.5, 10.7], vec![10.2, 10.2, 10.1]];
+/// let found = AnalysisOfVariance::of(&runs)?;
+/// assert!(found.f() > 10.0 && found.p_value() < 0.01);
+/// # Ok::<(), fmm_uq::UncertaintyError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct AnalysisOfVariance {
+    pub(super) counts: Vec<usize>,
+    /// About the first observation.
+    means: Vec<f64>,
+    /// Σ (y − ȳ_i)² of each group.
+    pub(super) squares: Vec<f64>,
+    reference: f64,
+    /// About the first observation.
+    mean: f64,
+    between: f64,
+}
+
+impl AnalysisOfVariance {
+    /// Of at least two groups of one observation or more, of two or more in one of them.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::TooFewObservations`]; [`UncertaintyError::Inputs`] for fewer than two groups or an empty one;
+    /// [`UncertaintyError::OutOfRange`] if one is not finite, or the squares are not.
+    pub fn of<G: AsRef<[f64]>>(groups: &[G]) -> Result<Self, UncertaintyError> {
+        if groups.len() < 2 || groups.iter().any(|group| group.as_ref().is_empty()) {
+            return Err(UncertaintyError::no_groups(groups.len()));
+        }
+        let all = || groups.iter().flat_map(|group| group.as_ref().iter().copied());
+        if let Some((index, value)) = all().enumerate().find(|(_, value)| !value.is_finite()) {
+            return Err(UncertaintyError::observation_not_finite(index, value));
+        }
+        let count = all().count();
+        if count <= groups.len() {
+            return Err(UncertaintyError::TooFewObservations { found: count, needed: groups.len() + 1 });
+        }
+        let reference = groups[0].as_ref()[0];
+        let about = |group: &G| group.as_ref().iter().map(|value| value - reference).collect::<Vec<f64>>();
+        let groups: Vec<Vec<f64>> = groups.iter().map(about).collect();
+        let means: Vec<f64> = groups.iter().map(|group| mean(group)).collect();
+        let squares: Vec<f64> = groups.iter().zip(&means).map(|(group, mean)| squares_about(group, *mean)).collect();
+        let mean = sum(groups.iter().flatten().copied()) / count as f64;
+        let between =
+            sum(groups.iter().zip(&means).map(|(group, of_group)| group.len() as f64 * (of_group - mean).powi(2)));
+        if !(between.is_finite() && squares.iter().all(|square| square.is_finite())) {
+            return Err(UncertaintyError::observation_not_finite(0, reference));
+        }
+        Ok(Self { counts: groups.iter().map(Vec::len).collect(), means, squares, reference, mean, between })
+    }
+
+    /// N, number of observations.
+    pub fn observations(&self) -> usize {
+        self.counts.iter().sum()
+    }
+
+    /// ȳ_i, mean of each group (unit of the observations).
+    pub fn means(&self) -> impl Iterator<Item = f64> {
+        self.means.iter().map(|mean| self.reference + mean)
+    }
+
+    /// ȳ, mean of all observations (their unit).
+    pub fn mean(&self) -> f64 {
+        self.reference + self.mean
+    }
+
+    /// SS_b (unit of the observations squared).
+    pub fn between(&self) -> f64 {
+        self.between
+    }
+
+    /// SS_w (unit of the observations squared).
+    pub fn within(&self) -> f64 {
+        sum(self.squares.iter().copied())
+    }
+
+    /// ν_b and ν_w (1).
+    pub fn degrees_of_freedom(&self) -> (f64, f64) {
+        ((self.counts.len() - 1) as f64, (self.observations() - self.counts.len()) as f64)
+    }
+
+    /// SS_b/ν_b and SS_w/ν_w (unit of the observations squared).
+    pub fn mean_squares(&self) -> (f64, f64) {
+        let (between, within) = self.degrees_of_freedom();
+        (self.between / between, self.within() / within)
+    }
+
+    /// F (1); infinite if nothing differs within the groups but something between them, and 0 if nothing differs at all.
+    pub fn f(&self) -> f64 {
+        let (between, within) = self.mean_squares();
+        if between == 0.0 { 0.0 } else { between / within }
+    }
+
+    /// R², share of all squares that lies between the groups (1); 0 if nothing differs.
+    pub fn r_squared(&self) -> f64 {
+        let all = self.between + self.within();
+        if all > 0.0 { self.between / all } else { 0.0 }
+    }
+
+    /// s, standard deviation within the groups (unit of the observations).
+    pub fn residual_standard_deviation(&self) -> f64 {
+        self.mean_squares().1.sqrt()
+    }
+
+    /// Probability of an F as large if all groups had one mean (1).
+    pub fn p_value(&self) -> f64 {
+        let (between, within) = self.degrees_of_freedom();
+        tail_of_f(self.f(), between, within)
+    }
+}
+
+/// The probability with which F of these degrees of freedom exceeds `f`.
+pub(super) fn tail_of_f(f: f64, between: f64, within: f64) -> f64 {
+    if f.is_infinite() {
+        return 0.0;
+    }
+    FisherSnedecor::new(between, within).map_or(1.0, |distribution| distribution.sf(f.max(0.0)))
+}
+
+/// The sum, corrected for its rounding (Neumaier 1974).
+pub(super) fn sum(values: impl Iterator<Item = f64>) -> f64 {
+    let (mut sum, mut lost) = (0.0_f64, 0.0);
+    for value in values {
+        let next = sum + value;
+        lost += if sum.abs() >= value.abs() { (sum - next) + value } else { (value - next) + sum };
+        sum = next;
+    }
+    // What overflows has no rounding to speak of.
+    if sum.is_finite() { sum + lost } else { sum }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    let first = sum(values.iter().copied()) / values.len() as f64;
+    first + sum(values.iter().map(|value| value - first)) / values.len() as f64
+}
+
+fn squares_about(values: &[f64], mean: f64) -> f64 {
+    sum(values.iter().map(|value| (value - mean).powi(2)))
+}

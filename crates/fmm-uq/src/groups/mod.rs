@@ -1,0 +1,9 @@
+//! Groups: results of several runs, operators, specimens or laboratories, and what differs between them.
+
+mod analysis_of_variance;
+mod consensus;
+mod precision;
+
+pub use analysis_of_variance::AnalysisOfVariance;
+pub use consensus::{Consensus, Influence, RandomEffects};
+pub use precision::{Outlier, Precision};
