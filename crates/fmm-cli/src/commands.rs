@@ -9,7 +9,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 
 use crate::output::print;
-use crate::{backbone, force, formats, frf, identify, laws, simulate};
+use crate::{backbone, batch, force, formats, frf, identify, laws, simulate};
 
 /// Friction parameters out of ring-down, driven, force and impact records, with uncertainties that can be defended.
 #[derive(Debug, Parser)]
@@ -42,6 +42,10 @@ enum Command {
     /// Estimate the frequency response of a machine from impact tests
     #[command(allow_negative_numbers = true)]
     Frf(frf::Arguments),
+    /// Identify many records, each by itself and all together
+    Batch(batch::Arguments),
+    /// Put the parts of a campaign together
+    Merge(batch::Merge),
     /// List the laws of friction with their parameters
     Laws,
     /// List the file formats that are read
@@ -76,6 +80,8 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> 
         Command::Backbone(arguments) => backbone::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Frf(arguments) => frf::run(arguments),
+        Command::Batch(arguments) => batch::run(arguments),
+        Command::Merge(arguments) => batch::merge(arguments),
         Command::Laws => laws::run(),
         Command::Formats => formats::run(),
         Command::Completions { shell } => completions(*shell),

@@ -12,6 +12,7 @@
 //! ```
 
 mod backbone;
+mod batch;
 mod commands;
 pub mod figure;
 mod force;

@@ -1,0 +1,144 @@
+//! A campaign: which records, how each is read, and what describes it.
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use clap::CommandFactory;
+use serde::{Deserialize, Serialize};
+
+use super::row::OfRecord;
+
+/// The records of a campaign, in their order.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Campaign {
+    /// Options of `fmm identify` for all of them.
+    pub(crate) options: Vec<String>,
+    /// The column that says which belong together.
+    pub(crate) group: Option<String>,
+    pub(crate) entries: Vec<Entry>,
+}
+
+/// One record of a campaign.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Entry {
+    pub(crate) file: PathBuf,
+    /// Options of `fmm identify` for it alone.
+    pub(crate) options: Vec<String>,
+    /// What describes it, by column.
+    pub(crate) description: BTreeMap<String, String>,
+}
+
+/// What the list of a campaign is called in its folder.
+const LIST: &str = "list.json";
+
+impl Campaign {
+    /// Of files, and of the files in folders, by name.
+    pub(crate) fn of_files(records: &[PathBuf], options: Vec<String>) -> Result<Self, Box<dyn Error>> {
+        let mut files = Vec::new();
+        for path in records {
+            if !path.is_dir() {
+                files.push(path.clone());
+                continue;
+            }
+            let unreadable = |error| format!("cannot read {}: {error}", path.display());
+            let mut inside = Vec::new();
+            for entry in std::fs::read_dir(path).map_err(unreadable)? {
+                let file = entry.map_err(unreadable)?.path();
+                let is_hidden = file.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+                if file.is_file() && !is_hidden {
+                    inside.push(file);
+                }
+            }
+            inside.sort();
+            files.extend(inside);
+        }
+        if files.is_empty() {
+            return Err("there is no record in these folders".into());
+        }
+        let entry = |file| Entry { file, options: Vec::new(), description: BTreeMap::new() };
+        Ok(Self { options, group: None, entries: files.into_iter().map(entry).collect() })
+    }
+
+    /// Of a table with a column `file`.
+    pub(crate) fn of_manifest(
+        path: &Path,
+        options: Vec<String>,
+        group: Option<String>,
+    ) -> Result<Self, Box<dyn Error>> {
+        let refused = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+        let mut reader =
+            csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|error| refused(&error))?;
+        let columns: Vec<String> =
+            reader.headers().map_err(|error| refused(&error))?.iter().map(str::to_owned).collect();
+        let file =
+            columns.iter().position(|column| column == "file").ok_or_else(|| refused(&"there is no column `file`"))?;
+        if let Some(group) = group.as_ref().filter(|group| !columns.contains(group)) {
+            return Err(refused(&format!("there is no column `{group}`; there are {}", columns.join(", "))).into());
+        }
+        let command = OfRecord::command();
+        let is_option =
+            |column: &str| command.get_arguments().any(|option| option.get_long() == Some(&column.replace('_', "-")));
+        let folder = path.parent().unwrap_or_else(|| Path::new(""));
+        let mut entries = Vec::new();
+        for line in reader.records() {
+            let line = line.map_err(|error| refused(&error))?;
+            let mut entry = Entry { file: PathBuf::new(), options: Vec::new(), description: BTreeMap::new() };
+            for (index, (column, cell)) in columns.iter().zip(&line).enumerate() {
+                if index == file {
+                    entry.file = folder.join(cell);
+                    continue;
+                }
+                if is_option(column) && !cell.is_empty() {
+                    entry.options.push(format!("--{}={cell}", column.replace('_', "-")));
+                }
+                entry.description.insert(column.clone(), cell.to_owned());
+            }
+            entries.push(entry);
+        }
+        if entries.is_empty() {
+            return Err(refused(&"the table has no records").into());
+        }
+        Ok(Self { options, group, entries })
+    }
+
+    /// Keeps the list in `folder`.
+    ///
+    /// # Errors
+    /// If another campaign is there.
+    pub(crate) fn keep(&self, folder: &Path) -> Result<(), Box<dyn Error>> {
+        let rows = folder.join("rows");
+        std::fs::create_dir_all(&rows).map_err(|error| format!("cannot create {}: {error}", rows.display()))?;
+        let path = folder.join(LIST);
+        if !path.exists() {
+            return Ok(write_at_once(&path, &serde_json::to_string_pretty(self)?)?);
+        }
+        if Self::read(folder)? == *self {
+            return Ok(());
+        }
+        Err(format!(
+            "{} holds a campaign of other records or options; give another folder, or remove it",
+            folder.display()
+        )
+        .into())
+    }
+
+    /// The campaign whose list is in `folder`.
+    pub(crate) fn read(folder: &Path) -> Result<Self, Box<dyn Error>> {
+        let path = folder.join(LIST);
+        let text = std::fs::read_to_string(&path).map_err(|error| {
+            format!("{} holds no campaign: cannot read {}: {error}", folder.display(), path.display())
+        })?;
+        Ok(serde_json::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?)
+    }
+}
+
+/// Writes a file so that at no time there is a part of it.
+pub(crate) fn write_at_once(path: &Path, text: &str) -> Result<(), String> {
+    // Another process may write the same, and then it is the same.
+    let mut part = path.as_os_str().to_owned();
+    part.push(format!(".part-{}", std::process::id()));
+    let unwritable = |error| format!("cannot write {}: {error}", path.display());
+    std::fs::write(&part, text).map_err(unwritable)?;
+    std::fs::rename(&part, path).map_err(unwritable)
+}

@@ -1,0 +1,176 @@
+//! Many records, one table: `fmm batch` and `fmm merge`.
+//!
+//! Each record is identified by itself, in parallel; one that is refused is a row with its reason. Into a folder, each row is a file of its
+//! own, written at once or not at all, so that a campaign can be cut into shards, killed and resumed at any time.
+
+mod campaign;
+mod row;
+mod summary;
+mod table;
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::output::print;
+use campaign::Campaign;
+use row::Row;
+use summary::Summary;
+
+/// Identifies many records.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The records, or folders of records
+    #[arg(required_unless_present = "manifest")]
+    records: Vec<PathBuf>,
+    /// A CSV table with a column `file`, relative to the table; columns called like an option of `fmm identify` (channel, unit, mass,
+    /// normal_load, …) set it for their record, others (operator, specimen, …) describe it
+    #[arg(long, value_name = "FILE.csv", conflicts_with = "records")]
+    manifest: Option<PathBuf>,
+    /// Write one file for each record into this folder, and with all of them campaign.csv, campaign.json and campaign.html; records that
+    /// are there already are not done again
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Do this part of the records only, as in 2/10; `fmm merge` puts the parts together
+    #[arg(long, value_name = "K/N", value_parser = shard, requires = "out")]
+    shard: Option<(usize, usize)>,
+    /// The column of the manifest that says which records belong together, for repeatability and reproducibility
+    #[arg(long, value_name = "COLUMN", requires = "manifest")]
+    group: Option<String>,
+    /// Search a law for each record, as `fmm identify` does, instead of fitting coulomb_viscous to all
+    #[arg(long)]
+    search: bool,
+    /// Records at a time; as many as there are processors unless given
+    #[arg(long, value_name = "N")]
+    jobs: Option<usize>,
+    /// Print one JSON document instead of the tables
+    #[arg(long)]
+    json: bool,
+    /// After two dashes, options of `fmm identify` for all records, as in -- --unit m/s --mass 10.391
+    #[arg(last = true, value_name = "OPTION")]
+    options: Vec<String>,
+}
+
+/// Puts the rows of a campaign together.
+#[derive(Debug, Args)]
+pub(crate) struct Merge {
+    /// The folder that `fmm batch --out` wrote
+    folder: PathBuf,
+    /// Print one JSON document instead of the tables
+    #[arg(long)]
+    json: bool,
+}
+
+/// The law that is fitted to all records unless another one is asked for.
+const LAW: &str = "coulomb_viscous";
+
+/// The K of K/N, counted from 1, and N.
+fn shard(text: &str) -> Result<(usize, usize), String> {
+    let refused = || format!("{text:?} is no part; give K/N with K from 1 to N, as in 2/10");
+    let (part, all) = text.split_once('/').ok_or_else(refused)?;
+    let (part, all) = (part.trim().parse().map_err(|_| refused())?, all.trim().parse().map_err(|_| refused())?);
+    if (1..=all).contains(&part) { Ok((part, all)) } else { Err(refused()) }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let mut options = arguments.options.clone();
+    if !arguments.search && !options.iter().any(|option| option == "--law" || option.starts_with("--law=")) {
+        options.extend(["--law".to_owned(), LAW.to_owned()]);
+    }
+    let campaign = match &arguments.manifest {
+        Some(manifest) => Campaign::of_manifest(manifest, options, arguments.group.clone())?,
+        None => Campaign::of_files(&arguments.records, options)?,
+    };
+    let jobs = arguments.jobs.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get));
+    let Some(folder) = &arguments.out else {
+        let all: Vec<usize> = (0..campaign.entries.len()).collect();
+        let rows = Mutex::new(vec![None; all.len()]);
+        in_parallel(&all, jobs, |index| {
+            let row = Row::of(&campaign, index);
+            rows.lock().unwrap_or_else(std::sync::PoisonError::into_inner)[index] = Some(row);
+            Ok(())
+        })?;
+        let rows = rows.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        return give_out(&campaign, &rows.into_iter().flatten().collect::<Vec<_>>(), arguments.json);
+    };
+    campaign.keep(folder)?;
+    let (part, parts) = arguments.shard.unwrap_or((1, 1));
+    let waiting: Vec<usize> =
+        (part - 1..campaign.entries.len()).step_by(parts).filter(|index| Row::read(folder, *index).is_none()).collect();
+    in_parallel(&waiting, jobs, |index| Row::of(&campaign, index).write(folder, index))?;
+    if arguments.shard.is_some() {
+        eprintln!("part {part} of {parts} is done; `fmm merge {}` puts all together", folder.display());
+        return Ok(());
+    }
+    put_together(folder, &campaign, arguments.json)
+}
+
+pub(crate) fn merge(arguments: &Merge) -> Result<(), Box<dyn Error>> {
+    let campaign = Campaign::read(&arguments.folder)?;
+    put_together(&arguments.folder, &campaign, arguments.json)
+}
+
+fn put_together(folder: &Path, campaign: &Campaign, json: bool) -> Result<(), Box<dyn Error>> {
+    let rows: Vec<Option<Row>> = (0..campaign.entries.len()).map(|index| Row::read(folder, index)).collect();
+    let missing = rows.iter().filter(|row| row.is_none()).count();
+    if missing > 0 {
+        return Err(format!(
+            "{missing} of {} records are still to be done; run the parts that are missing",
+            rows.len()
+        )
+        .into());
+    }
+    let rows: Vec<Row> = rows.into_iter().flatten().collect();
+    let summary = Summary::of(campaign, &rows);
+    for (name, text) in [
+        ("campaign.csv", table::csv(campaign, &rows)?),
+        ("campaign.json", table::document(&rows, &summary)?),
+        ("campaign.html", table::page(campaign, &rows, &summary)),
+    ] {
+        campaign::write_at_once(&folder.join(name), &text)?;
+    }
+    eprintln!("written: {}", folder.join("campaign.{csv,json,html}").display());
+    give_out(campaign, &rows, json)
+}
+
+fn give_out(campaign: &Campaign, rows: &[Row], json: bool) -> Result<(), Box<dyn Error>> {
+    let summary = Summary::of(campaign, rows);
+    if json { print(table::document(rows, &summary)?) } else { print(table::text(rows, &summary)) }
+}
+
+/// Does all `tasks`, so many at a time, and shows how far it is; the first error ends it.
+fn in_parallel(
+    tasks: &[usize],
+    jobs: usize,
+    work: impl Fn(usize) -> Result<(), Box<dyn Error + Send + Sync>> + Sync,
+) -> Result<(), Box<dyn Error>> {
+    let bar = ProgressBar::new(tasks.len() as u64)
+        .with_style(ProgressStyle::with_template("{wide_bar} {pos} of {len} records, {eta} left")?);
+    let next = AtomicUsize::new(0);
+    let failed = Mutex::new(None);
+    std::thread::scope(|scope| {
+        for _ in 0..jobs.clamp(1, tasks.len().max(1)) {
+            scope.spawn(|| {
+                while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    if let Err(error) = work(*task) {
+                        next.store(tasks.len(), Ordering::Relaxed);
+                        failed.lock().unwrap_or_else(std::sync::PoisonError::into_inner).get_or_insert(error);
+                    }
+                    bar.inc(1);
+                }
+            });
+        }
+    });
+    bar.finish_and_clear();
+    match failed.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
+        Some(error) => Err(error),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,146 @@
+//! What the records of a campaign say together.
+
+use fmm_model::Estimated;
+use fmm_uq::{Consensus, Interval, Outlier, Precision, RandomEffects};
+use serde::Serialize;
+
+use super::campaign::Campaign;
+use super::row::Row;
+
+/// Coverage probability of intervals (1).
+const LEVEL: f64 = 0.95;
+
+/// Each quantity that two records or more show.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Summary {
+    pub(crate) records: usize,
+    pub(crate) found: usize,
+    pub(crate) quantities: Vec<Quantity>,
+}
+
+/// A quantity of a campaign.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Quantity {
+    pub(crate) name: String,
+    pub(crate) unit: String,
+    /// Records that tell it with an uncertainty.
+    pub(crate) records: usize,
+    /// Records that show it without one, such as on a bound; they are left out.
+    pub(crate) left_out: usize,
+    /// Consensus with random effects after Mandel and Paule, its standard uncertainty, and the interval after Hartung and Knapp.
+    pub(crate) mean: f64,
+    pub(crate) u: f64,
+    pub(crate) interval_95: [f64; 2],
+    /// Standard deviation between the records beyond their uncertainties.
+    pub(crate) between: f64,
+    /// The same after DerSimonian and Laird.
+    pub(crate) between_der_simonian_laird: f64,
+    /// Probability of differences as large if the records differed by their uncertainties only.
+    pub(crate) homogeneity_p: f64,
+    pub(crate) i_squared: f64,
+    /// The mean weighted by the uncertainties alone, as if the records did not differ, with the standard uncertainty that it claims.
+    pub(crate) weighted_mean: [f64; 2],
+    /// The record whose absence moves the consensus most, and by how many standard uncertainties.
+    pub(crate) most_influential: Option<(String, f64)>,
+    /// By groups, if there are any.
+    pub(crate) precision: Option<ByGroup>,
+}
+
+/// Repeatability and reproducibility by the groups of a column.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct ByGroup {
+    pub(crate) groups: Vec<String>,
+    pub(crate) means: Vec<f64>,
+    pub(crate) repeatability: f64,
+    pub(crate) between: f64,
+    pub(crate) reproducibility: f64,
+    /// Probability of means as different if all groups were alike.
+    pub(crate) p_value: f64,
+    /// Mandel's statistics of each group.
+    pub(crate) h: Vec<f64>,
+    pub(crate) k: Vec<Option<f64>>,
+    /// The group whose mean lies farthest off (Grubbs), and the one that scatters most (Cochran), with the probability of that by chance.
+    pub(crate) farthest: Option<(String, f64)>,
+    pub(crate) widest: Option<(String, f64)>,
+}
+
+impl Summary {
+    pub(crate) fn of(campaign: &Campaign, rows: &[Row]) -> Self {
+        let mut names: Vec<(&str, &str)> = Vec::new();
+        for value in rows.iter().filter_map(|row| row.found.as_ref()).flat_map(|found| &found.findings) {
+            if !names.contains(&(&value.name, &value.unit)) {
+                names.push((&value.name, &value.unit));
+            }
+        }
+        let quantities =
+            names.into_iter().filter_map(|(name, unit)| Quantity::of(campaign, rows, name, unit)).collect();
+        Self { records: rows.len(), found: rows.iter().filter(|row| row.found.is_some()).count(), quantities }
+    }
+}
+
+impl Quantity {
+    fn of(campaign: &Campaign, rows: &[Row], name: &str, unit: &str) -> Option<Self> {
+        let of_name =
+            |row: &Row| row.value(name).filter(|value| value.unit == unit).map(|value| (value.value, value.u));
+        let shown: Vec<(&Row, f64, Option<f64>)> =
+            rows.iter().filter_map(|row| of_name(row).map(|(value, u)| (row, value, u))).collect();
+        let told: Vec<(&Row, Estimated)> = shown
+            .iter()
+            .filter_map(|(row, value, u)| Some((*row, Estimated::new(*value, u.filter(|u| *u > 0.0)?))))
+            .collect();
+        let results: Vec<Estimated> = told.iter().map(|(_, result)| *result).collect();
+        let consensus = Consensus::of(&results, RandomEffects::MandelPaule).ok()?;
+        let other = Consensus::of(&results, RandomEffects::DerSimonianLaird).ok()?;
+        let Interval { low, high, .. } = consensus.interval(LEVEL).ok()?;
+        let Estimated { value: mean, uncertainty: u } = consensus.mean();
+        let moved = consensus.influences().into_iter().zip(&told).filter_map(|(influence, (row, _))| {
+            Some((row.file.display().to_string(), (influence.without?.value - mean) / u))
+        });
+        let weights: f64 = results.iter().map(|result| result.uncertainty.powi(-2)).sum();
+        let weighted: f64 = results.iter().map(|result| result.value * result.uncertainty.powi(-2)).sum();
+        Some(Self {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            records: told.len(),
+            left_out: shown.len() - told.len(),
+            mean,
+            u,
+            interval_95: [low, high],
+            between: consensus.between(),
+            between_der_simonian_laird: other.between(),
+            homogeneity_p: consensus.p_value(),
+            i_squared: consensus.i_squared(),
+            weighted_mean: [weighted / weights, weights.sqrt().recip()],
+            most_influential: moved.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())),
+            precision: campaign.group.as_ref().and_then(|column| ByGroup::of(column, &told)),
+        })
+    }
+}
+
+impl ByGroup {
+    fn of(column: &str, told: &[(&Row, Estimated)]) -> Option<Self> {
+        let mut groups: Vec<(String, Vec<f64>)> = Vec::new();
+        for (row, result) in told {
+            let group = row.description.get(column)?;
+            match groups.iter_mut().find(|(name, _)| name == group) {
+                Some((_, values)) => values.push(result.value),
+                None => groups.push((group.clone(), vec![result.value])),
+            }
+        }
+        let (names, values): (Vec<String>, Vec<Vec<f64>>) = groups.into_iter().unzip();
+        let precision = Precision::of(&values).ok()?;
+        let named = |outlier: Outlier| (names[outlier.group].clone(), outlier.p_value);
+        Some(Self {
+            means: precision.analysis().means().collect(),
+            repeatability: precision.repeatability(),
+            between: precision.between(),
+            reproducibility: precision.reproducibility(),
+            p_value: precision.analysis().p_value(),
+            h: precision.h(),
+            k: precision.k(),
+            farthest: precision.grubbs().map(named),
+            widest: precision.cochran().map(named),
+            groups: names,
+        })
+    }
+}

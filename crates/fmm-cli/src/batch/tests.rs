@@ -1,0 +1,117 @@
+//! Campaigns of simulated records: no file is lost, any split gives the same bytes, and the interval holds.
+
+use std::path::{Path, PathBuf};
+
+use super::*;
+
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join("fmm-cli").join(format!("batch-{name}-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// A decay with friction of this level (m/s²) and white-looking noise, as text.
+fn decay(level: f64, seed: u64) -> String {
+    use fmm_friction::CoulombViscous;
+    use fmm_model::Oscillator;
+    use fmm_sim::{Engine, Exact, Sampling, Scenario};
+    let law = CoulombViscous::new(level, 0.05).unwrap();
+    let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), law, 1.0).unwrap();
+    let scenario = scenario.starting_at(0.02, 0.0).unwrap();
+    let motion = Exact.run(&scenario, &Sampling::uniform(5e-3, 800).unwrap()).unwrap();
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    let mut noise = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let mut text = "t [s],v [mm/s]\n".to_owned();
+    for (i, velocity) in motion.velocity().values().iter().enumerate() {
+        text.push_str(&format!("{:.3},{:.6}\n", i as f64 * 5e-3, 1e3 * (velocity + 1e-3 * noise())));
+    }
+    text
+}
+
+fn records(folder: &Path, levels: &[f64]) -> Vec<PathBuf> {
+    let one = |(i, level): (usize, &f64)| {
+        let path = folder.join(format!("run_{i:02}.csv"));
+        std::fs::write(&path, decay(*level, i as u64)).unwrap();
+        path
+    };
+    levels.iter().enumerate().map(one).collect()
+}
+
+fn law() -> Vec<String> {
+    vec!["--law".to_owned(), LAW.to_owned()]
+}
+
+#[test]
+fn parts_are_read_as_they_are_meant() {
+    assert_eq!((shard("1/1"), shard("3/10")), (Ok((1, 1)), Ok((3, 10))));
+    for wrong in ["0/3", "4/3", "1", "a/b", "1/0", "-1/3"] {
+        assert!(shard(wrong).is_err(), "{wrong}");
+    }
+}
+
+/// Broken files are rows with their reason, and any split into parts, in any order, with parts done twice, gives the same bytes.
+#[test]
+fn any_split_gives_the_same_bytes() {
+    let home = folder("split");
+    let data = home.join("data");
+    std::fs::create_dir_all(&data).unwrap();
+    records(&data, &[0.02, 0.021, 0.019, 0.02, 0.022]);
+    std::fs::write(data.join("empty.csv"), "").unwrap();
+    std::fs::write(data.join("words.csv"), "this,is\nno,record\n").unwrap();
+    std::fs::write(data.join("noise.bin"), [0_u8, 159, 146, 150]).unwrap();
+    let campaign = Campaign::of_files(&[data], law()).unwrap();
+    assert_eq!(campaign.entries.len(), 8);
+    let done = |name: &str, parts: &[(usize, usize)]| {
+        let out = home.join(name);
+        campaign.keep(&out).unwrap();
+        for (part, parts) in parts {
+            for index in (part - 1..8).step_by(*parts).filter(|index| Row::read(&out, *index).is_none()) {
+                Row::of(&campaign, index).write(&out, index).unwrap();
+            }
+        }
+        put_together(&out, &campaign, true).unwrap();
+        ["campaign.csv", "campaign.json", "campaign.html"].map(|name| std::fs::read(out.join(name)).unwrap())
+    };
+    let whole = done("whole", &[(1, 1)]);
+    assert!(
+        whole == done("three", &[(3, 3), (1, 3), (2, 3), (1, 3)]) && whole == done("mixed", &[(2, 2), (1, 5), (1, 1)])
+    );
+    let rows: Vec<Row> = (0..8).map(|index| Row::read(&home.join("whole"), index).unwrap()).collect();
+    assert_eq!(rows.iter().filter(|row| row.found.is_some()).count(), 5);
+    assert!(rows.iter().filter(|row| row.found.is_none()).all(|row| !row.refused.as_ref().unwrap().is_empty()));
+    // A row of which only a part was written is done again.
+    std::fs::write(home.join("whole/rows/0000003.json"), "{\"file\":").unwrap();
+    assert!(Row::read(&home.join("whole"), 3).is_none());
+    assert!(whole == done("whole", &[(1, 1)]));
+    // Another campaign does not go into the same folder.
+    let other = Campaign { options: Vec::new(), ..campaign.clone() };
+    assert!(other.keep(&home.join("whole")).is_err());
+}
+
+#[test]
+fn a_manifest_sets_options_and_groups() {
+    let home = folder("manifest");
+    records(&home, &[0.02, 0.0201, 0.0301, 0.03]);
+    let manifest = home.join("runs.csv");
+    let lines = "file,mass,mass_u,normal-load,operator\nrun_00.csv,10,0.01,2,A\nrun_01.csv,10,0.01,2,A\n\
+                 run_02.csv,10,0.01,3,B\nrun_03.csv,10,0.01,3,B\nmissing.csv,10,0.01,3,B\n";
+    std::fs::write(&manifest, lines).unwrap();
+    let campaign = Campaign::of_manifest(&manifest, law(), Some("operator".to_owned())).unwrap();
+    let rows: Vec<Row> = (0..5).map(|index| Row::of(&campaign, index)).collect();
+    for (row, coefficient) in rows.iter().zip([0.1, 0.1005, 0.100_333, 0.1]) {
+        let found = row.value("friction_coefficient").unwrap_or_else(|| panic!("{row:?}"));
+        assert!((found.value / coefficient - 1.0).abs() < 0.02, "{found:?}");
+    }
+    assert!(rows[4].refused.is_some());
+    let summary = Summary::of(&campaign, &rows);
+    assert_eq!((summary.records, summary.found), (5, 4));
+    let force = summary.quantities.iter().find(|quantity| quantity.name == "friction_force").unwrap();
+    let group = force.precision.as_ref().unwrap();
+    assert!(group.groups == ["A", "B"] && group.between > 10.0 * group.repeatability, "{group:?}");
+    let missing = Campaign::of_manifest(&manifest, law(), Some("lab".to_owned())).unwrap_err().to_string();
+    assert!(missing.contains("there is no column `lab`") && missing.contains("operator"), "{missing}");
+}
