@@ -159,6 +159,13 @@ impl UncertaintyError {
         Self::Inputs { what }
     }
 
+    /// Too few groups for a limit of what they show by chance.
+    pub(crate) fn too_few_groups(found: usize, needed: usize) -> Self {
+        Self::NoAnswer {
+            what: format!("{found} groups differ in one way only; a limit by chance needs {needed} or more of them"),
+        }
+    }
+
     /// No trials at all.
     pub(crate) fn no_trials() -> Self {
         Self::OutOfRange { what: "at least one trial is needed, but none was asked for".to_owned(), value: 0.0 }
