@@ -64,7 +64,7 @@ impl AnalysisOfVariance {
         let mean = sum(groups.iter().flatten().copied()) / count as f64;
         let between =
             sum(groups.iter().zip(&means).map(|(group, of_group)| group.len() as f64 * (of_group - mean).powi(2)));
-        if !(between.is_finite() && squares.iter().all(|square| square.is_finite())) {
+        if !(between + sum(squares.iter().copied())).is_finite() {
             return Err(UncertaintyError::observation_not_finite(0, reference));
         }
         let largest = groups.iter().flatten().fold(0.0_f64, |largest, value| largest.max(value.abs()));

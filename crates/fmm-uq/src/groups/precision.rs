@@ -232,7 +232,8 @@ impl Precision {
     /// ```
     ///
     /// The probability follows from that of the largest of p, p − 1, … 3 means, one after the other, as Grubbs (1950) found
-    /// it; computed to about 1e-5, in a time that grows as p^(3/2), 0.1 s for a thousand groups.
+    /// it. It is computed to 3e-4 of it for up to 40 groups and 2e-3 for 300, in a time that grows with their number: 1 ms for
+    /// eight, 0.2 s for a thousand.
     ///
     /// ```
     /// let laboratories = [1.02, 0.98, 1.01, 0.99, 1.00, 1.03, 0.97, 2.1, 2.2].map(|mean| [mean - 0.01, mean + 0.01]);

@@ -165,6 +165,7 @@ fn extreme_results() {
         let found = Consensus::of(&[1.0, 2.0, 6.0].map(|value| Estimated::new(value, 1e-150)), effects).unwrap();
         assert!(near(found.mean().value, 3.0, 1e-14) && near(found.between(), 7_f64.sqrt(), 1e-12), "{found:?}");
         assert!(near(found.mean().uncertainty, (7.0_f64 / 3.0).sqrt(), 1e-12), "{found:?}");
+        assert_eq!((found.p_value(), found.i_squared()), (0.0, 1.0));
         // One that is known far better than two others, all of one value.
         let found = Consensus::of(&[1e-9, 1.0, 1.0].map(|u| Estimated::new(5.0, u)), effects).unwrap();
         assert!(found.between() == 0.0 && found.q() == 0.0 && near(found.mean().uncertainty, 1e-9, 1e-12), "{found:?}");

@@ -18,6 +18,8 @@ fn what_makes_no_groups_is_refused() {
     let alike = Precision::of(&[[1.0, 1.0]; 4]).unwrap();
     assert_eq!((alike.repeatability(), alike.between(), alike.analysis().f()), (0.0, 0.0, 0.0));
     assert!(alike.cochran().is_none() && alike.grubbs().is_none() && alike.grubbs_pair().is_none());
+    // Each group's squares are below what f64 holds, both together are not.
+    assert!(matches!(refused(&[vec![0.0, 1.5e154], vec![0.0, 1.5e154]]), UncertaintyError::OutOfRange { .. }));
     assert!(matches!(refused(&[vec![1e-170, 2e-170], vec![3e-170]]), UncertaintyError::NoAnswer { .. }));
     let pair = [1.0, 2.0].map(|value| Estimated::new(value, 0.5));
     let consensus = Consensus::of(&pair, RandomEffects::default()).unwrap();
