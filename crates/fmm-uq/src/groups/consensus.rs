@@ -16,7 +16,19 @@ pub enum RandomEffects {
     DerSimonianLaird,
 }
 
-/// A result without the rest, or the rest without it.
+/// What a result does to the consensus.
+///
+/// ```
+/// use fmm_model::Estimated;
+/// use fmm_uq::{Consensus, RandomEffects};
+///
+/// let runs = [(10.1, 0.1), (10.2, 0.1), (10.0, 0.2), (12.0, 0.1)].map(|(mu, u)| Estimated::new(mu, u));
+/// let influences = Consensus::of(&runs, RandomEffects::MandelPaule)?.influences();
+/// // Where results differ by more than their uncertainties, all weigh nearly the same.
+/// assert!(influences.iter().all(|influence| (influence.weight - 0.25).abs() < 0.01));
+/// assert!(influences[3].without.is_some_and(|others| others.value < 10.2));
+/// # Ok::<(), fmm_uq::UncertaintyError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Influence {
     /// Its share of the weights (1).

@@ -58,6 +58,10 @@ fn intervals_of_few_groups_hold() {
             let consensus = Consensus::of(&results, RandomEffects::default()).unwrap();
             let interval = consensus.interval(0.95).unwrap();
             held += u32::from((interval.low..interval.high).contains(&10.0));
+            // The usual interval with these effects, which is never the wider.
+            let all: f64 =
+                results.iter().map(|result| (result.uncertainty.powi(2) + consensus.between().powi(2)).recip()).sum();
+            assert!(interval.width() > 2.0 * 1.96 / all.sqrt(), "{consensus:?}");
             let weights: f64 = results.iter().map(|result| result.uncertainty.powi(-2)).sum();
             let mean = results.iter().map(|result| result.value * result.uncertainty.powi(-2)).sum::<f64>() / weights;
             naive += u32::from((mean - 10.0).abs() < 1.96 / weights.sqrt());
