@@ -159,6 +159,21 @@ impl UncertaintyError {
         Self::Inputs { what }
     }
 
+    /// A group that is asked for and not there.
+    pub(crate) fn no_such_group(group: usize, groups: usize) -> Self {
+        Self::OutOfRange {
+            what: format!("there is no group {group}; {groups} were given, counted from 0"),
+            value: group as f64,
+        }
+    }
+
+    /// Too few groups for a limit of what they show by chance.
+    pub(crate) fn too_few_groups(found: usize, needed: usize) -> Self {
+        Self::NoAnswer {
+            what: format!("{found} groups differ in one way only; a limit by chance needs {needed} or more of them"),
+        }
+    }
+
     /// No trials at all.
     pub(crate) fn no_trials() -> Self {
         Self::OutOfRange { what: "at least one trial is needed, but none was asked for".to_owned(), value: 0.0 }

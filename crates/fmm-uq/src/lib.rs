@@ -39,6 +39,8 @@
 //! | which input matters? | [`Budget::contributions`]; with interactions [`variance_shares`] (Sobol'); [`MonteCarlo::run_one_at_a_time`] | [`variance_shares`]: correlated inputs |
 //! | what if a trial takes a second? | [`QuasiMonteCarlo`]; or many machines and [`Partial`] results | [`QuasiMonteCarlo`]: more than 64 dimensions, models with kinks |
 //! | how is a result stated? | a [`Budget`] prints; [`Budget::statement`], [`MonteCarlo::statement`], [`Budget::to_csv`] | |
+//! | what differs between runs, laboratories or specimens? | [`AnalysisOfVariance`], [`Precision`] | |
+//! | which value do several results agree on? | [`Consensus`] | results that share an error |
 //! | several results together? | [`Propagation`] with its regions, [`OutputSample::ellipsoid`], [`OutputSample::rectangle`] | |
 //!
 //! Write a model once, generic in its number: `f64` for trials, [`Taylor`] for exact derivatives. A closure has one number
@@ -96,7 +98,7 @@ mod report;
 pub use distributions::Distribution;
 pub use error::UncertaintyError;
 pub use fmm_model::Scalar;
-pub use groups::{AnalysisOfVariance, Consensus, Influence, Outlier, Precision, RandomEffects};
+pub use groups::{AnalysisOfVariance, Consensus, Influence, Outlier, OutlyingPair, Precision, RandomEffects};
 pub use gum::{
     Budget, Contribution, Expanded, Gum, Linearisation, Propagation, SecondOrder, Validation, coverage_factor,
     propagate, validate,

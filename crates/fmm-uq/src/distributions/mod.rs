@@ -1,7 +1,7 @@
 //! Distributions: knowledge about a quantity as a probability distribution.
 
 mod arc_sine;
-mod beta;
+pub(crate) mod beta;
 mod curvilinear_trapezoid;
 mod empirical;
 pub(crate) mod gamma;

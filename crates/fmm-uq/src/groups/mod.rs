@@ -2,8 +2,9 @@
 
 mod analysis_of_variance;
 mod consensus;
+mod outlying_pair;
 mod precision;
 
 pub use analysis_of_variance::AnalysisOfVariance;
 pub use consensus::{Consensus, Influence, RandomEffects};
-pub use precision::{Outlier, Precision};
+pub use precision::{Outlier, OutlyingPair, Precision};
