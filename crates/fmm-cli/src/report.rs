@@ -98,12 +98,9 @@ fn findings(found: &Found) -> String {
 }
 
 fn warnings(found: &Found) -> String {
-    let items: String = found
-        .comparison
-        .warnings()
-        .iter()
-        .map(|warning| format!("<li>{}</li>\n", escaped(&warning.to_string())))
-        .collect();
+    let items =
+        found.comparison.warnings().iter().map(|warning| format!("<li>{}</li>\n", escaped(&warning.to_string())));
+    let items = items.collect::<Vec<_>>().concat();
     if items.is_empty() { "<p>None was found.</p>\n".to_owned() } else { format!("<ul>\n{items}</ul>\n") }
 }
 
@@ -170,7 +167,7 @@ fn amplitude(found: &Found, pictures: &Pictures) -> String {
 
 /// Version, command, input.
 fn making(found: &Found, bytes: &[u8]) -> String {
-    let digest: String = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+    let digest = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat();
     let command = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
     let entries = [
         ("Program", format!("fmm {}", env!("CARGO_PKG_VERSION"))),

@@ -42,7 +42,7 @@ pub(crate) struct Found {
     pub(crate) origin: String,
     pub(crate) law: String,
     pub(crate) is_decided: bool,
-    pub(crate) findings: Vec<Value>,
+    pub(crate) findings: Vec<Told>,
     pub(crate) rms_residual: f64,
     pub(crate) unit: String,
     pub(crate) half_swings: usize,
@@ -51,7 +51,7 @@ pub(crate) struct Found {
 
 /// A quantity of the machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Value {
+pub(crate) struct Told {
     pub(crate) name: String,
     pub(crate) unit: String,
     pub(crate) value: f64,
@@ -90,7 +90,7 @@ impl Row {
     }
 
     /// What was found of a quantity of this name.
-    pub(crate) fn value(&self, name: &str) -> Option<&Value> {
+    pub(crate) fn value(&self, name: &str) -> Option<&Told> {
         self.found.as_ref()?.findings.iter().find(|value| value.name == name)
     }
 }
@@ -115,7 +115,7 @@ fn found(arguments: &OfRecord) -> Result<Found, Box<dyn Error>> {
     let preferred = comparison.preferred();
     let is_of_machine =
         |finding: &&Finding| !finding.is_of_record() && finding.origin() != Origin::Fitted(EstimateStatus::Fixed);
-    let value = |finding: &Finding| Value {
+    let value = |finding: &Finding| Told {
         name: finding.parameter().name().to_owned(),
         unit: finding.parameter().unit().to_owned(),
         value: finding.value(),

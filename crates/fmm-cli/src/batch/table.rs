@@ -136,15 +136,14 @@ pub(crate) fn text(rows: &[Row], summary: &Summary) -> String {
 /// The page of a campaign.
 pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> String {
     const TITLE: &str = "Friction of a campaign";
-    let statements: String = summary
-        .quantities
-        .iter()
-        .map(|quantity| {
-            let lines = quantity.precision.iter().flat_map(|group| group_lines(quantity, group));
-            let lines: String = lines.map(|line| format!("<p>{}</p>\n", escaped(&line))).collect();
-            format!("<p class=\"statement\">{}</p>\n{lines}", escaped(&statement(quantity)))
-        })
-        .collect();
+    let mut statements = String::new();
+    for quantity in &summary.quantities {
+        // Writing to a string does not fail.
+        let _ = writeln!(statements, "<p class=\"statement\">{}</p>", escaped(&statement(quantity)));
+        for line in quantity.precision.iter().flat_map(|group| group_lines(quantity, group)) {
+            let _ = writeln!(statements, "<p>{}</p>", escaped(&line));
+        }
+    }
     let summaries = summary.quantities.iter().map(|quantity| {
         let [weighted, claimed] = quantity.weighted_mean;
         let influential = quantity.most_influential.as_ref();

@@ -44,11 +44,8 @@ impl Experiment {
             let (subject, needed) = ("a ring-down", "a displacement, a velocity or an acceleration");
             return Err(IdentifyError::wrong_quantity(subject, needed, quantity));
         }
-        let (mut record, gain_uncertainty) = usable(record, preparation)?;
-        let upsampling = Upsampling::of(&record);
-        if let Some(upsampling) = upsampling {
-            record = upsampling.measured(&record)?;
-        }
+        let (record, gain_uncertainty) = usable(record, preparation)?;
+        let (record, upsampling) = measured(record)?;
         // Hum must not be taken for the machine; what is fitted is the record as it was measured.
         let hum = hum(&record);
         let cleaned = without_lines(&record, &hum);
@@ -152,6 +149,17 @@ impl Experiment {
         };
         Ok(experiment.beside(nuisances))
     }
+}
+
+/// The samples of `record` that were measured, and how they were multiplied.
+fn measured(record: Record) -> Result<(Record, Option<Upsampling>), IdentifyError> {
+    let upsampling = Upsampling::of(&record);
+    // Without a copy: a long record is held once.
+    let record = match upsampling {
+        Some(upsampling) => upsampling.measured(&record)?,
+        None => record,
+    };
+    Ok((record, upsampling))
 }
 
 /// What swings after a time: turning points, the times at which the velocity is zero and the heights beside them, and the frequency (Hz).
