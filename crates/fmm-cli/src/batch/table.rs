@@ -68,9 +68,8 @@ fn statement(quantity: &Quantity) -> String {
     let interval = Rounded::new(*mean, Some(*u)).interval(*low, *high);
     let differ = if *homogeneity_p < 0.05 {
         let share = 100.0 * between / mean.abs();
-        format!(
-            "the records differ beyond their uncertainties (p = {homogeneity_p:.1e}), by {share:.2} % in standard deviation"
-        )
+        let p = if *homogeneity_p < 1e-9 { "p < 1e-9".to_owned() } else { format!("p = {homogeneity_p:.1e}") };
+        format!("the records differ beyond their uncertainties ({p}), by {share:.2} % in standard deviation")
     } else {
         format!("the records agree within their uncertainties (p = {homogeneity_p:.2})")
     };
@@ -111,10 +110,10 @@ pub(crate) fn text(rows: &[Row], summary: &Summary) -> String {
                     .iter()
                     .filter_map(|(name, _)| row.value(name))
                     .map(|value| format!("{} = {} {}", value.name, Rounded::new(value.value, value.u), value.unit));
-                let doubts = if found.warnings.is_empty() {
-                    String::new()
-                } else {
-                    format!("  ({} warnings)", found.warnings.len())
+                let doubts = match found.warnings.len() {
+                    0 => String::new(),
+                    1 => "  (1 warning)".to_owned(),
+                    count => format!("  ({count} warnings)"),
                 };
                 writeln!(text, "{file:<width$}  {}: {}{doubts}", found.law, values.collect::<Vec<_>>().join(", "))
             }
