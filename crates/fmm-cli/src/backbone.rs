@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use crate::figure::{self, Layer, Panel, Role, label};
+use crate::figure::{self, Cells, Layer, Panel, Role, label};
 use crate::input::{Given, ModeWanted, mode_wanted};
 use crate::output::{Output, drawn, print};
 use clap::Args;
@@ -161,7 +161,7 @@ fn document(decay: &Experiment, modes: &[DecayMode], backbone: &Backbone, sugges
     })
 }
 
-/// Spectrum, record with its envelope, frequency and damping against the amplitude with what is suggested.
+/// Spectrum, record with its envelope, spectrogram if there are several modes, frequency and damping against the amplitude with what is suggested.
 pub(crate) fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggestion) -> Vec<Panel> {
     let count = record.len();
     let spectrum = Spectrum::of(record.values(), &blackman_harris(count));
@@ -195,7 +195,7 @@ pub(crate) fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggesti
         against(&|point| point.damping.value),
     ));
     let damping = band(|point| point.damping, Role::MeasuredAgain, damping);
-    vec![
+    let mut panels = vec![
         Panel::new("frequency / Hz", "level / dB", 300.0).with(Layer::new(Role::Residual, "spectrum", lines.collect())),
         Panel::new("time / s", label("record", record.unit()), 300.0)
             .with(Layer::new(Role::Measured, "measured", measured))
@@ -207,5 +207,50 @@ pub(crate) fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggesti
             against(&sprung).into_iter().filter(|(_, f)| f.is_finite()).collect(),
         )),
         damping.with(Layer::new(Role::Fitted, suggestion.model(), against(&said))),
-    ]
+    ];
+    // One mode alone has nothing to interact with.
+    let own: Vec<DecayMode> = decay_modes(record).into_iter().filter(|mode| mode.multiple.is_none()).collect();
+    if let (true, Some(cells)) = (own.len() > 1, spectrogram(record, &own)) {
+        let path = points.iter().map(|point| (point.time, point.frequency.value)).collect();
+        let panel = Panel::new("time / s", "frequency / Hz", 340.0).over(cells);
+        panels.insert(2, panel.with(Layer::new(Role::Fitted, "frequency of the mode", path)));
+    }
+    panels
+}
+
+/// Cells of a spectrogram along time and along frequency.
+const CELLS: (usize, usize) = (80, 48);
+/// What is so far below the highest level is as white as nothing (dB).
+const RANGE: f64 = 60.0;
+/// Modes below this share of the largest amplitude do not widen a spectrogram (1).
+const SHOWN: f64 = 0.01;
+
+/// Levels over time and frequency, up to above the highest of these `modes`; `None` for a record that is too short.
+fn spectrogram(record: &Record, modes: &[DecayMode]) -> Option<Cells> {
+    let largest = modes.iter().map(|mode| mode.amplitude).fold(0.0, f64::max);
+    let seen = modes.iter().filter(|mode| mode.amplitude > SHOWN * largest);
+    let highest = (1.3 * seen.map(|mode| mode.frequency).fold(0.0, f64::max)).min(0.5 * record.rate());
+    let values = record.values();
+    // Windows of Blackman and Harris that overlap by nine tenths.
+    let window = values.len() / 8;
+    let step = (values.len().checked_sub(window)? / CELLS.0).max(1);
+    let weights = blackman_harris(window);
+    let mut columns: Vec<Vec<f64>> = Vec::new();
+    for begin in (0..=values.len() - window).step_by(step).take_while(|_| window >= CELLS.1) {
+        let spectrum = Spectrum::of(&values[begin..begin + window], &weights);
+        let lines_per_cell = highest / CELLS.1 as f64 * window as f64 / (spectrum.spacing * record.rate());
+        let line = |cell: usize| (cell as f64 * lines_per_cell).round() as usize;
+        let level = |cell: usize| {
+            let lines = line(cell)..(line(cell + 1)).max(line(cell) + 1);
+            let largest = spectrum.squares.get(lines).unwrap_or(&[]).iter().copied().fold(0.0, f64::max);
+            10.0 * largest.max(f64::MIN_POSITIVE).log10()
+        };
+        columns.push((0..CELLS.1).map(level).collect());
+    }
+    let top = columns.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
+    let row = |cell: usize| columns.iter().map(|column| column[cell].max(top - RANGE)).collect();
+    let rows: Vec<Vec<f64>> = (0..CELLS.1).map(row).collect();
+    let half = 0.5 * window as f64 * record.interval();
+    let ends = (record.start() + half, record.end() - half);
+    (!columns.is_empty() && ends.0 < ends.1).then_some(Cells { rows, x: ends, y: (0.0, highest) })
 }

@@ -3,9 +3,10 @@
 //! Grey is what was measured, red is what was fitted, ink is what is left over.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use kuva::backend::svg::SvgBackend;
-use kuva::plot::{Histogram, LinePlot, ScatterPlot};
+use kuva::plot::{ColorMap, Heatmap, Histogram, LinePlot, ScatterPlot};
 use kuva::render::figure::Figure as Grid;
 use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
@@ -104,19 +105,42 @@ impl Layer {
     }
 }
 
+/// Cells of a plane, darker where more is.
+#[derive(Debug, Clone)]
+pub struct Cells {
+    /// Rows from the lowest y on, each from the lowest x on; all of one length.
+    pub rows: Vec<Vec<f64>>,
+    /// Ends of the first and the last cell along x.
+    pub x: (f64, f64),
+    /// Ends of the first and the last cell along y.
+    pub y: (f64, f64),
+}
+
+impl Cells {
+    fn plot(&self) -> Plot {
+        let rows = self.rows.iter().cloned();
+        let map = Heatmap::new().with_data(rows).with_color_map(ColorMap::Custom(Arc::new(|share: f64| {
+            let level = (255.0 * (1.0 - share.clamp(0.0, 1.0))).round() as u8;
+            format!("#{level:02x}{level:02x}{level:02x}")
+        })));
+        Plot::Heatmap(map.with_x_range(self.x.0, self.x.1).with_y_range(self.y.0, self.y.1).with_cell_size(1.0))
+    }
+}
+
 /// Axes with their layers.
 #[derive(Debug, Clone)]
 pub struct Panel {
     x_label: String,
     y_label: String,
     height: f64,
+    cells: Option<Cells>,
     layers: Vec<Layer>,
 }
 
 impl Panel {
     /// Empty axes, `height` pixels high.
     pub fn new(x_label: impl Into<String>, y_label: impl Into<String>, height: f64) -> Self {
-        Self { x_label: x_label.into(), y_label: y_label.into(), height, layers: Vec::new() }
+        Self { x_label: x_label.into(), y_label: y_label.into(), height, cells: None, layers: Vec::new() }
     }
 
     /// The same axes with another layer on top.
@@ -126,8 +150,15 @@ impl Panel {
         self
     }
 
+    /// The same axes with cells below the layers.
+    #[must_use]
+    pub fn over(mut self, cells: Cells) -> Self {
+        self.cells = Some(cells);
+        self
+    }
+
     fn plots(&self) -> Vec<Plot> {
-        self.layers.iter().map(Layer::plot).collect()
+        self.cells.iter().map(Cells::plot).chain(self.layers.iter().map(Layer::plot)).collect()
     }
 
     /// Share of the data's range that the legend needs above it.
@@ -138,7 +169,10 @@ impl Panel {
     }
 
     fn layout(&self) -> Layout {
-        let all = || self.layers.iter().flat_map(|layer| layer.points.iter());
+        let corners = self.cells.iter().flat_map(|cells| [(cells.x.0, cells.y.0), (cells.x.1, cells.y.1)]);
+        let points = self.layers.iter().flat_map(|layer| layer.points.iter().copied());
+        let shown: Vec<(f64, f64)> = corners.chain(points).collect();
+        let all = || shown.iter();
         let (x_low, x_high) = range(all().map(|point| point.0));
         let (y_low, y_high) = range(all().map(|point| point.1));
         let span = y_high - y_low;
@@ -277,7 +311,7 @@ fn ticks(span: f64) -> TickFormat {
     }
     // One more than the leading digit of the step, as steps of 2.5 are common; none that is always zero.
     let decimals = (1.0 - step.log10().floor()).max(0.0) as usize;
-    TickFormat::Custom(std::sync::Arc::new(move |value: f64| {
+    TickFormat::Custom(Arc::new(move |value: f64| {
         let text = format!("{value:.decimals$}");
         let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
         short.replace('-', "−")

@@ -23,6 +23,8 @@ const NOISES: f64 = 8.0;
 const SHARE: f64 = 0.08;
 /// The share of the loss that is still lost in the half swing after it (1).
 const LASTING: f64 = 0.8;
+/// The share of the loss that nothing after it makes up for (1).
+const RETURNED: f64 = 0.5;
 /// Half swings that the usual loss would leave: with fewer, friction that rises towards rest may do the same.
 const LEFT: f64 = 6.0;
 /// Deviations from the median that are a standard deviation.
@@ -76,7 +78,13 @@ impl Interruption {
             // An offset that steps makes one half swing smaller or larger, and the next as large as it would have been.
             let is_lasting = heights.get(begin + k + 2).is_none_or(|later| height - later > LASTING * loss)
                 && losses[k - 1] > -(DEVIATIONS * deviation + NOISES * noise);
-            (is_large && is_lost && is_lasting).then(|| Self {
+            // The beat of a second mode comes back, and what a hand took does not.
+            let is_gone = || {
+                let after = peaks[begin + k + 1].index + (2.0 * half_swing) as usize;
+                let (low, high) = range(record.values().get(after..).unwrap_or(&[]));
+                !(high - low > height - RETURNED * loss)
+            };
+            (is_large && is_lost && is_lasting && is_gone()).then(|| Self {
                 sound_until: peaks[begin + k + 1].time,
                 ratio: loss / usual.max(noise).max(f64::MIN_POSITIVE),
             })
@@ -100,6 +108,20 @@ mod tests {
 
     fn decay(t: f64) -> f64 {
         (-0.15 * t).exp() * (TAU * 3.0 * t).cos()
+    }
+
+    /// Two modes beat: what one half swing loses, later ones have again.
+    #[test]
+    fn beats_are_no_hand() {
+        for (frequency, share) in [(33.0, 0.3), (21.0, 0.3), (23.0, 0.6), (150.0, 0.3)] {
+            let both = |t: f64| {
+                (-0.5 * t).exp() * (TAU * 20.0 * t).cos()
+                    + share * (-0.8 * t).exp() * (TAU * frequency * t).cos()
+                    + 0.1 * (TAU * 50.0 * t).cos()
+            };
+            let found = Interruption::of(&record(both, 1e-3));
+            assert_eq!(found, None, "{frequency} Hz, {share}");
+        }
     }
 
     #[test]
