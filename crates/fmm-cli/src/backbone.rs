@@ -77,7 +77,7 @@ fn text(record: &Record, modes: &[DecayMode], backbone: &Backbone, suggestion: &
     let mut lines = vec!["Modes".to_owned(), "       Hz   amplitude   energy   above noise   c/m / (1/s)".to_owned()];
     for mode in modes {
         let multiple = mode.multiple.map_or_else(String::new, |multiple| format!("  {multiple} times a stronger one"));
-        let steady = if mode.is_steady(record) { "  steady: no free vibration" } else { "" };
+        let steady = if mode.is_steady(record) { "  steady through the record" } else { "" };
         let damping = mode.damping.map_or_else(|| "not seen".to_owned(), |damping| format!("{damping:.3}"));
         lines.push(format!(
             "{:9.4}   {:9.3e}   {:5.1} %   {:11.0}   {damping:>11}{multiple}{steady}",

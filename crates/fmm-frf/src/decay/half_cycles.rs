@@ -3,15 +3,13 @@
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 use fmm_model::Estimated;
-use fmm_record::{Quantity, Record, Swings, noise, quantisation_step};
+use fmm_record::{Peak, Quantity, Record, Swings, noise, quantisation_step};
 
 use crate::BackbonePoint;
 
 /// Amplitudes that a point needs: of three half swings in a row, the first and the last are compared.
 const COMPARED: usize = 3;
-/// Deviation of a turning point, against that of the mean of the samples it is fitted to.
-const TURNING_POINT: f64 = 1.5;
-/// Deviation of a passage, against that of the mean: its centre comes from four turning points with weights 1, 3, 3, 1, two of which the
+/// Deviation of a passage, against that of the mean of the samples it is fitted to: its centre comes from four turning points with weights 1, 3, 3, 1, two of which the
 /// next passage but one has as well, √(1 + ½ 28/64 · 1.5²).
 const PASSAGE: f64 = 1.222;
 
@@ -36,10 +34,9 @@ pub(crate) fn half_cycle_points(record: &Record) -> Vec<BackbonePoint> {
     let Some(frequency) = swings.frequency() else { return Vec::new() };
     let step = quantisation_step(record.values()).unwrap_or(0.0);
     let white = noise(record.values()).hypot(step / 12f64.sqrt());
-    // Peaks and passages are fitted to the samples within a twelfth of a period.
-    let samples = 2.0 * (record.rate() / (12.0 * frequency)).round().max(1.0) + 1.0;
-    let mean = white / samples.sqrt();
-    let u_amplitude = TURNING_POINT * mean * FRAC_1_SQRT_2;
+    let samples_per_period = record.rate() / frequency;
+    let u_amplitude = FRAC_1_SQRT_2 * Peak::standard_uncertainty(white, samples_per_period);
+    let mean = white / Swings::samples_per_point(samples_per_period).sqrt();
     let amplitude = |j: usize| 0.5 * (peaks[j + 1].value - peaks[j].value).abs();
     let count = crossings.len().min(peaks.len().saturating_sub(1));
     (0..(count + 1).saturating_sub(COMPARED))

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fmm_record::Quantity;
+use fmm_record::{Peak, Quantity};
 
 use crate::{Estimated, Experiment, IdentifyError};
 
@@ -135,11 +135,8 @@ impl Experiment {
         self.summary().noise.hypot(self.summary().resolution.unwrap_or(0.0) / 12f64.sqrt())
     }
 
-    /// u(e) of a fitted turning point, in the unit of the record: a sine of unknown height, phase and centre through
-    /// the samples within a sixth of a half swing scatters by 1.5 σ/√n at its extremum, as a parabola does.
+    /// u(e) of a fitted turning point, in the unit of the record.
     pub(crate) fn turning_point_uncertainty(&self) -> f64 {
-        let half_swing = 0.5 * self.summary().rate / self.summary().frequency;
-        let samples = 2.0 * (half_swing / 6.0).round().max(1.0) + 1.0;
-        1.5 * self.white_noise() / samples.sqrt()
+        Peak::standard_uncertainty(self.white_noise(), self.summary().rate / self.summary().frequency)
     }
 }

@@ -1,5 +1,6 @@
 //! Experiments on a machine: what was done to it and the record of its response, made ready for identification.
 
+mod acceleration;
 mod drive;
 mod driven;
 mod impact;

@@ -20,6 +20,14 @@ pub struct Peak {
     pub is_maximum: bool,
 }
 
+impl Peak {
+    /// u, standard uncertainty of the value of a fitted turning point by white noise of this deviation, in its unit, at so many
+    /// `samples_per_period`: a sine of unknown height, phase and centre scatters by 1.5 σ/√n at its extremum, as a parabola does.
+    pub fn standard_uncertainty(noise: f64, samples_per_period: f64) -> f64 {
+        1.5 * noise / Swings::samples_per_point(samples_per_period).sqrt()
+    }
+}
+
 /// The passage of an oscillation through its centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -103,6 +111,12 @@ impl Swings {
     /// The passages through the centre, one between each two peaks.
     pub fn crossings(&self) -> &[Crossing] {
         &self.crossings
+    }
+
+    /// n, samples to which a turning point or a passage is fitted, at so many `samples_per_period`: those within ±1/12 of it, three at
+    /// least.
+    pub fn samples_per_point(samples_per_period: f64) -> f64 {
+        (2 * reach(0.5 * samples_per_period) + 1) as f64
     }
 
     /// Mean frequency (Hz): half of the inverse slope of the times of the crossings against their number, by least

@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use crate::UncertaintyError;
+use crate::{Moments, UncertaintyError};
 
 /// Analysis of variance of observations in groups, of equal or unequal numbers.
 ///
@@ -59,20 +59,18 @@ impl AnalysisOfVariance {
         let reference = groups[0].as_ref()[0];
         let about = |group: &G| group.as_ref().iter().map(|value| value - reference).collect::<Vec<f64>>();
         let groups: Vec<Vec<f64>> = groups.iter().map(about).collect();
-        let means: Vec<f64> = groups.iter().map(|group| mean(group)).collect();
-        let squares: Vec<f64> = groups.iter().zip(&means).map(|(group, mean)| squares_about(group, *mean)).collect();
-        let mean = sum(groups.iter().flatten().copied()) / count as f64;
-        let between =
-            sum(groups.iter().zip(&means).map(|(group, of_group)| group.len() as f64 * (of_group - mean).powi(2)));
-        if !(between + sum(squares.iter().copied())).is_finite() {
+        let moments: Vec<Moments> = groups.iter().map(|group| Moments::of_values(group)).collect();
+        let means: Vec<f64> = moments.iter().map(Moments::mean).collect();
+        let squares: Vec<f64> = moments.iter().map(Moments::sum_of_squares).collect();
+        let all = groups.concat();
+        let in_all = Moments::of_values(&all);
+        let parts = groups.iter().zip(&means);
+        let between: f64 = parts.map(|(group, mean)| group.len() as f64 * (mean - in_all.mean()).powi(2)).sum();
+        if !(between + squares.iter().sum::<f64>()).is_finite() {
             return Err(UncertaintyError::observation_not_finite(0, reference));
         }
-        let largest = groups.iter().flatten().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        // A square keeps its digits above this, and a mean of them does.
-        let smallest = f64::MIN_POSITIVE / f64::EPSILON * count as f64;
-        if largest > 0.0 && largest * largest < smallest {
-            return Err(UncertaintyError::too_small("the observations"));
-        }
+        in_all.require_squares(&all, "the observations")?;
+        let mean = in_all.mean();
         Ok(Self { counts: groups.iter().map(Vec::len).collect(), means, squares, reference, mean, between })
     }
 
@@ -98,7 +96,7 @@ impl AnalysisOfVariance {
 
     /// SS_w (unit of the observations squared).
     pub fn within(&self) -> f64 {
-        sum(self.squares.iter().copied())
+        self.squares.iter().sum()
     }
 
     /// ν_b and ν_w (1).
@@ -142,25 +140,4 @@ pub(super) fn tail_of_f(f: f64, between: f64, within: f64) -> f64 {
         return 0.0;
     }
     FisherSnedecor::new(between, within).map_or(1.0, |distribution| distribution.sf(f.max(0.0)))
-}
-
-/// The sum, corrected for its rounding (Neumaier 1974).
-pub(super) fn sum(values: impl Iterator<Item = f64>) -> f64 {
-    let (mut sum, mut lost) = (0.0_f64, 0.0);
-    for value in values {
-        let next = sum + value;
-        lost += if sum.abs() >= value.abs() { (sum - next) + value } else { (value - next) + sum };
-        sum = next;
-    }
-    // What overflows has no rounding to speak of.
-    if sum.is_finite() { sum + lost } else { sum }
-}
-
-fn mean(values: &[f64]) -> f64 {
-    let first = sum(values.iter().copied()) / values.len() as f64;
-    first + sum(values.iter().map(|value| value - first)) / values.len() as f64
-}
-
-fn squares_about(values: &[f64], mean: f64) -> f64 {
-    sum(values.iter().map(|value| (value - mean).powi(2)))
 }

@@ -148,14 +148,13 @@ impl Consensus {
         Ok(Interval { low: self.mean - reach, high: self.mean + reach, level })
     }
 
-    /// The interval in which one more result that is known without noise would lie with probability `level` (unit of the
-    /// results).
+    /// The mean weighted by the uncertainties alone, 1/u², as if the results differed by no more, and its standard uncertainty by them
+    /// (unit of the results).
     ///
-    /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1.
-    pub fn prediction(&self, level: f64) -> Result<Interval, UncertaintyError> {
-        let reach = self.uncertainty.hypot(self.between()) * coverage_factor(level, self.degrees_of_freedom())?;
-        Ok(Interval { low: self.mean - reach, high: self.mean + reach, level })
+    /// It claims too little where they differ by more: of four results with τ = 2 and u near 0.4, its 95 % interval holds in 27 % of cases.
+    pub fn without_effects(&self) -> Estimated {
+        let (mean, _, weights) = weighted(&self.results, 0.0);
+        Estimated::new(mean, weights.sqrt().recip())
     }
 
     /// Q, Cochran's statistic of homogeneity (1).

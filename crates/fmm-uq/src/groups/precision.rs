@@ -3,24 +3,24 @@
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::distributions::beta::Beta;
-use crate::groups::analysis_of_variance::{sum, tail_of_f};
+use crate::groups::analysis_of_variance::tail_of_f;
 use crate::groups::outlying_pair;
 use crate::gum::coverage::valid_level;
-use crate::{AnalysisOfVariance, UncertaintyError, coverage_factor};
+use crate::{AnalysisOfVariance, Moments, UncertaintyError, coverage_factor};
 
-/// Precision of a method by observations in groups (laboratories, operators, days, releases), after ISO 5725-2:1994.
+/// Precision of a method by observations in groups (laboratories, operators, days, releases), after ISO 5725-2:1994, clause 7.4.
 ///
 /// ```text
-/// s_r² = Σ (n_i − 1) s_i²/Σ (n_i − 1)                    repeatability                      (7.4.5.1)
+/// s_r² = Σ (n_i − 1) s_i²/Σ (n_i − 1)                    repeatability
 /// s_L² = (s_d² − s_r²)/n̄,   s_d² = Σ n_i (ȳ_i − ȳ)²/(p − 1)
-/// n̄ = (Σ n_i − Σ n_i²/Σ n_i)/(p − 1)                     between groups, 0 if negative      (7.4.5.2)
-/// s_R² = s_r² + s_L²                                     reproducibility                    (7.4.5.5)
+/// n̄ = (Σ n_i − Σ n_i²/Σ n_i)/(p − 1)                     between groups, 0 if negative
+/// s_R² = s_r² + s_L²                                     reproducibility
 /// ```
 ///
 /// ```
 /// use fmm_uq::Precision;
 ///
-/// let laboratories = [vec![4.44, 4.39], vec![4.03, 4.23], vec![3.70, 3.70], vec![4.10, 4.10]];
+/// let laboratories = [[10.1, 10.2], [10.4, 10.3], [9.9, 10.1], [10.2, 10.2]];
 /// let found = Precision::of(&laboratories)?;
 /// assert!(found.repeatability() < found.reproducibility());
 /// // No group stands out by its mean, nor by its spread.
@@ -30,7 +30,8 @@ use crate::{AnalysisOfVariance, UncertaintyError, coverage_factor};
 /// ```
 ///
 /// # References
-/// - ISO 5725-2:1994, *Accuracy (trueness and precision) of measurement methods and results, Part 2*; clauses as quoted.
+/// - ISO 5725-2:1994, *Accuracy (trueness and precision) of measurement methods and results, Part 2*, clauses 7.3 (h, k, the tests of
+///   Cochran and Grubbs) and 7.4.
 /// - P.-T. Wilrich, AStA Advances in Statistical Analysis 97 (2013) 1, <https://doi.org/10.1007/s10182-011-0185-y>
 ///   (what its tables of limits are computed from).
 #[derive(Debug, Clone, PartialEq)]
@@ -100,7 +101,7 @@ impl Precision {
 
     /// (s_d² − s_r²)/n̄, the variance between groups as it is estimated without bias (unit of the observations squared).
     /// Negative where the means of the groups lie closer together than chance within them lets expect: then
-    /// [`Precision::between`] is 0, as clause 7.4.5 has it.
+    /// [`Precision::between`] is 0.
     pub fn between_variance(&self) -> f64 {
         let counts = || self.analysis.counts.iter().map(|count| *count as f64);
         let (all, squares): (f64, f64) = (counts().sum(), counts().map(|count| count * count).sum());
@@ -114,8 +115,7 @@ impl Precision {
         self.repeatability().hypot(self.between())
     }
 
-    /// h, Mandel's statistic of the mean of each group (1): its distance from the mean of the means in their standard deviations
-    /// (7.3.1.2); 0 if all are equal.
+    /// h, Mandel's statistic of the mean of each group (1): its distance from the mean of the means in their standard deviations; 0 if all are equal.
     pub fn h(&self) -> Vec<f64> {
         let (mean, deviation, means) = self.spread_of_means();
         means.iter().map(|of_group| if deviation > 0.0 { (of_group - mean) / deviation } else { 0.0 }).collect()
@@ -124,7 +124,7 @@ impl Precision {
     /// The |h| that one group exceeds by chance with probability 1 − `level` (1), whatever the spread.
     ///
     /// ```text
-    /// h = (p − 1) t/√(p (t² + p − 2)),   t = t_level(p − 2)        (ISO 5725-2:1994, Tables 6 and 7)
+    /// h = (p − 1) t/√(p (t² + p − 2)),   t = t_level(p − 2)
     /// ```
     ///
     /// ```
@@ -148,7 +148,7 @@ impl Precision {
         Ok((count - 1.0) / (count * (1.0 + (count - 2.0) / t / t)).sqrt())
     }
 
-    /// k, Mandel's statistic of the spread within each group (1): its standard deviation over that of all (7.3.1.4). `None`
+    /// k, Mandel's statistic of the spread within each group (1): its standard deviation over that of all. `None`
     /// for a group of one observation.
     pub fn k(&self) -> Vec<Option<f64>> {
         let variances = self.variances();
@@ -161,7 +161,7 @@ impl Precision {
     /// The k that one group of `observations` exceeds by chance with probability 1 − `level` (1), if all groups have as many.
     ///
     /// ```text
-    /// k²/p is beta distributed, α = (n − 1)/2, β = (p − 1)(n − 1)/2        (ISO 5725-2:1994, Tables 6 and 7)
+    /// k²/p is beta distributed, α = (n − 1)/2, β = (p − 1)(n − 1)/2
     /// ```
     ///
     /// ```
@@ -189,7 +189,7 @@ impl Precision {
         Ok((count * share.quantile(level)).sqrt())
     }
 
-    /// Cochran's test of the group with the largest spread, C = s_max²/Σ s² (7.3.3); `None` if fewer than two groups have a
+    /// Cochran's test of the group with the largest spread, C = s_max²/Σ s²; `None` if fewer than two groups have a
     /// spread. The number of observations is taken as their mean where they differ.
     ///
     /// ```text
@@ -214,7 +214,7 @@ impl Precision {
         Some(Outlier { group, statistic, p_value })
     }
 
-    /// Grubbs' test of the mean that lies farthest from the others, G = |ȳ_i − ȳ|/s (7.3.4.1); `None` for fewer than three
+    /// Grubbs' test of the mean that lies farthest from the others, G = |ȳ_i − ȳ|/s; `None` for fewer than three
     /// groups, or if all are equal.
     ///
     /// ```text
@@ -238,7 +238,7 @@ impl Precision {
         Some(Outlier { group, statistic, p_value: (2.0 * count * tail).min(1.0) })
     }
 
-    /// Grubbs' test of the two largest or the two smallest means, whichever leaves less without them (7.3.4.2); `None` for
+    /// Grubbs' test of the two largest or the two smallest means, whichever leaves less without them; `None` for
     /// fewer than four groups, or if all are equal. Two that hide each other from [`Precision::grubbs`] show here; after one
     /// that shows there, ask again without it.
     ///
@@ -271,8 +271,8 @@ impl Precision {
         let mut order: Vec<usize> = (0..count).collect();
         order.sort_by(|a, b| means[*a].total_cmp(&means[*b]));
         let left = |others: &[usize]| {
-            let mean = sum(others.iter().map(|group| means[*group])) / others.len() as f64;
-            sum(others.iter().map(|group| (means[*group] - mean).powi(2))) / all
+            let means: Vec<f64> = others.iter().map(|group| means[*group]).collect();
+            Moments::of_values(&means).sum_of_squares() / all
         };
         let (smallest, largest) = (left(&order[2..]), left(&order[..count - 2]));
         let groups = if largest <= smallest { [order[count - 1], order[count - 2]] } else { [order[0], order[1]] };
@@ -290,8 +290,7 @@ impl Precision {
     /// Mean and standard deviation of the means of the groups, and these, all about the first observation.
     fn spread_of_means(&self) -> (f64, f64, &[f64]) {
         let means = self.analysis.means.as_slice();
-        let mean = sum(means.iter().copied()) / means.len() as f64;
-        let squares = sum(means.iter().map(|value| (value - mean).powi(2)));
-        (mean, (squares / (means.len() - 1) as f64).sqrt(), means)
+        let moments = Moments::of_values(means);
+        (moments.mean(), moments.standard_deviation().unwrap_or(0.0), means)
     }
 }
