@@ -44,6 +44,7 @@ const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
             ("csv", "reads the list of a campaign and writes its table"),
             ("indicatif", "shows how far a search is"),
             ("kuva", "draws the figures"),
+            ("rayon", "identifies several records at a time"),
             ("serde", "writes motions and campaigns as documents"),
             ("sha2", "names the input of a report"),
             ("serde_json", "reads scenarios and writes documents"),

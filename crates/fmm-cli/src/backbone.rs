@@ -7,7 +7,7 @@ use std::error::Error;
 use std::f64::consts::TAU;
 
 use crate::figure::{self, Cells, Layer, Panel, Role, label};
-use crate::input::{Given, ModeWanted, mode_wanted};
+use crate::input::Given;
 use crate::output::{Output, drawn, print};
 use clap::Args;
 use fmm_frf::{Backbone, BackboneOptions, BackbonePoint, DecayMode, Suggestion, decay_modes};
@@ -21,10 +21,6 @@ use serde_json::{Value, json};
 pub(crate) struct Arguments {
     #[command(flatten)]
     given: Given,
-    /// Which mode, the so many-th strongest, from 1 on, or, with a unit, as in 150Hz, the one nearest to a frequency; the strongest
-    /// unless given
-    #[arg(long, value_name = "N|F Hz", value_parser = mode_wanted)]
-    mode: Option<ModeWanted>,
     /// Cycles in each window; between 3 and 8 by the length of the record unless given, more where another mode is near
     #[arg(long, value_name = "CYCLES")]
     cycles: Option<f64>,
@@ -37,9 +33,10 @@ const ROWS: usize = 12;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let input = arguments.given.read()?;
+    input.warn();
     let decay = Experiment::ring_down(&input.record, &arguments.given.preparation())?;
     let record = decay.record().clone();
-    let mut options = match arguments.mode {
+    let mut options = match arguments.given.mode {
         Some(mode) => mode.options(&record)?,
         None => BackboneOptions::default(),
     };

@@ -64,7 +64,10 @@ enum Command {
 
 /// Runs the program with `arguments`, of which the first is its name, and says what the shell is told: 0 for a result, 1 for input that is
 /// refused or a search that fails, 2 for wrong usage.
-pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
+pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> ExitCode {
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let rest: Vec<_> = arguments.iter().skip(1).map(|argument| argument.to_string_lossy()).collect();
+    let command = format!("fmm {}", rest.join(" "));
     let program = match Program::try_parse_from(arguments) {
         Ok(program) => program,
         Err(error) => {
@@ -74,8 +77,8 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> 
         }
     };
     let done = match &program.command {
-        Command::Identify(arguments) => identify::identify(arguments),
-        Command::Compare(arguments) => identify::compare(arguments),
+        Command::Identify(arguments) => identify::identify(arguments, &command),
+        Command::Compare(arguments) => identify::compare(arguments, &command),
         Command::Force(arguments) => force::run(arguments),
         Command::Backbone(arguments) => backbone::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),

@@ -10,14 +10,13 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use crate::figure;
-use crate::input::{Choice, Given, ModeWanted, Question, mode_wanted};
+use crate::input::{Choice, Given, Question};
 use crate::output::{Output, drawn, print};
 use crate::pictures::Pictures;
 use crate::report;
 use clap::Args;
-use fmm_fit::{Options, Progress};
-use fmm_frf::IsolatedMode;
-use fmm_identify::{Candidate, Comparison, Drive, Experiment, Preparation, compare_observed, search_observed};
+use fmm_fit::Progress;
+use fmm_identify::{Candidate, Comparison, Drive, Experiment, Preparation};
 use fmm_record::{Column, Quantity, Record, Request};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -26,10 +25,6 @@ use indicatif::{ProgressBar, ProgressStyle};
 pub(crate) struct Arguments {
     #[command(flatten)]
     given: Given,
-    /// Identify one mode of several, the so many-th strongest, from 1 on, or, with a unit, as in 150Hz, the one nearest to a frequency;
-    /// the others are filtered out
-    #[arg(long, value_name = "N|F Hz", value_parser = mode_wanted)]
-    mode: Option<ModeWanted>,
     #[command(flatten)]
     question: Question,
     /// The channel with the measured force (N) that drives the machine; without it and --base, the machine vibrates freely. Without
@@ -74,21 +69,15 @@ fn experiment(arguments: &Arguments, record: &Record, preparation: &Preparation)
 fn fitted(arguments: &Arguments, decay: &Experiment, candidates: &[Candidate]) -> Result<Comparison, Box<dyn Error>> {
     let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {msg}")?);
     bar.enable_steady_tick(Duration::from_millis(100));
-    let decays = std::slice::from_ref(decay);
     let samples = decay.summary().samples as f64;
     let show = |law: &str, progress: &Progress<'_>| {
         let rms = (progress.sum_of_squares() / samples).sqrt();
         bar.set_message(format!("{law}: step {}, rms residual {rms:.4e}", progress.iterations()));
         ControlFlow::Continue(())
     };
-    let (machine, options) = (arguments.question.machine(arguments.force.is_some())?, Options::default());
-    let comparison = if candidates.is_empty() {
-        search_observed(&machine, decays, &arguments.question.search()?, &options, show)
-    } else {
-        compare_observed(&machine, decays, candidates, &options, show)
-    };
+    let comparison = arguments.question.answer(decay, candidates, show);
     bar.finish_and_clear();
-    Ok(comparison?)
+    comparison
 }
 
 /// Writes the record with the preferred fit, the decay of its amplitude, and the residuals as figures.
@@ -111,16 +100,8 @@ pub(crate) struct Found {
 
 /// Reads, prepares and fits the record; by a search unless there are `candidates`.
 fn found(arguments: &Arguments, candidates: &[Candidate]) -> Result<Found, Box<dyn Error>> {
-    let mut input = arguments.given.read()?;
-    if let Some(mode) = arguments.mode {
-        let isolated = IsolatedMode::of(&input.record, &mode.options(&input.record)?)?;
-        let (frequency, edge) = (isolated.frequency, isolated.edge);
-        let how = format!(
-            "the mode at {frequency:.4} Hz, by a filter that looks {edge:.4} s in both directions, which are left out at both ends"
-        );
-        input.origin = format!("{}; {how}", input.origin);
-        input.record = isolated.record;
-    }
+    let input = arguments.given.read_mode()?;
+    input.warn();
     let preparation = arguments.given.preparation().gain_uncertainty(arguments.question.scale_u);
     let decay = experiment(arguments, &input.record, &preparation)?;
     let comparison = fitted(arguments, &decay, candidates)?;
@@ -128,17 +109,18 @@ fn found(arguments: &Arguments, candidates: &[Candidate]) -> Result<Found, Box<d
 }
 
 /// Finds the law that explains a record, or the parameters of those that are named.
-pub(crate) fn identify(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    give_out(arguments, &arguments.question.candidates()?)
+pub(crate) fn identify(arguments: &Arguments, command: &str) -> Result<(), Box<dyn Error>> {
+    give_out(arguments, &arguments.question.candidates()?, command)
 }
 
 /// Compares the laws that are named, or else viscous, dry and both.
-pub(crate) fn compare(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+pub(crate) fn compare(arguments: &Arguments, command: &str) -> Result<(), Box<dyn Error>> {
     let (candidates, standard) = (arguments.question.candidates()?, Candidate::standard());
-    give_out(arguments, if candidates.is_empty() { &standard } else { &candidates })
+    give_out(arguments, if candidates.is_empty() { &standard } else { &candidates }, command)
 }
 
-fn give_out(arguments: &Arguments, candidates: &[Candidate]) -> Result<(), Box<dyn Error>> {
+/// `command` is what was typed.
+fn give_out(arguments: &Arguments, candidates: &[Candidate], command: &str) -> Result<(), Box<dyn Error>> {
     let folder = arguments.output.folder()?;
     let found = found(arguments, candidates)?;
     if arguments.output.json {
@@ -151,7 +133,7 @@ fn give_out(arguments: &Arguments, candidates: &[Candidate]) -> Result<(), Box<d
         drawn(folder, "{fit,amplitude,residuals}.svg");
     }
     if let Some(path) = &arguments.report {
-        let page = report::document(&found, arguments.given.bytes()?.as_ref())?;
+        let page = report::document(&found, arguments.given.bytes()?.as_ref(), command)?;
         std::fs::write(path, page).map_err(|error| format!("cannot write {}: {error}", path.display()))?;
         eprintln!("report: {}", path.display());
     }

@@ -22,8 +22,8 @@ const EXCLUDED: f64 = 5e-4;
 const PERIODS: f64 = 2.0;
 const LAGS: usize = 300;
 
-/// The page on what was `found` in a record with these bytes. The same input makes the same page.
-pub(crate) fn document(found: &Found, bytes: &[u8]) -> Result<String, Box<dyn Error>> {
+/// The page on what was `found` in a record with these bytes by this `command`. The same input makes the same page.
+pub(crate) fn document(found: &Found, bytes: &[u8], command: &str) -> Result<String, Box<dyn Error>> {
     let Found { origin, decay, comparison } = found;
     let name = origin.split(", channel").next().unwrap_or(origin);
     let pictures = Pictures::of(decay, comparison)?;
@@ -45,7 +45,7 @@ pub(crate) fn document(found: &Found, bytes: &[u8]) -> Result<String, Box<dyn Er
         section("Laws", &laws(found)),
         section("Residuals", &residuals(found, &pictures)),
         section("Amplitude", &amplitude(found, &pictures)),
-        section("How this was made", &making(found, bytes)),
+        section("How this was made", &making(found, bytes, command)),
         // What closes a script ends it, wherever it stands.
         format!("<script type=\"application/json\" id=\"result\">{}</script>\n", json.replace("</", "<\\/")),
     ];
@@ -166,16 +166,57 @@ fn amplitude(found: &Found, pictures: &Pictures) -> String {
 }
 
 /// Version, command, input.
-fn making(found: &Found, bytes: &[u8]) -> String {
+fn making(found: &Found, bytes: &[u8], command: &str) -> String {
     let digest = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat();
-    let command = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
     let entries = [
         ("Program", format!("fmm {}", env!("CARGO_PKG_VERSION"))),
-        ("Command", format!("fmm {command}")),
+        ("Command", command.to_owned()),
         ("Input", found.origin.clone()),
         ("SHA-256 of the input", digest),
         ("Result for programs", "one JSON document in the element with the id \"result\" of this file".to_owned()),
     ];
     let entries = entries.map(|(name, text)| format!("<dt>{name}</dt><dd><code>{}</code></dd>", escaped(&text)));
     format!("<dl>{}</dl>\n", entries.concat())
+}
+
+#[cfg(test)]
+mod tests {
+    use fmm_friction::Viscous;
+    use fmm_identify::{Candidate, Experiment, Machine, Preparation, compare};
+    use fmm_model::Oscillator;
+    use fmm_record::{Quantity, Record};
+    use fmm_sim::{Engine, Exact, Sampling, Scenario};
+
+    use super::*;
+
+    /// The page has the findings, holds its own result, needs no network, is the same each time, and lets no text in as HTML.
+    #[test]
+    fn a_page_is_whole() {
+        let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), Viscous::new(0.3).unwrap(), 1.0).unwrap();
+        let motion =
+            Exact.run(&scenario.starting_at(0.02, 0.0).unwrap(), &Sampling::uniform(5e-3, 1000).unwrap()).unwrap();
+        let noisy = |(i, v): (usize, &f64)| v + 1e-4 * ((i * i % 1009) as f64 / 504.5 - 1.0);
+        let values = motion.velocity().values().iter().enumerate().map(noisy).collect();
+        let record = Record::sampled(200.0, values, Quantity::Velocity, "m/s").unwrap();
+        let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+        let comparison =
+            compare(&Machine::per_unit_mass(), std::slice::from_ref(&decay), &Candidate::standard()).unwrap();
+        let damping = comparison.preferred().finding("damping_per_mass").unwrap();
+        let (value, u) = (damping.value(), damping.uncertainty().unwrap());
+        let found = Found { origin: "<script>.csv, channel v: \"velocity\"".to_owned(), decay, comparison };
+        let page = document(&found, b"abc", "fmm identify <script>.csv").unwrap();
+        assert_eq!(page, document(&found, b"abc", "fmm identify <script>.csv").unwrap());
+        assert!(page.contains(&Rounded::new(value, Some(u)).to_string()) && !page.contains("http"));
+        // SHA-256 of "abc", as FIPS 180-2 prints it.
+        assert!(page.contains("ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"));
+        assert!(page.contains("&lt;script&gt;.csv") && !page.contains("<script>"));
+        for section in ["Findings", "Limits", "Record and fit", "Laws", "Residuals", "Amplitude", "How this was made"] {
+            assert!(page.contains(&format!("<h2>{section}</h2>")), "{section}");
+        }
+        let (_, json) = page.split_once("id=\"result\">").unwrap();
+        let json: serde_json::Value = serde_json::from_str(json.split_once("</script>").unwrap().0).unwrap();
+        assert_eq!(json["preferred"], found.comparison.preferred().law());
+        // k u to the places of an uncertainty, never with more digits than u has.
+        assert_eq!(Rounded::new(0.0, Some(0.012_345)).to_string().split_once(" ± ").unwrap().1, "0.012");
+    }
 }

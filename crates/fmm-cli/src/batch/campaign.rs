@@ -102,6 +102,11 @@ impl Campaign {
         Ok(Self { options, group, entries })
     }
 
+    /// What describes the records.
+    pub(crate) fn columns(&self) -> Vec<&str> {
+        self.entries.first().map_or_else(Vec::new, |entry| entry.description.keys().map(String::as_str).collect())
+    }
+
     /// Keeps the list in `folder`.
     ///
     /// # Errors

@@ -4,17 +4,18 @@
 //! own, written at once or not at all, so that a campaign can be cut into shards, killed and resumed at any time.
 
 mod campaign;
+mod page;
 mod row;
 mod summary;
 mod table;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
 
 use crate::output::print;
 use campaign::Campaign;
@@ -45,8 +46,8 @@ pub(crate) struct Arguments {
     #[arg(long)]
     search: bool,
     /// Records at a time; as many as there are processors unless given
-    #[arg(long, value_name = "N")]
-    jobs: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
     /// Print one JSON document instead of the tables
     #[arg(long)]
     json: bool,
@@ -85,17 +86,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         Some(manifest) => Campaign::of_manifest(manifest, options, arguments.group.clone())?,
         None => Campaign::of_files(&arguments.records, options)?,
     };
-    let jobs = arguments.jobs.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get));
+    // As many as there are processors, to rayon.
+    let jobs = arguments.jobs.map_or(0, usize::from);
     let Some(folder) = &arguments.out else {
         let all: Vec<usize> = (0..campaign.entries.len()).collect();
-        let rows = Mutex::new(vec![None; all.len()]);
-        in_parallel(&all, jobs, |index| {
-            let row = Row::of(&campaign, index);
-            rows.lock().unwrap_or_else(std::sync::PoisonError::into_inner)[index] = Some(row);
-            Ok(())
-        })?;
-        let rows = rows.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-        return give_out(&campaign, &rows.into_iter().flatten().collect::<Vec<_>>(), arguments.json);
+        let rows = in_parallel(&all, jobs, |index| Ok(Row::of(&campaign, index)))?;
+        return give_out(&campaign, &rows, arguments.json);
     };
     campaign.keep(folder)?;
     let (part, parts) = arguments.shard.unwrap_or((1, 1));
@@ -129,7 +125,7 @@ fn put_together(folder: &Path, campaign: &Campaign, json: bool) -> Result<(), Bo
     for (name, text) in [
         ("campaign.csv", table::csv(campaign, &rows)?),
         ("campaign.json", table::document(&rows, &summary)?),
-        ("campaign.html", table::page(campaign, &rows, &summary)),
+        ("campaign.html", page::page(campaign, &rows, &summary)),
     ] {
         campaign::write_at_once(&folder.join(name), &text)?;
     }
@@ -142,34 +138,23 @@ fn give_out(campaign: &Campaign, rows: &[Row], json: bool) -> Result<(), Box<dyn
     if json { print(table::document(rows, &summary)?) } else { print(table::text(rows, &summary)) }
 }
 
-/// Does all `tasks`, so many at a time, and shows how far it is; the first error ends it.
-fn in_parallel(
+/// Does all `tasks`, so many at a time, in their order, and shows how far it is; the first error ends it.
+fn in_parallel<T: Send>(
     tasks: &[usize],
     jobs: usize,
-    work: impl Fn(usize) -> Result<(), Box<dyn Error + Send + Sync>> + Sync,
-) -> Result<(), Box<dyn Error>> {
+    work: impl Fn(usize) -> Result<T, String> + Sync,
+) -> Result<Vec<T>, Box<dyn Error>> {
     let bar = ProgressBar::new(tasks.len() as u64)
         .with_style(ProgressStyle::with_template("{wide_bar} {pos} of {len} records, {eta} left")?);
-    let next = AtomicUsize::new(0);
-    let failed = Mutex::new(None);
-    std::thread::scope(|scope| {
-        for _ in 0..jobs.clamp(1, tasks.len().max(1)) {
-            scope.spawn(|| {
-                while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    if let Err(error) = work(*task) {
-                        next.store(tasks.len(), Ordering::Relaxed);
-                        failed.lock().unwrap_or_else(std::sync::PoisonError::into_inner).get_or_insert(error);
-                    }
-                    bar.inc(1);
-                }
-            });
-        }
-    });
+    let one = |task: &usize| {
+        let done = work(*task);
+        bar.inc(1);
+        done
+    };
+    let pool = ThreadPoolBuilder::new().num_threads(jobs).build()?;
+    let done: Result<Vec<T>, _> = pool.install(|| tasks.par_iter().map(one).collect());
     bar.finish_and_clear();
-    match failed.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
-        Some(error) => Err(error),
-        None => Ok(()),
-    }
+    Ok(done?)
 }
 
 #[cfg(test)]

@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use fmm_fit::{EstimateStatus, Options};
-use fmm_identify::{Comparison, Experiment, Finding, Origin, compare_observed, search_observed};
+use fmm_fit::EstimateStatus;
+use fmm_identify::{Experiment, Finding, Origin};
 use serde::{Deserialize, Serialize};
 
 use super::campaign::{Campaign, write_at_once};
@@ -29,10 +29,16 @@ pub(crate) struct Row {
     pub(crate) file: PathBuf,
     /// What describes it, by column of the manifest.
     pub(crate) description: BTreeMap<String, String>,
-    /// What was found.
-    pub(crate) found: Option<Found>,
-    /// Why nothing was.
-    pub(crate) refused: Option<String>,
+    #[serde(flatten)]
+    pub(crate) outcome: Outcome,
+}
+
+/// What was found, or why nothing was.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Outcome {
+    Found(Found),
+    Refused(String),
 }
 
 /// What was found in a record.
@@ -69,11 +75,16 @@ impl Row {
         let arguments = OfRecord::try_parse_from(options.chain(["--".to_owned(), entry.file.display().to_string()]));
         let found =
             arguments.map_err(|error| first_line(&error.to_string()).into()).and_then(|arguments| found(&arguments));
-        let (found, refused) = match found {
-            Ok(found) => (Some(found), None),
-            Err(error) => (None, Some(error.to_string())),
-        };
-        Self { file: entry.file.clone(), description: entry.description.clone(), found, refused }
+        let outcome = found.map_or_else(|error: Box<dyn Error>| Outcome::Refused(error.to_string()), Outcome::Found);
+        Self { file: entry.file.clone(), description: entry.description.clone(), outcome }
+    }
+
+    /// What was found, if anything was.
+    pub(crate) fn found(&self) -> Option<&Found> {
+        match &self.outcome {
+            Outcome::Found(found) => Some(found),
+            Outcome::Refused(_) => None,
+        }
     }
 
     fn path(folder: &Path, index: usize) -> PathBuf {
@@ -85,14 +96,27 @@ impl Row {
         serde_json::from_str(&std::fs::read_to_string(Self::path(folder, index)).ok()?).ok()
     }
 
-    pub(crate) fn write(&self, folder: &Path, index: usize) -> Result<(), Box<dyn Error + Send + Sync>> {
-        Ok(write_at_once(&Self::path(folder, index), &serde_json::to_string(self)?)?)
+    pub(crate) fn write(&self, folder: &Path, index: usize) -> Result<(), String> {
+        let text = serde_json::to_string(self).map_err(|error| error.to_string())?;
+        write_at_once(&Self::path(folder, index), &text)
     }
 
-    /// What was found of a quantity of this name.
-    pub(crate) fn value(&self, name: &str) -> Option<&Told> {
-        self.found.as_ref()?.findings.iter().find(|value| value.name == name)
+    /// What was found of a quantity of this name and unit.
+    pub(crate) fn told(&self, (name, unit): (&str, &str)) -> Option<&Told> {
+        self.found()?.findings.iter().find(|told| told.name == name && told.unit == unit)
     }
+}
+
+/// Names and units of all quantities of `rows`, in the order in which they first appear.
+pub(crate) fn quantities(rows: &[Row]) -> Vec<(&str, &str)> {
+    let mut quantities = Vec::new();
+    for told in rows.iter().filter_map(Row::found).flat_map(|found| &found.findings) {
+        let quantity = (told.name.as_str(), told.unit.as_str());
+        if !quantities.contains(&quantity) {
+            quantities.push(quantity);
+        }
+    }
+    quantities
 }
 
 fn first_line(text: &str) -> String {
@@ -101,17 +125,10 @@ fn first_line(text: &str) -> String {
 
 fn found(arguments: &OfRecord) -> Result<Found, Box<dyn Error>> {
     let OfRecord { given, question } = arguments;
-    let input = given.read()?;
+    let input = given.read_mode()?;
     let preparation = given.preparation().gain_uncertainty(question.scale_u);
     let decay = question.seen(Experiment::ring_down(&input.record, &preparation)?)?;
-    let (machine, candidates) = (question.machine(false)?, question.candidates()?);
-    let decays = std::slice::from_ref(&decay);
-    let go_on = |_: &str, _: &fmm_fit::Progress<'_>| ControlFlow::Continue(());
-    let comparison: Comparison = if candidates.is_empty() {
-        search_observed(&machine, decays, &question.search()?, &Options::default(), go_on)?
-    } else {
-        compare_observed(&machine, decays, &candidates, &Options::default(), go_on)?
-    };
+    let comparison = question.answer(&decay, &question.candidates()?, |_, _| ControlFlow::Continue(()))?;
     let preferred = comparison.preferred();
     let is_of_machine =
         |finding: &&Finding| !finding.is_of_record() && finding.origin() != Origin::Fitted(EstimateStatus::Fixed);

@@ -5,7 +5,7 @@ use fmm_uq::{Consensus, Interval, Outlier, Precision, RandomEffects};
 use serde::Serialize;
 
 use super::campaign::Campaign;
-use super::row::Row;
+use super::row::{Row, quantities};
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;
@@ -66,24 +66,16 @@ pub(crate) struct ByGroup {
 
 impl Summary {
     pub(crate) fn of(campaign: &Campaign, rows: &[Row]) -> Self {
-        let mut names: Vec<(&str, &str)> = Vec::new();
-        for value in rows.iter().filter_map(|row| row.found.as_ref()).flat_map(|found| &found.findings) {
-            if !names.contains(&(&value.name, &value.unit)) {
-                names.push((&value.name, &value.unit));
-            }
-        }
-        let quantities =
-            names.into_iter().filter_map(|(name, unit)| Quantity::of(campaign, rows, name, unit)).collect();
-        Self { records: rows.len(), found: rows.iter().filter(|row| row.found.is_some()).count(), quantities }
+        let quantities = quantities(rows);
+        let quantities = quantities.into_iter().filter_map(|quantity| Quantity::of(campaign, rows, quantity)).collect();
+        Self { records: rows.len(), found: rows.iter().filter_map(Row::found).count(), quantities }
     }
 }
 
 impl Quantity {
-    fn of(campaign: &Campaign, rows: &[Row], name: &str, unit: &str) -> Option<Self> {
-        let of_name =
-            |row: &Row| row.value(name).filter(|value| value.unit == unit).map(|value| (value.value, value.u));
+    fn of(campaign: &Campaign, rows: &[Row], quantity: (&str, &str)) -> Option<Self> {
         let shown: Vec<(&Row, f64, Option<f64>)> =
-            rows.iter().filter_map(|row| of_name(row).map(|(value, u)| (row, value, u))).collect();
+            rows.iter().filter_map(|row| row.told(quantity).map(|told| (row, told.value, told.u))).collect();
         let told: Vec<(&Row, Estimated)> = shown
             .iter()
             .filter_map(|(row, value, u)| Some((*row, Estimated::new(*value, u.filter(|u| *u > 0.0)?))))
@@ -96,11 +88,10 @@ impl Quantity {
         let moved = consensus.influences().into_iter().zip(&told).filter_map(|(influence, (row, _))| {
             Some((row.file.display().to_string(), (influence.without?.value - mean) / u))
         });
-        let weights: f64 = results.iter().map(|result| result.uncertainty.powi(-2)).sum();
-        let weighted: f64 = results.iter().map(|result| result.value * result.uncertainty.powi(-2)).sum();
+        let plain = consensus.without_effects();
         Some(Self {
-            name: name.to_owned(),
-            unit: unit.to_owned(),
+            name: quantity.0.to_owned(),
+            unit: quantity.1.to_owned(),
             records: told.len(),
             left_out: shown.len() - told.len(),
             mean,
@@ -110,7 +101,7 @@ impl Quantity {
             between_der_simonian_laird: other.between(),
             homogeneity_p: consensus.p_value(),
             i_squared: consensus.i_squared(),
-            weighted_mean: [weighted / weights, weights.sqrt().recip()],
+            weighted_mean: [plain.value, plain.uncertainty],
             most_influential: moved.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())),
             precision: campaign.group.as_ref().and_then(|column| ByGroup::of(column, &told)),
         })

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::row::Outcome;
 use super::*;
 
 fn folder(name: &str) -> PathBuf {
@@ -81,8 +82,8 @@ fn any_split_gives_the_same_bytes() {
         whole == done("three", &[(3, 3), (1, 3), (2, 3), (1, 3)]) && whole == done("mixed", &[(2, 2), (1, 5), (1, 1)])
     );
     let rows: Vec<Row> = (0..8).map(|index| Row::read(&home.join("whole"), index).unwrap()).collect();
-    assert_eq!(rows.iter().filter(|row| row.found.is_some()).count(), 5);
-    assert!(rows.iter().filter(|row| row.found.is_none()).all(|row| !row.refused.as_ref().unwrap().is_empty()));
+    assert_eq!(rows.iter().filter_map(Row::found).count(), 5);
+    assert!(rows.iter().all(|row| !matches!(&row.outcome, Outcome::Refused(why) if why.is_empty())));
     // A row of which only a part was written is done again.
     std::fs::write(home.join("whole/rows/0000003.json"), "{\"file\":").unwrap();
     assert!(Row::read(&home.join("whole"), 3).is_none());
@@ -103,16 +104,34 @@ fn a_manifest_sets_options_and_groups() {
     let campaign = Campaign::of_manifest(&manifest, law(), Some("operator".to_owned())).unwrap();
     let rows: Vec<Row> = (0..5).map(|index| Row::of(&campaign, index)).collect();
     for (row, coefficient) in rows.iter().zip([0.1, 0.1005, 0.100_333, 0.1]) {
-        let found = row.value("mu").unwrap_or_else(|| panic!("{row:?}"));
+        let found = row.told(("mu", "1")).unwrap_or_else(|| panic!("{row:?}"));
         let off: f64 = (found.value - coefficient).abs();
         assert!(off < 4.0 * found.u.unwrap() && off < 0.08 * coefficient, "{found:?}");
     }
-    assert!(rows[4].refused.is_some());
+    assert!(matches!(&rows[4].outcome, Outcome::Refused(why) if why.contains("missing.csv")), "{:?}", rows[4]);
     let summary = Summary::of(&campaign, &rows);
     assert_eq!((summary.records, summary.found), (5, 4));
     let force = summary.quantities.iter().find(|quantity| quantity.name == "friction_force").unwrap();
     let group = force.precision.as_ref().unwrap();
     assert!(group.groups == ["A", "B"] && group.between > 10.0 * group.repeatability, "{group:?}");
+    // The consensus takes each force once, and every record weighs about the same.
+    let rest: f64 = rows[..4].iter().map(|row| row.told(("friction_force", "N")).unwrap().value).sum();
+    assert!((force.mean / (rest / 4.0) - 1.0).abs() < 0.02 && force.records == 4, "{force:?}");
+    assert!(force.homogeneity_p < 1e-6 && force.weighted_mean[1] < 0.2 * force.u, "{force:?}");
+
+    let csv = table::csv(&campaign, &rows).unwrap();
+    let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    assert!(lines.len() == 6 && lines[0][..6] == ["file", "mass", "mass_u", "normal-load", "operator", "law"]);
+    let place = lines[0].iter().position(|name| *name == "mu [1]").unwrap();
+    assert_eq!(lines[2][place].parse::<f64>().unwrap(), rows[1].told(("mu", "1")).unwrap().value);
+    assert_eq!((lines[2][4], lines[2][5], lines[5][5]), ("A", LAW, ""));
+    let document: serde_json::Value = serde_json::from_str(&table::document(&rows, &summary).unwrap()).unwrap();
+    assert!(document["records"][1]["found"]["law"] == LAW && document["records"][4]["refused"].is_string());
+    let page = page::page(&campaign, &rows, &summary);
+    assert!(rows.iter().all(|row| page.contains(&row.file.display().to_string())) && !page.contains("http"));
+    let text = table::text(&rows, &summary);
+    assert!(text.contains("4 of 5 records identified") && text.contains("by 2 groups: s_r ="), "{text}");
+
     let missing = Campaign::of_manifest(&manifest, law(), Some("lab".to_owned())).unwrap_err().to_string();
     assert!(missing.contains("there is no column `lab`") && missing.contains("operator"), "{missing}");
 }

@@ -10,7 +10,7 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use fmm_frf::{BackboneOptions, decay_modes};
+use fmm_frf::{BackboneOptions, IsolatedMode, decay_modes};
 use fmm_identify::Preparation;
 use fmm_record::{Column, Quantity, Record, Request, Unit};
 
@@ -50,6 +50,10 @@ pub(crate) struct Given {
     /// Use the record up to this time
     #[arg(long, value_name = "S")]
     to: Option<f64>,
+    /// Which mode of several is meant, the so many-th strongest, from 1 on, or, with a unit, as in 150Hz, the one nearest to a frequency;
+    /// where a law is fitted, the others are filtered out
+    #[arg(long, value_name = "N|F Hz", value_parser = mode_wanted)]
+    pub(crate) mode: Option<ModeWanted>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -69,7 +73,7 @@ pub(crate) enum ModeWanted {
 }
 
 /// A number of a mode, or a frequency with its unit, Hz.
-pub(crate) fn mode_wanted(text: &str) -> Result<ModeWanted, String> {
+fn mode_wanted(text: &str) -> Result<ModeWanted, String> {
     let refused = || format!("{text:?} is no mode; give a number from 1 on, or a frequency with its unit, as in 150Hz");
     match text.trim().strip_suffix("Hz") {
         Some(frequency) => {
@@ -123,7 +127,7 @@ impl Given {
         })
     }
 
-    /// The record, with warnings on the screen.
+    /// The record.
     pub(crate) fn read(&self) -> Result<Input, Box<dyn Error>> {
         let mut request = Request::default();
         if let Some(quantity) = self.quantity {
@@ -137,12 +141,23 @@ impl Given {
         }
         let (channel, time, rate) = (self.channel.clone(), self.time.clone(), self.rate);
         let choice = Choice { channel, time, rate, request, is_drive: false };
-        let input = match &self.file {
-            Some(file) => choice.read(file)?,
-            None => choice.read_bundled()?,
-        };
-        for warning in &input.warnings {
-            eprintln!("warning: {warning}");
+        match &self.file {
+            Some(file) => choice.read(file),
+            None => choice.read_bundled(),
+        }
+    }
+
+    /// The record less all modes but the one that is meant, if one is.
+    pub(crate) fn read_mode(&self) -> Result<Input, Box<dyn Error>> {
+        let mut input = self.read()?;
+        if let Some(mode) = self.mode {
+            let isolated = IsolatedMode::of(&input.record, &mode.options(&input.record)?)?;
+            let (frequency, edge) = (isolated.frequency, isolated.edge);
+            let how = format!(
+                "the mode at {frequency:.4} Hz, by a filter that looks {edge:.4} s in both directions, which are left out at both ends"
+            );
+            input.origin = format!("{}; {how}", input.origin);
+            input.record = isolated.record;
         }
         Ok(input)
     }

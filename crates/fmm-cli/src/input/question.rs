@@ -1,11 +1,16 @@
 //! What is asked of a record: the machine, the laws, the sensor.
 
 use std::error::Error;
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use clap::Args;
-use fmm_identify::{Candidate, Experiment, Known, Machine, Search, Sensor};
+use fmm_fit::{Options, Progress};
+use fmm_identify::{
+    Candidate, Comparison, Experiment, Known, Machine, Search, Sensor, compare_observed, search_observed,
+};
 use fmm_model::Restoring;
+use fmm_record::Quantity;
 
 /// The machine, the laws and the sensor.
 #[derive(Debug, Clone, Args)]
@@ -82,7 +87,7 @@ impl Question {
     }
 
     /// The machine; of one whose driving force is measured, mass and stiffness may be unknown.
-    pub(crate) fn machine(&self, force_is_measured: bool) -> Result<Machine, Box<dyn Error>> {
+    fn machine(&self, force_is_measured: bool) -> Result<Machine, Box<dyn Error>> {
         let mut machine = match (self.mass, self.stiffness) {
             (Some(mass), _) => Machine::of_mass(Known::new(mass, self.mass_u)?)?,
             (None, Some(stiffness)) => Machine::of_stiffness(Known::new(stiffness, self.stiffness_u)?)?,
@@ -140,8 +145,24 @@ impl Question {
         self.hold.iter().map(parse).collect()
     }
 
+    /// What a record says to the `candidates`, or to a search if there are none, while `show` sees each trial step.
+    pub(crate) fn answer(
+        &self,
+        decay: &Experiment,
+        candidates: &[Candidate],
+        show: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
+    ) -> Result<Comparison, Box<dyn Error>> {
+        let machine = self.machine(decay.drive().is_some_and(|drive| drive.record().quantity() == Quantity::Force))?;
+        let (decays, options) = (std::slice::from_ref(decay), Options::default());
+        Ok(if candidates.is_empty() {
+            search_observed(&machine, decays, &self.search()?, &options, show)?
+        } else {
+            compare_observed(&machine, decays, candidates, &options, show)?
+        })
+    }
+
     /// The search for a law, where none is named.
-    pub(crate) fn search(&self) -> Result<Search, Box<dyn Error>> {
+    fn search(&self) -> Result<Search, Box<dyn Error>> {
         let mut search = Search::default();
         for Held { law, name, value } in self.held()? {
             search = search.holding(law.as_deref(), &name, value);

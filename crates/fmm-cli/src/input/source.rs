@@ -15,6 +15,15 @@ pub(crate) struct Input {
     pub(crate) warnings: Vec<String>,
 }
 
+impl Input {
+    /// Shows what was not as it should be.
+    pub(crate) fn warn(&self) {
+        for warning in &self.warnings {
+            eprintln!("warning: {warning}");
+        }
+    }
+}
+
 /// What the user says of the file; the rest is found in it.
 #[derive(Default)]
 pub(crate) struct Choice {

@@ -126,6 +126,8 @@ fn what_no_unit_tells_is_asked_for() {
 #[test]
 fn measured_records_are_what_they_were() {
     let input = Choice::default().read_bundled().unwrap();
+    // The program carries a copy of its own, as it is published without the examples.
+    assert!(super::BUNDLED.1 == std::fs::read(data(super::BUNDLED.0)).unwrap());
     assert_eq!((input.record.len(), input.record.rate().round()), (30_000, 1000.0));
     assert!(input.origin.contains("channel data: velocity in V;"), "{}", input.origin);
     let theta = Choice { channel: Some(Column::from("theta_rad")), ..Choice::default() };

@@ -1,0 +1,196 @@
+//! The program on a folder of ring-downs, killed and resumed, and campaigns whose truth is known.
+//!
+//! `FMM_CAMPAIGN_FILES=3000 cargo test --release -p fmm-cli --test campaign -- --nocapture` makes as many files and says how long they take.
+
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal, Uniform};
+
+fn program() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_fmm"))
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// A draw of random ring-downs.
+struct Draw(ChaCha8Rng);
+
+impl Draw {
+    fn normal(&mut self) -> f64 {
+        StandardNormal.sample(&mut self.0)
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        Uniform::new(low, high).unwrap().sample(&mut self.0)
+    }
+}
+
+/// Velocity (m/s) of a release at 20 mm, natural frequency in Hz, friction per mass in m/s², damping per mass in 1/s: half swing by half
+/// swing a damped sine about the place that friction shifts.
+fn velocity(rate: f64, samples: usize, frequency: f64, friction: f64, damping: f64) -> Vec<f64> {
+    let (natural, decay) = (TAU * frequency, 0.5 * damping);
+    let damped = (natural * natural - decay * decay).sqrt();
+    let (half_swing, shift) = (PI / damped, friction / (natural * natural));
+    let (mut position, mut begin, mut values) = (0.02_f64, 0.0, Vec::with_capacity(samples));
+    while values.len() < samples && position.abs() > shift {
+        let centre = shift * position.signum();
+        let amplitude = position - centre;
+        while values.len() < samples && values.len() as f64 / rate - begin < half_swing {
+            let t = values.len() as f64 / rate - begin;
+            values.push(-amplitude * natural * natural / damped * (-decay * t).exp() * (damped * t).sin());
+        }
+        position = centre - amplitude * (-decay * half_swing).exp();
+        begin += half_swing;
+    }
+    values.resize(samples, 0.0);
+    values
+}
+
+/// Ring-downs of several rates, units, separators and offsets, and among each fifty an empty file, one of words and one of any bytes.
+fn write_files(folder: &Path, count: usize) {
+    let mut draw = Draw(ChaCha8Rng::seed_from_u64(1));
+    for index in 0..count {
+        let path = folder.join(format!("run_{index:04}.csv"));
+        let bytes = match index % 50 {
+            7 => Vec::new(),
+            19 => b"no,numbers\nat,all\n".to_vec(),
+            33 => (0..500).map(|_| draw.between(0.0, 256.0) as u8).collect(),
+            _ => text(&mut draw, index).into_bytes(),
+        };
+        std::fs::write(path, bytes).unwrap();
+    }
+}
+
+fn text(draw: &mut Draw, index: usize) -> String {
+    let rate = [200.0, 500.0, 1000.0][index % 3];
+    let (unit, factor) = [("m/s", 1.0), ("mm/s", 1e3), ("cm/s", 1e2)][index / 3 % 3];
+    let separator = [',', ';'][index % 2];
+    let offset = [0.0, 0.01, -0.2][index / 9 % 3];
+    let samples = draw.between(400.0, 1200.0) as usize;
+    let values = velocity(rate, samples, draw.between(2.0, 8.0), draw.between(0.01, 0.03), draw.between(0.0, 0.3));
+    let mut text = format!("t [s]{separator}v [{unit}]\n");
+    for (i, value) in values.iter().enumerate() {
+        let noisy = factor * (value + offset + 1e-4 * draw.normal());
+        writeln!(text, "{:.4}{separator}{noisy:.6}", i as f64 / rate).unwrap();
+    }
+    text
+}
+
+/// No file is lost, and a campaign that is killed ten times and resumed gives the same bytes as one that is not.
+#[test]
+fn killed_and_resumed() {
+    let count = std::env::var("FMM_CAMPAIGN_FILES").map_or(200, |count| count.parse().unwrap());
+    let home = folder("killed");
+    let data = home.join("data");
+    std::fs::create_dir_all(&data).unwrap();
+    write_files(&data, count);
+    let batch = |out: &Path| {
+        let mut command = program();
+        command.arg("batch").arg(&data).arg("--out").arg(out).stdout(Stdio::null()).stderr(Stdio::null());
+        command
+    };
+    let begun = Instant::now();
+    assert!(batch(&home.join("whole")).status().unwrap().success());
+    let whole = begun.elapsed();
+    println!("{count} files in {:.1} s", whole.as_secs_f64());
+
+    let killed = home.join("killed");
+    let rows = || std::fs::read_dir(killed.join("rows")).map_or(0, Iterator::count);
+    let mut seen = Vec::new();
+    for part in 1..=10 {
+        let mut child = batch(&killed).spawn().unwrap();
+        // Wherever it is, by then or soon after.
+        while rows() < part * count / 12 && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        seen.push(rows());
+    }
+    println!("rows at each kill: {seen:?}");
+    assert!(seen[0] < count && seen.windows(2).all(|pair| pair[0] <= pair[1]));
+    assert!(batch(&killed).status().unwrap().success());
+    for name in ["campaign.csv", "campaign.json", "campaign.html"] {
+        let [first, second] = [&home.join("whole"), &killed].map(|out| std::fs::read(out.join(name)).unwrap());
+        assert!(first == second, "{name} differs");
+    }
+    let csv = std::fs::read_to_string(killed.join("campaign.csv")).unwrap();
+    let broken = (0..count).filter(|index| [7, 19, 33].contains(&(index % 50))).count();
+    let found = csv.lines().filter(|line| line.contains(",coulomb_viscous,")).count();
+    assert_eq!((csv.lines().count(), found), (count + 1, count - broken));
+}
+
+/// Parts that are missing are said, and what does not exist is refused, each with the code that a shell can tell apart.
+#[test]
+fn a_shell_is_told() {
+    let home = folder("shell");
+    write_files(&home, 3);
+    let out = home.join("out");
+    let code = |arguments: &[&str]| {
+        let done = program().args(arguments).output().unwrap();
+        (done.status.code(), String::from_utf8_lossy(&done.stderr).into_owned())
+    };
+    let [data, out] = [&home, &out].map(|path| path.to_str().unwrap());
+    assert_eq!(code(&["batch", data, "--out", out, "--shard", "1/2"]).0, Some(0));
+    let (refused, message) = code(&["merge", out]);
+    assert!(refused == Some(1) && message.contains("1 of 3 records are still to be done"), "{message}");
+    assert_eq!(code(&["batch", data, "--out", out, "--shard", "2/2"]).0, Some(0));
+    assert_eq!(code(&["merge", out]).0, Some(0));
+    let (refused, message) = code(&["batch", data, "--out", out, "--", "--law", "coulomb"]);
+    assert!(refused == Some(1) && message.contains("other records or options"), "{message}");
+    assert_eq!(code(&["batch", data, "--shard", "3/2", "--out", out]).0, Some(2));
+    assert_eq!(code(&["merge", data]).0, Some(1));
+}
+
+/// Thirty repeats at three loads, with a coefficient that differs by 1 % from run to run: the interval of the campaign holds, that of the
+/// mean that takes the runs for alike does not.
+#[test]
+fn intervals_of_campaigns_hold() {
+    const CAMPAIGNS: u64 = 300;
+    const MU: f64 = 0.01;
+    let home = folder("intervals");
+    let (mut held, mut naive) = (0, 0);
+    for seed in 0..CAMPAIGNS {
+        let mut draw = Draw(ChaCha8Rng::seed_from_u64(seed));
+        let mut manifest = "file,mass,normal_load\n".to_owned();
+        for run in 0..30 {
+            let load = [3.5, 7.0, 14.0][run % 3];
+            let friction = MU * (1.0 + 0.01 * draw.normal()) * load;
+            let values = velocity(100.0, 300, 2.0, friction, 0.05);
+            let mut text = "v [m/s]\n".to_owned();
+            for value in values {
+                writeln!(text, "{:.7}", value + 5e-5 * draw.normal()).unwrap();
+            }
+            std::fs::write(home.join(format!("run_{run}.csv")), text).unwrap();
+            writeln!(manifest, "run_{run}.csv,1,{load}").unwrap();
+        }
+        std::fs::write(home.join("runs.csv"), manifest).unwrap();
+        let done = program()
+            .args(["batch", "--manifest"])
+            .arg(home.join("runs.csv"))
+            .args(["--json", "--", "--rate", "100"])
+            .output()
+            .unwrap();
+        let document: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+        let quantities = document["summary"]["quantities"].as_array().unwrap();
+        let mu = quantities.iter().find(|quantity| quantity["name"] == "mu").unwrap();
+        assert_eq!(mu["records"], 30, "{mu}");
+        let number = |name: &str, place: usize| mu[name][place].as_f64().unwrap();
+        held += u64::from((number("interval_95", 0)..number("interval_95", 1)).contains(&MU));
+        naive += u64::from((number("weighted_mean", 0) - MU).abs() < 1.96 * number("weighted_mean", 1));
+    }
+    let [held, naive] = [held, naive].map(|count| count as f64 / CAMPAIGNS as f64);
+    println!("{held} of the intervals hold, {naive} of those of the weighted mean");
+    assert!((0.92..0.98).contains(&held) && naive < 0.8, "{held}, {naive}");
+}
