@@ -8,7 +8,7 @@ use crate::output::print;
 const FORMATS: &str = "\
 A format is told by what a file begins with, whatever its name.
 
-text       columns of numbers with or without a header: CSV, TSV, LVM, lines of two numbers; any separator, comma or point
+text       columns of numbers with or without a header: CSV, TSV, LVM and the like; any separator, decimal points or commas
 matlab     MATLAB 4 to 7 (.mat), and 7.3, which is HDF5
 hdf5       HDF5 (.h5)
 numpy      NumPy (.npy, .npz)
