@@ -120,6 +120,24 @@ fn steady_lines_are_told_from_modes() {
     assert!(backbone.points().iter().all(|point| (point.frequency.value - 20.0).abs() < 1e-3));
 }
 
+/// The damping that is listed is that of the mode: not of the noise that is left of it, nor of a mode too near to be told from it.
+#[test]
+fn listed_damping_is_that_of_the_mode() {
+    let mut random = ChaCha8Rng::seed_from_u64(8);
+    let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+    // In the second half of 2 s the amplitude falls from 0.14 to 0.02.
+    let at = |t: f64| (-2.0 * t).exp() * (TAU * 20.0 * t).cos();
+    let noisy = (0..4000).map(|i| at(f64::from(i) / RATE) + 0.15 * draw()).collect();
+    let modes = decay_modes(&record(noisy, Quantity::Displacement));
+    assert!((modes[0].damping.unwrap() / 4.0 - 1.0).abs() < 0.1, "{modes:?}");
+
+    // Modes that a second tells apart, but its half does not.
+    let near = |t: f64| at(t) + 0.8 * (-0.2 * t).exp() * (TAU * 26.0 * t + 1.0).cos();
+    let both = decay_modes(&record((0..2400).map(|i| near(f64::from(i) / RATE)).collect(), Quantity::Displacement));
+    assert_eq!(both.len(), 2, "{both:?}");
+    assert!(both.iter().all(|mode| mode.damping.is_none()), "{both:?}");
+}
+
 /// Uncertainties of amplitude, frequency and damping over draws of white noise, of a long record, of a short one and of half cycles.
 #[test]
 fn uncertainties_hold_what_they_say() {
@@ -311,6 +329,9 @@ fn real_records_show_their_springs_and_friction() {
     let file = open(pendulum).unwrap();
     let rate = file.channel("omega_rad_per_s").unwrap().record.with_quantity(Quantity::Velocity).with_unit("rad/s");
     // Each multiple moves with the frequency, by a sixth, and is listed once.
+    // The frequency sweeps over a sixth, and the damping is still that between 0.053 and 0.057 1/s of the backbone's first half.
+    let damping = decay_modes(&rate)[0].damping.unwrap();
+    assert!((0.05..0.06).contains(&damping), "{damping}");
     let mut listed: Vec<f64> = decay_modes(&rate).iter().map(|mode| mode.frequency).collect();
     listed.sort_by(f64::total_cmp);
     assert!(listed.windows(2).all(|pair| pair[1] / pair[0] > 1.1), "{listed:?}");

@@ -203,10 +203,12 @@ mod tests {
             compare(&Machine::per_unit_mass(), std::slice::from_ref(&decay), &Candidate::standard()).unwrap();
         let damping = comparison.preferred().finding("damping_per_mass").unwrap();
         let (value, u) = (damping.value(), damping.uncertainty().unwrap());
+        let k = coverage_factor(LEVEL, damping.degrees_of_freedom()).unwrap();
         let found = Found { origin: "<script>.csv, channel v: \"velocity\"".to_owned(), decay, comparison };
         let page = document(&found, b"abc", "fmm identify <script>.csv").unwrap();
         assert_eq!(page, document(&found, b"abc", "fmm identify <script>.csv").unwrap());
         assert!(page.contains(&Rounded::new(value, Some(u)).to_string()) && !page.contains("http"));
+        assert!(page.contains(&format!("<td class=\"number\">{k:.2}</td>")) && k < 2.0, "{k}");
         // SHA-256 of "abc", as FIPS 180-2 prints it.
         assert!(page.contains("ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"));
         assert!(page.contains("&lt;script&gt;.csv") && !page.contains("<script>"));

@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::row::Outcome;
+use std::collections::BTreeMap;
+
+use super::row::{Found, Outcome, Told};
 use super::*;
 
 fn folder(name: &str) -> PathBuf {
@@ -113,6 +115,9 @@ fn a_manifest_sets_options_and_groups() {
     assert_eq!((summary.records, summary.found), (5, 4));
     let force = summary.quantities.iter().find(|quantity| quantity.name == "friction_force").unwrap();
     let group = force.precision.as_ref().unwrap();
+    // The initial state and the offset belong to each record, not to the machine.
+    let names: Vec<&str> = summary.quantities.iter().map(|quantity| quantity.name.as_str()).collect();
+    assert!(names.contains(&"natural_frequency_hz") && !names.contains(&"offset"), "{names:?}");
     assert!(group.groups == ["A", "B"] && group.between > 10.0 * group.repeatability, "{group:?}");
     // The consensus takes each force once, and every record weighs about the same.
     let rest: f64 = rows[..4].iter().map(|row| row.told(("friction_force", "N")).unwrap().value).sum();
@@ -134,4 +139,29 @@ fn a_manifest_sets_options_and_groups() {
 
     let missing = Campaign::of_manifest(&manifest, law(), Some("lab".to_owned())).unwrap_err().to_string();
     assert!(missing.contains("there is no column `lab`") && missing.contains("operator"), "{missing}");
+}
+
+/// Of four records one lies far off: without it the consensus moves most.
+#[test]
+fn the_most_influential_record_is_named() {
+    let row = |(index, value): (usize, &f64)| {
+        let told = Told { name: "mu".into(), unit: "1".into(), value: *value, u: Some(0.1), degrees_of_freedom: None };
+        let found = Found {
+            origin: String::new(),
+            law: LAW.to_owned(),
+            is_decided: true,
+            findings: vec![told],
+            rms_residual: 1.0,
+            unit: "m".to_owned(),
+            half_swings: 9,
+            warnings: Vec::new(),
+        };
+        let file = PathBuf::from(format!("run_{index}.csv"));
+        Row { file, description: BTreeMap::new(), outcome: Outcome::Found(found) }
+    };
+    let rows: Vec<Row> = [1.0, 1.1, 5.0, 0.9].iter().enumerate().map(row).collect();
+    let campaign = Campaign { options: Vec::new(), group: None, entries: Vec::new() };
+    let summary = Summary::of(&campaign, &rows);
+    let (file, moved) = summary.quantities[0].most_influential.as_ref().unwrap();
+    assert!(file == "run_2.csv" && *moved < -0.5, "{file}: {moved}");
 }
