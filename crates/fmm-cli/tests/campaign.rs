@@ -77,8 +77,10 @@ fn text(draw: &mut Draw, index: usize) -> String {
     let (unit, factor) = [("m/s", 1.0), ("mm/s", 1e3), ("cm/s", 1e2)][index / 3 % 3];
     let separator = [',', ';'][index % 2];
     let offset = [0.0, 0.01, -0.2][index / 9 % 3];
-    let samples = draw.between(400.0, 1200.0) as usize;
-    let values = velocity(rate, samples, draw.between(2.0, 8.0), draw.between(0.01, 0.03), draw.between(0.0, 0.3));
+    let frequency = draw.between(2.0, 8.0);
+    // A record of less than a period is refused, and rightly.
+    let samples = draw.between(400.0, 1200.0).max(2.5 * rate / frequency) as usize;
+    let values = velocity(rate, samples, frequency, draw.between(0.01, 0.03), draw.between(0.0, 0.3));
     let mut text = format!("t [s]{separator}v [{unit}]\n");
     for (i, value) in values.iter().enumerate() {
         let noisy = factor * (value + offset + 1e-4 * draw.normal());
