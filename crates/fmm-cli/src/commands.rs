@@ -9,7 +9,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 
 use crate::output::print;
-use crate::{backbone, batch, force, formats, frf, identify, laws, simulate};
+use crate::{backbone, batch, budget, force, formats, frf, identify, laws, simulate};
 
 /// Friction parameters out of ring-down, driven, force and impact records, with uncertainties that can be defended.
 #[derive(Debug, Parser)]
@@ -42,6 +42,9 @@ enum Command {
     /// Estimate the frequency response of a machine from impact tests
     #[command(allow_negative_numbers = true)]
     Frf(frf::Arguments),
+    /// State the uncertainty of a result that follows from others by a formula
+    #[command(after_help = budget::HELP)]
+    Budget(budget::Arguments),
     /// Identify many records, each by itself and all together
     Batch(batch::Arguments),
     /// Put the parts of a campaign together
@@ -83,6 +86,7 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> ExitCode
         Command::Backbone(arguments) => backbone::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Frf(arguments) => frf::run(arguments),
+        Command::Budget(arguments) => budget::run(arguments),
         Command::Batch(arguments) => batch::run(arguments),
         Command::Merge(arguments) => batch::merge(arguments),
         Command::Laws => laws::run(),

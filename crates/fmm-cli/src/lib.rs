@@ -13,6 +13,7 @@
 
 mod backbone;
 mod batch;
+mod budget;
 mod commands;
 pub mod figure;
 mod force;

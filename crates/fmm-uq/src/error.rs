@@ -197,6 +197,50 @@ impl UncertaintyError {
     }
 }
 
+/// Formulas.
+#[cfg(feature = "formula")]
+impl UncertaintyError {
+    fn formula(what: String) -> Self {
+        Self::Model { what, source: None }
+    }
+
+    /// Text that is no formula from `rest` on.
+    pub(crate) fn not_a_formula(text: &str, rest: &str) -> Self {
+        let place = if rest.is_empty() { "at its end".to_owned() } else { format!("from {rest:?} on") };
+        Self::formula(format!("{text:?} cannot be read as a formula {place}; write products with *, powers with ^"))
+    }
+
+    /// More levels than a parser should go down.
+    pub(crate) fn formula_too_deep(most: usize) -> Self {
+        Self::formula(format!("a formula may have at most {most} parentheses, powers and signs"))
+    }
+
+    /// A function that does not exist.
+    pub(crate) fn unknown_function(name: &str, known: &[&str]) -> Self {
+        Self::formula(format!("there is no function {name}; there are {} and atan2", known.join(", ")))
+    }
+
+    /// A quantity in a formula that is no input.
+    pub(crate) fn unknown_in_formula(name: &str, known: &[&str]) -> Self {
+        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+        Self::formula(format!("there is no quantity {name}; there is {known}"))
+    }
+
+    /// Values for another number of quantities.
+    pub(crate) fn wrong_number_of_values(needed: usize, found: usize) -> Self {
+        Self::formula(format!("the formula has {needed} quantities, but {found} values were given"))
+    }
+
+    /// What no quantity of a formula can be called.
+    pub(crate) fn not_a_name(name: &str) -> Self {
+        let what = format!(
+            "a formula cannot contain a quantity `{name}`; a name is made of letters, digits and underscores, begins with no digit, and is \
+             no constant or function"
+        );
+        Self::Inputs { what }
+    }
+}
+
 /// Lists of inputs.
 impl UncertaintyError {
     /// An input without a name cannot be told apart in a budget.

@@ -38,6 +38,7 @@
 //! | was the GUM good enough? | [`validate`], with [`Adaptive::for_validation`] | |
 //! | which input matters? | [`Budget::contributions`]; with interactions [`variance_shares`] (Sobol'); [`MonteCarlo::run_one_at_a_time`] | [`variance_shares`]: correlated inputs |
 //! | what if a trial takes a second? | [`QuasiMonteCarlo`]; or many machines and [`Partial`] results | [`QuasiMonteCarlo`]: more than 64 dimensions, models with kinks |
+//! | what if the model is known at run time only, as a text? | `Formula` (feature `formula`) | models with conditions or loops |
 //! | how is a result stated? | a [`Budget`] prints; [`Budget::statement`], [`MonteCarlo::statement`], [`Budget::to_csv`] | |
 //! | what differs between runs, laboratories or specimens? | [`AnalysisOfVariance`], [`Precision`] | |
 //! | which value do several results agree on? | [`Consensus`] | results that share an error |
@@ -72,8 +73,9 @@
 //!
 //! # Features
 //!
-//! Both are off by default.
+//! All are off by default.
 //!
+//! * `formula`: models as text, `Formula`.
 //! * `rayon`: blocks of trials on all threads of the current pool, with the same bits.
 //! * `serde`: [`Partial`] results, failures, intervals, histograms, statements and budgets as text.
 //!
@@ -105,6 +107,8 @@ pub use gum::{
 };
 pub use inputs::{Evaluation, Input, Inputs, Observations};
 pub use interval::Interval;
+#[cfg(feature = "formula")]
+pub use model::Formula;
 pub use model::{Outcome, Taylor, at_values};
 pub use monte_carlo::{
     Adaptive, Failure, FailureKind, Failures, Histogram, IntervalKind, Moments, MonteCarlo, OutputSample, Partial,

@@ -5,9 +5,13 @@ pub(crate) mod derivatives;
 pub(crate) mod differences;
 pub(crate) mod exact_derivatives;
 pub(crate) mod excursion;
+#[cfg(feature = "formula")]
+mod formula;
 mod outcome;
 mod taylor;
 
 pub use at_values::at_values;
+#[cfg(feature = "formula")]
+pub use formula::Formula;
 pub use outcome::Outcome;
 pub use taylor::Taylor;

@@ -1,0 +1,148 @@
+//! The file of a measurement: inputs, correlations, and the results as formulas.
+
+use std::error::Error;
+use std::path::Path;
+
+use fmm_uq::{Distribution, Formula, Input, Inputs, Observations};
+use serde::Deserialize;
+
+/// Inputs and what follows from them.
+#[derive(Debug)]
+pub(super) struct Measurement {
+    pub(super) inputs: Inputs,
+    pub(super) results: Vec<Wanted>,
+}
+
+/// A result that is asked for.
+#[derive(Debug)]
+pub(super) struct Wanted {
+    pub(super) name: String,
+    pub(super) unit: String,
+    pub(super) formula: Formula,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    input: Vec<InputEntry>,
+    #[serde(default)]
+    correlation: Vec<CorrelationEntry>,
+    result: Vec<ResultEntry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct InputEntry {
+    name: String,
+    unit: String,
+    value: Option<f64>,
+    u: Option<f64>,
+    degrees_of_freedom: Option<f64>,
+    limits: Option<[f64; 2]>,
+    distribution: Option<String>,
+    observations: Option<Vec<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CorrelationEntry {
+    between: [String; 2],
+    coefficient: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ResultEntry {
+    name: String,
+    unit: String,
+    formula: String,
+}
+
+impl Measurement {
+    /// Reads the file, which is JSON if its name ends so, and TOML otherwise.
+    pub(super) fn read(path: &Path) -> Result<Self, Box<dyn Error>> {
+        let text = std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+        let is_json = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+        let read = if is_json { Self::of_json(&text) } else { Self::of_toml(&text) };
+        read.map_err(|error| format!("{}: {error}", path.display()).into())
+    }
+
+    pub(super) fn of_toml(text: &str) -> Result<Self, Box<dyn Error>> {
+        Self::of(toml::from_str(text)?)
+    }
+
+    fn of_json(text: &str) -> Result<Self, Box<dyn Error>> {
+        Self::of(serde_json::from_str(text)?)
+    }
+
+    fn of(file: File) -> Result<Self, Box<dyn Error>> {
+        let inputs = file.input.into_iter().map(InputEntry::input).collect::<Result<Vec<_>, _>>()?;
+        let inputs = Inputs::new(inputs)?;
+        let correlations: Vec<(&str, &str, f64)> = file
+            .correlation
+            .iter()
+            .map(|CorrelationEntry { between: [first, second], coefficient }| {
+                (first.as_str(), second.as_str(), *coefficient)
+            })
+            .collect();
+        let inputs = if correlations.is_empty() { inputs } else { inputs.with_correlations(&correlations)? };
+        let names: Vec<&str> = inputs.as_slice().iter().map(Input::name).collect();
+        let mut results: Vec<Wanted> = Vec::new();
+        for ResultEntry { name, unit, formula } in file.result {
+            if results.iter().any(|other| other.name == name) {
+                return Err(format!("two results are called {name}").into());
+            }
+            let formula = Formula::new(&formula, &names).map_err(|error| format!("the result {name}: {error}"))?;
+            results.push(Wanted { name, unit, formula });
+        }
+        Ok(Self { inputs, results })
+    }
+}
+
+impl InputEntry {
+    fn input(self) -> Result<Input, Box<dyn Error>> {
+        let Self { name, unit, value, u, degrees_of_freedom, limits, distribution, observations } = self;
+        let known = [value.is_some() || u.is_some(), limits.is_some(), observations.is_some()];
+        if known.iter().filter(|known| **known).count() > 1 {
+            return Err(format!("{name} has more than one of value and u, limits and observations").into());
+        }
+        if distribution.is_some() && limits.is_none() {
+            return Err(format!("the distribution of {name} belongs to limits; value and u are normal").into());
+        }
+        if degrees_of_freedom.is_some() && value.is_none() {
+            return Err(format!("the degrees_of_freedom of {name} belong to value and u").into());
+        }
+        let input = match (value, u, limits, observations) {
+            (Some(value), Some(u), _, _) => {
+                let input = Input::new(name, value, u, unit)?;
+                match degrees_of_freedom {
+                    Some(freedom) => input.with_degrees_of_freedom(freedom)?,
+                    None => input,
+                }
+            }
+            (Some(_), None, _, _) => {
+                return Err(format!("{name} needs u, its standard uncertainty, which may be 0").into());
+            }
+            (_, _, Some([lower, upper]), _) => {
+                let distribution = match distribution.as_deref() {
+                    None | Some("rectangular") => Distribution::rectangular(lower, upper)?,
+                    Some("triangular") => Distribution::triangular(lower, upper)?,
+                    Some("arc sine") => Distribution::arc_sine(lower, upper)?,
+                    Some(other) => {
+                        return Err(format!(
+                            "there is no distribution {other:?} for {name}; there are rectangular, triangular and arc sine"
+                        )
+                        .into());
+                    }
+                };
+                Input::of(name, distribution, unit)?
+            }
+            (_, _, _, Some(observations)) => {
+                let observations = Observations::new(&observations).map_err(|error| format!("{name}: {error}"))?;
+                Input::mean_of(name, &observations, unit)?
+            }
+            _ => return Err(format!("{name} needs value and u, limits or observations").into()),
+        };
+        Ok(input)
+    }
+}

@@ -1,0 +1,274 @@
+//! The uncertainty of a result that follows from others by a formula: `fmm budget FILE.toml`.
+//!
+//! Reads inputs and formulas, propagates to first and second order, repeats it by trials, and says whether the simpler answer holds.
+
+mod file;
+
+use std::error::Error;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use fmm_model::Rounded;
+use fmm_uq::{
+    Adaptive, Budget, Expanded, Gum, Interval, IntervalKind, MonteCarlo, Propagation, Statement, TrialStatement,
+    validate,
+};
+use serde::Serialize;
+
+use crate::output::print;
+use file::Measurement;
+
+/// States the uncertainty of a result.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The measurement, as TOML or, by its ending, as JSON
+    file: PathBuf,
+    /// Coverage probability of intervals
+    #[arg(long, default_value_t = 0.95)]
+    level: f64,
+    /// Seed of the trials
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) const HELP: &str = "\
+The file:
+  [[input]]                       one for each quantity
+  name = \"mass\"                   letters, digits, underscores
+  unit = \"kg\"
+  value = 10.391                  with u = 0.005 (a standard uncertainty) and, if it is known by an estimate,
+                                  degrees_of_freedom = 9
+  limits = [10.38, 10.40]         instead of value and u, with distribution = \"rectangular\" (unless given), \"triangular\",
+                                  or \"arc sine\"
+  observations = [10.39, 10.40]   instead of value and u: their mean
+
+  [[correlation]]                 if two inputs are correlated
+  between = [\"mass\", \"frequency\"]
+  coefficient = 0.3
+
+  [[result]]                      one or more
+  name = \"stiffness\"
+  unit = \"N/m\"
+  formula = \"mass * (2 * pi * frequency)^2\"
+
+A formula has + - * / ^ and parentheses, pi, sqrt exp ln log10 sin cos tan asin acos atan sinh cosh tanh abs, and
+atan2(y, x); angles are in radians.";
+
+/// Significant digits of u that the trials must settle.
+const DIGITS: u32 = 2;
+/// More than these would take minutes.
+const MOST_TRIALS: u64 = 20_000_000;
+
+/// One result: what follows by derivatives, what by trials, and whether the first may stand for the second.
+#[derive(Serialize)]
+struct Answer {
+    formula: String,
+    budget: Budget,
+    /// None where the degrees of freedom are not defined.
+    statement: Option<Statement>,
+    /// What the trials say; none if an input is so little known that the result has no standard deviation.
+    trials: Option<TrialStatement>,
+    /// The interval of the trials (unit of the result).
+    interval: Interval,
+    /// Whether the interval by derivatives is that of the trials, to two digits of u (JCGM 101:2008, clause 8).
+    is_validated: bool,
+}
+
+/// The correlation of two results.
+#[derive(Serialize)]
+struct Correlation {
+    between: [String; 2],
+    coefficient: f64,
+}
+
+#[derive(Serialize)]
+struct Answers {
+    results: Vec<Answer>,
+    correlations: Vec<Correlation>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let measurement = Measurement::read(&arguments.file)?;
+    let answers = answers(&measurement, arguments.level, arguments.seed)?;
+    if arguments.json { print(serde_json::to_string_pretty(&answers)?) } else { print(text(&answers).trim_end()) }
+}
+
+fn answers(measurement: &Measurement, level: f64, seed: u64) -> Result<Answers, Box<dyn Error>> {
+    let Measurement { inputs, results } = measurement;
+    let by_derivatives = Gum::new(inputs)
+        .propagate(|x| results.iter().map(|result| result.formula.evaluate(x)).collect::<Result<Vec<_>, _>>())?;
+    let rule = Adaptive::to_digits(DIGITS)?.with_interval(IntervalKind::Symmetric, level)?;
+    let run = MonteCarlo::adaptive(inputs, rule.for_validation().with_most_trials(MOST_TRIALS)).with_seed(seed);
+    let sample = run.run(|x| results.iter().map(|result| result.formula.evaluate(x)).collect::<Result<Vec<_>, _>>())?;
+    let correlations = correlations(measurement, &by_derivatives);
+    let mut answers = Vec::new();
+    for (place, (result, budget)) in results.iter().zip(by_derivatives.outputs()).enumerate() {
+        let budget = budget.clone().named(&result.name, &result.unit);
+        let trials = run.statement(&sample, place, IntervalKind::Symmetric, level).ok();
+        let interval = sample.symmetric_interval(place, level)?;
+        let expanded = budget.expanded(level).ok();
+        let u = trials.as_ref().map_or(budget.standard_uncertainty(), |trials| trials.standard_uncertainty);
+        let agrees = |expanded: Expanded| {
+            validate(expanded.interval(), interval, u, DIGITS).is_ok_and(|validation| validation.is_valid())
+        };
+        answers.push(Answer {
+            formula: result.formula.text().to_owned(),
+            statement: budget.statement(level).ok(),
+            is_validated: expanded.is_some_and(agrees),
+            budget,
+            trials: trials.map(|trials| trials.named(&result.name, &result.unit)),
+            interval,
+        });
+    }
+    Ok(Answers { results: answers, correlations })
+}
+
+fn correlations(measurement: &Measurement, propagation: &Propagation) -> Vec<Correlation> {
+    let names: Vec<&str> = measurement.results.iter().map(|result| result.name.as_str()).collect();
+    let pairs = (0..names.len()).flat_map(|i| (i + 1..names.len()).map(move |j| (i, j)));
+    pairs
+        .map(|(i, j)| Correlation {
+            between: [names[i].to_owned(), names[j].to_owned()],
+            coefficient: propagation.correlation(i, j),
+        })
+        .collect()
+}
+
+fn text(answers: &Answers) -> String {
+    let mut text = String::new();
+    // Writing to a string does not fail.
+    for answer in &answers.results {
+        let verdict = if answer.is_validated {
+            "the trials confirm the interval above"
+        } else {
+            "the interval above does not hold; state that of the trials"
+        };
+        let _ = writeln!(text, "{} = {}\n\n{}", answer.budget.name(), answer.formula, answer.budget);
+        let trials = answer.trials.as_ref().map_or_else(|| interval(answer), ToString::to_string);
+        let _ = writeln!(text, "by trials:\n{trials}\n{verdict}\n");
+    }
+    for Correlation { between: [first, second], coefficient } in &answers.correlations {
+        let _ = writeln!(text, "r({first}, {second}) = {coefficient:.3}");
+    }
+    text
+}
+
+/// The interval of the trials of a result that has no standard deviation.
+fn interval(answer: &Answer) -> String {
+    let Interval { low, high, level, .. } = answer.interval;
+    let (budget, percent) = (&answer.budget, 100.0 * level);
+    let limits = Rounded::new(budget.estimate(), Some(budget.standard_uncertainty())).interval(low, high);
+    format!("{percent} % interval {limits} {}; an input is known too little for a standard deviation", budget.unit())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// JCGM 100:2008, H.1: a gauge block of 50 mm.
+    const GAUGE_BLOCK: &str = r#"
+[[input]]
+name = "l_s"
+unit = "nm"
+value = 50000623
+u = 25
+degrees_of_freedom = 18
+[[input]]
+name = "d"
+unit = "nm"
+value = 215
+u = 9.7
+degrees_of_freedom = 25.6
+[[input]]
+name = "α_s"
+unit = "1/K"
+value = 11.5e-6
+u = 1.2e-6
+[[input]]
+name = "θ"
+unit = "K"
+value = -0.1
+u = 0.41
+[[input]]
+name = "δα"
+unit = "1/K"
+value = 0
+u = 5.8e-7
+degrees_of_freedom = 50
+[[input]]
+name = "δθ"
+unit = "K"
+value = 0
+u = 0.029
+degrees_of_freedom = 2
+[[result]]
+name = "length"
+unit = "nm"
+formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
+"#;
+
+    #[test]
+    fn the_gauge_block_of_the_gum() {
+        let measurement = Measurement::of_toml(GAUGE_BLOCK).unwrap();
+        let answers = answers(&measurement, 0.99, 1).unwrap();
+        let answer = &answers.results[0];
+        assert_eq!(answer.budget.estimate(), 50_000_838.0);
+        let statement = answer.statement.as_ref().unwrap();
+        // Printed: u = 32 nm, U = 93 nm, ν_eff = 16.
+        assert_eq!(statement.standard_uncertainty.round(), 32.0);
+        assert_eq!(statement.expanded_uncertainty.round(), 93.0);
+        assert_eq!(statement.effective_degrees_of_freedom.map(f64::floor), Some(16.0));
+        let text = text(&answers);
+        // JCGM 101:2008, 9.5: with a δθ of so few degrees of freedom the result has no standard deviation.
+        assert!(answer.trials.is_none() && text.contains("known too little"), "{text}");
+        assert!(text.contains("length = l_s + d - l_s*(δα*θ + α_s*δθ)") && text.contains("by trials:"), "{text}");
+    }
+
+    /// JCGM 101:2008, 9.2.4: where one rectangular input dominates, the Gaussian interval is too wide.
+    #[test]
+    fn an_interval_that_does_not_hold_is_told() {
+        let input =
+            |name: &str, half: f64| format!("[[input]]\nname = \"{name}\"\nunit = \"1\"\nlimits = [-{half}, {half}]\n");
+        let (narrow, wide) = (3f64.sqrt(), 300f64.sqrt());
+        let file = [input("a", narrow), input("b", narrow), input("c", narrow), input("d", wide)].concat()
+            + "[[result]]\nname = \"sum\"\nunit = \"1\"\nformula = \"a + b + c + d\"\n\
+               [[result]]\nname = \"narrow\"\nunit = \"1\"\nformula = \"a + b + c\"\n";
+        let answers = answers(&Measurement::of_toml(&file).unwrap(), 0.95, 1).unwrap();
+        let [sum, narrow] = &answers.results[..] else { panic!("two results") };
+        assert!(!sum.is_validated && (sum.interval.high - 17.0).abs() < 0.1, "{}", sum.interval.high);
+        // Three alike are nearly normal, but not to two digits.
+        assert!((narrow.interval.high - 3.4).abs() < 0.05);
+        // r = 3/√(3 · 103).
+        assert!((answers.correlations[0].coefficient - 3.0 / 309f64.sqrt()).abs() < 1e-12);
+        assert!(text(&answers).contains("state that of the trials"));
+    }
+
+    #[test]
+    fn what_is_wrong_in_a_file_is_named() {
+        let refused = |text: &str| Measurement::of_toml(text).unwrap_err().to_string();
+        let input = "[[input]]\nname = \"m\"\nunit = \"kg\"\n";
+        let result = "[[result]]\nname = \"F\"\nunit = \"N\"\nformula = \"9.81*m\"\n";
+        for (file, part) in [
+            (format!("{input}value = 2\n{result}"), "m needs u"),
+            (format!("{input}u = 2\n{result}"), "m needs value and u, limits or observations"),
+            (format!("{input}value = 2\nu = 0.1\nlimits = [1, 3]\n{result}"), "m has more than one of"),
+            (format!("{input}value = 2\nu = -0.1\n{result}"), "standard uncertainty of m"),
+            (format!("{input}value = 2\nu = 0.1\nsigma = 3\n{result}"), "sigma"),
+            (format!("{input}limits = [1, 3]\ndistribution = \"gauss\"\n{result}"), "no distribution \"gauss\""),
+            (format!("{input}value = 2\nu = 0.1\ndistribution = \"triangular\"\n{result}"), "belongs to limits"),
+            (format!("{input}limits = [1, 3]\ndegrees_of_freedom = 3\n{result}"), "degrees_of_freedom of m"),
+            (format!("{input}observations = [2.0]\n{result}"), "at least 2 observations"),
+            (format!("{input}value = 2\nu = 0.1\n{}", result.replace("*m", "*M")), "no quantity M; there is m"),
+            (format!("{input}value = 2\nu = 0.1\n"), "result"),
+            (format!("{input}value = 2\nu = 0.1\n{result}{result}"), "two results are called F"),
+            ("input = 3".to_owned(), "input"),
+        ] {
+            let error = refused(&file);
+            assert!(error.contains(part), "{file}\n{error}");
+        }
+    }
+}
