@@ -49,6 +49,7 @@ const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
             ("sha2", "names the input of a report"),
             ("serde_json", "reads scenarios and writes documents"),
             THISERROR,
+            ("toml", "reads measurements and campaigns"),
         ],
     ),
 ];

@@ -11,8 +11,7 @@ use std::path::PathBuf;
 use clap::Args;
 use fmm_model::Rounded;
 use fmm_uq::{
-    Adaptive, Budget, Expanded, Gum, Interval, IntervalKind, MonteCarlo, Propagation, Statement, TrialStatement,
-    validate,
+    Budget, Expanded, Gum, Interval, IntervalKind, MonteCarlo, Propagation, Statement, TrialStatement, validate,
 };
 use serde::Serialize;
 
@@ -27,6 +26,9 @@ pub(crate) struct Arguments {
     /// Coverage probability of intervals
     #[arg(long, default_value_t = 0.95)]
     level: f64,
+    /// Number of trials of the Monte Carlo
+    #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(10_000..=100_000_000))]
+    trials: u64,
     /// Seed of the trials
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -58,10 +60,8 @@ The file:
 A formula has + - * / ^ and parentheses, pi, sqrt exp ln log10 sin cos tan asin acos atan sinh cosh tanh abs, and
 atan2(y, x); angles are in radians.";
 
-/// Significant digits of u that the trials must settle.
+/// Significant digits of u to which the two intervals must agree.
 const DIGITS: u32 = 2;
-/// More than these would take minutes.
-const MOST_TRIALS: u64 = 20_000_000;
 
 /// One result: what follows by derivatives, what by trials, and whether the first may stand for the second.
 #[derive(Serialize)]
@@ -74,8 +74,8 @@ struct Answer {
     trials: Option<TrialStatement>,
     /// The interval of the trials (unit of the result).
     interval: Interval,
-    /// Whether the interval by derivatives is that of the trials, to two digits of u (JCGM 101:2008, clause 8).
-    is_validated: bool,
+    /// Digits of u, 2 at most, to which the interval by derivatives is that of the trials (JCGM 101:2008, clause 8).
+    validated_digits: u32,
 }
 
 /// The correlation of two results.
@@ -93,16 +93,15 @@ struct Answers {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let measurement = Measurement::read(&arguments.file)?;
-    let answers = answers(&measurement, arguments.level, arguments.seed)?;
+    let answers = answers(&measurement, arguments.level, (arguments.trials, arguments.seed))?;
     if arguments.json { print(serde_json::to_string_pretty(&answers)?) } else { print(text(&answers).trim_end()) }
 }
 
-fn answers(measurement: &Measurement, level: f64, seed: u64) -> Result<Answers, Box<dyn Error>> {
+fn answers(measurement: &Measurement, level: f64, (trials, seed): (u64, u64)) -> Result<Answers, Box<dyn Error>> {
     let Measurement { inputs, results } = measurement;
     let by_derivatives = Gum::new(inputs)
         .propagate(|x| results.iter().map(|result| result.formula.evaluate(x)).collect::<Result<Vec<_>, _>>())?;
-    let rule = Adaptive::to_digits(DIGITS)?.with_interval(IntervalKind::Symmetric, level)?;
-    let run = MonteCarlo::adaptive(inputs, rule.for_validation().with_most_trials(MOST_TRIALS)).with_seed(seed);
+    let run = MonteCarlo::new(inputs, trials)?.with_seed(seed);
     let sample = run.run(|x| results.iter().map(|result| result.formula.evaluate(x)).collect::<Result<Vec<_>, _>>())?;
     let correlations = correlations(measurement, &by_derivatives);
     let mut answers = Vec::new();
@@ -112,13 +111,14 @@ fn answers(measurement: &Measurement, level: f64, seed: u64) -> Result<Answers, 
         let interval = sample.symmetric_interval(place, level)?;
         let expanded = budget.expanded(level).ok();
         let u = trials.as_ref().map_or(budget.standard_uncertainty(), |trials| trials.standard_uncertainty);
-        let agrees = |expanded: Expanded| {
-            validate(expanded.interval(), interval, u, DIGITS).is_ok_and(|validation| validation.is_valid())
+        let agree = |expanded: &Expanded, digits: u32| {
+            validate(expanded.interval(), interval, u, digits).is_ok_and(|validation| validation.is_valid())
         };
+        let validated = |expanded: Expanded| (1..=DIGITS).rev().find(|digits| agree(&expanded, *digits));
         answers.push(Answer {
             formula: result.formula.text().to_owned(),
             statement: budget.statement(level).ok(),
-            is_validated: expanded.is_some_and(agrees),
+            validated_digits: expanded.and_then(validated).unwrap_or(0),
             budget,
             trials: trials.map(|trials| trials.named(&result.name, &result.unit)),
             interval,
@@ -142,10 +142,10 @@ fn text(answers: &Answers) -> String {
     let mut text = String::new();
     // Writing to a string does not fail.
     for answer in &answers.results {
-        let verdict = if answer.is_validated {
-            "the trials confirm the interval above"
-        } else {
-            "the interval above does not hold; state that of the trials"
+        let verdict = match answer.validated_digits {
+            DIGITS.. => "the trials confirm the interval above to two digits of u",
+            1 => "the trials confirm the interval above to one digit of u; to two, state theirs",
+            0 => "the trials do not confirm the interval above; state theirs",
         };
         let _ = writeln!(text, "{} = {}\n\n{}", answer.budget.name(), answer.formula, answer.budget);
         let trials = answer.trials.as_ref().map_or_else(|| interval(answer), ToString::to_string);
@@ -214,7 +214,7 @@ formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
     #[test]
     fn the_gauge_block_of_the_gum() {
         let measurement = Measurement::of_toml(GAUGE_BLOCK).unwrap();
-        let answers = answers(&measurement, 0.99, 1).unwrap();
+        let answers = answers(&measurement, 0.99, (100_000, 1)).unwrap();
         let answer = &answers.results[0];
         assert_eq!(answer.budget.estimate(), 50_000_838.0);
         let statement = answer.statement.as_ref().unwrap();
@@ -228,6 +228,16 @@ formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
         assert!(text.contains("length = l_s + d - l_s*(δα*θ + α_s*δθ)") && text.contains("by trials:"), "{text}");
     }
 
+    /// A linear model of normal inputs, where both ways are the same.
+    #[test]
+    fn an_interval_that_holds_is_told() {
+        let file = "[[input]]\nname = \"a\"\nunit = \"m\"\nvalue = 1\nu = 0.3\n\
+                    [[result]]\nname = \"y\"\nunit = \"m\"\nformula = \"2*a\"\n";
+        let answers = answers(&Measurement::of_toml(file).unwrap(), 0.95, (1_000_000, 1)).unwrap();
+        assert_eq!(answers.results[0].validated_digits, 2);
+        assert!(text(&answers).contains("confirm the interval above to two digits"));
+    }
+
     /// JCGM 101:2008, 9.2.4: where one rectangular input dominates, the Gaussian interval is too wide.
     #[test]
     fn an_interval_that_does_not_hold_is_told() {
@@ -237,14 +247,14 @@ formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
         let file = [input("a", narrow), input("b", narrow), input("c", narrow), input("d", wide)].concat()
             + "[[result]]\nname = \"sum\"\nunit = \"1\"\nformula = \"a + b + c + d\"\n\
                [[result]]\nname = \"narrow\"\nunit = \"1\"\nformula = \"a + b + c\"\n";
-        let answers = answers(&Measurement::of_toml(&file).unwrap(), 0.95, 1).unwrap();
+        let answers = answers(&Measurement::of_toml(&file).unwrap(), 0.95, (200_000, 1)).unwrap();
         let [sum, narrow] = &answers.results[..] else { panic!("two results") };
-        assert!(!sum.is_validated && (sum.interval.high - 17.0).abs() < 0.1, "{}", sum.interval.high);
+        assert!(sum.validated_digits == 0 && (sum.interval.high - 17.0).abs() < 0.1, "{}", sum.interval.high);
         // Three alike are nearly normal, but not to two digits.
         assert!((narrow.interval.high - 3.4).abs() < 0.05);
         // r = 3/√(3 · 103).
         assert!((answers.correlations[0].coefficient - 3.0 / 309f64.sqrt()).abs() < 1e-12);
-        assert!(text(&answers).contains("state that of the trials"));
+        assert!(text(&answers).contains("the trials do not confirm"));
     }
 
     #[test]
