@@ -139,7 +139,8 @@ mod tests {
     #[test]
     fn functions_are_what_they_are_called() {
         let of = |name: &str, x: f64| Formula::new(&format!("{name}(y)"), &["y"]).unwrap().evaluate(&[x]).unwrap();
-        let functions: [(&str, fn(f64) -> f64); 14] = [
+        type Named = (&'static str, fn(f64) -> f64);
+        let functions: [Named; 14] = [
             ("sqrt", f64::sqrt),
             ("exp", f64::exp),
             ("ln", f64::ln),
