@@ -136,10 +136,11 @@ mod tests {
         }
     }
 
+    type Named = (&'static str, fn(f64) -> f64);
+
     #[test]
     fn functions_are_what_they_are_called() {
         let of = |name: &str, x: f64| Formula::new(&format!("{name}(y)"), &["y"]).unwrap().evaluate(&[x]).unwrap();
-        type Named = (&'static str, fn(f64) -> f64);
         let functions: [Named; 14] = [
             ("sqrt", f64::sqrt),
             ("exp", f64::exp),
