@@ -230,3 +230,10 @@ fn no_crate_takes_more_from_others_than_is_stated() {
     }
     assert_eq!(taken, stated);
 }
+
+/// Who cites a version finds it.
+#[test]
+fn the_citation_is_of_this_version() {
+    let citation = include_str!("../CITATION.cff");
+    assert!(citation.lines().any(|line| line == concat!("version: ", env!("CARGO_PKG_VERSION"))), "{citation}");
+}

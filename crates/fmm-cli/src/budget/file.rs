@@ -3,8 +3,8 @@
 use std::error::Error;
 use std::path::Path;
 
-use fmm_uq::{Distribution, Formula, Input, Inputs, Observations};
-use serde::Deserialize;
+use fmm_uq::{Distribution, Formula, Input, Inputs, Observations, Scalar, UncertaintyError};
+use serde::{Deserialize, Serialize};
 
 /// Inputs and what follows from them.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub(super) struct Wanted {
 struct File {
     input: Vec<InputEntry>,
     #[serde(default)]
-    correlation: Vec<CorrelationEntry>,
+    correlation: Vec<Correlation>,
     result: Vec<ResultEntry>,
 }
 
@@ -43,11 +43,12 @@ struct InputEntry {
     observations: Option<Vec<f64>>,
 }
 
-#[derive(Deserialize)]
+/// The correlation of two quantities.
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct CorrelationEntry {
-    between: [String; 2],
-    coefficient: f64,
+pub(super) struct Correlation {
+    pub(super) between: [String; 2],
+    pub(super) coefficient: f64,
 }
 
 #[derive(Deserialize)]
@@ -67,11 +68,16 @@ impl Measurement {
         read.map_err(|error| format!("{}: {error}", path.display()).into())
     }
 
+    /// The results for these values of the inputs.
+    pub(super) fn values<D: Scalar>(&self, inputs: &[D]) -> Result<Vec<D>, UncertaintyError> {
+        self.results.iter().map(|result| result.formula.evaluate(inputs)).collect()
+    }
+
     pub(super) fn of_toml(text: &str) -> Result<Self, Box<dyn Error>> {
         Self::of(toml::from_str(text)?)
     }
 
-    fn of_json(text: &str) -> Result<Self, Box<dyn Error>> {
+    pub(super) fn of_json(text: &str) -> Result<Self, Box<dyn Error>> {
         Self::of(serde_json::from_str(text)?)
     }
 
@@ -81,7 +87,7 @@ impl Measurement {
         let correlations: Vec<(&str, &str, f64)> = file
             .correlation
             .iter()
-            .map(|CorrelationEntry { between: [first, second], coefficient }| {
+            .map(|Correlation { between: [first, second], coefficient }| {
                 (first.as_str(), second.as_str(), *coefficient)
             })
             .collect();

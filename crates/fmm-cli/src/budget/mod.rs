@@ -11,12 +11,13 @@ use std::path::PathBuf;
 use clap::Args;
 use fmm_model::Rounded;
 use fmm_uq::{
-    Budget, Expanded, Gum, Interval, IntervalKind, MonteCarlo, Propagation, Statement, TrialStatement, validate,
+    Budget, Expanded, Gum, Interval, IntervalKind, MonteCarlo, Propagation, Statement, TrialStatement,
+    UncertaintyError, validate,
 };
 use serde::Serialize;
 
 use crate::output::print;
-use file::Measurement;
+use file::{Correlation, Measurement};
 
 /// States the uncertainty of a result.
 #[derive(Debug, Args)]
@@ -26,8 +27,8 @@ pub(crate) struct Arguments {
     /// Coverage probability of intervals
     #[arg(long, default_value_t = 0.95)]
     level: f64,
-    /// Number of trials of the Monte Carlo
-    #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(10_000..=100_000_000))]
+    /// Number of trials of the Monte Carlo, 10 000 to 10 000 000
+    #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(10_000..=10_000_000))]
     trials: u64,
     /// Seed of the trials
     #[arg(long, default_value_t = 1)]
@@ -68,23 +69,19 @@ const DIGITS: u32 = 2;
 struct Answer {
     formula: String,
     budget: Budget,
-    /// None where the degrees of freedom are not defined.
+    /// None where u is zero or its degrees of freedom are not defined.
     statement: Option<Statement>,
-    /// What the trials say; none if an input is so little known that the result has no standard deviation.
+    /// What the trials say, if the result has a standard deviation.
     trials: Option<TrialStatement>,
+    /// Why it has none, such as an input that is known by two observations.
+    no_deviation: Option<String>,
     /// The interval of the trials (unit of the result).
     interval: Interval,
     /// Digits of u, 2 at most, to which the interval by derivatives is that of the trials (JCGM 101:2008, clause 8).
     validated_digits: u32,
 }
 
-/// The correlation of two results.
-#[derive(Serialize)]
-struct Correlation {
-    between: [String; 2],
-    coefficient: f64,
-}
-
+/// All results, and how they go together.
 #[derive(Serialize)]
 struct Answers {
     results: Vec<Answer>,
@@ -99,15 +96,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 
 fn answers(measurement: &Measurement, level: f64, (trials, seed): (u64, u64)) -> Result<Answers, Box<dyn Error>> {
     let Measurement { inputs, results } = measurement;
-    let by_derivatives = Gum::new(inputs)
-        .propagate(|x| results.iter().map(|result| result.formula.evaluate(x)).collect::<Result<Vec<_>, _>>())?;
+    let by_derivatives = Gum::new(inputs).propagate(|x| measurement.values(x))?;
     let run = MonteCarlo::new(inputs, trials)?.with_seed(seed);
-    let sample = run.run(|x| results.iter().map(|result| result.formula.evaluate(x)).collect::<Result<Vec<_>, _>>())?;
+    let sample = run.run(|x| measurement.values(x))?;
     let correlations = correlations(measurement, &by_derivatives);
     let mut answers = Vec::new();
     for (place, (result, budget)) in results.iter().zip(by_derivatives.outputs()).enumerate() {
         let budget = budget.clone().named(&result.name, &result.unit);
-        let trials = run.statement(&sample, place, IntervalKind::Symmetric, level).ok();
+        let (trials, no_deviation) = match run.statement(&sample, place, IntervalKind::Symmetric, level) {
+            Ok(trials) => (Some(trials.named(&result.name, &result.unit)), None),
+            Err(UncertaintyError::NoAnswer { what }) => (None, Some(what)),
+            Err(other) => return Err(other.into()),
+        };
         let interval = sample.symmetric_interval(place, level)?;
         let expanded = budget.expanded(level).ok();
         let u = trials.as_ref().map_or(budget.standard_uncertainty(), |trials| trials.standard_uncertainty);
@@ -120,7 +120,8 @@ fn answers(measurement: &Measurement, level: f64, (trials, seed): (u64, u64)) ->
             statement: budget.statement(level).ok(),
             validated_digits: expanded.and_then(validated).unwrap_or(0),
             budget,
-            trials: trials.map(|trials| trials.named(&result.name, &result.unit)),
+            trials,
+            no_deviation,
             interval,
         });
     }
@@ -142,10 +143,13 @@ fn text(answers: &Answers) -> String {
     let mut text = String::new();
     // Writing to a string does not fail.
     for answer in &answers.results {
-        let verdict = match answer.validated_digits {
-            DIGITS.. => "the trials confirm the interval above to two digits of u",
-            1 => "the trials confirm the interval above to one digit of u; to two, state theirs",
-            0 => "the trials do not confirm the interval above; state theirs",
+        let varies = answer.interval.low < answer.interval.high;
+        let verdict = match (answer.validated_digits, &answer.statement) {
+            _ if !varies => "the trials do not vary: the result does not depend on what is uncertain",
+            (DIGITS.., _) => "the trials confirm the interval above to two digits of u",
+            (1, _) => "the trials confirm the interval above to one digit of u; to two, state theirs",
+            (0, Some(_)) => "the trials do not confirm the interval above; state theirs",
+            (0, None) => "there is no interval above; state that of the trials",
         };
         let _ = writeln!(text, "{} = {}\n\n{}", answer.budget.name(), answer.formula, answer.budget);
         let trials = answer.trials.as_ref().map_or_else(|| interval(answer), ToString::to_string);
@@ -162,7 +166,8 @@ fn interval(answer: &Answer) -> String {
     let Interval { low, high, level, .. } = answer.interval;
     let (budget, percent) = (&answer.budget, 100.0 * level);
     let limits = Rounded::new(budget.estimate(), Some(budget.standard_uncertainty())).interval(low, high);
-    format!("{percent} % interval {limits} {}; an input is known too little for a standard deviation", budget.unit())
+    let why = answer.no_deviation.as_deref().unwrap_or_default();
+    format!("{percent} % interval {limits} {}\n{why}", budget.unit())
 }
 
 #[cfg(test)]
@@ -224,7 +229,7 @@ formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
         assert_eq!(statement.effective_degrees_of_freedom.map(f64::floor), Some(16.0));
         let text = text(&answers);
         // JCGM 101:2008, 9.5: with a δθ of so few degrees of freedom the result has no standard deviation.
-        assert!(answer.trials.is_none() && text.contains("known too little"), "{text}");
+        assert!(answer.trials.is_none() && text.contains("δθ has, has no standard deviation"), "{text}");
         assert!(text.contains("length = l_s + d - l_s*(δα*θ + α_s*δθ)") && text.contains("by trials:"), "{text}");
     }
 
@@ -255,6 +260,43 @@ formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
         // r = 3/√(3 · 103).
         assert!((answers.correlations[0].coefficient - 3.0 / 309f64.sqrt()).abs() < 1e-12);
         assert!(text(&answers).contains("to two, state theirs"));
+    }
+
+    /// As JSON; u² = u_a² + u_b² − 2 r u_a u_b, with u_a = 0.3 and u_b = 0.4.
+    #[test]
+    fn correlated_inputs_and_observations_are_read() {
+        let file = r#"{
+            "input": [
+                {"name": "a", "unit": "m", "value": 5, "u": 0.3},
+                {"name": "b", "unit": "m", "value": 2, "u": 0.4},
+                {"name": "c", "unit": "m", "observations": [1, 2, 3, 4]}
+            ],
+            "correlation": [{"between": ["a", "b"], "coefficient": 0.5}],
+            "result": [
+                {"name": "difference", "unit": "m", "formula": "a - b"},
+                {"name": "mean", "unit": "m", "formula": "c"}
+            ]
+        }"#;
+        let answers = answers(&Measurement::of_json(file).unwrap(), 0.95, (100_000, 1)).unwrap();
+        let [difference, mean] = &answers.results[..] else { panic!("two results") };
+        assert!((difference.budget.standard_uncertainty() - 0.13f64.sqrt()).abs() < 1e-12);
+        // The mean of 1, 2, 3, 4 has u = √(5/12) and three degrees of freedom.
+        let statement = mean.statement.as_ref().unwrap();
+        assert!((statement.estimate, statement.effective_degrees_of_freedom) == (2.5, Some(3.0)));
+        assert!((statement.standard_uncertainty - (5.0 / 12.0_f64).sqrt()).abs() < 1e-12);
+        assert_eq!(answers.correlations[0].coefficient, 0.0);
+    }
+
+    #[test]
+    fn results_without_an_interval_by_derivatives_are_told() {
+        let input = "[[input]]\nname = \"b\"\nunit = \"m\"\nvalue = 2\nu = 0.1\n";
+        let told = |formula: &str| {
+            let file = format!("{input}[[result]]\nname = \"y\"\nunit = \"m\"\nformula = \"{formula}\"\n");
+            text(&answers(&Measurement::of_toml(&file).unwrap(), 0.95, (10_000, 1)).unwrap())
+        };
+        assert!(told("b - b").contains("the trials do not vary"));
+        // Flat where it is linearised: the derivatives see nothing.
+        assert!(told("(b - 2)^2").contains("there is no interval above"));
     }
 
     #[test]

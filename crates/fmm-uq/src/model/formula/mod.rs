@@ -38,28 +38,34 @@ pub struct Formula {
     text: String,
     quantities: usize,
     /// In the order of evaluation, operands before what works on them.
-    steps: Vec<Step>,
+    steps: Vec<Step<usize>>,
 }
 
 impl Formula {
     /// Reads a formula over quantities with these `names`, in the order in which [`Formula::evaluate`] is given their values.
     ///
     /// # Errors
-    /// [`UncertaintyError::Model`] if the text is no formula, or for a name that is not among `names`;
-    /// [`UncertaintyError::Inputs`] for a name that no formula can contain, or that is the one of a constant.
+    /// [`UncertaintyError::Model`] if the text is no formula, has more than 200 parentheses, powers and signs, or names what is not among
+    /// `names`; [`UncertaintyError::Inputs`] for a name given twice, or one that no formula can contain or a constant or function has.
     pub fn new(text: &str, names: &[&str]) -> Result<Self, UncertaintyError> {
-        for name in names {
+        for (place, name) in names.iter().enumerate() {
             if !parser::is_name(name) {
                 return Err(UncertaintyError::not_a_name(name));
             }
+            if names[..place].contains(name) {
+                return Err(UncertaintyError::duplicate_name(name));
+            }
         }
-        let steps = parser::parse(text)?;
-        let resolved = steps.into_iter().map(|step| match step {
-            Step::Name(name) => match names.iter().position(|other| *other == name) {
-                Some(place) => Ok(Step::Quantity(place)),
-                None => Err(UncertaintyError::unknown_in_formula(&name, names)),
-            },
-            other => Ok(other),
+        let place = |name: String| {
+            let place = names.iter().position(|other| *other == name);
+            place.map(Step::Quantity).ok_or_else(|| UncertaintyError::unknown_in_formula(&name, names))
+        };
+        let resolved = parser::parse(text)?.into_iter().map(|step| match step {
+            Step::Quantity(name) => place(name),
+            Step::Number(value) => Ok(Step::Number(value)),
+            Step::OfOne(function) => Ok(Step::OfOne(function)),
+            Step::OfTwo(operator) => Ok(Step::OfTwo(operator)),
+            Step::Power(exponent) => Ok(Step::Power(exponent)),
         });
         Ok(Self { text: text.trim().to_owned(), quantities: names.len(), steps: resolved.collect::<Result<_, _>>()? })
     }
@@ -83,7 +89,6 @@ impl Formula {
             let value = match step {
                 Step::Number(value) => Some(D::from(*value)),
                 Step::Quantity(place) => values.get(*place).copied(),
-                Step::Name(_) => None,
                 Step::OfOne(function) => stack.pop().map(|x| function.of(x)),
                 Step::Power(exponent) => stack.pop().map(|x| x.powi(*exponent)),
                 Step::OfTwo(operator) => {
@@ -209,6 +214,7 @@ mod tests {
         assert!(Formula::new("x", &["x y"]).unwrap_err().to_string().contains("`x y`"));
         assert!(Formula::new("pi", &["pi"]).unwrap_err().to_string().contains("`pi`"));
         assert!(Formula::new("x²", &["x²"]).is_err());
+        assert!(Formula::new("x", &["x", "y", "x"]).unwrap_err().to_string().contains("given twice"));
         assert!(Formula::new("x", &["x"]).unwrap().evaluate(&[1.0, 2.0]).is_err());
         // A depth that no stack could hold.
         for deep in ["(", "-(", "2^", "sqrt(", "atan2("] {

@@ -15,14 +15,11 @@ use crate::UncertaintyError;
 /// Parentheses, powers and signs that a formula may have: each may take the parser one level deeper.
 const DEEPEST: usize = 200;
 
-/// One step of an evaluation, on a stack of values.
+/// One step of an evaluation, on a stack of values, with a quantity by its name or by its place.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Step {
+pub(super) enum Step<Q> {
     Number(f64),
-    /// A name as it was read.
-    Name(String),
-    /// A quantity by its place.
-    Quantity(usize),
+    Quantity(Q),
     OfOne(Function),
     OfTwo(Operator),
     /// A whole power, of a base of either sign.
@@ -128,8 +125,9 @@ pub(super) fn is_name(text: &str) -> bool {
     text.chars().next().is_some_and(begins_name) && text.chars().all(goes_on) && !is_taken
 }
 
-type Steps = Vec<Step>;
+type Steps = Vec<Step<String>>;
 
+/// The steps of a formula, with quantities as they are called in it.
 pub(super) fn parse(text: &str) -> Result<Steps, UncertaintyError> {
     if text.matches(['(', '^', '-', '+']).count() > DEEPEST {
         return Err(UncertaintyError::formula_too_deep(DEEPEST));
@@ -138,7 +136,7 @@ pub(super) fn parse(text: &str) -> Result<Steps, UncertaintyError> {
         let rest = text.get(error.offset()..).unwrap_or_default();
         UncertaintyError::not_a_formula(text, rest)
     })?;
-    match steps.iter().find_map(|step| if let Step::Name(name) = step { name.strip_suffix('(') } else { None }) {
+    match steps.iter().find_map(|step| if let Step::Quantity(name) = step { name.strip_suffix('(') } else { None }) {
         Some(name) => Err(UncertaintyError::unknown_function(name, &FUNCTIONS.map(|(name, _)| name))),
         None => Ok(steps),
     }
@@ -175,7 +173,7 @@ fn whole(exponent: f64) -> Option<i32> {
     (exponent.fract() == 0.0 && exponent.abs() <= 64.0).then_some(exponent as i32)
 }
 
-fn then(mut steps: Steps, step: Step) -> Steps {
+fn then(mut steps: Steps, step: Step<String>) -> Steps {
     steps.push(step);
     steps
 }
@@ -225,9 +223,9 @@ fn of_name(input: &mut &str) -> Parsed<Steps> {
     match (opt(in_parentheses).parse_next(input)?, function) {
         (Some(argument), Some((_, function))) => Ok(then(argument, Step::OfOne(*function))),
         // No name has a parenthesis: this one is told as a function that does not exist.
-        (Some(argument), None) => Ok(then(argument, Step::Name(format!("{name}(")))),
+        (Some(argument), None) => Ok(then(argument, Step::Quantity(format!("{name}(")))),
         (None, None) if matches!(name, "pi" | "π") => Ok(vec![Step::Number(std::f64::consts::PI)]),
-        (None, None) => Ok(vec![Step::Name(name.to_owned())]),
+        (None, None) => Ok(vec![Step::Quantity(name.to_owned())]),
         (None, Some(_)) => cut_err(fail).parse_next(input),
     }
 }
