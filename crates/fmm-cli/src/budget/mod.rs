@@ -287,6 +287,36 @@ formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
         assert_eq!(answers.correlations[0].coefficient, 0.0);
     }
 
+    /// Half widths of 3 over √3, √6 and √2 (JCGM 100:2008, 4.3.7 and 4.3.9; JCGM 101:2008, 6.4.6), from files of both kinds.
+    #[test]
+    fn limits_are_those_of_their_distribution() {
+        let folder = std::env::temp_dir();
+        let u = |distribution: &str, ending: &str| {
+            let path = folder.join(format!("fmm-budget-{}-{ending}.{ending}", std::process::id()));
+            let file = if ending == "JSON" {
+                format!(
+                    r#"{{"input": [{{"name": "a", "unit": "m", "limits": [1, 7], "distribution": "{distribution}"}}],
+                         "result": [{{"name": "y", "unit": "m", "formula": "a"}}]}}"#
+                )
+            } else {
+                format!(
+                    "[[input]]\nname = \"a\"\nunit = \"m\"\nlimits = [1, 7]\ndistribution = \"{distribution}\"\n\
+                     [[result]]\nname = \"y\"\nunit = \"m\"\nformula = \"a\"\n"
+                )
+            };
+            std::fs::write(&path, file).unwrap();
+            let read = Measurement::read(&path);
+            std::fs::remove_file(&path).unwrap();
+            read.unwrap().inputs.as_slice()[0].standard_uncertainty()
+        };
+        for ending in ["toml", "JSON"] {
+            for (distribution, divisor) in [("rectangular", 3.0_f64), ("triangular", 6.0), ("arc sine", 2.0)] {
+                let found = u(distribution, ending);
+                assert!((found - 3.0 / divisor.sqrt()).abs() < 1e-12, "{distribution}: {found}");
+            }
+        }
+    }
+
     #[test]
     fn results_without_an_interval_by_derivatives_are_told() {
         let input = "[[input]]\nname = \"b\"\nunit = \"m\"\nvalue = 2\nu = 0.1\n";
