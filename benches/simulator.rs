@@ -3,6 +3,8 @@
 //! `cargo bench --bench simulator` prints criterion's estimates and then the ratios of their medians. The package `peers` beside
 //! this file compares with a general solver.
 
+#[path = "common/floor.rs"]
+mod floor;
 #[path = "common/ratio.rs"]
 mod ratio;
 
@@ -124,6 +126,26 @@ fn ring_down(criterion: &mut Criterion) {
     group.bench_function("exact", |bencher| {
         bencher.iter(|| Exact.run_into(black_box(&scenario), &sampling, &mut trajectory));
     });
+    let plain = floor::RingDown {
+        mass: 10.391,
+        stiffness: 1982.0,
+        damping: 0.275,
+        friction: 7.2 * 0.15,
+        position: 0.0,
+        velocity: 0.101,
+    };
+    let (mut velocities, mut room) = (vec![0.0; sampling.count()], floor::Room::new());
+    plain.run(1e-3, &mut velocities, &mut room);
+    Exact.run_into(&scenario, &sampling, &mut trajectory).expect("valid");
+    let apart = trajectory.velocity().values().iter().zip(&velocities).map(|(exact, plain)| (exact - plain).abs());
+    let apart = apart.fold(0.0, f64::max);
+    assert!(apart < 1e-14 && room.zeros.len() == trajectory.half_swings(), "{apart} m/s apart");
+    group.bench_function("floor", |bencher| {
+        bencher.iter(|| {
+            black_box(&plain).run(1e-3, &mut velocities, &mut room);
+            black_box(&mut velocities);
+        });
+    });
     group.bench_function("runge_kutta", |bencher| {
         bencher.iter(|| RungeKutta::default().run_into(black_box(&scenario), &sampling, &mut trajectory));
     });
@@ -150,6 +172,7 @@ fn ring_down(criterion: &mut Criterion) {
 
 fn print_ratios() {
     print_ratio("ring_down/thesis", "ring_down/exact", "at least 13");
+    print_ratio("ring_down/exact", "ring_down/floor", "at most 1.3");
     print_ratio("ring_down/exact_gradient", "ring_down/exact", "at most 2.5, two columns");
     print_ratio("ring_down/thesis", "ring_down/moreau", "");
     print_ratio("ring_down/thesis", "ring_down/runge_kutta", "");

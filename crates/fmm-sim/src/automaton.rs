@@ -107,11 +107,23 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         (load * self.levels.breakaway(), slope * self.levels.breakaway())
     }
 
+    /// Load on a contact at zero relative velocity (N), its rate of change (N/s), and the rounding that it carries (N).
+    fn resting_load(&self, piece: &Piece<D>, time: D, state: State<D>) -> (f64, f64, f64) {
+        // Under a constant force, which is what most reversals see, neither damping nor time has a part in it.
+        let is_steady = piece.is_constant() && self.belt.value() == 0.0;
+        if is_steady && matches!(self.oscillator.restoring(), Restoring::Linear) {
+            let spring = self.oscillator.stiffness().value() * state.position.value();
+            return (piece.line(time).0.value() - spring, 0.0, 0.0);
+        }
+        let load = self.load(piece, time, state.position, self.belt);
+        let rounding = if load.is_plainly_free() { 0.0 } else { rounding(self.oscillator, &load, time, state) };
+        (load.now().value(), load.slope_now().value(), rounding)
+    }
+
     /// The mode in which a contact goes on from `state`, the automaton's only decision; and the load at zero relative
     /// velocity.
     fn mode(&self, piece: &Piece<D>, time: D, state: State<D>) -> (Mode, f64) {
-        let resting = self.load(piece, time, state.position, self.belt);
-        let load = resting.now().value();
+        let (load, rate, rounding) = self.resting_load(piece, time, state);
         let relative = state.velocity.value() - self.belt.value();
         if relative != 0.0 {
             let direction = Direction::of(relative);
@@ -132,25 +144,22 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         }
         let (held, held_slope) = self.static_force(piece, time);
         let (held, held_slope) = (held.value(), held_slope.value());
-        let rate = resting.slope_now().value();
         // Within rounding of the level, the rate of change of the load decides.
-        let rounding = if resting.is_plainly_free() { 0.0 } else { rounding(self.oscillator, &resting, time, state) };
         let direction = Direction::of(if load.abs() <= rounding { rate } else { load });
         let growing = rate * direction.sign() > held_slope;
         let slips = if (load.abs() - held).abs() <= rounding {
             growing
         } else {
             growing && load.abs() >= held
-                || load.abs() > held && self.is_ahead(&resting, piece.normal_load(time).0, state, direction)
+                || load.abs() > held && self.is_ahead(load, piece.normal_load(time).0, state, direction)
         };
         (if slips { self.sliding(direction) } else { Mode::Stick }, load)
     }
 
-    /// Whether the position in which friction balances the load lies ahead. Beyond the static level it does, as the
+    /// Whether the position in which friction balances the `load` (N) lies ahead. Beyond the static level it does, as the
     /// sliding level is not higher; where rounding says otherwise, nothing moves.
-    fn is_ahead(&self, load: &Curve<D>, normal_load: D, state: State<D>, direction: Direction) -> bool {
+    fn is_ahead(&self, load: f64, normal_load: D, state: State<D>, direction: Direction) -> bool {
         let sliding = (self.levels.gaining(D::from(0.0)) * normal_load).value();
-        let load = load.now().value();
         match self.oscillator.restoring() {
             Restoring::Linear if self.oscillator.stiffness().value() > 0.0 => {
                 let (stiffness, position) = (self.oscillator.stiffness().value(), state.position.value());

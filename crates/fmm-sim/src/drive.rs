@@ -67,9 +67,21 @@ impl<D: Scalar> Piece<D> {
         self.waves.iter().filter(|wave| wave.amplitude.value() != 0.0).map(|wave| wave.angular.value())
     }
 
+    /// Whether the force without derivatives does not change.
+    pub(crate) fn is_constant(&self) -> bool {
+        self.waves.is_empty() && self.slope.value() == 0.0
+    }
+
+    /// The force (N) at `time`, if it does not change, in its derivatives neither.
+    pub(crate) fn constant_force(&self, time: D) -> Option<D> {
+        let (force, slope) = self.line(time);
+        let is_level = || (0..D::DIRECTIONS).all(|direction| slope.partial(direction) == 0.0);
+        (self.is_constant() && is_level()).then_some(force)
+    }
+
     /// Whether there is no force at all.
     pub(crate) fn is_free(&self) -> bool {
-        self.waves.is_empty() && self.slope.value() == 0.0 && self.force.value() == 0.0
+        self.is_constant() && self.force.value() == 0.0
     }
 
     /// The force at `time` (N).

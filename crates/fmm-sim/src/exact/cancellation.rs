@@ -57,6 +57,11 @@ impl Cancellation {
         }
     }
 
+    /// Whether the spring of `oscillator` has turned the motion round by `end` (s), which bounds what is lost.
+    pub(super) fn cannot_matter<D: Scalar>(oscillator: &Oscillator<D>, end: f64) -> bool {
+        !(end > 0.0 && oscillator.natural_angular_frequency().value() * end < WEAK)
+    }
+
     /// That enough digits are left at `end` (s) of a motion of `oscillator`, relative to the motion or to what the force `held` (N) at
     /// rest would move it by, if that is more.
     ///
@@ -68,8 +73,7 @@ impl Cancellation {
         held: D,
         end: f64,
     ) -> Result<(), SimulationError> {
-        // A spring that turns the motion round bounds what is lost.
-        if !(end > 0.0 && oscillator.natural_angular_frequency().value() * end < WEAK) {
+        if Self::cannot_matter(oscillator, end) {
             return Ok(());
         }
         let drift = end.min(oscillator.natural_angular_frequency().value().recip());

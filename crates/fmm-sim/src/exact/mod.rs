@@ -88,7 +88,7 @@ impl<D: Scalar, L: PiecewiseLinearLaw<D>> Engine<D, L> for Exact {
         let branches = Branches { gaining, losing: losing.unwrap_or(gaining), differ: losing.is_some() };
         let contact = Contact::new(scenario, branches, &drive)?;
         let flows = Flows::new(scenario, branches, sampling)?;
-        let mut swing = Swing::new(scenario, &flows, &drive);
+        let mut swing = Swing::new(scenario, &flows, &drive, sampling);
         let mut recorder = Recorder::new("exact", 0, sampling, trajectory)?;
         contact.run(scenario.initial(), &drive, &mut swing, &mut recorder)?;
         let held = scenario.normal_load() * branches.gaining.breakaway;

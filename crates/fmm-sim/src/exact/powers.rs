@@ -12,8 +12,10 @@ use crate::{Samples, Sampling, State};
 /// All swings of a run have the same decay, so one table serves every sample: position and velocity are linear
 /// combinations of the two parts, and so are their derivatives once j Δt is allowed as a factor.
 pub(super) struct Powers {
-    real: Vec<f64>,
-    imaginary: Vec<f64>,
+    /// Real parts, then as many imaginary parts.
+    parts: Vec<f64>,
+    /// Time between samples (s).
+    interval: f64,
 }
 
 /// Longest run of samples written from one closed-form state.
@@ -34,15 +36,28 @@ impl Powers {
     /// Powers for at least `longest` samples, or [`LONGEST`] if that is less.
     pub(super) fn new(rate: f64, angular: f64, interval: f64, longest: usize) -> Self {
         let count = longest.clamp(1, LONGEST).next_multiple_of(STRIDE);
-        let (mut real, mut imaginary) = (vec![0.0; count], vec![0.0; count]);
+        let mut parts = vec![0.0; 2 * count];
         let power = |exponent: usize| {
             let time = exponent as f64 * interval;
             let (sin, cos) = (angular * time).sin_cos();
             let envelope = (-rate * time).exp();
             (envelope * cos, envelope * sin)
         };
+        let (one, stride) = (power(1), power(STRIDE));
+        let (real, imaginary) = parts.split_at_mut(count);
+        Arch::new().dispatch(
+            #[inline(always)]
+            || Self::fill(real, imaginary, one, stride),
+        );
+        Self { parts, interval }
+    }
+
+    /// Fills the table from the first power and that of the stride.
+    #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
+    #[inline(always)]
+    fn fill(real: &mut [f64], imaginary: &mut [f64], one: (f64, f64), stride: (f64, f64)) {
         real[0] = 1.0;
-        let mut factor = power(1);
+        let mut factor = one;
         let mut known = 1;
         while known < STRIDE {
             for j in 0..known {
@@ -52,35 +67,38 @@ impl Powers {
             factor = (factor.0 * factor.0 - factor.1 * factor.1, 2.0 * factor.0 * factor.1);
             known *= 2;
         }
-        let (by_real, by_imaginary) = power(STRIDE);
-        for start in (STRIDE..count).step_by(STRIDE) {
-            let (earlier_real, later_real) = real.split_at_mut(start);
-            let (earlier_imaginary, later_imaginary) = imaginary.split_at_mut(start);
-            let (re, im) = (&earlier_real[start - STRIDE..], &earlier_imaginary[start - STRIDE..]);
+        let (mut reals, mut imaginaries) = (real.chunks_exact_mut(STRIDE), imaginary.chunks_exact_mut(STRIDE));
+        let (Some(mut re), Some(mut im)) = (reals.next(), imaginaries.next()) else { return };
+        for (later_re, later_im) in reals.zip(imaginaries) {
             for j in 0..STRIDE {
-                later_real[j] = re[j] * by_real - im[j] * by_imaginary;
-                later_imaginary[j] = re[j] * by_imaginary + im[j] * by_real;
+                later_re[j] = re[j] * stride.0 - im[j] * stride.1;
+                later_im[j] = re[j] * stride.1 + im[j] * stride.0;
             }
+            (re, im) = (later_re, later_im);
         }
-        Self { real, imaginary }
     }
 
     pub(super) fn len(&self) -> usize {
-        self.real.len()
+        self.parts.len() / 2
     }
 
-    /// Writes the next `count` samples, `interval` apart, the motion about `centre` being in `state` at the first.
+    /// The powers, real and imaginary part of each.
+    fn powers(&self) -> impl Iterator<Item = (&f64, &f64)> {
+        let (real, imaginary) = self.parts.split_at(self.len());
+        real.iter().zip(imaginary)
+    }
+
+    /// Writes the next `count` samples, the motion about `centre` being in `state` at the first.
     pub(super) fn write<D: Scalar>(
         &self,
         recorder: &mut Recorder<D>,
         count: usize,
-        interval: f64,
         decay: &Decay<D>,
         centre: D,
         state: State<D>,
     ) {
         let Some(half_swing) = decay.half_swing() else { return };
-        let wave = Wave { rate: decay.rate(), angular: half_swing.angular, interval };
+        let wave = Wave { rate: decay.rate(), angular: half_swing.angular, interval: self.interval };
         let range = recorder.written..recorder.written + count;
         let channels = recorder.sampling.channels();
         if channels.position() {
@@ -121,7 +139,7 @@ impl Powers {
         sine: D,
     ) {
         let (c, s, o) = (cosine.value(), sine.value(), offset.value());
-        let powers = || self.real.iter().zip(&self.imaginary);
+        let powers = || self.powers();
         for (out, (re, im)) in samples.values_mut()[range.clone()].iter_mut().zip(powers()) {
             *out = o + (c * re + s * im);
         }
@@ -160,12 +178,12 @@ mod tests {
     fn powers_are_exact_to_rounding() {
         let powers = Powers::new(0.7, 13.8, 1e-3, 1000);
         assert_eq!(powers.len(), LONGEST);
-        for j in 0..LONGEST {
+        for (j, (real, imaginary)) in powers.powers().enumerate() {
             let time = j as f64 * 1e-3;
             let (sin, cos) = (13.8 * time).sin_cos();
             let envelope = (-0.7 * time).exp();
-            assert!((powers.real[j] - envelope * cos).abs() < 5e-15, "power {j}");
-            assert!((powers.imaginary[j] - envelope * sin).abs() < 5e-15, "power {j}");
+            assert!((real - envelope * cos).abs() < 5e-15, "power {j}");
+            assert!((imaginary - envelope * sin).abs() < 5e-15, "power {j}");
         }
         assert_eq!(Powers::new(0.7, 13.8, 1e-3, 3).len(), STRIDE);
     }

@@ -32,6 +32,8 @@ pub(super) struct Swing<'a, D> {
     rhythm: Option<(D, u32)>,
     budget: usize,
     digits: Cancellation,
+    /// Whether neither a belt, accelerations, work nor lost digits have to be looked after.
+    is_plain: bool,
 }
 
 /// The linear machine on each branch of the law.
@@ -86,8 +88,17 @@ impl<D: Scalar> Flow<D> {
 }
 
 impl<'a, D: Scalar> Swing<'a, D> {
-    pub(super) fn new<L>(scenario: &'a Scenario<D, L>, flows: &'a Flows<D>, drive: &Drive<D>) -> Self {
+    pub(super) fn new<L>(
+        scenario: &'a Scenario<D, L>,
+        flows: &'a Flows<D>,
+        drive: &Drive<D>,
+        sampling: &Sampling,
+    ) -> Self {
+        let keeps_digits = Cancellation::cannot_matter(scenario.oscillator(), sampling.end());
+        let is_plain =
+            keeps_digits && !drive.has_belt() && !sampling.channels().acceleration() && !sampling.wants_work();
         Self {
+            is_plain,
             oscillator: scenario.oscillator(),
             normal_load: scenario.normal_load(),
             belt: drive.belt(),
@@ -149,6 +160,36 @@ impl<'a, D: Scalar> Swing<'a, D> {
         (Ending::RelativeRest, time, state, grazing)
     }
 
+    /// A phase under a constant force that ends at rest, as all of a ring-down do: what the general way gives to the last bit, at
+    /// a third of its cost. `None` where another quantity is asked for, or another end comes first.
+    fn swing_freely(
+        &mut self,
+        flow: &Flow<D>,
+        phase: &Phase<D>,
+        recorder: &mut Recorder<D>,
+    ) -> Result<Option<Ended<D>>, SimulationError> {
+        let Some(powers) = flow.powers.as_ref().filter(|_| self.is_plain && phase.branch == Branch::Only) else {
+            return Ok(None);
+        };
+        let Some(force) = phase.piece.constant_force(phase.time) else { return Ok(None) };
+        let sliding = self.normal_load * flow.friction.level;
+        let centre = (force - sliding * phase.direction.sign()) / self.oscillator.stiffness();
+        let free = State { position: phase.state.position - centre, velocity: phase.state.velocity };
+        let rhythm = self.rhythm;
+        let Some((time, position)) = self.next_rest(phase, centre, &flow.decay, free) else { return Ok(None) };
+        if !(time.value() <= phase.limit) {
+            self.rhythm = rhythm;
+            return Ok(None);
+        }
+        write_free(powers, (&flow.decay, free), centre, phase.time, time.value(), recorder)?;
+        Ok(Some(Ended {
+            ending: Ending::RelativeRest,
+            time,
+            state: State { position, velocity: self.belt },
+            grazing: false,
+        }))
+    }
+
     /// The first guard that the motion along `position` reaches before the limit of `phase`, with its time.
     fn first_guard(
         &mut self,
@@ -194,6 +235,9 @@ impl<'a, D: Scalar> Swing<'a, D> {
 impl<D: Scalar> Slide<D> for Swing<'_, D> {
     fn slide(&mut self, phase: &Phase<D>, recorder: &mut Recorder<D>) -> Result<Ended<D>, SimulationError> {
         let flow = self.flows.on(phase.branch);
+        if let Some(ended) = self.swing_freely(flow, phase, recorder)? {
+            return Ok(ended);
+        }
         let path = self.position(flow, phase)?;
         let undisturbed = path.is_plainly_free() && !self.has_belt && phase.branch == Branch::Only;
         let found = match path.free() {
@@ -290,41 +334,61 @@ impl<D: Scalar> Swing<'_, D> {
 }
 
 /// Writes the samples of the motion along `path`, counted from `start`, that come before `end`.
-pub(super) fn write<D: Scalar>(
+fn write<D: Scalar>(
     path: &Curve<D>,
     powers: Option<&Powers>,
     start: D,
     end: f64,
     recorder: &mut Recorder<D>,
 ) -> Result<(), SimulationError> {
-    let stop = recorder.sampling.index_at_or_after(end);
-    let (Some(powers), Some((decay, free)), Some(interval)) = (powers, path.free(), recorder.sampling.interval())
-    else {
+    let (Some(powers), Some(decaying)) = (powers, path.free()) else {
         return recorder.samples(end, |time| path.state(-start + time));
     };
+    let first = recorder.written;
+    write_free(powers, decaying, path.constant, start, end, recorder)?;
+    if !path.is_free() {
+        add_forced(path, start, first, recorder)?;
+    }
+    Ok(())
+}
+
+/// Writes the samples of the free decay about `centre`, counted from `start`, that come before `end`.
+fn write_free<D: Scalar>(
+    powers: &Powers,
+    (decay, free): (&Decay<D>, State<D>),
+    centre: D,
+    start: D,
+    end: f64,
+    recorder: &mut Recorder<D>,
+) -> Result<(), SimulationError> {
+    let stop = recorder.sampling.index_at_or_after(end);
     while recorder.written < stop {
         let anchor = recorder.sampling.time(recorder.written);
         let at_anchor = decay.advance(free, -start + anchor);
-        let forced = path.forced_state(-start + anchor);
-        let reach = decay.reach(at_anchor) + path.constant.value().abs() + forced.position.value().abs();
-        if !(reach + forced.velocity.value().abs()).is_finite() {
+        if !(decay.reach(at_anchor) + centre.value().abs()).is_finite() {
             return Err(SimulationError::NotFinite { time: anchor });
         }
         let count = powers.len().min(stop - recorder.written);
-        powers.write(recorder, count, interval, decay, path.constant, at_anchor);
-        if !path.is_free() {
-            add_forced(path, start, count, recorder);
-        }
+        powers.write(recorder, count, decay, centre, at_anchor);
         recorder.written += count;
     }
     Ok(())
 }
 
-/// Adds what a force contributes to `count` samples beyond a constant.
-fn add_forced<D: Scalar>(path: &Curve<D>, start: D, count: usize, recorder: &mut Recorder<D>) {
+/// Adds what a force contributes to the samples from `first` on beyond a constant.
+fn add_forced<D: Scalar>(
+    path: &Curve<D>,
+    start: D,
+    first: usize,
+    recorder: &mut Recorder<D>,
+) -> Result<(), SimulationError> {
     let channels = recorder.sampling.channels();
-    for index in recorder.written..recorder.written + count {
-        let forced = path.forced_state(-start + recorder.sampling.time(index));
+    for index in first..recorder.written {
+        let time = recorder.sampling.time(index);
+        let forced = path.forced_state(-start + time);
+        if !(forced.position.value().abs() + forced.velocity.value().abs()).is_finite() {
+            return Err(SimulationError::NotFinite { time });
+        }
         if channels.position() {
             recorder.trajectory.position_mut().add(index, forced.position - path.constant);
         }
@@ -332,4 +396,5 @@ fn add_forced<D: Scalar>(path: &Curve<D>, start: D, count: usize, recorder: &mut
             recorder.trajectory.velocity_mut().add(index, forced.velocity);
         }
     }
+    Ok(())
 }
