@@ -408,7 +408,9 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         if still {
             recorder.hold(stop, position);
         } else {
+            let first = recorder.written;
             recorder.samples(stop, |time| State { position: at(D::from(time)), velocity })?;
+            recorder.at_constant_speed(first);
         }
         let (relative, damping) = (velocity - self.belt, self.oscillator.damping().force(velocity));
         let end = stop.min(phase.limit);

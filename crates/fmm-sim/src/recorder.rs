@@ -82,7 +82,7 @@ impl<'a, D: Scalar> Recorder<'a, D> {
     }
 
     /// Writes the accelerations of the samples from `first` to the last that is written, `of` giving that at a sample's time
-    /// and state; they are zero until something is written.
+    /// and state.
     pub(crate) fn accelerations(
         &mut self,
         first: usize,
@@ -117,12 +117,25 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         Ok(())
     }
 
-    /// Writes rest at `position` into the samples before `end`; velocities are zero until something else is written.
+    /// Writes rest at `position` into the samples before `end`.
     pub(crate) fn hold(&mut self, end: f64, position: D) {
         let range = self.written..self.sampling.index_at_or_after(end).max(self.written);
+        let channels = self.sampling.channels();
+        if channels.position() {
+            self.trajectory.position_mut().fill(range.clone(), position);
+        }
+        if channels.velocity() {
+            self.trajectory.velocity_mut().fill(range.clone(), D::from(0.0));
+        }
+        let first = self.written;
         self.written = range.end;
-        if self.sampling.channels().position() {
-            self.trajectory.position_mut().fill(range, position);
+        self.at_constant_speed(first);
+    }
+
+    /// Writes that the samples from `first` to the last that is written have no acceleration.
+    pub(crate) fn at_constant_speed(&mut self, first: usize) {
+        if self.sampling.channels().acceleration() {
+            self.trajectory.acceleration_mut().fill(first..self.written, D::from(0.0));
         }
     }
 

@@ -21,16 +21,20 @@ impl<D: Scalar> Samples<D> {
         Self { values: Vec::new(), partials: Vec::new(), number: PhantomData }
     }
 
-    /// Makes room for `count` samples, all zero.
+    /// Makes room for `count` samples, of which each has to be written: what they hold until then is of an earlier run.
     ///
     /// # Errors
     /// [`SimulationError::Memory`] if there is no such room.
     pub(crate) fn reset(&mut self, count: usize) -> Result<(), SimulationError> {
         let partials = count.checked_mul(D::DIRECTIONS).ok_or(SimulationError::Memory { count })?;
         for (column, length) in [(&mut self.values, count), (&mut self.partials, partials)] {
-            column.clear();
-            column.try_reserve_exact(length).map_err(|_| SimulationError::Memory { count })?;
+            column.truncate(length);
+            column.try_reserve_exact(length - column.len()).map_err(|_| SimulationError::Memory { count })?;
             column.resize(length, 0.0);
+            if cfg!(debug_assertions) {
+                // Tests see a sample that was forgotten.
+                column.fill(f64::NAN);
+            }
         }
         Ok(())
     }

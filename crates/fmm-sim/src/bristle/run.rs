@@ -108,7 +108,9 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         // The samples at the end itself hold the state after an event there.
         let first = self.recorder.written;
         self.write(f64::INFINITY)?;
-        if !self.resting {
+        if self.resting {
+            self.recorder.at_constant_speed(first);
+        } else {
             self.field.begin(self.branch, &self.step.begin);
             self.accelerate(first, &piece)?;
         }
@@ -354,7 +356,9 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
 
     /// Rests until `limit` (s).
     fn hold(&mut self, piece: &Piece<D>, limit: f64) -> Result<(), SimulationError> {
+        let first = self.recorder.written;
         self.write(limit)?;
+        self.recorder.at_constant_speed(first);
         let velocity = self.step.begin[1];
         let belt = self.field.belt;
         let friction = self.field.friction(self.branch, &self.step.begin);

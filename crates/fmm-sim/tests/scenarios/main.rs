@@ -7,6 +7,7 @@ mod duals;
 mod hands;
 mod limits;
 mod loads;
+mod memory;
 mod paths;
 mod rest;
 mod springs;
