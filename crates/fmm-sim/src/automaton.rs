@@ -408,9 +408,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         if still {
             recorder.hold(stop, position);
         } else {
-            let first = recorder.written;
-            recorder.samples(stop, |time| State { position: at(D::from(time)), velocity })?;
-            recorder.at_constant_speed(first);
+            recorder.constant_velocity(stop, velocity, |time| at(D::from(time)))?;
         }
         let (relative, damping) = (velocity - self.belt, self.oscillator.damping().force(velocity));
         let end = stop.min(phase.limit);

@@ -132,6 +132,19 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         self.at_constant_speed(first);
     }
 
+    /// Writes the samples before `end` of a motion at this `velocity`, `position` giving where it is at a sample's time.
+    pub(crate) fn constant_velocity(
+        &mut self,
+        end: f64,
+        velocity: D,
+        mut position: impl FnMut(f64) -> D,
+    ) -> Result<(), SimulationError> {
+        let first = self.written;
+        self.samples(end, |time| State { position: position(time), velocity })?;
+        self.at_constant_speed(first);
+        Ok(())
+    }
+
     /// Writes that the samples from `first` to the last that is written have no acceleration.
     pub(crate) fn at_constant_speed(&mut self, first: usize) {
         if self.sampling.channels().acceleration() {
