@@ -6,12 +6,12 @@ use fmm_record::{Quantity, Record};
 
 use crate::FrfError;
 
-/// Which of the two channels of a trial.
+/// Channel of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Channel {
-    /// What excites (N).
+    /// Excitation (N).
     Force,
-    /// What is excited: displacement, velocity or acceleration.
+    /// Response: displacement, velocity or acceleration.
     Response,
 }
 

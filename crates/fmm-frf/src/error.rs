@@ -4,7 +4,7 @@ use fmm_model::ModelError;
 
 use crate::{Channel, ResponseForm};
 
-/// Why a frequency response or an impulse could not be stated; each variant is something else that the caller can do about it.
+/// Reason why a frequency response or an impulse could not be stated; each variant asks something else of the caller.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FrfError {
@@ -14,13 +14,13 @@ pub enum FrfError {
     /// Samples, lines or values that are infinite, no numbers, too large, or not in order: look at the data.
     #[error("{what}")]
     Values {
-        /// Which they are, and what is wrong with them.
+        /// The values, and their fault.
         what: String,
     },
-    /// Channels, records or responses that do not go together: bring them to the same length, rate, begin, quantity or form.
+    /// Channels, records or responses that do not go together: bring them to the same length, rate, start, quantity or form.
     #[error("{what}")]
     Mismatch {
-        /// What does not agree.
+        /// The two things that do not agree.
         what: String,
     },
     /// Too few samples, trials or points: take more.
@@ -30,12 +30,12 @@ pub enum FrfError {
         what: String,
     },
     /// A trial without any force: leave it out.
-    #[error("the force of the trial is zero from begin to end, or so small that its square is; nothing was hit")]
+    #[error("the force of the trial is zero from start to end, or so small that its square is; nothing was hit")]
     NoForce,
     /// Nothing finite follows at a frequency: leave this line out.
     #[error("{what}")]
     NotDefined {
-        /// What does not follow, and why.
+        /// The result that does not exist, and the reason.
         what: String,
         /// The frequency (Hz).
         frequency: f64,
@@ -52,7 +52,7 @@ pub enum FrfError {
     /// A fit that finds no mode or cannot tell its parameters apart: choose another band.
     #[error("{what}")]
     NoFit {
-        /// Which fit, and what is wrong.
+        /// The fit, and its fault.
         what: String,
     },
 }
@@ -127,7 +127,7 @@ impl FrfError {
     }
 }
 
-/// What does not go together.
+/// Errors of things that do not go together.
 impl FrfError {
     /// A response whose frequencies and values are not of one number.
     pub(crate) fn length_mismatch(frequencies: usize, values: usize) -> Self {

@@ -32,7 +32,7 @@ impl<const P: usize> Equations<P> {
         self.right.push(right);
     }
 
-    /// How many there are.
+    /// Number of rows.
     pub(crate) fn len(&self) -> usize {
         self.right.len()
     }

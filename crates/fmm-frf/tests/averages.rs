@@ -134,7 +134,7 @@ fn a_refused_trial_changes_nothing() {
         (
             vec![0.0; LENGTH],
             response.clone(),
-            "the force of the trial is zero from begin to end, or so small that its square is; nothing was hit",
+            "the force of the trial is zero from start to end, or so small that its square is; nothing was hit",
         ),
         (vec![1.0; LENGTH], response.clone(), "no trial has force at 0.5 Hz; average over a band without this line"),
         (force[1..].to_vec(), response.clone(), "the force needs 64 samples, but has 63"),

@@ -9,9 +9,9 @@ use crate::{
     Stribeck, StribeckLorentzian, Viscous,
 };
 
-/// What is done with each family of a catalogue.
+/// Action on each family of a catalogue.
 pub trait FamilyVisitor {
-    /// What comes of a family.
+    /// Result for a family.
     type Output;
 
     /// For family `F`.
@@ -20,7 +20,7 @@ pub trait FamilyVisitor {
 
 macro_rules! catalogue {
     ($($law:ty),+ $(,)?) => {
-        /// What `visitor` makes of every family of laws, in the order of the catalogue.
+        /// Results of `visitor` for every family of laws, in the order of the catalogue.
         ///
         /// ```
         /// use fmm_friction::{FamilyVisitor, LawFamily, catalogue};
@@ -39,7 +39,7 @@ macro_rules! catalogue {
             vec![$(visitor.visit::<$law>()),+]
         }
 
-        /// What `visitor` makes of the family called `name`; `None` if no family is called so.
+        /// Result of `visitor` for the family called `name`; `None` if there is no such family.
         pub fn family_named<V: FamilyVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
             $(
                 if name == <$law>::NAME {

@@ -55,9 +55,9 @@ pub enum LawError {
     },
     /// No elements, or more than a [`Regime`](crate::Regime) can tell apart.
     ElementCount {
-        /// How many were given.
+        /// Number of elements given.
         got: usize,
-        /// How many there may be.
+        /// Largest number of elements.
         most: usize,
     },
     /// The elements do not share the whole contact.
@@ -71,9 +71,9 @@ pub enum LawError {
     WrongCount {
         /// Name of the law.
         law: &'static str,
-        /// How many it has.
+        /// Number of parameters of the law.
         expected: usize,
-        /// How many were given.
+        /// Number of values given.
         got: usize,
     },
 }

@@ -8,7 +8,7 @@ use fmm_model::{Bounds, Parameter, Scalar};
 use crate::kind::{KindOf, SteadyCoefficient};
 use crate::{LawError, LawKind, LawVisitor};
 
-/// How a parameter of a law enters the friction force. It says what is left of the parameter when the normal
+/// Role of a parameter in the friction force. It says in which form the parameter remains when the normal
 /// load and the mass are unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -87,7 +87,7 @@ impl LawParameter {
         &self.parameter
     }
 
-    /// How it enters the force.
+    /// Role in the friction force.
     pub const fn role(&self) -> Role {
         self.role
     }
@@ -187,8 +187,8 @@ pub trait LawFamily: 'static {
     /// not finite, out of bounds, or contradicts another ([`LawError::Condition`] unless another variant fits).
     fn at<D: Scalar>(values: &[D]) -> Result<Self::At<D>, LawError>;
 
-    /// What `visitor` does with laws of this family's kind: an implementor calls the one method of [`LawVisitor`] that says what
-    /// its laws are.
+    /// Result of `visitor` for laws of this family's kind. An implementor calls the one method of [`LawVisitor`] that matches
+    /// its laws.
     fn visit<D: Scalar, V: LawVisitor<D, Self::At<D>>>(visitor: V) -> V::Output;
 
     /// Kind of the family's laws.
@@ -280,7 +280,7 @@ pub(crate) fn checked<const N: usize, D: Scalar>(
     Ok(values)
 }
 
-/// That a static level is not below the sliding level at zero speed.
+/// Checks that a static level is not below the sliding level at zero speed.
 pub(crate) fn static_not_below<D: Scalar>(sliding: D, breakaway: D) -> Result<(), LawError> {
     if breakaway.value() < sliding.value() {
         return Err(LawError::StaticBelowSliding { breakaway: breakaway.value(), sliding: sliding.value() });

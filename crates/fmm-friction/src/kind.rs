@@ -1,11 +1,11 @@
-//! Kinds of laws, and what is done with a law according to its kind.
+//! Kinds of laws, and the visitor that treats each.
 
 use fmm_model::Scalar;
 
 use crate::{BristleLaw, PiecewiseLinearLaw, SlidingLaw};
 
-/// What is done with a law `L` of number type `D` according to its kind: one method for each kind, of which
-/// [`LawFamily::visit`](crate::LawFamily::visit) calls the one that the family is of.
+/// Action on a law `L` of number type `D` according to its kind. It has one method for each kind;
+/// [`LawFamily::visit`](crate::LawFamily::visit) calls the one of the family.
 ///
 /// Within a method the law has the trait of its kind. So whoever must treat kinds differently (an engine, a plot, a report) writes
 /// each case once, for all families and all number types, laws of one's own among them.
@@ -37,7 +37,7 @@ use crate::{BristleLaw, PiecewiseLinearLaw, SlidingLaw};
 /// # Ok::<(), fmm_friction::LawError>(())
 /// ```
 pub trait LawVisitor<D: Scalar, L>: Sized {
-    /// What comes of it.
+    /// Result for a law.
     type Output;
 
     /// For a law of the sliding speed.

@@ -64,7 +64,7 @@ pub trait SlidingLaw<D: Scalar> {
     }
 }
 
-/// Which elements of a bristle law slide, one bit an element; the others hold.
+/// Set of the elements of a bristle law that slide, one bit an element; the others hold.
 ///
 /// Laws whose elements switch ([`MaxwellSlip`](crate::MaxwellSlip), [`Gms`](crate::Gms)) need this memory beside
 /// their state. All elements hold when the velocity passes zero.
@@ -101,7 +101,7 @@ impl Regime {
 ///
 /// Such a law needs no stick phase: at rest the bristles carry the load.
 pub trait BristleLaw<D: Scalar> {
-    /// How many internal states there are.
+    /// Number of internal states.
     fn states(&self) -> usize;
 
     /// Writes dz/dt (unit of the state per second) at relative `velocity` (m/s) and `state` into `rate`; both

@@ -172,7 +172,7 @@ impl<D: Scalar> SlidingLaw<D> for MakkarDixon<D> {
 impl<D: Scalar> Inflected for MakkarDixon<D> {
     type Number = D;
 
-    /// Where d²μ/dv² passes from − to + after the peak; searched as [`peak`](Self::peak) is.
+    /// Speed at which d²μ/dv² passes from − to + after the peak (m/s); searched as [`peak`](Self::peak) is.
     fn inflection(&self) -> D {
         let plain = self.plain();
         let bracket = plain

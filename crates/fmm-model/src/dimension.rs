@@ -2,7 +2,7 @@
 
 use crate::math;
 
-/// What a unit is made of.
+/// Dimension of a unit.
 ///
 /// ```text
 /// unit = factor mˡ sᵗ kgᵐ radᵃ
@@ -30,7 +30,7 @@ impl Dimension {
     /// A pure number.
     pub(crate) const NONE: Self = Self { factor: 1.0, powers: [0.0; 4] };
 
-    /// How much of the SI unit it is (1).
+    /// Size of the unit in the SI unit (1).
     pub const fn factor(&self) -> f64 {
         self.factor
     }

@@ -1,4 +1,4 @@
-//! A number that carries its partial derivatives along.
+//! Dual number: a value with its partial derivatives.
 
 use core::cmp::Ordering;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};

@@ -11,7 +11,7 @@ use crate::Rounded;
 pub enum ModelError {
     /// A quantity that must be positive is zero, negative or not finite.
     NotPositive {
-        /// Which quantity.
+        /// Name of the quantity.
         quantity: &'static str,
         /// The value given.
         value: f64,
@@ -20,7 +20,7 @@ pub enum ModelError {
     },
     /// A quantity that must not be negative is negative or not finite.
     Negative {
-        /// Which quantity.
+        /// Name of the quantity.
         quantity: &'static str,
         /// The value given.
         value: f64,
@@ -29,7 +29,7 @@ pub enum ModelError {
     },
     /// A quantity that may have either sign is infinite or not a number.
     NotFinite {
-        /// Which quantity.
+        /// Name of the quantity.
         quantity: &'static str,
         /// The value given.
         value: f64,

@@ -67,7 +67,7 @@ impl<D: Scalar> Oscillator<D> {
         self.damping.is_linear() && matches!(self.restoring, Restoring::Linear)
     }
 
-    /// How the restoring force depends on the position.
+    /// Restoring force over the position.
     pub fn restoring(&self) -> Restoring<D> {
         self.restoring
     }

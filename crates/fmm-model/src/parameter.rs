@@ -1,4 +1,4 @@
-//! The vocabulary in which laws, fits, budgets and reports speak of a number that is to be found.
+//! Parameter: name, symbol, unit and bounds of an unknown number.
 
 use alloc::borrow::Cow;
 

@@ -2,7 +2,7 @@
 
 use crate::{ModelError, Scalar};
 
-/// How the restoring force depends on the position; its slope at the origin is the stiffness k, but for a spring with a gap.
+/// Restoring force over the position; its slope at the origin is the stiffness k, except for a spring with a gap.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Restoring<D = f64> {

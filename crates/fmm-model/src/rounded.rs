@@ -89,7 +89,7 @@ impl fmt::Display for Rounded {
     }
 }
 
-/// How a value and its uncertainty are written.
+/// Notation of a value and its uncertainty.
 enum Notation {
     /// As they are, down to the decimal `place`.
     Plain { place: i32 },

@@ -5,7 +5,7 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 
 use crate::math;
 
-/// What a formula of FMM needs of its number type.
+/// Number type of a formula of FMM.
 ///
 /// A law or an engine written over `Scalar` gives its value at `f64` and its exact gradient at [`Dual`](crate::Dual), from
 /// the same lines. The trait is deliberately small: the arithmetic, comparisons of values, and the functions that formulas
@@ -57,7 +57,7 @@ pub trait Scalar:
     + PartialOrd
     + PartialOrd<f64>
 {
-    /// How many directions of derivative the number carries; 0 for `f64`.
+    /// Number of directions of derivative that the number carries; 0 for `f64`.
     const DIRECTIONS: usize;
 
     /// The independent variable of the given direction: derivative 1 there, 0 elsewhere.

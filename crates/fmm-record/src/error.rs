@@ -16,15 +16,15 @@ pub enum RecordError {
     /// The system refuses to open, read or write a file: check the path.
     #[error("cannot {what}: {source}")]
     Io {
-        /// What it does not do, with the path where it is known.
+        /// The operation that failed, with the path if it is known.
         what: String,
-        /// What the system says.
+        /// Error of the operating system.
         source: Arc<io::Error>,
     },
     /// A file of another format than was asked for, or of none that is read: convert it, or choose another.
     #[error("{what}")]
     UnknownFormat {
-        /// What it is, and what would be read.
+        /// Content that was found, and formats that are read.
         what: String,
     },
     /// A file of a format whose reader was not compiled: add the feature.
@@ -34,7 +34,7 @@ pub enum RecordError {
         format: &'static str,
         /// The feature that reads it.
         feature: &'static str,
-        /// What helps without it.
+        /// Remedy without the feature.
         remedy: &'static str,
     },
     /// A file, or a variable of one, that contradicts itself or its format: repair it, or leave the variable alone.
@@ -42,27 +42,27 @@ pub enum RecordError {
     Damaged {
         /// The line, in text and Universal Files.
         line: Option<u64>,
-        /// Which part of the file, and what is wrong with it.
+        /// Part of the file, and its fault.
         what: String,
-        /// What the decoder says, where there is one.
+        /// Error of the decoder, if there is one.
         source: Option<Arc<dyn Error + Send + Sync>>,
     },
     /// Something that is as it should be, but is not read, written or computed: save or choose it in another form.
     #[error("{what}")]
     Unsupported {
-        /// What it is, and what would be right.
+        /// Content that was found, and content that is supported.
         what: String,
     },
     /// The file does not have the channel: choose one that it has.
     #[error("{what}")]
     NoSuchChannel {
-        /// What was asked for, and what there is.
+        /// Channel that was asked for, and those that exist.
         what: String,
     },
     /// It is not clear which channel is meant: choose one.
     #[error("{what}")]
     WhichChannel {
-        /// Why it is not clear, and what there is to choose from.
+        /// Reason of the doubt, and the channels to choose from.
         what: String,
     },
     /// The sampling is not known or not uniform: give the rate, name the time, or resample.
@@ -70,7 +70,7 @@ pub enum RecordError {
     TimeAxis {
         /// Index of the first time stamp that is wrong.
         index: Option<usize>,
-        /// What is wrong, and what would be right.
+        /// Fault, and what would be right.
         what: String,
     },
     /// It is not known what a channel measured, or in which unit: say it.
@@ -81,17 +81,17 @@ pub enum RecordError {
     Values {
         /// Index of the first of them.
         index: usize,
-        /// How many there are, and what is wrong with them.
+        /// Number of values, and their fault.
         what: String,
     },
     /// Too few samples for the operation: take a longer record.
     #[error("{operation} needs at least {needed} samples, but the record has {length}")]
     TooShort {
-        /// What was asked for.
+        /// Operation that was asked for.
         operation: &'static str,
-        /// How many samples it needs.
+        /// Number of samples that the operation needs.
         needed: usize,
-        /// How many there are.
+        /// Number of samples of the record.
         length: usize,
     },
     /// An option, or a pair of them, that cannot be: give another.
@@ -103,7 +103,7 @@ pub enum RecordError {
 }
 
 impl RecordError {
-    /// What is wrong with the time.
+    /// Error of the time axis, with its fault.
     pub(crate) fn time(index: Option<usize>, what: String) -> Self {
         Self::TimeAxis { index, what }
     }
@@ -151,7 +151,7 @@ impl RecordError {
         Self::Options { what: what.into() }
     }
 
-    /// What is not read, written or computed.
+    /// Error of content that is not read, written or computed.
     pub(crate) fn unsupported(what: impl Into<String>) -> Self {
         Self::Unsupported { what: what.into() }
     }
@@ -170,19 +170,19 @@ impl RecordError {
         Self::Io { what: format!("{verb} {}", path.display()), source: Arc::new(source) }
     }
 
-    /// What is wrong with a file, or with a part of it.
+    /// Error of a damaged file, or of a part of it.
     #[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
     pub(crate) fn damaged(what: impl Into<String>) -> Self {
         Self::Damaged { line: None, what: what.into(), source: None }
     }
 
-    /// What is wrong on a line.
+    /// Error of a line of text.
     #[cfg(any(feature = "csv", feature = "uff"))]
     pub(crate) fn on_line(line: u64, what: String) -> Self {
         Self::Damaged { line: Some(line), what, source: None }
     }
 
-    /// What a decoder says of a part of a file.
+    /// Error of a decoder, with the part of the file.
     #[cfg(any(feature = "mat", feature = "npy"))]
     pub(crate) fn undecoded(what: &str, source: impl Error + Send + Sync + 'static) -> Self {
         Self::Damaged { line: None, what: format!("{what}: {source}"), source: Some(Arc::new(source)) }

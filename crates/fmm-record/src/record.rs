@@ -118,7 +118,7 @@ impl Record {
         self.values
     }
 
-    /// How many samples there are; at least one.
+    /// Number of samples; at least one.
     pub fn len(&self) -> usize {
         self.values.len()
     }
@@ -153,7 +153,7 @@ impl Record {
         self.interval * (self.values.len() - 1) as f64
     }
 
-    /// What was measured.
+    /// Measured quantity.
     pub fn quantity(&self) -> Quantity {
         self.quantity
     }

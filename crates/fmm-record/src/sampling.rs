@@ -2,10 +2,10 @@
 
 use crate::RecordError;
 
-/// How far a time stamp may lie from the uniform grid, as a fraction of the interval.
+/// Largest distance of a time stamp from the uniform grid, as a fraction of the interval.
 pub const JITTER: f64 = 0.01;
 
-/// How near to a whole number of hertz a rate must be, relative, to be taken as that number.
+/// Largest relative distance of a rate from a whole number of hertz that is rounded to it.
 pub const RATE_ROUNDING: f64 = 1e-5;
 
 /// The uniform grid behind a column of time stamps.
@@ -150,7 +150,7 @@ fn last_decimal(times: &[f64]) -> f64 {
     10f64.powi(-decimals)
 }
 
-/// How the sampling interval of a record was found.
+/// Source of the sampling interval of a record.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Sampling {

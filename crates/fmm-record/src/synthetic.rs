@@ -164,7 +164,7 @@ impl Decay {
 pub(crate) struct Recorded {
     pub(crate) record: Record,
     pub(crate) decay: Decay,
-    /// How long it is held before (s).
+    /// Duration of the rest before it (s).
     pub(crate) rest: f64,
 }
 

@@ -12,10 +12,10 @@ use crate::recorder::Recorder;
 use crate::work::Power;
 use crate::{Direction, Event, EventKind, Mode, Scenario, SimulationError, State};
 
-/// How exactly an engine finds the load at which the acceleration vanishes, relative to the friction force.
+/// Tolerance of the load at which the acceleration vanishes, relative to the friction force.
 const ON_BOUND: f64 = 1e-9;
 
-/// Which branch of the law a sliding contact is on.
+/// Branch of the law of a sliding contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Branch {
     Only,
@@ -25,13 +25,13 @@ pub(crate) enum Branch {
 
 /// A stretch of sliding in one direction on one branch, under one piece of the force.
 pub(crate) struct Phase<'p, D> {
-    /// When it begins (s), with derivatives if an event began it.
+    /// Start (s), with derivatives if an event began the phase.
     pub(crate) time: D,
     pub(crate) state: State<D>,
     pub(crate) direction: Direction,
     pub(crate) branch: Branch,
     pub(crate) piece: &'p Piece<D>,
-    /// When it ends at the latest (s).
+    /// Latest end (s).
     pub(crate) limit: f64,
     /// Whether the limit is the end of the simulation, so that samples at the limit belong to the phase.
     pub(crate) last: bool,
@@ -44,7 +44,7 @@ impl<D: Scalar> Phase<'_, D> {
     }
 }
 
-/// Why a phase of sliding ended.
+/// Reason why a phase of sliding ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ending {
     /// Its limit was reached.
@@ -55,7 +55,7 @@ pub(crate) enum Ending {
     SteadySpeed,
 }
 
-/// How a phase of sliding ended.
+/// End of a phase of sliding.
 pub(crate) struct Ended<D> {
     pub(crate) ending: Ending,
     pub(crate) time: D,
@@ -63,7 +63,7 @@ pub(crate) struct Ended<D> {
     pub(crate) grazing: bool,
 }
 
-/// What an engine does for the automaton: follow one phase of sliding, and write its samples and its work.
+/// Task of an engine in the automaton: follow one phase of sliding, and write its samples and its work.
 pub(crate) trait Slide<D> {
     fn slide(&mut self, phase: &Phase<D>, recorder: &mut Recorder<D>) -> Result<Ended<D>, SimulationError>;
 }
@@ -284,8 +284,8 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         }
     }
 
-    /// Where a contact goes that cannot go on as it did, as the force has jumped from one piece to the next: one that holds
-    /// may slide at once, and one that slides may be on a branch that does not agree any more with its acceleration.
+    /// Next mode of a contact when the force jumps from one piece to the next: a contact that holds
+    /// may slide at once, and the branch of one that slides may no longer agree with its acceleration.
     ///
     /// Nothing but the time of the jump decides when that is, so that no level has a part in it.
     fn after_jump(
@@ -323,7 +323,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         mode.direction().is_some_and(|direction| relative * direction.sign() <= 0.0)
     }
 
-    /// Where a contact goes whose acceleration has become zero on a branch.
+    /// Next mode of a contact whose acceleration has become zero on a branch.
     fn after_branch(&self, mode: Mode, piece: &Piece<D>, time: D, state: State<D>) -> Mode {
         let (gaining, losing) = self.branch_forces(piece.normal_load(time).0, (state.velocity - self.belt).abs());
         match mode {
@@ -453,7 +453,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     }
 }
 
-/// When `reserve`, positive to begin with, falls to zero within `span`, looked for in steps of about a quarter of the `usual` time.
+/// Time at which `reserve`, positive at first, falls to zero within `span`; searched in steps of about a quarter of the `usual` time.
 fn fallen(reserve: impl Fn(f64) -> f64, usual: f64, span: f64) -> Option<f64> {
     const STEPS: (f64, f64) = (64.0, 4096.0);
     let step = (0.25 * usual).clamp(span / STEPS.1, span / STEPS.0);

@@ -124,7 +124,7 @@ impl<D: Scalar> Decay<D> {
         State { position: state.velocity, velocity: -(state.velocity * self.rate * 2.0 + state.position * self.square) }
     }
 
-    /// What |position| does not exceed from `state` on.
+    /// Bound of |position| from `state` on (m).
     pub(crate) fn most(&self, state: State<D>) -> f64 {
         let (position, push) = (state.position.value(), (state.velocity + self.rate * state.position).value());
         if let Some(HalfSwing { angular, .. }) = self.half_swing {
@@ -135,8 +135,8 @@ impl<D: Scalar> Decay<D> {
         position.abs() + push.abs() * (self.rate.value() + sigma) / (self.square.value() * std::f64::consts::E)
     }
 
-    /// What neither position nor velocity exceeds in magnitude from `state` on; not finite if the motion cannot be
-    /// written in numbers of this type.
+    /// Bound of the magnitudes of position and velocity from `state` on; not finite if the motion exceeds
+    /// the range of this number type.
     pub(crate) fn reach(&self, state: State<D>) -> f64 {
         let per_angular = self.half_swing.map_or(0.0, |half_swing| half_swing.angular.value().recip());
         let sine = (state.velocity + self.rate * state.position).value() * per_angular;
@@ -264,7 +264,7 @@ mod tests {
         }
     }
 
-    /// What starts a little in the direction of the motion to come is at its next rest a little earlier.
+    /// A motion that starts a little in its own direction is at its next rest a little earlier.
     #[test]
     fn a_push_from_rest_moves_the_next_rest() {
         let (rate, square, position) = (0.4, 13.8 * 13.8, 0.01);

@@ -28,9 +28,9 @@ impl<D: Scalar> Harmonic<D> {
 /// The force and the normal load between two knots.
 #[derive(Debug, Clone)]
 pub(crate) struct Piece<D> {
-    /// When it begins (s).
+    /// Start (s).
     pub(crate) start: f64,
-    /// When it ends (s); infinite for the last.
+    /// End (s); infinite for the last piece.
     pub(crate) end: f64,
     force: D,
     slope: D,

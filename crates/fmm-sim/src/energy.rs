@@ -52,7 +52,7 @@ impl Trajectory {
         Some(Energy { kinetic, potential, work: self.work(index)? })
     }
 
-    /// How far energy is from being conserved: the greatest |E + W_friction + W_viscous − W_external − E₀| over the samples,
+    /// Imbalance of the energy: the greatest |E + W_friction + W_viscous − W_external − E₀| over the samples,
     /// relative to the greatest sum of the magnitudes of these terms; `None` if [`energy`](Self::energy) has none.
     ///
     /// It checks a simulation from outside: states and works are found independently of each other.

@@ -12,7 +12,7 @@ pub enum SimulationError {
     /// Samples, an initial state or an option of an engine that cannot be: give others.
     #[error("{what}")]
     OutOfRange {
-        /// What it is given for, and what it may be.
+        /// Subject of the value, and the allowed range.
         what: String,
         /// The value given; of samples, their number or the time that is wrong (s).
         value: f64,
@@ -20,13 +20,13 @@ pub enum SimulationError {
     /// More samples than there is memory for.
     #[error("there is no memory for {count} samples; keep fewer channels or simulate window by window")]
     Memory {
-        /// How many samples were asked for.
+        /// Number of samples asked for.
         count: usize,
     },
     /// The motion of this machine has no closed form, or none that keeps its digits: take an engine that integrates.
     #[error("{what}")]
     NoClosedForm {
-        /// What has none.
+        /// The motion without a closed form, and the reason.
         what: String,
     },
     /// The law and the engine, or a property of the scenario, do not go together: take another engine.
@@ -34,7 +34,7 @@ pub enum SimulationError {
     NotSupported {
         /// Name of the engine.
         engine: &'static str,
-        /// What it cannot take.
+        /// The input that the engine cannot take.
         what: &'static str,
     },
     /// A law with internal state that is not odd in velocity and state together, as such laws promise to be.
@@ -50,9 +50,9 @@ pub enum SimulationError {
         "at {time} s the position is {position} m, where the spring pushes away from the origin: its polynomial does not hold so far"
     )]
     NotRestoring {
-        /// When (s).
+        /// Time (s).
         time: f64,
-        /// Where (m).
+        /// Position (m).
         position: f64,
     },
     /// More events or steps than any record needs, or steps below the resolution of time: shorten the sampled time, or ask for less
@@ -65,17 +65,17 @@ pub enum SimulationError {
     /// The motion leaves the range of the number type.
     #[error("the motion is not finite at {time} s; the inputs are too large or too small to be simulated together")]
     NotFinite {
-        /// When it happened (s).
+        /// Time of the failure (s).
         time: f64,
     },
 }
 
-/// What engines of fixed step cannot take.
+/// Input that engines of fixed step cannot take.
 pub(crate) const NOT_UNIFORM: &str =
     "samples that are not equally spaced; simulate with another engine or sample uniformly";
 
 impl SimulationError {
-    /// That the spring restores at the `position` (m) reached at `time` (s).
+    /// Checks that the spring restores at the `position` (m) reached at `time` (s).
     pub(crate) fn require_restoring<D: Scalar>(oscillator: &Oscillator<D>, time: f64, position: D) -> Result<(), Self> {
         if oscillator.restoring().restores(position) {
             return Ok(());
@@ -83,7 +83,7 @@ impl SimulationError {
         Err(Self::NotRestoring { time, position: position.value() })
     }
 
-    /// That a relative `tolerance` (1) is one that a method can keep.
+    /// Checks that a method can keep a relative `tolerance` (1).
     pub(crate) fn require_tolerance(tolerance: f64) -> Result<(), Self> {
         if (1e-15..=1e-2).contains(&tolerance) { Ok(()) } else { Err(Self::tolerance(tolerance)) }
     }

@@ -26,7 +26,7 @@ impl Direction {
     }
 }
 
-/// What the contact does between two events.
+/// Mode of the contact between two events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Mode {
@@ -54,7 +54,7 @@ impl Mode {
     }
 }
 
-/// What happens at an event.
+/// Kind of an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum EventKind {
@@ -75,7 +75,7 @@ pub enum EventKind {
 /// An event of a trajectory: when, where, what, and how narrowly it was decided.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event<D = f64> {
-    /// What happened.
+    /// Kind of the event.
     pub kind: EventKind,
     /// t, time since the initial state (s), with its derivatives.
     pub time: D,
@@ -83,7 +83,7 @@ pub struct Event<D = f64> {
     pub position: D,
     /// v, velocity right after the event (m/s), with its derivatives.
     pub velocity: D,
-    /// What the contact does from here on.
+    /// Mode of the contact after the event.
     pub next: Mode,
     /// |L|, magnitude of the load on the contact at zero relative velocity (N).
     pub load: f64,
@@ -94,7 +94,7 @@ pub struct Event<D = f64> {
 }
 
 impl<D: Scalar> Event<D> {
-    /// How far the load is beyond the static level, (|L| − F_s)/F_s: positive where the contact passes, zero or
+    /// Distance of the load from the static level, (|L| − F_s)/F_s (1): positive where the contact passes, zero or
     /// negative where it holds, and infinite where there is a load and nothing to hold it.
     ///
     /// It says something only where the velocity is zero: at a start in motion nothing is decided. Where the load

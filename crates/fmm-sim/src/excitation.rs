@@ -13,7 +13,7 @@ use crate::SimulationError;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Excitation<D = f64> {
     pub(crate) source: Source<D>,
-    /// When it begins (s); only for those that begin.
+    /// Delay of its start (s); only for those that begin.
     pub(crate) delay: D,
 }
 

@@ -10,8 +10,8 @@ pub(crate) const SEARCH_BUDGET: usize = 5_000_000;
 /// Rounding of a value, in units of the sum of the magnitudes of its terms.
 pub(crate) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// How far below zero, in the same units, a curve may begin that is known to begin at zero and rises: its terms have come
-/// out of other terms.
+/// Largest distance below zero, in the same units, at which a curve may begin that is known to begin at zero and rises: its terms are
+/// rounded sums.
 const AT_ZERO: f64 = 1e-12;
 
 /// The first time in (0, `limit`] at which `curve`, positive until then, reaches zero.

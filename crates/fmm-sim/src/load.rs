@@ -7,7 +7,7 @@ use crate::curve::{Curve, Wave};
 use crate::drive::Piece;
 use crate::first_zero::ROUNDING;
 
-/// What is left for friction at constant velocity from `state` at `time` on: L = f − F_c − F_k.
+/// Load left for friction at constant velocity from `state` at `time` on: L = f − F_c − F_k (N).
 pub(crate) fn load<D: Scalar>(
     oscillator: &Oscillator<D>,
     piece: &Piece<D>,

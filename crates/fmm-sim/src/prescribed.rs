@@ -152,7 +152,7 @@ impl<D: Scalar> Path<D> {
     }
 }
 
-/// That `times` ascend from 0, and are as many as there are points.
+/// Checks that `times` ascend from 0, and are as many as there are points.
 fn require_times<D: Scalar>(times: &[D], points: usize) -> Result<(), SimulationError> {
     let mut before = 0.0;
     for (index, time) in times.iter().map(|time| time.value()).enumerate() {

@@ -1,4 +1,4 @@
-//! When a simulation is sampled, and what is kept.
+//! Sampling of a simulation: times and channels.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use fmm_model::ModelError;
 
 use crate::SimulationError;
 
-/// Which kinematic quantities are sampled. A fit to a velocity record needs no positions.
+/// Kinematic quantities that are sampled. A fit to a velocity record needs no positions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Channels {
     /// Position and velocity.
@@ -132,7 +132,7 @@ impl Sampling {
         self.count
     }
 
-    /// What is kept of each sample.
+    /// Kinematic quantities that are kept.
     pub const fn channels(&self) -> Channels {
         self.channels
     }

@@ -36,7 +36,7 @@ pub struct Scenario<D, L> {
     normal_load: D,
     sampled_load: Option<SampledLoad<D>>,
     initial: State<D>,
-    /// What the law's states are at t = 0, up to the last that is not zero.
+    /// States of the law at t = 0, up to the last that is not zero.
     deflections: Vec<D>,
     excitations: Vec<Excitation<D>>,
 }
@@ -133,7 +133,7 @@ impl<D: Scalar, L> Scenario<D, L> {
         samples.fold(self.normal_load, |most, load| if load.value() > most.value() { load } else { most })
     }
 
-    /// That the normal load is constant, which `engine` needs.
+    /// Checks that the normal load is constant, which `engine` needs.
     pub(crate) fn require_constant_load(&self, engine: &'static str) -> Result<(), SimulationError> {
         if self.sampled_load.is_none() {
             return Ok(());
@@ -141,7 +141,7 @@ impl<D: Scalar, L> Scenario<D, L> {
         Err(SimulationError::NotSupported { engine, what: "a normal load that varies in time" })
     }
 
-    /// What acts on the machine from outside.
+    /// External actions on the machine.
     pub fn excitations(&self) -> &[Excitation<D>] {
         &self.excitations
     }

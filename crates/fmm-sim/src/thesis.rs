@@ -28,7 +28,7 @@ pub struct Thesis {
     level: StaticLevel,
 }
 
-/// What the load is compared with after a change of sign.
+/// Level with which the load is compared after a change of sign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum StaticLevel {
     #[default]

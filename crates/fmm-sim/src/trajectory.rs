@@ -199,7 +199,7 @@ impl<D: Scalar> Trajectory<D> {
         self.events.last().filter(|event| self.rests && event.next == Mode::Stick)
     }
 
-    /// How many times the velocity reached zero.
+    /// Number of times that the velocity reached zero.
     pub fn half_swings(&self) -> usize {
         self.events.iter().filter(|event| matches!(event.kind, EventKind::Reversal | EventKind::Stop)).count()
     }

@@ -2,14 +2,14 @@
 
 use std::error::Error;
 
-/// Why an uncertainty could not be stated; each variant is something else that the caller can do about it.
+/// Reason why an uncertainty could not be stated; each variant asks something else of the caller.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum UncertaintyError {
     /// A number that cannot be: give another.
     #[error("{what}")]
     OutOfRange {
-        /// What it is given for, its value, and what it may be.
+        /// Subject of the value, the value, and the allowed range.
         what: String,
         /// The value given.
         value: f64,
@@ -17,53 +17,53 @@ pub enum UncertaintyError {
     /// Inputs, or correlations between them, that contradict each other: correct their list.
     #[error("{what}")]
     Inputs {
-        /// Which they are, and what is wrong with them.
+        /// The inputs, and their fault.
         what: String,
     },
     /// Too few observations to say anything about their spread.
     #[error("at least {needed} observations are needed, but {found} were given")]
     TooFewObservations {
-        /// How many were given.
+        /// Number of observations given.
         found: usize,
-        /// How many are needed.
+        /// Number of observations needed.
         needed: usize,
     },
     /// A model that fails, or gives results from which nothing follows: mend it, or keep to inputs where it holds.
     #[error("{what}")]
     Model {
-        /// What it gives, and where.
+        /// The result, and where it appeared.
         what: String,
-        /// What the model itself reported.
+        /// Error of the model itself.
         source: Option<Box<dyn Error + Send + Sync>>,
     },
     /// A question that has no answer by this method: ask another, or take another method.
     #[error("{what}")]
     NoAnswer {
-        /// Why there is none, and what would have one.
+        /// Reason, and what would have an answer.
         what: String,
     },
     /// Fewer trials than the answer takes: make or allow more.
     #[error("{what}")]
     TooFewTrials {
-        /// What takes more of them.
+        /// The result that needs more trials.
         what: String,
-        /// How many there are, or are allowed.
+        /// Number of trials made or allowed.
         found: u64,
-        /// How many are needed.
+        /// Number of trials needed.
         needed: u64,
     },
     /// The tolerance was not reached within the largest number of trials allowed.
     #[error("the results are not stable to the tolerance after {trials} trials; allow more, or ask for fewer digits")]
     NotStable {
-        /// How many trials were made.
+        /// Number of trials made.
         trials: u64,
     },
     /// More trials failed than were allowed to.
     #[error("{failed} of {trials} trials failed, more than the allowed share of {allowed}; the first: {first}")]
     TooManyFailures {
-        /// How many failed.
+        /// Number of failed trials.
         failed: u64,
-        /// How many were made before the run was given up or ended.
+        /// Number of trials made before the run was given up or ended.
         trials: u64,
         /// The share allowed (1).
         allowed: f64,
@@ -73,13 +73,13 @@ pub enum UncertaintyError {
     /// The progress callback asked for an end.
     #[error("the run was cancelled after {trials} trials")]
     Cancelled {
-        /// How many trials were done.
+        /// Number of trials done.
         trials: u64,
     },
     /// Partial results that do not make a whole: merge those of one run, each once.
     #[error("{what}")]
     Partial {
-        /// What is wrong with them.
+        /// Fault of the parts.
         what: String,
         /// The block of trials that is missing, damaged or there twice.
         block: Option<u64>,
@@ -231,7 +231,7 @@ impl UncertaintyError {
         Self::formula(format!("the formula has {needed} quantities, but {found} values were given"))
     }
 
-    /// What no quantity of a formula can be called.
+    /// Error of a word that cannot be the name of a quantity of a formula.
     pub(crate) fn not_a_name(name: &str) -> Self {
         let what = format!(
             "a formula cannot contain a quantity `{name}`; a name is made of letters, digits and underscores, begins with no digit, and is \

@@ -1,4 +1,4 @@
-//! A range of values and the probability that it covers the quantity.
+//! Coverage interval with its probability.
 
 use std::fmt;
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::{FrfError, ModelError};
 
-/// What a sensor shows when nothing acts on it, and what is to be done about it.
+/// Baseline of a sensor when nothing acts on it, and its treatment.
 ///
 /// An offset b of a record of duration T adds b T to the impulse: 0.2 N over 33 s are 6.6 N s, four times the
 /// impulse of a hammer blow. Remove it, or integrate the pulse alone.

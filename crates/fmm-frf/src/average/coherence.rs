@@ -29,7 +29,7 @@ impl Coherence {
         &self.values
     }
 
-    /// How many trials of equal weight the average is worth.
+    /// Number of trials of equal weight that the average is worth.
     pub fn averages(&self) -> f64 {
         self.averages
     }

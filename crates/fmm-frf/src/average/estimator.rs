@@ -4,7 +4,7 @@ use fmm_record::Complex64;
 
 use crate::FrfError;
 
-/// Which quotient of averaged spectra is the response.
+/// Quotient of averaged spectra that is taken for the response.
 ///
 /// | estimator | formula | noise of the force | noise of the response |
 /// |---|---|---|---|
@@ -37,7 +37,7 @@ pub(crate) struct Spectra {
     pub(crate) cross: Complex64,
 }
 
-/// Why an estimate does not exist at a line.
+/// Reason why an estimate does not exist at a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Undefined {
     Force,

@@ -62,7 +62,7 @@ pub struct TrialAverage {
     averaging: Averaging,
     transform: TrialTransform,
     spectra: SpectralSums,
-    /// How many of the last trials are not in the sums yet, and the factors of each.
+    /// Number of the last trials that are not in the sums yet, and the factors of each.
     waiting: usize,
     factors: [(f64, f64); SLOTS],
     ratios: Option<RatioSums>,
@@ -203,7 +203,7 @@ impl TrialAverage {
         }
     }
 
-    /// How many trials have been added.
+    /// Number of trials added so far.
     pub fn trials(&self) -> usize {
         self.trials
     }
@@ -328,7 +328,7 @@ impl TrialAverage {
         self.spectra.line(line, self.waiting())
     }
 
-    /// Why and where `rule` has no value first, if there is a line without one.
+    /// First line at which `rule` has no value, and the reason, if there is one.
     fn undefined<T>(&self, rule: impl Fn(&Spectra) -> Result<T, Undefined>) -> Option<FrfError> {
         let mut lines = self.frequencies.iter().enumerate();
         lines.find_map(|(line, frequency)| Some(rule(&self.line(line)).err()?.at(*frequency)))
@@ -345,7 +345,7 @@ impl TrialAverage {
         self.ratios.as_ref().ok_or(FrfError::RatiosNotKept)
     }
 
-    /// What `rule` gives for each line.
+    /// Values of `rule` at each line.
     fn lines<T>(&self, rule: impl Fn(usize) -> Result<T, FrfError>) -> Result<Vec<T>, FrfError> {
         if self.trials == 0 {
             return Err(FrfError::no_trials());

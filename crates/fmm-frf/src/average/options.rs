@@ -3,7 +3,7 @@
 use crate::average::window::Windows;
 use crate::{Baseline, ExponentialWindow, ForceWindow, FrfError, ModelError, Taper};
 
-/// How much each trial counts.
+/// Weight of each trial.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Averaging {
@@ -30,7 +30,7 @@ impl Averaging {
     }
 }
 
-/// How a [`TrialAverage`](crate::TrialAverage) treats its trials; the default takes them as they are.
+/// Treatment of the trials of a [`TrialAverage`](crate::TrialAverage); the default takes them as they are.
 ///
 /// ```
 /// use fmm_frf::{AverageOptions, Baseline, ForceWindow, ResponseForm, TrialAverage};
@@ -77,21 +77,21 @@ impl AverageOptions {
         self
     }
 
-    /// What is subtracted from the force, before any window.
+    /// Sets the baseline that is subtracted from the force, before any window.
     #[must_use]
     pub fn force_baseline(mut self, baseline: Baseline) -> Self {
         self.force_baseline = baseline;
         self
     }
 
-    /// What is subtracted from the response, before any window.
+    /// Sets the baseline that is subtracted from the response, before any window.
     #[must_use]
     pub fn response_baseline(mut self, baseline: Baseline) -> Self {
         self.response_baseline = baseline;
         self
     }
 
-    /// How much each trial counts.
+    /// Sets the weight of each trial.
     ///
     /// # Errors
     /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for an exponential weight outside 0 to 1, both ends excluded; the error is about the

@@ -48,7 +48,7 @@ impl SpectralSums {
         }
     }
 
-    /// What `rule` gives for the sums at each line after those trials that `waiting` has.
+    /// Values of `rule` for the sums at each line after those trials that `waiting` has.
     pub(crate) fn map<'a, T>(
         &self,
         waiting: &(impl Iterator<Item = Weighed<'a>> + Clone),

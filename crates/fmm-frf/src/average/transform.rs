@@ -8,10 +8,10 @@ use pulp::Arch;
 use crate::average::window::Windows;
 use crate::{Baseline, Channel, FrfError, RealTransform};
 
-/// How many trials' spectra are kept. Adding up two at a time saves a third of the way to and from memory, which is what it costs.
+/// Number of trials whose spectra are kept. Adding up two at a time saves a third of the time, which goes into memory transfers.
 pub(crate) const SLOTS: usize = 2;
 
-/// How one channel is treated before its transform, and the transform.
+/// Preparation of one channel before its transform, and the transform.
 #[derive(Debug, Clone)]
 struct Side {
     channel: Channel,

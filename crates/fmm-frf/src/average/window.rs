@@ -50,7 +50,7 @@ impl ForceWindow {
     /// # Errors
     /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for `from`, and [`ModelError::NotPositive`](crate::ModelError::NotPositive) for a duration that is not positive and finite.
     pub fn new(from: f64, to: f64) -> Result<Self, FrfError> {
-        ModelError::require_finite("the begin of the force window", from, "s")?;
+        ModelError::require_finite("the start of the force window", from, "s")?;
         ModelError::require_positive("the duration of the force window", to - from, "s")?;
         Ok(Self { from, to, flank: 0.0 })
     }

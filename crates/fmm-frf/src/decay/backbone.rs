@@ -12,7 +12,7 @@ use crate::decay::modes::{DecayMode, decay_modes};
 use crate::decay::spring::{bend, spring_terms};
 use crate::decay::suggestion::Suggestion;
 
-/// How a backbone is taken.
+/// Options of a backbone.
 ///
 /// ```
 /// use fmm_frf::BackboneOptions;
@@ -112,7 +112,7 @@ pub struct Backbone {
     window: f64,
     unit: String,
     spring: Vec<Estimated>,
-    /// How many derivatives the record is of the displacement.
+    /// Number of times that the displacement was differentiated to give the record.
     orders: i32,
 }
 
@@ -140,7 +140,7 @@ const MOST_OTHERS: usize = 8;
 const SEEN: f64 = 10.0;
 /// The phase that may be gained in half a window against the carrier before it is moved (rad).
 const SLIP: f64 = 0.3;
-/// How near to the frequency that is wanted a mode is (1).
+/// Largest relative distance of a mode from the wanted frequency (1).
 const WANTED: f64 = 0.2;
 /// The share of the greatest amplitude from which on a decay has begun (1).
 const GREATEST: f64 = 0.99;
@@ -244,7 +244,7 @@ fn no_fit(what: impl Into<String>) -> FrfError {
     FrfError::NoFit { what: what.into() }
 }
 
-/// What all windows share.
+/// Data that all windows share.
 pub(crate) struct Taken<'a> {
     pub(crate) values: &'a [f64],
     rate: f64,

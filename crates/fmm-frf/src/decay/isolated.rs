@@ -12,7 +12,7 @@ pub struct IsolatedMode {
     pub record: Record,
     /// Its frequency (Hz), about.
     pub frequency: f64,
-    /// How much of the record at its beginning and at its end (s) is left out, as the filter looks so far in both directions.
+    /// Duration of the record left out at its start and at its end (s): the filter looks so far in both directions.
     pub edge: f64,
 }
 

@@ -28,7 +28,7 @@ pub(crate) struct LocalRegression {
     /// Of the unknowns, for white noise of variance 1.
     covariance: Vec<Vec<f64>>,
     weights: Vec<f64>,
-    /// What the first power of the envelope takes of a third one, Σ w u⁴/Σ w u².
+    /// Share of a third power of the envelope that its first power takes, Σ w u⁴/Σ w u².
     third_in_first: f64,
 }
 

@@ -18,7 +18,7 @@ pub struct DecayMode {
     /// c/m (1/s) by which its mean amplitude falls from one half of the record, or of its first half, quarter or eighth, to the next;
     /// `None` where the second half does not show it, or another mode is too near.
     pub damping: Option<f64>,
-    /// Which multiple of a stronger mode it is, as friction and springs that are not linear have them.
+    /// Order as a multiple of a stronger mode; friction and nonlinear springs make such multiples.
     pub multiple: Option<u32>,
 }
 
@@ -30,15 +30,15 @@ impl DecayMode {
     }
 }
 
-/// What a steady line loses of its amplitude over the record at most (1).
+/// Largest loss of amplitude of a steady line over the record (1).
 const STEADY: f64 = 0.05;
-/// How often the energy of the noise a line has in both halves of a part, for its damping.
+/// Least energy of a line in both halves of a part, as a multiple of that of the noise, to state its damping.
 const SEEN_AGAIN: f64 = 4.0;
-/// How often the median of the squares around it a line is at least; noise reaches that once in 10⁷ frequencies.
+/// Least square of a line, as a multiple of the median of the squares around it; noise reaches it once in 10⁷ frequencies.
 const ABOVE_MEDIAN: f64 = 25.0;
 /// The median of the squares of noise over their mean, ln 2.
 const MEDIAN: f64 = core::f64::consts::LN_2;
-/// How often the least square between it and a larger line a line is at least.
+/// Least square of a line, as a multiple of the least square between it and a larger line.
 const PROMINENCE: f64 = 4.0;
 /// The band of the noise around a line, as a factor of its frequency.
 const AROUND: f64 = 1.4;
@@ -54,9 +54,9 @@ const NEAR_MULTIPLE: f64 = 0.01;
 const MOST_FROM_MULTIPLE: f64 = 0.3;
 /// The most a harmonic has of the amplitude (1).
 const HARMONIC: f64 = 0.1;
-/// What the end of a decay adds to the spectrum is less than so many times 1/(π Δf t)².
+/// Bound of the spectrum of the end of a decay, as a multiple of 1/(π Δf t)².
 const LEAKAGE: f64 = 3.0;
-/// How much farther than its change of frequency a mode reaches (1).
+/// Reach of a mode beyond its change of frequency, as a multiple of that change (1).
 const SWEPT: f64 = 1.5;
 /// Lines weaker than this share of the strongest are none of a machine (1).
 const LEAST: f64 = 1e-4;
@@ -267,7 +267,7 @@ fn saddle(squares: &[f64], k: usize) -> f64 {
     left.into_iter().chain(right).fold(0.0, f64::max)
 }
 
-/// Twice the mean time (s) of the squares of `record` about its `mean`, counted from its begin: how long it vibrates.
+/// Twice the mean time (s) of the squares of `record` about its `mean`, counted from its start: how long it vibrates.
 fn effective_length(record: &Record, mean: f64) -> f64 {
     let (mut squares, mut moments) = (0.0, 0.0);
     for (i, value) in record.values().iter().enumerate() {

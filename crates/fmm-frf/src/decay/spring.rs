@@ -5,7 +5,7 @@ use fmm_model::Estimated;
 use crate::BackbonePoint;
 use crate::decay::suggestion::{SIGNIFICANT, scored};
 
-/// How well the closed form holds the square of the frequency (1): at best, and as a multiple of (k₃ A²)³, the first power it leaves out.
+/// Relative error of the closed form for the square of the frequency (1): at best, and as a multiple of (k₃ A²)³, the first power that it omits.
 const ACCURACY: (f64, f64) = (2e-6, 0.02);
 /// Of k₃² A⁴ in the square of the frequency: the third harmonic that a cubic spring makes.
 const SECOND_ORDER: f64 = 3.0 / 128.0;

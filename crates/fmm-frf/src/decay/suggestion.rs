@@ -9,7 +9,7 @@ use fmm_model::{Damping, Estimated, ModelError};
 use crate::decay::spring::stiffening;
 use crate::{BackbonePoint, equivalent_damping_of_friction};
 
-/// How friction or damping takes energy from a vibration.
+/// Kind of friction or damping by the way in which it takes energy from a vibration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DampingTermKind {
@@ -42,11 +42,11 @@ impl DampingTermKind {
 /// A term of the damping with its share of the energy that the decay has lost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DampingTerm {
-    /// Which one.
+    /// Kind of the term.
     pub kind: DampingTermKind,
     /// Its coefficient per mass, in the unit that `kind` states.
     pub coefficient: Estimated,
-    /// What it has taken of the energy between the first point and the last (1).
+    /// Share of the energy lost between the first point and the last that the term has taken (1).
     pub share: Estimated,
 }
 
@@ -60,9 +60,9 @@ pub struct Suggestion {
     spring: Vec<Estimated>,
 }
 
-/// How well the closed forms hold the damping (1).
+/// Relative error of the closed forms for the damping (1).
 const ACCURACY: f64 = 1e-3;
-/// How many of its uncertainties a coefficient is at least.
+/// Least value of a coefficient, in its standard uncertainties.
 pub(crate) const SIGNIFICANT: f64 = 2.0;
 /// Points that are told by one window: neighbours share three quarters of theirs.
 const POINTS_PER_WINDOW: f64 = 2.0;

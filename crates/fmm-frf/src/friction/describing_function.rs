@@ -1,4 +1,4 @@
-//! The viscous damping that stands for dry friction in a harmonic motion.
+//! Describing function: viscous damping equivalent to dry friction in a harmonic motion.
 
 use std::f64::consts::PI;
 

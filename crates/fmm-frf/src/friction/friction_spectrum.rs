@@ -21,7 +21,7 @@ pub struct FrictionSpectrum {
     quotients: Vec<Complex64>,
 }
 
-/// What a [`FrictionSpectrum`] shows at a multiple of the fundamental frequency.
+/// Line of a [`FrictionSpectrum`] at a multiple of the fundamental frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Harmonic {
@@ -114,7 +114,7 @@ impl FrictionSpectrum {
         Ok(harmonics)
     }
 
-    /// How much the odd harmonics from the third on stand above the even ones, as the ratio of the root mean squares of |R|,
+    /// Ratio of the odd harmonics from the third on to the even ones, as the ratio of the root mean squares of |R|,
     /// over orders up to `highest`.
     ///
     /// Friction is the same in both directions, so that its force has no even harmonics: the ratio is 5 for nine half swings of

@@ -8,7 +8,7 @@ use fmm_record::Record;
 
 use crate::{Baseline, Channel, FrfError, ModelError};
 
-/// How the samples of a force are joined before their area is taken.
+/// Interpolation between the samples of a force before its area is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Quadrature {
@@ -30,7 +30,7 @@ pub enum Quadrature {
 /// ```
 ///
 /// The rule joins the samples by straight lines and cuts off what bulges between them. For a half-sine pulse of
-/// peak F₀ and duration τ over n = τ/Δt intervals, with a sample at its begin, the sum has a closed form:
+/// peak F₀ and duration τ over n = τ/Δt intervals, with a sample at its start, the sum has a closed form:
 ///
 /// ```text
 /// J = F₀ Δt cot(π/2n)   against the exact   2 F₀ τ/π;   relative error   (π/2n) cot(π/2n) − 1 ≈ −π²/(12 n²)

@@ -28,7 +28,7 @@ use crate::{Baseline, Channel, FrfError, ModelError};
 pub struct Pulse {
     /// Force of largest magnitude (N), less the baseline; negative if the sensor counts a push so.
     pub level: f64,
-    /// When it is reached (s), counted from the first sample.
+    /// Time of that force (s), counted from the first sample.
     pub time: f64,
     /// Full width at half of the level (s), with straight lines between the samples.
     pub width: f64,
@@ -37,8 +37,8 @@ pub struct Pulse {
     pub samples: Range<usize>,
     /// Area (N s) of those samples by the trapezoid rule; what is below the threshold is not in it.
     pub impulse: f64,
-    /// Where the force rises above the threshold again, before or after the pulse, in the same direction: a hammer that
-    /// bounced. Such a trial has a force spectrum with holes; it is better repeated.
+    /// Further hits in the same direction, before or after the pulse: places at which the force rises above the threshold again, as after a
+    /// hammer that bounced. Such a trial has a force spectrum with holes; it is better repeated.
     pub further_hits: Vec<Hit>,
     /// Samples of the force cut off at the limits of the converter, if there are any; the impulse is then too small.
     pub overload: Option<Saturation>,
@@ -48,9 +48,9 @@ pub struct Pulse {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Hit {
-    /// When it is highest (s), counted from the first sample.
+    /// Time of the largest force (s), counted from the first sample.
     pub time: f64,
-    /// How high it is (N), less the baseline.
+    /// Largest force (N), less the baseline.
     pub level: f64,
 }
 

@@ -10,7 +10,7 @@ use crate::{Estimated, FrequencyResponse, FrfError, Mode};
 
 const NAME: &str = "rational fraction fit";
 
-/// What the numerator of a [`RationalFit`] makes room for.
+/// Background that the numerator of a [`RationalFit`] allows for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Background {

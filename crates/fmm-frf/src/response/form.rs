@@ -8,7 +8,7 @@ use fmm_record::Quantity;
 
 use crate::{FrfError, ModelError};
 
-/// What the response to a force is counted in.
+/// Kind of frequency response, by the quantity of the response per force.
 ///
 /// | form | response | unit | of the receptance H |
 /// |---|---|---|---|
@@ -105,7 +105,7 @@ impl ResponseForm {
         }
     }
 
-    /// How often the displacement is differentiated.
+    /// Number of differentiations of the displacement.
     pub(crate) const fn derivatives(self) -> i8 {
         match self {
             Self::Receptance => 0,

@@ -10,7 +10,7 @@ pub struct Resonance {
     pub frequency: f64,
     /// Magnitude (unit of the response) of the line.
     pub magnitude: f64,
-    /// How far (dB) one must go down from it before the magnitude rises to more; to the ends of the response if nothing does.
+    /// Prominence (dB): the least descent from the peak before the magnitude rises above it; to the ends of the response if nothing does.
     pub prominence: f64,
 }
 

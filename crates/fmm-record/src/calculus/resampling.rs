@@ -55,7 +55,7 @@ pub struct Resampled {
     /// Root mean square error, relative to that of a motion with as much of every frequency of the band (1). What lies above
     /// the band adds to it.
     pub error: f64,
-    /// That of the sample which is known least (1); at the ends, where samples are on one side only, it is larger.
+    /// The same error of the least known sample (1): larger at the ends, where samples lie on one side only.
     pub worst: f64,
     /// Time of that sample (s).
     pub worst_at: f64,
@@ -67,13 +67,13 @@ const WIDEST: f64 = 0.45;
 /// The largest error of a sample that counts as known (1).
 const MOST: f64 = 0.1;
 
-/// What noise costs, beside an error of the same power (1).
+/// Cost of noise, relative to an error of the same power (1).
 const NOISE: f64 = 1e-10;
 
-/// What counts an error beside the band, beside one in it (1).
+/// Cost of an error beside the band, relative to one within it (1).
 const BESIDE: f64 = 1e-6;
 
-/// How many times lower the rate may become in one step.
+/// Largest reduction of the rate in one step (1).
 const STEP: f64 = 4.0;
 
 impl Resampling {
@@ -221,13 +221,13 @@ struct Spectrum {
 }
 
 impl Spectrum {
-    /// What two samples at a distance (s) have in common: ∫ cos 2πfτ df with the weights of the terms, over B.
+    /// Covariance of two samples at a distance (s): ∫ cos 2πfτ df with the weights of the terms, over B.
     fn common(&self, distance: f64) -> f64 {
         let [band, stop, top] = [self.band, self.stop, self.top].map(|frequency| integral(frequency, distance));
         (band + BESIDE * (stop - band) + top - stop) / self.band
     }
 
-    /// What a sample at a distance (s) tells of the value: ∫ D cos 2πfτ df with the weights of the terms, over B.
+    /// Covariance of a sample and the wanted value at a distance (s): ∫ D cos 2πfτ df with the weights of the terms, over B.
     fn wanted(&self, distance: f64) -> f64 {
         let [band, stop] = [self.band, self.stop].map(|frequency| integral(frequency, distance));
         // ∫ᴮₛ cos(π(f − B)/(s − B)) cos 2πfτ df, with the middle m of the edge and half its width h: by the sum and the
@@ -239,7 +239,7 @@ impl Spectrum {
         (band + 0.5 * BESIDE * (stop - band + falls)) / self.band
     }
 
-    /// What is wanted in all, with the weights of the terms, over B.
+    /// Variance of the wanted value, with the weights of the terms, over B.
     fn all(&self) -> f64 {
         1.0 + BESIDE * 0.375 * (self.stop - self.band) / self.band
     }

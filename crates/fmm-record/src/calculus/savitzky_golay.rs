@@ -155,7 +155,7 @@ mod tests {
         }
     }
 
-    /// What SciPy 1.17's `savgol_filter([1, 4, 2, 8, 5, 7, 1], 5, 2)` gives in its default mode.
+    /// Values of SciPy 1.17: `savgol_filter([1, 4, 2, 8, 5, 7, 1], 5, 2)` in its default mode.
     #[test]
     fn ends_are_those_of_the_last_full_window() {
         let smooth = savitzky_golay(&[1.0, 4.0, 2.0, 8.0, 5.0, 7.0, 1.0], 5, 2).unwrap();

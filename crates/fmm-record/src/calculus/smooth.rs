@@ -2,7 +2,7 @@
 
 use crate::{Record, RecordError};
 
-/// What a moving average does where its window reaches beyond the record.
+/// Rule of a moving average where its window reaches beyond the record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EndRule {
     /// The window shrinks on both sides, to 1, 3, 5, … samples, and stays centred: MATLAB's `smooth`. It shifts

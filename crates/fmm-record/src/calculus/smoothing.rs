@@ -3,7 +3,7 @@
 use crate::calculus::integral::central_differences;
 use crate::{EndRule, Record, RecordError, moving_average, savitzky_golay, savitzky_golay_derivative};
 
-/// How a record is smoothed, if at all.
+/// Smoothing of a record, if any.
 ///
 /// ```
 /// use fmm_record::{EndRule, Smoothing};
@@ -24,7 +24,7 @@ pub enum Smoothing {
     MovingAverage {
         /// Samples averaged; odd.
         span: usize,
-        /// What happens at the ends.
+        /// Rule at the ends.
         ends: EndRule,
     },
     /// A [`savitzky_golay`] filter.

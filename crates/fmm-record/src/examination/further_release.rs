@@ -10,8 +10,8 @@ use crate::{Record, Swings, noise, quantisation_step};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct FurtherRelease {
-    /// When the values leave what they did before (s), within about a tenth of a period after rest, half of one in motion.
-    /// If the machine is drawn to where it is released from, that may be when the hand takes it.
+    /// Time at which the values leave their earlier pattern (s), within about a tenth of a period after rest, half of one in motion.
+    /// If a hand draws the machine to its point of release, that may be the time at which the hand takes it.
     pub time: f64,
     /// Up to here, the record shows the motion before (s): the machine has not yet been taken hold of.
     pub sound_until: f64,
@@ -32,8 +32,8 @@ const FEWEST_PEAKS: usize = 3;
 /// Later rises that are as regular as this (1) are those of a beat.
 const REGULAR: f64 = 0.25;
 
-/// Where the motion in `record` becomes clearly larger again after a ring-down: further releases and pushes, in order; empty if there
-/// is only one ring-down.
+/// Further releases and pushes in `record`, in order: times at which the motion becomes clearly larger again after a ring-down; empty
+/// if there is only one ring-down.
 ///
 /// A free motion of one mode never grows. A release shows where the range of the values in the period that follows is twice
 /// that in the period before, by 5 % of the largest range and by noise, and stays 1.5 times as large after it. Before
@@ -71,7 +71,7 @@ struct Envelope {
     values: Vec<f64>,
     /// Samples in a period.
     period: usize,
-    /// What noise and resolution alone show.
+    /// Largest change that noise and resolution alone make.
     floor: f64,
 }
 
@@ -136,7 +136,7 @@ impl Envelope {
         found
     }
 
-    /// Where the values after sample `i` leave the band of the period before.
+    /// Index at which the values after sample `i` leave the band of the period before.
     fn departure(&self, i: usize, period: usize) -> usize {
         let (low, high) = self.band(i - period, i);
         let margin = (0.1 * (high - low)).max(0.5 * self.floor);

@@ -95,7 +95,7 @@ impl Harmonic {
         Some(Self { origin, omega, centre, cosine, sine, kink: (ky - sine * sk - cosine * ck) / kk })
     }
 
-    /// Where the extremum nearest to the origin is (samples).
+    /// Position of the extremum nearest to the origin (samples).
     pub(crate) fn extremum(&self) -> f64 {
         let side = self.cosine.signum();
         self.origin + (side * self.sine).atan2(side * self.cosine) / self.omega
@@ -111,7 +111,7 @@ impl Harmonic {
         self.centre + self.height()
     }
 
-    /// Where the centre is crossed nearest to the origin (samples).
+    /// Position of the crossing of the centre nearest to the origin (samples).
     pub(crate) fn crossing(&self) -> f64 {
         let is_later = self.cosine * self.sine < 0.0;
         let slope = if is_later { self.sine + self.kink } else { self.sine - self.kink };

@@ -33,7 +33,7 @@ pub struct Hum {
 }
 
 impl Hum {
-    /// What the line adds to the record at `time` (s), in the unit of the record.
+    /// Contribution of the line to the record at `time` (s), in the unit of the record.
     pub fn at(&self, time: f64) -> f64 {
         self.amplitude * (TAU * self.frequency * (time - self.start) + self.phase).cos()
     }
@@ -254,7 +254,7 @@ mod tests {
         }
     }
 
-    /// Harmonics of Coulomb friction are as large at the end of a motion as at its begin.
+    /// Harmonics of Coulomb friction are as large at the end of a motion as at its start.
     #[test]
     fn harmonics_of_friction_without_rest_are_no_hum() {
         for seed in 0..20 {

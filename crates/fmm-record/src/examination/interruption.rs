@@ -3,13 +3,13 @@
 use crate::numerics::order::{median, range};
 use crate::{Record, Swings, noise};
 
-/// Where something else than the machine's own friction and damping takes the motion of a decay.
+/// Point of a decay at which something other than the machine's own friction and damping takes its motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Interruption {
     /// The last turning point before it (s): up to here the decay is free.
     pub sound_until: f64,
-    /// How often as much as the half swings before it the next one has lost (1).
+    /// Loss of the next half swing over that of the half swings before it (1).
     pub ratio: f64,
 }
 

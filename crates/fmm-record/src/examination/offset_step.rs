@@ -7,9 +7,9 @@ use crate::{Record, Swings, noise, quantisation_step};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct OffsetStep {
-    /// When it happened (s): to the sample if the jump stands out of the noise, otherwise within about a swing.
+    /// Time of the step (s): to the sample if the jump stands out of the noise, otherwise within about a swing.
     pub time: f64,
-    /// How far the centre moved, in the unit of the record.
+    /// Shift of the centre, in the unit of the record.
     pub height: f64,
 }
 

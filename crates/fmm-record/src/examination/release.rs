@@ -17,13 +17,13 @@ pub struct Release {
     pub offset: f64,
     /// Standard deviation of the record while at rest, in its unit; 0 if it is constant to the last bit.
     pub noise: f64,
-    /// How many samples of rest both were taken from.
+    /// Number of samples of rest that both were taken from.
     pub samples: usize,
 }
 
 /// Fewest samples of rest that count as rest.
 const SHORTEST: usize = 20;
-/// How many samples in a row must leave the level of rest on the same side, so that no spike is a release.
+/// Number of samples in a row that must leave the level of rest on the same side, so that no spike is a release.
 const PERSISTENT: usize = 4;
 
 impl Release {
@@ -84,7 +84,7 @@ struct Rest {
     band: f64,
 }
 
-/// Where and to which side the band is left.
+/// Place and side at which the band is left.
 struct Departure {
     index: usize,
     side: f64,
@@ -156,7 +156,7 @@ impl Rest {
         departure.index as f64 > 2.0 * phase * half_swing
     }
 
-    /// Where motion begins (samples): the onset of the sine that fits the rest and the first part of the way to the
+    /// Start of the motion (samples): the onset of the sine that fits the rest and the first part of the way to the
     /// first extremum best.
     fn onset(&self, values: &[f64], departure: &Departure, extremum: Extremum, quantity: Quantity) -> f64 {
         const PART: f64 = 0.25;
@@ -193,7 +193,7 @@ impl Rest {
     }
 }
 
-/// Where `f`, which has one minimum between `low` and `high`, is least, to a thousandth of a sample (golden section).
+/// Place of the least value of `f` between `low` and `high`, to a thousandth of a sample (golden section); `f` has one minimum there.
 fn least(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     const RATIO: f64 = 0.618_033_988_749_894_9;
     const RESOLUTION: f64 = 1e-3;

@@ -7,7 +7,7 @@ use crate::{noise, quantisation_step};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Saturation {
-    /// How many samples are cut off.
+    /// Number of samples that are cut off.
     pub samples: usize,
     /// The upper limit, in the unit of the values, if samples lie on it.
     pub upper: Option<f64>,
@@ -52,7 +52,7 @@ pub fn saturation(values: &[f64]) -> Option<Saturation> {
     })
 }
 
-/// How many samples are cut off at `level`, which is the largest or smallest value, where more than `visible` is lost.
+/// Number of samples cut off at `level`, the largest or smallest value, where more than `visible` is lost.
 fn cut_off(values: &[f64], level: f64, tolerance: f64, visible: f64) -> usize {
     const SHORTEST: usize = 3;
     /// Of the way to a distance d from the run, a straight flank makes half within d/2, a parabola that touches the

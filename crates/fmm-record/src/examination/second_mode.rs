@@ -34,9 +34,9 @@ const MOST: usize = 400;
 const SMALL: f64 = 0.15;
 /// Fewest cycles of a beat in the record: slower ones look like the decay of some friction.
 const CYCLES: f64 = 1.8;
-/// What a beat leaves of the squared residuals (1), at most.
+/// Largest part of the squared residuals that a beat leaves (1).
 const EXPLAINED: f64 = 0.2;
-/// How often noise alone makes a beat (1).
+/// Probability that noise alone makes a beat (1).
 const FALSE_RATE: f64 = 1e-2;
 /// Relative rise of the half swings that no decay has (1).
 const RISE: f64 = 0.1;

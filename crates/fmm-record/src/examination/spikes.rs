@@ -14,9 +14,9 @@ pub struct Spike {
     pub time: f64,
     /// Index of its first sample.
     pub index: usize,
-    /// How many samples it has, one to three.
+    /// Number of its samples, one to three.
     pub count: usize,
-    /// How far the farthest of them stands off, in the unit of the record; negative below.
+    /// Largest distance of its samples from their neighbours, in the unit of the record; negative below.
     pub height: f64,
 }
 

@@ -23,7 +23,7 @@ const PERIODS: f64 = 7.0;
 const SEGMENTS: (f64, f64) = (4.0, 8.0);
 /// A line of so many standard deviations of the background of a segment would be seen there.
 const VISIBLE: f64 = 5.0;
-/// Change from the begin to the end, and departure of one segment, that a steady line may show (1). The mains are no
+/// Change from the start to the end, and departure of one segment, that a steady line may show (1). The mains are no
 /// better.
 const CHANGE: f64 = 0.1;
 const DEPARTURE: f64 = 0.25;
@@ -81,7 +81,7 @@ pub(crate) fn steady(values: &[f64], candidate: Candidate) -> Option<Steady> {
     Some(Steady { frequency: candidate.frequency + slope / TAU, amplitude, phase: phase.rem_euclid(TAU) })
 }
 
-/// What the segments show at `frequency` (cycles per sample).
+/// Amplitudes of the segments at `frequency` (cycles per sample).
 fn segments(values: &[f64], frequency: f64) -> Option<Vec<Segment>> {
     let count = (frequency * values.len() as f64 / PERIODS).floor().min(SEGMENTS.1);
     if count < SEGMENTS.0 {

@@ -307,7 +307,7 @@ fn crossings(record: &Record, values: &[f64], fitted: &[Fitted]) -> Vec<Crossing
         .collect()
 }
 
-/// Where the values pass `centre` on their way between two peaks (samples), between the two samples nearest to the
+/// Place of the passage through `centre` between two peaks (samples), between the two samples nearest to the
 /// middle of the way that lie on either side of it; the middle itself if there are none.
 fn passage(values: &[f64], from: &Fitted, to: &Fitted, centre: f64) -> f64 {
     let middle = 0.5 * (from.at + to.at);

@@ -3,16 +3,16 @@
 use crate::calculus::smooth::{EndRule, averaged};
 use crate::numerics::order::{median, range};
 
-/// How many standard deviations of noise a swing must exceed from turning point to turning point. The extremes of
+/// Least height of a swing from turning point to turning point, in standard deviations of the noise. The extremes of
 /// noise alone lie within ±5 in ten million samples.
 const ABOVE_NOISE: f64 = 10.0;
-/// How many steps of the converter a swing must exceed.
+/// Least height of a swing, in steps of the converter.
 const ABOVE_STEP: f64 = 2.0;
-/// What rounding alone may look like, relative to the range of the values.
+/// Largest height that rounding alone makes, relative to the range of the values.
 const ABOVE_ROUNDING: f64 = 1e-9;
 /// Neighbouring half swings of one oscillation differ in length by no more than this factor.
 const REGULARITY: f64 = 2.0;
-/// What is smaller than this part of the swings around it is a ripple on them.
+/// Largest ripple on a swing, relative to the swings around it.
 const RIPPLE: f64 = 0.2;
 
 /// The alternating turning points of the longest regular oscillation in `values`, by index.
@@ -89,7 +89,7 @@ fn local_ranges(values: &[f64], length: usize) -> Vec<f64> {
 }
 
 /// Indices at which `values` turn and then move back by more than the `threshold` at that place: maxima and minima
-/// by turns. The first may be the begin of the record.
+/// by turns. The first may be the start of the record.
 fn reversals(values: &[f64], threshold: impl Fn(usize) -> f64) -> Vec<usize> {
     let mut found = Vec::new();
     let (mut low, mut high) = (0, 0);

@@ -2,11 +2,11 @@
 
 use crate::Record;
 
-/// How a record was brought to a higher sampling rate than it was measured at.
+/// Increase of the sampling rate of a record above the rate of its measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Upsampling {
-    /// How many samples there are for each that was measured.
+    /// Number of samples for each measured one.
     pub factor: usize,
     /// The first sample that was measured; every `factor`-th from it on is one.
     pub first: usize,

@@ -1,11 +1,11 @@
-//! The time that the name of a column or variable tells.
+//! Clock: the unit of time in the name of a column or variable.
 
 use crate::files::reading::seconds_in;
 use crate::units::label::{is_remark, without_groups};
 use crate::units::word::words;
 use crate::{Reading, RecordError};
 
-/// What a name says of time.
+/// Statement of a name about time.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Clock {
     /// Whether it is called time.
@@ -66,13 +66,13 @@ const COUNTERS: [&str; 26] = [
 ];
 
 impl Clock {
-    /// What is said where there is no name.
+    /// Clock of a column without a name.
     #[cfg(any(feature = "mat", feature = "npy"))]
     pub(crate) fn nameless() -> Self {
         Self { is_time: false, is_counter: false, unit: Written::Nothing }
     }
 
-    /// What a name says.
+    /// Clock by its name.
     pub(crate) fn of(name: &str) -> Self {
         let (stem, unit, in_brackets) = unit_of_time(name);
         let stem_words = words(&stem);

@@ -1,4 +1,4 @@
-//! A file that has been opened: its format, its channels, and their records.
+//! Open file: its format, its channels, and their records.
 
 use std::fs::File;
 use std::io::Read;
@@ -11,7 +11,7 @@ use crate::Array;
 use crate::files::arrays::{ArrayFile, Slice};
 use crate::{Column, Label, Reading, RecordError, Request};
 
-/// How much of a file tells its format (bytes).
+/// Length of the part of a file that tells its format (bytes).
 const HEAD: usize = 1 << 16;
 
 /// A file that has been opened: its format, its channels, and their records.
@@ -48,7 +48,7 @@ enum Content {
     Universal(crate::files::uff::UffFile),
 }
 
-/// Where the text of a file is.
+/// Place of the text of a file.
 #[cfg(feature = "csv")]
 #[derive(Debug, Clone)]
 enum Source {
@@ -138,7 +138,7 @@ impl DataFile {
         self.format
     }
 
-    /// What was not as it should be in the file, but did not keep it from being read. Variables that cannot be read are
+    /// Faults of the file that did not prevent reading it. Variables that cannot be read are
     /// named, with the reason.
     pub fn warnings(&self) -> Vec<String> {
         match &self.content {

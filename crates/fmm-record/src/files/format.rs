@@ -26,7 +26,7 @@ impl Format {
         })
     }
 
-    /// That of a file whose reader was not compiled.
+    /// Error of a file whose reader was not compiled.
     #[cfg(not(all(feature = "csv", feature = "hdf5", feature = "npy", feature = "uff")))]
     pub(super) fn missing(self) -> RecordError {
         let (format, feature) = match self {

@@ -108,7 +108,7 @@ impl Reader {
         self
     }
 
-    /// What the channel measured, if the file does not state it.
+    /// States the quantity of the channel, if the file does not.
     #[must_use]
     pub fn quantity(mut self, quantity: Quantity) -> Self {
         self.quantity = quantity;

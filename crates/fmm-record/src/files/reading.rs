@@ -19,7 +19,7 @@ pub struct Reading {
     pub time: Option<String>,
     /// Every column or numeric variable that the file offers.
     pub columns: Vec<String>,
-    /// How the sampling rate was found.
+    /// Source of the sampling rate.
     pub sampling: Sampling,
 }
 
@@ -40,7 +40,7 @@ pub(crate) fn timed(
     Ok((resampled.record(Quantity::Other, "")?, sampling))
 }
 
-/// How many bytes the compressed data of one file may expand to, all together: 33 million numbers. A small file can
+/// Largest size of the expanded data of one file, all together (bytes): 33 million numbers. A small file can
 /// be made to expand a thousandfold; one that exceeds this limit is refused.
 #[cfg(any(feature = "mat", feature = "npy"))]
 pub(crate) const MOST_INFLATED: usize = 1 << 28;
@@ -100,7 +100,7 @@ impl std::fmt::Display for Column {
     }
 }
 
-/// How many seconds a unit of time has; no unit means seconds.
+/// Number of seconds in a unit of time; no unit means seconds.
 pub(crate) fn seconds_in(unit: &str) -> Option<f64> {
     const UNITS: [(&[&str], f64); 7] = [
         (&["", "s", "sec", "secs", "second", "seconds", "sekunde", "sekunden"], 1.0),

@@ -29,10 +29,10 @@ const INTERVALS: [&str; 10] = [
     "samplinginterval",
 ];
 
-/// How far two statements of the rate may differ, relative.
+/// Largest difference of two statements of the rate, relative.
 const AGREEMENT: f64 = 1e-3;
 
-/// What scalars with their names say about the rate (Hz); `None` if they say nothing.
+/// Sampling rate by scalars with their names (Hz); `None` if none of them states a rate.
 pub(crate) fn stated<'a>(
     scalars: impl Iterator<Item = (&'a str, f64)>,
 ) -> Result<Option<(f64, Sampling)>, RecordError> {

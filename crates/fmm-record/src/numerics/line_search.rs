@@ -15,13 +15,13 @@ pub(crate) struct Candidate {
     pub(crate) amplitude: f64,
 }
 
-/// How often noise alone makes a candidate in one part of a record (1).
+/// Probability that noise alone makes a candidate in one part of a record (1).
 const FALSE_RATE: f64 = 1e-3;
 /// Fewest samples of a part.
 const SHORTEST: usize = 64;
 /// Lowest frequency, in cycles per part: drift and the end of a motion stay below.
 const LOWEST: f64 = 8.0;
-/// How many times the squares of all the harmonics nearby the square of a line must be.
+/// Least square of a line, as a multiple of the squares of all harmonics nearby.
 const ABOVE_HARMONICS: f64 = 4.0;
 /// Harmonics of dry friction are odd, two fundamental frequencies apart.
 const NEARBY: f64 = 2.6;
@@ -86,9 +86,9 @@ pub(crate) fn lines(values: &[f64], part: Range<usize>, fundamental: f64, known:
     found
 }
 
-/// The frequency that changes most from the begin of a record to its end (cycles per sample): that of its motion.
+/// The frequency that changes most from the start of a record to its end (cycles per sample): that of its motion.
 ///
-/// Two windows that mirror each other weigh the begin and the end; a steady line has the same square in both. The
+/// Two windows that mirror each other weigh the start and the end; a steady line has the same square in both. The
 /// squares are weighted by the frequency, so that drift does not count as motion.
 pub(crate) fn fundamental(values: &[f64]) -> f64 {
     let duration = values.len() as f64;

@@ -38,12 +38,12 @@ impl RealTransform {
         Self { plan: RealFftPlanner::new().plan_fft_forward(length) }
     }
 
-    /// How many samples it takes.
+    /// Number of samples.
     pub fn length(&self) -> usize {
         self.plan.len()
     }
 
-    /// How many lines it gives: those from zero frequency to half the rate.
+    /// Number of lines: those from zero frequency to half the rate.
     pub fn lines(&self) -> usize {
         self.length() / 2 + 1
     }

@@ -3,7 +3,7 @@
 use crate::units::word::Word;
 use crate::{Quantity, Unit};
 
-/// What a file tells of a channel: the unit, and a word for the quantity.
+/// Statement of a file about a channel: the unit, and a word for the quantity.
 ///
 /// A unit is found in a name in these places, in this order:
 ///
@@ -45,7 +45,7 @@ enum Written {
 }
 
 impl Label {
-    /// What the name of a channel tells.
+    /// Label by the name of a channel.
     pub fn of(name: &str) -> Self {
         let (bare, groups) = without_groups(name);
         let word = Word::in_name(&bare);
@@ -83,7 +83,7 @@ impl Label {
         if let Written::Known(unit) = &self.unit { Some(unit) } else { None }
     }
 
-    /// What is written where a unit belongs, if it is none that is known.
+    /// Text in the place of a unit, if it is no known unit.
     pub fn unknown_unit(&self) -> Option<&str> {
         if let Written::Unknown(text) = &self.unit { Some(text) } else { None }
     }
@@ -135,7 +135,7 @@ impl std::fmt::Display for Label {
     }
 }
 
-/// What the file that was read tells of the channel.
+/// Label by the file that was read.
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 impl From<&crate::Reading> for Label {
     fn from(reading: &crate::Reading) -> Self {
@@ -170,7 +170,7 @@ pub(crate) fn without_groups(name: &str) -> (String, Vec<Group>) {
     (bare.trim().to_owned(), groups)
 }
 
-/// Where the bracket closes that was opened before `inside`.
+/// Place of the bracket that closes the one before `inside`.
 fn partner(inside: &str, is_square: bool) -> Option<usize> {
     let (open, close) = if is_square { ('[', ']') } else { ('(', ')') };
     let mut depth = 0_usize;
@@ -215,7 +215,7 @@ fn behind_space(bare: &str, word: Word) -> Option<Unit> {
     }
 }
 
-/// What stands behind the first slash, unless a unit stands before it.
+/// Unit behind the first slash, unless a unit stands before it.
 fn behind_slash(bare: &str) -> Option<Unit> {
     let (before, behind) = bare.split_once('/')?;
     let last = before.trim().rsplit([' ', '_']).next().unwrap_or_default();

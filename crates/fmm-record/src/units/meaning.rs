@@ -2,13 +2,13 @@
 
 use crate::Quantity;
 
-/// What the numbers of a channel mean.
+/// Meaning of the numbers of a channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Meaning {
-    /// What the channel measured; never [`Quantity::Other`].
+    /// Measured quantity; never [`Quantity::Other`].
     pub quantity: Quantity,
-    /// What turns its numbers into the unit below (that unit per unit of the file).
+    /// Factor from its numbers to the unit below (that unit per unit of the file).
     pub factor: f64,
     /// The unit of the numbers times the factor: the SI unit, or `counts`.
     pub unit: &'static str,
@@ -25,7 +25,7 @@ impl std::fmt::Display for Meaning {
     }
 }
 
-/// Why it is not clear what a channel measured, in which unit, or which channel is meant.
+/// Reason why quantity, unit or channel are not clear.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeaningError {
@@ -34,7 +34,7 @@ pub enum MeaningError {
     UnknownUnit {
         /// Name of the channel.
         channel: String,
-        /// What is written.
+        /// Unit as written.
         unit: String,
     },
     /// The channel is in counts of an instrument, whose size is not known.
@@ -86,7 +86,7 @@ pub enum MeaningError {
     Contradiction {
         /// Name of the channel.
         channel: String,
-        /// What the name or the format tells.
+        /// Quantity by the name or the format.
         told: Quantity,
         /// The unit in use, if the other quantity is that of it; else it was said.
         unit: Option<String>,
@@ -133,7 +133,7 @@ pub enum MeaningError {
     },
 }
 
-/// How another quantity than the one in the file came about.
+/// Origin of a quantity that differs from that of the file.
 fn basis(unit: Option<&str>, other: Quantity) -> String {
     match unit {
         Some(unit) => format!("{unit} is a unit of {other}"),

@@ -1,8 +1,8 @@
-//! A request: what is said of a channel beside the file, and the quantity and unit that follow from both.
+//! Request: quantity and unit of a channel as the caller states them, and those that follow with the file.
 
 use crate::{Label, Meaning, MeaningError, Quantity, Unit};
 
-/// What is said of a channel beside what the file tells of it. Nothing need be said where the file tells enough.
+/// Quantity and unit of a channel as the caller states them, beside the file. It may be empty where the file tells enough.
 ///
 /// | said | counts |
 /// |---|---|
@@ -60,7 +60,7 @@ impl Request {
         self.quantity.or(of_unit)
     }
 
-    /// What a channel means.
+    /// Meaning of a channel.
     ///
     /// # Errors
     /// Any [`MeaningError`] but [`MeaningError::WhichChannel`].

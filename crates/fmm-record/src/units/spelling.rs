@@ -146,7 +146,7 @@ const WORDS: [(&str, Meaning); 13] = [
 /// Units of motion in small letters that are no such units in capitals: gauss, megagram, newton metre.
 const SMALL_ONLY: [&str; 4] = ["g", "gn", "mg", "nm"];
 
-/// What a spelling means, if it is one of a unit.
+/// Meaning of a spelling, if it is one of a unit.
 pub(crate) fn meaning(text: &str) -> Option<Meaning> {
     let text = tidy(text);
     let lower = text.to_lowercase();

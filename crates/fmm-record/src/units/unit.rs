@@ -50,7 +50,7 @@ impl Unit {
         self.si
     }
 
-    /// What turns a number in this unit into one in the SI unit (SI unit per unit); 1 for counts.
+    /// Factor from a number in this unit to one in the SI unit (SI unit per unit); 1 for counts.
     pub fn factor(&self) -> f64 {
         self.factor
     }

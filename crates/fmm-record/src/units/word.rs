@@ -2,7 +2,7 @@
 
 use crate::Quantity;
 
-/// What the words of a name tell.
+/// Meaning of the words of a name.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Word {
     /// The quantity, if the words agree on one.
@@ -68,7 +68,7 @@ const OF_RATES: [&str; 10] =
     ["sample", "sampling", "frame", "data", "bit", "flow", "strain", "decay", "heart", "refresh"];
 
 impl Word {
-    /// What a name without its brackets tells.
+    /// Meaning of a name without its brackets.
     pub(crate) fn in_name(bare: &str) -> Self {
         let words = words(bare);
         let is_motion = |at: usize| words[at] != "rate" || at == 0 || !OF_RATES.contains(&&*words[at - 1]);

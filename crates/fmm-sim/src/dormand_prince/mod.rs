@@ -101,7 +101,7 @@ pub(crate) fn nested<D: Scalar>(rates: &Rates<D>, rise: D, length: f64) -> [D; 7
     ]
 }
 
-/// What an unknown grows by per second on average over a step.
+/// Mean rate of an unknown over a step (1/s).
 #[inline]
 pub(crate) fn mean_rate<D: Scalar>(rates: &Rates<D>) -> D {
     sum(&STEP, rates)

@@ -32,7 +32,7 @@ pub(super) struct Field<'a, D, L> {
     pub(super) capture: Option<D>,
 }
 
-/// What acts on the machine from outside at one time.
+/// External actions on the machine at one time.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Outside<D> {
     /// Force (N), if there is any.
@@ -96,7 +96,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Field<'a, D, L> {
         }
     }
 
-    /// What acts from outside at `time`.
+    /// External actions at `time`.
     #[inline]
     pub(super) fn outside(&self, phase: &Phase<D>, time: D) -> Outside<D> {
         let force = self.is_driven.then(|| phase.piece.force_at(time));
@@ -162,7 +162,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Field<'a, D, L> {
         (rounding(self.oscillator, &load, phase.time, state) + ROUNDING * friction) * self.per_mass.value()
     }
 
-    /// What friction, damping and the forces from outside do at `time`.
+    /// Power of friction, damping and the external forces at `time` (W).
     pub(super) fn power(&self, phase: &Phase<D>, side: Side, time: f64, state: State<D>) -> Power<D> {
         let speed = self.speed(phase, state.velocity);
         let normal_load = self.outside(phase, D::from(time)).normal_load;

@@ -25,10 +25,10 @@ const WEAK: f64 = 1e-2;
 /// Attempts at landing on an event; Newton's method needs two or three.
 const LANDINGS: usize = 12;
 
-/// How far below zero the acceleration of a step must dip, in units of its error in the velocity over its length.
+/// Least dip of the acceleration of a step below zero, in units of its error in the velocity over its length.
 const DIP: f64 = 10.0;
 
-/// What counts as the error of a step that has found an event and not landed on it: the next will be half as long.
+/// Error assigned to a step that has found an event and not landed on it: the next step will be half as long.
 const NOT_LANDED: f64 = 256.0;
 
 /// Follows stretches of sliding for the Runge-Kutta engine.
@@ -166,7 +166,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
         step.within(|elapsed, state| self.field.acceleration(phase, at.side, at.time + elapsed, state))
     }
 
-    /// How near to an event a step must end (s) for a straight line to reach it: what a parabola would add is below rounding.
+    /// Largest distance of a step's end from an event (s) that a straight line may cover: the parabola adds less than rounding.
     fn close(&self) -> f64 {
         1e-9 / self.angular
     }
@@ -329,8 +329,8 @@ impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
     }
 }
 
-/// How much longer a step may be than one of this `error`, for which 1 is allowed: with the eighth power of the length the
-/// error grows, and a tenth is left to chance.
+/// Largest growth of a step with this `error`, for which 1 is allowed: the error grows with the eighth power of the length, and a
+/// tenth is a margin.
 fn factor(error: f64) -> f64 {
     0.9 / error.sqrt().sqrt().sqrt()
 }

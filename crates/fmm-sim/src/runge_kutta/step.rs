@@ -70,7 +70,7 @@ impl<D: Scalar> Step<D> {
         error(self.length, norm(position.0, velocity.0), norm(position.1, velocity.1))
     }
 
-    /// What the local errors of the derivatives are made of.
+    /// Terms of the local errors of the derivatives.
     pub(super) fn derivative_errors(&self) -> DerivativeErrors<D> {
         DerivativeErrors { length: self.length, position: errors(&self.rates[0]), velocity: errors(&self.rates[1]) }
     }

@@ -56,7 +56,7 @@ fn miss(motion: &Trajectory<Numbers>, numbers: &[(f64, f64)]) -> f64 {
     worst
 }
 
-/// How far the derivatives of a run to each of two tolerances may be off.
+/// Allowed errors of the derivatives of a run, for each of two tolerances.
 const GOOD: [f64; 2] = [1e-7, 1e-5];
 
 fn check<F: LawFamily>(law: &[(f64, f64)], driven: bool, allowed: [f64; 2])

@@ -1,4 +1,4 @@
-//! The distribution that a set of values is.
+//! Empirical distribution of a sample.
 
 use std::sync::Arc;
 

@@ -28,7 +28,7 @@ impl Distribution {
         }
     }
 
-    /// What the half width between the limits is divided by to give the standard uncertainty (1), such as √3 of a
+    /// Divisor of the half width between the limits that gives the standard uncertainty (1), such as √3 of a
     /// rectangular quantity; 1 for a distribution without limits on both sides, of which u itself is known, and for a
     /// constant.
     pub fn divisor(&self) -> f64 {

@@ -1,4 +1,4 @@
-//! A triangle that leans to one side.
+//! Triangular distribution, symmetric or not.
 
 use rand::{Rng, RngExt};
 

@@ -13,7 +13,7 @@ const GAUSS: [(f64, f64); 5] = [
 ];
 /// Panels of the rule, which then leaves nothing but rounding.
 const PANELS: u32 = 200;
-/// How far beyond its highest point the density counts: e^(−40) of it is left there.
+/// Exponent at which the density is cut off: e^(−40) of its highest value is left there.
 const EXPONENT: f64 = 40.0;
 
 /// A normal quantity of which it is known that it lies between two limits, one of which may be infinite.

@@ -5,7 +5,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::{Interval, UncertaintyError, coverage_factor};
 
-/// How the variance between results is found.
+/// Estimator of the variance between results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum RandomEffects {
@@ -16,7 +16,7 @@ pub enum RandomEffects {
     DerSimonianLaird,
 }
 
-/// What a result does to the consensus.
+/// Influence of a result on the consensus.
 ///
 /// ```
 /// use fmm_model::Estimated;
@@ -197,7 +197,7 @@ impl Consensus {
         Self::of(&others, self.effects)
     }
 
-    /// What each result does to the consensus, in their order; [`Consensus::without`] has the intervals.
+    /// Influence of each result on the consensus, in their order; [`Consensus::without`] has the intervals.
     pub fn influences(&self) -> Vec<Influence> {
         let weight = |result: &Estimated| (result.uncertainty * result.uncertainty + self.variance).recip();
         let all: f64 = self.results.iter().map(weight).sum();

@@ -1,4 +1,4 @@
-//! How far out the two largest of a few normal values lie by chance.
+//! Grubbs' test of two outliers: distribution of the two most distant of a few normal values.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 

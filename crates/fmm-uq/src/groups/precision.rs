@@ -49,7 +49,7 @@ pub struct Precision {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outlier {
-    /// Which group, counted from 0.
+    /// Index of the group, counted from 0.
     pub group: usize,
     /// The statistic (1).
     pub statistic: f64,
@@ -61,7 +61,7 @@ pub struct Outlier {
 /// [`Precision::grubbs_pair`], with an example.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OutlyingPair {
-    /// Which groups, counted from 0, the one farther out first.
+    /// Indices of the groups, counted from 0, the one farther out first.
     pub groups: [usize; 2],
     /// G, what is left of the squares without them (1): small if they stand out.
     pub statistic: f64,

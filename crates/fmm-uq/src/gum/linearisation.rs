@@ -3,7 +3,7 @@
 use crate::SecondOrder;
 use crate::gum::second_order::Curvature;
 
-/// What the curvature may change, relative to u(y), before the linear approximation is doubted. An uncertainty is stated
+/// Largest effect of the curvature, relative to u(y), at which the linear approximation is still accepted. An uncertainty is stated
 /// to two digits, of which the last is worth 5 % at least once in ten times that much.
 pub(crate) const TOLERATED: f64 = 0.05;
 

@@ -26,7 +26,7 @@ pub struct SecondOrder {
     pub standard_uncertainty: f64,
 }
 
-/// What curvature is known of an output.
+/// Known curvature of an output.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Curvature {
     /// The second-order terms; `None` where they are not finite, make a variance negative, or are not those of the model

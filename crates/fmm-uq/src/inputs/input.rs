@@ -168,7 +168,7 @@ impl Input {
         self.evaluation
     }
 
-    /// What a Monte Carlo draws from.
+    /// Distribution that a Monte Carlo draws from.
     pub const fn distribution(&self) -> &Distribution {
         &self.distribution
     }

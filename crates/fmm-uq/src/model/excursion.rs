@@ -4,12 +4,12 @@ use crate::gum::linearisation::TOLERATED;
 use crate::model::derivatives::{Derivatives, Expansion};
 use crate::{Distribution, Input, Inputs};
 
-/// Where the values of three points have the weights 1/6, 2/3, 1/6: the mean and the variance of a normal quantity.
+/// Half distance of three points with the weights 1/6, 2/3, 1/6, which have the mean and the variance of a normal quantity.
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 /// Roundings that a model may have made of its inputs.
 const ROUNDINGS: f64 = 16.0;
 
-/// How far an output is from its expansion, along all directions together.
+/// Distance of an output from its expansion, along all directions together.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Departure {
     /// Of the mean (unit of the output).
@@ -43,7 +43,7 @@ pub(crate) struct Excursion<'a, M> {
     model: &'a M,
     /// Values of the outputs at the estimates.
     values: &'a [f64],
-    /// What rounding may do to each output (its unit).
+    /// Bound of the rounding of each output (its unit).
     roundings: Vec<f64>,
 }
 
@@ -60,7 +60,7 @@ impl<'a, M: Derivatives> Excursion<'a, M> {
         Self { inputs, model, values, roundings }
     }
 
-    /// What rounding may do to an output (its unit).
+    /// Bound of the rounding of an output (its unit).
     pub(crate) fn rounding(&self, output: usize) -> f64 {
         self.roundings[output]
     }
@@ -136,7 +136,7 @@ fn limits(distribution: &Distribution, step: f64) -> (f64, f64) {
     if step == 0.0 { (f64::NEG_INFINITY, f64::INFINITY) } else { distribution.limits() }
 }
 
-/// What is left of a difference when rounding may have made some of it.
+/// Part of a difference that rounding cannot have made.
 fn beyond_rounding(difference: f64, rounding: f64) -> f64 {
     if difference.abs() <= rounding { 0.0 } else { difference }
 }

@@ -4,7 +4,7 @@ use std::error::Error;
 
 use crate::Taylor;
 
-/// What a model gives back: a number, an array or a vector of them, or a `Result` of one of these.
+/// Result of a model: a number, an array or a vector of them, or a `Result` of one of these.
 ///
 /// `D` is the number type: `f64` for a Monte Carlo and for differences, [`Taylor`] for exact derivatives. Thus the same
 /// formula, generic in `D: Scalar`, serves them all.

@@ -12,7 +12,7 @@ const FEWEST_SEQUENCES: usize = 10;
 /// Share of δ that a Monte Carlo may be wrong by if it is to validate another result (JCGM 101:2008, 8.2).
 const VALIDATION: f64 = 0.2;
 
-/// Which of the intervals of a given coverage probability.
+/// Kind of interval of a given coverage probability.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -132,7 +132,7 @@ impl Adaptive {
         self.trials_of_sequence().saturating_mul(self.first_stage.unwrap_or(FEWEST_SEQUENCES) as u64)
     }
 
-    /// What all figures must be stable to for an output of this uncertainty (unit of the output).
+    /// Tolerance of all figures of an output with this uncertainty (unit of the output).
     pub(crate) fn tolerance(&self, standard_uncertainty: f64) -> Result<f64, UncertaintyError> {
         let tolerance = match self.target {
             Target::Digits(digits) => numerical_tolerance(standard_uncertainty, digits)?,
@@ -148,7 +148,7 @@ impl Adaptive {
     }
 }
 
-/// What the sequences so far have shown.
+/// Figures of the sequences so far.
 #[derive(Debug, Clone)]
 pub(crate) struct Stability {
     rule: Adaptive,

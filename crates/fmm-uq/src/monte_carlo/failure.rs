@@ -7,7 +7,7 @@ pub(crate) const KEPT_PER_BLOCK: usize = 16;
 /// Messages that are told apart; a model that words each failure differently must not fill the memory with them.
 const KINDS: usize = 32;
 
-/// Why a trial gave no result.
+/// Reason why a trial gave no result.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -21,7 +21,7 @@ pub enum FailureKind {
     },
     /// The model gave another number of outputs than before, or none at all.
     OutputCount {
-        /// How many it gave.
+        /// Number of outputs that it gave.
         found: usize,
     },
     /// Any of the kinds beyond the first 32.
@@ -50,7 +50,7 @@ pub struct Failure {
     pub block: u64,
     /// Index of the trial in the block.
     pub trial: usize,
-    /// Why it failed.
+    /// Reason.
     pub kind: FailureKind,
 }
 
@@ -74,7 +74,7 @@ impl Failures {
         self.counts.iter().map(|(_, count)| count).sum()
     }
 
-    /// How many trials failed of each kind, in the order in which the kinds first appeared.
+    /// Number of failed trials of each kind, in the order in which the kinds first appeared.
     pub fn by_kind(&self) -> &[(FailureKind, u64)] {
         &self.counts
     }

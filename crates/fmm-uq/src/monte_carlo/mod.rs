@@ -79,10 +79,10 @@ pub struct MonteCarlo<'a> {
     pub(crate) watch: Option<&'a Watch<'a>>,
 }
 
-/// What is told of the progress of a run, and may end it.
+/// Observer of the progress of a run, which may end it.
 type Watch<'a> = dyn Fn(Progress) -> ControlFlow<()> + Sync + 'a;
 
-/// How far a run has come.
+/// Progress of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
@@ -125,7 +125,7 @@ impl<'a> MonteCarlo<'a> {
         Self { inputs, sampler, heavy_tail, fingerprint, seed: 0, plan, allowed_failures, watch }
     }
 
-    /// What an adaptive run goes by.
+    /// Rule by which an adaptive run stops.
     pub(crate) const fn rule(&self) -> Option<Adaptive> {
         match self.plan {
             Plan::Adaptive(rule) => Some(rule),

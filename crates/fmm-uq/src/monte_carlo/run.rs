@@ -12,7 +12,7 @@ use crate::monte_carlo::heavy_tail::HeavyTail;
 use crate::monte_carlo::pool::Pool;
 use crate::{Failures, MonteCarlo, Outcome, OutputSample, Partial, Progress, UncertaintyError};
 
-/// How many trials there are to be.
+/// Planned number of trials.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Plan {
     Fixed(u64),
@@ -23,7 +23,7 @@ pub(crate) enum Plan {
 #[cfg(feature = "rayon")]
 const BLOCKS_OF_THREAD: u64 = 32;
 
-/// What the threads of a run tell each other.
+/// State that the threads of a run share.
 struct State {
     done: AtomicU64,
     cancelled: AtomicBool,

@@ -12,7 +12,7 @@ use crate::inputs::factor::correlation_root;
 use crate::random::ziggurat::Ziggurat;
 use crate::{Distribution, Inputs};
 
-/// What a trial draws from: independent inputs one by one, the others through a common set of normal scores.
+/// Sampler of the inputs of a trial: independent inputs one by one, the others through a common set of normal scores.
 #[derive(Debug, Clone)]
 pub(crate) struct Sampler {
     width: usize,
@@ -120,7 +120,7 @@ impl Sampler {
         }
     }
 
-    /// How many uniform numbers a row takes by [`Sampler::map`].
+    /// Number of uniform numbers that a row takes by [`Sampler::map`].
     pub(crate) fn dimensions(&self) -> usize {
         self.independent.len() + self.dependent.len() + self.ensembles.len()
     }

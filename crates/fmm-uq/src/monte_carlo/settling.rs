@@ -5,7 +5,7 @@ use crate::{Moments, UncertaintyError, coverage_factor};
 
 /// Batches of equal length that the sequences are divided into: at least so many, at most twice as many.
 const FEWEST_BATCHES: usize = 10;
-/// How fast the ends settle where the density crosses the level of the interval with a slope.
+/// Exponent at which the ends settle where the density crosses the level of the interval with a slope.
 const REGULAR_RATE: f64 = 1.0 / 3.0;
 
 /// The ends of the shortest interval of all trials so far, which settle more slowly than any average does.

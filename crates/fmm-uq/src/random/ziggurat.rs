@@ -160,7 +160,7 @@ fn density(x: f64, nu: f64) -> f64 {
     if nu.is_infinite() { (-0.5 * x * x).exp() } else { (-0.5 * (nu + 1.0) * (x * x / nu).ln_1p()).exp() }
 }
 
-/// What the layers are cut from.
+/// Curve under which the layers lie.
 struct Curve {
     nu: f64,
     /// `None` for the normal distribution.

@@ -108,7 +108,7 @@ pub struct TrialStatement {
     pub standard_errors: [f64; 2],
     /// Ends and coverage probability (unit of the result).
     pub interval: Interval,
-    /// Which of the intervals.
+    /// Kind of the interval.
     pub kind: IntervalKind,
     /// Number of trials, failed ones included.
     pub trials: u64,
@@ -116,7 +116,7 @@ pub struct TrialStatement {
     pub failed: u64,
     /// Seed of the run.
     pub seed: u64,
-    /// What an adaptive run is stable to (unit of the result); `None` for a fixed number of trials.
+    /// Tolerance of an adaptive run (unit of the result); `None` for a fixed number of trials.
     pub tolerance: Option<f64>,
 }
 

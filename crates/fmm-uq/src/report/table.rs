@@ -14,7 +14,7 @@ const LEVEL: f64 = 0.95;
 /// Columns that hold words, which begin on the left.
 const WORDS: [usize; 5] = [0, 2, 3, 4, 9];
 
-/// What stands above the columns.
+/// Headings of the columns.
 const HEADER: [&str; 12] =
     ["quantity", "estimate", "unit", "distribution", "type", "divisor", "u", "ν", "c", "unit of c", "|c| u", "share"];
 

@@ -2,7 +2,7 @@
 
 use super::Series;
 
-/// How a program writes and stores arrays.
+/// Notation and storage order of arrays in a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Notation {
     /// `m(2,:)` is the second row; columns are stored one after the other.

@@ -9,9 +9,9 @@ pub(crate) struct ArrayFile {
     pub(crate) notation: Notation,
     /// In the order of the file.
     pub(crate) arrays: Vec<Array>,
-    /// What was not read, by name, and what it is.
+    /// Content that was not read: names and kinds.
     pub(crate) others: Vec<(String, String)>,
-    /// What cannot be read, and why. Where the name cannot be read either, it is the place, as `(at byte 128)`.
+    /// Content that cannot be read, and the reasons. Without a readable name, the place stands for it, as `(at byte 128)`.
     pub(crate) damaged: Vec<(String, RecordError)>,
 }
 

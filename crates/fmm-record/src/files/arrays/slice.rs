@@ -12,7 +12,7 @@ pub(crate) struct Slice {
     pub(crate) series: Series,
 }
 
-/// Which numbers of an array; rows and columns count from 0.
+/// Selection of numbers of an array; rows and columns count from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Series {
     /// All of a vector. A matrix is taken as well if it is time and one more series.
@@ -32,8 +32,8 @@ impl Slice {
         self.series == Series::Whole && Clock::of(leaf(&self.array)).is_time
     }
 
-    /// What is written as MATLAB writes it (`data`, `m(:,2)` for the second column, `m(2,:)` for the second row), or as NumPy
-    /// does (`data`, `m[:,1]`, `m[1]` or `m[1,:]`). Any other text is the name of an array.
+    /// Selection written as in MATLAB (`data`, `m(:,2)` for the second column, `m(2,:)` for the second row), or as in NumPy
+    /// (`data`, `m[:,1]`, `m[1]` or `m[1,:]`). Any other text is the name of an array.
     pub(crate) fn parse(text: &str, notation: Notation) -> Self {
         let text = text.trim();
         let indexed = match notation {

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-/// What stands between the fields of a line.
+/// Separator between the fields of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Separator {
     /// A sign, once.
@@ -21,8 +21,8 @@ impl Separator {
     }
 }
 
-/// Where the fields of `line` stand, without blanks and quotes around them. A quote that is not closed on the line is a sign
-/// like others.
+/// Places of the fields of `line`, without blanks and quotes around them. A quote that is not closed on the line is an
+/// ordinary character.
 pub(super) fn split(line: &[u8], separator: Separator, fields: &mut Vec<Range<usize>>) {
     fields.clear();
     let is_blank = |byte: u8| (byte == b' ' || byte == b'\t') && separator != Separator::Sign(byte);
@@ -53,7 +53,7 @@ pub(super) fn split(line: &[u8], separator: Separator, fields: &mut Vec<Range<us
     }
 }
 
-/// Where the quote closes that was opened before `at`; two together are one that is meant.
+/// Place of the quote that closes the one before `at`; two together are one character.
 fn closing_quote(line: &[u8], mut at: usize) -> Option<usize> {
     loop {
         at += line.get(at..)?.iter().position(|byte| *byte == b'"')?;

@@ -9,7 +9,7 @@ use crate::files::clock::Clock;
 use crate::files::reading::seconds_in;
 use crate::{RecordError, Unit};
 
-/// What stands above a table.
+/// Lines above a table.
 #[derive(Debug, Default)]
 pub(super) struct Header {
     /// The names of the columns with their units; their positions if they have no names.

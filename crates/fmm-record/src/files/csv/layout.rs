@@ -9,7 +9,7 @@ use super::number;
 use super::table::NO_ROWS;
 use crate::RecordError;
 
-/// What a column holds, by the last rows that are known.
+/// Content of a column, by the last rows that are known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Number,
@@ -22,7 +22,7 @@ pub(super) struct Layout {
     pub(super) separator: Separator,
     pub(super) columns: Vec<Kind>,
     pub(super) header: Header,
-    /// Which of the lines is the first row.
+    /// Index of the line that is the first row.
     pub(super) first: usize,
 }
 
@@ -50,7 +50,7 @@ impl Layout {
     }
 }
 
-/// Where the table may begin at the earliest, and the separator, if lines say so: the first one of a spreadsheet
+/// Earliest line of the table, and the separator, if lines state them: the first one of a spreadsheet
 /// (`sep=;`), and the one of LabVIEW that ends its header.
 fn preamble(lines: &[Line]) -> (usize, Option<Separator>) {
     let is_end = |line: &Line| line.text.trim_ascii().to_ascii_lowercase().starts_with(b"***end_of_header***");
@@ -87,14 +87,14 @@ impl<'a> Row<'a> {
     }
 }
 
-/// How many fields most of the last three rows have, or else the last one.
+/// Number of fields of most of the last three rows, or else of the last one.
 fn usual_width(rows: &[Row]) -> usize {
     let last: Vec<usize> = rows.iter().rev().take(3).map(Row::len).collect();
     let repeated = last.iter().find(|width| last.iter().filter(|other| other == width).count() > 1);
     repeated.or(last.first()).copied().unwrap_or(0)
 }
 
-/// What the columns hold in the last two rows of that width. One damaged number is no text.
+/// Content of the columns in the last two rows of that width. One damaged number does not make a column of text.
 fn kinds(rows: &[Row], width: usize, separator: Separator) -> Vec<Kind> {
     let last: Vec<&Row> = rows.iter().rev().filter(|row| row.len() == width).take(2).collect();
     let kind = |column: usize| {

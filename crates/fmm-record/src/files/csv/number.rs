@@ -2,7 +2,7 @@
 
 use super::fields::Separator;
 
-/// Which decimal mark a number had; `None` if it had no fraction.
+/// Decimal mark of a number; `None` if it has no fraction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Mark {
     Point,
@@ -21,7 +21,7 @@ pub(super) fn parse(field: &[u8], separator: Separator) -> Option<(f64, Option<M
     text.replacen(',', ".", 1).parse().ok().map(|value| (value, Some(Mark::Comma)))
 }
 
-/// How much of a number is written: digits behind the decimal mark, and signs of its exponent and of the rest.
+/// Length of a written number: digits behind the decimal mark, and characters of its exponent and of the rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Digits {
     fraction: usize,

@@ -12,7 +12,7 @@ use super::number::{self, Digits, Mark};
 use crate::files::reading::quoted;
 use crate::{Column, RecordError};
 
-/// How much of the file its layout is judged by (bytes).
+/// Length of the part of the file by which its layout is judged (bytes).
 const HEAD: usize = 1 << 16;
 
 /// Rows that the last one is compared with before it is called cut off.

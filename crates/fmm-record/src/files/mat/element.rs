@@ -67,10 +67,10 @@ pub(super) fn endian(file: &[u8]) -> Result<Endian, RecordError> {
     }
 }
 
-/// Where a variable begins, and the body of its array, as it stands in the file or expanded; or why it cannot be expanded.
+/// Place of a variable, and the body of its array, as it stands in the file or expanded; or the reason why it cannot be expanded.
 type Variable<'a> = (usize, Result<Cow<'a, [u8]>, RecordError>);
 
-/// What the variable there is called as long as its name is not known.
+/// Name of the variable at `offset` as long as its own name is not known.
 pub(super) fn place(offset: usize) -> String {
     format!("(at byte {offset})")
 }

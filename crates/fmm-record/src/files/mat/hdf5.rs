@@ -31,12 +31,12 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<ArrayFile, RecordError> {
     Ok(variables.file)
 }
 
-/// What has been read of a file.
+/// Variables read from a file so far.
 struct Variables<'a> {
     file: ArrayFile,
     /// The whole of it.
     bytes: &'a [u8],
-    /// What its arrays may still take (bytes).
+    /// Remaining memory for its arrays (bytes).
     budget: u64,
 }
 
@@ -78,7 +78,7 @@ impl Variables<'_> {
 /// Data sets, or why they cannot be read, and groups, with their names.
 type Members = (Vec<(String, Result<Dataset, Error>)>, Vec<(String, Group)>);
 
-/// What lies in a group. The decoder does not list a group in which one object header is damaged; each of its objects is then
+/// Members of a group. The decoder does not list a group in which one object header is damaged; each of its objects is then
 /// looked for by the names in the bytes of the file.
 fn members(group: &Group, bytes: &[u8]) -> Result<Members, Error> {
     let listed = group.iter_datasets().and_then(|datasets| Ok((datasets, group.iter_groups()?)));
@@ -151,7 +151,7 @@ enum Variable {
     Other(Kind),
 }
 
-/// What the decoder says of a variable.
+/// Error of the decoder about a variable.
 fn decoder(error: hdf5_pure::Error) -> RecordError {
     RecordError::undecoded("the decoder of HDF5 says", error)
 }
@@ -220,7 +220,7 @@ fn check_storage(dataset: &Dataset, sizes: &[u64], bytes: u64, length: u64) -> R
     Ok(())
 }
 
-/// What a variable is by the class that MATLAB gave it, or, in a file of another program, by what it stores; `None` if
+/// Kind of a variable by its MATLAB class, or, in a file of another program, by its stored type; `None` if
 /// it is real and numeric.
 fn kind(class: Option<&str>, stored: &DType) -> Option<Kind> {
     use DType::{

@@ -1,6 +1,6 @@
 //! Kind of a variable that is not a real numeric array.
 
-/// What a variable is that is not a real numeric array.
+/// Kind of a variable that is not a real numeric array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Cell,

@@ -167,7 +167,7 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// How a number is stored.
+/// Storage of a number.
 struct Stored {
     /// Bytes per number.
     width: usize,

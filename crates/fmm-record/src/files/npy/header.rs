@@ -6,16 +6,16 @@ use crate::RecordError;
 
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// What an array holds.
+/// Type, shape and order of an array.
 pub(super) struct Header {
     pub(super) number: Number,
     pub(super) fortran: bool,
     pub(super) shape: Vec<usize>,
-    /// How many numbers that makes.
+    /// Number of numbers in the array.
     pub(super) count: usize,
 }
 
-/// How a number is stored.
+/// Storage of a number.
 #[derive(Clone, Copy)]
 pub(super) struct Number {
     kind: Kind,

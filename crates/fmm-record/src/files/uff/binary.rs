@@ -6,7 +6,7 @@ use super::records::{Form, shown, wrong_header};
 use super::{ByteOrder, Precision, Warning};
 use crate::RecordError;
 
-/// What the first line of a binary data set says of its bytes.
+/// Description of the bytes of a binary data set, in its first line.
 pub(super) struct Encoding {
     order: ByteOrder,
     /// Number of bytes that the line states; 0 if it states none.
@@ -39,7 +39,7 @@ impl Encoding {
     }
 }
 
-/// How many bytes the numbers of a point have.
+/// Number of bytes of the numbers of a point.
 #[derive(Clone, Copy)]
 struct Layout {
     abscissa: usize,
@@ -65,7 +65,7 @@ impl Layout {
         self.abscissa + self.ordinate * self.parts
     }
 
-    /// How many bytes `count` points have; `None` if no memory has as many.
+    /// Number of bytes of `count` points; `None` if no memory has as many.
     fn bytes(self, count: u64) -> Option<usize> {
         usize::try_from(count).ok()?.checked_mul(self.point())
     }

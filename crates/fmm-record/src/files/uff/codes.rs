@@ -2,7 +2,7 @@
 
 use crate::Quantity;
 
-/// What kind of function a data set holds, by its number in the format.
+/// Kind of function of a data set, by its number in the format.
 ///
 /// ```
 /// use fmm_record::uff::FunctionType;
@@ -77,7 +77,7 @@ impl std::fmt::Display for FunctionType {
     }
 }
 
-/// What an axis of a data set measures, by its number in the format.
+/// Quantity on an axis of a data set, by its number in the format.
 ///
 /// ```
 /// use fmm_record::Quantity;

@@ -16,7 +16,7 @@ pub struct DataSet {
     precision: Precision,
 }
 
-/// Where the points of a function lie.
+/// Abscissa of a function.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Abscissa {
     /// At equal distances.
@@ -40,7 +40,7 @@ pub enum Ordinate {
 }
 
 impl Ordinate {
-    /// How many values there are.
+    /// Number of values.
     pub fn len(&self) -> usize {
         match self {
             Self::Real(values) => values.len(),
@@ -110,7 +110,7 @@ impl DataSet {
         self
     }
 
-    /// Where its points lie, as the file says it.
+    /// Abscissa of its points, as the file states it.
     pub fn abscissa(&self) -> &Abscissa {
         &self.abscissa
     }
@@ -125,7 +125,7 @@ impl DataSet {
         self.precision
     }
 
-    /// How many points it has; at least one.
+    /// Number of points; at least one.
     pub fn len(&self) -> usize {
         self.ordinate.len()
     }
@@ -143,7 +143,7 @@ impl DataSet {
         })
     }
 
-    /// What to call it: its description, or else the place of its response, as `3+Z`.
+    /// Name: its description, or else the place of its response, as `3+Z`.
     pub fn name(&self) -> String {
         let description = &self.header.lines[0];
         if description.is_empty() { self.header.response.to_string() } else { description.clone() }

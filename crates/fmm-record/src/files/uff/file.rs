@@ -93,7 +93,7 @@ impl UffFile {
         &self.others
     }
 
-    /// What is not as it should be in the file.
+    /// Faults of the file that did not prevent reading it.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }

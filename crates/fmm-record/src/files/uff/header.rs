@@ -19,9 +19,9 @@ pub struct Header {
     pub version: i32,
     /// Load case; 0 for excitation at one point.
     pub load_case: i32,
-    /// Where the response was measured.
+    /// Place and direction of the measured response.
     pub response: Freedom,
-    /// Where the excitation acted, or what the response refers to.
+    /// Place and direction of the excitation, or the reference of the response.
     pub reference: Freedom,
     /// Value on the z axis, 0 if there is none.
     pub z: f64,
@@ -65,7 +65,7 @@ impl std::fmt::Display for Freedom {
 /// An axis of a function.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Axis {
-    /// What it measures.
+    /// Quantity on the axis.
     pub data_type: DataType,
     /// Exponents of length, force and temperature in its unit, meant only for [`DataType::GENERAL`].
     pub exponents: [i32; 3],

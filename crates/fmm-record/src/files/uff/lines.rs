@@ -21,7 +21,7 @@ pub(super) struct Line<'a> {
 
 impl<'a> Lines<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
-        /// Where the first line ends at the latest, if lines end as on most systems.
+        /// Latest end of the first line, if lines end as on most systems (bytes).
         const HEAD: usize = 4096;
         let head = &bytes[..bytes.len().min(HEAD)];
         let end = if head.contains(&b'\r') && !head.contains(&b'\n') { b'\r' } else { b'\n' };
@@ -74,7 +74,7 @@ pub(super) fn is_delimiter(line: &[u8]) -> bool {
 /// The delimiter in its six columns.
 const DELIMITER: &[u8] = b"    -1";
 
-/// Where the delimiter begins that follows a block of bytes, if one does: at its begin, or behind a line end or two,
+/// Place of the delimiter that follows a block of bytes, if one does: at its start, or behind a line end or two,
 /// which some programs put there. Bytes are no lines, so that its blanks must be there.
 pub(super) fn delimiter_at(bytes: &[u8]) -> Option<usize> {
     const STRAY: usize = 4;
@@ -91,7 +91,7 @@ pub(super) fn delimiter_at(bytes: &[u8]) -> Option<usize> {
     (line.starts_with(DELIMITER) && is_delimiter(line)).then_some(stray)
 }
 
-/// Where in a block of bytes the next delimiter begins that is followed by another one or by the end of the file.
+/// Place in a block of bytes of the next delimiter that is followed by another one or by the end of the file.
 pub(super) fn find_delimiter(bytes: &[u8]) -> Option<usize> {
     let mut at = 0;
     loop {

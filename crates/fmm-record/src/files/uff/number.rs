@@ -43,7 +43,7 @@ impl<'a> Iterator for Numbers<'a> {
     }
 }
 
-/// The number at the begin of `word`, and its length: with an exponent after E or D, or of three digits after a mere
+/// The number at the start of `word`, and its length: with an exponent after E or D, or of three digits after a mere
 /// sign, as Fortran writes it where the letter would not fit.
 fn leading(word: &[u8]) -> Option<(f64, usize)> {
     let digits = |from: usize| word[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();

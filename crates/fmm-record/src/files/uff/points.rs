@@ -43,12 +43,12 @@ impl Points {
         }
     }
 
-    /// How many points are complete.
+    /// Number of complete points.
     pub(super) fn len(&self) -> usize {
         self.ordinate.len()
     }
 
-    /// How many points have numbers that are not finite.
+    /// Number of points with numbers that are not finite.
     pub(super) fn not_finite(&self) -> usize {
         let finite = |index: usize| {
             let ordinate = match &self.ordinate {

@@ -10,18 +10,18 @@ use crate::RecordError;
 /// Number of lines in a header.
 pub(super) const LINES: usize = 11;
 
-/// How the points stand in the file.
+/// Form of the points in the file.
 pub(super) struct Form {
     pub(super) precision: Precision,
     pub(super) complex: bool,
-    /// How many points the header promises.
+    /// Number of points that the header promises.
     pub(super) count: u64,
     /// Start and step of an even abscissa.
     pub(super) even: Option<(f64, f64)>,
 }
 
 impl Form {
-    /// How many numbers a point has.
+    /// Number of numbers of a point.
     pub(super) fn numbers(&self) -> usize {
         1 + usize::from(self.complex) + usize::from(self.even.is_none())
     }
@@ -60,7 +60,7 @@ pub(super) fn letters(line: &[u8]) -> Vec<char> {
     letters.into_iter().map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
 }
 
-/// What an error shows of a line.
+/// Part of a line that an error shows.
 pub(super) fn shown(line: &[u8]) -> String {
     const SHOWN: usize = 80;
     letters(line).into_iter().take(SHOWN).collect::<String>().trim().to_owned()

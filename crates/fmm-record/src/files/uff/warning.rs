@@ -9,45 +9,45 @@ pub enum Warning {
     /// The header promises more points than there are. Those that are there were read; a data set without any is
     /// left out.
     FewerPoints {
-        /// Where the data set begins.
+        /// Line at which the data set begins.
         line: u64,
-        /// How many points its header promises.
+        /// Number of points that its header promises.
         promised: u64,
-        /// How many there are.
+        /// Number of points that are present.
         present: usize,
     },
     /// Points follow those that the header promises. They were not read.
     MorePoints {
-        /// Where the data set begins.
+        /// Line at which the data set begins.
         line: u64,
-        /// How many points its header promises.
+        /// Number of points that its header promises.
         promised: u64,
     },
     /// The header of a binary data set states another number of bytes than its points have. The points were read.
     ByteCount {
-        /// Where the data set begins.
+        /// Line at which the data set begins.
         line: u64,
         /// The number stated.
         stated: u64,
-        /// What the points have.
+        /// Value of the points themselves.
         actual: u64,
     },
     /// Values that are infinite or not a number.
     NotFinite {
-        /// Where the data set begins.
+        /// Line at which the data set begins.
         line: u64,
-        /// How many points have them.
+        /// Number of such points.
         count: usize,
     },
     /// The file ends within a header. The data set is left out.
     HeaderCut {
-        /// Where the data set begins.
+        /// Line at which the data set begins.
         line: u64,
     },
     /// The file ends without the line that closes the data set. A number at the very end was not read, because it
     /// may be cut off.
     NotClosed {
-        /// Where the data set begins.
+        /// Line at which the data set begins.
         line: u64,
     },
     /// Text between data sets.

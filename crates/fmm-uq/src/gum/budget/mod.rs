@@ -49,7 +49,7 @@ pub struct Budget {
     unit: String,
 }
 
-/// What one input contributes to the uncertainty of the result.
+/// Contribution of one input to the uncertainty of the result.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Contribution<'a> {

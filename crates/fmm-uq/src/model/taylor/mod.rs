@@ -1,4 +1,4 @@
-//! A number that carries its Taylor expansion along.
+//! Taylor number: a value with its expansion.
 
 use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -8,7 +8,7 @@ use fmm_model::Scalar;
 /// Powers (i, j) of the two directions, in the order of their coefficients.
 const POWERS: [(usize, usize); 10] = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3)];
 
-/// Where a product of two powers goes, by the positions of its factors.
+/// Places of the products of two powers, by the positions of the factors.
 const PRODUCTS: [(usize, usize, usize); 35] = products();
 
 /// A value with its Taylor expansion to third order in two directions, exact through every operation.
