@@ -62,7 +62,7 @@ pub(crate) trait Kind<L> {
     /// What `visitor` does with laws of this kind.
     fn visit<V: LawVisitor<f64, L>>(visitor: V) -> V::Output;
 
-    /// The motion by the engine that suits the law.
+    /// The motion by the engine that suits a law that is not one of the speed alone, or is a level plus a slope.
     ///
     /// # Errors
     /// [`SimulationError`] if the engine has no answer.
@@ -134,11 +134,7 @@ impl<K: Kind<L>, L: Clone + 'static> Contact for Law<K, L> {
         choice: Choice,
         sampling: &Sampling,
     ) -> Result<Option<Trajectory>, SimulationError> {
-        let scenario = setting.with(self.law.clone())?;
-        if choice.engine == EngineName::Auto {
-            return K::automatic(&scenario, sampling).map(Some);
-        }
-        K::visit(Run { scenario: &scenario, choice, sampling })
+        K::visit(Run { law: self.law.clone(), kind: self.kind, setting, choice, sampling })
     }
 
     fn coefficient(&self, velocity: f64, states: &[f64], losing: bool) -> f64 {
@@ -189,21 +185,26 @@ impl<L> LawVisitor<f64, L> for Engines<'_, L> {
     }
 }
 
-/// Runs the engine that is chosen by name; none if it does not take the law.
-struct Run<'a, L> {
-    scenario: &'a Scenario<f64, L>,
+/// Runs the engine that is chosen by name, or the one that suits the law; `None` if it does not take the law.
+///
+/// All laws of the speed share one copy of each engine for them: compiled for each law, these copies were a sixth of the program.
+struct Run<'a, K, L> {
+    law: L,
+    kind: PhantomData<K>,
+    setting: &'a Setting,
     choice: Choice,
     sampling: &'a Sampling,
 }
 
-impl<L> LawVisitor<f64, L> for Run<'_, L> {
+impl<K: Kind<L>, L: 'static> LawVisitor<f64, L> for Run<'_, K, L> {
     type Output = Result<Option<Trajectory>, SimulationError>;
 
     fn sliding(self) -> Self::Output
     where
         L: SlidingLaw<f64>,
     {
-        self.choice.sliding(self.scenario, self.sampling).transpose()
+        let scenario = self.setting.with(AnySliding(Rc::new(self.law)))?;
+        self.choice.sliding(&scenario, self.sampling).transpose()
     }
 
     fn piecewise_linear(self) -> Self::Output
@@ -211,7 +212,8 @@ impl<L> LawVisitor<f64, L> for Run<'_, L> {
         L: PiecewiseLinearLaw<f64> + SlidingLaw<f64>,
     {
         match self.choice.engine {
-            EngineName::Exact => Exact.run(self.scenario, self.sampling).map(Some),
+            EngineName::Auto => K::automatic(&self.setting.with(self.law)?, self.sampling).map(Some),
+            EngineName::Exact => Exact.run(&self.setting.with(self.law)?, self.sampling).map(Some),
             _ => self.sliding(),
         }
     }
@@ -220,8 +222,10 @@ impl<L> LawVisitor<f64, L> for Run<'_, L> {
     where
         L: BristleLaw<f64>,
     {
+        let scenario = self.setting.with(self.law)?;
         match self.choice.engine {
-            EngineName::Bristle => self.choice.bristle(self.scenario, self.sampling).map(Some),
+            EngineName::Auto => K::automatic(&scenario, self.sampling).map(Some),
+            EngineName::Bristle => self.choice.bristle(&scenario, self.sampling).map(Some),
             _ => Ok(None),
         }
     }
@@ -231,7 +235,7 @@ impl<L> LawVisitor<f64, L> for Run<'_, L> {
         L: PiecewiseLinearLaw<f64> + BristleLaw<f64>,
     {
         match self.choice.engine {
-            EngineName::Exact => Exact.run(self.scenario, self.sampling).map(Some),
+            EngineName::Exact => Exact.run(&self.setting.with(self.law)?, self.sampling).map(Some),
             _ => self.bristle(),
         }
     }

@@ -65,17 +65,17 @@ impl Choice {
         self.tolerance.map_or_else(|| Ok(Bristle::default()), Bristle::new)?.run(scenario, sampling)
     }
 
-    /// An engine for laws of the sliding speed alone; none if the one chosen is not.
+    /// An engine for laws of the sliding speed alone; `None` if the one chosen is not.
     pub(crate) fn sliding<L: SlidingLaw<f64>>(
         self,
         scenario: &Scenario<f64, L>,
         sampling: &Sampling,
     ) -> Option<Result<Trajectory, SimulationError>> {
         match self.engine {
-            EngineName::RungeKutta => Some(self.runge_kutta(scenario, sampling)),
+            EngineName::Auto | EngineName::RungeKutta => Some(self.runge_kutta(scenario, sampling)),
             EngineName::Thesis => Some(Thesis::default().run(scenario, sampling)),
             EngineName::Moreau => Some(Moreau::default().run(scenario, sampling)),
-            EngineName::Auto | EngineName::Exact | EngineName::Bristle => None,
+            EngineName::Exact | EngineName::Bristle => None,
         }
     }
 }
