@@ -1,4 +1,4 @@
-//! What a sliding contact *does*: friction laws, each its formula written once, with named and bounded parameters.
+//! Friction laws of a sliding contact, each with its formula written once, and with named and bounded parameters.
 //!
 //! ```
 //! use fmm_friction::{CoulombViscous, LawFamily, SlidingLaw};
@@ -17,7 +17,7 @@
 //!
 //! # Which law
 //!
-//! | what the contact does | law | what it is not for |
+//! | behaviour of the contact | law | not for |
 //! |---|---|---|
 //! | one level | [`Coulomb`] | a static level of its own: [`CoulombStatic`], which a free decay hardly shows |
 //! | a level and a part proportional to the speed | [`CoulombViscous`] | telling that part from the damping of the machine |
@@ -34,23 +34,24 @@
 //! # The traits
 //!
 //! [`SlidingLaw`] is for laws of the sliding speed alone, which need a stick phase, and [`BristleLaw`] for laws with an
-//! internal state, which do not; their pages say what an implementor promises and why they are as they are.
+//! internal state, which do not; their pages state the contract of an implementor and its reasons.
 //! [`PiecewiseLinearLaw`] marks the laws that move a linear machine in closed form. [`LawFamily`] names the parameters and
-//! builds a law at any number type, so that a fit, a budget or a report can speak of them; a law of one's own that
-//! implements it is simulated and fitted like these. A family also says what kind it is: a [`LawVisitor`] does one thing or
-//! another with a law according to its kind, and [`catalogue()`] leads a [`FamilyVisitor`] through all families by name.
+//! builds a law at any number type, for fits, budgets and reports. [`MaxwellSlip`] and [`Gms`] are lists of elements; their families for a
+//! given number of elements are [`MaxwellSlipOf`] and [`GmsOf`]. A law of one's own that
+//! implements it is simulated and fitted like these. A family also states its kind: a [`LawVisitor`] has one method for each kind of
+//! law, and [`catalogue()`] leads a [`FamilyVisitor`] through all families by name.
 //!
 //! # Units and conventions
 //!
 //! All laws give a *coefficient*, the friction force divided by the normal load. With a normal load of 1 the coefficient is
-//! the force itself (N); per unit mass it is F/m (m/s²). Speeds are in m/s and never negative: the sign of the force is the
-//! business of whoever simulates, so that a law cannot push.
+//! the force itself (N); per unit mass it is F/m (m/s²). Speeds are in m/s and never negative: the simulation sets the sign of the
+//! force, so that a law cannot push.
 //!
 //! # Guarantees
 //!
 //! * Constructors refuse parameters out of bounds and those that contradict each other: a static level below the sliding
 //!   one, a loop that makes energy. The error names parameter, value, unit and bounds.
-//! * The coefficient of a law that exists is nowhere negative, and its limit at rest is not above the static level; states
+//! * The coefficient of a law is nowhere negative, and its limit at rest is not above the static level; states
 //!   of bristle laws stay within their [`bound`](BristleLaw::bound).
 //! * Special cases agree: [`Berger`] without excess is [`Coulomb`], bit for bit.
 //!
@@ -63,17 +64,14 @@
 //! # Neighbours
 //!
 //! [`fmm-sim`](https://docs.rs/fmm-sim) moves a machine under a law, [`fmm-identify`](https://docs.rs/fmm-identify) finds
-//! its parameters in a record; laws that are a list of elements, [`MaxwellSlip`] and [`Gms`], are the families [`MaxwellSlipOf`] and
-//! [`GmsOf`] for a given number of them;
-//! [`fmm-model`](https://docs.rs/fmm-model) has the number types.
+//! its parameters in a record, and [`fmm-model`](https://docs.rs/fmm-model) has the number types.
 //!
 //! # Features
 //!
 //! | feature | |
 //! |---|---|
 //! | `std` | on by default: elementary functions of the standard library |
-//! | `libm` | those of the crate libm where `std` is off, so that a controller evaluates a law; an allocator is needed for laws of a variable
-//! number of elements, and for messages |
+//! | `libm` | those of the crate libm where `std` is off, so that a controller evaluates a law; laws of a variable number of elements and messages need an allocator |
 
 #![cfg_attr(not(feature = "std"), no_std)]
 

@@ -1,6 +1,6 @@
-//! What a friction measuring machine *is*: a single-degree-of-freedom oscillator with its damping, and the two words that
-//! all FMM crates share, [`Parameter`] (name, symbol, unit, bounds) and [`Scalar`] (the number type that a formula is
-//! generic in).
+//! Machine model for friction measurement: a single-degree-of-freedom oscillator with its damping and its spring, and the types
+//! that all FMM crates share, such as [`Parameter`] (name, symbol, unit, bounds) and [`Scalar`] (the number type that a
+//! formula is generic in).
 //!
 //! ```
 //! use fmm_model::{Damping, Dual, Oscillator, Scalar};
@@ -24,14 +24,15 @@
 //! | frequencies, damping ratio, decrement, energy of mass and spring | [`Oscillator`]; of a record whose mass is not known, [`Oscillator::per_unit_mass`] |
 //! | a pendulum instead of a spring | [`Restoring::Sine`] |
 //! | a spring that hardens or softens | [`Restoring::Polynomial`] |
+//! | a spring with a stop, a preload or a gap | [`Restoring::stop`], [`Restoring::gap`] |
 //! | damping in powers of the velocity | [`Damping`] |
-//! | a line fitted to damping over *peak* velocities | [`Damping::from_peak_velocity_line`]; taken as a law of the velocity its drag would be 15 % too low |
+//! | a line fitted to damping over *peak* velocities | [`Damping::from_peak_velocity_line`]; the line taken as a law of the velocity makes the drag 15 % too low |
 //! | stiffness, stress, allowed deflection, parasitic motion of a guide | [`Flexure`], [`LeafSpring`] |
 //! | the lean of a shaft from two displacements | [`Tilt`] |
-//! | name, symbol, unit and limits of what is to be found | [`Parameter`], [`Bounds`] |
-//! | units that multiply and print, and what they are made of | [`Unit`], [`Dimension`] |
+//! | name, symbol, unit and limits of an unknown number | [`Parameter`], [`Bounds`] |
+//! | units that multiply and print, and their dimensions | [`Unit`], [`Dimension`] |
 //! | a formula with exact derivatives | write it over [`Scalar`], evaluate it at [`Dual`] |
-//! | a value with its standard uncertainty, and how a report writes it | [`Estimated`], [`Rounded`] |
+//! | a value with its standard uncertainty, and its form in a report | [`Estimated`], [`Rounded`] |
 //!
 //! # Units and conventions
 //!
@@ -40,15 +41,15 @@
 //!
 //! # Guarantees
 //!
-//! * Constructors check what they are given; a value that exists is valid, and what is asked of it cannot fail. What cannot
-//!   be, such as the damped frequency of an overdamped machine, is none.
+//! * Constructors check their arguments; a value that exists is valid, and its methods cannot fail. A result that does not
+//!   exist, such as the damped frequency of an overdamped machine, is `None`.
 //! * [`Dual`] gives the bits of `f64` as its value, so that branches do not depend on the number type.
 //!
 //! # Cost
 //!
-//! Nothing allocates but the texts of a [`Parameter`] made at run time. A [`Dual`] of N directions costs one `f64`
-//! operation and up to two products for each of the N; [`Damping::cycle_equivalent`] of a free power is a sum over a cycle,
-//! all else a few operations.
+//! Only the texts of a [`Parameter`] made at run time allocate. A [`Dual`] of N directions costs one `f64`
+//! operation and up to two products for each of the N. [`Damping::cycle_equivalent`] of a free power is a sum over a cycle;
+//! all other functions take a few operations.
 //!
 //! # Neighbours
 //!

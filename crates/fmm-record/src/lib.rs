@@ -1,5 +1,5 @@
-//! What was *measured*: a uniformly sampled [`Record`] with its quantity and unit, readers that find it in a file, and what
-//! must be known of it before a model is fitted.
+//! Measured records: a uniformly sampled [`Record`] with its quantity and unit, readers that find it in a file, and its
+//! examination before a model is fitted.
 //!
 //! ```
 //! use fmm_record::{Quantity, Record, Release, Swings, noise};
@@ -28,14 +28,14 @@
 //!
 //! | question | answer |
 //! |---|---|
-//! | what is in this file? | `open`: channels with units and rates, and a `Reading` of each, the record with the choices that led to it; `Reader` says what the file cannot tell; module `uff` for functions that are no records |
-//! | what did this channel measure, and in which unit? | [`Label`], what the file tells; [`Request`], what you say beside it; [`Meaning`], the answer |
+//! | what is in this file? | `open`: channels with units and rates, and a `Reading` of each, the record with the choices that led to it; a `Reader` adds what the file cannot tell; module `uff` for functions that are no records |
+//! | what did this channel measure, and in which unit? | [`Label`], the statement of the file; [`Request`], your statement; [`Meaning`], the answer |
 //! | when does motion begin, and what is the offset? | [`Release`] |
 //! | how does it swing? | [`Swings`]: peaks, crossings, frequency |
-//! | how good is it? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`], [`hum()`] |
-//! | is it one free vibration of a linear spring? | [`further_releases`], [`SecondMode`], [`period_change`] |
+//! | how good is the record? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`], [`hum()`] |
+//! | is it one free vibration of a linear spring? | [`further_releases`], [`Interruption`], [`SecondMode`], [`period_change`] |
 //! | another form of it? | [`Record::crop`], [`Record::scaled`], [`Record::shifted`], [`Record::smoothed_by`], [`Record::integrate`], [`Record::differentiate`]; at a uniform or another rate [`Resampling`] |
-//! | which smoothing? | for a fit none, as it correlates the noise; for a derivative [`savitzky_golay_derivative`]; [`moving_average`] to repeat what MATLAB's `smooth` or `movmean` did |
+//! | which smoothing? | none for a fit, as it correlates the noise; for a derivative [`savitzky_golay_derivative`]; [`moving_average`] to repeat what MATLAB's `smooth` or `movmean` did |
 //!
 //! # Units and conventions
 //!
@@ -47,9 +47,9 @@
 //!
 //! * A record has at least one sample, all finite, at equal intervals. Time stamps that are not uniform are an error that
 //!   says where.
-//! * Nothing is repaired in silence: what conditioning finds is reported, not removed, and a file that contradicts itself
-//!   is an error or, where its points can still be had, a warning.
-//! * No reader allocates on the word of a header, none panics on damaged bytes, and compressed data expand to 256 MB at
+//! * Nothing is repaired in silence: faults are reported, not removed. A file that contradicts itself
+//!   is an error or, where its points are still readable, a warning.
+//! * No reader allocates by a length that a header states, none panics on damaged bytes, and compressed data expand to 256 MB at
 //!   most.
 //!
 //! # Cost
@@ -59,14 +59,14 @@
 //!
 //! # Features
 //!
-//! A file whose reader is not compiled is refused with the name of the feature. `csv`, `mat` and `uff`, all on by default, are the readers of text, of MATLAB files of versions 5 to 7 and of Universal
-//! Files, which are also written; `hdf5` adds version 7.3 to `mat`, and `npy` reads files of NumPy. Without `csv`, `mat`,
-//! `hdf5` and `npy` the crate has no dependency but `thiserror`.
+//! `csv`, `mat` and `uff`, all on by default, read text, MATLAB files of versions 5 to 7, and Universal Files, which are also written.
+//! `hdf5` adds version 7.3 to `mat`, and `npy` reads files of NumPy. A file whose reader is not compiled is refused with the name of
+//! the feature. Without `mat`, `hdf5` and `npy` the crate depends on `realfft` and `thiserror` only.
 //!
 //! # Neighbours
 //!
-//! [`fmm-identify`](https://docs.rs/fmm-identify) makes friction of a record, [`fmm-frf`](https://docs.rs/fmm-frf) a
-//! frequency response of two.
+//! [`fmm-identify`](https://docs.rs/fmm-identify) identifies friction from a record, [`fmm-frf`](https://docs.rs/fmm-frf) a
+//! frequency response from two.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

@@ -1,5 +1,4 @@
-//! What would *happen*: the motion of an oscillator with a sliding contact, exact through every stop and reversal, with its
-//! exact gradient.
+//! Simulation of an oscillator with a sliding contact, through every stop and reversal, with its gradient.
 //!
 //! ```
 //! use fmm_friction::Coulomb;
@@ -23,24 +22,23 @@
 //! Stick and slip form a hybrid automaton. While the contact slips in one direction the equation of motion is smooth; when
 //! the relative velocity reaches zero the load on the contact decides whether it sticks or slips back. There is no velocity
 //! dead zone and no smoothed signum; the set of loads that stick is closed,
-//! |load| ≤ static level. The automaton is the same for all laws of the sliding speed; engines differ in how they follow
-//! one stretch of sliding.
+//! |load| ≤ static level. The automaton is the same for all laws of the sliding speed; engines differ in the method for
+//! one phase of sliding.
 //!
-//! | engine | for | how | not for |
+//! | engine | for | method | not for |
 //! |---|---|---|---|
 //! | [`Exact`] | piecewise linear laws on a linear machine | closed form between events; event times in closed form or by steps that provably miss none | nonlinear damping, a pendulum, resonance without damping, no spring or next to none |
-//! | [`RungeKutta`] | any law of the sliding speed, any machine | order 8 from event to event, landing on each, to a tolerance | what [`Exact`] can do |
-//! | [`Bristle`] | laws with internal state | an L-stable collocation method, landing on every zero of the velocity and every yield | [`MaxwellSlip`](fmm_friction::MaxwellSlip) on a linear machine, which [`Exact`] can do |
+//! | [`RungeKutta`] | any law of the sliding speed, any machine | order 8 from event to event, landing on each, to a tolerance | cases that [`Exact`] takes |
+//! | [`Bristle`] | laws with internal state | explicit steps, and an L-stable collocation method where the law is stiff, landing on every zero of the velocity and every yield | [`MaxwellSlip`](fmm_friction::MaxwellSlip) on a linear machine, which [`Exact`] can do |
 //! | [`Moreau`] | cross-check | time stepping of the set-valued law, of first order | fits: no derivatives |
 //! | [`Thesis`] | reproduction of the thesis only | the appendix' semi-implicit Euler, branch for branch | fits: its sum of squares jumps |
 //!
-//! The first three give gradients in every input, through every event: [`Exact`] to rounding, the others as well as their pages
-//! say. [`simulate`] takes the engine that suits the law; [`Trajectory::engine`] says which one ran. What acts
-//! from outside is an
-//! [`Excitation`], several of which add up; a release or a push is an initial state. The [`Work`] done by friction, damping
-//! and excitation comes along on request. A contact whose motion is given has no need of an engine: [`friction_along`].
+//! The first three give gradients in every input, through every event: [`Exact`] to rounding, the others to the accuracy that their
+//! pages state. [`simulate`] takes the engine that suits the law; [`Trajectory::engine`] names it. External actions are
+//! [`Excitation`]s, which add up; a release or a push is an initial state. The [`Work`] done by friction, damping
+//! and excitation comes along on request. A contact whose motion is given needs no engine: [`friction_along`].
 //!
-//! # How to write it
+//! # Scenarios of common machines
 //!
 //! | machine | scenario |
 //! |---|---|
@@ -82,12 +80,12 @@
 //!
 //! # Guarantees
 //!
-//! * *Events* are in order and carry their [`margin`](Event::margin), how narrowly they were decided. [`Exact`] misses none
+//! * *Events* are in order and carry their [`margin`](Event::margin), the distance of the load from the static level. [`Exact`] misses none
 //!   and decides ties by comparing the numbers as they are; [`RungeKutta`] and [`Bristle`] land on each zero of their
 //!   polynomials, which Bernstein coefficients prove to be all.
-//! * *Derivatives* include those of the event times. They do not see that the number of half swings may change, which a
-//!   margin near zero announces.
-//! * *Errors* are typed: a motion with more events or steps than any record can show, or one that leaves the range of
+//! * *Derivatives* include those of the event times. They do not see that the number of half swings may change; a
+//!   margin near zero warns of it.
+//! * *Errors* are typed: a motion with too many events or steps for any record, or one that leaves the range of
 //!   numbers, is an error, not an endless run, a panic or a NaN.
 //! * *The same arguments give the same bits*, in any order of calls and on any thread.
 //!

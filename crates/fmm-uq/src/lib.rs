@@ -1,5 +1,5 @@
 //! Measurement uncertainty after the *Guide to the expression of uncertainty in measurement* (GUM, JCGM 100:2008) and its
-//! supplements (JCGM 101:2008, JCGM 102:2011): a measurement is a set of [`Inputs`] and a function of them.
+//! supplements (JCGM 101:2008, JCGM 102:2011). A measurement is a set of [`Inputs`] and a function of them.
 //!
 //! ```
 //! use fmm_uq::{Input, Inputs, MonteCarlo, Scalar, propagate};
@@ -31,14 +31,14 @@
 //! | question | answer | not for |
 //! |---|---|---|
 //! | what is known of an input? | [`Distribution`], [`Input`], [`Observations`] (type A), [`Inputs`] (correlated) | |
-//! | what follows for the result, if the model is nearly linear? | [`propagate`], [`Gum`]: a [`Budget`] | models that jump; [`Linearisation`] says where they bend too much |
+//! | uncertainty of the result of a nearly linear model? | [`propagate`], [`Gum`]: a [`Budget`] | models that jump; [`Linearisation`] flags models that bend too much |
 //! | the same for a model that takes plain numbers, such as a fit? | [`Gum::propagate_by_differences`] | |
-//! | what follows if it is not? | [`MonteCarlo`]: an [`OutputSample`] | models of a second a trial, unless many machines share it |
-//! | how many trials? | [`Adaptive`], until the digits stand | a cost that must be known before |
-//! | was the GUM good enough? | [`validate`], with [`Adaptive::for_validation`] | |
+//! | uncertainty of the result of any other model? | [`MonteCarlo`]: an [`OutputSample`] | models of a second a trial, unless many machines share the run |
+//! | how many trials? | [`Adaptive`], until the digits are stable | a cost that must be known in advance |
+//! | is the interval of the GUM valid? | [`validate`], with [`Adaptive::for_validation`] | |
 //! | which input matters? | [`Budget::contributions`]; with interactions [`variance_shares`] (Sobol'); [`MonteCarlo::run_one_at_a_time`] | [`variance_shares`]: correlated inputs |
 //! | what if a trial takes a second? | [`QuasiMonteCarlo`]; or many machines and [`Partial`] results | [`QuasiMonteCarlo`]: more than 64 dimensions, models with kinks |
-//! | what if the model is known at run time only, as a text? | `Formula` (feature `formula`) | models with conditions or loops |
+//! | what if the model is a text, known at run time only? | `Formula` (feature `formula`) | models with conditions or loops |
 //! | how is a result stated? | a [`Budget`] prints; [`Budget::statement`], [`MonteCarlo::statement`], [`Budget::to_csv`] | |
 //! | what differs between runs, laboratories or specimens? | [`AnalysisOfVariance`], [`Precision`] | |
 //! | which value do several results agree on? | [`Consensus`] | results that share an error |
@@ -57,9 +57,9 @@
 //!
 //! * The bits of a run depend on seed, inputs, model and number of trials: not on the number of threads, nor on how blocks
 //!   are spread over machines of one kind.
-//! * Invalid results are errors or flagged: impossible correlations, results that are no numbers, degrees of
-//!   freedom outside the Welch–Satterthwaite formula, a first-order uncertainty of zero, and failed trials are told apart.
-//! * One trial that fails is an error, unless [a share](MonteCarlo::with_allowed_failures) is allowed; then all are
+//! * Invalid results are errors or flagged: impossible correlations, results that are not finite, degrees of
+//!   freedom outside the Welch–Satterthwaite formula, a first-order uncertainty of zero, and failed trials.
+//! * One failed trial is an error, unless [a share](MonteCarlo::with_allowed_failures) is allowed; then all failures are
 //!   counted.
 //!
 //! # Cost
@@ -68,7 +68,7 @@
 //! |---|---|---|
 //! | [`propagate`] | n²/2 + 2n evaluations of [`Taylor`] numbers, n/2 for the first order alone | 4.5 µs for four inputs |
 //! | [`MonteCarlo`] | M evaluations and n M draws; 8 bytes a value | 29 ns a trial of four normal inputs |
-//! | intervals | M values put in order | 2 ns a trial; the shortest 4 to 8 ns |
+//! | intervals | M values partly sorted | 2 ns a trial; the shortest 4 to 8 ns |
 //! | [`variance_shares`] | M (n + 2) evaluations | 21 ns each |
 //!
 //! # Features

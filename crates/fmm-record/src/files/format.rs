@@ -8,7 +8,7 @@ use crate::RecordError;
 pub enum Format {
     /// Columns of numbers as text (CSV, TSV, LVM, …).
     Text,
-    /// MATLAB, versions 4 to 7.
+    /// MATLAB, versions 5 to 7; version 4 is recognised and refused.
     Matlab,
     /// HDF5, which MATLAB writes as version 7.3.
     Hdf5,
