@@ -43,9 +43,9 @@ impl LawParameter {
         Self { parameter, role, typical: 1.0 }
     }
 
-    /// The same parameter with a value that a fit may begin at, relative to the scales of the motion at hand: friction
-    /// coefficients to that of Coulomb friction with the same losses (or their excess over another), speeds to the largest, lengths
-    /// to the amplitude, and numbers as they are. It is 1 unless it is set.
+    /// The same parameter with a start value for fits, relative to the scales of the motion (1). The scale of a coefficient
+    /// (or of its excess over another) is the Coulomb coefficient with the same losses, that of a speed the largest speed, that of a length the
+    /// amplitude, and that of a pure number 1. The start value is 1 unless it is set.
     #[must_use]
     pub const fn typically(mut self, relative: f64) -> Self {
         self.typical = relative;

@@ -46,8 +46,8 @@ where
     Ok(trajectory)
 }
 
-/// Simulates `scenario` with the engine that suits the laws of family `F`, as [`simulate`] does, into `trajectory`; to a relative
-/// `tolerance` (1) instead of the engine's own, if one is given and the engine has one: a Runge-Kutta run to 1e-10 takes half as long.
+/// Simulates `scenario` with the engine that suits the laws of family `F`, as [`simulate`] does, into `trajectory`. A relative
+/// `tolerance` (1) replaces that of the engine, if the engine has one: a Runge-Kutta run to 1e-10 takes half as long.
 ///
 /// # Errors
 /// As [`Engine::run_into`], and [`SimulationError::OutOfRange`] for a tolerance outside 1e-15 to 1e-2, whether the engine has one or

@@ -6,14 +6,14 @@ use crate::{Sampling, Scenario, SimulationError, Trajectory};
 
 /// A way to simulate a scenario whose contact obeys a law of type `L`, at number type `D`.
 ///
-/// Which engine takes which law is said by the bounds of its implementation, not found out at run time. An
+/// The bounds of an implementation state the laws that an engine takes; nothing is decided at run time. An
 /// implementor promises:
 ///
 /// 1. every sample asked for is written, and a sample at the time of an event holds the state after it;
 /// 2. events are in order of time, begin with [`Start`](crate::EventKind::Start), and end with the last one
 ///    before or at the last sample;
 /// 3. at a dual number the derivatives include those of the event times;
-/// 4. the result depends on the arguments only, and nothing not finite is returned.
+/// 4. the result depends on the arguments only, and all its numbers are finite.
 pub trait Engine<D: Scalar, L> {
     /// Simulates `scenario` into `trajectory`, whose memory is used again.
     ///

@@ -71,9 +71,8 @@ impl<D: Scalar> Excitation<D> {
         Ok(Self::of(Source::Ramp { force, rate: D::from(0.0) }))
     }
 
-    /// A force that is a function of time, `force` giving it (N) at t = 0, `interval`, 2 `interval`, … up to `duration` (s): straight
-    /// lines between these times, which are off by up to `interval`²/8 times the curvature of the force, and no force after the
-    /// last.
+    /// A force as a function of time. `force` gives it (N) at t = 0, `interval`, 2 `interval`, … up to `duration` (s). Between these times
+    /// it is a straight line, with an error of up to `interval`²/8 times the curvature of the force; after the last there is no force.
     ///
     /// ```
     /// use fmm_friction::Coulomb;

@@ -104,10 +104,10 @@ impl Resampling {
     /// Brings `values` at `times` (s), which increase, to the rate. The first sample is at the first of the times.
     ///
     /// # Errors
-    /// [`RecordError::TimeAxis`] for times that are not as many as the values, fewer than two, not finite, not increasing, or
-    /// so far apart that a motion of this band is not known by a tenth; [`RecordError::Values`] for values that are not
-    /// finite; [`RecordError::Options`] if the band is above 0.45 of the mean rate of the samples, or for more samples than a
-    /// memory holds.
+    /// * [`RecordError::TimeAxis`] for times whose number is not that of the values, fewer than two times, times that are not finite or not
+    ///   increasing, or that are so far apart that the error exceeds a tenth of a motion of this band;
+    /// * [`RecordError::Values`] for values that are not finite;
+    /// * [`RecordError::Options`] if the band is above 0.45 of the mean rate of the samples, or for more samples than a memory holds.
     pub fn of(&self, times: &[f64], values: &[f64]) -> Result<Resampled, RecordError> {
         let mean_rate = checked(times, values)?;
         if self.band > WIDEST * mean_rate {

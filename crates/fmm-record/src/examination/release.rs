@@ -33,12 +33,12 @@ impl Release {
     /// Motion has begun where four samples in a row lie off the mean of the rest on the same side, by more than a
     /// band: five standard deviations of its white noise, four of all its noise, 1.5 steps of the converter, 0.5 % of
     /// half the record's range. A motion near its turning point stays within such a band for a while too. A rest
-    /// must therefore last longer than a sine does that reaches the first extremum of the record in the time that
-    /// the record takes.
+    /// must therefore last longer than a sine stays there that reaches the first extremum of the record in the same time as
+    /// the record.
     ///
-    /// The instant is fitted to the rest and the first quarter of the way to that extremum, as an oscillator leaves
-    /// its rest when it is let go: a velocity as sin φ, a displacement as 1 − cos φ, with φ running to the extremum;
-    /// an acceleration leaves in a step. (Force and other quantities are taken like a velocity.)
+    /// The instant is fitted to the rest and the first quarter of the way to that extremum, with the motion of an oscillator that
+    /// is let go: a velocity follows sin φ, a displacement 1 − cos φ, with φ running to the extremum; an acceleration jumps.
+    /// (Force and other quantities are taken like a velocity.)
     ///
     /// ```
     /// use fmm_record::{Quantity, Record, Release};

@@ -55,10 +55,10 @@ pub(crate) fn beats(record: &Record) -> bool {
 impl SecondMode {
     /// Looks for a second mode in `record`; `None` if the record shows one vibration that decays.
     ///
-    /// Two signs are looked for. A mode far from the first has a line of its own in the spectrum of the motion, of its
-    /// first half, quarter or eighth: above the noise as in [`hum`](crate::hum()), of 1 % of the motion at least, and not at a
-    /// multiple of its frequency, where friction and restoring forces that are not linear have harmonics, unless it is
-    /// larger than those of friction are. (If the period changes with the amplitude, time is measured in half swings.)
+    /// There are two signs. A mode far from the first has a line of its own in the spectrum of the motion, or of its
+    /// first half, quarter or eighth. The line must stand above the noise as in [`hum`](crate::hum()) and have 1 % of the motion at least.
+    /// At multiples of the first frequency friction and nonlinear restoring forces have harmonics; there it must be larger
+    /// than harmonics of friction are. (If the period changes with the amplitude, time is measured in half swings.)
     ///
     /// A mode near to the first makes the half swings larger and smaller by turns. A cubic in their number k for
     /// their heights, the logarithms or the inverses of them describes a decay by dry friction, viscous or quadratic damping.

@@ -45,10 +45,15 @@ use crate::{Column, Quantity, Reading, RecordError, Resampling};
 /// `[1]`. A position counts all vectors, and the rows or columns of matrices (whichever are longer), from 0. Where none is
 /// named, the file must have exactly one array that can be it: a vector, or a matrix of time and one more series.
 ///
-/// The rate is, in this order: given; from the time stamps given; from the first column or row of the channel's own matrix, if
-/// it increases uniformly and not by whole numbers; from a vector called `t`, `time` or the like of the same length, in the
-/// unit of time that its name tells; from a scalar whose name says rate or interval, such as `fs`, `ActualRate`,
-/// `sample_rate`, `dt`, `Ts`, in any case. What lies in the same structure goes before what lies around it.
+/// The rate comes from the first of these that exists:
+///
+/// 1. the rate given;
+/// 2. the time stamps given;
+/// 3. the first column or row of the channel's own matrix, if it increases uniformly and not by whole numbers;
+/// 4. a vector called `t`, `time` or the like of the same length, in the unit of time that its name tells;
+/// 5. a scalar whose name means rate or interval, such as `fs`, `ActualRate`, `sample_rate`, `dt`, `Ts`, in upper or lower case.
+///
+/// Variables of the same structure come before those around it.
 ///
 /// # Universal Files
 ///

@@ -33,14 +33,14 @@ use slide::Integrator;
 /// slope that is infinite at rest (1e-9 at a tolerance of 1e-10).
 ///
 /// `tolerance` bounds the local error of a step relative to the amplitude of the motion. An acceleration within rounding of the
-/// forces counts as none where a branch of the law hangs on its sign.
+/// forces counts as zero where its sign decides the branch of the law.
 ///
 /// At a dual number the steps are those of the plain number, and derivatives include the change of event times. Their own
 /// error is watched: in a step in which a steep law parts neighbouring motions, they are found with the speed as the
 /// independent variable, so that an infinite slope at rest costs nothing. Where friction jumps at the speed of a dead zone
-/// ([`Karnopp`](fmm_friction::Karnopp)), a step ends and the derivatives jump with it. They have been found good to 1e-8 of
-/// themselves (1e-6 at a tolerance of 1e-10); but to 1e-5 (1e-3) where a contact breaks away while friction falls with the
-/// root of the speed (Stribeck with an exponent of ½), as its speed is no measure of time then.
+/// ([`Karnopp`](fmm_friction::Karnopp)), a step ends and the derivatives jump with it. The measured relative error of
+/// derivatives is 1e-8 (1e-6 at a tolerance of 1e-10). It is 1e-5 (1e-3) where a contact breaks away while friction falls with the
+/// root of the speed (Stribeck with an exponent of ½), as the speed cannot replace the time there.
 ///
 /// A law need only be a formula; where it has kinks or an infinite slope (power laws at zero speed) the steps become short
 /// there. Where friction without a static level balances a weak force at a speed near rest, the slope of such a law limits them for as

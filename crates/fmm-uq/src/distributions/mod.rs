@@ -151,8 +151,7 @@ impl Distribution {
     /// uncertainty U with coverage factor k, s is U/k. The standard deviation is s √(ν/(ν − 2)), and infinite for ν ≤ 2.
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless x is finite and s positive and finite;
-    /// [`UncertaintyError::OutOfRange`] if ν is below 1 or NaN.
+    /// [`UncertaintyError::OutOfRange`] unless x is finite, s positive and finite, and ν at least 1.
     pub fn student_t(mean: f64, scale: f64, degrees_of_freedom: f64) -> Result<Self, UncertaintyError> {
         let (mean, scale) = (finite("mean", mean)?, positive("scale of a t-distribution", scale)?);
         let nu = UncertaintyError::require_degrees_of_freedom("a t-distribution", degrees_of_freedom)?;
@@ -208,8 +207,8 @@ impl Distribution {
     /// Its mean and standard deviation are those between the limits, not x and u.
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless a < b; [`UncertaintyError::OutOfRange`] unless x is finite and
-    /// u positive and finite, and if the limits leave no more than some 1e-290 of the distribution.
+    /// [`UncertaintyError::OutOfRange`] unless a < b, x is finite, and u positive and finite, or if the limits leave no more than some
+    /// 1e-290 of the distribution.
     pub fn truncated_normal(
         mean: f64,
         standard_deviation: f64,

@@ -23,8 +23,7 @@ use crate::distributions::student;
 /// ```
 ///
 /// # Errors
-/// [`UncertaintyError::OutOfRange`] unless 0 < level < 1, and
-/// [`UncertaintyError::OutOfRange`] if ν is below 1 or NaN.
+/// [`UncertaintyError::OutOfRange`] unless 0 < level < 1 and ν ≥ 1.
 ///
 /// # References
 /// M. Abramowitz, I. A. Stegun, *Handbook of Mathematical Functions*, 26.7.5.

@@ -90,11 +90,10 @@ impl<'a> Gum<'a> {
     /// Propagates with exact derivatives.
     ///
     /// # Errors
-    /// [`UncertaintyError::Model`] with the model's own error as its source,
-    /// [`UncertaintyError::Model`], each with the values of the inputs;
-    /// [`UncertaintyError::Model`] if there is no output, [`UncertaintyError::Model`] if their number
-    /// changes; and, of contributions that are finite, [`UncertaintyError::OutOfRange`] if their sum overflows
-    /// and [`UncertaintyError::NoAnswer`] if they all vanish though inputs and slopes do not.
+    /// [`UncertaintyError::Model`] if the model fails (with its own error as the source), gives a result or a sensitivity that is not finite
+    /// (with the values of the inputs), gives other results for the same inputs, has no output, or changes their number.
+    /// [`UncertaintyError::OutOfRange`] if the sum of finite contributions overflows; [`UncertaintyError::NoAnswer`] if all contributions vanish
+    /// by underflow.
     ///
     /// # Panics
     /// If the model does.

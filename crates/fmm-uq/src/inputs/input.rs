@@ -38,8 +38,8 @@ impl Input {
     /// A normally distributed input of infinite degrees of freedom; `unit` is `"1"` for a pure number.
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`], [`UncertaintyError::OutOfRange`] or, if the uncertainty is negative or
-    /// not finite, [`UncertaintyError::OutOfRange`].
+    /// [`UncertaintyError::Inputs`] for an empty name; [`UncertaintyError::OutOfRange`] if the value is not finite, or the uncertainty negative
+    /// or not finite.
     pub fn new(
         name: impl Into<String>,
         value: f64,

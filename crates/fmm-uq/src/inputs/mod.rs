@@ -77,8 +77,8 @@ impl Inputs {
     /// by which they miss; take them from the observations instead.
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`], [`UncertaintyError::OutOfRange`] or
-    /// [`UncertaintyError::Inputs`].
+    /// [`UncertaintyError::Inputs`] for an unknown name, an input with itself, a pair given twice, or coefficients that are impossible together;
+    /// [`UncertaintyError::OutOfRange`] for a coefficient outside [−1, 1].
     pub fn with_correlations(mut self, coefficients: &[(&str, &str, f64)]) -> Result<Self, UncertaintyError> {
         let mut seen = Vec::with_capacity(coefficients.len());
         for &(first, second, value) in coefficients {

@@ -104,7 +104,7 @@ impl<'a> MonteCarlo<'a> {
     /// A fixed number of trials, with seed 0.
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] for zero trials; [`UncertaintyError::OutOfRange`] beyond 2⁵³.
+    /// [`UncertaintyError::OutOfRange`] for zero trials or more than 2⁵³.
     pub fn new(inputs: &Inputs, trials: u64) -> Result<Self, UncertaintyError> {
         const MOST: u64 = 1 << 53;
         match trials {
@@ -166,11 +166,11 @@ impl<'a> MonteCarlo<'a> {
     /// Runs all trials and pools them.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooManyFailures`] as soon as that is certain and none may fail;
-    /// [`UncertaintyError::Model`]; [`UncertaintyError::Cancelled`]; [`UncertaintyError::Model`];
-    /// [`UncertaintyError::OutOfRange`] if the squares of the values overflow. For an adaptive run also [`UncertaintyError::NotStable`] at its
-    /// largest number of trials, [`UncertaintyError::TooFewTrials`], and [`UncertaintyError::NoAnswer`] if an
-    /// input has Student's t of ν ≤ 2.
+    /// [`UncertaintyError::TooManyFailures`] if more trials fail than allowed; where none may fail, at the first failure.
+    /// [`UncertaintyError::Model`] if no trial succeeds, or the number of outputs changes. [`UncertaintyError::Cancelled`] if the observer of the
+    /// progress ends the run. [`UncertaintyError::OutOfRange`] if the squares of the values overflow. For an adaptive run also
+    /// [`UncertaintyError::NotStable`] at its largest number of trials, [`UncertaintyError::TooFewTrials`] if that number is too small for the
+    /// rule, and [`UncertaintyError::NoAnswer`] if an input has Student's t of ν ≤ 2.
     ///
     /// # Panics
     /// If the model does: a panic ends the run and passes through. What may fail should give back an error.
@@ -218,8 +218,8 @@ impl<'a> MonteCarlo<'a> {
     /// Pools the trials of a complete partial result; for an adaptive run, those up to the stop.
     ///
     /// # Errors
-    /// [`UncertaintyError::Partial`] with the first block that is still needed;
-    /// [`UncertaintyError::Partial`] if it is of another run; and those of [`MonteCarlo::run`].
+    /// [`UncertaintyError::Partial`] if it is of another run, or with the first block that is still needed; and those of
+    /// [`MonteCarlo::run`].
     pub fn finish(&self, partial: Partial) -> Result<OutputSample, UncertaintyError> {
         self.finish_plan(partial)
     }

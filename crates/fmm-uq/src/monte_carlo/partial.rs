@@ -87,8 +87,7 @@ impl Partial {
     /// Both parts as one; the order does not matter.
     ///
     /// # Errors
-    /// [`UncertaintyError::Partial`] if seed, inputs or number of outputs differ, and
-    /// [`UncertaintyError::Partial`].
+    /// [`UncertaintyError::Partial`] if seed, inputs or number of outputs differ, or a block is in both.
     pub fn merge(mut self, other: Self) -> Result<Self, UncertaintyError> {
         for (what, first, second) in
             [("seeds", self.seed, other.seed), ("inputs (by fingerprint)", self.inputs, other.inputs)]

@@ -44,12 +44,10 @@ pub struct VarianceShare {
 /// the row is left out for all; `allowed_failures` is the share of rows for which that may happen.
 ///
 /// # Errors
-/// [`UncertaintyError::NoAnswer`]: shares of a variance need independent inputs.
-/// [`UncertaintyError::OutOfRange`] for fewer than 10 blocks of 1000 trials, from which the errors come, or a share
-/// outside [0, 1); [`UncertaintyError::OutOfRange`]; [`UncertaintyError::Model`];
-/// [`UncertaintyError::NoAnswer`] if an input has Student's t of ν ≤ 2;
-/// [`UncertaintyError::OutOfRange`] if the squares of the values overflow, [`UncertaintyError::NoAnswer`] if they
-/// vanish.
+/// [`UncertaintyError::NoAnswer`] if inputs are correlated, an input has Student's t of ν ≤ 2, the output does not vary, or the squares of
+/// the values vanish. [`UncertaintyError::OutOfRange`] for fewer than 10 blocks of 1000 trials, from which the errors come, for more than
+/// 2⁴⁰ trials, for a share outside [0, 1), or if the squares of the values overflow. [`UncertaintyError::Model`] if more rows fail than
+/// allowed, or all.
 ///
 /// # Panics
 /// If the model does.

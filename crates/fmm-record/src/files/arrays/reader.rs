@@ -12,10 +12,7 @@ impl ArrayFile {
     /// The channel is a vector, or a row or column of a matrix. Where none is named, a matrix must have two columns, or two
     /// rows, the first of them time. Where no array is named, the file must have exactly one that can be the channel.
     ///
-    /// The rate is, in this order: given; from the time stamps given; from the first column or row of the channel's own
-    /// matrix, if it increases uniformly and not by whole numbers; from a vector called `t`, `time` or the like of the same
-    /// length, in the unit of time that its name tells; from a scalar whose name says rate or interval, such as `fs`,
-    /// `ActualRate`, `sample_rate`, `dt`, `Ts`, in any case. What lies in the same structure goes before what lies around it.
+    /// The page of [`Reader`] has the sources of the rate, in their order.
     pub(crate) fn read(&self, reader: &Reader) -> Result<Reading, RecordError> {
         let given_time = reader.time.as_ref().map(|time| self.slice(time)).transpose()?;
         let channel = match &reader.channel {
