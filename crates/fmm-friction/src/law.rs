@@ -10,10 +10,9 @@ use fmm_model::Scalar;
 /// 2. for every speed ≥ 0 the coefficient is finite and not negative, so that friction never pushes;
 /// 3. the coefficient in the limit of zero speed does not exceed `breakaway`.
 ///
-/// The *sign* is the engine's business. A law never sees a direction, only a speed, so it cannot return a force
-/// along the motion, and no law needs a dead zone or a smoothed signum. A single method taking a velocity was
-/// turned down for that reason, and a method taking the load as well because a law would then have to decide
-/// between stick and slip, which depends on the machine.
+/// The engine sets the *sign*. A law sees only a speed and no direction, so that it cannot return a force along the motion, and no law
+/// needs a dead zone or a smoothed signum. For this reason there is no single method that takes a velocity. There is none
+/// that takes the load either: a law would then have to decide between stick and slip, which depends on the machine.
 ///
 /// ```
 /// use fmm_friction::SlidingLaw;
@@ -83,7 +82,7 @@ impl Regime {
         index < Self::CAPACITY && self.0 >> index & 1 == 1
     }
 
-    /// The same, with the element of this `index` sliding.
+    /// The same regime with the element of this `index` sliding.
     #[must_use]
     pub const fn sliding(self, index: usize) -> Self {
         if index < Self::CAPACITY { Self(self.0 | 1 << index) } else { self }

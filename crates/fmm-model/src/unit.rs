@@ -45,7 +45,7 @@ impl Unit {
         product(&mut rest, DEEPEST).filter(|_| rest.is_empty()).unwrap_or_else(whole)
     }
 
-    /// Its product with `other`.
+    /// Product of this unit and `other`.
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {
         let mut product = self.clone();
@@ -53,19 +53,19 @@ impl Unit {
         product
     }
 
-    /// Its quotient by `other`.
+    /// Quotient of this unit by `other`.
     #[must_use]
     pub fn per(&self, other: &Self) -> Self {
         self.times(&other.power(-1))
     }
 
-    /// Its power `n`.
+    /// Power `n` of this unit.
     #[must_use]
     pub fn power(&self, n: i32) -> Self {
         self.raised(f64::from(n))
     }
 
-    /// The same with `other` in the place of `symbol`.
+    /// This unit with `other` in the place of `symbol`.
     #[must_use]
     pub fn with(&self, symbol: &str, other: &Self) -> Self {
         let mut result = Self::default();

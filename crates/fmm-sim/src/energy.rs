@@ -7,7 +7,7 @@ use crate::{Scenario, State, Trajectory, Work};
 pub struct Energy {
     /// m x′²/2 (J).
     pub kinetic: f64,
-    /// In the spring, zero at the origin (J).
+    /// Energy in the spring, zero at the origin (J).
     pub potential: f64,
     /// Work of friction, damping and excitation since t = 0.
     pub work: Work,

@@ -29,7 +29,7 @@ pub struct BackboneOptions {
 }
 
 impl BackboneOptions {
-    /// Of the mode nearest to `frequency` (Hz), within a fifth of it; of the strongest one that decays unless it is given.
+    /// Takes the mode nearest to `frequency` (Hz), within a fifth of it; of the strongest one that decays unless it is given.
     ///
     /// # Errors
     /// [`FrfError::OutOfRange`] if it is not positive.

@@ -70,9 +70,9 @@ impl Source {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Channel {
-    /// Its name, and what the file tells of its quantity and unit.
+    /// Its name, and its quantity and unit if the file states them.
     pub label: Label,
-    /// By what [`DataFile::channel`] reads it, whether or not names are alike. The time counts as well.
+    /// Position by which [`DataFile::channel`] reads it, even if names are alike. The time counts as well.
     pub position: usize,
     /// Its sampling rate (Hz); `None` if the file does not tell it, or if the channel is no record over time.
     pub rate: Option<f64>,

@@ -38,7 +38,7 @@ pub struct AnalysisOfVariance {
 }
 
 impl AnalysisOfVariance {
-    /// Of at least two groups of one observation or more, of two or more in one of them.
+    /// Analysis of at least two groups, each with one observation or more, and one of them with two or more.
     ///
     /// # Errors
     /// [`UncertaintyError::TooFewObservations`]; [`UncertaintyError::Inputs`] for fewer than two groups or an empty one;

@@ -70,7 +70,7 @@ pub struct OutlyingPair {
 }
 
 impl Precision {
-    /// Of at least two groups.
+    /// Precision of at least two groups.
     ///
     /// # Errors
     /// Those of [`AnalysisOfVariance::of`].

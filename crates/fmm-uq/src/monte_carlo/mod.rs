@@ -114,7 +114,7 @@ impl<'a> MonteCarlo<'a> {
         }
     }
 
-    /// As many trials as it takes for stable results.
+    /// A number of trials that makes the results stable by `rule`, with seed 0.
     pub fn adaptive(inputs: &Inputs, rule: Adaptive) -> Self {
         Self::with_plan(inputs.clone(), Plan::Adaptive(rule))
     }
