@@ -20,7 +20,7 @@ impl Channel {
     /// time stamps of six digits.
     ///
     /// # Errors
-    /// [`FrfError::Mismatch`].
+    /// [`FrfError::Mismatch`] in both cases.
     pub fn require(self, record: &Record, quantity: Quantity, rate: f64) -> Result<(), FrfError> {
         let found = record.quantity();
         if found != quantity {
@@ -39,7 +39,7 @@ impl Channel {
     /// other.
     ///
     /// # Errors
-    /// [`FrfError::Mismatch`].
+    /// [`FrfError::Mismatch`] in both cases.
     pub fn require_together(force: &Record, response: &Record) -> Result<(), FrfError> {
         if force.len() != response.len() {
             return Err(FrfError::sample_count(Self::Response, force.len(), response.len()));

@@ -48,7 +48,7 @@ impl<D: Scalar> Restoring<D> {
     /// another sign than x it restores nothing; engines refuse a motion that gets there.
     ///
     /// # Errors
-    /// [`ModelError::NotFinite`].
+    /// [`ModelError::NotFinite`] for either term.
     pub fn polynomial(cubic: D, quintic: D) -> Result<Self, ModelError> {
         ModelError::require_finite("cubic term of the spring", cubic.value(), "1/m²")?;
         ModelError::require_finite("quintic term of the spring", quintic.value(), "1/m⁴")?;
@@ -84,7 +84,7 @@ impl<D: Scalar> Restoring<D> {
     /// and the natural frequency of the [oscillator](crate::Oscillator) are those beyond the gap.
     ///
     /// # Errors
-    /// [`ModelError::Negative`].
+    /// [`ModelError::Negative`] unless the gap is zero or positive.
     pub fn gap(gap: D) -> Result<Self, ModelError> {
         ModelError::require_not_negative("gap", gap.value(), "m")?;
         Ok(Self::Bilinear { corner: gap, inner: D::from(0.0), outer: D::from(1.0) })

@@ -125,9 +125,9 @@ impl TrialAverage {
     /// Adds a trial: its `force` (N) and its `response` (SI unit), sample by sample at the same times.
     ///
     /// # Errors
-    /// [`FrfError::Mismatch`], [`FrfError::Values`], [`FrfError::NoForce`],
-    /// [`FrfError::Outside`], and [`FrfError::NotDefined`] if ratios are kept and a line has none. The average is
-    /// then what it was before.
+    /// [`FrfError::Mismatch`] for channels of another length, [`FrfError::Values`] for samples that are not finite, [`FrfError::NoForce`] for a
+    /// force that is zero throughout, [`FrfError::Outside`] for a baseline or window outside the record, and [`FrfError::NotDefined`] if ratios are
+    /// kept and the force is zero at a line. The average is then unchanged.
     pub fn add(&mut self, force: &[f64], response: &[f64]) -> Result<(), FrfError> {
         let slot = self.waiting;
         self.transform.run(slot, force, response)?;
@@ -227,9 +227,8 @@ impl TrialAverage {
     /// The response by `estimator`.
     ///
     /// # Errors
-    /// [`FrfError::TooFew`]; [`FrfError::NotDefined`] at a line where the estimator
-    /// would divide by zero; [`FrfError::RatiosNotKept`] for the mean of ratios; [`FrfError::Values`] if it
-    /// overflows.
+    /// [`FrfError::TooFew`] without a trial; [`FrfError::NotDefined`] at a line where the estimator would divide by zero;
+    /// [`FrfError::RatiosNotKept`] for the mean of ratios; [`FrfError::Values`] if it overflows.
     pub fn estimate(&self, estimator: Estimator) -> Result<FrequencyResponse, FrfError> {
         if self.trials == 0 {
             return Err(FrfError::no_trials());
@@ -283,8 +282,7 @@ impl TrialAverage {
     /// γ² = |S_fv|²/(S_ff S_vv), the share of the response that is a multiple of the force.
     ///
     /// # Errors
-    /// [`FrfError::TooFew`], and [`FrfError::NotDefined`] at a line where one channel
-    /// is zero in all trials.
+    /// [`FrfError::TooFew`] without a trial, and [`FrfError::NotDefined`] at a line where one channel is zero in all trials.
     pub fn coherence(&self) -> Result<Coherence, FrfError> {
         if self.trials == 0 {
             return Err(FrfError::no_trials());
@@ -302,7 +300,7 @@ impl TrialAverage {
     /// One-sided power spectral density of the force (N²/Hz) at each line; it integrates to the mean square of the force.
     ///
     /// # Errors
-    /// [`FrfError::TooFew`].
+    /// [`FrfError::TooFew`] without a trial.
     pub fn force_density(&self) -> Result<Vec<f64>, FrfError> {
         let energy = self.transform.weight_energies().0;
         self.lines(|line| Ok(self.line(line).force * self.density_factor(line, energy)))
@@ -311,7 +309,7 @@ impl TrialAverage {
     /// One-sided power spectral density of the response (its unit squared by Hz) at each line.
     ///
     /// # Errors
-    /// [`FrfError::TooFew`].
+    /// [`FrfError::TooFew`] without a trial.
     pub fn response_density(&self) -> Result<Vec<f64>, FrfError> {
         let energy = self.transform.weight_energies().1;
         self.lines(|line| Ok(self.line(line).response * self.density_factor(line, energy)))

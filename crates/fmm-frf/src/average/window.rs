@@ -108,7 +108,7 @@ impl ExponentialWindow {
     /// The window of `decay_rate` σ (1/s).
     ///
     /// # Errors
-    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive).
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) unless the rate is positive and finite.
     pub fn new(decay_rate: f64) -> Result<Self, FrfError> {
         ModelError::require_positive("the decay rate of a window", decay_rate, "1/s")?;
         Ok(Self { decay_rate })

@@ -46,9 +46,9 @@ impl CoulombLine {
     /// The line through the `peaks` (m/N) of blows with these `impulses` (N s); at least three, not all of one impulse.
     ///
     /// # Errors
-    /// [`FrfError::Mismatch`], [`FrfError::TooFew`], [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any value that is not, and
-    /// for a slope that is not: peaks that do not grow are not those of friction. [`FrfError::NoFit`] for impulses that
-    /// are all the same.
+    /// [`FrfError::Mismatch`] for different numbers of impulses and peaks, [`FrfError::TooFew`] for fewer than three,
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any value that is not positive, and for a slope that is not: peaks of friction grow.
+    /// [`FrfError::NoFit`] for impulses that are all the same.
     pub fn fit(impulses: &[f64], peaks: &[f64], mass: f64, natural_angular_frequency: f64) -> Result<Self, FrfError> {
         if impulses.len() != peaks.len() {
             return Err(FrfError::point_count(impulses.len(), peaks.len()));

@@ -42,8 +42,8 @@ impl FrictionSpectrum {
     /// contact removed.
     ///
     /// # Errors
-    /// [`FrfError::Mismatch`], and [`FrfError::NotDefined`] at a line where the quotient is not finite, such as
-    /// zero frequency for a mobility.
+    /// [`FrfError::Mismatch`] for responses of different form, window or frequencies, and [`FrfError::NotDefined`] at a line where the quotient is not
+    /// finite, such as zero frequency for a mobility.
     pub fn of(measured: &FrequencyResponse, linear: &FrequencyResponse) -> Result<Self, FrfError> {
         if measured.form() != linear.form() || measured.decay_rate() != linear.decay_rate() {
             return Err(FrfError::responses_differ(0));

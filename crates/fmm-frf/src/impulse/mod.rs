@@ -53,9 +53,9 @@ pub enum Quadrature {
 /// ```
 ///
 /// # Errors
-/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFew`], [`FrfError::Values`],
-/// [`FrfError::Outside`] if the range is empty or leaves the record, and [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the
-/// offset or for a sum that overflows.
+/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFew`] for fewer than two samples,
+/// [`FrfError::Values`] for samples that are not finite, [`FrfError::Outside`] if the range of the baseline is empty or leaves the record, and
+/// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the offset or for a sum that overflows.
 pub fn impulse(force: &[f64], interval: f64, baseline: Baseline) -> Result<f64, FrfError> {
     impulse_by(Quadrature::Trapezoid, force, interval, baseline)
 }

@@ -61,9 +61,9 @@ impl Pulse {
     /// The pulse in a `force` (N) sampled every `interval` (s).
     ///
     /// # Errors
-    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFew`], [`FrfError::Values`],
-    /// [`FrfError::Outside`], [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the baseline, and [`FrfError::NoForce`] if nothing rises
-    /// above the baseline.
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFew`] for fewer than two samples,
+    /// [`FrfError::Values`] for samples that are not finite, [`FrfError::Outside`] if the range of the baseline is empty or leaves the record,
+    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the baseline, and [`FrfError::NoForce`] if nothing rises above the baseline.
     pub fn of(force: &[f64], interval: f64, baseline: Baseline) -> Result<Self, FrfError> {
         ModelError::require_positive("the sampling interval", interval, "s")?;
         if force.len() < 2 {

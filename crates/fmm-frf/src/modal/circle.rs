@@ -54,7 +54,8 @@ impl CircleFit {
     /// Fits the lines of `response` from `low` to `high` (Hz); at least four, around one resonance.
     ///
     /// # Errors
-    /// [`FrfError::Outside`], [`FrfError::TooFew`], [`FrfError::NoFit`].
+    /// [`FrfError::Outside`] for a band outside the response, [`FrfError::TooFew`] for fewer lines, and [`FrfError::NoFit`] if the lines show no mode or do
+    /// not determine the circle.
     pub fn of(response: &FrequencyResponse, low: f64, high: f64) -> Result<Self, FrfError> {
         Band::of(response, low, high, 4)?;
         let band = Band::of(&Band::apparent(&response.within(low, high)?, ResponseForm::Mobility)?, low, high, 4)?;

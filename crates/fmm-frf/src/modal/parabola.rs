@@ -45,7 +45,8 @@ impl PeakFit {
     /// Fits the lines of `response` from `low` to `high` (Hz); at least four.
     ///
     /// # Errors
-    /// [`FrfError::Outside`], [`FrfError::TooFew`], [`FrfError::NoFit`] if the magnitudes are no peak or do not tell it.
+    /// [`FrfError::Outside`] for a band outside the response, [`FrfError::TooFew`] for fewer lines, and [`FrfError::NoFit`] if the magnitudes have no peak or
+    /// do not determine it.
     pub fn of(response: &FrequencyResponse, low: f64, high: f64) -> Result<Self, FrfError> {
         let given = Band::of(response, low, high, 4)?;
         let receptance = Band::apparent(&response.within(low, high)?, ResponseForm::Receptance)?;

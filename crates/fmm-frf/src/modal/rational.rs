@@ -78,7 +78,8 @@ impl RationalFit {
     /// Fits the lines of `response` from `low` to `high` (Hz); at least three, or with a background four.
     ///
     /// # Errors
-    /// [`FrfError::Outside`], [`FrfError::TooFew`], [`FrfError::NoFit`].
+    /// [`FrfError::Outside`] for a band outside the response, [`FrfError::TooFew`] for fewer lines, and [`FrfError::NoFit`] if the lines show no mode or do
+    /// not determine it.
     pub fn of(response: &FrequencyResponse, low: f64, high: f64, background: Background) -> Result<Self, FrfError> {
         let band = Band::of(response, low, high, if background == Background::None { 3 } else { 4 })?;
         let form = i32::from(response.form().derivatives());

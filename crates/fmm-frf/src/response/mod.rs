@@ -40,7 +40,8 @@ impl FrequencyResponse {
     /// A response of the given `form`, one value (SI unit of the form) for each frequency (Hz).
     ///
     /// # Errors
-    /// [`FrfError::Mismatch`] or [`FrfError::Values`].
+    /// [`FrfError::Mismatch`] for another number of values than frequencies; [`FrfError::Values`] for frequencies that are negative, not finite or not
+    /// increasing, and for values that are not finite.
     pub fn new(form: ResponseForm, frequencies: Vec<f64>, values: Vec<Complex64>) -> Result<Self, FrfError> {
         if frequencies.len() != values.len() {
             return Err(FrfError::length_mismatch(frequencies.len(), values.len()));

@@ -109,7 +109,7 @@ impl Record {
     /// The record after a [`moving_average`] over `span` samples.
     ///
     /// # Errors
-    /// [`RecordError::Options`].
+    /// As [`moving_average`].
     pub fn smoothed(&self, span: usize, ends: EndRule) -> Result<Self, RecordError> {
         Ok(self.derived(self.start(), moving_average(self.values(), span, ends)?))
     }

@@ -167,7 +167,8 @@ impl DataFile {
     /// The array called `name` in a MATLAB, HDF5 or NumPy file.
     ///
     /// # Errors
-    /// [`RecordError::NoSuchChannel`], [`RecordError::Unsupported`] if it is no real numeric array, [`RecordError::Damaged`].
+    /// [`RecordError::NoSuchChannel`] without such an array, [`RecordError::Unsupported`] if it is not a real numeric array,
+    /// [`RecordError::Damaged`] if it cannot be read.
     #[cfg(any(feature = "mat", feature = "npy"))]
     pub fn array(&self, name: &str) -> Result<&Array, RecordError> {
         match &self.content {
@@ -226,7 +227,8 @@ impl DataFile {
     /// The record of a channel, by name or by position.
     ///
     /// # Errors
-    /// [`RecordError::NoSuchChannel`], [`RecordError::WhichChannel`], and what is wrong with the channel or its time.
+    /// [`RecordError::NoSuchChannel`] if no channel has the name or position, [`RecordError::WhichChannel`] if several have the name, and the
+    /// errors of the channel or its time.
     pub fn channel(&self, channel: impl Into<Column>) -> Result<Reading, RecordError> {
         self.read(&self.reader.clone().channel(channel))
     }

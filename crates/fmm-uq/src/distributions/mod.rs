@@ -122,7 +122,7 @@ impl Distribution {
     /// T(a, b): a symmetric triangle (JCGM 101:2008, 6.4.5).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`].
+    /// [`UncertaintyError::OutOfRange`] unless a < b, with a finite distance.
     pub fn triangular(lower: f64, upper: f64) -> Result<Self, UncertaintyError> {
         Self::trapezoid(lower, upper, 0.0)
     }
@@ -130,7 +130,7 @@ impl Distribution {
     /// U(a, b): a quantity that cycles sinusoidally between two limits, at unknown phase (JCGM 101:2008, 6.4.6).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`].
+    /// [`UncertaintyError::OutOfRange`] unless a < b, with a finite distance.
     pub fn arc_sine(lower: f64, upper: f64) -> Result<Self, UncertaintyError> {
         let (lower, upper) = limits(lower, upper)?;
         Ok(Shape::ArcSine(ArcSine::new(lower, upper)).into())
@@ -278,8 +278,8 @@ impl Distribution {
     /// Equal probability for each of `values`.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooFewObservations`] for none; [`UncertaintyError::OutOfRange`] if one is not
-    /// finite; [`UncertaintyError::NoAnswer`].
+    /// [`UncertaintyError::TooFewObservations`] without a value; [`UncertaintyError::OutOfRange`] if a value or the standard deviation is not finite;
+    /// [`UncertaintyError::NoAnswer`] if the values differ by so little that their squares are lost.
     pub fn empirical(values: &[f64]) -> Result<Self, UncertaintyError> {
         if values.is_empty() {
             return Err(UncertaintyError::TooFewObservations { found: 0, needed: 1 });

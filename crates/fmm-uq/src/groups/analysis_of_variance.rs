@@ -41,8 +41,8 @@ impl AnalysisOfVariance {
     /// Analysis of at least two groups, each with one observation or more, and one of them with two or more.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooFewObservations`]; [`UncertaintyError::Inputs`] for fewer than two groups or an empty one;
-    /// [`UncertaintyError::OutOfRange`] if one is not finite, or the squares are not; [`UncertaintyError::NoAnswer`] if they
+    /// [`UncertaintyError::TooFewObservations`] if no group has two; [`UncertaintyError::Inputs`] for fewer than two groups or an empty one;
+    /// [`UncertaintyError::OutOfRange`] if an observation or the squares are not finite; [`UncertaintyError::NoAnswer`] if the observations
     /// differ by so little that their squares are lost.
     pub fn of<G: AsRef<[f64]>>(groups: &[G]) -> Result<Self, UncertaintyError> {
         if groups.len() < 2 || groups.iter().any(|group| group.as_ref().is_empty()) {

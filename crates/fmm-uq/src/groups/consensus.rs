@@ -89,8 +89,8 @@ impl Consensus {
     /// The consensus of at least two results.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooFewObservations`]; [`UncertaintyError::OutOfRange`] if a result or its uncertainty is not finite,
-    /// or an uncertainty is not positive, so that its weight were infinite.
+    /// [`UncertaintyError::TooFewObservations`] for fewer than two results; [`UncertaintyError::OutOfRange`] if a result is not finite, or its
+    /// uncertainty, or the square of it, is not positive and finite.
     pub fn of(results: &[Estimated], effects: RandomEffects) -> Result<Self, UncertaintyError> {
         if results.len() < 2 {
             return Err(UncertaintyError::TooFewObservations { found: results.len(), needed: 2 });

@@ -76,7 +76,7 @@ impl Input {
     /// ```
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`].
+    /// [`UncertaintyError::Inputs`] for an empty name.
     pub fn of(
         name: impl Into<String>,
         distribution: Distribution,
@@ -91,7 +91,7 @@ impl Input {
     /// The mean of repeated observations, an uncertainty of type A: u = s/√n, ν = n − 1, Student's t.
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`].
+    /// [`UncertaintyError::Inputs`] for an empty name.
     pub fn mean_of(
         name: impl Into<String>,
         observations: &Observations,

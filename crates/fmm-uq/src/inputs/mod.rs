@@ -53,7 +53,7 @@ impl Inputs {
     /// Uncorrelated inputs, in the order in which a model receives them.
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`].
+    /// [`UncertaintyError::Inputs`] without an input, or for a name given twice.
     pub fn new(inputs: impl IntoIterator<Item = Input>) -> Result<Self, UncertaintyError> {
         let inputs: Vec<Input> = inputs.into_iter().collect();
         if inputs.is_empty() {

@@ -64,7 +64,7 @@ impl OutputSample {
     /// The values of an output over the successful trials (its unit).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`].
+    /// [`UncertaintyError::OutOfRange`] for an output that does not exist.
     pub fn values(&self, output: usize) -> Result<&[f64], UncertaintyError> {
         let outputs = self.columns.len();
         self.columns.get(output).map(Vec::as_slice).ok_or_else(|| UncertaintyError::no_such_output(output, outputs))
@@ -73,7 +73,7 @@ impl OutputSample {
     /// Mean and spread of an output (its unit).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`].
+    /// [`UncertaintyError::OutOfRange`] for an output that does not exist.
     pub fn moments(&self, output: usize) -> Result<&Moments, UncertaintyError> {
         let outputs = self.columns.len();
         self.moments.get(output).ok_or_else(|| UncertaintyError::no_such_output(output, outputs))
@@ -82,8 +82,8 @@ impl OutputSample {
     /// y, mean of the values (unit of the output).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`]; [`UncertaintyError::NoAnswer`] if an input has Student's t of ν = 1, of which the
-    /// mean is a matter of chance.
+    /// [`UncertaintyError::OutOfRange`] for an output that does not exist; [`UncertaintyError::NoAnswer`] if an input has Student's t of ν = 1, which has
+    /// no mean.
     pub fn estimate(&self, output: usize) -> Result<f64, UncertaintyError> {
         HeavyTail::require_mean(self.heavy_tail.as_ref())?;
         Ok(self.moments(output)?.mean())

@@ -87,8 +87,8 @@ impl QuasiMonteCarlo {
     /// Evaluates the model at all points.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooManyFailures`]; [`UncertaintyError::Model`];
-    /// [`UncertaintyError::OutOfRange`] if the squares of the values overflow.
+    /// [`UncertaintyError::TooManyFailures`] if more points fail than allowed; [`UncertaintyError::Model`] if none of a scrambling succeeds, or the number of
+    /// outputs changes; [`UncertaintyError::OutOfRange`] if the squares of the values overflow.
     ///
     /// # Panics
     /// If the model does.
@@ -194,7 +194,7 @@ impl QuasiSample {
     /// Median of an output (its unit), which suits skewed results.
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`].
+    /// [`UncertaintyError::OutOfRange`] for an output that does not exist.
     pub fn median(&self, output: usize) -> Result<f64, UncertaintyError> {
         let values = self.sample.values(output)?;
         Ok(ranked(values, values.len().div_ceil(2)))
