@@ -53,7 +53,7 @@ impl QuasiMonteCarlo {
     ///
     /// # Errors
     /// [`UncertaintyError::OutOfRange`] unless points are a power of two from 2 to 2³¹ and scramblings 8 to
-    /// 65 536; [`UncertaintyError::NoAnswer`].
+    /// 65 536; [`UncertaintyError::NoAnswer`] for inputs that need more than 64 dimensions.
     pub fn new(inputs: &Inputs, points: u32, scramblings: usize) -> Result<Self, UncertaintyError> {
         let sampler = Sampler::new(inputs);
         SobolSequence::new(sampler.dimensions(), 0)?;
