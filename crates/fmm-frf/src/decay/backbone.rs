@@ -29,7 +29,7 @@ pub struct BackboneOptions {
 }
 
 impl BackboneOptions {
-    /// Takes the mode nearest to `frequency` (Hz), within a fifth of it; of the strongest one that decays unless it is given.
+    /// Takes the mode nearest to `frequency` (Hz), within a fifth of it. Without it, the strongest mode that decays is taken.
     ///
     /// # Errors
     /// [`FrfError::OutOfRange`] if it is not positive.
@@ -38,8 +38,8 @@ impl BackboneOptions {
         Ok(self)
     }
 
-    /// With windows of so many `cycles`, two at least. Unless they are given, a window is a sixteenth of the record, between 3 and 8 cycles;
-    /// shorter in a record of few cycles, longer where another mode is near.
+    /// Sets windows of so many `cycles`, two at least. Without it, a window is a sixteenth of the record, between 3 and 8 cycles;
+    /// it is shorter in a record of few cycles, and longer where another mode is near.
     ///
     /// # Errors
     /// [`FrfError::Outside`] if they are fewer than two.
@@ -79,15 +79,15 @@ pub struct BackbonePoint {
 /// c_eq/m = −J'/J = −2 A'/A − ω'/ω,     J = ω A²/2
 /// ```
 ///
-/// J is the action, which viscous damping lets decay with c/m on any spring. How ω goes with A comes from the spring k (x + k₃ x³ + k₅ x⁵)
-/// that is fitted to the points; on a straight one ω' is zero. A is the amplitude of the first harmonic. Uncertainties hold for white
+/// J is the action, which viscous damping lets decay with c/m on any spring. The dependence of ω on A is that of a spring
+/// k (x + k₃ x³ + k₅ x⁵) fitted to the points; on a linear spring ω' is zero. A is the amplitude of the first harmonic. Uncertainties hold for white
 /// noise.
 ///
-/// A displacement or velocity of fewer than seven cycles, if no mode and no window is asked for, is told by half cycles instead: by its
-/// turning points and its passages through the centre, which sines are fitted to.
+/// In a displacement or velocity of fewer than seven cycles, half cycles make the points instead, unless a mode or a window is asked for.
+/// Sines are then fitted to turning points and passages through the centre.
 ///
-/// What is not noise: of simulated decays by Coulomb friction, quadratic damping, a spring that hardens by 20 % and a pendulum of 0.6 rad,
-/// frequency and damping are within 6e-4 of the closed forms. Of two modes 5 % apart, one with a tenth of the amplitude of the other, the
+/// Errors without noise: in simulated decays by Coulomb friction, quadratic damping, a spring that hardens by 20 % and a pendulum of 0.6 rad,
+/// frequency and damping are within 6e-4 of the closed forms. For two modes 5 % apart, one with a tenth of the amplitude of the other, the
 /// frequency of each is within 1e-4, and the damping within 2 %.
 ///
 /// ```

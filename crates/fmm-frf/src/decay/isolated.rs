@@ -19,9 +19,9 @@ pub struct IsolatedMode {
 impl IsolatedMode {
     /// The mode of `record` that the `options` ask for.
     ///
-    /// Each sample is the mode's part of the regression around it of which a [backbone](crate::Backbone) is made: an envelope that bends
-    /// like a parabola passes unchanged, and so does its phase; noise passes within about two cycles per window. Harmonics of friction are
-    /// taken out with the other modes, and what happens within half a window, such as a stop, is smeared over it.
+    /// Each sample is the mode's part of a regression around it, the same as for a [backbone](crate::Backbone). A parabolic envelope passes
+    /// unchanged, and so does its phase; noise passes within about two cycles per window. Harmonics of friction are
+    /// removed with the other modes, and an event such as a stop is smeared over half a window.
     ///
     /// ```
     /// use fmm_frf::{BackboneOptions, IsolatedMode};

@@ -63,9 +63,9 @@ const LEAST: f64 = 1e-4;
 
 /// The modes of the decay in `record`, the strongest first; empty if nothing rises above its noise.
 ///
-/// A mode is a line of the spectrum of the record, of its first half, quarter or eighth, that rises above the noise and above what a decay
-/// that ends, or whose frequency changes, spreads around its own line. Steady lines, such as hum, are in it as well; they
-/// [say so](DecayMode::is_steady).
+/// A mode is a line of the spectrum of the record, or of its first half, quarter or eighth. It rises above the noise, and above the
+/// spread of another line by the end or the changing frequency of a decay. Steady lines, such as hum, are listed as well and
+/// [marked](DecayMode::is_steady).
 ///
 /// ```
 /// use fmm_frf::decay_modes;

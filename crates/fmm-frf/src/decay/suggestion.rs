@@ -50,10 +50,10 @@ pub struct DampingTerm {
     pub share: Estimated,
 }
 
-/// Terms of damping and spring that explain a backbone: where to begin a comparison of laws, which judges by the record itself.
+/// Terms of damping and spring that explain a backbone: a start for a comparison of laws, which judges by the record itself.
 ///
-/// Of the sums of Coulomb friction and linear, quadratic and cubic damping with coefficients above twice their uncertainty, the one with
-/// the least Bayesian criterion. `Display` says it in words.
+/// It is the sum of Coulomb friction and linear, quadratic and cubic damping with the least Bayesian criterion, among those whose
+/// coefficients exceed twice their uncertainty. `Display` prints it in words.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suggestion {
     damping: Vec<DampingTerm>,

@@ -43,13 +43,13 @@ pub struct Crossing {
 /// The half swings of an oscillation about a centre that is unknown and may vary slowly.
 ///
 /// The record may have noise, few bits, spikes, an offset of any size, rest before and after, and from four samples
-/// per half swing upwards. What is found is the one regular oscillation that moves most; neighbouring half swings
-/// differ in length by less than a factor of two in it. It begins with the first turning point in the record and
-/// ends with the last that stands out of the noise, so that rest after a stop has none.
+/// per half swing upwards. The result is the regular oscillation with the largest motion; its neighbouring half swings
+/// differ in length by less than a factor of two. It begins with the first turning point of the record and
+/// ends with the last one that stands out of the noise; rest after a stop has no turning points.
 ///
 /// Peaks and crossings are fitted: a piece of a sine with the length of the local half swing, to the samples
-/// within ±1/12 period (±1 sample at least). That averages noise, and has no bias for a sine however few samples
-/// there are. Dry friction makes a kink where a velocity changes sign; crossings are fitted with one, except those
+/// within ±1/12 period (±1 sample at least). This averages noise and has no bias for a sine, whatever the number of
+/// samples. Dry friction makes a kink where a velocity changes sign; crossings are fitted with one, except those
 /// of a displacement. (The peaks of a displacement have a jump of curvature there, which makes them late by
 /// 0.2 d/A rad for an amplitude A that loses 2d per half swing.) The centre at a crossing comes from the four peaks
 /// around it (weights 1, 3, 3, 1), which no linear change of amplitude disturbs.
