@@ -15,7 +15,7 @@ use crate::{LawError, LawParameter, Role, SlidingLaw};
 /// | μ | `law` | - | the law to smooth |
 /// | ε | `width` | m/s | speed below which it is smoothed |
 ///
-/// This is for optimisers, host solvers and harmonic balance that need a smooth right-hand side, and never a default:
+/// It is for optimisers, other solvers and harmonic balance that need a smooth right-hand side. It is no default:
 /// the contact creeps under any load instead of resting, equations become stiff as ε shrinks, and the motion is wrong in
 /// proportion to ε. In a free decay of the thesis' Monte Carlo case the velocity is off by
 ///

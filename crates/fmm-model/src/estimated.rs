@@ -6,7 +6,7 @@ use crate::Rounded;
 
 /// An estimate with its standard uncertainty, both in the unit that stands beside the field.
 ///
-/// `Display` writes it rounded to what is known of it.
+/// `Display` rounds it to its significant digits.
 ///
 /// ```
 /// use fmm_model::Estimated;

@@ -1,4 +1,4 @@
-//! Errors of files, of records, and of what is asked of them.
+//! Errors of files, records and options.
 
 use std::error::Error;
 use std::io;

@@ -84,7 +84,7 @@ impl UniformTimes {
 }
 
 /// The error of the first stamp that comes early or late after the one before it, by more than `tolerance` (s) and by more
-/// than half of what the worst one does; `None` if all steps are alike. What is right is the mean of all other steps.
+/// than half of the worst one; `None` if all steps are alike. The right step is the mean of all other steps.
 fn odd_stamp(times: &[f64], tolerance: f64) -> Option<RecordError> {
     let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let mut sorted = steps.clone();

@@ -141,7 +141,7 @@ mod tests {
         Ok(trajectory.velocity().values().to_vec())
     }
 
-    /// Elements move a linear machine in closed form; with other damping they are integrated, and a load that varies is none for them.
+    /// Elements move a linear machine in closed form. With other damping they are integrated; they do not take a load that varies.
     #[test]
     fn elements_go_to_the_engine_that_takes_them() {
         let law = || MaxwellSlipOf::<2>::at(&[0.1, 4e3, 0.1, 1e3]).unwrap();

@@ -85,7 +85,7 @@ impl Estimator {
         Ok(self.quotient(spectra))
     }
 
-    /// The estimate at one line, not finite where there is none.
+    /// The estimate at one line; not finite where it does not exist.
     pub(crate) fn quotient(self, spectra: &Spectra) -> Complex64 {
         let Spectra { force, response, cross } = *spectra;
         match self {

@@ -134,7 +134,7 @@ impl ExponentialWindow {
     }
 }
 
-/// All weights on a trial together; the default is none.
+/// All weights on a trial together; without windows by default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Windows {
     pub(crate) taper: Taper,

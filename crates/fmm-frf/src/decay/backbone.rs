@@ -131,7 +131,7 @@ const FEWEST_WINDOWS: f64 = 2.2;
 const NEAR: f64 = 0.5;
 /// Cycles of the beat with another mode that a window holds.
 const BEATS: f64 = 2.0;
-/// A mode of this share of the amplitude is none beside the first (1).
+/// Least share of the amplitude for a mode to count beside the first (1).
 const LEAST_OTHER: f64 = 1e-3;
 /// Above this share of the amplitude, one at any higher frequency is fitted beside, the strongest first, so many at most.
 const LOUD: f64 = 0.02;
@@ -361,7 +361,7 @@ impl Taken<'_> {
     }
 }
 
-/// Those of `locals` between the greatest amplitude and the end of the decay, with windows that hold neither what was before nor after.
+/// Those of `locals` between the greatest amplitude and the end of the decay, whose windows lie within the decay.
 fn decaying(locals: &[Local], half: usize) -> Vec<Local> {
     let size = |local: &Local| local.amplitude.value;
     let largest = locals.iter().map(size).fold(0.0, f64::max);

@@ -42,7 +42,7 @@ pub(crate) struct LocalVibration {
     pub(crate) amplitude: Complex64,
     /// a₁ (per half width), of an envelope whose logarithm is a parabola.
     pub(crate) slope: Complex64,
-    /// Standard deviation of what is left.
+    /// Standard deviation of the residuals.
     pub(crate) noise: f64,
 }
 

@@ -58,7 +58,7 @@ const HARMONIC: f64 = 0.1;
 const LEAKAGE: f64 = 3.0;
 /// Reach of a mode beyond its change of frequency, as a multiple of that change (1).
 const SWEPT: f64 = 1.5;
-/// Lines weaker than this share of the strongest are none of a machine (1).
+/// Least share of the strongest line for a line to belong to the machine (1).
 const LEAST: f64 = 1e-4;
 
 /// The modes of the decay in `record`, the strongest first; empty if nothing rises above its noise.

@@ -16,7 +16,7 @@ pub struct Resonance {
 
 /// The local maxima of a response that stand out by at least `prominence` (dB), in the order of their frequencies.
 ///
-/// The first and the last line are none, and of equal neighbours only one is. It takes time in proportion to the number of
+/// The first and the last line do not count, and of equal neighbours only one does. It takes time in proportion to the number of
 /// lines, whatever they are. To the frequency between the lines, and to the damping, see [`PeakFit`](crate::PeakFit).
 ///
 /// ```

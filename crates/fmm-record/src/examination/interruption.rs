@@ -138,7 +138,7 @@ mod tests {
         }
     }
 
-    /// A stop within a few half swings of that by friction and a touch that takes little are none.
+    /// Neither a stop within a few half swings of that by friction, nor a touch that takes little, is an interruption.
     #[test]
     fn what_may_be_the_machine_is_none() {
         let sticky = |t: f64| if t < 4.17 { (1.0 - t / 5.0) * (TAU * 3.0 * t).cos() } else { -0.16 };

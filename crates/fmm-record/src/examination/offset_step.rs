@@ -14,7 +14,7 @@ pub struct OffsetStep {
 }
 
 impl OffsetStep {
-    /// Looks for the largest jump of the offset while `record` oscillates; `None` if there is none to speak of.
+    /// Looks for the largest jump of the offset while `record` oscillates; `None` without a significant one.
     ///
     /// The centre of each four peaks in a row (weights 1, 3, 3, 1) is independent of amplitudes that change at a
     /// steady rate. The median of four centres before is compared with that of four after. A jump counts if

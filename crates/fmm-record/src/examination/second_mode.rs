@@ -126,7 +126,7 @@ impl Motion {
         (values.len() > 16 && frequency > 0.0 && rate.is_finite()).then_some(Self { values, frequency, rate, heights })
     }
 
-    /// A line of the spectrum that is none of the motion.
+    /// A line of the spectrum that does not belong to the motion.
     fn line(&self) -> Option<SecondMode> {
         const MULTIPLES: u32 = 12;
         const ODD_MULTIPLES: u32 = 99;

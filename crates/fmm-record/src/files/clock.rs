@@ -148,7 +148,7 @@ impl Reading {
     /// ```
     ///
     /// # Errors
-    /// [`RecordError::TimeAxis`] if the unit is none of time, or if the column counts samples.
+    /// [`RecordError::TimeAxis`] if the unit is not one of time, or if the column counts samples.
     pub fn seconds(&self) -> Result<Vec<f64>, RecordError> {
         let mut times = self.record.values().to_vec();
         Clock::of(&self.channel).to_seconds(&self.channel, false, &mut times)?;

@@ -112,7 +112,7 @@ impl DataFile {
         Self { reader, format, content }.checked()
     }
 
-    /// Refuses what is said of a format that does not leave it open.
+    /// Refuses options that the format itself decides.
     fn checked(self) -> Result<Self, RecordError> {
         let Reader { separator, skip, time, rate, resampling, .. } = &self.reader;
         let is_universal = self.format == Format::Universal;

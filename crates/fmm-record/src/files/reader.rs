@@ -138,9 +138,9 @@ impl Reader {
     /// Opens the bytes of a file.
     ///
     /// # Errors
-    /// [`RecordError::UnknownFormat`], [`RecordError::MissingFeature`]; what is wrong with the file as a whole
-    /// ([`RecordError::Damaged`], [`RecordError::Unsupported`]); [`RecordError::Options`] for what is said of a format that
-    /// does not leave it open. What is wrong with a channel is an error only where it is asked for.
+    /// [`RecordError::UnknownFormat`] and [`RecordError::MissingFeature`] for the format; [`RecordError::Damaged`] and
+    /// [`RecordError::Unsupported`] for the file as a whole; [`RecordError::Options`] for an option that the format itself decides. A fault of a
+    /// channel is an error only when the channel is asked for.
     pub fn parse(&self, bytes: impl Into<Vec<u8>>) -> Result<DataFile, RecordError> {
         DataFile::parse(self.clone(), bytes.into())
     }

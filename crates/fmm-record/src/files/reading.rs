@@ -1,4 +1,4 @@
-//! A reading: the record, and what was chosen in the file to get it.
+//! A reading: the record, and the choices in the file that led to it.
 
 use std::convert::Infallible;
 use std::str::FromStr;

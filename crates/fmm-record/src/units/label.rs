@@ -56,7 +56,7 @@ impl Label {
         Self { name: name.trim().to_owned(), unit: unit.unwrap_or(Written::Nothing), stated: None, word }
     }
 
-    /// The same with a unit that the file states beside the name; an empty one is none.
+    /// The same label with a unit that the file states beside the name; an empty text leaves it without one.
     #[must_use]
     pub fn with_unit(mut self, unit: &str) -> Self {
         let unit = unit.trim();

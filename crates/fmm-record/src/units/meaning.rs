@@ -29,7 +29,7 @@ impl std::fmt::Display for Meaning {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeaningError {
-    /// Something is written as a unit that is none that is known.
+    /// The unit as written is not known.
     #[error("the unit \"{unit}\" of channel \"{channel}\" is not known")]
     UnknownUnit {
         /// Name of the channel.
@@ -128,7 +128,7 @@ pub enum MeaningError {
     WhichChannel {
         /// The quantity said.
         said: Option<Quantity>,
-        /// The channels, each with what is known of it.
+        /// The channels, each with its known quantity and unit.
         channels: Vec<String>,
     },
 }

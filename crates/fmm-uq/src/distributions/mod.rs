@@ -202,7 +202,7 @@ impl Distribution {
         Ok(Shape::Beta(beta).into())
     }
 
-    /// N(x, u²) of which only what lies between two limits is possible; one of them may be infinite.
+    /// N(x, u²), cut off at two limits; one of them may be infinite.
     ///
     /// Its mean and standard deviation are those between the limits, not x and u.
     ///

@@ -63,7 +63,7 @@ pub struct Outlier {
 pub struct OutlyingPair {
     /// Indices of the groups, counted from 0, the one farther out first.
     pub groups: [usize; 2],
-    /// G, what is left of the squares without them (1): small if they stand out.
+    /// G, share of the sum of squares that remains without them (1): small if they stand out.
     pub statistic: f64,
     /// Probability of one as small on either side if all groups were alike (1), at most.
     pub p_value: f64,

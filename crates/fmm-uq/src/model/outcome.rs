@@ -18,7 +18,7 @@ use crate::Taylor;
 /// assert!(Err::<f64, _>("no root").append_to(&mut values).is_err());
 /// ```
 pub trait Outcome<D> {
-    /// Appends the outputs in their order, or gives back why there are none.
+    /// Appends the outputs in their order, or gives the reason why there are none.
     ///
     /// # Errors
     /// The model's own.

@@ -1,4 +1,4 @@
-//! Blocks of trials on all threads, and what is done with them.
+//! Runs of blocks of trials on all threads.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

@@ -20,7 +20,7 @@ pub(super) struct Header {
     pub(super) stated: Vec<(String, f64)>,
 }
 
-/// Reads what stands above the table; its names do not stand before line `begin`, and `row` is its first row.
+/// Reads the lines above the table; its names do not stand before line `begin`, and `row` is its first row.
 pub(super) fn header(
     above: &[Line],
     begin: usize,

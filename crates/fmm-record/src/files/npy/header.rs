@@ -31,7 +31,7 @@ enum Kind {
 }
 
 impl Number {
-    /// The number that a type of NumPy is, as `<f8`; `None` if it is none that is real.
+    /// The number of a NumPy type, as `<f8`; `None` if the type is not real.
     fn of(descr: &str) -> Option<Self> {
         let mut letters = descr.chars();
         let order = letters.next()?;

@@ -27,7 +27,7 @@ impl UffFile {
         Self::parse(&bytes)
     }
 
-    /// Reads the bytes of a file. What is missing at the end of a data set, or of the file, is a [`Warning`].
+    /// Reads the bytes of a file. A missing end of a data set, or of the file, is a [`Warning`].
     ///
     /// # Errors
     /// [`RecordError::UnknownFormat`] for other files and those without any function; for a data set that contradicts the format

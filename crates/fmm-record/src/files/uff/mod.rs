@@ -4,7 +4,7 @@
 //! other numbers (151, 164, 15, …) are passed over and listed. [`DataSet::record`] makes a [`Record`](crate::Record)
 //! of a time record, [`DataSet::of_record`] a data set of a record, and [`write()`] a file.
 //!
-//! Programs that write this format differ, and many err. What the points say goes before what the header says:
+//! Programs that write this format differ, and many err. The points count more than the header:
 //! a data set is as long as its number of points and their type make it, whatever its count of bytes; points that a
 //! header promises but the file does not have are reported as a [`Warning`].
 //!

@@ -24,7 +24,7 @@ impl<'a> Numbers<'a> {
 }
 
 impl<'a> Iterator for Numbers<'a> {
-    /// A number, or the text that is none.
+    /// A number, or the text that is not one.
     type Item = Result<f64, &'a [u8]>;
 
     fn next(&mut self) -> Option<Self::Item> {

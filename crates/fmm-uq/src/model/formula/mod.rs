@@ -45,8 +45,8 @@ impl Formula {
     /// Reads a formula over quantities with these `names`, in the order in which [`Formula::evaluate`] is given their values.
     ///
     /// # Errors
-    /// [`UncertaintyError::Model`] if the text is no formula, has more than 200 parentheses, powers and signs, or names what is not among
-    /// `names`; [`UncertaintyError::Inputs`] for a name given twice, or one that no formula can contain or a constant or function has.
+    /// [`UncertaintyError::Model`] if the text is no formula, has more than 200 parentheses, powers and signs, or has a name that is not among
+    /// `names`; [`UncertaintyError::Inputs`] for a name given twice, for one that no formula can contain, and for that of a constant or function.
     pub fn new(text: &str, names: &[&str]) -> Result<Self, UncertaintyError> {
         for (place, name) in names.iter().enumerate() {
             if !parser::is_name(name) {
