@@ -9,7 +9,7 @@ const FORMATS: &str = "\
 A format is told by what a file begins with, whatever its name.
 
 text       columns of numbers with or without a header: CSV, TSV, LVM and the like; any separator, decimal points or commas
-matlab     MATLAB 4 to 7 (.mat), and 7.3, which is HDF5
+matlab     MATLAB 5 to 7 (.mat), and 7.3, which is HDF5
 hdf5       HDF5 (.h5)
 numpy      NumPy (.npy, .npz)
 universal  Universal File, data sets 58 and 58b (.uff, .unv, .58)
