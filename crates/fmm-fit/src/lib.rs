@@ -78,6 +78,7 @@
 //! | which of several models? | [`ModelTable`] |
 //! | which straight line, polynomial, columns? | [`StraightLine`], [`Polynomial`], [`LinearRegression`]: no start values |
 //! | a line with uncertainties in both variables? | [`YorkLine`] |
+//! | a line through results that differ by more than their uncertainties? | [`RandomEffectsLine`] |
 //! | which power law with offset? | [`PowerLaw`] |
 //! | what had no finite value? | [`Fit::non_finite`] |
 //!
@@ -155,7 +156,8 @@ pub use problem::{
     curve_fit, fit,
 };
 pub use regression::{
-    LinearRegression, Polynomial, PowerLaw, RegressionError, StraightLine, UncertainPoint, Weighting, YorkLine,
+    LinearRegression, Polynomial, PowerLaw, RandomEffectsLine, RegressionError, StraightLine, UncertainPoint,
+    Weighting, YorkLine,
 };
 pub use result::{Estimate, EstimateStatus, Fit, NullDirection};
 pub use robust::{Loss, Robust, RobustFit, Scale, median_deviation, solve_robust};

@@ -130,6 +130,11 @@ impl IdentifyError {
         Self::TooFew { what, found: samples, needed }
     }
 
+    /// Too few `runs`, or different values of what was to be told from them.
+    pub(crate) fn too_few_runs(runs: &str, found: usize, needed: usize) -> Self {
+        Self::TooFew { what: format!("{found} {runs} are given; at least {needed} are needed"), found, needed }
+    }
+
     /// Too few half swings.
     pub(crate) fn too_few_half_swings(found: usize, needed: usize) -> Self {
         let what = format!(

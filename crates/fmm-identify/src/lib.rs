@@ -44,6 +44,7 @@
 //! | An accelerometer? | its record is a ring-down like any other; a filter of the sensor is stated or fitted, [`Sensor`] |
 //! | A shaker, a motor, a moving base? | [`Experiment::driven`] with the measured [`Drive`]; its gain and a delay of the response can be fitted |
 //! | Experiments of several kinds, without contact, under other loads? | one slice: [`Experiment::without_contact`], [`Experiment::with_load_factor`] |
+//! | Is friction in proportion to the load? | [`FrictionOverLoad`], of runs at several loads that may differ |
 //! | A static level? | a slow force through the breakaway, [`Experiment::driven`]; a ring-down does not tell it |
 //! | How does damping depend on velocity? | [`decrements`] cycle by cycle, [`Windows`] a few cycles at a time |
 //! | Friction without a simulation? | [`WeakForm`]; [`EnergyMethod`] for its curve, [`half_swing_losses`] per half swing |
@@ -118,7 +119,8 @@ pub use impact::{
     identify_impact,
 };
 pub use judgement::{
-    Addition, Comparison, NestedTest, Search, Sign, compare, compare_observed, search, search_observed,
+    Addition, Comparison, FrictionOverLoad, LoadVerdict, NestedTest, Search, Sign, compare, compare_observed, search,
+    search_observed,
 };
 pub use law::Candidate;
 pub use machine::{Known, Machine, Scale, Terms};

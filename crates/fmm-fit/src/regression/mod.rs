@@ -3,6 +3,7 @@
 mod linear_regression;
 mod polynomial;
 mod power_law;
+mod random_effects_line;
 mod refined_least_squares;
 mod regression_error;
 mod straight_line;
@@ -13,6 +14,7 @@ mod york;
 pub use linear_regression::LinearRegression;
 pub use polynomial::Polynomial;
 pub use power_law::PowerLaw;
+pub use random_effects_line::RandomEffectsLine;
 pub use regression_error::RegressionError;
 pub use straight_line::StraightLine;
 pub use weighting::Weighting;

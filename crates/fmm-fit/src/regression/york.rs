@@ -31,6 +31,13 @@ impl UncertainPoint {
         self
     }
 
+    /// The same point with an independent error of this `variance` more in y.
+    pub(crate) fn widened(self, variance: f64) -> Self {
+        let u_y = (self.u_y * self.u_y + variance).sqrt();
+        let correlation = if u_y > 0.0 { self.correlation * (self.u_y / u_y) } else { 0.0 };
+        Self { u_y, correlation, ..self }
+    }
+
     /// Variance of y − b x, the inverse of the weight W.
     fn variance(&self, slope: f64) -> f64 {
         let Self { u_x, u_y, correlation: r, .. } = *self;

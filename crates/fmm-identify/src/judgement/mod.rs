@@ -1,10 +1,12 @@
 //! The judgement: which of several fitted laws the records bear, and which they exclude.
 
 pub(crate) mod comparison;
+mod friction_over_load;
 mod search;
 pub(crate) mod sign;
 
 pub use comparison::{Comparison, NestedTest, compare, compare_observed};
+pub use friction_over_load::{FrictionOverLoad, LoadVerdict};
 pub use search::{Search, search, search_observed};
 pub use sign::{Addition, Sign};
 
