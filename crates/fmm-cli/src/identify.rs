@@ -75,7 +75,7 @@ fn fitted(arguments: &Arguments, decay: &Experiment, candidates: &[Candidate]) -
         bar.set_message(format!("{law}: step {}, rms residual {rms:.4e}", progress.iterations()));
         ControlFlow::Continue(())
     };
-    let comparison = arguments.question.answer(decay, candidates, show);
+    let comparison = arguments.question.answer(std::slice::from_ref(decay), candidates, show);
     bar.finish_and_clear();
     comparison
 }

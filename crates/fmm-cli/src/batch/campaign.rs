@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 use clap::CommandFactory;
 use serde::{Deserialize, Serialize};
 
+use super::manifest::{FILE, Manifest};
 use super::row::OfRecord;
+use super::sheet::Sheet;
 
 /// The records of a campaign, in their order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -16,6 +18,8 @@ pub(crate) struct Campaign {
     pub(crate) options: Vec<String>,
     /// The column that says which belong together.
     pub(crate) group: Option<String>,
+    /// What the manifest says for the record sheet.
+    pub(crate) sheet: Option<Sheet>,
     pub(crate) entries: Vec<Entry>,
 }
 
@@ -57,49 +61,49 @@ impl Campaign {
             return Err("there is no record in these folders".into());
         }
         let entry = |file| Entry { file, options: Vec::new(), description: BTreeMap::new() };
-        Ok(Self { options, group: None, entries: files.into_iter().map(entry).collect() })
+        Ok(Self { options, group: None, sheet: None, entries: files.into_iter().map(entry).collect() })
     }
 
-    /// Of a table with a column `file`.
+    /// Of a manifest; a `group` goes before the one that it names.
     pub(crate) fn of_manifest(
         path: &Path,
         options: Vec<String>,
         group: Option<String>,
     ) -> Result<Self, Box<dyn Error>> {
-        let refused = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-        let mut reader =
-            csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|error| refused(&error))?;
-        let columns: Vec<String> =
-            reader.headers().map_err(|error| refused(&error))?.iter().map(str::to_owned).collect();
-        let file =
-            columns.iter().position(|column| column == "file").ok_or_else(|| refused(&"there is no column `file`"))?;
-        if let Some(group) = group.as_ref().filter(|group| !columns.contains(group)) {
-            return Err(refused(&format!("there is no column `{group}`; there are {}", columns.join(", "))).into());
-        }
+        let manifest = Manifest::read(path)?;
         let command = OfRecord::command();
         let is_option =
             |column: &str| command.get_arguments().any(|option| option.get_long() == Some(&column.replace('_', "-")));
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
-        let mut entries = Vec::new();
-        for line in reader.records() {
-            let line = line.map_err(|error| refused(&error))?;
+        let entry = |cells: &Vec<String>| {
             let mut entry = Entry { file: PathBuf::new(), options: Vec::new(), description: BTreeMap::new() };
-            for (index, (column, cell)) in columns.iter().zip(&line).enumerate() {
-                if index == file {
+            for (column, cell) in manifest.columns.iter().zip(cells) {
+                if column == FILE {
                     entry.file = folder.join(cell);
                     continue;
                 }
                 if is_option(column) && !cell.is_empty() {
                     entry.options.push(format!("--{}={cell}", column.replace('_', "-")));
                 }
-                entry.description.insert(column.clone(), cell.to_owned());
+                entry.description.insert(column.clone(), cell.clone());
             }
-            entries.push(entry);
+            entry
+        };
+        let entries = manifest.records.iter().map(entry).collect();
+        let campaign = Self { options, group: group.or(manifest.group), sheet: manifest.sheet, entries };
+        if let Some(column) = &campaign.group {
+            campaign.require_column(column).map_err(|error| format!("{}: {error}", path.display()))?;
         }
-        if entries.is_empty() {
-            return Err(refused(&"the table has no records").into());
+        Ok(campaign)
+    }
+
+    /// Refuses a column that no record has.
+    pub(crate) fn require_column(&self, column: &str) -> Result<(), String> {
+        let columns = self.columns();
+        if columns.contains(&column) {
+            return Ok(());
         }
-        Ok(Self { options, group, entries })
+        Err(format!("there is no column `{column}`; there are {FILE}, {}", columns.join(", ")))
     }
 
     /// What describes the records.
@@ -107,7 +111,7 @@ impl Campaign {
         self.entries.first().map_or_else(Vec::new, |entry| entry.description.keys().map(String::as_str).collect())
     }
 
-    /// Keeps the list in `folder`.
+    /// Keeps the list in `folder`, in place of one that differs by its record sheet only, on which no row depends.
     ///
     /// # Errors
     /// If another campaign is there.
@@ -115,11 +119,12 @@ impl Campaign {
         let rows = folder.join("rows");
         std::fs::create_dir_all(&rows).map_err(|error| format!("cannot create {}: {error}", rows.display()))?;
         let path = folder.join(LIST);
-        if !path.exists() {
-            return Ok(write_at_once(&path, &serde_json::to_string_pretty(self)?)?);
-        }
-        if Self::read(folder)? == *self {
+        let kept = if path.exists() { Some(Self::read(folder)?) } else { None };
+        if kept.as_ref() == Some(self) {
             return Ok(());
+        }
+        if kept.is_none_or(|kept| Self { sheet: self.sheet.clone(), ..kept } == *self) {
+            return Ok(write_at_once(&path, &serde_json::to_string_pretty(self)?)?);
         }
         Err(format!(
             "{} holds a campaign of other records or options; give another folder, or remove it",

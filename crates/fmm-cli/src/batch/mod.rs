@@ -4,21 +4,29 @@
 //! own, written at once or not at all, so that a campaign can be cut into shards, killed and resumed at any time.
 
 mod campaign;
+mod dependence;
+mod joint;
+mod manifest;
 mod page;
 mod row;
+mod sheet;
 mod summary;
 mod table;
 
 use std::error::Error;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use clap::Args;
+use fmm_fit::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
 use crate::output::print;
 use campaign::Campaign;
+use joint::Joint;
 use row::Row;
 use summary::Summary;
 
@@ -28,9 +36,11 @@ pub(crate) struct Arguments {
     /// The records, or folders of records
     #[arg(required_unless_present = "manifest")]
     records: Vec<PathBuf>,
-    /// A CSV table with a column `file`, relative to the table; columns called like an option of `fmm identify` (channel, unit, mass,
-    /// normal_load, …) set it for their record, others (operator, specimen, …) describe it
-    #[arg(long, value_name = "FILE.csv", conflicts_with = "records")]
+    /// A table (CSV) or a list (TOML) of records, each with its `file`, relative to the manifest; columns called like an option of
+    /// `fmm identify` (channel, unit, mass, normal_load, …) set it for their record, others (operator, specimen, …) describe it. In
+    /// TOML, [[record]] begins a record, [common] holds what all share, `group` names a column for --group, and [sheet] holds the
+    /// fields of a record sheet
+    #[arg(long, value_name = "FILE", conflicts_with = "records")]
     manifest: Option<PathBuf>,
     /// Write one file for each record into this folder, and with all of them campaign.csv, campaign.json and campaign.html; records that
     /// are there already are not done again
@@ -42,6 +52,8 @@ pub(crate) struct Arguments {
     /// The column of the manifest that says which records belong together, for repeatability and reproducibility
     #[arg(long, value_name = "COLUMN", requires = "manifest")]
     group: Option<String>,
+    #[command(flatten)]
+    asked: Asked,
     /// Search a law for each record, as `fmm identify` does, instead of fitting coulomb_viscous to all
     #[arg(long)]
     search: bool,
@@ -61,9 +73,47 @@ pub(crate) struct Arguments {
 pub(crate) struct Merge {
     /// The folder that `fmm batch --out` wrote
     folder: PathBuf,
+    #[command(flatten)]
+    asked: Asked,
     /// Print one JSON document instead of the tables
     #[arg(long)]
     json: bool,
+}
+
+/// What is asked of all records together, on which no row depends.
+#[derive(Debug, Args)]
+struct Asked {
+    /// Fit all identified records together as one machine with one law, too; its time grows faster than the number of records
+    #[arg(long)]
+    joint: bool,
+    /// A column of numbers of the manifest against which friction is set, beside load and amplitude; may be given again
+    #[arg(long, value_name = "COLUMN")]
+    against: Vec<String>,
+}
+
+impl Asked {
+    /// Refuses columns that no record has.
+    fn check(&self, campaign: &Campaign) -> Result<(), String> {
+        self.against.iter().try_for_each(|column| campaign.require_column(column))
+    }
+
+    fn summary(&self, campaign: &Campaign, rows: &[Row]) -> Result<Summary, Box<dyn Error>> {
+        let joint = if self.joint { Some(joint(campaign, rows)?) } else { None };
+        Ok(Summary::of(campaign, rows, &self.against, joint))
+    }
+}
+
+/// Fits all records together while a line on standard error shows how far that is.
+fn joint(campaign: &Campaign, rows: &[Row]) -> Result<Joint, Box<dyn Error>> {
+    let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {msg}")?);
+    bar.enable_steady_tick(Duration::from_millis(100));
+    let show = |law: &str, progress: &Progress<'_>| {
+        bar.set_message(format!("joint fit by {law}: step {}", progress.iterations()));
+        ControlFlow::Continue(())
+    };
+    let joint = Joint::of(campaign, rows, show);
+    bar.finish_and_clear();
+    Ok(joint)
 }
 
 /// The law that is fitted to all records unless another one is asked for.
@@ -86,12 +136,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         Some(manifest) => Campaign::of_manifest(manifest, options, arguments.group.clone())?,
         None => Campaign::of_files(&arguments.records, options)?,
     };
+    arguments.asked.check(&campaign)?;
     // As many as there are processors, to rayon.
     let jobs = arguments.jobs.map_or(0, usize::from);
     let Some(folder) = &arguments.out else {
         let all: Vec<usize> = (0..campaign.entries.len()).collect();
         let rows = in_parallel(&all, jobs, |index| Ok(Row::of(&campaign, index)))?;
-        return give_out(&campaign, &rows, arguments.json);
+        return give_out(&rows, &arguments.asked.summary(&campaign, &rows)?, arguments.json);
     };
     campaign.keep(folder)?;
     let (part, parts) = arguments.shard.unwrap_or((1, 1));
@@ -102,15 +153,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         eprintln!("part {part} of {parts} is done; `fmm merge {}` puts all together", folder.display());
         return Ok(());
     }
-    put_together(folder, &campaign, arguments.json)
+    put_together(folder, &campaign, &arguments.asked, arguments.json)
 }
 
 pub(crate) fn merge(arguments: &Merge) -> Result<(), Box<dyn Error>> {
     let campaign = Campaign::read(&arguments.folder)?;
-    put_together(&arguments.folder, &campaign, arguments.json)
+    arguments.asked.check(&campaign)?;
+    put_together(&arguments.folder, &campaign, &arguments.asked, arguments.json)
 }
 
-fn put_together(folder: &Path, campaign: &Campaign, json: bool) -> Result<(), Box<dyn Error>> {
+fn put_together(folder: &Path, campaign: &Campaign, asked: &Asked, json: bool) -> Result<(), Box<dyn Error>> {
     let rows: Vec<Option<Row>> = (0..campaign.entries.len()).map(|index| Row::read(folder, index)).collect();
     let missing = rows.iter().filter(|row| row.is_none()).count();
     if missing > 0 {
@@ -121,7 +173,7 @@ fn put_together(folder: &Path, campaign: &Campaign, json: bool) -> Result<(), Bo
         .into());
     }
     let rows: Vec<Row> = rows.into_iter().flatten().collect();
-    let summary = Summary::of(campaign, &rows);
+    let summary = asked.summary(campaign, &rows)?;
     for (name, text) in [
         ("campaign.csv", table::csv(campaign, &rows)?),
         ("campaign.json", table::document(&rows, &summary)?),
@@ -130,12 +182,11 @@ fn put_together(folder: &Path, campaign: &Campaign, json: bool) -> Result<(), Bo
         campaign::write_at_once(&folder.join(name), &text)?;
     }
     eprintln!("written: {}", folder.join("campaign.{csv,json,html}").display());
-    give_out(campaign, &rows, json)
+    give_out(&rows, &summary, json)
 }
 
-fn give_out(campaign: &Campaign, rows: &[Row], json: bool) -> Result<(), Box<dyn Error>> {
-    let summary = Summary::of(campaign, rows);
-    if json { print(table::document(rows, &summary)?) } else { print(table::text(rows, &summary)) }
+fn give_out(rows: &[Row], summary: &Summary, json: bool) -> Result<(), Box<dyn Error>> {
+    if json { print(table::document(rows, summary)?) } else { print(table::text(rows, summary)) }
 }
 
 /// Does all `tasks`, so many at a time, in their order, and shows how far it is; the first error ends it.

@@ -5,11 +5,13 @@ use std::fmt::Write;
 use fmm_model::Rounded;
 
 use super::campaign::Campaign;
+use super::dependence::{Dependence, Line};
 use super::row::{Outcome, Row, quantities};
+use super::sheet::Field;
 use super::summary::{Quantity, Summary};
-use super::table::{group_lines, quantity_text, statement};
+use super::table::{group_lines, joint_lines, quantity_text, statement};
 use crate::figure::{Layer, Panel, Role, drawn, label};
-use crate::page::{escaped, figure, page as whole_page, table, text_cell};
+use crate::page::{cell, escaped, figure, page as whole_page, table, text_cell};
 
 /// The page of a campaign.
 pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> String {
@@ -18,7 +20,7 @@ pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> Stri
     let body = format!(
         "<h1>{TITLE}</h1>\n<p class=\"verdict\">{} of {} records identified</p>\n{}\n\
          <section><h2>Together</h2>\n<p>Consensus with random effects; its interval is that of Hartung and Knapp, which holds for few records. \
-         The mean without effects takes the records to differ by their uncertainties only.</p>\n{}{}</section>\n\
+         The mean without effects takes the records to differ by their uncertainties only.</p>\n{}{}</section>\n{}{}{}\
          <section><h2>Records</h2>\n{}</section>\n\
          <section><h2>How this was made</h2>\n<dl><dt>Program</dt><dd><code>fmm {}</code></dd><dt>Options for all</dt><dd><code>{}</code></dd></dl></section>\n",
         summary.found,
@@ -26,6 +28,9 @@ pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> Stri
         statements(summary),
         together(summary),
         pictures.collect::<String>(),
+        joint(summary),
+        dependences(summary),
+        sheet(summary),
         records(campaign, rows),
         env!("CARGO_PKG_VERSION"),
         escaped(&campaign.options.join(" ")),
@@ -49,7 +54,7 @@ fn statements(summary: &Summary) -> String {
 /// What the records say together, as a table.
 fn together(summary: &Summary) -> String {
     let row = |quantity: &Quantity| {
-        let Quantity { mean, u, interval_95: [low, high], weighted_mean: [weighted, claimed], .. } = *quantity;
+        let Quantity { mean, u, interval_95: [low, high], weighted_mean: [weighted, claimed], joint, .. } = *quantity;
         let influential = quantity.most_influential.as_ref();
         vec![
             format!("<th scope=\"row\">{}</th>", escaped(&quantity.name.replace('_', " "))),
@@ -60,6 +65,7 @@ fn together(summary: &Summary) -> String {
             text_cell(&format!("{:.2e}", quantity.homogeneity_p)),
             text_cell(&format!("{:.0} %", 100.0 * quantity.i_squared)),
             text_cell(&quantity_text(quantity, weighted, claimed)),
+            text_cell(&joint.map_or_else(|| "–".to_owned(), |(value, u)| Rounded::new(value, u).to_string())),
             text_cell(&influential.map_or_else(String::new, |(file, moved)| format!("{file}: {moved:+.2} u"))),
             text_cell(&format!("{} (+{})", quantity.records, quantity.left_out)),
         ]
@@ -73,6 +79,7 @@ fn together(summary: &Summary) -> String {
         "p of homogeneity",
         "I²",
         "mean without effects",
+        "joint fit",
         "without it the mean moves by",
         "records (left out)",
     ];
@@ -107,7 +114,67 @@ fn records(campaign: &Campaign, rows: &[Row]) -> String {
     table("records", &headings, rows.iter().map(row))
 }
 
-/// Each record's value with two standard uncertainties, and the consensus with its interval.
+/// The joint fit in sentences, if it was asked for.
+fn joint(summary: &Summary) -> String {
+    let lines: String = joint_lines(summary).iter().map(|line| format!("<p>{}</p>\n", escaped(line))).collect();
+    if lines.is_empty() { lines } else { format!("<section><h2>Joint fit</h2>\n{lines}</section>\n") }
+}
+
+/// Friction against what differs between the records.
+fn dependences(summary: &Summary) -> String {
+    if summary.dependences.is_empty() {
+        return String::new();
+    }
+    let shown = summary.dependences.iter().enumerate().map(|(index, dependence)| {
+        let Dependence { quantity, unit, against, against_unit, statement, line, points, .. } = dependence;
+        let Some(Line { band, .. }) = line else { return format!("<p>{}</p>\n", escaped(statement)) };
+        let name = against.replace('_', " ");
+        let x_label = if against_unit.is_empty() { name } else { label(name, against_unit) };
+        let part = |value: fn(&(f64, f64, f64, f64)) -> f64| band.iter().map(|at| (at.0, value(at))).collect();
+        let panel = with_records(Panel::new(x_label, label(quantity.replace('_', " "), unit), 300.0), points)
+            .with(Layer::new(Role::Fitted, "line, with an effect of each record", part(|at| at.1)))
+            .with(Layer::new(Role::Reference, "its 95 % interval", part(|at| at.2)))
+            .with(Layer::new(Role::ReferenceAgain, "", part(|at| at.3)));
+        figure(&drawn(&[panel]), statement, &format!("dependence-{index}"))
+    });
+    format!(
+        "<section><h2>Friction against load, amplitude and more</h2>\n<p>Lines with random effects: the records may differ beside the line by \
+         more than their uncertainties. The intervals are those of Knapp and Hartung.</p>\n{}</section>\n",
+        shown.collect::<String>()
+    )
+}
+
+/// The record sheet, if the manifest has one.
+fn sheet(summary: &Summary) -> String {
+    let Some(fields) = &summary.sheet else { return String::new() };
+    let row = |field: &Field| {
+        let value = match &field.value {
+            Some(value) if field.is_found => {
+                cell(&format!("{} <span class=\"note\">by the records</span>", escaped(value)))
+            }
+            Some(value) => text_cell(value),
+            None => cell("<span class=\"note\">not given</span>"),
+        };
+        vec![text_cell(field.part), format!("<th scope=\"row\">{}</th>", escaped(&field.field)), value]
+    };
+    format!(
+        "<section><h2>Record sheet</h2>\n<p>What a friction coefficient is handed on with, by the fields of ASTM G115 as far as they are \
+         public.</p>\n{}</section>\n",
+        table("sheet", &["part", "field", "value"], fields.iter().map(row))
+    )
+}
+
+/// Records as points (place, value, standard uncertainty) with bars of two standard uncertainties.
+fn with_records(panel: Panel, points: &[(f64, f64, f64)]) -> Panel {
+    let dots = points.iter().map(|(x, y, _)| (*x, *y)).collect();
+    let panel = panel.with(Layer::new(Role::Points, "records, with two standard uncertainties", dots));
+    // Of many, bars say nothing and weigh much.
+    points.iter().filter(|_| points.len() <= 100).fold(panel, |panel, (x, y, u)| {
+        panel.with(Layer::new(Role::MeasuredAgain, "", vec![(*x, y - 2.0 * u), (*x, y + 2.0 * u)]))
+    })
+}
+
+/// Each record's value, and the consensus with its interval.
 fn picture(rows: &[Row], quantity: &Quantity, index: usize) -> String {
     let told = rows.iter().enumerate().filter_map(|(place, row)| {
         let value = row.told((&quantity.name, &quantity.unit))?;
@@ -116,18 +183,10 @@ fn picture(rows: &[Row], quantity: &Quantity, index: usize) -> String {
     let told: Vec<(f64, f64, f64)> = told.collect();
     let ends = |value: f64| vec![(1.0, value), (rows.len() as f64, value)];
     let [low, high] = quantity.interval_95;
-    let mut panel = Panel::new("number of the record", label(quantity.name.replace('_', " "), &quantity.unit), 280.0)
-        .with(Layer::new(
-            Role::Points,
-            "records, with two standard uncertainties",
-            told.iter().map(|(x, y, _)| (*x, *y)).collect(),
-        ))
+    let panel = Panel::new("number of the record", label(quantity.name.replace('_', " "), &quantity.unit), 280.0);
+    let panel = with_records(panel, &told)
         .with(Layer::new(Role::Fitted, "consensus", ends(quantity.mean)))
         .with(Layer::new(Role::Reference, "its 95 % interval", ends(low)))
         .with(Layer::new(Role::ReferenceAgain, "", ends(high)));
-    // Of many, bars say nothing and weigh much.
-    for (x, y, u) in told.iter().filter(|_| told.len() <= 100) {
-        panel = panel.with(Layer::new(Role::MeasuredAgain, "", vec![(*x, y - 2.0 * u), (*x, y + 2.0 * u)]));
-    }
     figure(&drawn(&[panel]), &statement(quantity), &format!("quantity-{index}"))
 }

@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use fmm_fit::EstimateStatus;
-use fmm_identify::{Experiment, Finding, Origin};
+use fmm_identify::{Experiment, Finding, Identification, Origin};
 use serde::{Deserialize, Serialize};
 
 use super::campaign::{Campaign, write_at_once};
-use crate::input::{Given, Question};
+use crate::input::{Given, Input, Question};
 
 /// What `fmm identify` is told of one record.
 #[derive(Debug, Parser)]
@@ -20,7 +20,7 @@ pub(crate) struct OfRecord {
     #[command(flatten)]
     given: Given,
     #[command(flatten)]
-    question: Question,
+    pub(super) question: Question,
 }
 
 /// What became of one record.
@@ -51,6 +51,8 @@ pub(crate) struct Found {
     pub(crate) findings: Vec<Told>,
     pub(crate) rms_residual: f64,
     pub(crate) unit: String,
+    /// Largest amplitude, in the unit of the record.
+    pub(crate) amplitude: f64,
     pub(crate) half_swings: usize,
     pub(crate) warnings: Vec<String>,
 }
@@ -71,11 +73,8 @@ impl Row {
     /// Identifies the record of this index.
     pub(crate) fn of(campaign: &Campaign, index: usize) -> Self {
         let entry = &campaign.entries[index];
-        let options = campaign.options.iter().chain(&entry.options).cloned();
-        let arguments = OfRecord::try_parse_from(options.chain(["--".to_owned(), entry.file.display().to_string()]));
-        let found =
-            arguments.map_err(|error| first_line(&error.to_string()).into()).and_then(|arguments| found(&arguments));
-        let outcome = found.map_or_else(|error: Box<dyn Error>| Outcome::Refused(error.to_string()), Outcome::Found);
+        let found = OfRecord::of(campaign, index).and_then(|record| record.found());
+        let outcome = found.map_or_else(|error| Outcome::Refused(error.to_string()), Outcome::Found);
         Self { file: entry.file.clone(), description: entry.description.clone(), outcome }
     }
 
@@ -123,13 +122,46 @@ fn first_line(text: &str) -> String {
     text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned()
 }
 
-fn found(arguments: &OfRecord) -> Result<Found, Box<dyn Error>> {
-    let OfRecord { given, question } = arguments;
-    let input = given.read_mode()?;
-    let preparation = given.preparation().gain_uncertainty(question.scale_u);
-    let decay = question.seen(Experiment::ring_down(&input.record, &preparation)?)?;
-    let comparison = question.answer(&decay, &question.candidates()?, |_, _| ControlFlow::Continue(()))?;
-    let preferred = comparison.preferred();
+impl OfRecord {
+    /// What is told of the record of this index.
+    pub(crate) fn of(campaign: &Campaign, index: usize) -> Result<Self, Box<dyn Error>> {
+        let entry = &campaign.entries[index];
+        let options = campaign.options.iter().chain(&entry.options).cloned();
+        let arguments = options.chain(["--".to_owned(), entry.file.display().to_string()]);
+        Ok(Self::try_parse_from(arguments).map_err(|error| first_line(&error.to_string()))?)
+    }
+
+    /// The record as it was read, and as it is fitted.
+    pub(crate) fn prepared(&self) -> Result<(Input, Experiment), Box<dyn Error>> {
+        let input = self.given.read_mode()?;
+        let preparation = self.given.preparation().gain_uncertainty(self.question.scale_u);
+        let experiment = self.question.seen(Experiment::ring_down(&input.record, &preparation)?)?;
+        Ok((input, experiment))
+    }
+
+    fn found(&self) -> Result<Found, Box<dyn Error>> {
+        let (input, decay) = self.prepared()?;
+        let candidates = self.question.candidates()?;
+        let comparison =
+            self.question.answer(std::slice::from_ref(&decay), &candidates, |_, _| ControlFlow::Continue(()))?;
+        let preferred = comparison.preferred();
+        let warnings = input.warnings.into_iter().chain(comparison.warnings().iter().map(ToString::to_string));
+        Ok(Found {
+            origin: input.origin,
+            law: preferred.law().to_owned(),
+            is_decided: comparison.is_decided(),
+            findings: told(preferred),
+            rms_residual: preferred.rms_residual(),
+            unit: decay.record().unit().to_owned(),
+            amplitude: decay.summary().amplitudes.0,
+            half_swings: decay.summary().half_swings,
+            warnings: warnings.collect(),
+        })
+    }
+}
+
+/// What was found of the machine.
+pub(super) fn told(found: &Identification) -> Vec<Told> {
     let is_of_machine =
         |finding: &&Finding| !finding.is_of_record() && finding.origin() != Origin::Fitted(EstimateStatus::Fixed);
     let value = |finding: &Finding| Told {
@@ -139,15 +171,5 @@ fn found(arguments: &OfRecord) -> Result<Found, Box<dyn Error>> {
         u: finding.uncertainty(),
         degrees_of_freedom: Some(finding.degrees_of_freedom()).filter(|freedom| freedom.is_finite()),
     };
-    let warnings = input.warnings.into_iter().chain(comparison.warnings().iter().map(ToString::to_string));
-    Ok(Found {
-        origin: input.origin,
-        law: preferred.law().to_owned(),
-        is_decided: comparison.is_decided(),
-        findings: preferred.findings().iter().filter(is_of_machine).map(value).collect(),
-        rms_residual: preferred.rms_residual(),
-        unit: decay.record().unit().to_owned(),
-        half_swings: decay.summary().half_swings,
-        warnings: warnings.collect(),
-    })
+    found.findings().iter().filter(is_of_machine).map(value).collect()
 }

@@ -5,7 +5,10 @@ use fmm_uq::{Consensus, Interval, Outlier, Precision, RandomEffects};
 use serde::Serialize;
 
 use super::campaign::Campaign;
+use super::dependence::{Dependence, FRICTION, dependences};
+use super::joint::{Joint, Together};
 use super::row::{Row, quantities};
+use super::sheet::Field;
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;
@@ -16,6 +19,12 @@ pub(crate) struct Summary {
     pub(crate) records: usize,
     pub(crate) found: usize,
     pub(crate) quantities: Vec<Quantity>,
+    /// Friction against what differs between the records.
+    pub(crate) dependences: Vec<Dependence>,
+    /// All records fitted together, where that is asked for.
+    pub(crate) joint: Option<Joint>,
+    /// The record sheet, where the manifest has one.
+    pub(crate) sheet: Option<Vec<Field>>,
 }
 
 /// A quantity of a campaign.
@@ -42,6 +51,8 @@ pub(crate) struct Quantity {
     pub(crate) weighted_mean: [f64; 2],
     /// The record whose absence moves the consensus most, and by how many standard uncertainties.
     pub(crate) most_influential: Option<(String, f64)>,
+    /// Value and standard uncertainty by the joint fit, where it has the quantity as the records have it.
+    pub(crate) joint: Option<(f64, Option<f64>)>,
     /// By groups, if there are any.
     pub(crate) precision: Option<ByGroup>,
 }
@@ -65,15 +76,34 @@ pub(crate) struct ByGroup {
 }
 
 impl Summary {
-    pub(crate) fn of(campaign: &Campaign, rows: &[Row]) -> Self {
-        let quantities = quantities(rows);
-        let quantities = quantities.into_iter().filter_map(|quantity| Quantity::of(campaign, rows, quantity)).collect();
-        Self { records: rows.len(), found: rows.iter().filter_map(Row::found).count(), quantities }
+    /// Of all rows, with friction `against` these columns, and what a joint fit said if there was one.
+    pub(crate) fn of(campaign: &Campaign, rows: &[Row], against: &[String], joint: Option<Joint>) -> Self {
+        let together = joint.as_ref().and_then(Joint::found);
+        let of = |quantity| Quantity::of(campaign, rows, together, quantity);
+        Self {
+            records: rows.len(),
+            found: rows.iter().filter_map(Row::found).count(),
+            quantities: quantities(rows).into_iter().filter_map(of).collect(),
+            dependences: dependences(rows, against),
+            joint,
+            sheet: campaign.sheet.as_ref().map(|sheet| sheet.fields(rows)),
+        }
     }
 }
 
+/// What the joint fit says of a quantity. Forces that belong to one load are none of the records' under others.
+fn by_joint(together: &Together, (name, unit): (&str, &str)) -> Option<(f64, Option<f64>)> {
+    let [coefficient, levels @ ..] = FRICTION;
+    let is_level = !name.ends_with(coefficient) && levels.iter().any(|level| name.ends_with(level));
+    if is_level && together.reference_load.is_some() {
+        return None;
+    }
+    let found = together.findings.iter().find(|told| told.name == name && told.unit == unit)?;
+    Some((found.value, found.u))
+}
+
 impl Quantity {
-    fn of(campaign: &Campaign, rows: &[Row], quantity: (&str, &str)) -> Option<Self> {
+    fn of(campaign: &Campaign, rows: &[Row], together: Option<&Together>, quantity: (&str, &str)) -> Option<Self> {
         let shown: Vec<(&Row, f64, Option<f64>)> =
             rows.iter().filter_map(|row| row.told(quantity).map(|told| (row, told.value, told.u))).collect();
         let told: Vec<(&Row, Estimated)> = shown
@@ -103,6 +133,7 @@ impl Quantity {
             i_squared: consensus.i_squared(),
             weighted_mean: [plain.value, plain.uncertainty],
             most_influential: moved.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())),
+            joint: together.and_then(|together| by_joint(together, quantity)),
             precision: campaign.group.as_ref().and_then(|column| ByGroup::of(column, &told)),
         })
     }

@@ -6,7 +6,9 @@ use std::fmt::Write;
 use fmm_model::Rounded;
 
 use super::campaign::Campaign;
-use super::row::{Found, Outcome, Row, quantities};
+use super::joint::Joint;
+use super::row::{Found, Outcome, Row, Told, quantities};
+use super::sheet::Field;
 use super::summary::{ByGroup, Quantity, Summary};
 
 /// One line for each record, with all digits.
@@ -16,21 +18,27 @@ pub(crate) fn csv(campaign: &Campaign, rows: &[Row]) -> Result<String, Box<dyn E
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut head: Vec<String> = vec!["file".to_owned()];
     head.extend(columns.iter().map(ToString::to_string));
-    head.extend(["law", "refused", "half_swings", "rms_residual", "warnings"].map(str::to_owned));
+    head.extend(["law", "refused", "half_swings", "amplitude", "rms_residual", "unit", "warnings"].map(str::to_owned));
     head.extend(names.iter().flat_map(|(name, unit)| [format!("{name} [{unit}]"), format!("u({name}) [{unit}]")]));
     writer.write_record(&head)?;
     for row in rows {
         let mut line = vec![row.file.display().to_string()];
         line.extend(columns.iter().map(|column| row.description.get(*column).cloned().unwrap_or_default()));
         line.extend(match &row.outcome {
-            Outcome::Found(Found { law, half_swings, rms_residual, warnings, .. }) => [
+            Outcome::Found(Found { law, half_swings, amplitude, rms_residual, unit, warnings, .. }) => [
                 law.clone(),
                 String::new(),
                 half_swings.to_string(),
+                amplitude.to_string(),
                 rms_residual.to_string(),
+                unit.clone(),
                 warnings.len().to_string(),
             ],
-            Outcome::Refused(why) => [String::new(), why.clone(), String::new(), String::new(), String::new()],
+            Outcome::Refused(why) => {
+                let mut cells = [const { String::new() }; 7];
+                cells[1].clone_from(why);
+                cells
+            }
         });
         for (name, unit) in &names {
             let value = row.told((name, unit));
@@ -68,6 +76,60 @@ pub(super) fn statement(quantity: &Quantity) -> String {
         quantity.name,
         quantity_text(quantity, *mean, *u)
     )
+}
+
+/// What a joint fit said, in sentences.
+pub(super) fn joint_lines(summary: &Summary) -> Vec<String> {
+    let together = match &summary.joint {
+        None => return Vec::new(),
+        Some(Joint::Refused(why)) => return vec![format!("no joint fit: {why}")],
+        Some(Joint::Found(together)) => together,
+    };
+    let value = |told: &Told| {
+        let value = Rounded::new(told.value, told.u);
+        if told.unit == "1" {
+            format!("{} = {value}", told.name)
+        } else {
+            format!("{} = {value} {}", told.name, told.unit)
+        }
+    };
+    let values: Vec<String> = together.findings.iter().map(value).collect();
+    let load = together
+        .reference_load
+        .map_or_else(String::new, |load| format!(" (levels at a load of {load} N, in proportion to it at the others)"));
+    let mut lines = vec![
+        format!("joint fit of {} records by {}: {}{load}", together.records, together.law, values.join(", ")),
+        "the joint fit takes machine and law for the same in all records: what differs between them is not in its uncertainties"
+            .to_owned(),
+    ];
+    let differ: Vec<&str> = summary
+        .quantities
+        .iter()
+        .filter(|quantity| quantity.joint.is_some() && quantity.homogeneity_p < 0.05)
+        .map(|quantity| quantity.name.as_str())
+        .collect();
+    if !differ.is_empty() {
+        lines.push(format!(
+            "the records differ beyond their uncertainties in {}: there the joint uncertainties are too small, and the consensus counts",
+            differ.join(", ")
+        ));
+    }
+    lines.extend(together.warnings.iter().map(|warning| format!("warning of the joint fit: {warning}")));
+    lines
+}
+
+/// What nobody said of the record sheet.
+pub(super) fn sheet_line(fields: &[Field]) -> String {
+    let missing: Vec<String> = fields
+        .iter()
+        .filter(|field| field.value.is_none())
+        .map(|field| format!("{} ({})", field.field, field.part.to_lowercase()))
+        .collect();
+    if missing.is_empty() {
+        "record sheet: every field is given".to_owned()
+    } else {
+        format!("record sheet, not given: {}", missing.join(", "))
+    }
 }
 
 pub(super) fn group_lines(quantity: &Quantity, group: &ByGroup) -> Vec<String> {
@@ -116,6 +178,11 @@ pub(crate) fn text(rows: &[Row], summary: &Summary) -> String {
         for line in quantity.precision.iter().flat_map(|group| group_lines(quantity, group)) {
             let _ = writeln!(text, "    {line}");
         }
+    }
+    let dependences = summary.dependences.iter().map(|dependence| dependence.statement.clone());
+    let sheet = summary.sheet.as_deref().map(sheet_line);
+    for line in dependences.chain(joint_lines(summary)).chain(sheet) {
+        let _ = writeln!(text, "  {line}");
     }
     text.trim_end().to_owned()
 }

@@ -44,6 +44,9 @@ fn records(folder: &Path, levels: &[f64]) -> Vec<PathBuf> {
     levels.iter().enumerate().map(one).collect()
 }
 
+/// No question beside the rows.
+const NOTHING: Asked = Asked { joint: false, against: Vec::new() };
+
 fn law() -> Vec<String> {
     vec!["--law".to_owned(), LAW.to_owned()]
 }
@@ -76,7 +79,7 @@ fn any_split_gives_the_same_bytes() {
                 Row::of(&campaign, index).write(&out, index).unwrap();
             }
         }
-        put_together(&out, &campaign, true).unwrap();
+        put_together(&out, &campaign, &NOTHING, true).unwrap();
         ["campaign.csv", "campaign.json", "campaign.html"].map(|name| std::fs::read(out.join(name)).unwrap())
     };
     let whole = done("whole", &[(1, 1)]);
@@ -111,7 +114,7 @@ fn a_manifest_sets_options_and_groups() {
         assert!(off < 4.0 * found.u.unwrap() && off < 0.08 * coefficient, "{found:?}");
     }
     assert!(matches!(&rows[4].outcome, Outcome::Refused(why) if why.contains("missing.csv")), "{:?}", rows[4]);
-    let summary = Summary::of(&campaign, &rows);
+    let summary = Summary::of(&campaign, &rows, &[], None);
     assert_eq!((summary.records, summary.found), (5, 4));
     let force = summary.quantities.iter().find(|quantity| quantity.name == "friction_force").unwrap();
     let group = force.precision.as_ref().unwrap();
@@ -153,6 +156,7 @@ fn the_most_influential_record_is_named() {
             findings: vec![told],
             rms_residual: 1.0,
             unit: "m".to_owned(),
+            amplitude: 1.0,
             half_swings: 9,
             warnings: Vec::new(),
         };
@@ -160,8 +164,163 @@ fn the_most_influential_record_is_named() {
         Row { file, description: BTreeMap::new(), outcome: Outcome::Found(found) }
     };
     let rows: Vec<Row> = [1.0, 1.1, 5.0, 0.9].iter().enumerate().map(row).collect();
-    let campaign = Campaign { options: Vec::new(), group: None, entries: Vec::new() };
-    let summary = Summary::of(&campaign, &rows);
+    let campaign = Campaign { options: Vec::new(), group: None, sheet: None, entries: Vec::new() };
+    let summary = Summary::of(&campaign, &rows, &[], None);
     let (file, moved) = summary.quantities[0].most_influential.as_ref().unwrap();
     assert!(file == "run_2.csv" && *moved < -0.5, "{file}: {moved}");
+}
+
+/// Runs at three loads, listed as CSV and as TOML.
+fn three_loads(home: &Path) -> [PathBuf; 2] {
+    let loads = [2.0, 2.0, 4.0, 4.0, 8.0, 8.0];
+    // Friction of μ N by 10 kg, with a coefficient of 0.01 that differs by a hundredth.
+    let levels: Vec<f64> =
+        loads.iter().zip([1.01, 0.99, 1.0, 1.012, 0.992, 0.997]).map(|(load, factor)| 0.1 * load * factor).collect();
+    records(home, &levels.iter().map(|level| level / 10.0).collect::<Vec<_>>());
+    let mut csv = "file,mass,mass_u,normal_load,unit,operator,temperature\n".to_owned();
+    let mut toml = "group = \"operator\"\n[common]\nmass = 10\nmass_u = 0.01\nunit = \"mm/s\"\n".to_owned();
+    for (run, load) in loads.iter().enumerate() {
+        let (operator, temperature) = (["A", "B"][run % 2], 20 + run);
+        csv += &format!("run_{run:02}.csv,10,0.01,{load},mm/s,{operator},{temperature}\n");
+        toml += &format!(
+            "[[record]]\nfile = \"run_{run:02}.csv\"\nnormal_load = {load}\noperator = \"{operator}\"\ntemperature = {temperature}\n"
+        );
+    }
+    toml += "[sheet]\nmoving_material = \"steel\"\nnormal_load = \"dead weight\"\n[sheet.further]\ngrease_batch = 7\n";
+    [("runs.csv", csv), ("runs.toml", toml)].map(|(name, text)| {
+        std::fs::write(home.join(name), text).unwrap();
+        home.join(name)
+    })
+}
+
+fn rows(campaign: &Campaign) -> Vec<Row> {
+    (0..campaign.entries.len()).map(|index| Row::of(campaign, index)).collect()
+}
+
+/// A list in TOML and a table of the same give the same rows, tables and groups.
+#[test]
+fn both_kinds_of_manifest_say_the_same() {
+    let home = folder("kinds");
+    let [csv, toml] = three_loads(&home);
+    let table = Campaign::of_manifest(&csv, law(), Some("operator".to_owned())).unwrap();
+    let list = Campaign::of_manifest(&toml, law(), None).unwrap();
+    assert_eq!((&list.group, list.sheet.is_some()), (&table.group, true));
+    let [from_table, from_list] = [rows(&table), rows(&list)];
+    assert!(from_table == from_list && from_table.iter().all(|row| row.found().is_some()), "{from_table:?}");
+    assert_eq!(table::csv(&table, &from_table).unwrap(), table::csv(&list, &from_list).unwrap());
+    // A sheet that changes is no other campaign; another mass is.
+    let out = home.join("out");
+    list.keep(&out).unwrap();
+    Campaign { sheet: None, ..list.clone() }.keep(&out).unwrap();
+    assert_eq!(Campaign::read(&out).unwrap().sheet, None);
+    let mut other = list.clone();
+    other.entries[0].options[0] = "--mass=11".to_owned();
+    assert!(other.keep(&out).is_err());
+}
+
+/// Friction in proportion to the load is seen, what is beside it as well, and a column that cannot be set against says why.
+#[test]
+fn friction_stands_against_load_and_columns() {
+    let home = folder("against");
+    let [_, toml] = three_loads(&home);
+    let campaign = Campaign::of_manifest(&toml, law(), None).unwrap();
+    let rows = rows(&campaign);
+    let columns = ["temperature".to_owned(), "operator".to_owned(), "mass".to_owned()];
+    let summary = Summary::of(&campaign, &rows, &columns, None);
+    let against: Vec<&str> = summary.dependences.iter().map(|found| found.against.as_str()).collect();
+    // Releases are alike to within the friction of a half swing.
+    assert_eq!(against, ["normal_load", "temperature", "operator", "mass"]);
+    let line = summary.dependences[0].line.as_ref().unwrap();
+    let (low, high) = line.slope_interval_95.unwrap();
+    assert!(low < 0.01 && 0.01 < high && high - low < 1e-3, "{line:?}");
+    assert!(line.intercept_interval_95.is_some_and(|(low, high)| low < 0.0 && 0.0 < high), "{line:?}");
+    assert!(summary.dependences[0].statement.contains("in proportion to the load between 2 N and 8 N"));
+    let temperature = &summary.dependences[1];
+    assert!(
+        temperature.quantity == "mu" && temperature.statement.contains("does not show to depend"),
+        "{temperature:?}"
+    );
+    assert!(summary.dependences[2].line.is_none() && summary.dependences[3].line.is_none());
+    assert!(summary.dependences[3].statement.contains("fewer than two different values"));
+    let page = page::page(&campaign, &rows, &summary);
+    assert!(page.contains("id=\"dependence-0\"") && page.contains("Friction against load"));
+    let asked = Asked { joint: false, against: vec!["weather".to_owned()] };
+    assert!(asked.check(&campaign).unwrap_err().contains("there is no column `weather`; there are file,"));
+}
+
+/// The fields of the sheet: given, known by the records, and not given.
+#[test]
+fn the_record_sheet_says_what_is_missing() {
+    let home = folder("sheet");
+    let [_, toml] = three_loads(&home);
+    let campaign = Campaign::of_manifest(&toml, law(), None).unwrap();
+    let rows = rows(&campaign);
+    let summary = Summary::of(&campaign, &rows, &[], None);
+    let value = |part: &str, field: &str| {
+        let fields = summary.sheet.as_ref().unwrap();
+        fields.iter().find(|own| own.part == part && own.field == field).and_then(|own| own.value.clone())
+    };
+    assert_eq!(value("Moving specimen", "material").as_deref(), Some("steel"));
+    assert_eq!(value("Fixed specimen", "material"), None);
+    // What is given goes before what the records say.
+    assert_eq!(value("Conditions", "normal load or pressure").as_deref(), Some("dead weight"));
+    assert_eq!(value("Further", "grease batch").as_deref(), Some("7"));
+    assert_eq!(value("Results", "replicates").as_deref(), Some("6 identified of 6 records"));
+    let mu: Vec<f64> = rows.iter().map(|row| row.told(("mu", "1")).unwrap().value).collect();
+    let mean = mu.iter().sum::<f64>() / 6.0;
+    let deviation = (mu.iter().map(|mu| (mu - mean).powi(2)).sum::<f64>() / 5.0).sqrt();
+    let spread = format!("coefficient of variation {:.2} %", 100.0 * deviation / mean);
+    assert!(value("Results", "mu").is_some_and(|text| text.ends_with(&spread)), "{:?}", value("Results", "mu"));
+    let text = table::text(&rows, &summary);
+    assert!(
+        text.contains("record sheet, not given: laboratory (test)") && !text.contains("material (moving"),
+        "{text}"
+    );
+    assert!(page::page(&campaign, &rows, &summary).contains("not given"));
+}
+
+/// All records as one problem: the coefficient between those of the records, and known better than it deserves where they differ.
+#[test]
+fn a_joint_fit_says_what_it_takes_for_granted() {
+    let home = folder("joint");
+    let [_, toml] = three_loads(&home);
+    let campaign = Campaign::of_manifest(&toml, law(), None).unwrap();
+    let rows = rows(&campaign);
+    let joint = |campaign: &Campaign, rows: &[Row]| Joint::of(campaign, rows, |_, _| ControlFlow::Continue(()));
+    let found = joint(&campaign, &rows);
+    let together = found.found().unwrap_or_else(|| panic!("{found:?}"));
+    assert_eq!((together.records, together.law.as_str(), together.reference_load), (6, LAW, Some(2.0)));
+    let mu = together.findings.iter().find(|told| told.name == "mu").unwrap();
+    assert!((mu.value - 0.01).abs() < 2e-4, "{mu:?}");
+    let summary = Summary::of(&campaign, &rows, &[], Some(found));
+    let of = |name: &str| summary.quantities.iter().find(|quantity| quantity.name == name).unwrap();
+    assert_eq!(of("mu").joint, Some((mu.value, mu.u)));
+    // A force at one load is none of the records at the others.
+    assert!(of("friction_force").joint.is_none() && of("natural_frequency_hz").joint.is_some());
+    let text = table::text(&rows, &summary);
+    assert!(
+        text.contains("joint fit of 6 records by coulomb_viscous") && text.contains("levels at a load of 2 N"),
+        "{text}"
+    );
+    assert!(text.contains("takes machine and law for the same in all records"), "{text}");
+    assert!(page::page(&campaign, &rows, &summary).contains("<h2>Joint fit</h2>"));
+
+    let refused = |campaign: &Campaign, rows: &[Row]| match joint(campaign, rows) {
+        Joint::Refused(why) => why,
+        Joint::Found(together) => panic!("{together:?}"),
+    };
+    let mut other = campaign.clone();
+    let mass = other.entries[3].options.iter_mut().find(|option| option.starts_with("--mass=")).unwrap();
+    *mass = "--mass=11".to_owned();
+    let why = refused(&other, &rows);
+    assert!(why.contains("--mass is 10 for") && why.contains("and 11 for") && why.contains("run_03.csv"), "{why}");
+    let mut other = campaign.clone();
+    other.entries[2].options.retain(|option| !option.starts_with("--normal-load"));
+    assert!(refused(&other, &rows).contains("the normal load of all records or of none"));
+    let mut mixed = rows.clone();
+    if let Outcome::Found(found) = &mut mixed[1].outcome {
+        found.law = "viscous".to_owned();
+    }
+    assert!(refused(&campaign, &mixed).contains("different laws: coulomb_viscous (5), viscous (1)"));
+    assert!(refused(&campaign, &rows[..1]).contains("two identified records"));
 }

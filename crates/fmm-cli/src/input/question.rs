@@ -145,15 +145,80 @@ impl Question {
         self.hold.iter().map(parse).collect()
     }
 
-    /// What a record says to the `candidates`, or to a search if there are none, while `show` sees each trial step.
+    /// The one of the laws that are named, or that a search knows, which is called so.
+    pub(crate) fn candidate(&self, law: &str) -> Result<Candidate, Box<dyn Error>> {
+        if let Some(candidate) = self.candidates()?.into_iter().find(|candidate| candidate.name() == law) {
+            return Ok(candidate);
+        }
+        let named = Self { law: vec![law.replace(" of any sign", " + any sign")], ..self.clone() };
+        named.candidates()?.pop().ok_or_else(|| format!("there is no law called {law}").into())
+    }
+
+    /// The normal load (N).
+    pub(crate) fn normal_load(&self) -> Option<f64> {
+        self.normal_load
+    }
+
+    /// What is asked of several records that are one problem, each with its name: the question of the first, and the normal load of
+    /// each over that of the first. Refused where they state more than one machine, which no fit has.
+    pub(crate) fn together(questions: &[(Self, String)]) -> Result<(Self, Vec<f64>), String> {
+        let (first, name) = questions.first().ok_or("there is no record")?;
+        let mut factors = Vec::with_capacity(questions.len());
+        let mut relative = 0.0_f64;
+        for (question, other) in questions {
+            let of_machine = |question: &Self| {
+                [
+                    ("--pendulum", question.pendulum),
+                    ("--mass", question.mass),
+                    ("--mass-u", Some(question.mass_u)),
+                    ("--stiffness", question.stiffness),
+                    ("--stiffness-u", Some(question.stiffness_u)),
+                    ("--damping", question.damping),
+                    ("--damping-u", Some(question.damping_u)),
+                ]
+            };
+            let words = |value: Option<f64>| value.map_or_else(|| "none".to_owned(), |value| value.to_string());
+            let differs =
+                of_machine(first).into_iter().zip(of_machine(question)).find(|(own, theirs)| own.1 != theirs.1);
+            if let Some(((option, own), (_, theirs))) = differs {
+                return Err(format!(
+                    "one machine is fitted to all, but {option} is {} for {name} and {} for {other}",
+                    words(own),
+                    words(theirs)
+                ));
+            }
+            factors.push(match (first.normal_load, question.normal_load) {
+                (None, None) => 1.0,
+                (Some(own), Some(theirs)) => {
+                    relative = relative.max(question.normal_load_u / theirs);
+                    theirs / own
+                }
+                (own, theirs) => {
+                    return Err(format!(
+                        "a joint fit needs the normal load of all records or of none, but it is {} for {name} and {} for {other}",
+                        words(own),
+                        words(theirs)
+                    ));
+                }
+            });
+        }
+        // The loads may be wrong together, and the worst known of them counts.
+        let normal_load_u = first.normal_load.map_or(0.0, |load| relative * load);
+        Ok((Self { normal_load_u, ..first.clone() }, factors))
+    }
+
+    /// What one record or several of one machine say to the `candidates`, or to a search if there are none, while `show` sees each trial
+    /// step.
     pub(crate) fn answer(
         &self,
-        decay: &Experiment,
+        decays: &[Experiment],
         candidates: &[Candidate],
         show: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
     ) -> Result<Comparison, Box<dyn Error>> {
-        let machine = self.machine(decay.drive().is_some_and(|drive| drive.record().quantity() == Quantity::Force))?;
-        let (decays, options) = (std::slice::from_ref(decay), Options::default());
+        let is_force =
+            |decay: &Experiment| decay.drive().is_some_and(|drive| drive.record().quantity() == Quantity::Force);
+        let machine = self.machine(decays.iter().any(is_force))?;
+        let options = Options::default();
         Ok(if candidates.is_empty() {
             search_observed(&machine, decays, &self.search()?, &options, show)?
         } else {

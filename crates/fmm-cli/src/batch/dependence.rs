@@ -1,0 +1,247 @@
+//! Friction of a campaign against the load, against the amplitude of the release, and against columns of numbers.
+
+use fmm_fit::{RandomEffectsLine, UncertainPoint};
+use fmm_identify::FrictionOverLoad;
+use fmm_model::{Estimated, Rounded};
+use serde::Serialize;
+
+use super::row::{Row, Told, quantities};
+
+/// Coverage probability of intervals (1).
+const LEVEL: f64 = 0.95;
+/// Release amplitudes that differ by less than this factor (1) say nothing of what friction does with them.
+const WIDE: f64 = 1.1;
+/// Below this probability a dependence counts as shown (1).
+const SHOWN: f64 = 0.05;
+/// Pieces in which the band about a line is drawn.
+const PIECES: u32 = 40;
+
+/// The column of the normal load.
+pub(super) const LOAD: &str = "normal_load";
+/// What the names of measures of friction end with, the one that tells most first.
+pub(super) const FRICTION: [&str; 3] = ["mu", "friction_force", "friction_per_mass"];
+
+/// A measure of friction against something that differs between records.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Dependence {
+    pub(crate) quantity: String,
+    pub(crate) unit: String,
+    pub(crate) against: String,
+    /// Empty for a column, whose unit is not known.
+    pub(crate) against_unit: String,
+    /// Records that tell both.
+    pub(crate) records: usize,
+    /// The judgement in a sentence, or why there is no line.
+    pub(crate) statement: String,
+    pub(crate) line: Option<Line>,
+    /// Each record's place, value and standard uncertainty.
+    #[serde(skip)]
+    pub(crate) points: Vec<(f64, f64, f64)>,
+}
+
+/// intercept + slope · x, with an effect of each record beside it.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Line {
+    pub(crate) intercept: f64,
+    pub(crate) intercept_u: f64,
+    pub(crate) intercept_interval_95: Option<(f64, f64)>,
+    pub(crate) slope: f64,
+    pub(crate) slope_u: f64,
+    pub(crate) slope_interval_95: Option<(f64, f64)>,
+    /// Standard deviation between records beyond their uncertainties: of the slope where the line is over the load, else of the quantity.
+    pub(crate) between: f64,
+    /// Probability of an intercept as far from zero if there were none, where the line is over the load; else of a slope.
+    pub(crate) p_value: f64,
+    /// Places with the value of the line and the ends of its interval, for the eye.
+    #[serde(skip)]
+    pub(crate) band: Vec<(f64, f64, f64, f64)>,
+}
+
+/// The number in this column of a record, whether the name is written with hyphens or underscores.
+pub(super) fn number_in(row: &Row, column: &str) -> Option<f64> {
+    let plain = |name: &str| name.replace('-', "_");
+    let (_, cell) = row.description.iter().find(|(name, _)| plain(name) == plain(column))?;
+    cell.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+/// All dependences that the records can show, and those on `columns`.
+pub(super) fn dependences(rows: &[Row], columns: &[String]) -> Vec<Dependence> {
+    let load = over_load(rows);
+    let amplitude = over_amplitude(rows);
+    let columns = columns.iter().map(|column| {
+        let place = |row: &Row| number_in(row, column);
+        let unit = if column.replace('-', "_") == LOAD { "N" } else { "" };
+        Dependence::by_line(rows, column, unit, place)
+            .unwrap_or_else(|| Dependence::none(column, "no record tells friction with an uncertainty"))
+    });
+    load.into_iter().chain(amplitude).chain(columns).collect()
+}
+
+/// The first quantity of `rows` whose name ends so.
+fn quantity<'a>(rows: &'a [Row], ending: &str) -> Option<(&'a str, &'a str)> {
+    quantities(rows).into_iter().find(|(name, _)| name.ends_with(ending))
+}
+
+/// Value and standard uncertainty, if it has one.
+fn estimated(told: &Told) -> Option<Estimated> {
+    Some(Estimated::new(told.value, told.u.filter(|u| *u > 0.0)?))
+}
+
+/// Friction force against the load, where records state different ones.
+fn over_load(rows: &[Row]) -> Option<Dependence> {
+    let quantity = quantity(rows, "friction_force")?;
+    let run = |row: &Row| {
+        let load = Estimated::new(number_in(row, LOAD)?, number_in(row, "normal_load_u").unwrap_or(0.0));
+        Some((load, estimated(row.told(quantity)?)?))
+    };
+    let runs: Vec<(Estimated, Estimated)> = rows.iter().filter_map(run).collect();
+    let (first, _) = runs.first()?;
+    if runs.iter().all(|(load, _)| load.value == first.value) {
+        return None;
+    }
+    let found = FrictionOverLoad::of(&runs);
+    let line = found.as_ref().ok().map(|found| {
+        let (intercept, slope) = (found.intercept(), found.coefficient());
+        let (_, largest) = found.loads();
+        let at = |piece: u32| {
+            let load = largest * f64::from(piece) / f64::from(PIECES);
+            let ends = if piece == 0 { found.intercept_interval(LEVEL) } else { found.force_interval(load, LEVEL) };
+            let (low, high) = ends.unwrap_or((found.force(load), found.force(load)));
+            (load, found.force(load), low, high)
+        };
+        Line {
+            intercept: intercept.value,
+            intercept_u: intercept.uncertainty,
+            intercept_interval_95: found.intercept_interval(LEVEL),
+            slope: slope.value,
+            slope_u: slope.uncertainty,
+            slope_interval_95: found.coefficient_interval(LEVEL),
+            between: found.between(),
+            p_value: found.intercept_p_value(),
+            band: (0..=PIECES).map(at).collect(),
+        }
+    });
+    Some(Dependence {
+        quantity: quantity.0.to_owned(),
+        unit: quantity.1.to_owned(),
+        against: LOAD.to_owned(),
+        against_unit: "N".to_owned(),
+        records: runs.len(),
+        statement: found.map_or_else(|error| error.to_string(), |found| found.to_string()),
+        line,
+        points: runs.iter().map(|(load, force)| (load.value, force.value, force.uncertainty)).collect(),
+    })
+}
+
+/// Friction against the amplitude of the release, where amplitudes of one unit differ by enough.
+fn over_amplitude(rows: &[Row]) -> Option<Dependence> {
+    let found = || rows.iter().filter_map(Row::found);
+    let unit = &found().next()?.unit;
+    let (low, high) = found()
+        .fold((f64::INFINITY, 0.0_f64), |(low, high), found| (low.min(found.amplitude), high.max(found.amplitude)));
+    if high < WIDE * low || found().any(|found| found.unit != *unit) {
+        return None;
+    }
+    Dependence::by_line(rows, "amplitude", unit, |row| Some(row.found()?.amplitude))
+        .filter(|found| found.line.is_some())
+}
+
+impl Dependence {
+    fn none(against: &str, why: &str) -> Self {
+        Self {
+            quantity: String::new(),
+            unit: String::new(),
+            against: against.to_owned(),
+            against_unit: String::new(),
+            records: 0,
+            statement: format!("{}: {why}", against.replace('_', " ")),
+            line: None,
+            points: Vec::new(),
+        }
+    }
+
+    /// The measure of friction that tells most against what is at a `place` in each record.
+    fn by_line(rows: &[Row], against: &str, against_unit: &str, place: impl Fn(&Row) -> Option<f64>) -> Option<Self> {
+        let (name, unit) = FRICTION.iter().find_map(|ending| quantity(rows, ending))?;
+        let point = |row: &Row| {
+            let friction = estimated(row.told((name, unit))?)?;
+            Some((place(row)?, friction.value, friction.uncertainty))
+        };
+        let points: Vec<(f64, f64, f64)> = rows.iter().filter_map(point).collect();
+        let found = if points.iter().all(|point| point.0 == points[0].0) {
+            Err(format!("fewer than two different values of it stand beside a {}", name.replace('_', " ")))
+        } else {
+            let points: Vec<UncertainPoint> =
+                points.iter().map(|(x, y, u)| UncertainPoint::new(*x, *y, 0.0, *u)).collect();
+            RandomEffectsLine::fit(&points).map_err(|error| error.to_string())
+        };
+        let (low, high) = points
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), point| (low.min(point.0), high.max(point.0)));
+        let line = found.as_ref().ok().map(|found| Line::of(found, low, high));
+        let words = |text: &str| text.replace('_', " ");
+        let statement = match &line {
+            Some(line) => {
+                let per = if against_unit.is_empty() {
+                    format!("unit of {}", words(against))
+                } else {
+                    against_unit.to_owned()
+                };
+                let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+                let slope = Rounded::new(line.slope, Some(line.slope_u));
+                let verb = if line.p_value < SHOWN { "depends on" } else { "does not show to depend on" };
+                let axis = if against_unit.is_empty() { String::new() } else { format!(" {against_unit}") };
+                format!(
+                    "{} {verb} {} between {} and {}{axis}: it changes by {slope}{unit} per {per} (p = {:.1e}), from {} records that \
+                     scatter about the line by {:.2e}{unit} beyond their uncertainties",
+                    words(name),
+                    words(against),
+                    Rounded::new(low, None),
+                    Rounded::new(high, None),
+                    line.p_value,
+                    points.len(),
+                    line.between,
+                )
+            }
+            None => format!(
+                "{} against {}: {}",
+                words(name),
+                words(against),
+                found.as_ref().err().map_or("", String::as_str)
+            ),
+        };
+        Some(Self {
+            quantity: name.to_owned(),
+            unit: unit.to_owned(),
+            against: against.to_owned(),
+            against_unit: against_unit.to_owned(),
+            records: points.len(),
+            statement,
+            line,
+            points,
+        })
+    }
+}
+
+impl Line {
+    /// Drawn between these places.
+    fn of(found: &RandomEffectsLine, low: f64, high: f64) -> Self {
+        let at = |piece: u32| {
+            let x = low + (high - low) * f64::from(piece) / f64::from(PIECES);
+            let value = found.value(x);
+            let (below, above) = found.value_interval(x, LEVEL).unwrap_or((value, value));
+            (x, value, below, above)
+        };
+        Self {
+            intercept: found.intercept(),
+            intercept_u: found.intercept_uncertainty(),
+            intercept_interval_95: found.intercept_interval(LEVEL),
+            slope: found.slope(),
+            slope_u: found.slope_uncertainty(),
+            slope_interval_95: found.slope_interval(LEVEL),
+            between: found.between(),
+            p_value: found.slope_p_value(),
+            band: (0..=PIECES).map(at).collect(),
+        }
+    }
+}

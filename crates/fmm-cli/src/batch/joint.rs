@@ -1,0 +1,108 @@
+//! All records of a campaign fitted together as one problem: one law, one machine, an initial state and an offset for each record.
+
+use std::error::Error;
+use std::ops::ControlFlow;
+
+use fmm_fit::Progress;
+use fmm_identify::Experiment;
+use serde::Serialize;
+
+use super::campaign::Campaign;
+use super::row::{OfRecord, Row, Told, told};
+use crate::input::Question;
+
+/// What came of it.
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Joint {
+    Found(Together),
+    /// Why the records cannot be fitted together.
+    Refused(String),
+}
+
+/// What all records say as one.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Together {
+    pub(crate) law: String,
+    pub(crate) records: usize,
+    pub(crate) findings: Vec<Told>,
+    /// The load (N) to which forces and accelerations belong, where records state different ones.
+    pub(crate) reference_load: Option<f64>,
+    pub(crate) rms_residual: f64,
+    pub(crate) unit: String,
+    pub(crate) warnings: Vec<String>,
+}
+
+impl Joint {
+    /// Fits all records that were identified; `show` sees each trial step.
+    pub(crate) fn of(
+        campaign: &Campaign,
+        rows: &[Row],
+        show: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
+    ) -> Self {
+        Together::of(campaign, rows, show).map_or_else(|error| Self::Refused(error.to_string()), Self::Found)
+    }
+
+    pub(crate) fn found(&self) -> Option<&Together> {
+        match self {
+            Self::Found(together) => Some(together),
+            Self::Refused(_) => None,
+        }
+    }
+}
+
+impl Together {
+    fn of(
+        campaign: &Campaign,
+        rows: &[Row],
+        show: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
+    ) -> Result<Self, Box<dyn Error>> {
+        let law = one_law(rows)?;
+        let (mut questions, mut experiments) = (Vec::new(), Vec::new());
+        for index in (0..rows.len()).filter(|index| rows[*index].found().is_some()) {
+            let record = OfRecord::of(campaign, index)?;
+            let (_, experiment) = record.prepared()?;
+            questions.push((record.question, rows[index].file.display().to_string()));
+            experiments.push(experiment);
+        }
+        let (question, factors) = Question::together(&questions)?;
+        let under_its_load = |(experiment, factor): (Experiment, &f64)| experiment.with_load_factor(*factor);
+        let experiments: Vec<Experiment> =
+            experiments.into_iter().zip(&factors).map(under_its_load).collect::<Result<_, _>>()?;
+        let candidate = question.candidate(law)?;
+        let comparison = question.answer(&experiments, &[candidate], show)?;
+        let found = comparison.preferred();
+        Ok(Self {
+            law: law.to_owned(),
+            records: experiments.len(),
+            findings: told(found),
+            reference_load: question.normal_load().filter(|_| factors.iter().any(|factor| *factor != 1.0)),
+            rms_residual: found.rms_residual(),
+            unit: experiments[0].record().unit().to_owned(),
+            warnings: comparison.warnings().iter().map(ToString::to_string).collect(),
+        })
+    }
+}
+
+/// The law of all records.
+fn one_law(rows: &[Row]) -> Result<&str, String> {
+    let mut laws: Vec<(&str, usize)> = Vec::new();
+    for found in rows.iter().filter_map(Row::found) {
+        match laws.iter_mut().find(|(law, _)| *law == found.law) {
+            Some((_, count)) => *count += 1,
+            None => laws.push((&found.law, 1)),
+        }
+    }
+    match laws.as_slice() {
+        [(law, count)] if *count > 1 => Ok(law),
+        [] | [_] => Err("a joint fit needs two identified records or more".to_owned()),
+        several => {
+            let several: Vec<String> = several.iter().map(|(law, count)| format!("{law} ({count})")).collect();
+            Err(format!(
+                "the records follow different laws: {}; name one for all, as in -- --law {}",
+                several.join(", "),
+                laws[0].0.replace(' ', "")
+            ))
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! The manifest of a campaign: its records as a table of CSV, or as a list of TOML.
+
+use std::path::Path;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::sheet::Sheet;
+
+/// What a manifest says, whichever way it is written.
+#[derive(Debug)]
+pub(super) struct Manifest {
+    /// Among them `file`.
+    pub(super) columns: Vec<String>,
+    /// A cell for each column, empty where nothing is said.
+    pub(super) records: Vec<Vec<String>>,
+    /// The column that says which records belong together.
+    pub(super) group: Option<String>,
+    pub(super) sheet: Option<Sheet>,
+}
+
+/// The column with the path of the record.
+pub(super) const FILE: &str = "file";
+
+impl Manifest {
+    /// Reads TOML if the name or the beginning of the file looks so, and CSV otherwise.
+    pub(super) fn read(path: &Path) -> Result<Self, String> {
+        let text = std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+        let read = if is_toml(path, &text) { Self::of_toml(&text) } else { Self::of_csv(&text) };
+        let manifest = read.map_err(|error| format!("{}: {error}", path.display()))?;
+        if manifest.records.is_empty() {
+            return Err(format!("{}: the manifest has no records", path.display()));
+        }
+        Ok(manifest)
+    }
+
+    fn of_csv(text: &str) -> Result<Self, String> {
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+        let columns: Vec<String> =
+            reader.headers().map_err(|error| error.to_string())?.iter().map(str::to_owned).collect();
+        if !columns.iter().any(|column| column == FILE) {
+            return Err(format!("there is no column `{FILE}`; there are {}", columns.join(", ")));
+        }
+        let line = |line: Result<csv::StringRecord, csv::Error>| {
+            line.map(|line| line.iter().map(str::to_owned).collect()).map_err(|error| error.to_string())
+        };
+        let records = reader.records().map(line).collect::<Result<_, _>>()?;
+        Ok(Self { columns, records, group: None, sheet: None })
+    }
+
+    fn of_toml(text: &str) -> Result<Self, String> {
+        let document = DeTable::parse(text).map_err(|error| error.to_string())?;
+        let (mut common, mut records, mut group, mut sheet) = (Vec::new(), Vec::new(), None, None);
+        for (key, value) in document.get_ref() {
+            match (key.get_ref().as_ref(), value.get_ref()) {
+                ("common", DeValue::Table(table)) => common = cells(text, table)?,
+                ("record", DeValue::Array(list)) => {
+                    for record in list.iter() {
+                        let DeValue::Table(table) = record.get_ref() else {
+                            return Err(at(text, record, "a record is a table; begin each with [[record]]"));
+                        };
+                        let cells = cells(text, table)?;
+                        if !cells.iter().any(|(column, _)| column == FILE) {
+                            return Err(at(text, record, "this record has no `file`; give the path of its data"));
+                        }
+                        records.push(cells);
+                    }
+                }
+                ("group", DeValue::String(column)) => group = Some((column.to_string(), value)),
+                ("sheet", DeValue::Table(table)) => sheet = Some(Sheet::of_toml(text, table)?),
+                ("common" | "sheet", _) => {
+                    return Err(at(text, key, &format!("`{0}` is a table; write [{0}]", key.get_ref())));
+                }
+                ("record", _) => return Err(at(text, key, "`record` is a list of tables; write [[record]]")),
+                ("group", _) => {
+                    return Err(at(text, key, "`group` is the name of a column, as in group = \"operator\""));
+                }
+                (other, _) => {
+                    let what = "is not known here; a manifest has group, [common], [[record]] and [sheet]";
+                    return Err(at(text, key, &format!("`{other}` {what}")));
+                }
+            }
+        }
+        if let Some((key, _)) = common.iter().find(|(column, _)| column == FILE) {
+            return Err(format!("`{key}` stands under [common]; each record has one of its own"));
+        }
+        let mut columns: Vec<String> = Vec::new();
+        for (column, _) in records.iter().flatten().chain(&common) {
+            if !columns.contains(column) {
+                columns.push(column.clone());
+            }
+        }
+        if let Some((column, value)) = group.as_ref().filter(|(column, _)| !columns.contains(column)) {
+            return Err(at(text, value, &format!("no record has `{column}`; they have {}", columns.join(", "))));
+        }
+        let value = |record: &Vec<(String, String)>, column: &String| {
+            let own = record.iter().chain(&common).find(|(name, _)| name == column);
+            own.map_or_else(String::new, |(_, value)| value.clone())
+        };
+        let records = records.iter().map(|record| columns.iter().map(|column| value(record, column)).collect());
+        Ok(Self { records: records.collect(), group: group.map(|(column, _)| column), columns, sheet })
+    }
+}
+
+/// Whether a manifest is TOML: by its ending or, without one that tells, by its first line that says something.
+fn is_toml(path: &Path, text: &str) -> bool {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    match ending.as_deref() {
+        Some("toml") => true,
+        Some("csv") => false,
+        _ => {
+            let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
+            lines.next().is_some_and(|line| {
+                line.starts_with('[') || line.split_once('=').is_some_and(|(key, _)| !key.contains(','))
+            })
+        }
+    }
+}
+
+/// The entries of a table as text, numbers as they are written.
+pub(super) fn cells(text: &str, table: &DeTable<'_>) -> Result<Vec<(String, String)>, String> {
+    let cell = |(key, value): (&Spanned<std::borrow::Cow<'_, str>>, &Spanned<DeValue<'_>>)| {
+        let cell = match value.get_ref() {
+            DeValue::String(words) => words.trim().to_owned(),
+            DeValue::Integer(number) => number.to_string(),
+            DeValue::Float(number) => number.as_str().to_owned(),
+            DeValue::Boolean(yes) => yes.to_string(),
+            DeValue::Datetime(time) => time.to_string(),
+            DeValue::Array(_) | DeValue::Table(_) => {
+                let what = format!("`{}` must be a text or a number, as in {0} = \"…\"", key.get_ref());
+                return Err(at(text, value, &what));
+            }
+        };
+        Ok((key.get_ref().to_string(), cell))
+    };
+    table.iter().map(cell).collect()
+}
+
+/// What is wrong with a part of the text, with its line.
+pub(super) fn at<T>(text: &str, part: &Spanned<T>, what: &str) -> String {
+    let before = text.get(..part.span().start).unwrap_or(text);
+    format!("line {}: {what}", before.matches('\n').count() + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mistakes_are_named_with_their_line() {
+        let refused = |text: &str| Manifest::of_toml(text).unwrap_err();
+        for (text, words) in [
+            ("[common]\nmass = 1\n\n[[record]]\nload = 2\n", "line 4: this record has no `file`"),
+            ("[[record]]\nfile = \"a.csv\"\nlaw = [\"coulomb\"]\n", "line 3: `law` must be a text or a number"),
+            ("[comon]\nmass = 1\n", "line 1: `comon` is not known here; a manifest has group, [common]"),
+            ("[record]\nfile = \"a.csv\"\n", "line 1: `record` is a list of tables"),
+            ("common = 3\n", "line 1: `common` is a table; write [common]"),
+            (
+                "group = \"lab\"\n[[record]]\nfile = \"a.csv\"\nmass = 2\n",
+                "line 1: no record has `lab`; they have file, mass",
+            ),
+            ("[common]\nfile = \"a.csv\"\n", "each record has one of its own"),
+            ("mass = \n", "line 1"),
+            ("[sheet]\noperater = \"A\"\n", "line 2: `operater` is no field of a record sheet"),
+        ] {
+            assert!(refused(text).contains(words), "{text:?}: {}", refused(text));
+        }
+        assert!(Manifest::of_csv("path,mass\na,1\n").unwrap_err().contains("no column `file`; there are path, mass"));
+    }
+
+    #[test]
+    fn the_kind_is_told_by_ending_or_content() {
+        let told = |name: &str, text: &str| is_toml(Path::new(name), text);
+        assert!(told("runs.toml", "") && told("runs.TOML", "") && !told("runs.csv", "[[record]]"));
+        assert!(told("runs", "# list\n\n[[record]]\n") && told("runs.txt", "group = \"operator\"\n"));
+        assert!(!told("runs", "file,mass\na,1\n") && !told("runs", "file,note\na,b=c\n"));
+    }
+
+    /// What is common goes into each record that does not say otherwise, and what a record leaves out is empty.
+    #[test]
+    fn common_values_are_those_of_each_record() {
+        let text = "group = \"operator\"\n[common]\nmass = 10.0\nunit = \"mm/s\"\n[[record]]\nfile = \"a.csv\"\n\
+                    operator = \"A\"\n[[record]]\nfile = \"b.csv\"\nmass = 1_1e0\nday = 2026-11-24\n";
+        let manifest = Manifest::of_toml(text).unwrap();
+        assert_eq!(manifest.group.as_deref(), Some("operator"));
+        let cell = |record: usize, name: &str| {
+            manifest.records[record][manifest.columns.iter().position(|column| column == name).unwrap()].as_str()
+        };
+        assert_eq!((cell(0, "mass"), cell(1, "mass"), cell(1, "unit")), ("10.0", "11e0", "mm/s"));
+        assert_eq!((cell(0, "day"), cell(1, "day"), cell(1, "operator")), ("", "2026-11-24", ""));
+    }
+}

@@ -1,0 +1,182 @@
+//! The record sheet of a campaign: what a friction coefficient must be handed on with, so that others can use it.
+//!
+//! Its fields are those that ASTM G115 (guide for measuring and reporting friction coefficients) asks for, as far as is public.
+
+use std::collections::BTreeMap;
+
+use fmm_model::Rounded;
+use fmm_uq::Moments;
+use serde::{Deserialize, Serialize};
+use toml::de::{DeTable, DeValue};
+
+use super::dependence::{FRICTION, LOAD, number_in};
+use super::manifest::{at, cells};
+use super::row::{Row, quantities};
+
+/// What a manifest says under `[sheet]`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Sheet {
+    /// By key of [`FIELDS`].
+    given: BTreeMap<String, String>,
+    /// Under `[sheet.further]`.
+    further: BTreeMap<String, String>,
+}
+
+/// A field of the sheet as it is printed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Field {
+    pub(crate) part: &'static str,
+    pub(crate) field: String,
+    /// `None` where nothing is known.
+    pub(crate) value: Option<String>,
+    /// Whether the program knows it from the records.
+    pub(crate) is_found: bool,
+}
+
+const RESULTS: &str = "Results";
+const FURTHER: &str = "Further";
+
+/// Part, key and words of each field that can be given.
+const FIELDS: &[(&str, &str, &str)] = &[
+    ("Test", "laboratory", "laboratory"),
+    ("Test", "operator", "operator"),
+    ("Test", "date", "date"),
+    ("Test", "purpose", "purpose"),
+    ("Device", "device", "test device"),
+    ("Device", "geometry", "geometry of the contact"),
+    ("Device", "contact_area", "contact area or dimensions"),
+    ("Moving specimen", "moving_material", "material"),
+    ("Moving specimen", "moving_composition", "composition"),
+    ("Moving specimen", "moving_treatment", "treatment or coating"),
+    ("Moving specimen", "moving_hardness", "hardness"),
+    ("Moving specimen", "moving_finish", "surface finish"),
+    ("Moving specimen", "moving_roughness", "roughness"),
+    ("Fixed specimen", "fixed_material", "material"),
+    ("Fixed specimen", "fixed_composition", "composition"),
+    ("Fixed specimen", "fixed_treatment", "treatment or coating"),
+    ("Fixed specimen", "fixed_hardness", "hardness"),
+    ("Fixed specimen", "fixed_finish", "surface finish"),
+    ("Fixed specimen", "fixed_roughness", "roughness"),
+    ("Conditions", "motion", "type of motion"),
+    ("Conditions", "normal_load", "normal load or pressure"),
+    ("Conditions", "velocity", "sliding velocity"),
+    ("Conditions", "temperature", "temperature"),
+    ("Conditions", "humidity", "relative humidity"),
+    ("Conditions", "atmosphere", "atmosphere"),
+    ("Conditions", "lubricant", "lubricant"),
+    ("Procedure", "cleaning", "cleaning of the specimens"),
+    ("Procedure", "run_in", "run-in"),
+    ("Procedure", "duration", "duration or number of cycles"),
+    ("Measurement", "friction_measurement", "how friction is measured"),
+    ("Measurement", "coefficient", "static or kinetic"),
+];
+
+impl Sheet {
+    /// Of the table `[sheet]` of a manifest.
+    pub(super) fn of_toml(text: &str, table: &DeTable<'_>) -> Result<Self, String> {
+        let mut sheet = Self::default();
+        let mut known = DeTable::new();
+        for (key, value) in table {
+            let name = key.get_ref().as_ref();
+            match value.get_ref() {
+                DeValue::Table(further) if name == "further" => {
+                    sheet.further = cells(text, further)?.into_iter().collect()
+                }
+                _ if FIELDS.iter().any(|(_, field, _)| *field == name) => {
+                    known.insert(key.clone(), value.clone());
+                }
+                _ => {
+                    let fields: Vec<&str> = FIELDS.iter().map(|(_, field, _)| *field).collect();
+                    let what = format!(
+                        "`{name}` is no field of a record sheet; put it under [sheet.further], or take one of {}",
+                        fields.join(", ")
+                    );
+                    return Err(at(text, key, &what));
+                }
+            }
+        }
+        sheet.given = cells(text, &known)?.into_iter().filter(|(_, value)| !value.is_empty()).collect();
+        Ok(sheet)
+    }
+
+    /// All fields in their order, with what the records themselves say.
+    pub(crate) fn fields(&self, rows: &[Row]) -> Vec<Field> {
+        let field = |(part, key, words): &(&'static str, &str, &str)| {
+            let given = self.given.get(*key).cloned();
+            let found = if given.is_none() { found(key, rows) } else { None };
+            Field { part, field: (*words).to_owned(), is_found: found.is_some(), value: given.or(found) }
+        };
+        let results = results(rows);
+        let results = results.map(|(field, value)| Field { part: RESULTS, field, value: Some(value), is_found: true });
+        let further = self.further.iter().map(|(field, value)| {
+            let value = Some(value.clone()).filter(|value| !value.is_empty());
+            Field { part: FURTHER, field: field.replace('_', " "), value, is_found: false }
+        });
+        FIELDS.iter().map(field).chain(results).chain(further).collect()
+    }
+}
+
+/// What the records say of the field of this key.
+fn found(key: &str, rows: &[Row]) -> Option<String> {
+    let found = || rows.iter().filter_map(Row::found);
+    match key {
+        "motion" => found().next().map(|_| "reciprocating: a free vibration that decays".to_owned()),
+        "normal_load" => range(rows.iter().filter_map(|row| number_in(row, LOAD)), "N"),
+        "velocity" => {
+            let unit = found().next()?.unit.as_str();
+            let is_velocity = unit == "m/s" && found().all(|found| found.unit == unit);
+            let largest = range(found().map(|found| found.amplitude), unit).filter(|_| is_velocity)?;
+            Some(format!("falls to zero in each record, from {largest} at its beginning"))
+        }
+        "duration" => range(found().map(|found| found.half_swings as f64), "half swings in each record"),
+        "friction_measurement" => {
+            let mut laws: Vec<&str> = found().map(|found| found.law.as_str()).collect();
+            laws.sort_unstable();
+            laws.dedup();
+            let laws = (!laws.is_empty()).then(|| laws.join(", "))?;
+            Some(format!(
+                "inferred, without a sensor of force: the law {laws} is fitted to each record of the motion (fmm {})",
+                env!("CARGO_PKG_VERSION")
+            ))
+        }
+        "coefficient" => found().next().map(|_| "kinetic, fitted over the whole decay".to_owned()),
+        _ => None,
+    }
+}
+
+/// The smallest and the largest of these values; `None` without any.
+fn range(values: impl Iterator<Item = f64>, unit: &str) -> Option<String> {
+    let (low, high) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    let text = |value: f64| Rounded::new(value, None).to_string();
+    if low > high {
+        None
+    } else if low == high {
+        Some(format!("{} {unit}", text(low)))
+    } else {
+        Some(format!("{} to {} {unit}", text(low), text(high)))
+    }
+}
+
+/// Number of replicates, and the mean with its spread of each measure of friction.
+fn results(rows: &[Row]) -> impl Iterator<Item = (String, String)> {
+    let found = rows.iter().filter_map(Row::found).count();
+    let replicates = ("replicates".to_owned(), format!("{found} identified of {} records", rows.len()));
+    let measures = quantities(rows).into_iter().filter_map(|(name, unit)| {
+        FRICTION.iter().find(|measure| name.ends_with(**measure))?;
+        let values: Vec<f64> = rows.iter().filter_map(|row| Some(row.told((name, unit))?.value)).collect();
+        let moments = Moments::of(&values)?;
+        let (mean, deviation) = (moments.mean(), moments.standard_deviation()?);
+        let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+        Some((
+            name.replace('_', " "),
+            format!(
+                "{}{unit}: mean and standard deviation of {} records; coefficient of variation {:.2} %",
+                Rounded::new(mean, Some(deviation)),
+                values.len(),
+                100.0 * deviation / mean.abs()
+            ),
+        ))
+    });
+    std::iter::once(replicates).chain(measures.collect::<Vec<_>>())
+}
