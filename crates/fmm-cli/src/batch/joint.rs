@@ -11,6 +11,9 @@ use super::campaign::Campaign;
 use super::row::{OfRecord, Row, Told, told};
 use crate::input::Question;
 
+/// The usual law with its viscous part as damping of the machine.
+const OF_MACHINE: &str = "coulomb + linear";
+
 /// What came of it.
 #[derive(Debug, Clone, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -69,14 +72,17 @@ impl Together {
         let under_its_load = |(experiment, factor): (Experiment, &f64)| experiment.with_load_factor(*factor);
         let experiments: Vec<Experiment> =
             experiments.into_iter().zip(&factors).map(under_its_load).collect::<Result<_, _>>()?;
-        let candidate = question.candidate(law)?;
+        let loads_differ = factors.iter().any(|factor| *factor != 1.0);
+        // A record alone does not tell whose the linear damping is. Of the law, it would grow with the load.
+        let fitted = if loads_differ && law == super::LAW { OF_MACHINE } else { law };
+        let candidate = question.candidate(fitted)?;
         let comparison = question.answer(&experiments, &[candidate], show)?;
         let found = comparison.preferred();
         Ok(Self {
-            law: law.to_owned(),
+            law: found.law().to_owned(),
             records: experiments.len(),
             findings: told(found),
-            reference_load: question.normal_load().filter(|_| factors.iter().any(|factor| *factor != 1.0)),
+            reference_load: question.normal_load().filter(|_| loads_differ),
             rms_residual: found.rms_residual(),
             unit: experiments[0].record().unit().to_owned(),
             warnings: comparison.warnings().iter().map(ToString::to_string).collect(),

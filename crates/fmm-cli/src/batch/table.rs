@@ -18,7 +18,9 @@ pub(crate) fn csv(campaign: &Campaign, rows: &[Row]) -> Result<String, Box<dyn E
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut head: Vec<String> = vec!["file".to_owned()];
     head.extend(columns.iter().map(ToString::to_string));
-    head.extend(["law", "refused", "half_swings", "amplitude", "rms_residual", "unit", "warnings"].map(str::to_owned));
+    head.extend(
+        ["law", "refused", "half_swings", "amplitude", "rms_residual", "record_unit", "warnings"].map(str::to_owned),
+    );
     head.extend(names.iter().flat_map(|(name, unit)| [format!("{name} [{unit}]"), format!("u({name}) [{unit}]")]));
     writer.write_record(&head)?;
     for row in rows {
@@ -94,9 +96,9 @@ pub(super) fn joint_lines(summary: &Summary) -> Vec<String> {
         }
     };
     let values: Vec<String> = together.findings.iter().map(value).collect();
-    let load = together
-        .reference_load
-        .map_or_else(String::new, |load| format!(" (levels at a load of {load} N, in proportion to it at the others)"));
+    let load = together.reference_load.map_or_else(String::new, |load| {
+        format!(" (levels at a load of {load} N; the law is in proportion to it, linear damping beside the law is not)")
+    });
     let mut lines = vec![
         format!("joint fit of {} records by {}: {}{load}", together.records, together.law, values.join(", ")),
         "the joint fit takes machine and law for the same in all records: what differs between them is not in its uncertainties"
