@@ -55,7 +55,7 @@ impl Manifest {
             match (key.get_ref().as_ref(), value.get_ref()) {
                 ("common", DeValue::Table(table)) => common = cells(text, table)?,
                 ("record", DeValue::Array(list)) => {
-                    for record in list.iter() {
+                    for record in list {
                         let DeValue::Table(table) = record.get_ref() else {
                             return Err(at(text, record, "a record is a table; begin each with [[record]]"));
                         };

@@ -116,8 +116,11 @@ fn records(campaign: &Campaign, rows: &[Row]) -> String {
 
 /// The joint fit in sentences, if it was asked for.
 fn joint(summary: &Summary) -> String {
-    let lines: String = joint_lines(summary).iter().map(|line| format!("<p>{}</p>\n", escaped(line))).collect();
-    if lines.is_empty() { lines } else { format!("<section><h2>Joint fit</h2>\n{lines}</section>\n") }
+    if summary.joint.is_none() {
+        return String::new();
+    }
+    let lines = joint_lines(summary).into_iter().map(|line| format!("<p>{}</p>\n", escaped(&line)));
+    format!("<section><h2>Joint fit</h2>\n{}</section>\n", lines.collect::<Vec<_>>().concat())
 }
 
 /// Friction against what differs between the records.
@@ -155,7 +158,7 @@ fn sheet(summary: &Summary) -> String {
             Some(value) => text_cell(value),
             None => cell("<span class=\"note\">not given</span>"),
         };
-        vec![text_cell(field.part), format!("<th scope=\"row\">{}</th>", escaped(&field.field)), value]
+        vec![text_cell(field.part), format!("<th scope=\"row\">{}</th>", escaped(&field.name)), value]
     };
     format!(
         "<section><h2>Record sheet</h2>\n<p>What a friction coefficient is handed on with, by the fields of ASTM G115 as far as they are \

@@ -26,7 +26,7 @@ pub(crate) struct Sheet {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Field {
     pub(crate) part: &'static str,
-    pub(crate) field: String,
+    pub(crate) name: String,
     /// `None` where nothing is known.
     pub(crate) value: Option<String>,
     /// Whether the program knows it from the records.
@@ -80,7 +80,7 @@ impl Sheet {
             let name = key.get_ref().as_ref();
             match value.get_ref() {
                 DeValue::Table(further) if name == "further" => {
-                    sheet.further = cells(text, further)?.into_iter().collect()
+                    sheet.further = cells(text, further)?.into_iter().collect();
                 }
                 _ if FIELDS.iter().any(|(_, field, _)| *field == name) => {
                     known.insert(key.clone(), value.clone());
@@ -104,13 +104,13 @@ impl Sheet {
         let field = |(part, key, words): &(&'static str, &str, &str)| {
             let given = self.given.get(*key).cloned();
             let found = if given.is_none() { found(key, rows) } else { None };
-            Field { part, field: (*words).to_owned(), is_found: found.is_some(), value: given.or(found) }
+            Field { part, name: (*words).to_owned(), is_found: found.is_some(), value: given.or(found) }
         };
         let results = results(rows);
-        let results = results.map(|(field, value)| Field { part: RESULTS, field, value: Some(value), is_found: true });
-        let further = self.further.iter().map(|(field, value)| {
+        let results = results.map(|(name, value)| Field { part: RESULTS, name, value: Some(value), is_found: true });
+        let further = self.further.iter().map(|(name, value)| {
             let value = Some(value.clone()).filter(|value| !value.is_empty());
-            Field { part: FURTHER, field: field.replace('_', " "), value, is_found: false }
+            Field { part: FURTHER, name: name.replace('_', " "), value, is_found: false }
         });
         FIELDS.iter().map(field).chain(results).chain(further).collect()
     }
@@ -162,8 +162,11 @@ fn range(values: impl Iterator<Item = f64>, unit: &str) -> Option<String> {
 fn results(rows: &[Row]) -> impl Iterator<Item = (String, String)> {
     let found = rows.iter().filter_map(Row::found).count();
     let replicates = ("replicates".to_owned(), format!("{found} identified of {} records", rows.len()));
+    let loads: Vec<f64> = rows.iter().filter_map(|row| number_in(row, LOAD)).collect();
+    // Forces under different loads have no mean that says anything.
+    let measures = if loads.iter().any(|load| *load != loads[0]) { &FRICTION[..1] } else { &FRICTION[..] };
     let measures = quantities(rows).into_iter().filter_map(|(name, unit)| {
-        FRICTION.iter().find(|measure| name.ends_with(**measure))?;
+        measures.iter().find(|measure| name.ends_with(**measure))?;
         let values: Vec<f64> = rows.iter().filter_map(|row| Some(row.told((name, unit))?.value)).collect();
         let moments = Moments::of(&values)?;
         let (mean, deviation) = (moments.mean(), moments.standard_deviation()?);

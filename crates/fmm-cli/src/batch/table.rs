@@ -125,7 +125,7 @@ pub(super) fn sheet_line(fields: &[Field]) -> String {
     let missing: Vec<String> = fields
         .iter()
         .filter(|field| field.value.is_none())
-        .map(|field| format!("{} ({})", field.field, field.part.to_lowercase()))
+        .map(|field| format!("{} ({})", field.name, field.part.to_lowercase()))
         .collect();
     if missing.is_empty() {
         "record sheet: every field is given".to_owned()

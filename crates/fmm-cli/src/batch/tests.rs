@@ -181,10 +181,10 @@ fn three_loads(home: &Path) -> [PathBuf; 2] {
     let mut toml = "group = \"operator\"\n[common]\nmass = 10\nmass_u = 0.01\nunit = \"mm/s\"\n".to_owned();
     for (run, load) in loads.iter().enumerate() {
         let (operator, temperature) = (["A", "B"][run % 2], 20 + run);
-        csv += &format!("run_{run:02}.csv,10,0.01,{load},mm/s,{operator},{temperature}\n");
-        toml += &format!(
+        csv.extend([format!("run_{run:02}.csv,10,0.01,{load},mm/s,{operator},{temperature}\n")]);
+        toml.extend([format!(
             "[[record]]\nfile = \"run_{run:02}.csv\"\nnormal_load = {load}\noperator = \"{operator}\"\ntemperature = {temperature}\n"
-        );
+        )]);
     }
     toml += "[sheet]\nmoving_material = \"steel\"\nnormal_load = \"dead weight\"\n[sheet.further]\ngrease_batch = 7\n";
     [("runs.csv", csv), ("runs.toml", toml)].map(|(name, text)| {
@@ -258,7 +258,7 @@ fn the_record_sheet_says_what_is_missing() {
     let summary = Summary::of(&campaign, &rows, &[], None);
     let value = |part: &str, field: &str| {
         let fields = summary.sheet.as_ref().unwrap();
-        fields.iter().find(|own| own.part == part && own.field == field).and_then(|own| own.value.clone())
+        fields.iter().find(|own| own.part == part && own.name == field).and_then(|own| own.value.clone())
     };
     assert_eq!(value("Moving specimen", "material").as_deref(), Some("steel"));
     assert_eq!(value("Fixed specimen", "material"), None);

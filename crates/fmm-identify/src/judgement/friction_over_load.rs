@@ -263,8 +263,8 @@ mod tests {
         };
         // About F = μ N, the error of a load moves a run along the line of F/N against 1/N only by what F₀ is, and off it by μ u(N)/N:
         // u(μ)² = (u μ)² (Σ x²)/(n Σ (x − x̄)²) with x = 1/N.
-        let (sum, square, count) = (1.5, 0.625, 4.0);
-        let expected = 0.01 * 0.1 * (square / (count * square - sum * sum) as f64).sqrt();
+        let (sum, square, count) = (1.5_f64, 0.625_f64, 4.0);
+        let expected = 0.01 * 0.1 * (square / (count * square - sum * sum)).sqrt();
         let found = of(0.01).coefficient();
         assert!(
             (found.value - 0.1).abs() < 1e-9 && (found.uncertainty / expected - 1.0).abs() < 1e-3,
