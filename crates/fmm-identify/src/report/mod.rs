@@ -1,10 +1,12 @@
 //! The reports, on one screen each.
 
+mod contribution;
 pub(crate) mod finding;
 #[cfg(feature = "serde")]
 mod serialised;
 mod warning;
 
+pub use contribution::{Contribution, Source};
 pub use finding::{Finding, Origin};
 pub use warning::Warning;
 
