@@ -95,7 +95,7 @@ impl Profiles {
     /// After so many evaluations of the motion the profiles that are left are left out.
     pub const MOST_EVALUATIONS: usize = MOST_EVALUATIONS;
 
-    /// One for each quantity that all records share and the fit determines, or leaves on a bound.
+    /// One for each quantity that all records share and that has a variance, as if its bound were not there.
     pub fn profiles(&self) -> &[Profile] {
         &self.profiles
     }
@@ -136,7 +136,9 @@ impl Identification {
             return Ok(found);
         }
         for (index, estimate) in self.fit().estimates().iter().enumerate().take(problem.layout().shared) {
-            if matches!(estimate.status(), EstimateStatus::Fixed | EstimateStatus::Undetermined) {
+            // Beside what is not determined a value on its bound has no variance either.
+            let is_known = self.covariance().relaxed(index).is_some();
+            if !is_known || matches!(estimate.status(), EstimateStatus::Fixed | EstimateStatus::Undetermined) {
                 continue;
             }
             let parameter = estimate.parameter().clone();
