@@ -50,9 +50,17 @@ enum Command {
     /// Put the parts of a campaign together
     Merge(batch::Merge),
     /// List the laws of friction with their parameters
-    Laws,
+    Laws {
+        /// Print one JSON document instead of text
+        #[arg(long)]
+        json: bool,
+    },
     /// List the file formats that are read
-    Formats,
+    Formats {
+        /// Print one JSON document instead of text
+        #[arg(long)]
+        json: bool,
+    },
     /// Print the completions for a shell
     Completions {
         /// Which shell
@@ -89,8 +97,8 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> ExitCode
         Command::Budget(arguments) => budget::run(arguments),
         Command::Batch(arguments) => batch::run(arguments),
         Command::Merge(arguments) => batch::merge(arguments),
-        Command::Laws => laws::run(),
-        Command::Formats => formats::run(),
+        Command::Laws { json } => laws::run(*json),
+        Command::Formats { json } => formats::run(*json),
         Command::Completions { shell } => completions(*shell),
         Command::Manual { folder } => manual(folder),
     };

@@ -4,7 +4,8 @@ use std::error::Error;
 use std::fmt;
 
 use crate::output::print;
-use crate::scenario::laws;
+use crate::scenario::{Entry, Slot, laws};
+use serde_json::json;
 
 /// The laws with their parameters.
 struct Laws;
@@ -26,6 +27,21 @@ impl fmt::Display for Laws {
     }
 }
 
-pub(crate) fn run() -> Result<(), Box<dyn Error>> {
+/// The laws as a list of names and parameters.
+fn document() -> serde_json::Value {
+    let law = |entry: &Entry| {
+        let parameters = (entry.slots)().into_iter().map(|slot| {
+            let Slot { name, symbol, unit, default, .. } = slot;
+            json!({ "name": name, "symbol": symbol, "unit": unit, "default": default, "keys": slot.keys() })
+        });
+        json!({ "name": entry.name, "parameters": parameters.collect::<Vec<_>>() })
+    };
+    laws().iter().map(law).collect()
+}
+
+pub(crate) fn run(json: bool) -> Result<(), Box<dyn Error>> {
+    if json {
+        return print(serde_json::to_string_pretty(&document())?);
+    }
     print(Laws.to_string().trim_end())
 }

@@ -53,6 +53,8 @@
 //! | The same without a law? | [`ForceRecord::friction_over_speed`] and [`friction_over_speed_and_load`](ForceRecord::friction_over_speed_and_load), [`ForceRecord::loops`], [`ForceRecord::onsets`] |
 //! | What if mass, stiffness or damping were others? | [`MachineProblem`] with [`Sensitivity`](fmm_fit::Sensitivity) or [`Refit`](fmm_fit::Refit) |
 //! | Between which values does it lie? | [`Finding::interval`], by Student's t with the degrees of freedom of all that is uncertain |
+//! | Does value ± k u mislead? | [`Identification::profiles`] |
+//! | What makes it uncertain? | [`Finding::contributions`]: residuals, mass or stiffness, load, gain, other laws |
 //! | Are the uncertainties to be trusted? | read the [`warnings`](Identification::warnings): they name what breaks them |
 //!
 //! # Units and conventions
@@ -108,7 +110,10 @@ pub use estimators::{
     decrements, half_swing_losses, half_swing_losses_of,
 };
 pub use experiment::{Drive, Experiment, Offset, Preparation, RecordSummary, Sensor};
-pub use fit::{FittedMotion, Identification, MachineProblem, Problem, identify, identify_observed, identify_with};
+pub use fit::{
+    FittedMotion, Identification, MachineProblem, Problem, Profile, Profiles, identify, identify_observed,
+    identify_with,
+};
 pub use fmm_model::Estimated;
 pub use force::{
     ForceComparison, ForceIdentification, ForceLoop, ForceModel, ForceRecord, Onset, SpeedBin, Validation,
@@ -124,7 +129,7 @@ pub use judgement::{
 };
 pub use law::Candidate;
 pub use machine::{Known, Machine, Scale, Terms};
-pub use report::{Finding, Origin, Warning};
+pub use report::{Contribution, Finding, Origin, Source, Warning};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

@@ -20,9 +20,10 @@ mod run;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use catalogue::laws;
+pub(crate) use catalogue::{Entry, laws};
 pub(crate) use engine::EngineName;
 pub(crate) use error::ScenarioError;
+pub(crate) use keys::Slot;
 pub(crate) use motion::Motion;
 pub(crate) use plan::Plan;
 pub(crate) use run::Simulation;

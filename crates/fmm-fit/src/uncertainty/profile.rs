@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::{
     EstimateStatus, Fit, FitError, Held, Minimizer, Options, Outcome, ProfileEnd, ProfileError, ProfileInterval,
-    ResidualVariance, Residuals, coverage_factor, solve,
+    ResidualVariance, Residuals, solve,
 };
 
 /// How far out a search for an end goes, in first guesses of its distance.
@@ -19,15 +19,17 @@ const ACCURACY: f64 = 1e-10;
 ///
 /// ```text
 /// S_k(θ) = min S over all other parameters with θ_k = θ
-/// (S_k(θ) − S_min)/s² = t²,     s² = S_min/ν,  t = t_{(1 + level)/2, ν}     or     s² = 1,  t = z_{(1 + level)/2}
+/// (S_k(θ) − S_min)/s² = t²,     t = t_{(1 + level)/2, ν}
 /// ```
+///
+/// s² and ν are those of the `variance`: S_min over the degrees of freedom; 1; or another estimate.
 ///
 /// For a linear model this is [`Fit::interval`]. For others it follows the bends of the valley and is that of any
 /// monotonic reparametrisation, which the Wald interval is not; where a parameter ends at a bound it is one-sided. An
 /// end is open if the profile stays below its threshold a thousand million first guesses away.
 ///
-/// `fit` must be the fit of `problem`; each point of the profile is a fit from the nearest ones before. The limits of
-/// the options on iterations and evaluations hold for each of them, the one on time for all.
+/// `fit` must be the fit of `problem`; each point of the profile is a fit from the nearest ones before. The limit of
+/// the options on iterations holds for each of them, those on evaluations and time for all.
 ///
 /// ```
 /// # use fmm_fit::EvaluationError;
@@ -68,10 +70,7 @@ pub fn profile_interval<P: Residuals + ?Sized>(
     variance: ResidualVariance,
     options: &Options,
 ) -> Result<ProfileInterval, ProfileError> {
-    let sizes = ((fit.residuals().len(), fit.values().len()), (problem.len(), problem.parameters().len()));
-    if sizes.0 != sizes.1 {
-        return Err(ProfileError::DifferentProblem { fit: sizes.0, problem: sizes.1 });
-    }
+    require_same(problem, fit)?;
     let position = problem.parameters().iter().position(|parameter| parameter.name() == name);
     let index = position.ok_or_else(|| ProfileError::UnknownParameter(name.to_owned()))?;
     if fit.estimates()[index].status() == EstimateStatus::Fixed {
@@ -83,38 +82,78 @@ pub fn profile_interval<P: Residuals + ?Sized>(
     if !fit.outcome().is_success() {
         return Err(ProfileError::NotConverged(fit.outcome()));
     }
-    let deviation = match variance {
-        ResidualVariance::Estimated => fit.residual_standard_deviation().filter(|s| *s > 0.0),
-        ResidualVariance::Unit => Some(1.0),
-    };
-    let deviation = deviation.ok_or(ProfileError::NoVariance)?;
-    let quantile = match variance {
-        ResidualVariance::Estimated => coverage_factor(level, fit.degrees_of_freedom() as f64),
-        ResidualVariance::Unit => coverage_factor(level, f64::INFINITY),
-    };
-    let quantile = quantile.ok_or(ProfileError::NoVariance)?;
-    let mut profile = Profile {
-        problem,
-        fit,
-        index,
-        deviation,
-        quantile,
-        options,
-        began: Instant::now(),
-        minimizer: Minimizer::default(),
-        points: vec![(fit.values()[index], fit.sum_of_squares())],
-        residual_evaluations: 0,
-    };
+    let scale = variance.scale(fit, level).ok_or(ProfileError::NoVariance)?;
+    let mut profile = Profile::new(problem, fit, index, scale, options);
     let lower = profile.end(-1.0)?;
     let upper = profile.end(1.0)?;
     profile.points.sort_by(|a, b| a.0.total_cmp(&b.0));
     Ok(ProfileInterval {
         level,
+        index,
+        scale,
         lower,
         upper,
         points: profile.points,
         residual_evaluations: profile.residual_evaluations,
     })
+}
+
+/// That `fit` may be one of `problem`.
+fn require_same<P: Residuals + ?Sized>(problem: &P, fit: &Fit) -> Result<(), ProfileError> {
+    let sizes = ((fit.residuals().len(), fit.values().len()), (problem.len(), problem.parameters().len()));
+    if sizes.0 == sizes.1 { Ok(()) } else { Err(ProfileError::DifferentProblem { fit: sizes.0, problem: sizes.1 }) }
+}
+
+/// Even steps of a curve beyond each end, as a share of its distance from the estimate.
+const BEYOND: f64 = 0.15;
+
+impl ProfileInterval {
+    /// The profile as a curve to be drawn: values of the parameter, ascending, and (S_k − S_min)/s² there, at up to `count` even steps
+    /// on either side of the estimate, as far as a little beyond the end, or up to a bound or edge that ends it.
+    ///
+    /// Beside it belongs the parabola (θ − θ̂)²/(s² C), with C the [unit covariance](Fit::unit_covariance), to which the curve is equal
+    /// for a linear model. An open side is drawn as far as the other, or as far as the parabola would need.
+    ///
+    /// `problem`, `fit` and `options` are those of the interval.
+    ///
+    /// # Errors
+    /// As for [`profile_interval`].
+    pub fn curve<P: Residuals + ?Sized>(
+        &self,
+        problem: &P,
+        fit: &Fit,
+        count: usize,
+        options: &Options,
+    ) -> Result<Vec<(f64, f64)>, ProfileError> {
+        require_same(problem, fit)?;
+        let unknown = || ProfileError::UnknownParameter(format!("number {}", self.index));
+        let bounds = problem.parameters().get(self.index).ok_or_else(unknown)?.bounds();
+        let best = fit.values()[self.index];
+        let mut profile = Profile::new(problem, fit, self.index, self.scale, options);
+        let reach = |end: ProfileEnd| match end {
+            ProfileEnd::At(value) => Some((1.0 + BEYOND) * (value - best).abs()),
+            ProfileEnd::Bound(value) | ProfileEnd::Edge(value) => Some((value - best).abs()),
+            ProfileEnd::Open => None,
+        };
+        let of_open = reach(self.lower).or(reach(self.upper)).filter(|reach| *reach > 0.0);
+        let of_open = of_open.unwrap_or_else(|| (1.0 + BEYOND) * profile.guess());
+        let mut curve = vec![(best, 0.0)];
+        for (end, direction) in [(self.lower, -1.0), (self.upper, 1.0)] {
+            let reach = reach(end).unwrap_or(of_open);
+            let mut trace = vec![Trace { values: fit.values().to_vec(), distance: 0.0 }];
+            for step in 1..=count {
+                let value = bounds.clamp(best + direction * reach * step as f64 / count as f64);
+                if value == trace[trace.len() - 1].values[self.index] {
+                    break;
+                }
+                let Some(point) = profile.point(value, &trace)? else { break };
+                curve.push((value, point.distance.powi(2)));
+                trace.push(point);
+            }
+        }
+        curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(curve)
+    }
 }
 
 struct Profile<'a, P: ?Sized> {
@@ -137,7 +176,23 @@ struct Trace {
     distance: f64,
 }
 
-impl<P: Residuals + ?Sized> Profile<'_, P> {
+impl<'a, P: Residuals + ?Sized> Profile<'a, P> {
+    /// That of parameter `index` about the minimum, `scale` being s and the quantile.
+    fn new(problem: &'a P, fit: &'a Fit, index: usize, scale: (f64, f64), options: &'a Options) -> Self {
+        Self {
+            problem,
+            fit,
+            index,
+            deviation: scale.0,
+            quantile: scale.1,
+            options,
+            began: Instant::now(),
+            minimizer: Minimizer::default(),
+            points: vec![(fit.values()[index], fit.sum_of_squares())],
+            residual_evaluations: 0,
+        }
+    }
+
     /// The end in one direction: outwards until the distance passes the quantile, then between.
     fn end(&mut self, direction: f64) -> Result<ProfileEnd, ProfileError> {
         let bounds = self.problem.parameters()[self.index].bounds();
@@ -238,7 +293,8 @@ impl<P: Residuals + ?Sized> Profile<'_, P> {
         let mut failure = None;
         for mut start in [self.ahead(value, trace), last.values.clone(), self.fit.values().to_vec()] {
             start[self.index] = value;
-            self.minimizer.options = self.options.remaining(self.began);
+            let left = self.options.max_evaluations.saturating_sub(self.residual_evaluations);
+            self.minimizer.options = self.options.remaining(self.began).with_max_evaluations(left);
             match self.minimizer.minimize(&held, &start) {
                 Ok(outcome) => {
                     self.residual_evaluations += self.minimizer.residual_evaluations();

@@ -176,6 +176,68 @@ fn a_straight_line_has_the_interval_of_student_and_of_gauss() {
     }
 }
 
+/// A variance from elsewhere counts with its own degrees of freedom, and the curve of a straight line is its parabola.
+#[test]
+fn a_straight_line_has_a_parabola_of_any_variance() {
+    let line = problem(&[FREE, FREE], 20, line);
+    let options = Options::default();
+    let fit = solve(&line, &[0.0, 0.0], &options).unwrap();
+    let variance = ResidualVariance::Effective { variance: 0.25, degrees_of_freedom: 5.0 };
+    let found = profile_interval(&line, &fit, "p1", 0.95, variance, &options).unwrap();
+    let (best, unit) = (fit.values()[1], fit.unit_covariance(1, 1).unwrap());
+    // Student's quantile for 5 degrees of freedom.
+    let reach = 2.570_581_836 * 0.5 * unit.sqrt();
+    let ends = [found.lower(), found.upper()].map(|end| end.value().unwrap());
+    assert!((ends[0] - best + reach).abs() < 1e-8 && (ends[1] - best - reach).abs() < 1e-8, "{ends:?}");
+    assert!((found.threshold() - 2.570_581_836_f64.powi(2)).abs() < 1e-8);
+    let curve = found.curve(&line, &fit, 6, &options).unwrap();
+    assert!(curve.len() == 13 && curve.is_sorted_by_key(|point| point.0));
+    assert!(curve[0].0 < ends[0] && curve[12].0 > ends[1] && curve[6] == (best, 0.0));
+    for (value, misfit) in curve {
+        let parabola = (value - best).powi(2) / (0.25 * unit);
+        assert!((misfit - parabola).abs() < 1e-6, "{misfit} instead of {parabola} at {value}");
+    }
+    for variance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let variance = ResidualVariance::Effective { variance, degrees_of_freedom: 5.0 };
+        let refused = profile_interval(&line, &fit, "p1", 0.95, variance, &options);
+        assert!(matches!(refused, Err(ProfileError::NoVariance)), "{refused:?}");
+    }
+}
+
+/// A curve ends at the bound that ends the interval, and an open side goes as far as the other.
+#[test]
+fn a_curve_goes_as_far_as_its_interval() {
+    let readings = [0.97, 1.01, 0.98, 1.02, 0.99];
+    let rise = |p: &[f64], i: usize| p[0] * (1.0 - (-p[1] * (i + 1) as f64).exp()) - readings[i];
+    let options = Options::default();
+    for (bounds, end) in [(FREE, None), ((0.0, 5.0), Some(5.0))] {
+        let rise = problem(&[FREE, bounds], 5, rise);
+        let fit = solve(&rise, &[1.0, 1.0], &options).unwrap();
+        let found = profile_interval(&rise, &fit, "p1", 0.95, ResidualVariance::Estimated, &options).unwrap();
+        let curve = found.curve(&rise, &fit, 5, &options).unwrap();
+        let (first, last) = (curve[0], curve[10]);
+        assert!(first.0 < found.lower().value().unwrap() && first.1 > found.threshold());
+        assert!(last.1 < found.threshold());
+        let as_far = 2.0 * fit.values()[1] - first.0;
+        assert!((last.0 - end.unwrap_or(as_far)).abs() < 1e-12, "{last:?}");
+    }
+}
+
+#[test]
+fn a_limit_on_evaluations_holds_for_a_whole_interval() {
+    let line = problem(&[FREE, FREE], 20, line);
+    let fit = solve(&line, &[0.0, 0.0], &Options::default()).unwrap();
+    let ask = |most: usize| {
+        let options = Options::default().with_max_evaluations(most);
+        profile_interval(&line, &fit, "p1", 0.95, ResidualVariance::Estimated, &options)
+    };
+    let all = ask(usize::MAX).unwrap().residual_evaluations();
+    // Half of them end within one of the fits.
+    let refused = ask(all / 2).unwrap_err();
+    assert!(matches!(refused, ProfileError::HeldFit { outcome: Outcome::MaxEvaluations, .. }), "{refused}");
+    assert_eq!(ask(all + 1).unwrap().residual_evaluations(), all);
+}
+
 #[test]
 fn a_parameter_at_its_bound_has_a_one_sided_interval() {
     // Free, the offset would be negative by about half of its standard uncertainty.

@@ -19,7 +19,7 @@ use crate::report::finding::{Finding, findings};
 use crate::residuals::drift::{as_fitted, with_drift};
 use crate::residuals::noise::ResidualNoise;
 use crate::residuals::structure::{Covariance, ResidualStructure};
-use crate::{Drive, Experiment, IdentifyError, Machine, Terms, Warning};
+use crate::{Drive, Experiment, IdentifyError, Machine, Source, Terms, Warning};
 
 /// How the fitted motion of one record ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -187,7 +187,7 @@ pub(crate) fn identify_by(
     let has_force = decays.iter().any(|decay| decay.drive().is_some_and(Drive::is_force));
     let stated = |machine: &Machine| if has_force { machine.with_exact_scale() } else { *machine };
     let mut found = findings(&stated(machine), problem.layout(), &fit, &covariance, gain);
-    for moved in machine.with_inputs_moved(has_force) {
+    for (source, moved) in machine.with_inputs_moved(has_force) {
         let mut ends = Vec::new();
         for machine in moved {
             let problem = Problem::of(law, machine, terms.clone(), decays)?;
@@ -196,7 +196,7 @@ pub(crate) fn identify_by(
             let covariance = Covariance::of(&problem, &fit, &structure).map_err(failure)?;
             ends.push(findings(&stated(&machine), problem.layout(), &fit, &covariance, gain));
         }
-        add_in_quadrature(&mut found, &ends[0], &ends[1]);
+        add_in_quadrature(&mut found, source, &ends[0], &ends[1]);
     }
 
     let mut motions = Vec::with_capacity(decays.len());
@@ -246,12 +246,9 @@ fn friction_at_rest(layout: &Layout, values: &[f64]) -> Option<f64> {
 }
 
 /// Adds half the difference that moving an input by ± its uncertainty makes (JCGM 100:2008, 5.1.3 note 2).
-fn add_in_quadrature(findings: &mut [Finding], below: &[Finding], above: &[Finding]) {
+fn add_in_quadrature(findings: &mut [Finding], source: Source, below: &[Finding], above: &[Finding]) {
     for ((finding, below), above) in findings.iter_mut().zip(below).zip(above) {
-        let change = 0.5 * (above.value - below.value);
-        if let Some(u) = finding.uncertainty() {
-            finding.widen(u.hypot(change));
-        }
+        finding.add(source, 0.5 * (above.value - below.value));
     }
 }
 
@@ -336,12 +333,29 @@ impl Identification {
     /// What the law says for every sample of record number `record` of `decays`, which must be those of the
     /// identification; `None` for another number.
     pub fn model(&self, decays: &[Experiment], record: usize) -> Option<Vec<f64>> {
-        if record >= decays.len() || decays.len() != self.motions.len() {
+        if record >= decays.len() {
             return None;
         }
-        let decays = as_fitted(decays, &self.disturbances);
+        let decays = self.experiments(decays).ok()?;
         let problem = Problem::of(self.family, self.machine, self.terms.clone(), &decays).ok()?;
         problem.model(record, self.fit.values()).ok()
+    }
+
+    /// The `decays`, which must be those of the identification, with what was fitted beside their motion.
+    pub(crate) fn experiments(&self, decays: &[Experiment]) -> Result<Vec<Experiment>, IdentifyError> {
+        let samples = |decays: &[Experiment]| decays.iter().map(|decay| decay.summary().samples).sum::<usize>();
+        let (given, fitted) = (samples(decays), self.fit.residuals().len());
+        if decays.len() != self.motions.len() || given != fitted {
+            let (count, expected) = (decays.len(), self.motions.len());
+            return Err(IdentifyError::wrong_record(format!(
+                "the identification is that of {expected} record(s) with {fitted} samples, but {count} with {given} were given"
+            )));
+        }
+        Ok(as_fitted(decays, &self.disturbances))
+    }
+
+    pub(crate) fn covariance(&self) -> &Covariance {
+        &self.covariance
     }
 
     pub(crate) fn structure(&self) -> ResidualStructure {

@@ -7,9 +7,11 @@ pub(crate) mod layout;
 mod machine_problem;
 pub(crate) mod pool;
 pub(crate) mod problem;
+mod profile;
 pub(crate) mod stages;
 pub(crate) mod tangent;
 
 pub use identification::{FittedMotion, Identification, identify, identify_observed, identify_with};
 pub use machine_problem::MachineProblem;
 pub use problem::Problem;
+pub use profile::{Profile, Profiles};

@@ -12,7 +12,7 @@ use crate::force::start::starts;
 use crate::report::{name_width, write_warnings};
 use crate::residuals::noise::{ResidualNoise, Series};
 use crate::residuals::structure::{Covariance, ResidualStructure};
-use crate::{Finding, ForceModel, ForceRecord, IdentifyError, Origin, Warning};
+use crate::{Finding, ForceModel, ForceRecord, IdentifyError, Origin, Source, Warning};
 
 /// Friction parameters out of forces along motions, with their uncertainty.
 ///
@@ -121,7 +121,7 @@ pub fn identify_force(model: &ForceModel, records: &[ForceRecord]) -> Result<For
         Finding::new(
             estimate.parameter().clone(),
             estimate.value(),
-            variance.map(|variance| (variance, variance)),
+            variance.map(|variance| vec![(Source::Residuals, variance)]),
             covariance.degrees_of_freedom(),
             Origin::Fitted(estimate.status()),
             problem.is_of_record(index),
@@ -172,7 +172,8 @@ fn levels_above(problem: &ForceProblem<'_>, fit: &Fit, covariance: &Covariance, 
         let (units, as_level) = naming(problem.records());
         let parameter = units.stated(parameter, as_level);
         let freedom = covariance.degrees_of_freedom();
-        Finding::new(parameter, value, variance.map(|v| (v, v)), freedom, Origin::Derived, false)
+        let parts = variance.map(|variance| vec![(Source::Residuals, variance)]);
+        Finding::new(parameter, value, parts, freedom, Origin::Derived, false)
     });
     stated.collect()
 }

@@ -14,7 +14,7 @@ use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactProblem, I
 use crate::law::dimension::is_coefficient;
 use crate::law::naming::{Level, Units};
 use crate::report::finding::{Finding, Origin};
-use crate::{IdentifyError, Warning};
+use crate::{IdentifyError, Source, Warning};
 
 /// Friction parameters of one law out of blows, with their uncertainty and what limits them.
 ///
@@ -164,7 +164,8 @@ fn findings(problem: &ImpactProblem<'_>, fit: &Fit, covariance: &ImpactCovarianc
             covariance.variances(index)
         };
         let (parameter, origin) = (estimate.parameter().clone(), Origin::Fitted(estimate.status()));
-        findings.push(Finding::new(parameter, estimate.value(), variances, freedom, origin, index >= layout.shared));
+        let parts = variances.map(told_apart);
+        findings.push(Finding::new(parameter, estimate.value(), parts, freedom, origin, index >= layout.shared));
     }
     let is_one = |index: usize| layout.values[index] == 1.0 && layout.uncertainties[index] == 0.0;
     if layout.is_held(LOAD) && !is_one(LOAD) {
@@ -173,11 +174,17 @@ fn findings(problem: &ImpactProblem<'_>, fit: &Fit, covariance: &ImpactCovarianc
                 let value = fit.values()[LOAD] * fit.values()[index];
                 let variances = covariance.variances_times_load(index, fit.values());
                 let force = Units::new("m", "N").stated(parameter, Level::Force);
-                findings.push(Finding::new(force, value, variances, freedom, Origin::Derived, false));
+                let parts = variances.map(told_apart);
+                findings.push(Finding::new(force, value, parts, freedom, Origin::Derived, false));
             }
         }
     }
     findings
+}
+
+/// The variance by the residuals, and the rest of that of `all`.
+fn told_apart((random, all): (f64, f64)) -> Vec<(Source, f64)> {
+    vec![(Source::Residuals, random), (Source::Held, (all - random).max(0.0))]
 }
 
 impl ImpactIdentification {

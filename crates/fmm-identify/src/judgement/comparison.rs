@@ -7,7 +7,7 @@ use fmm_fit::{Options, Progress, f_tail};
 use crate::fit::identification::closest;
 use crate::judgement::{Judgement, shortcomings};
 use crate::residuals::filtering::filtering_sensor;
-use crate::{Candidate, Experiment, Identification, IdentifyError, Machine, RecordSummary, Sign, Warning};
+use crate::{Candidate, Experiment, Identification, IdentifyError, Machine, RecordSummary, Sign, Source, Warning};
 
 /// A law and the more general one that it was tested against.
 #[derive(Debug, Clone, PartialEq)]
@@ -256,7 +256,8 @@ fn widen_for_other_laws(
             continue;
         }
         if let Some(own) = identifications[preferred].finding_mut(&name) {
-            own.widen(widened);
+            let narrow = own.uncertainty().unwrap_or(widened);
+            own.add(Source::OtherLaws, (widened * widened - narrow * narrow).max(0.0).sqrt());
         }
         warnings.extend(warning);
         names.push(name);

@@ -8,6 +8,8 @@ pub use terms::Terms;
 
 use fmm_model::{ModelError, Restoring};
 
+use crate::Source;
+
 /// What is known about the machine besides the record of its motion.
 ///
 /// A free vibration shows the natural frequency, damping per mass and friction per mass; multiplying mass,
@@ -133,19 +135,22 @@ impl Machine {
 
     /// The same machine with each known input on which a fit depends moved to the ends of its standard uncertainty: its damping, the
     /// lower end cut at zero, and its scale if a measured force acts on it. Inputs without an uncertainty are left out.
-    pub(crate) fn with_inputs_moved(&self, has_force: bool) -> Vec<[Self; 2]> {
+    pub(crate) fn with_inputs_moved(&self, has_force: bool) -> Vec<(Source, [Self; 2])> {
         let ends = |known: Known| [(known.value() - known.uncertainty()).max(0.0), known.value() + known.uncertainty()];
         let uncertain = |known: &Known| known.uncertainty() > 0.0;
-        let damping = self
-            .damping
-            .filter(uncertain)
-            .map(|damping| ends(damping).map(|value| Self { damping: Some(damping.moved_to(value)), ..*self }));
+        let damping = self.damping.filter(uncertain).map(|damping| {
+            let moved = ends(damping).map(|value| Self { damping: Some(damping.moved_to(value)), ..*self });
+            (Source::Damping, moved)
+        });
         let scale = match self.scale {
             Scale::Mass(mass) if has_force && uncertain(&mass) => {
-                Some(ends(mass).map(|value| Self { scale: Scale::Mass(mass.moved_to(value)), ..*self }))
+                let moved = ends(mass).map(|value| Self { scale: Scale::Mass(mass.moved_to(value)), ..*self });
+                Some((Source::Mass, moved))
             }
             Scale::Stiffness(stiffness) if has_force && uncertain(&stiffness) => {
-                Some(ends(stiffness).map(|value| Self { scale: Scale::Stiffness(stiffness.moved_to(value)), ..*self }))
+                let moved =
+                    ends(stiffness).map(|value| Self { scale: Scale::Stiffness(stiffness.moved_to(value)), ..*self });
+                Some((Source::Stiffness, moved))
             }
             _ => None,
         };

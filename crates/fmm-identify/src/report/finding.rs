@@ -11,6 +11,7 @@ use crate::law::dimension::{is_coefficient, is_force};
 use crate::law::naming::{Level, Units};
 use crate::machine::Scale;
 use crate::residuals::structure::Covariance;
+use crate::{Contribution, Source};
 
 /// Where the value of a finding comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,55 +28,43 @@ pub enum Origin {
 pub struct Finding {
     pub(crate) parameter: Parameter,
     pub(crate) value: f64,
-    pub(crate) uncertainty: Option<f64>,
-    /// ν, by which `uncertainty` is known; infinite for a finding without.
-    degrees_of_freedom: f64,
+    /// Variances by their sources, in the unit of the parameter squared; `None` if the record does not determine the value.
+    parts: Option<Vec<(Source, f64)>>,
+    /// ν of the part of the residuals.
+    of_residuals: f64,
     pub(crate) origin: Origin,
     is_of_record: bool,
-    /// u as if a value on its bound were not there, where `uncertainty` is none for the bound.
+    /// u as if a value on its bound were not there, where there are no parts for the bound.
     at_bound: Option<f64>,
 }
 
 impl Finding {
-    /// A finding whose variance, if it has any, is given as that by the residuals of a fit with `degrees_of_freedom`, and in all.
-    /// What else contributes is known; the degrees of freedom of all follow by Welch and Satterthwaite (JCGM 100:2008, G.4.1).
+    /// A finding with variances, if it has any, of which that of the residuals is known with `degrees_of_freedom`.
     pub(crate) fn new(
         parameter: Parameter,
         value: f64,
-        variances: Option<(f64, f64)>,
+        parts: Option<Vec<(Source, f64)>>,
         degrees_of_freedom: f64,
         origin: Origin,
         is_of_record: bool,
     ) -> Self {
-        let effective = |(random, all): (f64, f64)| {
-            let ratio = if random > 0.0 { all / random } else { f64::INFINITY };
-            degrees_of_freedom * ratio * ratio
-        };
-        Self {
-            parameter,
-            value,
-            uncertainty: variances.map(|(_, all)| all.sqrt()),
-            degrees_of_freedom: variances.map_or(f64::INFINITY, effective),
-            origin,
-            is_of_record,
-            at_bound: None,
-        }
+        let of_residuals = if parts.is_some() { degrees_of_freedom } else { f64::INFINITY };
+        Self { parameter, value, parts, of_residuals, origin, is_of_record, at_bound: None }
     }
 
     /// The same for a value that lies on a bound, or follows from one: the standard uncertainty that it had without the bound.
     pub(crate) fn at_bound(mut self, uncertainty: Option<f64>, degrees_of_freedom: f64) -> Self {
-        if self.uncertainty.is_none() && uncertainty.is_some() {
+        if self.parts.is_none() && uncertainty.is_some() {
             self.at_bound = uncertainty;
-            self.degrees_of_freedom = degrees_of_freedom;
+            self.of_residuals = degrees_of_freedom;
         }
         self
     }
 
-    /// Widens the uncertainty, if there is one, to `uncertainty` by something known.
-    pub(crate) fn widen(&mut self, uncertainty: f64) {
-        if let Some(narrow) = self.uncertainty.filter(|narrow| *narrow < uncertainty) {
-            self.uncertainty = Some(uncertainty);
-            self.degrees_of_freedom *= (uncertainty / narrow).powi(4);
+    /// Adds a contribution of `source` to the uncertainty, if there is one.
+    pub(crate) fn add(&mut self, source: Source, uncertainty: f64) {
+        if let Some(parts) = &mut self.parts {
+            parts.push((source, uncertainty * uncertainty));
         }
     }
 
@@ -91,12 +80,56 @@ impl Finding {
 
     /// u, its standard uncertainty, in the unit of the parameter; `None` if the record does not determine it.
     pub fn uncertainty(&self) -> Option<f64> {
-        self.uncertainty
+        self.variance().map(f64::sqrt)
     }
 
-    /// ν, the effective degrees of freedom of the uncertainty (1), infinite if nothing of it was estimated from residuals.
+    fn variance(&self) -> Option<f64> {
+        self.parts.as_ref().map(|parts| parts.iter().map(|(_, variance)| variance).sum())
+    }
+
+    /// ν, the effective degrees of freedom of the uncertainty (1) by Welch and Satterthwaite (JCGM 100:2008, G.4.1), infinite if nothing
+    /// of it was estimated from residuals.
     pub fn degrees_of_freedom(&self) -> f64 {
-        self.degrees_of_freedom
+        let Some(parts) = &self.parts else { return self.of_residuals };
+        let random = parts.iter().find(|(source, variance)| *source == Source::Residuals && *variance > 0.0);
+        let all = self.variance().unwrap_or(0.0);
+        random.map_or(f64::INFINITY, |(_, random)| self.of_residuals * (all / random).powi(2))
+    }
+
+    /// The budget of the uncertainty: what each source contributes to it, without those that contribute nothing. Empty if there is no
+    /// uncertainty.
+    ///
+    /// ```
+    /// use fmm_friction::Coulomb;
+    /// use fmm_identify::{Experiment, Known, Machine, Preparation, Source, identify};
+    /// # use fmm_model::Oscillator;
+    /// # use fmm_record::{Quantity, Record};
+    /// # use fmm_sim::{Engine, Exact, Sampling, Scenario};
+    ///
+    /// # let machine = Oscillator::new(10.391, 1982.0)?;
+    /// # let scenario = Scenario::new(machine, Coulomb::new(0.25)?, 14.0)?.starting_at(0.015, 0.0)?;
+    /// # let velocity = Exact.run(&scenario, &Sampling::uniform(1e-3, 1500)?)?.velocity().values().to_vec();
+    /// # let record = Record::new(0.0, 1e-3, velocity, Quantity::Velocity, "m/s")?;
+    /// // A record without noise: μ = F/N is as uncertain as mass (0.05 %) and load (0.1 %) are.
+    /// let machine = Machine::of_mass(Known::new(10.391, 0.0052)?)?.with_normal_load(Known::new(14.0, 0.014)?)?;
+    /// let found = identify::<Coulomb>(&machine, &[Experiment::ring_down(&record, &Preparation::default())?])?;
+    /// let load = found.finding("mu").unwrap().contributions().find(|part| part.source == Source::NormalLoad).unwrap();
+    /// assert!((load.uncertainty - 0.25 * 0.014 / 14.0).abs() < 1e-9);
+    /// // (0.1 %)²/((0.1 %)² + (0.05 %)²)
+    /// assert!((load.share - 0.8).abs() < 1e-3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn contributions(&self) -> impl Iterator<Item = Contribution> + '_ {
+        let all = self.variance().unwrap_or(0.0);
+        self.parts.iter().flatten().filter(|(_, variance)| *variance > 0.0).map(move |&(source, variance)| {
+            let is_estimated = source == Source::Residuals;
+            Contribution {
+                source,
+                uncertainty: variance.sqrt(),
+                share: variance / all,
+                degrees_of_freedom: if is_estimated { self.of_residuals } else { f64::INFINITY },
+            }
+        })
     }
 
     /// The interval that covers the quantity with probability `level`, in the unit of the parameter: value ± k u by Student's t
@@ -107,14 +140,14 @@ impl Finding {
         if self.origin == Origin::Fitted(EstimateStatus::Fixed) {
             return None;
         }
-        let reach = self.uncertainty.or(self.at_bound)? * coverage_factor(level, self.degrees_of_freedom)?;
+        let reach = self.uncertainty().or(self.at_bound)? * coverage_factor(level, self.degrees_of_freedom())?;
         let bounds = self.parameter.bounds();
         Some((bounds.clamp(self.value - reach), bounds.clamp(self.value + reach)))
     }
 
     /// Value, uncertainty and unit as text.
     pub(crate) fn quantity(&self) -> String {
-        let value = Rounded::new(self.value, self.uncertainty);
+        let value = Rounded::new(self.value, self.uncertainty());
         match self.parameter.unit() {
             "1" => value.to_string(),
             unit => format!("{value} {unit}"),
@@ -124,7 +157,7 @@ impl Finding {
     /// Its 95 % interval as text, to the place to which the uncertainty is rounded.
     pub(crate) fn interval_text(&self) -> Option<String> {
         let (low, high) = self.interval(0.95)?;
-        Some(Rounded::new(self.value, self.uncertainty.or(self.at_bound)).interval(low, high))
+        Some(Rounded::new(self.value, self.uncertainty().or(self.at_bound)).interval(low, high))
     }
 
     /// Whether it belongs to one record alone: its initial state or its offset.
@@ -151,13 +184,15 @@ const KNOWN: usize = 4;
 
 impl Inputs<'_> {
     /// Standard uncertainties of the inputs that were not fitted.
-    fn uncertainties(&self) -> [f64; KNOWN] {
+    fn uncertainties(&self) -> [(Source, f64); KNOWN] {
         let scale = match self.machine.scale() {
-            Scale::Mass(known) | Scale::Stiffness(known) => known.uncertainty(),
-            Scale::PerUnitMass | Scale::Unknown => 0.0,
+            Scale::Stiffness(known) => (Source::Stiffness, known.uncertainty()),
+            Scale::Mass(known) => (Source::Mass, known.uncertainty()),
+            Scale::PerUnitMass | Scale::Unknown => (Source::Mass, 0.0),
         };
         let load = self.machine.normal_load().map_or(0.0, |load| load.uncertainty());
-        [scale, load, self.gain_uncertainty, self.layout.force_uncertainty]
+        let force = self.layout.force_uncertainty;
+        [scale, (Source::NormalLoad, load), (Source::Gain, self.gain_uncertainty), (Source::ForceGain, force)]
     }
 
     /// Whether forces per mass are accelerations in SI, so that a mass makes forces of them.
@@ -248,7 +283,13 @@ pub(crate) fn findings(
         Finding::new(
             estimate.parameter().clone(),
             estimate.value(),
-            covariance.get(index, index).map(|variance| (variance, variance + gain * gain + by_force * by_force)),
+            covariance.get(index, index).map(|variance| {
+                vec![
+                    (Source::Residuals, variance),
+                    (Source::Gain, gain * gain),
+                    (Source::ForceGain, by_force * by_force),
+                ]
+            }),
             covariance.degrees_of_freedom(),
             Origin::Fitted(estimate.status()),
             index >= layout.shared,
@@ -277,7 +318,8 @@ pub(crate) fn findings(
     for ((parameter, value), gradient) in values.into_iter().zip(gradients) {
         let known = inputs.uncertainties();
         let inside = variances(|i, j| covariance.get(i, j), &gradient, known);
-        let relaxed = variances(|i, j| covariance.relaxed_pair(i, j), &gradient, known).map(|(_, all)| all.sqrt());
+        let relaxed = variances(|i, j| covariance.relaxed_pair(i, j), &gradient, known);
+        let relaxed = relaxed.map(|parts| parts.iter().map(|(_, variance)| variance).sum::<f64>().sqrt());
         let freedom = covariance.degrees_of_freedom();
         let finding = Finding::new(parameter, value, inside, freedom, Origin::Derived, false);
         findings.push(finding.at_bound(relaxed, freedom));
@@ -285,12 +327,12 @@ pub(crate) fn findings(
     findings
 }
 
-/// gᵀ V g over the fitted values, and that with the variances of the inputs; `None` if a value that matters has none.
+/// gᵀ V g over the fitted values, and the variances by the inputs; `None` if a value that matters has none.
 fn variances(
     covariance: impl Fn(usize, usize) -> Option<f64>,
     gradient: &[f64],
-    inputs: [f64; KNOWN],
-) -> Option<(f64, f64)> {
+    inputs: [(Source, f64); KNOWN],
+) -> Option<Vec<(Source, f64)>> {
     let (shared, known) = gradient.split_at(gradient.len() - inputs.len());
     let mut random = 0.0;
     for (i, row) in shared.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
@@ -298,6 +340,6 @@ fn variances(
             random += row * column * covariance(i, j)?;
         }
     }
-    let known: f64 = known.iter().zip(inputs).map(|(slope, u)| (slope * u).powi(2)).sum();
-    Some((random, random + known))
+    let known = known.iter().zip(inputs).map(|(slope, (source, u))| (source, (slope * u).powi(2)));
+    Some(std::iter::once((Source::Residuals, random)).chain(known).collect())
 }

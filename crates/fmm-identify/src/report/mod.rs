@@ -1,10 +1,12 @@
 //! The reports, on one screen each.
 
+mod contribution;
 pub(crate) mod finding;
 #[cfg(feature = "serde")]
 mod serialised;
 mod warning;
 
+pub use contribution::{Contribution, Source};
 pub use finding::{Finding, Origin};
 pub use warning::Warning;
 
@@ -54,6 +56,21 @@ impl Identification {
         }
         Ok(())
     }
+}
+
+/// The sources of an uncertainty that has several, the largest first.
+fn write_sources(f: &mut fmt::Formatter<'_>, finding: &Finding) -> fmt::Result {
+    let mut parts: Vec<Contribution> = finding.contributions().collect();
+    if parts.len() < 2 {
+        return Ok(());
+    }
+    parts.sort_by(|a, b| b.share.total_cmp(&a.share));
+    let text = |part: &Contribution| match (100.0 * part.share).round() {
+        share if share < 1.0 => format!("{} below 1 %", part.source),
+        share => format!("{} {share} %", part.source),
+    };
+    let parts: Vec<String> = parts.iter().map(text).collect();
+    writeln!(f, "  u² of {}: {}", finding.parameter().name(), parts.join(", "))
 }
 
 pub(crate) fn write_warnings(f: &mut fmt::Formatter<'_>, warnings: &[Warning]) -> fmt::Result {
@@ -159,6 +176,7 @@ impl fmt::Display for Comparison {
         writeln!(f, "\nPreferred: {}{confidence}  (value ± standard uncertainty  [95 % interval])", preferred.law())?;
         let rests: Vec<Option<f64>> = self.records().iter().map(|record| record.rest_from).collect();
         preferred.write_findings(f, &rests)?;
+        preferred.main_findings().into_iter().try_for_each(|finding| write_sources(f, finding))?;
         write_warnings(f, self.warnings())
     }
 }

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use fmm_fit::EstimateStatus;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-use crate::{Comparison, Finding, Identification, ImpactIdentification, ImpactSummary, Origin, RecordSummary, Sign};
+use crate::{
+    Comparison, Contribution, Finding, Identification, ImpactIdentification, ImpactSummary, Origin, RecordSummary, Sign,
+};
 
 impl Serialize for Finding {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -18,13 +20,28 @@ impl Serialize for Finding {
         };
         // An infinite number of them is null, as JSON has none.
         let freedom = Some(self.degrees_of_freedom()).filter(|freedom| freedom.is_finite());
-        let mut document = serializer.serialize_struct("Finding", 6)?;
+        let contributions: Vec<Contribution> = self.contributions().collect();
+        let mut document = serializer.serialize_struct("Finding", 7)?;
         document.serialize_field("value", &self.value())?;
         document.serialize_field("u", &self.uncertainty())?;
         document.serialize_field("interval_95", &self.interval(0.95))?;
         document.serialize_field("degrees_of_freedom", &freedom)?;
         document.serialize_field("unit", self.parameter().unit())?;
         document.serialize_field("status", status)?;
+        document.serialize_field("contributions", &contributions)?;
+        document.end()
+    }
+}
+
+/// Where a part of an uncertainty comes from, with u and its share of the variance.
+impl Serialize for Contribution {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let freedom = Some(self.degrees_of_freedom).filter(|freedom| freedom.is_finite());
+        let mut document = serializer.serialize_struct("Contribution", 4)?;
+        document.serialize_field("source", &self.source.to_string())?;
+        document.serialize_field("u", &self.uncertainty)?;
+        document.serialize_field("share", &self.share)?;
+        document.serialize_field("degrees_of_freedom", &freedom)?;
         document.end()
     }
 }

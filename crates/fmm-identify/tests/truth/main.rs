@@ -1,7 +1,9 @@
 //! Records of known truth: every law comes back, intervals cover it, and no hysteresis is found where there is none.
 
 mod blows;
+mod budget;
 mod coverage;
 mod hysteresis;
+mod profiles;
 mod records;
 mod recovery;

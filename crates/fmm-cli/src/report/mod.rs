@@ -1,5 +1,8 @@
 //! The report of one record as a page: what was found, how sure it is, and how it was made.
 
+mod budget;
+mod profiles;
+
 use std::error::Error;
 
 use fmm_fit::{EstimateStatus, autocorrelation, coverage_factor};
@@ -8,6 +11,8 @@ use fmm_identify::{Finding, FittedMotion, Origin};
 use fmm_model::Rounded;
 use sha2::{Digest, Sha256};
 
+use self::budget::{budget, of_size};
+use self::profiles::profiles;
 use crate::backbone;
 use crate::figure::{Layer, Panel, Role, drawn, drawn_histogram, label};
 use crate::identify::Found;
@@ -42,6 +47,8 @@ pub(crate) fn document(found: &Found, bytes: &[u8], command: &str) -> Result<Str
                 "fit",
             ),
         ),
+        section("Sources of uncertainty", &budget(comparison.preferred())),
+        section("Profiles", &profiles(found)?),
         section("Laws", &laws(found)),
         section("Residuals", &residuals(found, &pictures)),
         section("Amplitude", &amplitude(found, &pictures)),
@@ -65,9 +72,7 @@ fn findings(found: &Found) -> String {
         let freedom = finding.degrees_of_freedom();
         let factor = coverage_factor(LEVEL, freedom);
         let interval = finding.interval(LEVEL).map(|(low, high)| rounded.interval(low, high));
-        // To the places that an uncertainty of its size deserves.
-        let expanded = u.zip(factor).map(|(u, k)| Rounded::new(0.0, Some(k * u)).to_string());
-        let expanded = expanded.and_then(|text| Some(text.split_once(" ± ")?.1.to_owned()));
+        let expanded = u.zip(factor).map(|(u, k)| of_size(k * u));
         let origin = match finding.origin() {
             Origin::Fitted(EstimateStatus::Fixed) => "held",
             Origin::Fitted(EstimateStatus::Undetermined) => "not determined",
@@ -212,13 +217,23 @@ mod tests {
         // SHA-256 of "abc", as FIPS 180-2 prints it.
         assert!(page.contains("ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"));
         assert!(page.contains("&lt;script&gt;.csv") && !page.contains("<script>"));
-        for section in ["Findings", "Limits", "Record and fit", "Laws", "Residuals", "Amplitude", "How this was made"] {
+        for section in [
+            "Findings",
+            "Limits",
+            "Record and fit",
+            "Sources of uncertainty",
+            "Profiles",
+            "Laws",
+            "Residuals",
+            "Amplitude",
+            "How this was made",
+        ] {
             assert!(page.contains(&format!("<h2>{section}</h2>")), "{section}");
         }
         let (_, json) = page.split_once("id=\"result\">").unwrap();
         let json: serde_json::Value = serde_json::from_str(json.split_once("</script>").unwrap().0).unwrap();
         assert_eq!(json["preferred"], found.comparison.preferred().law());
-        // k u to the places of an uncertainty, never with more digits than u has.
-        assert_eq!(Rounded::new(0.0, Some(0.012_345)).to_string().split_once(" ± ").unwrap().1, "0.012");
+        // A budget that is all noise, and intervals that are as long on both sides.
+        assert!(page.contains("(100 %)") && page.contains("no profile is drawn"));
     }
 }

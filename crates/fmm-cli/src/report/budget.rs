@@ -1,0 +1,81 @@
+//! The budget of a report: where the uncertainty of each finding comes from.
+
+use fmm_identify::{Contribution, Finding, Identification};
+use fmm_model::Rounded;
+
+use crate::page::{escaped, table, text_cell};
+
+/// A share below this is not worth a number (1).
+const LITTLE: f64 = 5e-4;
+
+/// What each source contributes to the findings that all records share.
+pub(super) fn budget(preferred: &Identification) -> String {
+    let budgets: Vec<(&Finding, Vec<Contribution>)> = preferred
+        .findings()
+        .iter()
+        .filter(|finding| !finding.is_of_record())
+        .map(|finding| (finding, finding.contributions().collect()))
+        .collect();
+    let mut sources = Vec::new();
+    for part in budgets.iter().flat_map(|(_, parts)| parts) {
+        if !sources.contains(&part.source) {
+            sources.push(part.source);
+        }
+    }
+    if sources.is_empty() {
+        return "<p>No finding has an uncertainty.</p>\n".to_owned();
+    }
+    let row = |(finding, parts): &(&Finding, Vec<Contribution>)| {
+        let name = finding.parameter().name().replace('_', " ");
+        let u = of_size(finding.uncertainty()?);
+        let mut cells = vec![
+            format!("<th scope=\"row\">{}</th>", escaped(&name)),
+            text_cell(&u),
+            text_cell(finding.parameter().unit()),
+        ];
+        for source in &sources {
+            let part = parts.iter().find(|part| part.source == *source);
+            cells.push(text_cell(&part.map_or_else(|| "–".to_owned(), text)));
+        }
+        Some(cells)
+    };
+    let names: Vec<String> = sources.iter().map(ToString::to_string).collect();
+    let headings: Vec<&str> = ["quantity", "u", "unit"].into_iter().chain(names.iter().map(String::as_str)).collect();
+    format!(
+        "<p>What each source alone makes of u, and its share of u². Residuals count with the degrees of freedom that they have; what \
+         was given counts as known, so that ν of the whole follows by Welch and Satterthwaite (JCGM 100:2008, clauses 5.1 and G.4.1). \
+         What is the largest is what to make smaller first.</p>\n{}",
+        table("budget", &headings, budgets.iter().filter_map(row))
+    )
+}
+
+/// u and share of a contribution.
+fn text(part: &Contribution) -> String {
+    let share = 100.0 * part.share;
+    let share = match part.share {
+        little if little < LITTLE => "below 0.1 %".to_owned(),
+        most if most > 0.995 && most < 1.0 - LITTLE => format!("{share:.1} %"),
+        small if small < 0.01 => format!("{share:.1} %"),
+        _ => format!("{share:.0} %"),
+    };
+    format!("{} ({share})", of_size(part.uncertainty))
+}
+
+/// An uncertainty to the places that one of its size deserves.
+pub(super) fn of_size(uncertainty: f64) -> String {
+    let text = Rounded::new(0.0, Some(uncertainty)).to_string();
+    // Of "(0.0 ± 1.2)e-7" what stands behind the sign.
+    text.split_once(" ± ").map_or(text.clone(), |(_, size)| size.replace(')', ""))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn uncertainties_have_two_digits() {
+        assert_eq!(of_size(0.012_345), "0.012");
+        assert_eq!(of_size(1.234e-7), "1.2e-7");
+        assert_eq!(of_size(271.0), "270");
+    }
+}

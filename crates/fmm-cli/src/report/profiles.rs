@@ -1,0 +1,144 @@
+//! The profiles of a report: quantities about which value ± k u misleads.
+
+use std::error::Error;
+
+use fmm_fit::ProfileEnd;
+use fmm_identify::{Profile, Profiles};
+use fmm_model::Rounded;
+
+use super::LEVEL;
+use crate::figure::{Layer, Panel, Role, drawn, label};
+use crate::identify::Found;
+use crate::page::{escaped, figure, table, text_cell};
+
+/// Points of a parabola.
+const POINTS: usize = 200;
+/// A parabola is drawn as far as this many times the threshold (1).
+const TOP: f64 = 1.6;
+
+/// The intervals by the sum of squares beside those by the standard uncertainty, with a curve of each that bends.
+pub(super) fn profiles(found: &Found) -> Result<String, Box<dyn Error>> {
+    let profiles = found.comparison.preferred().profiles(std::slice::from_ref(&found.decay), LEVEL)?;
+    let (bent, straight): (Vec<&Profile>, Vec<_>) = profiles.profiles().iter().partition(|profile| profile.is_bent());
+    let left_out: Vec<String> = profiles
+        .left_out()
+        .iter()
+        .map(|(parameter, error)| format!("<li>{}: none, as {}</li>\n", name(parameter), escaped(&error.to_string())))
+        .collect();
+    let left_out = if left_out.is_empty() { String::new() } else { format!("<ul>\n{}</ul>\n", left_out.concat()) };
+    let within = straight.iter().map(|profile| profile.bend()).fold(0.0, f64::max);
+    let within = (100.0 * within).ceil().max(1.0);
+    let said = match (bent.is_empty(), straight.is_empty()) {
+        (true, true) => {
+            "There is nothing to draw: no fitted quantity has an interval by the sum of squares.".to_owned()
+        }
+        (true, false) => {
+            format!(
+                "All intervals are symmetric within {within:.0} % of k u, as value ± k u takes them: no profile is drawn."
+            )
+        }
+        (false, true) => "About none of the fitted quantities value ± k u says the truth.".to_owned(),
+        (false, false) => format!("All other intervals are symmetric within {within:.0} % of k u."),
+    };
+    let rows = bent.iter().map(|profile| {
+        vec![
+            format!("<th scope=\"row\">{}</th>", name(profile.parameter())),
+            text_cell(
+                &Rounded::new(profile.value(), reach(profile))
+                    .to_string()
+                    .split(" ± ")
+                    .next()
+                    .unwrap_or_default()
+                    .replace('(', ""),
+            ),
+            text_cell(profile.parameter().unit()),
+            text_cell(&straight_text(profile)),
+            text_cell(&profile_text(profile)),
+            text_cell(&misleads(profile)),
+        ]
+    });
+    let headings = ["quantity", "value", "unit", "value ± k u", "by the sum of squares", "what that says"];
+    let table = if bent.is_empty() { String::new() } else { table("profiles", &headings, rows) };
+    let figures = bent.iter().enumerate().map(|(number, profile)| picture(number, profile));
+    Ok(format!(
+        "<p>Each fitted quantity is moved away from its value and all others are fitted anew, until the sum of squares has risen by as \
+         much as 95 % allow: that interval follows the bends of the model, value ± k u does not. Both speak of the residuals alone, with \
+         the noise that they show; gains, inputs and other laws come on top of it. A quantity counts as bent from a difference of \
+         {:.0} % of k u on. The search took {} evaluations of the motion, and ends after {}.</p>\n<p>{said}</p>\n{left_out}{table}{}",
+        100.0 * Profiles::BENT,
+        profiles.residual_evaluations(),
+        Profiles::MOST_EVALUATIONS,
+        figures.collect::<Vec<_>>().concat()
+    ))
+}
+
+fn name(parameter: &fmm_model::Parameter) -> String {
+    escaped(&parameter.name().replace('_', " "))
+}
+
+/// Half the width of the interval by value ± k u, to which its ends are rounded.
+fn reach(profile: &Profile) -> Option<f64> {
+    let (low, high) = profile.straight();
+    Some(0.25 * (high - low)).filter(|reach| *reach > 0.0)
+}
+
+fn straight_text(profile: &Profile) -> String {
+    let (low, high) = profile.straight();
+    Rounded::new(profile.value(), reach(profile)).interval(low, high)
+}
+
+/// The interval by the profile; an open side has no end.
+fn profile_text(profile: &Profile) -> String {
+    let (lower, upper) = (profile.interval().lower(), profile.interval().upper());
+    match (lower.value(), upper.value()) {
+        (Some(low), Some(high)) => Rounded::new(profile.value(), reach(profile)).interval(low, high),
+        (Some(low), None) => format!("above {}", Rounded::new(low, None)),
+        (None, Some(high)) => format!("below {}", Rounded::new(high, None)),
+        (None, None) => "no end on either side".to_owned(),
+    }
+}
+
+/// What the profile says of a quantity in words.
+fn misleads(profile: &Profile) -> String {
+    let side = |end: ProfileEnd, side: &str| match end {
+        ProfileEnd::At(_) => None,
+        ProfileEnd::Bound(bound) => {
+            Some(format!("{side} it the record rules nothing out as far as the bound {}", Rounded::new(bound, None)))
+        }
+        ProfileEnd::Edge(_) => Some(format!("{side} it the record rules nothing out as far as the law has a motion")),
+        _ => Some(format!("{side} it the record rules nothing out")),
+    };
+    let sides: Vec<String> = [side(profile.interval().lower(), "below"), side(profile.interval().upper(), "above")]
+        .into_iter()
+        .flatten()
+        .collect();
+    if sides.is_empty() {
+        format!("one side differs by {:.0} % of k u", 100.0 * profile.bend())
+    } else {
+        sides.join("; ")
+    }
+}
+
+/// The curve of a profile, the parabola of value ± k u, and the threshold.
+fn picture(number: usize, profile: &Profile) -> String {
+    let curve = profile.curve();
+    let threshold = profile.interval().threshold();
+    let (low, high) = profile.straight();
+    let first = curve.first().map_or(low, |point| point.0.min(low));
+    let last = curve.last().map_or(high, |point| point.0.max(high));
+    let parabola: Vec<(f64, f64)> = (0..=POINTS)
+        .map(|step| first + (last - first) * step as f64 / POINTS as f64)
+        .map(|value| (value, profile.parabola(value)))
+        .filter(|(_, rise)| *rise <= TOP * threshold)
+        .collect();
+    let axis = label(profile.parameter().name().replace('_', " "), profile.parameter().unit());
+    let panel = Panel::new(axis, "rise of the sum of squares / s²", 300.0)
+        .with(Layer::new(Role::Fitted, "profile", curve.to_vec()))
+        .with(Layer::new(Role::Measured, "value ± k u", parabola))
+        .with(Layer::new(Role::Reference, "95 %", vec![(first, threshold), (last, threshold)]));
+    let caption = format!(
+        "{}: the sum of squares with all others fitted anew, beside the parabola of value ± k u; below the line lies the 95 % interval.",
+        profile.parameter().name().replace('_', " ")
+    );
+    figure(&drawn(&[panel]), &caption, &format!("profile-{number}"))
+}

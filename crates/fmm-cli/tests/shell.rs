@@ -1,0 +1,59 @@
+//! What the program is to a shell: codes, documents, completions, manual pages, no colours.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn fmm(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fmm")).args(arguments).output().unwrap()
+}
+
+#[test]
+fn codes_tell_what_is_found_refused_and_wrong() {
+    for (arguments, code) in [
+        (&["formats"][..], 0),
+        (&["--version"], 0),
+        (&["identify", "--help"], 0),
+        (&["compare", "no such file.csv"], 1),
+        (&["budget", "no such file.toml"], 1),
+        (&["identify", "--no-such-option"], 2),
+        (&["no-such-command"], 2),
+        (&[], 2),
+    ] {
+        assert_eq!(fmm(arguments).status.code(), Some(code), "{arguments:?}");
+    }
+}
+
+#[test]
+fn lists_are_documents_too() {
+    for (command, name) in [("laws", "coulomb"), ("formats", "matlab")] {
+        let list: serde_json::Value = serde_json::from_slice(&fmm(&[command, "--json"]).stdout).unwrap();
+        let names: Vec<&str> = list.as_array().unwrap().iter().map(|entry| entry["name"].as_str().unwrap()).collect();
+        assert!(names.contains(&name), "{names:?}");
+        let text = String::from_utf8(fmm(&[command]).stdout).unwrap();
+        assert!(names.iter().all(|name| text.contains(name)), "{text}");
+    }
+}
+
+#[test]
+fn nothing_has_colours() {
+    for arguments in [&["--help"][..], &["identify", "--no-such-option"], &["laws"], &["compare", "no such file.csv"]] {
+        let output = fmm(arguments);
+        assert!(!output.stdout.contains(&0x1b) && !output.stderr.contains(&0x1b), "{arguments:?}");
+    }
+}
+
+#[test]
+fn shells_and_man_know_every_command() {
+    let commands =
+        ["identify", "compare", "force", "backbone", "simulate", "frf", "budget", "batch", "merge", "laws", "formats"];
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = String::from_utf8(fmm(&["completions", shell]).stdout).unwrap();
+        assert!(commands.iter().all(|command| script.contains(command)), "{shell}");
+    }
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("manual");
+    assert!(fmm(&["manual", folder.to_str().unwrap()]).status.success());
+    for command in commands {
+        let page = std::fs::read_to_string(folder.join(format!("fmm-{command}.1"))).unwrap();
+        assert!(page.contains(".TH"), "{command}");
+    }
+}

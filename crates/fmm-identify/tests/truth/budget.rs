@@ -1,0 +1,116 @@
+//! What makes a finding uncertain, against closed forms.
+
+use fmm_friction::Coulomb;
+use fmm_identify::{
+    Contribution, Experiment, Finding, Identification, Known, Machine, Preparation, Source, compare, identify,
+};
+use fmm_record::{Quantity, Record};
+
+use crate::records::{LOAD, RELEASES, machine, noisy, velocity};
+
+const MASS: f64 = 10.391;
+const SAMPLES: usize = 1500;
+
+fn motion() -> Vec<f64> {
+    velocity::<Coulomb>(machine(), &[0.2], RELEASES[1], SAMPLES)
+}
+
+fn part(finding: &Finding, source: Source) -> Contribution {
+    let name = finding.parameter().name();
+    finding.contributions().find(|part| part.source == source).unwrap_or_else(|| panic!("{name}: no {source}"))
+}
+
+/// The parts make the whole: u² = Σ uᵢ², the shares 1, and ν that of Welch and Satterthwaite, G.4.1.
+fn adds_up(found: &Identification) {
+    for finding in found.findings() {
+        let name = finding.parameter().name();
+        let parts: Vec<Contribution> = finding.contributions().collect();
+        let Some(u) = finding.uncertainty() else {
+            assert!(parts.is_empty(), "{name}");
+            continue;
+        };
+        let sum = |of: &dyn Fn(&Contribution) -> f64| parts.iter().map(of).sum::<f64>();
+        assert!((sum(&|part| part.uncertainty.powi(2)) / (u * u) - 1.0).abs() < 1e-12, "{name}: {parts:?}");
+        assert!((sum(&|part| part.share) - 1.0).abs() < 1e-12, "{name}: {parts:?}");
+        let freedom = u.powi(4) / sum(&|part| part.uncertainty.powi(4) / part.degrees_of_freedom);
+        assert!((finding.degrees_of_freedom() / freedom - 1.0).abs() < 1e-9, "{name}: {freedom}");
+    }
+}
+
+/// μ = m f/N: each part is μ times the relative uncertainty of its source.
+#[test]
+fn a_coefficient_by_mass_load_and_gain() {
+    let (u_mass, u_load, u_gain) = (0.003 * MASS, 0.002 * LOAD, 0.001);
+    let machine = Machine::of_mass(Known::new(MASS, u_mass).unwrap()).unwrap();
+    let machine = machine.with_normal_load(Known::new(LOAD, u_load).unwrap()).unwrap();
+    let values = noisy(&motion(), 3).record().values().to_vec();
+    let record = Record::new(0.0, 1e-3, values, Quantity::Velocity, "m/s").unwrap();
+    let decay = Experiment::ring_down(&record, &Preparation::default().gain_uncertainty(u_gain)).unwrap();
+    let found = identify::<Coulomb>(&machine, &[decay]).unwrap();
+    adds_up(&found);
+    let [mu, per_mass] = ["mu", "friction_per_mass"].map(|name| found.finding(name).unwrap());
+    let noise = part(per_mass, Source::Residuals);
+    let expected = [
+        (Source::Residuals, noise.uncertainty / per_mass.value()),
+        (Source::Mass, 0.003),
+        (Source::NormalLoad, 0.002),
+        (Source::Gain, 0.001),
+    ];
+    assert_eq!(mu.contributions().count(), expected.len());
+    for (source, relative) in expected {
+        let part = part(mu, source);
+        assert!((part.uncertainty / mu.value() / relative - 1.0).abs() < 1e-9, "{source}: {part:?}");
+    }
+    assert_eq!(part(mu, Source::Residuals).degrees_of_freedom, found.fit().degrees_of_freedom() as f64);
+    assert_eq!(part(mu, Source::NormalLoad).degrees_of_freedom, f64::INFINITY);
+}
+
+/// F = k f/ω²: of a known stiffness the noise comes in by the frequency as well.
+#[test]
+fn a_force_by_stiffness() {
+    let stiffness = Known::new(1982.0, 2.0).unwrap();
+    let found = identify::<Coulomb>(&Machine::of_stiffness(stiffness).unwrap(), &[noisy(&motion(), 4)]).unwrap();
+    adds_up(&found);
+    let [force, mass] = ["friction_force", "mass"].map(|name| found.finding(name).unwrap());
+    for finding in [force, mass] {
+        let by_stiffness = part(finding, Source::Stiffness).uncertainty / finding.value();
+        assert!((by_stiffness - 2.0 / 1982.0).abs() < 1e-9, "{by_stiffness}");
+    }
+    // m = k/(2π f₀)².
+    let frequency = found.finding("natural_frequency_hz").unwrap();
+    let by_noise = part(mass, Source::Residuals).uncertainty / mass.value();
+    let expected = 2.0 * frequency.uncertainty().unwrap() / frequency.value();
+    assert!((by_noise / expected - 1.0).abs() < 1e-9, "{by_noise} instead of {expected}");
+}
+
+/// A damping of the machine that is held takes from friction what it is too large: moved by u, friction moves by its part.
+#[test]
+fn friction_beside_a_known_damping() {
+    let machine = |damping: f64, u: f64| {
+        let machine = Machine::of_mass(Known::exact(MASS).unwrap()).unwrap();
+        machine.with_damping(Known::new(damping, u).unwrap()).unwrap()
+    };
+    let decays = [noisy(&motion(), 5)];
+    let found = identify::<Coulomb>(&machine(0.1, 0.05), &decays).unwrap();
+    adds_up(&found);
+    let force = |damping: f64| {
+        let found = identify::<Coulomb>(&machine(damping, 0.0), &decays).unwrap();
+        found.finding("friction_force").unwrap().value()
+    };
+    let part = part(found.finding("friction_force").unwrap(), Source::Damping);
+    let expected = 0.5 * (force(0.05) - force(0.15));
+    assert!((part.uncertainty / expected - 1.0).abs() < 1e-6, "{part:?} instead of {expected}");
+}
+
+/// What a law that is not excluded would change is a part of its own, and the parts still make the whole.
+#[test]
+fn laws_that_are_left_are_a_part() {
+    let decays = [noisy(&motion()[..400], 6)];
+    let comparison = compare(&Machine::per_unit_mass(), &decays, &fmm_identify::Candidate::standard()).unwrap();
+    assert!(comparison.not_excluded().count() > 1);
+    let preferred = comparison.preferred();
+    adds_up(preferred);
+    let friction = preferred.finding("friction_per_mass").unwrap();
+    let (others, noise) = (part(friction, Source::OtherLaws), part(friction, Source::Residuals));
+    assert!(others.uncertainty > 0.0 && noise.uncertainty < friction.uncertainty().unwrap());
+}
