@@ -1,6 +1,10 @@
 //! Information of measurements about parameters, which adds up over independent measurements.
 
+use std::f64::consts::TAU;
+
 use fmm_model::Parameter;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 use crate::design::DesignError;
 use crate::problem::block::Scratch;
@@ -242,6 +246,30 @@ impl Information {
         Ok(null_directions(null, &columns, &spectrum.scales, values, &names, ROUNDING.sqrt()))
     }
 
+    /// As many draws of the parameters about these `values`, normal with the covariance that the information leaves; along directions
+    /// about which nothing is known they do not move. The same `seed` gives the same draws.
+    ///
+    /// # Errors
+    /// [`DesignError::Mismatch`] for another number of values than parameters.
+    pub fn draws(&self, values: &[f64], count: usize, seed: u64) -> Result<Vec<Vec<f64>>, DesignError> {
+        self.require(values)?;
+        let Eigen { scales, values: eigenvalues, vectors } = self.spectrum();
+        let known = self.spectrum().rank();
+        let draw = |number: usize| {
+            let mut random = ChaCha8Rng::seed_from_u64(seed);
+            random.set_stream(number as u64);
+            let mut drawn = values.to_vec();
+            for (eigenvalue, vector) in eigenvalues[..known].iter().zip(&vectors) {
+                let step = normal(&mut random) / eigenvalue.sqrt();
+                for ((value, component), scale) in drawn.iter_mut().zip(vector).zip(&scales) {
+                    *value += step * component / scale;
+                }
+            }
+            drawn
+        };
+        Ok((0..count).map(draw).collect())
+    }
+
     fn spectrum(&self) -> Eigen {
         Eigen::of(self)
     }
@@ -256,6 +284,13 @@ impl Information {
         }
         require_finite("factors of a combination", combination)
     }
+}
+
+/// A standard normal number (Box and Muller, <https://doi.org/10.1214/aoms/1177706645>).
+fn normal(random: &mut ChaCha8Rng) -> f64 {
+    let (first, second): (f64, f64) = (random.random(), random.random());
+    // 1 − u lies in (0, 1].
+    (-2.0 * (1.0 - first).ln()).sqrt() * (TAU * second).cos()
 }
 
 fn require_finite(subject: &str, numbers: &[f64]) -> Result<(), DesignError> {
@@ -363,6 +398,26 @@ mod tests {
         let turned = [0, 1].map(|k| (0..2).map(|i| derivatives[2 * i + k] * combination[i]).sum::<f64>());
         let (a, b) = (information.variance(&combination).unwrap(), other.variance(&turned).unwrap());
         assert!((a.unwrap() - b.unwrap()).abs() < 1e-14);
+    }
+
+    /// Means, variances and correlation of draws; a direction that nothing tells stays.
+    #[test]
+    fn draws_have_the_covariance() {
+        let information = Information::of_rows(3, &[1.0, 0.5, 0.0, 0.0, 2.0, 0.0]).unwrap();
+        let count = 20_000;
+        let draws = information.draws(&[1.0, -2.0, 7.0], count, 3).unwrap();
+        let mean = |of: &dyn Fn(&Vec<f64>) -> f64| draws.iter().map(of).sum::<f64>() / count as f64;
+        for (i, j) in [(0, 0), (0, 1), (1, 1)] {
+            let unit = |k: usize| [0, 1, 2].map(|l| f64::from(l == k));
+            let expected = information.covariance(&unit(i), &unit(j)).unwrap().unwrap();
+            let found = mean(&|draw| (draw[i] - [1.0, -2.0][i]) * (draw[j] - [1.0, -2.0][j]));
+            let size = |k: usize| information.variance(&unit(k)).unwrap().unwrap();
+            // Five standard deviations of the mean of a product of two normal numbers.
+            let tolerance = 5.0 * ((size(i) * size(j) + expected * expected) / count as f64).sqrt();
+            assert!((found - expected).abs() < tolerance, "({i}, {j}): {found} for {expected}");
+        }
+        assert!(draws.iter().all(|draw| draw[2] == 7.0));
+        assert_eq!(draws[5], information.draws(&[1.0, -2.0, 7.0], 6, 3).unwrap()[5]);
     }
 
     #[test]

@@ -220,6 +220,21 @@ impl DrivenGuess {
         }
     }
 
+    /// That of an experiment that has no record yet.
+    pub(super) fn planned(frequency: f64) -> Self {
+        Self {
+            mass: 1.0,
+            frequency,
+            damping: 0.0,
+            friction: 0.0,
+            initial: (0.0, 0.0),
+            offset: 0.0,
+            speed: 0.0,
+            first: 0.0,
+            tells_position: false,
+        }
+    }
+
     /// The same begun at rest where the spring is free of force.
     pub(crate) fn neutral(&self) -> Self {
         let offset = if self.tells_position { self.first } else { 0.0 };

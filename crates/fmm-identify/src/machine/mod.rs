@@ -8,6 +8,8 @@ pub use terms::Terms;
 
 use fmm_model::{ModelError, Restoring};
 
+use crate::design::Input;
+
 /// What is known about the machine besides the record of its motion.
 ///
 /// A free vibration shows the natural frequency, damping per mass and friction per mass; multiplying mass,
@@ -132,24 +134,34 @@ impl Machine {
     }
 
     /// The same machine with each known input on which a fit depends moved to the ends of its standard uncertainty: its damping, the
-    /// lower end cut at zero, and its scale if a measured force acts on it. Inputs without an uncertainty are left out.
+    /// lower end cut at zero, and its scale if the motion depends on it. Inputs without an uncertainty are left out.
     pub(crate) fn with_inputs_moved(&self, has_force: bool) -> Vec<[Self; 2]> {
+        self.inputs_moved(has_force).into_iter().map(|(_, ends)| ends.map(|(_, machine)| machine)).collect()
+    }
+
+    /// As [`with_inputs_moved`](Self::with_inputs_moved), with the input and its value at either end.
+    pub(crate) fn inputs_moved(&self, depends_on_scale: bool) -> Vec<(Input, [(f64, Self); 2])> {
         let ends = |known: Known| [(known.value() - known.uncertainty()).max(0.0), known.value() + known.uncertainty()];
         let uncertain = |known: &Known| known.uncertainty() > 0.0;
-        let damping = self
-            .damping
-            .filter(uncertain)
-            .map(|damping| ends(damping).map(|value| Self { damping: Some(damping.moved_to(value)), ..*self }));
+        let damping = self.damping.filter(uncertain).map(|damping| {
+            let moved = |value| (value, Self { damping: Some(damping.moved_to(value)), ..*self });
+            (Input::Damping, ends(damping).map(moved))
+        });
         let scale = match self.scale {
-            Scale::Mass(mass) if has_force && uncertain(&mass) => {
-                Some(ends(mass).map(|value| Self { scale: Scale::Mass(mass.moved_to(value)), ..*self }))
+            Scale::Mass(mass) if depends_on_scale && uncertain(&mass) => {
+                Some(ends(mass).map(|value| (value, self.scaled(Scale::Mass(mass.moved_to(value))))))
             }
-            Scale::Stiffness(stiffness) if has_force && uncertain(&stiffness) => {
-                Some(ends(stiffness).map(|value| Self { scale: Scale::Stiffness(stiffness.moved_to(value)), ..*self }))
+            Scale::Stiffness(stiffness) if depends_on_scale && uncertain(&stiffness) => {
+                Some(ends(stiffness).map(|value| (value, self.scaled(Scale::Stiffness(stiffness.moved_to(value))))))
             }
             _ => None,
         };
-        damping.into_iter().chain(scale).collect()
+        damping.into_iter().chain(scale.map(|ends| (Input::Scale, ends))).collect()
+    }
+
+    /// The same machine with another scale.
+    pub(crate) const fn scaled(&self, scale: Scale) -> Self {
+        Self { scale, ..*self }
     }
 
     /// The same machine with a scale without uncertainty.
