@@ -89,13 +89,17 @@ impl Guess {
             })
         });
         values.extend(named.collect::<Result<Vec<f64>, _>>()?);
-        let is_known =
-            |given: &str| known.iter().any(|one| one.name() == given || one.name().strip_suffix("_per_mass") == Some(given));
+        let is_known = |given: &str| {
+            known.iter().any(|one| one.name() == given || one.name().strip_suffix("_per_mass") == Some(given))
+        };
         if let Some((given, _)) = terms.iter().find(|(given, _)| !is_known(given)) {
             let names: Vec<&str> = known.iter().map(Parameter::name).collect();
             let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
             return Err(IdentifyError::UnknownName {
-                what: format!("{} has no term with a value called {given:?}; its values are: {names}", candidate.name()),
+                what: format!(
+                    "{} has no term with a value called {given:?}; its values are: {names}",
+                    candidate.name()
+                ),
             });
         }
         let level = family.level().map_or(0.0, |level| law[level]);
@@ -174,7 +178,8 @@ impl Guess {
     pub fn within(mut self, uncertainties: &[(&str, f64)]) -> Result<Self, IdentifyError> {
         for (name, u) in uncertainties {
             let place = self.place(name)?;
-            self.spread = self.spread.with_known(place, *u).map_err(|source| local::design_error(self.law.name, source))?;
+            self.spread =
+                self.spread.with_known(place, *u).map_err(|source| local::design_error(self.law.name, source))?;
         }
         Ok(self)
     }

@@ -188,9 +188,8 @@ impl Local<'_> {
         };
         let experiments = [self.experiment(test, frequency)?];
         let law = self.guess.law.with_held_breakaway();
-        let problem = |machine: &Machine| {
-            Problem::of(law, self.machine(test, machine)?, self.guess.terms.clone(), &experiments)
-        };
+        let problem =
+            |machine: &Machine| Problem::of(law, self.machine(test, machine)?, self.guess.terms.clone(), &experiments);
         let own = problem(&self.guess.machine)?;
         let of_problem = own.layout().shared;
         let place = |parameter: &Parameter| self.guess.parameters.iter().position(|one| one.name() == parameter.name());
@@ -200,11 +199,8 @@ impl Local<'_> {
             ("force_gain" | "base_gain", _) => 1.0,
             _ => 0.0,
         };
-        let values: Vec<f64> = places
-            .iter()
-            .map(|place| shared[*place])
-            .chain(own.parameters()[of_problem..].iter().map(state))
-            .collect();
+        let values: Vec<f64> =
+            places.iter().map(|place| shared[*place]).chain(own.parameters()[of_problem..].iter().map(state)).collect();
 
         // Errors of the machine on which the motion depends directly.
         let has_force = matches!(test.motion, Motion::Pushed(..) | Motion::Struck(_));

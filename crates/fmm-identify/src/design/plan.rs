@@ -99,9 +99,10 @@ impl Plan {
         let local = Local { guess, layout, inputs, values };
         let told = |test| {
             local.information(test).map_err(|error| match error {
-                IdentifyError::Simulation { law, source } => {
-                    IdentifyError::simulation(law, fmm_fit::EvaluationError::message(format!("{}: {source}", test.name())))
-                }
+                IdentifyError::Simulation { law, source } => IdentifyError::simulation(
+                    law,
+                    fmm_fit::EvaluationError::message(format!("{}: {source}", test.name())),
+                ),
                 other => other,
             })
         };
@@ -214,10 +215,14 @@ impl Plan {
         let shared = self.guess.parameters.len();
         if let Some(sample) = samples.iter().find(|sample| sample.len() != shared) {
             let given = sample.len();
-            return Err(IdentifyError::missing(format!("a sample has {given} values; the tests share {shared} parameters")));
+            return Err(IdentifyError::missing(format!(
+                "a sample has {given} values; the tests share {shared} parameters"
+            )));
         }
         if samples.is_empty() {
-            return Err(IdentifyError::missing("there is no sample of the values to be robust over; give at least one"));
+            return Err(IdentifyError::missing(
+                "there is no sample of the values to be robust over; give at least one",
+            ));
         }
         let mut cases = Vec::with_capacity(samples.len());
         for sample in samples {

@@ -120,13 +120,7 @@ impl PlannedTest {
     ///
     /// # Errors
     /// As for [`release`](Self::release), and for a pulse of fewer than four samples.
-    pub fn blow(
-        peak: f64,
-        pulse: f64,
-        sensor: PlannedSensor,
-        rate: f64,
-        duration: f64,
-    ) -> Result<Self, IdentifyError> {
+    pub fn blow(peak: f64, pulse: f64, sensor: PlannedSensor, rate: f64, duration: f64) -> Result<Self, IdentifyError> {
         let peak = ModelError::require_finite("peak of a blow", peak, "N")?;
         let pulse = ModelError::require_positive("duration of a blow", pulse, "s")?;
         if !(pulse * rate >= 4.0) {

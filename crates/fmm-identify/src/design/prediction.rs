@@ -35,7 +35,11 @@ pub struct DesignPrediction {
 const CLOSE: f64 = 0.9;
 
 impl DesignPrediction {
-    pub(crate) fn new(guess: &Guess, quantities: Vec<Quantity>, information: Information) -> Result<Self, IdentifyError> {
+    pub(crate) fn new(
+        guess: &Guess,
+        quantities: Vec<Quantity>,
+        information: Information,
+    ) -> Result<Self, IdentifyError> {
         let law = guess.law.name;
         let failed = |source| local::design_error(law, source);
         let mut findings = Vec::with_capacity(quantities.len());

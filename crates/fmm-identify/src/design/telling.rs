@@ -28,14 +28,13 @@ impl Plan {
             .filter_map(|finding| Some((finding.parameter().name(), relative(&finding)?)))
             .collect();
         known.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let little: Vec<&str> = known.iter().filter(|(_, u)| *u > 1.0).map(|(name, _)| *name).collect();
+        if !little.is_empty() {
+            return Ok(format!("alone, it tells little of {}: u exceeds the value", little.join(", ")));
+        }
         Ok(match known.as_slice() {
             [] => "alone, it determines everything".to_owned(),
-            [(name, u)] => format!("alone, it determines {name} to {:.2} %", 100.0 * u),
-            [(best, least), .., (worst, most)] => format!(
-                "alone, it determines everything: {best} best, to {:.2} %, and {worst} worst, to {:.2} %",
-                100.0 * least,
-                100.0 * most
-            ),
+            [.., (name, u)] => format!("alone, it determines everything, {name} least: u is {:.2} % of it", 100.0 * u),
         })
     }
 
