@@ -21,31 +21,10 @@ impl Experiment {
         let amplitude = f64::INFINITY;
         let guess = FirstGuess::of_driven(frequency, 0.0, amplitude, amplitude, record.quantity());
         let summary = RecordSummary {
-            from: record.start(),
-            to: record.end(),
-            samples: record.len(),
-            rate: record.rate(),
-            quantity: record.quantity(),
-            unit: record.unit().to_owned(),
             held_offset,
-            gain_uncertainty: 0.0,
-            release: None,
-            half_swings: 0,
             amplitudes: (amplitude, amplitude),
-            frequency,
-            noise,
-            resolution: None,
-            rest_from: None,
-            spikes: 0,
-            saturation: None,
-            offset_step: None,
-            period_change: None,
-            hum: Vec::new(),
-            further_releases: Vec::new(),
-            interruption: None,
-            upsampling: None,
-            second_mode: None,
             is_driven: drive.is_some(),
+            ..RecordSummary::unseen(&record, frequency, noise)
         };
         let of_drive = |drive| Driven { drive, guess: DrivenGuess::planned(frequency), is_at_rest };
         Self {
