@@ -9,7 +9,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 
 use crate::output::print;
-use crate::{backbone, batch, budget, force, formats, frf, identify, laws, simulate};
+use crate::{backbone, batch, budget, design, force, formats, frf, identify, laws, simulate};
 
 /// Friction parameters out of ring-down, driven, force and impact records, with uncertainties that can be defended.
 #[derive(Debug, Parser)]
@@ -45,6 +45,9 @@ enum Command {
     /// State the uncertainty of a result that follows from others by a formula
     #[command(after_help = budget::HELP)]
     Budget(budget::Arguments),
+    /// Say which tests to make next: what each would tell, and which set of them tells most
+    #[command(after_help = design::HELP)]
+    Design(design::Arguments),
     /// Identify many records, each by itself and all together
     Batch(batch::Arguments),
     /// Put the parts of a campaign together
@@ -95,6 +98,7 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> ExitCode
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Frf(arguments) => frf::run(arguments),
         Command::Budget(arguments) => budget::run(arguments),
+        Command::Design(arguments) => design::run(arguments),
         Command::Batch(arguments) => batch::run(arguments),
         Command::Merge(arguments) => batch::merge(arguments),
         Command::Laws { json } => laws::run(*json),

@@ -15,6 +15,7 @@ mod backbone;
 mod batch;
 mod budget;
 mod commands;
+mod design;
 pub mod figure;
 mod force;
 mod formats;

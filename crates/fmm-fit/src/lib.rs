@@ -76,6 +76,7 @@
 //! | are the residuals noise? | [`ResidualDiagnostics`], [`durbin_watson`], [`effective_count`] |
 //! | is a further parameter worth having? | [`f_test`], [`Fit::corrected_akaike`] |
 //! | which of several models? | [`ModelTable`] |
+//! | which measurements next? | [`Information`], [`DesignSearch`] |
 //! | which straight line, polynomial, columns? | [`StraightLine`], [`Polynomial`], [`LinearRegression`]: no start values |
 //! | a line with uncertainties in both variables? | [`YorkLine`] |
 //! | a line through results that differ by more than their uncertainties? | [`RandomEffectsLine`] |
@@ -133,6 +134,7 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod comparison;
+mod design;
 mod diagnostics;
 mod problem;
 mod regression;
@@ -146,6 +148,7 @@ pub use comparison::{
     Comparing, ComparisonError, Contender, Criterion, Doubt, FTest, ModelRow, ModelTable, ModelTableError,
     NestedComparison, ResidualCount, Verdict, f_tail, f_test,
 };
+pub use design::{ChosenDesign, DesignCase, DesignCriterion, DesignError, DesignSearch, Information};
 pub use diagnostics::{
     NormalityTest, ResidualDiagnostics, RunsTest, anderson_darling, autocorrelation, autocorrelation_time,
     durbin_watson, effective_count, runs_test,

@@ -52,6 +52,7 @@
 //! | A force measured along a motion: a joint, a tribometer, a damper? | [`ForceRecord`], [`identify_force`]; [`ForceModel`] says what acts beside friction, [`compare_force`] which model the records prefer |
 //! | The same without a law? | [`ForceRecord::friction_over_speed`] and [`friction_over_speed_and_load`](ForceRecord::friction_over_speed_and_load), [`ForceRecord::loops`], [`ForceRecord::onsets`] |
 //! | What if mass, stiffness or damping were others? | [`MachineProblem`] with [`Sensitivity`](fmm_fit::Sensitivity) or [`Refit`](fmm_fit::Refit) |
+//! | Which test next? | [`Plan`]: what [`PlannedTest`]s would tell beside what is known, and which set of them is best |
 //! | Between which values does it lie? | [`Finding::interval`], by Student's t with the degrees of freedom of all that is uncertain |
 //! | Does value ± k u mislead? | [`Identification::profiles`] |
 //! | What makes it uncertain? | [`Finding::contributions`]: residuals, mass or stiffness, load, gain, other laws |
@@ -92,6 +93,7 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+mod design;
 mod error;
 mod estimators;
 mod experiment;
@@ -104,6 +106,7 @@ mod machine;
 mod report;
 mod residuals;
 
+pub use design::{Aim, DesignPrediction, Guess, Plan, PlannedSensor, PlannedTest};
 pub use error::IdentifyError;
 pub use estimators::{
     Decrement, EnergyMethod, EnergyRate, EnergyRates, HalfSwing, WeakForm, WeakFormEstimate, WindowFit, Windows,

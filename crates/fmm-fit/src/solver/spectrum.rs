@@ -96,7 +96,7 @@ pub(crate) fn is_surely_of_full_rank(triangle: &Triangle, threshold: f64) -> boo
 }
 
 /// Rotates pairs of columns until the first `order` elements of all are orthogonal.
-fn orthogonalise(columns: &mut [Vec<f64>], order: usize) {
+pub(crate) fn orthogonalise(columns: &mut [Vec<f64>], order: usize) {
     // Columns of unit length shrink to this only when nothing but rounding is left of them.
     const NOTHING: f64 = 1e-36;
     // Convergence is quadratic and takes six to ten sweeps; the limit is for rounding at the last digit.

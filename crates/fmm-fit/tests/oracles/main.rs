@@ -3,6 +3,7 @@
 
 mod bands;
 mod bounded;
+mod design;
 mod free_vibration;
 mod harness;
 mod joint;

@@ -69,31 +69,16 @@ impl Experiment {
         let values = drive.values_from(record.start(), 0.0);
         let guess = DrivenGuess::of(&record, &drive, &values, frequency, noise);
         let summary = RecordSummary {
-            from: record.start(),
-            to: record.end(),
             samples: kept.iter().map(Range::len).sum(),
-            rate: record.rate(),
-            quantity,
-            unit: record.unit().to_owned(),
             held_offset,
             gain_uncertainty,
-            release: None,
             half_swings: swings.peaks().len(),
             amplitudes: (amplitude, amplitude),
-            frequency,
-            noise,
             resolution: quantisation_step(record.values()),
-            rest_from: None,
             spikes: spikes.iter().map(|spike| spike.count).sum(),
             saturation: saturation(record.values()),
-            offset_step: None,
-            period_change: None,
-            hum: Vec::new(),
-            further_releases: Vec::new(),
-            interruption: None,
-            upsampling: None,
-            second_mode: None,
             is_driven: true,
+            ..RecordSummary::unseen(&record, frequency, noise)
         };
         let guess_of_response = FirstGuess::of_driven(frequency, mean, amplitude, first, quantity);
         Ok(Self {
@@ -217,6 +202,21 @@ impl DrivenGuess {
             speed,
             first: values[0],
             tells_position: is_displacement,
+        }
+    }
+
+    /// That of an experiment that has no record yet.
+    pub(super) fn planned(frequency: f64) -> Self {
+        Self {
+            mass: 1.0,
+            frequency,
+            damping: 0.0,
+            friction: 0.0,
+            initial: (0.0, 0.0),
+            offset: 0.0,
+            speed: 0.0,
+            first: 0.0,
+            tells_position: false,
         }
     }
 

@@ -5,6 +5,7 @@ mod drive;
 mod driven;
 mod impact;
 pub(crate) mod nuisance;
+mod planned;
 mod preparation;
 mod ring_down;
 mod sensor;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fmm_record::{Hum, Interruption, OffsetStep, Quantity, Saturation, SecondMode, Upsampling};
+use fmm_record::{Hum, Interruption, OffsetStep, Quantity, Record, Saturation, SecondMode, Upsampling};
 
 /// Choices in preparing a record. The default uses the record from the release to the next, and fits its offset.
 ///
@@ -129,6 +129,37 @@ pub struct RecordSummary {
 pub(crate) const COARSE: f64 = 2.0;
 
 impl RecordSummary {
+    /// That of a `record` in which nothing was looked for but a `frequency` (Hz) and the `noise`.
+    pub(super) fn unseen(record: &Record, frequency: f64, noise: f64) -> Self {
+        Self {
+            from: record.start(),
+            to: record.end(),
+            samples: record.len(),
+            rate: record.rate(),
+            quantity: record.quantity(),
+            unit: record.unit().to_owned(),
+            held_offset: None,
+            gain_uncertainty: 0.0,
+            release: None,
+            half_swings: 0,
+            amplitudes: (0.0, 0.0),
+            frequency,
+            noise,
+            resolution: None,
+            rest_from: None,
+            spikes: 0,
+            saturation: None,
+            offset_step: None,
+            period_change: None,
+            hum: Vec::new(),
+            further_releases: Vec::new(),
+            interruption: None,
+            upsampling: None,
+            second_mode: None,
+            is_driven: false,
+        }
+    }
+
     /// Whether the steps of the converter exceed the noise, so that rounding is no noise of its own at every sample.
     pub fn is_rounded(&self) -> bool {
         self.resolution.is_some_and(|step| step > COARSE * self.noise)

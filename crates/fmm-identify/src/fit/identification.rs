@@ -187,7 +187,8 @@ pub(crate) fn identify_by(
     let has_force = decays.iter().any(|decay| decay.drive().is_some_and(Drive::is_force));
     let stated = |machine: &Machine| if has_force { machine.with_exact_scale() } else { *machine };
     let mut found = findings(&stated(machine), problem.layout(), &fit, &covariance, gain);
-    for (source, moved) in machine.with_inputs_moved(has_force) {
+    for (source, moved) in machine.inputs_moved(has_force) {
+        let moved = moved.map(|(_, machine)| machine);
         let mut ends = Vec::new();
         for machine in moved {
             let problem = Problem::of(law, machine, terms.clone(), decays)?;

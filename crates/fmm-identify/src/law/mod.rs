@@ -104,6 +104,11 @@ impl Law {
         Self { fits_breakaway: true, ..self }
     }
 
+    /// The same law with its static level held at the sliding one.
+    pub(crate) const fn with_held_breakaway(self) -> Self {
+        Self { fits_breakaway: false, ..self }
+    }
+
     /// The static level that is held; `None` if it is fitted or has none of its own.
     pub(crate) fn held_breakaway(&self) -> impl Iterator<Item = &'static LawParameter> + use<> {
         let is_held = !self.fits_breakaway;

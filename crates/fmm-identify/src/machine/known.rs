@@ -20,6 +20,9 @@ pub struct Known {
 }
 
 impl Known {
+    /// Zero without uncertainty.
+    pub(crate) const NOTHING: Self = Self { value: 0.0, uncertainty: 0.0 };
+
     /// `value` with its standard `uncertainty`, both in the same unit.
     ///
     /// # Errors

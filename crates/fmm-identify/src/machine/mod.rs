@@ -133,28 +133,31 @@ impl Machine {
         self.normal_load
     }
 
-    /// The same machine with each known input on which a fit depends moved to the ends of its standard uncertainty: its damping, the
-    /// lower end cut at zero, and its scale if a measured force acts on it. Inputs without an uncertainty are left out.
-    pub(crate) fn with_inputs_moved(&self, has_force: bool) -> Vec<(Source, [Self; 2])> {
+    /// The same machine with each known input on which a fit depends moved to the ends of its standard uncertainty, with the value there:
+    /// its damping, the lower end cut at zero, and its scale if the motion depends on it. Inputs without an uncertainty are left out.
+    pub(crate) fn inputs_moved(&self, depends_on_scale: bool) -> Vec<(Source, [(f64, Self); 2])> {
         let ends = |known: Known| [(known.value() - known.uncertainty()).max(0.0), known.value() + known.uncertainty()];
         let uncertain = |known: &Known| known.uncertainty() > 0.0;
         let damping = self.damping.filter(uncertain).map(|damping| {
-            let moved = ends(damping).map(|value| Self { damping: Some(damping.moved_to(value)), ..*self });
-            (Source::Damping, moved)
+            let moved = |value| (value, Self { damping: Some(damping.moved_to(value)), ..*self });
+            (Source::Damping, ends(damping).map(moved))
         });
         let scale = match self.scale {
-            Scale::Mass(mass) if has_force && uncertain(&mass) => {
-                let moved = ends(mass).map(|value| Self { scale: Scale::Mass(mass.moved_to(value)), ..*self });
-                Some((Source::Mass, moved))
+            Scale::Mass(mass) if depends_on_scale && uncertain(&mass) => {
+                Some((Source::Mass, ends(mass).map(|value| (value, self.scaled(Scale::Mass(mass.moved_to(value)))))))
             }
-            Scale::Stiffness(stiffness) if has_force && uncertain(&stiffness) => {
-                let moved =
-                    ends(stiffness).map(|value| Self { scale: Scale::Stiffness(stiffness.moved_to(value)), ..*self });
-                Some((Source::Stiffness, moved))
+            Scale::Stiffness(stiffness) if depends_on_scale && uncertain(&stiffness) => {
+                let moved = |value| (value, self.scaled(Scale::Stiffness(stiffness.moved_to(value))));
+                Some((Source::Stiffness, ends(stiffness).map(moved)))
             }
             _ => None,
         };
         damping.into_iter().chain(scale).collect()
+    }
+
+    /// The same machine with another scale.
+    pub(crate) const fn scaled(&self, scale: Scale) -> Self {
+        Self { scale, ..*self }
     }
 
     /// The same machine with a scale without uncertainty.

@@ -195,6 +195,22 @@ impl Inputs<'_> {
         [scale, (Source::NormalLoad, load), (Source::Gain, self.gain_uncertainty), (Source::ForceGain, force)]
     }
 
+    /// The derived quantities with their derivatives.
+    fn with_gradients(&self) -> Vec<Derived> {
+        let directions = self.shared.len() + KNOWN;
+        let values = self.derived::<f64>(0);
+        let mut gradients = vec![vec![0.0; directions]; values.len()];
+        for first in (0..directions).step_by(DIRECTIONS) {
+            for (gradient, (_, number)) in gradients.iter_mut().zip(self.derived::<Dual<DIRECTIONS>>(first)) {
+                for (direction, slope) in gradient[first..].iter_mut().enumerate().take(DIRECTIONS) {
+                    *slope = number.partial(direction);
+                }
+            }
+        }
+        let with_gradient = |((parameter, value), gradient)| Derived { parameter, value, gradient };
+        values.into_iter().zip(gradients).map(with_gradient).collect()
+    }
+
     /// Whether forces per mass are accelerations in SI, so that a mass makes forces of them.
     fn is_si(&self) -> bool {
         self.machine.scale() == Scale::Unknown || self.layout.units.is_metric()
@@ -265,6 +281,19 @@ impl Inputs<'_> {
     }
 }
 
+/// A quantity that follows from shared values and inputs, with its derivatives by all of them.
+pub(crate) struct Derived {
+    pub(crate) parameter: Parameter,
+    pub(crate) value: f64,
+    /// By the shared values, then by scale, normal load, gain of the instrument and gain of a measured force.
+    pub(crate) gradient: Vec<f64>,
+}
+
+/// What follows from the `shared` values of a fit and from what is known of the `machine`.
+pub(crate) fn derived(machine: &Machine, layout: &Layout, shared: &[f64]) -> Vec<Derived> {
+    Inputs { machine, shared, layout, gain_uncertainty: 0.0 }.with_gradients()
+}
+
 /// Everything that a fit found: its parameters, and what follows from them and the known inputs of the machine.
 ///
 /// Uncertainties of derived quantities are first order, u² = gᵀ V g + Σ (∂y/∂xᵢ)² u²(xᵢ), with exact derivatives
@@ -305,17 +334,7 @@ pub(crate) fn findings(
     let mut findings: Vec<Finding> = estimated.collect();
     let shared = &fit.values()[..layout.shared];
     let inputs = Inputs { machine, shared, layout, gain_uncertainty };
-    let directions = layout.shared + KNOWN;
-    let values = inputs.derived::<f64>(0);
-    let mut gradients = vec![vec![0.0; directions]; values.len()];
-    for first in (0..directions).step_by(DIRECTIONS) {
-        for (gradient, (_, number)) in gradients.iter_mut().zip(inputs.derived::<Dual<DIRECTIONS>>(first)) {
-            for (direction, slope) in gradient[first..].iter_mut().enumerate().take(DIRECTIONS) {
-                *slope = number.partial(direction);
-            }
-        }
-    }
-    for ((parameter, value), gradient) in values.into_iter().zip(gradients) {
+    for Derived { parameter, value, gradient } in inputs.with_gradients() {
         let known = inputs.uncertainties();
         let inside = variances(|i, j| covariance.get(i, j), &gradient, known);
         let relaxed = variances(|i, j| covariance.relaxed_pair(i, j), &gradient, known);

@@ -1,6 +1,7 @@
 //! Experiments besides a ring-down seen by a faithful sensor: accelerations, filters, driven motion, and several kinds together.
 
 mod acceleration;
+mod design;
 mod driven;
 mod force;
 mod force_curves;

@@ -1,10 +1,12 @@
 //! Section 9.2: what the thesis leaves to the future, on simulated records of known truth and on real ones.
 //!
 //! Laws with a state, of Dahl, `LuGre` and Maxwell, that the thesis would use if there were tests at low constant velocity:
-//! what a ring-down says of them. And a monolithic machine beside an assembled one: what a ring-down says of the clamps.
+//! what a ring-down says of them. And a monolithic machine beside an assembled one: what a ring-down says of the clamps. And which tests
+//! would have told more than those of Table 5.
 
 mod clamps;
 mod measured;
+mod next_tests;
 mod presliding;
 
 use fmm_friction::{Coulomb, Dahl, LuGre, MaxwellSlipOf};
@@ -23,6 +25,8 @@ pub fn chapter(settings: &Settings<'_>) -> Found<Chapter> {
     measured::add(&mut chapter, settings)?;
     settings.done(0.9);
     clamps::add(&mut chapter, settings)?;
+    settings.done(0.95);
+    next_tests::add(&mut chapter)?;
     settings.done(1.0);
     Ok(chapter)
 }

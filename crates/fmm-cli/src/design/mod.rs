@@ -1,0 +1,292 @@
+//! Which test next: `fmm design FILE.toml`.
+//!
+//! Reads a machine, a guess of its friction and the tests that may be made, and says what each would tell, which set of them tells most,
+//! and what each of that set tells that the others do not.
+
+mod figures;
+mod file;
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use fmm_identify::{Aim, DesignPrediction, Finding, Plan};
+use serde::Serialize;
+
+use crate::output::{Output, drawn, print};
+use file::{Robust, Wanted};
+
+/// Says which tests to make.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The plan, as TOML or, by its ending, as JSON
+    file: PathBuf,
+    #[command(flatten)]
+    output: Output,
+}
+
+pub(crate) const HELP: &str = "\
+The file (SI units; a number or a list of numbers where it says [...], and { value = 14, u = 0.02 } for a number with its
+standard uncertainty):
+  [machine]                       two of mass, stiffness and frequency, or the frequency alone
+  mass = { value = 10.391, u = 0.005 }
+  stiffness = 1982
+  normal_load = 14                of which the loads of tests are multiples; its error is one for all tests
+  damping = 0.275                 if it is known and no term of the law
+
+  [guess]
+  law = \"berger + quadratic\"      a law with terms beside it, as for `fmm identify --law`
+  values = { mu0 = 0.228, mu1 = 0.261, alpha = 2.852, quadratic_damping = 0.437 }
+  within = 0.2                    relative standard uncertainty of the values, if the choice is to be robust
+
+  [sensor]
+  quantity = \"velocity\"           or displacement, acceleration
+  noise = 1e-4                    [...]
+  gain_u = 0.003                  relative; one error for all tests by the same sensor
+
+  [[candidates]]                  one or more, each a grid of tests
+  release = [0.008, 0.016]        [...] or blow = (N) with pulse = (s), or force = (N) or base = (m/s²), amplitudes of a sine with
+                                  frequency = (Hz)
+  normal_load = [3.5, 7, 14]      [...] if it is not that of the machine; tests with equal loads share its error
+  added_mass = [0, 2]             [...], added_stiffness = [...]
+  rate = 1000                     [...]
+  duration = 2                    [...]
+  contact = false                 for tests with the contact lifted
+  offset = false                  if the offset of the record is known
+  cost = 5                        of each test
+  sensor = { quantity = \"displacement\", noise = 1e-5 }
+
+  [choose]
+  aim = \"mu\"                      a finding, or \"determinant\" or \"mean variance\" of all that tests share
+  tests = 3                       or budget = 60
+  robust = \"mean\"                 or \"worst\", over draws = 24 within the guess";
+
+/// One test.
+#[derive(Serialize)]
+struct Row {
+    name: String,
+    settings: BTreeMap<&'static str, f64>,
+    cost: f64,
+    /// By itself; none if it does not determine what is the aim.
+    u: Option<f64>,
+    told: String,
+}
+
+/// A set of tests and what it would find.
+#[derive(Serialize)]
+struct Set {
+    /// Places of tests with how often each is made.
+    chosen: Vec<(usize, usize)>,
+    u: Option<f64>,
+    cost: f64,
+    is_exhaustive: bool,
+    findings: BTreeMap<String, Finding>,
+    stays_free: Vec<String>,
+    hardly_told_apart: Vec<(String, String, f64)>,
+    /// What each tells that the others do not.
+    told: Vec<(usize, String)>,
+    #[serde(skip)]
+    text: String,
+}
+
+#[derive(Serialize)]
+struct Answer {
+    aim: String,
+    tests: Vec<Row>,
+    /// The test that tells most by itself, and the one that tells most for its cost.
+    single: Option<usize>,
+    for_its_cost: Option<usize>,
+    best: Set,
+    /// As many of the single best.
+    repeats: Option<f64>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let answer = answer(Wanted::read(&arguments.file)?)?;
+    if let Some(folder) = arguments.output.folder()? {
+        figures::draw(folder, &answer)?;
+        drawn(folder, "design.svg");
+    }
+    if arguments.output.json { print(serde_json::to_string_pretty(&answer)?) } else { print(text(&answer).trim_end()) }
+}
+
+fn answer(wanted: Wanted) -> Result<Answer, Box<dyn Error>> {
+    let Wanted { guess, tests, settings, choose } = wanted;
+    let aim = choose.aim();
+    let samples = choose.robust.map(|_| guess.draws(choose.draws, choose.seed));
+    let plan = Plan::new(guess, tests)?;
+    let search = match (&samples, choose.robust) {
+        (Some(samples), Some(Robust::Worst)) => plan.robust_search(&aim, samples)?.for_worst_case(),
+        (Some(samples), _) => plan.robust_search(&aim, samples)?,
+        (None, _) => plan.search(&aim)?,
+    };
+    let search = search.with_seed(choose.seed);
+    let costs: Vec<f64> = plan.tests().iter().map(fmm_identify::PlannedTest::cost).collect();
+    let best = match (choose.tests, choose.budget) {
+        (Some(tests), _) => search.best(tests)?,
+        (None, budget) => search.best_within(&costs, budget.unwrap_or_default())?,
+    };
+    let uncertainty = |set: &[usize], prediction: &DesignPrediction| -> Result<Option<f64>, Box<dyn Error>> {
+        Ok(match &aim {
+            Aim::Finding(name) => prediction.relative_uncertainty(name),
+            _ if prediction.null_directions().is_empty() => Some(search.score(set)?.exp()),
+            _ => None,
+        })
+    };
+    let mut rows = Vec::with_capacity(settings.len());
+    for (place, (test, settings)) in plan.tests().iter().zip(settings).enumerate() {
+        let u = uncertainty(&[place], &plan.predict(&[place])?)?;
+        rows.push(Row { name: test.name().to_owned(), settings, cost: test.cost(), u, told: plan.told_alone(place)? });
+    }
+    let least = |of: &dyn Fn(&Row) -> f64| {
+        let known = (0..rows.len()).filter(|place| rows[*place].u.is_some());
+        known.min_by(|a, b| of(&rows[*a]).total_cmp(&of(&rows[*b])))
+    };
+    let single = least(&|row| row.u.unwrap_or(f64::INFINITY));
+    // Repeats lessen u as the root of their number: what counts is u² times the cost.
+    let for_its_cost = least(&|row| row.u.unwrap_or(f64::INFINITY).powi(2) * row.cost);
+    let repeats = match single.filter(|_| choose.tests.is_some()) {
+        Some(place) => {
+            let set = vec![place; best.measurements().len()];
+            uncertainty(&set, &plan.predict(&set)?)?
+        }
+        None => None,
+    };
+    let prediction = plan.predict(best.measurements())?;
+    let close = prediction.close_pairs().into_iter();
+    let best = Set {
+        chosen: best.counts(),
+        u: uncertainty(best.measurements(), &prediction)?,
+        cost: best.measurements().iter().map(|place| costs[*place]).sum(),
+        is_exhaustive: best.is_exhaustive(),
+        findings: prediction.findings().iter().map(|one| (one.parameter().name().to_owned(), one.clone())).collect(),
+        stays_free: prediction.null_directions().iter().map(ToString::to_string).collect(),
+        hardly_told_apart: close.map(|(a, b, r)| (a.to_owned(), b.to_owned(), r)).collect(),
+        told: plan.told_by_each(best.measurements())?,
+        text: prediction.to_string(),
+    };
+    Ok(Answer { aim: choose.aim, tests: rows, single, for_its_cost, best, repeats })
+}
+
+fn percent(u: Option<f64>) -> String {
+    match u {
+        Some(u) if u < 10.0 => format!("{:.3} %", 100.0 * u),
+        Some(_) => "more than 1000 %".to_owned(),
+        None => "not determined".to_owned(),
+    }
+}
+
+fn text(answer: &Answer) -> String {
+    let mut text = String::new();
+    let Answer { aim, tests, best, .. } = answer;
+    let width = tests.iter().map(|test| test.name.chars().count()).max().unwrap_or(0);
+    // Writing to a string does not fail.
+    let _ = writeln!(text, "u of {aim}, relative, by each test alone:");
+    for test in tests {
+        let _ = writeln!(text, "  {:width$}  cost {:<6} {:<16} {}", test.name, test.cost, percent(test.u), test.told);
+    }
+    if let Some(place) = answer.single {
+        let _ = writeln!(text, "\nthe single best: {}", tests[place].name);
+    }
+    if let Some(place) = answer.for_its_cost {
+        let _ = writeln!(text, "most for its cost: {}", tests[place].name);
+    }
+    let count: usize = best.chosen.iter().map(|(_, count)| count).sum();
+    let how = if best.is_exhaustive { "of all sets" } else { "by exchanges" };
+    let _ = writeln!(text, "\nthe best set {how}, {count} tests at a cost of {}: u = {}", best.cost, percent(best.u));
+    for (place, count) in &best.chosen {
+        let _ = writeln!(text, "  {count} × {}", tests[*place].name);
+    }
+    if let Some(repeats) = answer.repeats {
+        let _ = writeln!(text, "as many of the single best: u = {}", percent(Some(repeats)));
+    }
+    let _ = writeln!(text, "\nwhat the set would find:\n{}", best.text);
+    let _ = writeln!(text, "what each test of it tells that the others do not:");
+    for (place, told) in &best.told {
+        let _ = writeln!(text, "  {}: {told}", tests[*place].name);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EXAMPLE: &str = include_str!("../../../../examples/designs/berger.toml");
+
+    #[test]
+    fn the_example_is_chosen() {
+        let answer = answer(Wanted::of_toml(EXAMPLE).unwrap()).unwrap();
+        // Three ring-downs that differ tell three times as much as three at 16 mm and 14 N, and as three of the best.
+        let at = |name: &str| answer.tests.iter().find(|test| test.name == name).unwrap().u.unwrap();
+        let repeated = at("release 0.016 m, normal load 14 N") / 3f64.sqrt();
+        assert!((repeated - 0.0273).abs() < 2e-4 && answer.best.u.unwrap() < 0.0081, "{repeated} {:?}", answer.best.u);
+        assert!(answer.repeats.unwrap() > answer.best.u.unwrap() && answer.best.cost == 15.0);
+        let text = text(&answer);
+        for part in ["the best set of all sets, 3 tests", "what each test of it tells", "without it, u of", "μ₀"] {
+            assert!(text.contains(part), "{part}\n{text}");
+        }
+        let json = serde_json::to_value(&answer).unwrap();
+        assert_eq!(json["tests"].as_array().unwrap().len(), 9);
+        assert!(json["best"]["findings"]["mu"]["u"].as_f64().unwrap() > 0.0);
+        let folder = std::env::temp_dir().join(format!("fmm-design-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        figures::draw(&folder, &answer).unwrap();
+        let drawn = std::fs::read_to_string(folder.join("design.svg")).unwrap();
+        std::fs::remove_dir_all(&folder).unwrap();
+        assert!(drawn.contains("release") && drawn.contains("normal load"));
+    }
+
+    /// A budget, other kinds of tests, and a choice that is good over what is guessed.
+    #[test]
+    fn kinds_budgets_and_robust_choices_are_read() {
+        let file = "[machine]\nmass = { value = 10.391, u = 0.05 }\nfrequency = 2.198\nnormal_load = 14\n\
+                    [guess]\nlaw = \"coulomb_static\"\nvalues = { mu = 0.25, static_coefficient = 0.3 }\nwithin = 0.1\n\
+                    [sensor]\nquantity = \"velocity\"\nnoise = 1e-4\n\
+                    [[candidates]]\nrelease = [0.016, 0.022]\nadded_mass = [0, 2]\nrate = 500\nduration = 2\n\
+                    [[candidates]]\nforce = [6, 12]\nfrequency = 0.5\nrate = 500\nduration = 4\ncost = 4\n\
+                    [[candidates]]\nblow = 400\npulse = 0.02\nrate = 500\nduration = 2\ncost = 2\n\
+                    [[candidates]]\nbase = 0.6\nfrequency = 0.5\nrate = 500\nduration = 4\n\
+                    sensor = { quantity = \"displacement\", noise = 1e-5 }\n\
+                    [choose]\naim = \"static_mu\"\nbudget = 6\nrobust = \"worst\"\ndraws = 3\n";
+        let answer = answer(Wanted::of_toml(file).unwrap()).unwrap();
+        assert_eq!(answer.tests.len(), 8);
+        assert!(answer.best.cost <= 6.0 && answer.best.u.is_some(), "{:?}", answer.best.chosen);
+        assert!(answer.tests[0].u.is_none() && text(&answer).contains("not determined"));
+        assert!(answer.tests[0].told.contains("static_excess_friction_per_mass has no influence"));
+    }
+
+    #[test]
+    fn what_is_wrong_in_a_file_is_named() {
+        for (wrong, right, part) in [
+            ("mass = { value = 10.391, u = 0.005 }", "", "needs two of mass, stiffness and frequency"),
+            ("stiffness = 1982", "stiffness = { value = 1982, u = 1 }", "leave out its u"),
+            ("u = 0.005", "u = -0.005", "standard uncertainty"),
+            ("alpha = 2.852", "", "lack decay"),
+            ("alpha = 2.852", "alpha = 2.852, damping = 1", "no term with a value called \"damping\""),
+            ("\"berger\"", "\"burger\"", "no law called \"burger\""),
+            ("\"velocity\"", "\"force\"", "no sensor of \"force\""),
+            ("noise = 1e-4", "noise = 0", "noise of a planned sensor"),
+            ("release = [0.008, 0.016, 0.022]", "", "needs one of release, blow, force and base"),
+            ("release =", "blow =", "with a blow needs pulse"),
+            ("release =", "force =", "with a force needs frequency"),
+            ("[3.5, 7, 14]", "[]", "a list without a number"),
+            ("[3.5, 7, 14]", "[-3]", "normal load of a test"),
+            ("duration = 2 ", "duration = 1e-3 ", "samples of a test"),
+            ("cost = 5", "cost = 0", "cost of a test"),
+            ("cost = 5", "price = 5", "price"),
+            ("aim = \"mu\"", "aim = \"my\"", "\"my\""),
+            ("tests = 3", "", "tests, their number, or budget"),
+            ("tests = 3", "tests = 0", "pays for 0.0"),
+            ("tests = 3", "tests = 3\nrobust = \"mean\"", "needs within"),
+            ("tests = 3", "tests = 3\ndraws = 0", "draws must be 1 to 1000"),
+        ] {
+            let file = EXAMPLE.replacen(wrong, right, 1);
+            assert_ne!(file, EXAMPLE, "{wrong}");
+            let error = Wanted::of_toml(&file).and_then(answer).map(|_| ()).unwrap_err().to_string();
+            assert!(error.contains(part), "{right}: {error}");
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! Search for the set of candidates that tells most.
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use crate::design::exchange::{Exchange, Purse};
+use crate::{ChosenDesign, DesignCase, DesignCriterion, DesignError};
+
+/// Search for the measurements, out of a list of candidates, that make what is asked for least uncertain.
+///
+/// Every set is looked at where there are few; otherwise measurements are exchanged for others one at a time, begun with the
+/// candidates that help most one after the other and with random sets, until no exchange helps (Fedorov; Cook and Nachtsheim). With
+/// several [cases](DesignCase) it is the mean of the logarithm of the uncertainty over them that is made small, or the
+/// [worst](Self::for_worst_case).
+///
+/// ```
+/// use fmm_fit::{DesignCase, DesignCriterion, DesignSearch, Information};
+///
+/// // A straight line, which may be measured at 21 places between −1 and 1: half of the measurements at either end.
+/// let candidates = (-10..=10).map(|i| Information::of_rows(2, &[1.0, f64::from(i) / 10.0])).collect::<Result<_, _>>()?;
+/// let case = DesignCase::of_all(Information::none(2), candidates)?;
+/// let best = DesignSearch::new(vec![case], DesignCriterion::Determinant)?.best(4)?;
+/// assert_eq!(best.counts(), [(0, 2), (20, 2)]);
+/// # Ok::<(), fmm_fit::DesignError>(())
+/// ```
+///
+/// # References
+/// V. V. Fedorov, "Theory of Optimal Experiments", Academic Press 1972, section 3.2; R. D. Cook, C. J. Nachtsheim, "A comparison of
+/// algorithms for constructing exact D-optimal designs", Technometrics 22 (1980) 315,
+/// <https://doi.org/10.1080/00401706.1980.10486162>; A. C. Atkinson, A. N. Donev, R. D. Tobias, "Optimum Experimental Designs, with
+/// SAS", Oxford University Press 2007, chapters 10 to 12 (criteria, algorithms) and 18 (designs over a prior).
+#[derive(Debug, Clone)]
+pub struct DesignSearch {
+    cases: Vec<DesignCase>,
+    criterion: DesignCriterion,
+    is_worst: bool,
+    starts: usize,
+    seed: u64,
+}
+
+/// Measurements in a set at most.
+const MOST: usize = 1000;
+/// Sets, times cases, that are all looked at.
+const FEW: usize = 20_000;
+
+impl DesignSearch {
+    /// Searches by `criterion`; each of the `cases` has the same candidates at other values of the parameters.
+    ///
+    /// # Errors
+    /// [`DesignError::Mismatch`] without a case, or if the cases have different numbers of candidates.
+    pub fn new(cases: Vec<DesignCase>, criterion: DesignCriterion) -> Result<Self, DesignError> {
+        let Some(first) = cases.first() else { return Err(DesignError::mismatch("cases of a design", 0, 1)) };
+        let count = first.candidates.len();
+        if let Some(other) = cases.iter().find(|case| case.candidates.len() != count) {
+            return Err(DesignError::mismatch("candidates of a case", other.candidates.len(), count));
+        }
+        Ok(Self { cases, criterion, is_worst: false, starts: 8, seed: 1 })
+    }
+
+    /// The same for the worst of the cases instead of the mean.
+    #[must_use]
+    pub fn for_worst_case(self) -> Self {
+        Self { is_worst: true, ..self }
+    }
+
+    /// The same with another seed of the random sets; 1 if none is given.
+    #[must_use]
+    pub fn with_seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
+
+    /// The same with another number of random sets to begin with; 8 if none is given.
+    #[must_use]
+    pub fn with_starts(self, starts: usize) -> Self {
+        Self { starts, ..self }
+    }
+
+    /// Number of candidates.
+    pub fn candidates(&self) -> usize {
+        self.cases[0].candidates.len()
+    }
+
+    /// ln u of the combinations that are asked for, after the measurements at these places among the candidates: the mean over the
+    /// cases, or the worst. u is det(G M⁻¹ Gᵀ)^(1/2q) or √(tr(G M⁻¹ Gᵀ)/q) of the q combinations G; where they are not determined
+    /// it is that with 10⁻¹⁰ of the information of a mean candidate beside, which is large.
+    ///
+    /// # Errors
+    /// [`DesignError::Mismatch`] for a place beyond the candidates.
+    pub fn score(&self, measurements: &[usize]) -> Result<f64, DesignError> {
+        if let Some(place) = measurements.iter().find(|place| **place >= self.candidates()) {
+            return Err(DesignError::mismatch("place of a candidate", *place, self.candidates()));
+        }
+        Ok(self.score_of(&self.sums(measurements)))
+    }
+
+    /// The best set of this many measurements; a candidate may be in it more than once.
+    ///
+    /// # Errors
+    /// [`DesignError::OutOfRange`] for no measurement or more than 1000.
+    pub fn best(&self, measurements: usize) -> Result<ChosenDesign, DesignError> {
+        self.best_within(&vec![1.0; self.candidates()], measurements as f64)
+    }
+
+    /// The best set whose costs, one for each candidate, add up to no more than `budget`.
+    ///
+    /// # Errors
+    /// [`DesignError::Mismatch`] for another number of costs than candidates, [`DesignError::OutOfRange`] for a cost that is not
+    /// positive, and for a budget that allows no measurement or more than 1000.
+    pub fn best_within(&self, costs: &[f64], budget: f64) -> Result<ChosenDesign, DesignError> {
+        if costs.len() != self.candidates() {
+            return Err(DesignError::mismatch("costs of the candidates", costs.len(), self.candidates()));
+        }
+        if let Some(cost) = costs.iter().find(|cost| !(**cost > 0.0 && cost.is_finite())) {
+            return Err(DesignError::out_of_range(format!("the cost of a measurement must be positive, not {cost}")));
+        }
+        let cheapest = costs.iter().copied().fold(f64::INFINITY, f64::min);
+        // Costs that add up to the budget but for rounding.
+        let budget = budget * (1.0 + 1e-12);
+        let most = budget / cheapest;
+        if !(1.0..MOST as f64 + 1.0).contains(&most) {
+            return Err(DesignError::out_of_range(format!(
+                "the budget must pay for 1 to {MOST} measurements, but pays for {most:.1} of the cheapest"
+            )));
+        }
+        let purse = Purse { costs, budget };
+        let mut exchange = Exchange::new(self, purse);
+        if let Some(best) = exchange.of_all(FEW / self.cases.len()) {
+            return Ok(best);
+        }
+        let mut best = exchange.improved(Vec::new());
+        for start in 0..self.starts {
+            let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+            random.set_stream(start as u64);
+            let begun = purse.random(&mut random);
+            let found = exchange.improved(begun);
+            if found.score < best.score {
+                best = found;
+            }
+        }
+        Ok(best)
+    }
+
+    /// The information of each case after these measurements.
+    pub(crate) fn sums(&self, measurements: &[usize]) -> Vec<Vec<f64>> {
+        let mut sums: Vec<Vec<f64>> = self.cases.iter().map(|case| case.known.elements().to_vec()).collect();
+        measurements.iter().for_each(|place| self.add(&mut sums, *place, 1.0));
+        sums
+    }
+
+    /// Adds a measurement, or takes it out if `sign` is −1.
+    pub(crate) fn add(&self, sums: &mut [Vec<f64>], place: usize, sign: f64) {
+        for (sum, case) in sums.iter_mut().zip(&self.cases) {
+            let elements = case.candidates[place].elements();
+            sum.iter_mut().zip(elements).for_each(|(sum, element)| *sum += sign * element);
+        }
+    }
+
+    pub(crate) fn score_of(&self, sums: &[Vec<f64>]) -> f64 {
+        let scores = self.cases.iter().zip(sums).map(|(case, sum)| case.score(sum, self.criterion));
+        if self.is_worst {
+            scores.fold(f64::NEG_INFINITY, f64::max)
+        } else {
+            scores.sum::<f64>() / self.cases.len() as f64
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Information;
+
+    fn line(places: &[f64]) -> DesignCase {
+        let candidates = places.iter().map(|x| Information::of_rows(2, &[1.0, *x]).unwrap()).collect();
+        DesignCase::of_all(Information::none(2), candidates).unwrap()
+    }
+
+    #[test]
+    fn exchanges_find_what_looking_at_all_finds() {
+        let places: Vec<f64> = (0..30).map(|i| (f64::from(i) * 0.7).sin()).collect();
+        let search = DesignSearch::new(vec![line(&places)], DesignCriterion::MeanVariance).unwrap();
+        let costs: Vec<f64> = (0..30).map(|i| 1.0 + f64::from(i % 4)).collect();
+        let purse = Purse { costs: &costs, budget: 7.0 };
+        let mut exchange = Exchange::new(&search, purse);
+        let all = exchange.of_all(1_000_000).unwrap();
+        let found = search.best_within(&costs, 7.0).unwrap();
+        assert!(all.is_exhaustive && !found.is_exhaustive(), "{all:?} {found:?}");
+        assert!((all.score - found.score).abs() < 1e-12, "{all:?} {found:?}");
+        assert!(found.measurements().iter().map(|place| costs[*place]).sum::<f64>() <= 7.0);
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused() {
+        let search = DesignSearch::new(vec![line(&[-1.0, 1.0])], DesignCriterion::Determinant).unwrap();
+        assert!(search.best(0).is_err() && search.best(1001).is_err() && search.score(&[2]).is_err());
+        assert!(search.best_within(&[1.0], 3.0).is_err() && search.best_within(&[1.0, 0.0], 3.0).is_err());
+        assert!(search.best_within(&[1.0, 2.0], f64::NAN).is_err());
+        assert!(DesignSearch::new(vec![], DesignCriterion::Determinant).is_err());
+        assert!(DesignSearch::new(vec![line(&[1.0]), line(&[1.0, 2.0])], DesignCriterion::Determinant).is_err());
+        assert!(DesignCase::of_all(Information::none(2), vec![Information::none(3)]).is_err());
+        assert!(DesignCase::of_all(Information::none(2), vec![]).is_err());
+    }
+}

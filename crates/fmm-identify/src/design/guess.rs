@@ -1,0 +1,232 @@
+//! Guess of what the tests are to find: values, how far they may be off, and what is measured already.
+
+use fmm_fit::Information;
+use fmm_friction::Role;
+use fmm_model::{ModelError, Parameter, Unit};
+use fmm_record::{Quantity, Record};
+
+use crate::design::local;
+use crate::law::Law;
+use crate::law::dimension::is_force;
+use crate::law::naming::Units;
+use crate::machine::Scale;
+use crate::{Candidate, Experiment, Identification, IdentifyError, Machine, Terms};
+
+/// What is known before the tests: the machine, the law with guessed values, and what was measured already.
+///
+/// ```
+/// use fmm_identify::{Candidate, Guess, Known, Machine};
+///
+/// let machine = Machine::of_mass(Known::new(10.391, 0.005)?)?.with_normal_load(Known::exact(14.0)?)?;
+/// // 2.198 Hz; μ₀, μ₁ and α of Berger's law, and the damping of the machine (N s/m).
+/// let guess = Guess::new(machine, &Candidate::named("berger + linear")?, 2.198, &[0.228, 0.261, 2.852], &[("damping", 0.275)])?;
+/// assert!((guess.value("friction_per_mass").unwrap() - 0.228 * 14.0 / 10.391).abs() < 1e-12);
+/// # Ok::<(), fmm_identify::IdentifyError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Guess {
+    pub(crate) machine: Machine,
+    pub(crate) law: Law,
+    pub(crate) terms: Terms,
+    /// Unit of positions.
+    pub(crate) position: Unit,
+    /// The parameters that all tests share, in the order of a fit, static levels among them, and their values.
+    pub(crate) parameters: Vec<Parameter>,
+    pub(crate) values: Vec<f64>,
+    /// Of the shared parameters: what was measured already.
+    pub(crate) measured: Information,
+    /// Of the shared parameters: how far the values may be off.
+    spread: Information,
+}
+
+impl Guess {
+    /// A `candidate` law on `machine`, which vibrates at `frequency` (Hz) without friction, with `law` values in the order and the units
+    /// of the [family](fmm_friction::LawFamily): coefficients under the normal load of the machine, or forces if none is known, or forces
+    /// per mass if no mass is known either. The `terms` beside the law are given by name, as a fit has it
+    /// (`quadratic_damping_per_mass`) or without the last two words for what belongs to the mass (`damping`, in N s/m).
+    ///
+    /// # Errors
+    /// [`IdentifyError::Missing`] and [`IdentifyError::UnknownName`] for values that are missing or belong to nothing,
+    /// [`IdentifyError::OutOfRange`] for those outside their bounds.
+    pub fn new(
+        machine: Machine,
+        candidate: &Candidate,
+        frequency: f64,
+        law: &[f64],
+        terms: &[(&str, f64)],
+    ) -> Result<Self, IdentifyError> {
+        ModelError::require_positive("natural frequency", frequency, "Hz")?;
+        let family = candidate.law().with_breakaway();
+        if law.len() != family.parameters.len() {
+            let names: Vec<&str> = family.parameters.iter().map(|one| one.parameter().name()).collect();
+            return Err(IdentifyError::missing(format!(
+                "{} values of {} are given, but it has {}: {}",
+                law.len(),
+                family.name,
+                names.len(),
+                names.join(", ")
+            )));
+        }
+        let per_mass_of_unit = local::mass_of(&machine, frequency).unwrap_or(1.0);
+        let load = machine.normal_load().map_or(1.0, |load| load.value());
+        let (mut values, to_fitted) = match machine.scale() {
+            Scale::Unknown => {
+                return Err(IdentifyError::contradiction(
+                    "a guess needs a mass or a stiffness to begin with, or nothing of either: a machine of unknown mass has no frequency alone",
+                ));
+            }
+            _ => (vec![frequency], load / per_mass_of_unit),
+        };
+        let known: Vec<Parameter> = candidate.terms().parameters(&Unit::of("m")).collect();
+        let named = known.iter().map(|parameter| {
+            let name = parameter.name();
+            let plain = name.strip_suffix("_per_mass");
+            let exactly = terms.iter().find(|(given, _)| *given == name).map(|(_, value)| *value);
+            let by_mass = terms.iter().find(|(given, _)| Some(*given) == plain);
+            let held = || candidate.terms().held().find(|(held, _)| *held == name).map(|(_, value)| value);
+            exactly.or_else(|| by_mass.map(|(_, value)| value / per_mass_of_unit)).or_else(held).ok_or_else(|| {
+                IdentifyError::missing(format!("{} has no value for {name}: give one", candidate.name()))
+            })
+        });
+        values.extend(named.collect::<Result<Vec<f64>, _>>()?);
+        let is_known = |given: &str| {
+            known.iter().any(|one| one.name() == given || one.name().strip_suffix("_per_mass") == Some(given))
+        };
+        if let Some((given, _)) = terms.iter().find(|(given, _)| !is_known(given)) {
+            let names: Vec<&str> = known.iter().map(Parameter::name).collect();
+            let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+            return Err(IdentifyError::UnknownName {
+                what: format!(
+                    "{} has no term with a value called {given:?}; its values are: {names}",
+                    candidate.name()
+                ),
+            });
+        }
+        let level = family.level().map_or(0.0, |level| law[level]);
+        values.extend(family.parameters.iter().zip(law).map(|(parameter, value)| match parameter.role() {
+            Role::LevelAbove | Role::Breakaway => (value - level) * to_fitted,
+            Role::Slope => value * to_fitted,
+            role if is_force(role) => value * to_fitted,
+            _ => *value,
+        }));
+        Self::of(machine, family, candidate.terms().clone(), Unit::of("m"), values)
+    }
+
+    /// What a pilot experiment found: values, their uncertainty, and the information of its `records`, which must be those of the
+    /// identification.
+    ///
+    /// # Errors
+    /// As for [`Problem::new`](crate::Problem::new), and [`IdentifyError::Simulation`].
+    pub fn of_pilot(found: &Identification, records: &[Experiment]) -> Result<Self, IdentifyError> {
+        let (machine, terms) = (*found.machine(), found.terms().clone());
+        let problem = crate::Problem::of(found.family(), machine, terms.clone(), records)?;
+        let layout = problem.layout();
+        let position = layout.units.position.clone();
+        let shared = layout.shared;
+        let of_fit: Vec<(&str, f64)> =
+            found.fit().estimates()[..shared].iter().map(|estimate| (estimate.name(), estimate.value())).collect();
+        let family = found.family().with_breakaway();
+        let (_, parameters) = local::layout(family, &machine, &terms, &position, of_fit[0].1)?;
+        // A static level that no ring-down tells begins at the sliding one.
+        let value = |parameter: &Parameter| {
+            of_fit.iter().find(|(name, _)| *name == parameter.name()).map_or(0.0, |(_, value)| *value)
+        };
+        let values = parameters.iter().map(value).collect();
+        let mut guess = Self::of(machine, family, terms, position, values)?;
+        let deviation = found.fit().residual_standard_deviation().unwrap_or(0.0) * found.inflation();
+        let design = |source| local::design_error(found.family().name, source);
+        let told = Information::of_problem(&problem, found.fit().values(), shared).map_err(design)?;
+        let told = told.scaled(deviation.powi(-2)).map_err(design)?;
+        let names: Vec<&str> = of_fit.iter().map(|(name, _)| *name).collect();
+        let embedded = local::by_name(&names, &guess.parameters);
+        guess.measured = told.transformed(&embedded).map_err(design)?;
+        guess.spread = guess.measured.clone();
+        Ok(guess)
+    }
+
+    fn of(
+        machine: Machine,
+        law: Law,
+        terms: Terms,
+        position: Unit,
+        mut values: Vec<f64>,
+    ) -> Result<Self, IdentifyError> {
+        let (_, parameters) = local::layout(law, &machine, &terms, &position, values[0])?;
+        for (parameter, value) in parameters.iter().zip(&mut values) {
+            let bounds = parameter.bounds();
+            if bounds.is_fixed() {
+                // It is held there, whatever was guessed.
+                *value = bounds.lower();
+            }
+            if !bounds.contains(*value) {
+                return Err(IdentifyError::not_allowed(
+                    &format!("the guess of {}", parameter.name()),
+                    *value,
+                    &format!("between {} and {}", bounds.lower(), bounds.upper()),
+                ));
+            }
+        }
+        let nothing = Information::none(parameters.len());
+        Ok(Self { machine, law, terms, position, parameters, values, measured: nothing.clone(), spread: nothing })
+    }
+
+    /// The same with values that may be off by these standard uncertainties, each by the name that a fit gives to the value and in its unit:
+    /// a design may be asked to be good over all of that. Nothing is taken for measured.
+    ///
+    /// # Errors
+    /// [`IdentifyError::UnknownName`], and [`IdentifyError::OutOfRange`] unless each is positive.
+    pub fn within(mut self, uncertainties: &[(&str, f64)]) -> Result<Self, IdentifyError> {
+        for (name, u) in uncertainties {
+            let place = self.place(name)?;
+            self.spread =
+                self.spread.with_known(place, *u).map_err(|source| local::design_error(self.law.name, source))?;
+        }
+        Ok(self)
+    }
+
+    /// Parameters that all tests share, as a fit has them.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// The values of the parameters, each in its unit.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The value of the parameter of this name, in its unit.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        self.place(name).ok().map(|place| self.values[place])
+    }
+
+    /// As many draws of the values, from the pilot's covariance or the uncertainties given; a draw outside the bounds is put on them.
+    /// The same `seed` gives the same draws.
+    pub fn draws(&self, count: usize, seed: u64) -> Vec<Vec<f64>> {
+        let mut draws = self.spread.draws(&self.values, count, seed).unwrap_or_default();
+        for draw in &mut draws {
+            for (value, parameter) in draw.iter_mut().zip(&self.parameters) {
+                *value = parameter.bounds().clamp(*value);
+            }
+        }
+        draws
+    }
+
+    fn place(&self, name: &str) -> Result<usize, IdentifyError> {
+        let found = self.parameters.iter().position(|parameter| parameter.name() == name);
+        found.ok_or_else(|| {
+            let names: Vec<&str> = self.parameters.iter().map(Parameter::name).collect();
+            IdentifyError::unknown_parameter(name, &names.join(", "))
+        })
+    }
+
+    /// A record that says when and in which unit a sensor of this quantity would be read, without values.
+    pub(crate) fn blank(&self, quantity: Quantity, rate: f64, samples: usize) -> Result<Record, IdentifyError> {
+        let units = Units::new(&self.position.to_string(), "N");
+        let unit = match quantity {
+            Quantity::Displacement => units.position,
+            Quantity::Acceleration => units.acceleration(),
+            _ => units.velocity(),
+        };
+        Ok(Record::sampled(rate, vec![0.0; samples], quantity, unit.to_string())?)
+    }
+}

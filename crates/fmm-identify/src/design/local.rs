@@ -1,0 +1,283 @@
+//! The problem that a planned test would be, and what it tells about the parameters that all tests share.
+
+use std::f64::consts::PI;
+
+use fmm_fit::{DesignError, EvaluationError, Information, Residuals};
+use fmm_friction::Role;
+use fmm_model::{Dual, Parameter, Scalar, Unit};
+use fmm_record::{Quantity, Record};
+
+use crate::design::inputs::{Input, Inputs};
+use crate::design::planned_test::{Load, Motion};
+use crate::fit::layout::{Layout, mass, mass_of_stiffness};
+use crate::law::dimension::is_force;
+use crate::law::{DIRECTIONS, Law};
+use crate::machine::Scale;
+use crate::machine::terms::Term;
+use crate::{Drive, Experiment, Guess, IdentifyError, Known, Machine, PlannedTest, Problem, Source, Terms};
+
+/// Layout and parameters that all tests share, static levels among them.
+pub(crate) fn layout(
+    law: Law,
+    machine: &Machine,
+    terms: &Terms,
+    position: &Unit,
+    frequency: f64,
+) -> Result<(Layout, Vec<Parameter>), IdentifyError> {
+    let blank = Record::new(0.0, 1.0, vec![0.0; 2], Quantity::Displacement, position.to_string())?;
+    let blank = Experiment::planned(blank, None, false, frequency, 1.0, None);
+    let (layout, mut parameters) = Layout::of(law.with_breakaway(), machine, terms, &[blank])?;
+    parameters.truncate(layout.shared);
+    Ok((layout, parameters))
+}
+
+/// The mass (kg) of a machine that vibrates at `frequency` (Hz), if a scale is known.
+pub(crate) fn mass_of(machine: &Machine, frequency: f64) -> Option<f64> {
+    mass(machine.scale(), frequency)
+}
+
+/// The derivatives of parameters of these `names` by `parameters`, row by row: 1 where the name is the same.
+pub(crate) fn by_name(names: &[&str], parameters: &[Parameter]) -> Vec<f64> {
+    let row = |name: &&str| parameters.iter().map(|parameter| f64::from(parameter.name() == *name)).collect::<Vec<_>>();
+    names.iter().flat_map(row).collect()
+}
+
+/// What `source` says of a design by `law`.
+pub(crate) fn design_error(law: &'static str, source: DesignError) -> IdentifyError {
+    IdentifyError::simulation(law, source)
+}
+
+/// A guess at certain values of the shared parameters, and the inputs of a plan.
+#[derive(Clone, Copy)]
+pub(crate) struct Local<'a> {
+    pub(crate) guess: &'a Guess,
+    pub(crate) layout: &'a Layout,
+    pub(crate) inputs: &'a Inputs,
+    pub(crate) values: &'a [f64],
+}
+
+impl Local<'_> {
+    /// Number of shared parameters and inputs.
+    fn directions(&self) -> usize {
+        self.values.len() + self.inputs.len()
+    }
+
+    /// The shared parameters as they are in `test`, with the mass and the spring that are added and the errors of its inputs: of a
+    /// record that reads too much, all lengths are too long.
+    ///
+    /// ```text
+    /// m′ = m + Δm,  k′ = k + Δk,  f₀′ = √(k′/m′)/2π,  (c/m)′ = c/m · m/m′,  (F/m)′ = F/m · m/m′ · (1 + u_N ξ_N/N)
+    /// ```
+    fn of_test<D: Scalar>(&self, test: &PlannedTest, first: usize) -> Vec<D> {
+        let Self { guess, layout, inputs, values } = *self;
+        let error = |input: Input| match inputs.find(input) {
+            Some((place, u)) => D::variable(0.0, (values.len() + place).wrapping_sub(first)) * u,
+            None => D::from(0.0),
+        };
+        let mut own: Vec<D> =
+            values.iter().enumerate().map(|(i, value)| D::variable(*value, i.wrapping_sub(first))).collect();
+        let added = |known: Option<Known>, input: fn(Known) -> Input| {
+            known.map_or(D::from(0.0), |known| error(input(known)) + known.value())
+        };
+        let added_mass = added(test.added_mass, Input::AddedMass);
+        let added_stiffness = added(test.added_stiffness, Input::AddedStiffness);
+        let one = D::from(1.0);
+        let (mut of_mass, mut of_stiffness, mut of_force) = (one, one, one);
+        if test.added_mass.is_some() || test.added_stiffness.is_some() {
+            let alone = match guess.machine.scale() {
+                Scale::Mass(known) => error(Input::Scale) + known.value(),
+                Scale::Stiffness(known) => mass_of_stiffness(error(Input::Scale) + known.value(), own[0]),
+                Scale::PerUnitMass | Scale::Unknown => own[0],
+            };
+            let whole = alone + added_mass;
+            of_mass = alone / whole;
+            if guess.machine.scale() == Scale::Unknown {
+                of_stiffness = own[1] / (own[1] + added_stiffness);
+                (own[0], own[1]) = (whole, own[1] + added_stiffness);
+            } else {
+                let spring = alone / mass_of_stiffness(one, own[0]);
+                of_stiffness = spring / (spring + added_stiffness);
+                of_force = of_mass;
+                own[0] = ((spring + added_stiffness) / whole).sqrt() / (2.0 * PI);
+            }
+        }
+        for (place, term) in layout.terms.iter().enumerate() {
+            let value = &mut own[layout.oscillator + place];
+            match term {
+                Term::LinearDamping | Term::QuadraticDamping | Term::CubicDamping | Term::PowerDamping => {
+                    *value *= of_mass;
+                }
+                Term::CubicSpring | Term::QuinticSpring | Term::StopRatio => *value *= of_stiffness,
+                Term::PowerExponent | Term::Stop | Term::Gap => {}
+            }
+        }
+        if let Load::Other(load) = test.load {
+            of_force *= error(Input::Load(load)) / load.value() + 1.0;
+        }
+        for (place, parameter) in layout.family.fitted().enumerate() {
+            if is_force(parameter.role()) || parameter.role() == Role::Slope {
+                own[layout.law + place] *= of_force;
+            }
+        }
+        let gain = (error(Input::Gain(test.sensor)) + 1.0).ln();
+        for (index, value) in own.iter_mut().enumerate().skip(layout.oscillator) {
+            *value *= (gain * layout.power_of_gain(index, values)).exp();
+        }
+        own
+    }
+
+    /// The `machine` with what `test` adds to it.
+    fn machine(&self, test: &PlannedTest, machine: &Machine) -> Result<Machine, IdentifyError> {
+        let added = |known: Option<Known>| known.map_or(0.0, |known| known.value());
+        let machine = match machine.scale() {
+            Scale::Mass(mass) => machine.scaled(Scale::Mass(mass.moved_to(mass.value() + added(test.added_mass)))),
+            Scale::Stiffness(stiffness) => {
+                machine.scaled(Scale::Stiffness(stiffness.moved_to(stiffness.value() + added(test.added_stiffness))))
+            }
+            Scale::PerUnitMass if test.added_mass.is_some() || test.added_stiffness.is_some() => {
+                return Err(IdentifyError::contradiction(format!(
+                    "{} adds to a machine of which neither mass nor stiffness is known: give one",
+                    test.name()
+                )));
+            }
+            Scale::PerUnitMass | Scale::Unknown => *machine,
+        };
+        let is_linear = machine.restoring() == fmm_model::Restoring::Linear && !self.layout.terms.has(Term::Gap);
+        if test.added_stiffness.is_some() && !is_linear {
+            return Err(IdentifyError::contradiction(format!(
+                "{} adds a spring to a machine whose own is not linear, so that the whole would be another law; leave it out",
+                test.name()
+            )));
+        }
+        Ok(machine)
+    }
+
+    /// The experiment that `test` would be.
+    fn experiment(&self, test: &PlannedTest, frequency: f64) -> Result<Experiment, IdentifyError> {
+        let factor = match (test.load, self.guess.machine.normal_load()) {
+            (Load::OfMachine, _) => 1.0,
+            (Load::None, _) => 0.0,
+            (Load::Other(load), Some(of_machine)) => load.value() / of_machine.value(),
+            (Load::Other(_), None) => {
+                return Err(IdentifyError::missing(format!(
+                    "{} has a normal load, which is a multiple of that of the machine: give the machine one",
+                    test.name()
+                )));
+            }
+        };
+        let record = self.guess.blank(test.sensor.quantity(), test.rate(), test.samples())?;
+        let drive = match &test.motion {
+            Motion::Released(_) => None,
+            Motion::Pushed(force, uncertainty) => Some(Drive::force(force)?.with_gain_uncertainty(*uncertainty)?),
+            Motion::Struck(force) => Some(Drive::force(force)?.with_free_delay(record.interval())?),
+            Motion::Carried(base) => Some(Drive::base(base)?),
+        };
+        let is_at_rest = matches!(test.motion, Motion::Struck(_));
+        let offset = (!test.fits_offset).then_some(0.0);
+        Experiment::planned(record, drive, is_at_rest, frequency, test.sensor.noise(), offset).with_load_factor(factor)
+    }
+
+    /// What `test` tells about the shared parameters and the inputs, in the order of both.
+    pub(crate) fn information(&self, test: &PlannedTest) -> Result<Information, IdentifyError> {
+        let name = self.guess.law.name;
+        let failed = |source| design_error(name, source);
+        let shared: Vec<f64> = self.of_test(test, 0);
+        let frequency = match self.guess.machine.scale() {
+            Scale::Unknown => (shared[1] / shared[0]).sqrt() / (2.0 * PI),
+            _ => shared[0],
+        };
+        let experiments = [self.experiment(test, frequency)?];
+        let law = self.guess.law.with_held_breakaway();
+        let problem =
+            |machine: &Machine| Problem::of(law, self.machine(test, machine)?, self.guess.terms.clone(), &experiments);
+        let own = problem(&self.guess.machine)?;
+        let of_problem = own.layout().shared;
+        let place = |parameter: &Parameter| self.guess.parameters.iter().position(|one| one.name() == parameter.name());
+        let places: Vec<usize> = own.parameters()[..of_problem].iter().filter_map(place).collect();
+        let state = |parameter: &Parameter| match (parameter.name(), &test.motion) {
+            ("initial_position", Motion::Released(position)) => *position,
+            ("force_gain" | "base_gain", _) => 1.0,
+            _ => 0.0,
+        };
+        let values: Vec<f64> =
+            places.iter().map(|place| shared[*place]).chain(own.parameters()[of_problem..].iter().map(state)).collect();
+
+        // Errors of the machine on which the motion depends directly.
+        let has_force = matches!(test.motion, Motion::Pushed(..) | Motion::Struck(_));
+        let is_damped = self.guess.machine.damping().is_some_and(|damping| damping.value() > 0.0);
+        let mut direct = Vec::new();
+        for (source, ends) in self.guess.machine.inputs_moved(has_force || is_damped) {
+            let input = if source == Source::Damping { Input::Damping } else { Input::Scale };
+            let Some((place, u)) = self.inputs.find(input) else { continue };
+            let mut series = [vec![0.0; own.len()], vec![0.0; own.len()]];
+            for ((_, machine), series) in ends.iter().zip(&mut series) {
+                let moved = problem(machine)?;
+                moved.residuals(&values, series).map_err(|error| IdentifyError::simulation(name, error))?;
+            }
+            let [below, above] = series;
+            let per_uncertainty = u / (ends[1].0 - ends[0].0);
+            let column = above.iter().zip(&below).map(|(above, below)| (above - below) * per_uncertainty).collect();
+            direct.push((self.values.len() + place, column));
+        }
+        let (of_direct, columns): (Vec<usize>, Vec<Vec<f64>>) = direct.into_iter().unzip();
+        let told = if columns.is_empty() {
+            Information::of_problem(&own, &values, of_problem)
+        } else {
+            let beside = BesideInputs::new(own, columns);
+            let all = [vec![0.0; of_direct.len()], values].concat();
+            Information::of_problem(&beside, &all, of_direct.len() + of_problem)
+        };
+        let told = told.and_then(|told| told.scaled(test.sensor.noise().powi(-2))).map_err(failed)?;
+
+        let directions = self.directions();
+        let mut derivatives = vec![0.0; (of_direct.len() + places.len()) * directions];
+        let (by_input, by_shared) = derivatives.split_at_mut(of_direct.len() * directions);
+        for (row, place) in by_input.chunks_exact_mut(directions).zip(&of_direct) {
+            row[*place] = 1.0;
+        }
+        for first in (0..directions).step_by(DIRECTIONS) {
+            let seeded: Vec<Dual<DIRECTIONS>> = self.of_test(test, first);
+            for (row, place) in by_shared.chunks_exact_mut(directions).zip(&places) {
+                let slopes = row[first..].iter_mut().enumerate().take(DIRECTIONS);
+                slopes.for_each(|(direction, slope)| *slope = seeded[*place].partial(direction));
+            }
+        }
+        told.transformed(&derivatives).map_err(failed)
+    }
+}
+
+/// A problem with inputs as further parameters before its own.
+struct BesideInputs<'a> {
+    problem: Problem<'a>,
+    parameters: Vec<Parameter>,
+    columns: Vec<Vec<f64>>,
+}
+
+impl<'a> BesideInputs<'a> {
+    fn new(problem: Problem<'a>, columns: Vec<Vec<f64>>) -> Self {
+        let inputs = (0..columns.len()).map(|_| Parameter::new("error of an input", "ξ", "1"));
+        let parameters = inputs.chain(problem.parameters().iter().cloned()).collect();
+        Self { problem, parameters, columns }
+    }
+}
+
+impl Residuals for BesideInputs<'_> {
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    fn len(&self) -> usize {
+        self.problem.len()
+    }
+
+    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        self.problem.residuals(&p[self.columns.len()..], residuals)
+    }
+
+    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
+        let (by_input, own) = jacobian.split_at_mut(self.columns.len() * self.len());
+        by_input.copy_from_slice(&self.columns.concat());
+        // Of one experiment there is one block, which has all parameters in their order.
+        self.problem.jacobian(&p[self.columns.len()..], own)
+    }
+}

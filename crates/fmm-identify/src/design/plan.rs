@@ -1,0 +1,272 @@
+//! Plan: the tests that may be made, what they would tell, and which of them to make.
+
+use fmm_fit::{ChosenDesign, DesignCase, DesignCriterion, DesignSearch, Information};
+
+use crate::design::inputs::{Input, Inputs};
+use crate::design::local::{self, Local};
+use crate::design::prediction::Quantity;
+use crate::fit::layout::Layout;
+use crate::report::finding::derived;
+use crate::{DesignPrediction, Guess, IdentifyError, PlannedTest};
+
+/// The tests that may be made on a machine, and what each of them would tell.
+///
+/// The information of a test is that of the problem that it would be, of [`Problem`](crate::Problem), at the guessed values: its exact
+/// Jacobian, less what its own initial state and offset take. Mass, load and gain are known with an error, which is a further parameter:
+/// that of mass, damping and load of the machine is one for all tests, that of a load, a mass or a spring of a test one for
+/// all tests with the same, that of a gain one for all tests by the same sensor. Repeats therefore do not lessen what such an error does.
+///
+/// ```
+/// use fmm_identify::{Aim, Candidate, Guess, Known, Machine, Plan, PlannedSensor, PlannedTest};
+/// use fmm_record::Quantity;
+///
+/// let machine = Machine::of_mass(Known::exact(10.391)?)?.with_normal_load(Known::exact(14.0)?)?;
+/// let guess = Guess::new(machine, &Candidate::named("coulomb_viscous")?, 2.198, &[0.25, 0.002], &[])?;
+/// let sensor = PlannedSensor::new(Quantity::Velocity, 1e-4)?;
+/// let tests = [0.008, 0.016, 0.022].map(|x| PlannedTest::release(x, sensor, 1000.0, 2.0)).into_iter();
+/// let plan = Plan::new(guess, tests.collect::<Result<_, _>>()?)?;
+///
+/// let best = plan.best(&Aim::finding("mu"), 2)?;
+/// assert_eq!(best.measurements(), [2, 2]);
+/// let predicted = plan.predict(best.measurements())?;
+/// assert!(predicted.finding("mu").unwrap().uncertainty().unwrap() < 1e-4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Plan {
+    guess: Guess,
+    tests: Vec<PlannedTest>,
+    inputs: Inputs,
+    layout: Layout,
+    known: Information,
+    told: Vec<Information>,
+}
+
+/// What a plan is to make small.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Aim {
+    /// u of the finding of this name (c-optimal).
+    Finding(String),
+    /// The generalised variance of all parameters that tests share (D-optimal).
+    Determinant,
+    /// The mean square of the relative standard uncertainties of all parameters that tests share (A-optimal).
+    MeanVariance,
+}
+
+impl Aim {
+    /// u of the finding called `name`.
+    pub fn finding(name: impl Into<String>) -> Self {
+        Self::Finding(name.into())
+    }
+}
+
+impl Plan {
+    /// The plan of these `tests`, of which `guess` says what they are likely to find.
+    ///
+    /// # Errors
+    /// [`IdentifyError::Missing`] without a test, [`IdentifyError::Contradiction`] for a test that the machine does not allow, and
+    /// [`IdentifyError::Simulation`] if a test cannot be simulated at the guess.
+    pub fn new(guess: Guess, tests: Vec<PlannedTest>) -> Result<Self, IdentifyError> {
+        if tests.is_empty() {
+            return Err(IdentifyError::missing("there is no test to choose from; give at least one"));
+        }
+        let inputs = Inputs::of(&guess.machine, &tests);
+        let frequency = guess.values[0];
+        let (layout, _) = local::layout(guess.law, &guess.machine, &guess.terms, &guess.position, frequency)?;
+        let shared = guess.parameters.len();
+        let order = shared + inputs.len();
+        let failed = |source| local::design_error(guess.law.name, source);
+        let embedded: Vec<f64> = (0..shared * order).map(|at| f64::from(at / order == at % order)).collect();
+        let mut known = guess.measured.transformed(&embedded).map_err(failed)?;
+        for place in shared..order {
+            known = known.with_known(place, 1.0).map_err(failed)?;
+        }
+        for (place, parameter) in guess.parameters.iter().enumerate().filter(|(_, one)| one.bounds().is_fixed()) {
+            /// What is held is known to this share of its value.
+            const HELD: f64 = 1e-9;
+            let value = parameter.bounds().lower().abs();
+            known = known.with_known(place, HELD * if value > 0.0 { value } else { 1.0 }).map_err(failed)?;
+        }
+        let mut plan = Self { guess, tests, inputs, layout, known, told: Vec::new() };
+        plan.told = plan.told_at(&plan.guess.values)?;
+        Ok(plan)
+    }
+
+    /// What each test would tell if the shared parameters had these `values`.
+    fn told_at(&self, values: &[f64]) -> Result<Vec<Information>, IdentifyError> {
+        let Self { guess, tests, inputs, layout, .. } = self;
+        let local = Local { guess, layout, inputs, values };
+        let told = |test| {
+            local.information(test).map_err(|error| match error {
+                IdentifyError::Simulation { law, source } => IdentifyError::simulation(
+                    law,
+                    fmm_fit::EvaluationError::message(format!("{}: {source}", test.name())),
+                ),
+                other => other,
+            })
+        };
+        tests.iter().map(told).collect()
+    }
+
+    /// The tests that may be made.
+    pub fn tests(&self) -> &[PlannedTest] {
+        &self.tests
+    }
+
+    /// What the tests are likely to find.
+    pub fn guess(&self) -> &Guess {
+        &self.guess
+    }
+
+    /// What the tests at these places, each as often as its place is given, would tell beside what is known; of no test, what is known
+    /// already.
+    ///
+    /// # Errors
+    /// [`IdentifyError::OutOfRange`] for a place beyond the tests.
+    pub fn predict(&self, tests: &[usize]) -> Result<DesignPrediction, IdentifyError> {
+        let information = self.information(tests)?;
+        DesignPrediction::new(&self.guess, self.quantities(&self.guess.values), information)
+    }
+
+    pub(crate) fn information(&self, tests: &[usize]) -> Result<Information, IdentifyError> {
+        let mut information = self.known.clone();
+        for place in tests {
+            let Some(told) = self.told.get(*place) else {
+                let allowed = format!("below {}, the number of tests", self.tests.len());
+                return Err(IdentifyError::not_allowed("the place of a test", *place as f64, &allowed));
+            };
+            information.add(told).map_err(|source| local::design_error(self.guess.law.name, source))?;
+        }
+        Ok(information)
+    }
+
+    /// Everything that would be found: parameters that tests share, then what follows from them and the machine.
+    pub(crate) fn quantities(&self, values: &[f64]) -> Vec<Quantity> {
+        let (shared, order) = (self.guess.parameters.len(), self.guess.parameters.len() + self.inputs.len());
+        let force = self.inputs.find(Input::ForceChannel);
+        let fitted = self.guess.parameters.iter().enumerate().map(|(index, parameter)| {
+            let mut gradient = vec![0.0; order];
+            gradient[index] = 1.0;
+            if let Some((place, u)) = force.filter(|_| self.layout.is_scaled_by_force(index)) {
+                gradient[shared + place] = u * values[index];
+            }
+            Quantity { parameter: parameter.clone(), value: values[index], gradient, is_fitted: true }
+        });
+        let followed = derived(&self.guess.machine, &self.layout, values).into_iter().map(|one| {
+            let mut gradient = vec![0.0; order];
+            let (own, by_inputs) = one.gradient.split_at(shared);
+            gradient[..shared].copy_from_slice(own);
+            // Gains are part of the tests, and of the parameters no more.
+            let inputs = [Some(Input::Scale), Some(Input::NormalLoad), None, Some(Input::ForceChannel)];
+            for (input, slope) in inputs.into_iter().zip(by_inputs) {
+                if let Some((place, u)) = input.and_then(|input| self.inputs.find(input)) {
+                    gradient[shared + place] += u * slope;
+                }
+            }
+            Quantity { parameter: one.parameter, value: one.value, gradient, is_fitted: false }
+        });
+        fitted.chain(followed).collect()
+    }
+
+    /// The combinations of parameters that `aim` asks for if the shared ones have these values, relative to their values where these are
+    /// not zero.
+    fn combinations(&self, aim: &Aim, values: &[f64]) -> Result<Vec<Vec<f64>>, IdentifyError> {
+        let quantities = self.quantities(values);
+        let relative = |quantity: &Quantity| {
+            let size = if quantity.value == 0.0 { 1.0 } else { quantity.value.abs() };
+            quantity.gradient.iter().map(|slope| slope / size).collect::<Vec<f64>>()
+        };
+        match aim {
+            Aim::Finding(name) => match quantities.iter().find(|quantity| quantity.parameter.name() == name) {
+                Some(quantity) => Ok(vec![relative(quantity)]),
+                None => {
+                    let names: Vec<&str> = quantities.iter().map(|quantity| quantity.parameter.name()).collect();
+                    Err(IdentifyError::UnknownName {
+                        what: format!("no test finds anything called {name:?}; the findings are: {}", names.join(", ")),
+                    })
+                }
+            },
+            Aim::Determinant | Aim::MeanVariance => {
+                let free = |quantity: &&Quantity| quantity.is_fitted && !quantity.parameter.bounds().is_fixed();
+                Ok(quantities.iter().filter(free).map(relative).collect())
+            }
+        }
+    }
+
+    /// The search for tests that make what is the `aim` small, at the guess.
+    ///
+    /// # Errors
+    /// [`IdentifyError::UnknownName`] for a finding that no test has.
+    pub fn search(&self, aim: &Aim) -> Result<DesignSearch, IdentifyError> {
+        let combinations = self.combinations(aim, &self.guess.values)?;
+        let case = DesignCase::new(self.known.clone(), self.told.clone(), combinations);
+        self.searched(case.map(|case| vec![case]), aim)
+    }
+
+    /// The search for tests that make what is the `aim` small over several `samples` of the shared values, such as
+    /// [`Guess::draws`]: the mean of the logarithm of u, unless it is asked for the
+    /// [worst](DesignSearch::for_worst_case).
+    ///
+    /// # Errors
+    /// As for [`search`](Self::search), [`IdentifyError::Missing`] without a sample or for one of another number of values, and
+    /// [`IdentifyError::Simulation`] if a test cannot be simulated at one.
+    pub fn robust_search(&self, aim: &Aim, samples: &[Vec<f64>]) -> Result<DesignSearch, IdentifyError> {
+        let shared = self.guess.parameters.len();
+        if let Some(sample) = samples.iter().find(|sample| sample.len() != shared) {
+            let given = sample.len();
+            return Err(IdentifyError::missing(format!(
+                "a sample has {given} values; the tests share {shared} parameters"
+            )));
+        }
+        if samples.is_empty() {
+            return Err(IdentifyError::missing(
+                "there is no sample of the values to be robust over; give at least one",
+            ));
+        }
+        let mut cases = Vec::with_capacity(samples.len());
+        for sample in samples {
+            let combinations = self.combinations(aim, sample)?;
+            cases.push((self.told_at(sample)?, combinations));
+        }
+        let cases = cases
+            .into_iter()
+            .map(|(told, combinations)| DesignCase::new(self.known.clone(), told, combinations))
+            .collect::<Result<Vec<_>, _>>();
+        self.searched(cases, aim)
+    }
+
+    fn searched(
+        &self,
+        cases: Result<Vec<DesignCase>, fmm_fit::DesignError>,
+        aim: &Aim,
+    ) -> Result<DesignSearch, IdentifyError> {
+        let criterion = match aim {
+            Aim::Determinant => DesignCriterion::Determinant,
+            Aim::Finding(_) | Aim::MeanVariance => DesignCriterion::MeanVariance,
+        };
+        let search = cases.and_then(|cases| DesignSearch::new(cases, criterion));
+        search.map_err(|source| local::design_error(self.guess.law.name, source))
+    }
+
+    /// The best set of this many tests at the guess; a test may be in it more than once.
+    ///
+    /// # Errors
+    /// As for [`search`](Self::search), and [`IdentifyError::OutOfRange`] for none or more than 1000.
+    pub fn best(&self, aim: &Aim, tests: usize) -> Result<ChosenDesign, IdentifyError> {
+        self.search(aim)?.best(tests).map_err(|error| number(tests as f64, &error))
+    }
+
+    /// The best set of tests at the guess whose costs add up to no more than `budget`.
+    ///
+    /// # Errors
+    /// As for [`search`](Self::search), and [`IdentifyError::OutOfRange`] for a budget that pays for none or more than 1000.
+    pub fn best_within(&self, aim: &Aim, budget: f64) -> Result<ChosenDesign, IdentifyError> {
+        let costs: Vec<f64> = self.tests.iter().map(PlannedTest::cost).collect();
+        self.search(aim)?.best_within(&costs, budget).map_err(|error| number(budget, &error))
+    }
+}
+
+fn number(value: f64, error: &fmm_fit::DesignError) -> IdentifyError {
+    IdentifyError::OutOfRange { what: error.to_string(), value }
+}
