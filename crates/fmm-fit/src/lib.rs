@@ -71,6 +71,7 @@
 //! | how well? | [`Fit::covariance`], [`Fit::interval`] |
 //! | how well, where the model bends? | [`profile_interval`] |
 //! | what is probable, where values end at bounds or priors count? | `Sampler`, `Posterior` (feature `sampler`) |
+//! | is the posterior by a model of my own right? | `Calibration` (feature `sampler`) |
 //! | how well, where residuals are correlated? | [`CorrelatedCovariance`] |
 //! | what do values held fixed do to the estimates? | [`Sensitivity`]; by trials [`Refit`] |
 //! | how well is the model known elsewhere? | [`Fit::predict`], [`Prediction`] |
@@ -157,7 +158,7 @@ pub use diagnostics::{
 pub use fmm_model::{Bounds, Dual, ModelError, Parameter, Scalar};
 #[cfg(feature = "sampler")]
 pub use posterior::{
-    Disagreement, GradientFreeCheck, Marginal, Posterior, PosteriorError, PosteriorWarning, Prior, Sampler,
+    Calibration, Disagreement, GradientFreeCheck, Marginal, Posterior, PosteriorError, PosteriorWarning, Prior, Sampler,
 };
 pub use problem::{
     Automatic, Block, EvaluationError, Formula, Held, Joint, JointError, JointPart, Model, Residuals, Weighted, curve,

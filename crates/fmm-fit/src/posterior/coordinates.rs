@@ -80,6 +80,11 @@ impl Whitening {
         self.centre.len()
     }
 
+    /// Whether a bound cuts any parameter.
+    pub(super) fn has_cut(&self) -> bool {
+        !self.cut.is_empty()
+    }
+
     fn row(&self, row: usize) -> &[f64] {
         &self.factor[row * self.order()..][..=row]
     }

@@ -23,7 +23,7 @@ pub enum PosteriorError {
         known: String,
     },
     /// A count of chains, steps or draws that is too small.
-    #[error("a posterior needs at least {least} {what}, but {given} are asked for")]
+    #[error("at least {least} {what} are needed, but {given} are asked for")]
     TooFew {
         /// What is counted.
         what: &'static str,

@@ -1,5 +1,6 @@
 //! Posterior of the parameters of a problem, by sampling.
 
+mod calibration;
 mod check;
 mod convergence;
 mod coordinates;
@@ -15,6 +16,7 @@ mod target;
 mod transform;
 mod warning;
 
+pub use calibration::Calibration;
 pub use check::{Disagreement, GradientFreeCheck};
 pub use error::PosteriorError;
 pub use marginal::Marginal;

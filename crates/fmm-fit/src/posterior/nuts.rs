@@ -14,6 +14,10 @@ use crate::posterior::coordinates::Whitening;
 use crate::posterior::target::Target;
 use crate::{PosteriorError, Residuals};
 
+/// Share of points accepted at which steps are aimed where a bound cuts: towards it the density of a logarithm falls off ever more
+/// steeply, and long steps diverge there.
+const CAUTIOUS: f64 = 0.92;
+
 /// What one chain found.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Run {
@@ -81,6 +85,9 @@ pub(super) fn run<P: Residuals + ?Sized>(
     let failed = |error: &dyn std::fmt::Display| PosteriorError::Sampler(error.to_string());
     let mut settings = DiagNutsSettings::default();
     (settings.num_tune, settings.num_draws) = (warm_up as u64, draws as u64);
+    if whitening.has_cut() {
+        settings.adapt_options.step_size_settings.target_accept = CAUTIOUS;
+    }
     let density = Density { target, whitening, psi: Vec::new() };
     let mut chain = settings.new_chain(0, CpuMath::new(density), random).map_err(|error| failed(&error))?;
     chain.set_position(start).map_err(|error| failed(&error))?;

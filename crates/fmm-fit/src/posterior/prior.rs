@@ -1,8 +1,14 @@
 //! Prior density of one parameter.
 
-use fmm_model::{Bounds, Rounded};
+use fmm_model::{Bounds, Parameter, Rounded};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
 
 use crate::PosteriorError;
+use crate::posterior::sampler::standard_normal;
+
+/// Values drawn in search of one within the bounds.
+const TRIES: usize = 10_000;
 
 /// What is known of a parameter before the data, as a density over its values, in the unit of the parameter.
 ///
@@ -90,6 +96,34 @@ impl Prior {
     /// The logarithm of the density at `value`, without a constant; −∞ where the prior rules the value out.
     pub fn log_density(&self, value: f64) -> f64 {
         if self.support().contains(value) { self.at(value).value } else { f64::NEG_INFINITY }
+    }
+
+    /// A value at random, within the bounds of `parameter`.
+    pub(super) fn draw(&self, parameter: &Parameter, random: &mut ChaCha8Rng) -> Result<f64, PosteriorError> {
+        let bounds = parameter.bounds();
+        let within = bounds.at_least(self.support().lower()).at_most(self.support().upper());
+        if bounds.is_fixed() {
+            return Ok(bounds.lower());
+        }
+        for _ in 0..TRIES {
+            let value = match self.0 {
+                Kind::Flat | Kind::Uniform(_) => {
+                    let width = within.upper() - within.lower();
+                    if !width.is_finite() {
+                        return Err(PosteriorError::Prior {
+                            what: format!("{} needs a prior to be drawn from; give one with a width", parameter.name()),
+                        });
+                    }
+                    within.lower() + width * random.random::<f64>()
+                }
+                Kind::Normal { mean, deviation } => mean + deviation * standard_normal(random),
+                Kind::LogNormal { logarithm, deviation } => (logarithm + deviation * standard_normal(random)).exp(),
+            };
+            if within.contains(value) {
+                return Ok(value);
+            }
+        }
+        Err(PosteriorError::outside_bounds(parameter))
     }
 
     /// The interval outside of which the density is zero.

@@ -112,6 +112,11 @@ impl Sampler {
         self
     }
 
+    /// The seed of the random numbers.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
     /// A prior for the parameter of this name; the last one given counts.
     #[must_use]
     pub fn with_prior(mut self, name: impl Into<String>, prior: Prior) -> Self {
@@ -138,6 +143,21 @@ impl Sampler {
     pub fn with_check_steps(mut self, steps: usize) -> Self {
         self.check_steps = steps;
         self
+    }
+
+    /// The prior of the parameter of this name.
+    pub(super) fn prior(&self, name: &str) -> Prior {
+        self.priors.iter().rev().find(|(of, _)| of == name).map_or(Prior::FLAT, |(_, prior)| *prior)
+    }
+
+    /// Noise of which a record can be simulated.
+    pub(super) fn require_known_noise(&self) -> Result<(), PosteriorError> {
+        if self.variance == ResidualVariance::Unit && !self.is_correlated {
+            return Ok(());
+        }
+        let what = "noise can be simulated only if it is known: divide the residuals by their standard deviation, and take their \
+                    variance as 1";
+        Err(PosteriorError::Prior { what: what.to_owned() })
     }
 
     /// Draws from the posterior of `problem` about its `fit`, one chain after the other.

@@ -18,11 +18,8 @@ fn what_cannot_be_sampled_is_refused() {
         by(sampler.clone().with_prior("gradient", prior)),
         "there is no free parameter called gradient; those of the problem are: intercept, slope"
     );
-    assert_eq!(by(sampler.clone().with_chains(1)), "a posterior needs at least 2 chains, but 1 are asked for");
-    assert_eq!(
-        by(sampler.clone().with_draws(0)),
-        "a posterior needs at least 100 draws of a chain, but 0 are asked for"
-    );
+    assert_eq!(by(sampler.clone().with_chains(1)), "at least 2 chains are needed, but 1 are asked for");
+    assert_eq!(by(sampler.clone().with_draws(0)), "at least 100 draws of a chain are needed, but 0 are asked for");
     let exact = Linear { data: problem.columns[1].clone(), ..line() };
     let fit = fitted(&exact, &[0.0, 1.0]);
     assert!(matches!(sampler.sample(&exact, &fit), Err(PosteriorError::NoNoise)));
