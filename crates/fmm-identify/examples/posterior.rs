@@ -16,7 +16,7 @@ use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, Normal};
 
 /// The machine of the thesis: m (kg), k (N/m), normal load (N).
-const MACHINE: [(&str, f64); 3] = [("mass", 10.391), ("stiffness", 1982.0), ("normal_load", 7.2)];
+const MACHINE: [(&str, f64); 3] = [("mass", 10.391), ("stiffness", 1982.0), ("normal_load", 14.0)];
 /// Samples at 1 kHz, and their noise (m/s).
 const SAMPLES: usize = 1501;
 const NOISE: f64 = 1e-3;
@@ -72,8 +72,8 @@ fn processor_time() -> Option<Duration> {
 
 fn timed<F: LawFamily>(name: &str, law: &[(&'static str, f64)]) -> Result<(), Box<dyn Error + Send + Sync>> {
     let values: Vec<f64> = law.iter().map(|(_, value)| *value).collect();
-    let record = record::<F>(&values, 0.015, 0.0, 1)?;
-    let others = [("initial_position", 0.015), ("initial_velocity", 0.0), ("offset", 0.0)];
+    let record = record::<F>(&values, 0.022, 0.0, 1)?;
+    let others = [("initial_position", 0.022), ("initial_velocity", 0.0), ("offset", 0.0)];
     let problem = problem::<F>(&record, law, &others)?;
     let fit = solve(&problem, problem.values(), &Options::default())?;
     let (begun, clock) = (processor_time(), Instant::now());
@@ -85,16 +85,16 @@ fn timed<F: LawFamily>(name: &str, law: &[(&'static str, f64)]) -> Result<(), Bo
 
 fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     let records = std::env::args().nth(1).map_or(Ok(500), |text| text.parse())?;
-    timed::<CoulombViscous>("Coulomb and viscous, 5 free", &[("coefficient", 0.15), ("viscous", 0.1)])?;
+    timed::<CoulombViscous>("Coulomb and viscous, 5 free", &[("coefficient", 0.25), ("viscous", 0.05)])?;
     timed::<Berger>("Berger, 6 free", &[("coefficient", 0.12), ("excess_coefficient", 0.08), ("decay", 15.0)])?;
 
-    let law = [("coefficient", 0.15), ("viscous", 0.1)];
-    let state = [("initial_position", 0.015), ("initial_velocity", 0.0)];
-    let start = problem::<CoulombViscous>(&record::<CoulombViscous>(&[0.15, 0.1], 0.015, 0.0, 0)?, &law, &state)?;
+    let law = [("coefficient", 0.25), ("viscous", 0.05)];
+    let state = [("initial_position", 0.022), ("initial_velocity", 0.0)];
+    let start = problem::<CoulombViscous>(&record::<CoulombViscous>(&[0.25, 0.05], 0.022, 0.0, 0)?, &law, &state)?;
     let sampler = Sampler::default()
-        .with_prior("coefficient", Prior::log_normal(0.15, 0.2)?)
-        .with_prior("viscous", Prior::uniform(0.0, 0.5)?)
-        .with_prior("initial_position", Prior::normal(0.015, 2e-4)?)
+        .with_prior("coefficient", Prior::log_normal(0.25, 0.1)?)
+        .with_prior("viscous", Prior::uniform(0.0, 0.2)?)
+        .with_prior("initial_position", Prior::normal(0.022, 2e-4)?)
         .with_prior("initial_velocity", Prior::normal(0.0, 2e-3)?)
         .with_variance(ResidualVariance::Unit)
         .with_chains(2)
