@@ -124,7 +124,7 @@ impl Sampler {
         self
     }
 
-    /// What is known of the variance of the residuals: nothing, or that it is 1.
+    /// What is known of the variance of the residuals: nothing, or that it is 1 or another number, which then counts as exact.
     #[must_use]
     pub fn with_variance(mut self, variance: ResidualVariance) -> Self {
         self.variance = variance;
@@ -253,6 +253,7 @@ impl Sampler {
             let (square, correlation) = target.square_and_correlation(&psi);
             let variance = match self.variance {
                 ResidualVariance::Unit => 1.0,
+                ResidualVariance::Effective { variance, .. } => variance,
                 ResidualVariance::Estimated => {
                     let freedom = target.residual_count() as f64;
                     let chi_squared =

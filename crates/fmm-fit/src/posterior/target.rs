@@ -178,6 +178,7 @@ impl<'a, P: Residuals + ?Sized> Target<'a, P> {
     fn by_square(&self, correlation: Option<Image>) -> f64 {
         match self.variance {
             ResidualVariance::Unit => -0.5,
+            ResidualVariance::Effective { variance, .. } => -0.5 / variance,
             ResidualVariance::Estimated => -0.5 * self.point.residuals.len() as f64 / self.square(correlation),
         }
     }
@@ -195,6 +196,7 @@ impl<'a, P: Residuals + ?Sized> Target<'a, P> {
         let square = self.square(correlation);
         let mut density = match self.variance {
             ResidualVariance::Unit => -0.5 * square,
+            ResidualVariance::Effective { variance, .. } => -0.5 * square / variance,
             ResidualVariance::Estimated => -0.5 * self.point.residuals.len() as f64 * square.ln(),
         };
         match (correlation, &self.series) {
