@@ -169,6 +169,11 @@ impl Panel {
     }
 
     fn layout(&self) -> Layout {
+        self.layout_below(self.headroom())
+    }
+
+    /// With this share of the data's range free above it.
+    fn layout_below(&self, headroom: f64) -> Layout {
         let corners = self.cells.iter().flat_map(|cells| [(cells.x.0, cells.y.0), (cells.x.1, cells.y.1)]);
         let points = self.layers.iter().flat_map(|layer| layer.points.iter().copied());
         let shown: Vec<(f64, f64)> = corners.chain(points).collect();
@@ -184,9 +189,9 @@ impl Panel {
             .with_x_tick_step(step(x_high - x_low))
             .with_force_margins(MARGINS.0, MARGINS.1)
             .with_y_axis_min(y_low - 0.05 * span)
-            .with_y_axis_max(y_high + self.headroom() * span)
+            .with_y_axis_max(y_high + headroom * span)
             .with_x_tick_format(ticks(x_high - x_low))
-            .with_y_tick_format(ticks((1.05 + self.headroom()) * span))
+            .with_y_tick_format(ticks((1.05 + headroom) * span))
     }
 }
 
@@ -210,6 +215,21 @@ pub fn drawn(panels: &[Panel]) -> String {
         grid = grid.with_row_height(row, height);
     }
     renumbered(&SvgBackend.render_scene(&grid.render()))
+}
+
+/// Panels of a triangle, row below row with one more in each, as SVG; all as high as the first, and without room for a legend.
+pub fn drawn_corner(rows: &[Vec<Panel>]) -> String {
+    let count = rows.len();
+    let cells = || rows.iter().flat_map(|row| row.iter().map(Some).chain(std::iter::repeat_n(None, count - row.len())));
+    let layout = |panel: Option<&Panel>| {
+        panel.map_or_else(|| Layout::new((0.0, 1.0), (0.0, 1.0)), |panel| panel.layout_below(0.03))
+    };
+    let grid = Grid::new(count, count)
+        .with_plots(cells().map(|panel| panel.map_or_else(Vec::new, Panel::plots)).collect())
+        .with_layouts(cells().map(layout).collect())
+        .with_keep_panel_legends();
+    let height = rows.first().and_then(|row| row.first()).map_or(0.0, |panel| panel.height);
+    renumbered(&SvgBackend.render_scene(&grid.with_cell_size(1.25 * height, height).render()))
 }
 
 /// Draws the histogram of `values` with the normal density of the same mean and standard deviation.

@@ -16,9 +16,10 @@ use crate::pictures::Pictures;
 use crate::report;
 use clap::Args;
 use fmm_fit::Progress;
-use fmm_identify::{Candidate, Comparison, Drive, Experiment, Preparation};
+use fmm_identify::{Candidate, Comparison, Drive, Experiment, IdentificationPosterior, Preparation};
 use fmm_record::{Column, Quantity, Record, Request};
 use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
 
 /// Identifies the friction of a machine from the record of its free vibration.
 #[derive(Debug, Args)]
@@ -34,6 +35,9 @@ pub(crate) struct Arguments {
     /// The channel with the measured motion of the base that drives the machine, best its acceleration
     #[arg(long, value_name = "NAME|INDEX")]
     base: Option<Column>,
+    /// Draw from the posterior of the preferred law: its intervals beside the others, and records that it predicts beside the measured one
+    #[arg(long)]
+    posterior: bool,
     #[command(flatten)]
     output: Output,
     /// Write a page with everything into this file: record, fit, residuals, findings, laws, warnings, and how it was made
@@ -96,6 +100,17 @@ pub(crate) struct Found {
     pub(crate) origin: String,
     pub(crate) decay: Experiment,
     pub(crate) comparison: Comparison,
+    /// Of the preferred law, if that was asked for.
+    pub(crate) posterior: Option<IdentificationPosterior>,
+}
+
+/// What a program gets: the comparison, and the posterior beside it if there is one.
+#[derive(Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    comparison: &'a Comparison,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    posterior: &'a Option<IdentificationPosterior>,
 }
 
 /// Reads, prepares and fits the record; by a search unless there are `candidates`.
@@ -105,7 +120,10 @@ fn found(arguments: &Arguments, candidates: &[Candidate]) -> Result<Found, Box<d
     let preparation = arguments.given.preparation().gain_uncertainty(arguments.question.scale_u);
     let decay = experiment(arguments, &input.record, &preparation)?;
     let comparison = fitted(arguments, &decay, candidates)?;
-    Ok(Found { origin: input.origin, decay, comparison })
+    let preferred = comparison.preferred();
+    let sampled = || preferred.posterior(std::slice::from_ref(&decay), &preferred.sampler());
+    let posterior = arguments.posterior.then(sampled).transpose()?;
+    Ok(Found { origin: input.origin, decay, comparison, posterior })
 }
 
 /// Finds the law that explains a record, or the parameters of those that are named.
@@ -124,9 +142,13 @@ fn give_out(arguments: &Arguments, candidates: &[Candidate], command: &str) -> R
     let folder = arguments.output.folder()?;
     let found = found(arguments, candidates)?;
     if arguments.output.json {
-        print(serde_json::to_string_pretty(&found.comparison)?)?;
+        let document = Document { comparison: &found.comparison, posterior: &found.posterior };
+        print(serde_json::to_string_pretty(&document)?)?;
     } else {
         print(format_args!("{}\n{}", found.origin, found.comparison))?;
+        if let Some(posterior) = &found.posterior {
+            print(posterior)?;
+        }
     }
     if let Some(folder) = folder {
         draw(folder, &found.decay, &found.comparison)?;

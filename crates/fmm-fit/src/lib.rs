@@ -70,6 +70,8 @@
 //! | which parameters are determined? | [`Fit::null_directions`], [`Estimate::status`] |
 //! | how well? | [`Fit::covariance`], [`Fit::interval`] |
 //! | how well, where the model bends? | [`profile_interval`] |
+//! | what is probable, where values end at bounds or priors count? | `Sampler`, `Posterior` (feature `sampler`) |
+//! | is the posterior by a model of my own right? | `Calibration` (feature `sampler`) |
 //! | how well, where residuals are correlated? | [`CorrelatedCovariance`] |
 //! | what do values held fixed do to the estimates? | [`Sensitivity`]; by trials [`Refit`] |
 //! | how well is the model known elsewhere? | [`Fit::predict`], [`Prediction`] |
@@ -120,9 +122,10 @@
 //!
 //! # Features
 //!
-//! Both are off by default.
+//! All are off by default.
 //!
 //! * `rayon`: [`MultiStart`] on all threads of the current pool, with the same result.
+//! * `sampler`: the posterior of the parameters by the no-U-turn sampler of the crate nuts-rs, which brings faer along.
 //! * `serde`: [`Minimizer`] and [`BoundedLevenbergMarquardt`] can be stored between two steps, argmin's checkpoints among
 //!   them, and taken up again by `Minimizer::resume`.
 //!
@@ -136,6 +139,8 @@
 mod comparison;
 mod design;
 mod diagnostics;
+#[cfg(feature = "sampler")]
+mod posterior;
 mod problem;
 mod regression;
 mod result;
@@ -154,6 +159,10 @@ pub use diagnostics::{
     durbin_watson, effective_count, runs_test,
 };
 pub use fmm_model::{Bounds, Dual, ModelError, Parameter, Scalar};
+#[cfg(feature = "sampler")]
+pub use posterior::{
+    Calibration, Disagreement, GradientFreeCheck, Marginal, Posterior, PosteriorError, PosteriorWarning, Prior, Sampler,
+};
 pub use problem::{
     Automatic, Block, EvaluationError, Formula, Held, Joint, JointError, JointPart, Model, Residuals, Weighted, curve,
     curve_fit, fit,

@@ -83,6 +83,15 @@ pub enum IdentifyError {
         /// What was wrong.
         source: FitError,
     },
+    /// There is no posterior.
+    #[cfg(feature = "sampler")]
+    #[error("the posterior of {law} could not be found: {source}")]
+    Posterior {
+        /// Name of the law.
+        law: String,
+        /// What was wrong.
+        source: fmm_fit::PosteriorError,
+    },
     /// The fitted motion could not be simulated.
     #[error("the motion fitted by {law} could not be simulated: {source}")]
     Simulation {

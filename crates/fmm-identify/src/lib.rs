@@ -56,6 +56,7 @@
 //! | Between which values does it lie? | [`Finding::interval`], by Student's t with the degrees of freedom of all that is uncertain |
 //! | Does value ± k u mislead? | [`Identification::profiles`] |
 //! | What makes it uncertain? | [`Finding::contributions`]: residuals, mass or stiffness, load, gain, other laws |
+//! | What is probable, where a bound or a bend makes value ± u wrong? | `Identification::posterior` (feature `sampler`) |
 //! | Are the uncertainties to be trusted? | read the [`warnings`](Identification::warnings): they name what breaks them |
 //!
 //! # Units and conventions
@@ -83,7 +84,10 @@
 //!
 //! # Features
 //!
-//! `serde`, off by default: findings, comparisons and reports serialise.
+//! Both are off by default.
+//!
+//! * `sampler`: the posterior of an identification, its intervals beside the others, and predictive checks.
+//! * `serde`: findings, comparisons and reports serialise.
 //!
 //! # Neighbours
 //!
@@ -103,6 +107,8 @@ mod impact;
 mod judgement;
 mod law;
 mod machine;
+#[cfg(feature = "sampler")]
+mod posterior;
 mod report;
 mod residuals;
 
@@ -132,6 +138,8 @@ pub use judgement::{
 };
 pub use law::Candidate;
 pub use machine::{Known, Machine, Scale, Terms};
+#[cfg(feature = "sampler")]
+pub use posterior::{IdentificationPosterior, IntervalComparison, PredictiveCheck};
 pub use report::{Contribution, Finding, Origin, Source, Warning};
 
 /// The README's example, run as a test.

@@ -18,6 +18,7 @@ use crate::figure::{Layer, Panel, Role, drawn, drawn_histogram, label};
 use crate::identify::Found;
 use crate::page::{cell, escaped, figure, page, table, text_cell};
 use crate::pictures::Pictures;
+use crate::posterior;
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;
@@ -29,7 +30,7 @@ const LAGS: usize = 300;
 
 /// The page on what was `found` in a record with these bytes by this `command`. The same input makes the same page.
 pub(crate) fn document(found: &Found, bytes: &[u8], command: &str) -> Result<String, Box<dyn Error>> {
-    let Found { origin, decay, comparison } = found;
+    let Found { origin, decay, comparison, posterior } = found;
     let name = origin.split(", channel").next().unwrap_or(origin);
     let pictures = Pictures::of(decay, comparison)?;
     let json = serde_json::to_string(comparison)?;
@@ -38,6 +39,7 @@ pub(crate) fn document(found: &Found, bytes: &[u8], command: &str) -> Result<Str
         format!("<h1>{}</h1>\n<p class=\"verdict\">{}</p>\n", escaped(&title), escaped(&comparison.headline())),
         format!("<p>{}. {}.</p>\n", escaped(origin), escaped(&decay.summary().to_string())),
         section("Findings", &findings(found)),
+        posterior.as_ref().map_or_else(String::new, |posterior| section("Posterior", &posterior::html(posterior))),
         section("Limits", &warnings(found)),
         section(
             "Record and fit",
@@ -209,7 +211,8 @@ mod tests {
         let damping = comparison.preferred().finding("damping_per_mass").unwrap();
         let (value, u) = (damping.value(), damping.uncertainty().unwrap());
         let k = coverage_factor(LEVEL, damping.degrees_of_freedom()).unwrap();
-        let found = Found { origin: "<script>.csv, channel v: \"velocity\"".to_owned(), decay, comparison };
+        let found =
+            Found { origin: "<script>.csv, channel v: \"velocity\"".to_owned(), decay, comparison, posterior: None };
         let page = document(&found, b"abc", "fmm identify <script>.csv").unwrap();
         assert_eq!(page, document(&found, b"abc", "fmm identify <script>.csv").unwrap());
         assert!(page.contains(&Rounded::new(value, Some(u)).to_string()) && !page.contains("http"));

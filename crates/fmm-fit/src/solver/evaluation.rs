@@ -163,6 +163,33 @@ impl Evaluator {
         is_finite
     }
 
+    /// Evaluates residuals and derivatives at `point.values`, in one pass if the problem has its own; false if the model has no
+    /// finite value there.
+    #[cfg(feature = "sampler")]
+    pub(crate) fn residuals_and_derivatives<P: Residuals + ?Sized>(&mut self, problem: &P, point: &mut Point) -> bool {
+        if self.scheme != Scheme::Exact || self.free.is_empty() {
+            return self.residuals(problem, point) && self.differentiate(problem, point);
+        }
+        self.residual_evaluations += 1;
+        self.jacobian_evaluations += 1;
+        point.residuals.resize(problem.len(), 0.0);
+        match problem.residuals_and_jacobian(&point.values, &mut point.residuals, &mut self.jacobian) {
+            Ok(is_exact) => {
+                point.sum_of_squares = sum_of_squares(&point.residuals);
+                if !is_exact {
+                    self.jacobian_evaluations = 0;
+                    self.scheme = Scheme::Forward;
+                    return point.sum_of_squares.is_finite() && self.differentiate(problem, point);
+                }
+                point.sum_of_squares.is_finite()
+            }
+            Err(error) => {
+                self.remember_model_error(error.to_string());
+                false
+            }
+        }
+    }
+
     /// Evaluates the Jacobian at a point that has its residuals, and factors it; false if it is not finite.
     pub(crate) fn factor<P: Residuals + ?Sized>(&mut self, problem: &P, point: &mut Point) -> bool {
         if !self.differentiate(problem, point) {

@@ -160,6 +160,21 @@ impl Machine {
         Self { scale, ..*self }
     }
 
+    /// The same machine with its scale and its normal load so many standard uncertainties away, which stay positive.
+    #[cfg(feature = "sampler")]
+    pub(crate) fn with_scale_and_load_moved(&self, [scale, load]: [f64; 2]) -> Self {
+        let moved = |known: Known, by: f64| {
+            let value = known.value() + by * known.uncertainty();
+            known.moved_to(if value > 0.0 { value } else { known.value() })
+        };
+        let scale = match self.scale {
+            Scale::Mass(mass) => Scale::Mass(moved(mass, scale)),
+            Scale::Stiffness(stiffness) => Scale::Stiffness(moved(stiffness, scale)),
+            other => other,
+        };
+        Self { scale, normal_load: self.normal_load.map(|known| moved(known, load)), ..*self }
+    }
+
     /// The same machine with a scale without uncertainty.
     pub(crate) fn with_exact_scale(&self) -> Self {
         let exact = |known: Known| known.exactly();

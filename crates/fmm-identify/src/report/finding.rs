@@ -176,6 +176,8 @@ struct Inputs<'a> {
     machine: &'a Machine,
     shared: &'a [f64],
     layout: &'a Layout,
+    /// Relative errors of the gains of the instrument and of a measured force, as factors (1).
+    gains: [f64; 2],
     gain_uncertainty: f64,
 }
 
@@ -243,13 +245,13 @@ impl Inputs<'_> {
             }
         }
         // With an unknown scale the fitted values are forces already, by the channel of a measured one if there is one.
-        let by_force = variable(1.0, self.shared.len() + 3);
+        let by_force = variable(self.gains[1], self.shared.len() + 3);
         let to_force = match self.machine.scale() {
             Scale::Unknown => Some(by_force),
             _ => mass,
         };
         let load = self.machine.normal_load().map(|load| variable(load.value(), self.shared.len() + 1));
-        let gain = variable(1.0, self.shared.len() + 2);
+        let gain = variable(self.gains[0], self.shared.len() + 2);
         let Layout { family, units, law, .. } = self.layout;
         let law_value = |index: usize| variable(self.shared[law + index], law + index);
         let level = family.level().map(law_value);
@@ -291,7 +293,7 @@ pub(crate) struct Derived {
 
 /// What follows from the `shared` values of a fit and from what is known of the `machine`.
 pub(crate) fn derived(machine: &Machine, layout: &Layout, shared: &[f64]) -> Vec<Derived> {
-    Inputs { machine, shared, layout, gain_uncertainty: 0.0 }.with_gradients()
+    Inputs { machine, shared, layout, gains: [1.0; 2], gain_uncertainty: 0.0 }.with_gradients()
 }
 
 /// Everything that a fit found: its parameters, and what follows from them and the known inputs of the machine.
@@ -333,7 +335,7 @@ pub(crate) fn findings(
     });
     let mut findings: Vec<Finding> = estimated.collect();
     let shared = &fit.values()[..layout.shared];
-    let inputs = Inputs { machine, shared, layout, gain_uncertainty };
+    let inputs = Inputs { machine, shared, layout, gains: [1.0; 2], gain_uncertainty };
     for Derived { parameter, value, gradient } in inputs.with_gradients() {
         let known = inputs.uncertainties();
         let inside = variances(|i, j| covariance.get(i, j), &gradient, known);
@@ -344,6 +346,18 @@ pub(crate) fn findings(
         findings.push(finding.at_bound(relaxed, freedom));
     }
     findings
+}
+
+/// The values of all findings, in the order of [`findings`], for one draw of the fitted `values`, of what is known of the machine, and
+/// of the errors of the `gains` of the instrument and of a measured force, as factors (1).
+#[cfg(feature = "sampler")]
+pub(crate) fn values_of_findings(machine: &Machine, layout: &Layout, values: &[f64], gains: [f64; 2]) -> Vec<f64> {
+    let fitted = values.iter().enumerate().map(|(index, value)| {
+        let by_force = if layout.is_scaled_by_force(index) { gains[1] } else { 1.0 };
+        value * gains[0].powf(-layout.power_of_gain(index, values)) * by_force
+    });
+    let inputs = Inputs { machine, shared: &values[..layout.shared], layout, gains, gain_uncertainty: 0.0 };
+    fitted.chain(inputs.derived::<f64>(0).into_iter().map(|(_, value)| value)).collect()
 }
 
 /// gᵀ V g over the fitted values, and the variances by the inputs; `None` if a value that matters has none.

@@ -124,6 +124,12 @@ impl<'a> Problem<'a> {
         self.decays
     }
 
+    /// By what the residuals of `record` are multiplied.
+    #[cfg(feature = "sampler")]
+    pub(crate) fn weight(&self, record: usize) -> f64 {
+        self.weights[record]
+    }
+
     pub(crate) fn layout(&self) -> &Layout {
         &self.layout
     }

@@ -1,0 +1,91 @@
+//! The posterior on the page of a record: intervals of three kinds, the corner plot, and predictive checks.
+
+use fmm_fit::Marginal;
+use fmm_identify::{IdentificationPosterior, IntervalComparison};
+use fmm_model::Rounded;
+
+use crate::corner::corner;
+use crate::page::{cell, escaped, figure, table, text_cell};
+
+/// Coverage probability of intervals (1).
+const LEVEL: f64 = 0.95;
+
+/// What the page says below the heading.
+pub(crate) fn html(posterior: &IdentificationPosterior) -> String {
+    let headings =
+        ["quantity", "mean ± deviation", "unit", "posterior", "value ± k u", "profile", "agree", "effective draws"];
+    let rows = posterior.intervals().iter().filter_map(|intervals| {
+        let marginal = posterior.finding(intervals.name())?;
+        Some(row(marginal, intervals))
+    });
+    let intervals = table("posterior", &headings, rows);
+    let drawn: Vec<&Marginal> = posterior
+        .intervals()
+        .iter()
+        .filter(|intervals| posterior.posterior().marginal(intervals.name()).is_some())
+        .filter_map(|intervals| posterior.finding(intervals.name()))
+        .collect();
+    let plot = if drawn.is_empty() {
+        String::new()
+    } else {
+        figure(
+            &corner(&drawn),
+            "The posterior of what the records share: each quantity, and each pair of them.",
+            "corner",
+        )
+    };
+    let items =
+        posterior.warnings().iter().map(|warning| format!("<li>{}</li>\n", escaped(warning))).collect::<Vec<_>>();
+    let warnings = if items.is_empty() { String::new() } else { format!("<ul>\n{}</ul>\n", items.concat()) };
+    format!(
+        "<p>By {} draws of {} chains: {}. All intervals hold 95 %.</p>\n{warnings}{intervals}{plot}{}",
+        posterior.posterior().len(),
+        posterior.posterior().chains(),
+        escaped(&posterior.verdict()),
+        checks(posterior)
+    )
+}
+
+fn row(marginal: &Marginal, intervals: &IntervalComparison) -> Vec<String> {
+    let rounded = Rounded::new(marginal.mean(), Some(marginal.standard_deviation()));
+    let or_none = |text: Option<String>| text_cell(&text.unwrap_or_else(|| "–".to_owned()));
+    let both = |(low, high): (f64, f64)| rounded.interval(low, high);
+    let profile = intervals.profile().map(|ends| match ends {
+        (Some(low), Some(high)) => both((low, high)),
+        (Some(low), None) => format!("above {}", Rounded::new(low, None)),
+        (None, Some(high)) => format!("below {}", Rounded::new(high, None)),
+        (None, None) => "open".to_owned(),
+    });
+    let effective = marginal.bulk_effective_size().min(marginal.tail_effective_size());
+    vec![
+        format!("<th scope=\"row\">{}</th>", escaped(&intervals.name().replace('_', " "))),
+        text_cell(&rounded.to_string()),
+        text_cell(marginal.parameter().unit()),
+        or_none(marginal.interval(LEVEL).map(both)),
+        or_none(intervals.wald().map(both)),
+        or_none(profile),
+        cell(if intervals.agrees() { "yes" } else { "no" }),
+        text_cell(&format!("{effective:.0}")),
+    ]
+}
+
+fn checks(posterior: &IdentificationPosterior) -> String {
+    if posterior.checks().is_empty() {
+        return String::new();
+    }
+    let rows = posterior.checks().iter().map(|check| {
+        let median = check.median().map_or_else(|| "–".to_owned(), |median| Rounded::new(median, None).to_string());
+        vec![
+            format!("<th scope=\"row\">{}</th>", escaped(check.feature())),
+            text_cell(&Rounded::new(check.measured(), None).to_string()),
+            text_cell(&median),
+            text_cell(check.unit()),
+            text_cell(&format!("{:.3}", check.p_value())),
+        ]
+    });
+    let headings = ["feature", "measured", "median of records from the posterior", "unit", "p"];
+    format!(
+        "<p>Records made by the posterior, beside the measured one; p near 0 or 1 says that the law cannot make such a record.</p>\n{}",
+        table("checks", &headings, rows)
+    )
+}

@@ -1,0 +1,73 @@
+//! Reasons to distrust a sampled posterior.
+
+use std::fmt;
+
+use fmm_model::Rounded;
+
+use crate::Disagreement;
+
+/// A reason to distrust a sampled posterior. `Display` gives it in words, with what to do.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum PosteriorWarning {
+    /// The chains do not agree: R̂ exceeds 1.01.
+    ChainsDiffer {
+        /// Name of the quantity in which they differ most.
+        quantity: String,
+        /// R̂ (1).
+        r_hat: f64,
+    },
+    /// Fewer than 400 effective draws.
+    FewEffectiveDraws {
+        /// Name of the quantity with the fewest.
+        quantity: String,
+        /// How many there are, in the middle or in the tails (1).
+        effective: f64,
+    },
+    /// Trajectories that could not be followed, where the density bends more than the steps can.
+    Divergences {
+        /// How many.
+        count: usize,
+        /// Of how many draws.
+        draws: usize,
+    },
+    /// A random walk without gradients finds another moment.
+    Disagrees(Disagreement),
+}
+
+impl fmt::Display for PosteriorWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ChainsDiffer { quantity, r_hat } => write!(
+                f,
+                "the chains do not agree on {quantity}: R-hat is {r_hat:.3} and should be below 1.01; ask for more draws, and look \
+                 for a second minimum"
+            ),
+            Self::FewEffectiveDraws { quantity, effective } => write!(
+                f,
+                "{quantity} has {effective:.0} effective draws, fewer than 400: its interval is uncertain; ask for more draws"
+            ),
+            Self::Divergences { count, draws } => write!(
+                f,
+                "{count} of {draws} trajectories diverged: the density bends sharply there, and the draws may avoid that region; \
+                 compare with the profile intervals"
+            ),
+            Self::Disagrees(Disagreement {
+                parameter,
+                is_deviation,
+                with_gradient,
+                without_gradient,
+                standard_error,
+            }) => {
+                let moment = if *is_deviation { "standard deviation" } else { "mean" };
+                let [with, without] =
+                    [with_gradient, without_gradient].map(|value| Rounded::new(*value, Some(*standard_error)));
+                write!(
+                    f,
+                    "a random walk without gradients does not agree: the {moment} of {parameter} is {without} by it and {with} by \
+                     the sampler; the residuals may have kinks or several minima"
+                )
+            }
+        }
+    }
+}
