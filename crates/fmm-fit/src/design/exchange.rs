@@ -52,7 +52,7 @@ impl<'a> Exchange<'a> {
         let mut best: Option<(Vec<usize>, f64)> = None;
         let mut seen = 0;
         let mut chosen = Vec::new();
-        self.below(&mut chosen, self.search.sums(&[]), 0, (&mut seen, most), &mut best)?;
+        self.below(&mut chosen, &self.search.sums(&[]), 0, (&mut seen, most), &mut best)?;
         best.map(|(measurements, score)| ChosenDesign { measurements, score, is_exhaustive: true })
     }
 
@@ -60,7 +60,7 @@ impl<'a> Exchange<'a> {
     fn below(
         &mut self,
         chosen: &mut Vec<usize>,
-        sums: Vec<Vec<f64>>,
+        sums: &[Vec<f64>],
         first: usize,
         (seen, most): (&mut usize, usize),
         best: &mut Option<(Vec<usize>, f64)>,
@@ -72,7 +72,7 @@ impl<'a> Exchange<'a> {
                 return None;
             }
             let is_full = self.purse.costs.iter().all(|cost| *cost > left);
-            let score = if is_full { self.search.score_of(&sums) } else { f64::INFINITY };
+            let score = if is_full { self.search.score_of(sums) } else { f64::INFINITY };
             if is_full && best.as_ref().is_none_or(|(_, lowest)| score < lowest - ROUNDING) {
                 *best = Some((chosen.clone(), score));
             }
@@ -81,10 +81,10 @@ impl<'a> Exchange<'a> {
             if self.purse.costs[place] > left {
                 continue;
             }
-            let mut with = sums.clone();
+            let mut with = sums.to_vec();
             self.search.add(&mut with, place, 1.0);
             chosen.push(place);
-            self.below(chosen, with, place, (seen, most), best)?;
+            self.below(chosen, &with, place, (seen, most), best)?;
             chosen.pop();
         }
         Some(())

@@ -143,7 +143,9 @@ impl DesignSearch {
     /// The information of each case after these measurements.
     pub(crate) fn sums(&self, measurements: &[usize]) -> Vec<Vec<f64>> {
         let mut sums: Vec<Vec<f64>> = self.cases.iter().map(|case| case.known.elements().to_vec()).collect();
-        measurements.iter().for_each(|place| self.add(&mut sums, *place, 1.0));
+        for place in measurements {
+            self.add(&mut sums, *place, 1.0);
+        }
         sums
     }
 

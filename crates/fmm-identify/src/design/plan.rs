@@ -178,15 +178,15 @@ impl Plan {
             quantity.gradient.iter().map(|slope| slope / size).collect::<Vec<f64>>()
         };
         match aim {
-            Aim::Finding(name) => match quantities.iter().find(|quantity| quantity.parameter.name() == name) {
-                Some(quantity) => Ok(vec![relative(quantity)]),
-                None => {
-                    let names: Vec<&str> = quantities.iter().map(|quantity| quantity.parameter.name()).collect();
-                    Err(IdentifyError::UnknownName {
-                        what: format!("no test finds anything called {name:?}; the findings are: {}", names.join(", ")),
-                    })
-                }
-            },
+            Aim::Finding(name) => {
+                let found = quantities.iter().find(|quantity| quantity.parameter.name() == name);
+                let names =
+                    || quantities.iter().map(|quantity| quantity.parameter.name()).collect::<Vec<_>>().join(", ");
+                let found = found.ok_or_else(|| IdentifyError::UnknownName {
+                    what: format!("no test finds anything called {name:?}; the findings are: {}", names()),
+                })?;
+                Ok(vec![relative(found)])
+            }
             Aim::Determinant | Aim::MeanVariance => {
                 let free = |quantity: &&Quantity| quantity.is_fitted && !quantity.parameter.bounds().is_fixed();
                 Ok(quantities.iter().filter(free).map(relative).collect())
