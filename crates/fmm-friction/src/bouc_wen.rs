@@ -2,9 +2,13 @@
 
 use fmm_model::{Bounds, Parameter, Scalar};
 
+use crate::expansion::{Expansion, is_whole, is_whole_with_derivatives, product, raise};
 use crate::family::law_family;
 use crate::power::power;
 use crate::{BristleLaw, LawError, LawFamily, LawParameter, Regime, Role};
+
+/// The part of the bound within which the series of a power that is not whole is no good.
+const NEAR_ZERO: f64 = 0.2;
 
 law_family! {
     /// The Bouc-Wen model of hysteresis.
@@ -84,6 +88,27 @@ impl<D: Scalar> BristleLaw<D> for BoucWen<D> {
 
     fn steady_coefficient(&self, _speed: D) -> Option<D> {
         Some(self.stiffness * self.bound(0))
+    }
+
+    fn expand(&self, order: usize, series: &mut Expansion<D>) -> bool {
+        series.coefficient[order] = self.stiffness * series.state[order];
+        if series.held {
+            return true;
+        }
+        let deflection = series.state[0].value();
+        let near_zero = deflection.abs() < NEAR_ZERO * self.bound(0).value();
+        if is_whole_with_derivatives(self.exponent) || near_zero && !is_whole(self.exponent) {
+            return false;
+        }
+        let (sign, shape) =
+            if deflection < 0.0 { (-1.0, self.gamma - self.beta) } else { (1.0, self.gamma + self.beta) };
+        let [size, slope, powers, logarithm] = &mut series.room;
+        size[order] = series.state[order] * sign;
+        raise(size, self.exponent, powers, logarithm, order);
+        let softening = shape * powers[order];
+        slope[order] = if order == 0 { self.amplitude - softening } else { -softening };
+        series.rate[order] = product(&series.velocity, slope, order);
+        true
     }
 }
 

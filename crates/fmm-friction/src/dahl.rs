@@ -3,6 +3,7 @@
 use fmm_model::Scalar;
 
 use crate::elements::direction;
+use crate::expansion::{Expansion, product, raise};
 use crate::family::law_family;
 use crate::power::power;
 use crate::{BristleLaw, LawError, LawFamily, LawParameter, Regime, Role};
@@ -85,6 +86,22 @@ impl<D: Scalar> BristleLaw<D> for Dahl<D> {
         };
         let left = if reserve.value() < 0.0 { -left } else { left };
         state[0] = bound * (one - left) * sign;
+        true
+    }
+
+    fn expand(&self, order: usize, series: &mut Expansion<D>) -> bool {
+        series.coefficient[order] = self.stiffness * series.state[order];
+        if series.held {
+            return true;
+        }
+        let [reserve, powers, logarithm, _] = &mut series.room;
+        let used = series.coefficient[order] / self.coefficient;
+        reserve[order] = if order == 0 { D::from(1.0) - used } else { -used };
+        if reserve[0].value() <= 0.0 {
+            return false;
+        }
+        raise(reserve, self.exponent, powers, logarithm, order);
+        series.rate[order] = product(&series.velocity, powers, order);
         true
     }
 }

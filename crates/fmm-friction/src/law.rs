@@ -2,6 +2,8 @@
 
 use fmm_model::Scalar;
 
+use crate::Expansion;
+
 /// A law of the sliding speed alone, with a level to exceed before sliding begins.
 ///
 /// An implementor promises:
@@ -137,6 +139,29 @@ pub trait BristleLaw<D: Scalar> {
     /// ```
     fn carry(&self, velocity: D, duration: D, state: &mut [D]) -> bool {
         let _ = (velocity, duration, state);
+        false
+    }
+
+    /// Works out the coefficients of this `order` of rate and friction coefficient, those of the velocity and the state up to this order
+    /// and those of lower orders being known; whether the law of one state has such series there. An engine then takes long steps of
+    /// high order.
+    ///
+    /// ```
+    /// use fmm_friction::{BristleLaw, Dahl, Expansion};
+    ///
+    /// // At constant velocity the deflection follows z′ = v (1 − σ z/µ).
+    /// let (law, mut series) = (Dahl::new(0.3, 1e4, 1.0)?, Expansion::new());
+    /// series.velocity[0] = 0.02;
+    /// for order in 0..Expansion::<f64>::TERMS - 1 {
+    ///     assert!(law.expand(order, &mut series));
+    ///     series.state[order + 1] = series.rate[order] / (order + 1) as f64;
+    /// }
+    /// let at = |time: f64| series.state.iter().rev().fold(0.0, |sum, term| sum * time + term);
+    /// assert!((at(1e-3) - 3e-5 * (1.0 - f64::exp(-2.0 / 3.0))).abs() < 1e-19);
+    /// # Ok::<(), fmm_friction::LawError>(())
+    /// ```
+    fn expand(&self, order: usize, series: &mut Expansion<D>) -> bool {
+        let _ = (order, series);
         false
     }
 

@@ -3,9 +3,14 @@
 use fmm_model::Scalar;
 
 use crate::elements::direction;
+use crate::expansion::{Expansion, decay, dot, is_whole, is_whole_with_derivatives, product, raise};
 use crate::family::{law_family, static_not_below};
 use crate::stribeck::EXPONENT;
 use crate::{BristleLaw, LawError, LawFamily, LawParameter, Regime, Role, SlidingLaw, Stribeck};
+
+/// Speed, in units of the Stribeck speed, below which the series of a power that is not whole is no good, and above which nothing falls.
+const SLOW: f64 = 0.2;
+const FAST: f64 = 1e6;
 
 law_family! {
     /// The LuGre model.
@@ -105,6 +110,33 @@ impl<D: Scalar> BristleLaw<D> for LuGre<D> {
         let end = self.steady().dry_coefficient(velocity.abs()) / self.stiffness;
         let steady = end * direction(velocity);
         state[0] = steady + (state[0] - steady) * (-velocity.abs() * duration / end).exp();
+        true
+    }
+
+    fn expand(&self, order: usize, series: &mut Expansion<D>) -> bool {
+        let Expansion { velocity, state, rate, coefficient, held, room: [ratio, power, fallen, reserve] } = series;
+        if *held {
+            coefficient[order] = self.stiffness * state[order] + self.viscous * velocity[order];
+            return true;
+        }
+        ratio[order] = velocity[order] / self.fall_speed;
+        let speed = ratio[0].value();
+        let is_slow = speed < SLOW && !is_whole(self.exponent);
+        if is_whole_with_derivatives(self.exponent) || is_slow || speed > FAST {
+            return false;
+        }
+        // No exponent has derivatives here: none needs the room for a logarithm.
+        raise(ratio, self.exponent, power, rate, order);
+        decay(power, fallen, order);
+        // 1 − σ z/g, from g (1 − σ z/g) = g − σ z.
+        let excess = self.breakaway - self.sliding;
+        let level = self.sliding + excess * fallen[0];
+        let apart = if order == 0 { level } else { excess * fallen[order] } - self.stiffness * state[order];
+        let known = dot((1..=order).map(|j| fallen[j] * reserve[order - j]));
+        reserve[order] = (apart - excess * known) / level;
+        rate[order] = product(velocity, reserve, order);
+        coefficient[order] =
+            self.stiffness * state[order] + self.bristle_damping * rate[order] + self.viscous * velocity[order];
         true
     }
 }

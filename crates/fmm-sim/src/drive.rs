@@ -89,6 +89,24 @@ impl<D: Scalar> Piece<D> {
         self.force_at(D::from(time))
     }
 
+    /// Writes the Taylor coefficients of the force (N) in time since `time` (s) in units of `unit` (s) into `series`.
+    pub(crate) fn series(&self, time: f64, unit: f64, series: &mut [D]) {
+        series.fill(D::from(0.0));
+        let (force, slope) = self.line(D::from(time));
+        if let [constant, linear, ..] = series {
+            (*constant, *linear) = (force, slope * unit);
+        }
+        for wave in &self.waves {
+            let (sin, cos) = wave.sin_cos(D::from(time));
+            let (mut sin, mut cos) = (wave.amplitude * sin, wave.amplitude * cos);
+            for (order, term) in series.iter_mut().enumerate() {
+                *term += cos;
+                let factor = wave.angular * (unit / (order + 1) as f64);
+                (sin, cos) = (cos * factor, -(sin * factor));
+            }
+        }
+    }
+
     /// The force at a `time` that may have derivatives (N).
     pub(crate) fn force_at(&self, time: D) -> D {
         let mut force = self.line(time).0;

@@ -40,9 +40,9 @@ pub(super) struct Field<'a, D, L> {
     /// forces of machine and contact are.
     pub(super) guided: bool,
     /// 1/m.
-    per_mass: D,
+    pub(super) per_mass: D,
     /// The damping coefficient, if damping is linear.
-    linear_damping: Option<D>,
+    pub(super) linear_damping: Option<D>,
     mirrored: Vec<D>,
     rate: Vec<D>,
     /// Which states have a corner of their rate at zero.
@@ -114,6 +114,11 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
             })
         };
         (0..size).map(corner).collect()
+    }
+
+    /// Whether the state of this `index` has reached its bound for the rest of this swing.
+    pub(super) fn is_saturated(&self, index: usize) -> bool {
+        self.saturated[index]
     }
 
     /// Lets no state be saturated, as at the beginning of a swing.

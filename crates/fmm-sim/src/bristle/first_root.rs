@@ -18,7 +18,7 @@ pub(super) const BEGINNING: f64 = 1.0 / 32.0;
 ///
 /// # References
 /// G. Farin, *Curves and Surfaces for CAGD*, Morgan Kaufmann 2002, chapter 5.
-pub(super) fn first_root(coefficients: [f64; STAGES + 1]) -> Option<f64> {
+pub(super) fn first_root<const N: usize>(coefficients: [f64; N]) -> Option<f64> {
     if coefficients[0] < 0.0 {
         return Some(0.0);
     }
@@ -29,7 +29,7 @@ pub(super) fn first_root(coefficients: [f64; STAGES + 1]) -> Option<f64> {
 ///
 /// Where it rises with hardly any slope, rounding decides its sign at first, so that is asked of a small part of the
 /// interval as a whole.
-pub(super) fn next_root(coefficients: [f64; STAGES + 1]) -> Option<f64> {
+pub(super) fn next_root<const N: usize>(coefficients: [f64; N]) -> Option<f64> {
     let (mut begin, mut width, mut left) = (0.0, 1.0, coefficients);
     let mut parts = Vec::new();
     while width > BEGINNING {
@@ -38,7 +38,7 @@ pub(super) fn next_root(coefficients: [f64; STAGES + 1]) -> Option<f64> {
         parts.push((second, width));
         left = first;
     }
-    if left[STAGES] <= 0.0 {
+    if left[N - 1] <= 0.0 {
         return Some(begin);
     }
     for (part, width) in parts.into_iter().rev() {
@@ -50,7 +50,23 @@ pub(super) fn next_root(coefficients: [f64; STAGES + 1]) -> Option<f64> {
     None
 }
 
-fn first_in(coefficients: [f64; STAGES + 1], begin: f64, width: f64, depth: u32) -> Option<f64> {
+/// The Bernstein coefficients on [0, 1] of Σ cᵢ τⁱ.
+pub(super) fn bernstein<const N: usize>(mut coefficients: [f64; N]) -> [f64; N] {
+    let mut binomial = 1.0;
+    for (order, coefficient) in coefficients.iter_mut().enumerate() {
+        *coefficient /= binomial;
+        binomial *= (N - 1 - order) as f64 / (order + 1) as f64;
+    }
+    // Bⱼ = Σᵢ C(j, i) cᵢ/C(n, i), by Pascal's triangle.
+    for level in 1..N {
+        for index in (level..N).rev() {
+            coefficients[index] += coefficients[index - 1];
+        }
+    }
+    coefficients
+}
+
+fn first_in<const N: usize>(coefficients: [f64; N], begin: f64, width: f64, depth: u32) -> Option<f64> {
     if coefficients[1..].iter().all(|coefficient| *coefficient > 0.0) {
         return None;
     }
@@ -68,18 +84,18 @@ fn first_in(coefficients: [f64; STAGES + 1], begin: f64, width: f64, depth: u32)
 }
 
 /// The zero of a polynomial that falls through it once: one whose coefficients change their sign once (variation
-/// diminishing). By the Illinois rule.
-fn only_root(coefficients: &[f64; STAGES + 1]) -> Option<f64> {
+/// diminishing). By the Illinois rule; `None` where that is slow, as far from a zero that is next to the beginning.
+fn only_root<const N: usize>(coefficients: &[f64; N]) -> Option<f64> {
     let changes = coefficients.windows(2).filter(|pair| (pair[0] > 0.0) != (pair[1] > 0.0)).count();
     if changes != 1 || !(coefficients[0] > 0.0) {
         return None;
     }
-    let (mut low, mut high) = ((0.0, coefficients[0]), (1.0, coefficients[STAGES]));
+    let (mut low, mut high) = ((0.0, coefficients[0]), (1.0, coefficients[N - 1]));
     let mut side = 0.0f64;
     for _ in 0..MOST_SECANTS {
         let tau = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
         if !(tau > low.0 && tau < high.0) {
-            break;
+            return Some(high.0);
         }
         let value = at(coefficients, tau);
         if value > 0.0 {
@@ -92,17 +108,17 @@ fn only_root(coefficients: &[f64; STAGES + 1]) -> Option<f64> {
             side = -1.0;
         }
         if high.0 - low.0 <= f64::EPSILON || value == 0.0 {
-            break;
+            return Some(high.0);
         }
     }
-    Some(high.0)
+    None
 }
 
 /// The value at `tau` (de Casteljau).
-fn at(coefficients: &[f64; STAGES + 1], tau: f64) -> f64 {
+fn at<const N: usize>(coefficients: &[f64; N], tau: f64) -> f64 {
     let mut row = *coefficients;
-    for level in 1..=STAGES {
-        for index in 0..=STAGES - level {
+    for level in 1..N {
+        for index in 0..N - level {
             row[index] += tau * (row[index + 1] - row[index]);
         }
     }
@@ -110,10 +126,10 @@ fn at(coefficients: &[f64; STAGES + 1], tau: f64) -> f64 {
 }
 
 /// The coefficients on both halves of the interval.
-fn halves(mut right: [f64; STAGES + 1]) -> ([f64; STAGES + 1], [f64; STAGES + 1]) {
+fn halves<const N: usize>(mut right: [f64; N]) -> ([f64; N], [f64; N]) {
     let mut left = right;
     for (level, left) in left.iter_mut().enumerate().skip(1) {
-        for index in 0..=STAGES - level {
+        for index in 0..N - level {
             right[index] = 0.5 * (right[index] + right[index + 1]);
         }
         *left = right[0];

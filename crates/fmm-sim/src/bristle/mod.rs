@@ -16,6 +16,7 @@ mod passage;
 mod path;
 mod radau;
 mod run;
+mod taylor;
 
 use fmm_friction::BristleLaw;
 use fmm_model::Scalar;

@@ -2,7 +2,8 @@
 
 use fmm_model::Scalar;
 
-use super::radau::{BERNSTEIN, CENTRED_COLUMNS, INVERSE, LEGENDRE, STAGES, Stages, basis, dot, product};
+use super::radau::{BERNSTEIN, CENTRED_COLUMNS, INVERSE, LEGENDRE, NODES, STAGES, Stages, basis, dot, product};
+use super::taylor::ORDER;
 
 /// Rounding of the state, relative to it.
 pub(super) const ROUNDING: f64 = 2e-15;
@@ -49,6 +50,10 @@ pub(super) struct Motion<D> {
     /// What remains of the scale of the swing before.
     carried: Vec<f64>,
     state: Vec<D>,
+    /// The Taylor coefficients of each component in powers of τ, of a step of the third method.
+    pub(super) series: Vec<Series<D>>,
+    /// Whether the polynomial is that of the series.
+    is_series: bool,
 }
 
 impl<D: Scalar> Motion<D> {
@@ -63,6 +68,8 @@ impl<D: Scalar> Motion<D> {
             moved: vec![0.0; size],
             carried: vec![0.0; size],
             state: begin.clone(),
+            series: vec![[zero; ORDER + 1]; size],
+            is_series: false,
             begin,
         }
     }
@@ -83,6 +90,12 @@ impl<D: Scalar> Motion<D> {
         for component in 0..self.size {
             self.moved[component] = self.moved(component);
         }
+        if self.is_series {
+            for (y, series) in self.begin.iter_mut().zip(&self.series) {
+                *y = sum(series, 1.0);
+            }
+            return;
+        }
         for (y, increments) in self.begin.iter_mut().zip(&self.increments) {
             *y += increments[STAGES - 1];
             if part != 0.0 {
@@ -93,6 +106,12 @@ impl<D: Scalar> Motion<D> {
 
     /// The state at `tau` in units of the step.
     pub(super) fn at(&self, tau: f64, state: &mut [D]) {
+        if self.is_series {
+            for (state, series) in state.iter_mut().zip(&self.series) {
+                *state = sum(series, tau);
+            }
+            return;
+        }
         let basis = basis(tau);
         for ((state, y), increments) in state.iter_mut().zip(&self.begin).zip(&self.increments) {
             *state = *y + dot(&basis, increments);
@@ -151,16 +170,69 @@ impl<D: Scalar> Motion<D> {
     /// of it; `rounding` is that of the velocity (m/s) in units of the tolerance.
     pub(super) fn rescale(&mut self, span: Span, rounding: f64) {
         for component in 0..self.size {
-            let floor = ROUNDING / span.tolerance * self.begin[component].value().abs();
-            let floor = if component == 1 { floor.max(rounding) } else { floor };
-            self.scale[component] =
-                self.moved(component).max(self.carried[component]).max(floor).max(f64::MIN_POSITIVE);
+            self.scale[component] = self.moved(component).max(self.least_scale(component, span.tolerance, rounding));
         }
+    }
+
+    /// What errors of a component are compared with at least, before a step; arguments are those of [`rescale`](Self::rescale).
+    pub(super) fn least_scale(&self, component: usize, tolerance: f64, rounding: f64) -> f64 {
+        let floor = ROUNDING / tolerance * self.begin[component].value().abs();
+        let floor = if component == 1 { floor.max(rounding) } else { floor };
+        self.moved[component].max(self.carried[component]).max(floor).max(f64::MIN_POSITIVE)
+    }
+
+    /// Whether the polynomial is that of the series.
+    pub(super) const fn is_series(&self) -> bool {
+        self.is_series
+    }
+
+    /// Takes the polynomial of the stages.
+    pub(super) const fn take_stages(&mut self) {
+        self.is_series = false;
+    }
+
+    /// Takes the polynomial of the series, with a new unit of time, `ratio` times that which it has.
+    pub(super) fn take_series(&mut self, ratio: f64) {
+        self.is_series = true;
+        for series in &mut self.series {
+            let mut factor = 1.0;
+            for term in series {
+                *term *= factor;
+                factor *= ratio;
+            }
+        }
+    }
+
+    /// Writes what the series is at the stages, as a prediction of the next step.
+    pub(super) fn fill_stages(&mut self) {
+        for ((increments, series), y) in self.increments.iter_mut().zip(&self.series).zip(&self.begin) {
+            *increments = NODES.map(|node| sum(series, node) - *y);
+        }
+    }
+
+    /// Values of the series of a component above `level`, times `sign`.
+    pub(super) fn plain_series(&self, component: usize, level: f64, sign: f64) -> Series<f64> {
+        let mut series = self.series[component].map(|term| term.value() * sign);
+        series[0] = (self.begin[component].value() - level) * sign;
+        series
+    }
+
+    /// About how many times as long as the step of the series one of the collocation method may be: its first missing term, of degree
+    /// s + 1, is the less the wider its stages spread, by 2^(2s + 1).
+    pub(super) fn reach_of_stages(&self, tolerance: f64) -> f64 {
+        let missing = self.series.iter().zip(&self.scale);
+        let missing = missing.fold(0.0f64, |most, (series, scale)| most.max(series[STAGES + 1].value().abs() / scale));
+        let spread = f64::from(1u32 << (2 * STAGES + 1));
+        (tolerance * spread / missing).sqrt().sqrt().sqrt()
     }
 
     /// How far a component has moved in this swing, this step included.
     fn moved(&self, component: usize) -> f64 {
         let distance = self.begin[component].value() - self.origin[component];
+        if self.is_series {
+            let end = value(&self.series[component], 1.0) - self.origin[component];
+            return self.moved[component].max(distance.abs()).max(end.abs());
+        }
         let increments = &self.increments[component];
         increments.iter().fold(self.moved[component], |most, w| most.max((distance + w.value()).abs()))
     }
@@ -181,6 +253,19 @@ impl<D: Scalar> Motion<D> {
         }
         worst
     }
+}
+
+/// One Taylor coefficient an order.
+pub(super) type Series<D> = [D; ORDER + 1];
+
+/// The series at `tau` in its unit.
+fn sum<D: Scalar>(series: &Series<D>, tau: f64) -> D {
+    series.iter().rev().fold(D::from(0.0), |sum, term| sum * tau + *term)
+}
+
+/// The value of the series at `tau` in its unit.
+pub(super) fn value<D: Scalar>(series: &Series<D>, tau: f64) -> f64 {
+    series.iter().rev().fold(0.0, |sum, term| sum * tau + term.value())
 }
 
 /// Bernstein coefficients from values at the beginning and at all stages.

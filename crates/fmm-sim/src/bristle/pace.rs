@@ -22,6 +22,12 @@ const SMOOTH_CHANGE: f64 = 1.0;
 const STIFF: f64 = 8.0;
 const NOT_STIFF: f64 = 4.0;
 
+/// Steps of the series that an implicit one must be worth, the part of the longest stable one from which on they are limited by
+/// stiffness, and step times stiffness up to which an implicit step is not worth those that it replaces.
+const WORTH_AN_IMPLICIT_ONE: f64 = 6.0;
+const NEARLY: f64 = 0.9;
+const NOT_STIFF_FOR_SERIES: f64 = 30.0;
+
 /// Explicit steps that have to be limited by stiffness in a row, and implicit ones that have to be refused in vain.
 const PERSISTENT: usize = 3;
 
@@ -67,6 +73,8 @@ pub(super) struct Pace {
     /// of that length that the last first step from rest has had.
     first: f64,
     opens: bool,
+    /// Whether explicit steps are those of the series.
+    expands: bool,
     opening: f64,
 }
 
@@ -84,6 +92,7 @@ impl Pace {
             vain: 0,
             first: 0.0,
             opens: true,
+            expands: false,
             opening: f64::INFINITY,
         }
     }
@@ -120,7 +129,8 @@ impl Pace {
         self.proposed = length * if solved.quick { growth } else { growth.min(1.0) };
         if self.implicit {
             // What still grows is no measure.
-            if solved.stiffness <= NOT_STIFF && self.proposed <= 1.5 * length {
+            let not_stiff = if self.expands { NOT_STIFF_FOR_SERIES } else { NOT_STIFF };
+            if solved.stiffness <= not_stiff && self.proposed <= 1.5 * length {
                 self.implicit = false;
                 (self.proposed, self.last) = (length / solved.stiffness.max(1.0), NO_STEP);
             }
@@ -143,6 +153,17 @@ impl Pace {
             (self.implicit, self.unstable) = (true, 0);
             (self.proposed, self.last) = (FIRST * length, NO_STEP);
             (self.stiff_steps, self.variation) = (0, 0.0);
+        }
+    }
+
+    /// Takes note of a step of the series of `length` (s), where `limited` (1) is its part of the longest one that is stable, and an
+    /// implicit step would `reach` so many times as far.
+    pub(super) fn expand(&mut self, limited: f64, reach: f64, length: f64) {
+        (self.opens, self.expands) = (false, true);
+        (self.proposed, self.last) = (length, NO_STEP);
+        if limited > NEARLY && reach > WORTH_AN_IMPLICIT_ONE {
+            self.implicit = true;
+            self.proposed = reach.min(FIRST) * length;
         }
     }
 

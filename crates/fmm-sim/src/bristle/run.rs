@@ -10,6 +10,7 @@ use super::first_root::BEGINNING;
 use super::guard::{Approach, Guard, Landing};
 use super::motion::{Motion, Solved, Span};
 use super::pace::Pace;
+use super::taylor::Taylor;
 use crate::drive::{Drive, Piece};
 use crate::recorder::Recorder;
 use crate::work::Power;
@@ -33,7 +34,8 @@ pub(super) struct Run<'a, D, L> {
     pub(super) step: Motion<D>,
     pub(super) collocation: Collocation<D>,
     explicit: Explicit<D>,
-    pace: Pace,
+    pub(super) taylor: Taylor<D>,
+    pub(super) pace: Pace,
     pub(super) recorder: Recorder<'a, D>,
     pub(super) branch: Branch,
     /// Whether nothing drives the contact from relative rest.
@@ -56,6 +58,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             step: Motion::new(begin.clone()),
             collocation: Collocation::new(begin.len()),
             explicit: Explicit::new(begin.len()),
+            taylor: Taylor::new(),
             pace: Pace::new(),
             branch: Branch { direction: Direction::Positive, regime: Regime::ALL_HOLD },
             resting: false,
@@ -157,6 +160,10 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         if self.field.saturate(self.branch, &mut self.step.begin, self.tolerance.max(4.0 * f64::EPSILON)) {
             self.pace.relax(self.slow(piece));
         }
+        if !self.pace.implicit && self.expand(piece, limit)? {
+            return Ok(());
+        }
+        self.step.take_stages();
         let at_zero = self.step.begin[1].value() == self.field.belt.value();
         let room = limit - self.time;
         let mut length = self.first_length().min(room);
@@ -253,7 +260,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
 
     /// A time (s) that rounding makes of the end of a step of this `length` (s): no step is shorter, and what lies within
     /// it is at its beginning.
-    fn least(&self, length: f64) -> f64 {
+    pub(super) fn least(&self, length: f64) -> f64 {
         4.0 * f64::EPSILON * (self.time + length)
     }
 
@@ -275,7 +282,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
     }
 
     /// Angular frequency (rad/s) of the machine, or of the fastest wave.
-    fn slow(&self, piece: &Piece<D>) -> f64 {
+    pub(super) fn slow(&self, piece: &Piece<D>) -> f64 {
         piece.frequencies().fold(self.angular(), f64::max)
     }
 
@@ -284,7 +291,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
         self.field.oscillator.natural_angular_frequency().value().max(WEAK / self.recorder.sampling.end())
     }
 
-    fn count_step(&mut self) -> Result<(), SimulationError> {
+    pub(super) fn count_step(&mut self) -> Result<(), SimulationError> {
         self.steps += 1;
         let end = self.recorder.sampling.end();
         if self.steps > STEP_BUDGET { Err(SimulationError::step_budget(STEP_BUDGET, end)) } else { Ok(()) }
@@ -292,7 +299,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
 
     /// Length (s) of the step to try first: as the last one says, or a part of the period in which the machine swings on
     /// its bristles.
-    fn first_length(&mut self) -> f64 {
+    pub(super) fn first_length(&mut self) -> f64 {
         if let Some(proposed) = self.pace.proposed() {
             return proposed;
         }
@@ -310,12 +317,22 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
     }
 
     /// Writes what the step of `length` passes and goes to its end, or a part `correction` of it further.
-    fn finish(&mut self, length: f64, correction: f64, limit: f64, piece: &Piece<D>) -> Result<(), SimulationError> {
+    pub(super) fn finish(
+        &mut self,
+        length: f64,
+        correction: f64,
+        limit: f64,
+        piece: &Piece<D>,
+    ) -> Result<(), SimulationError> {
         let whole = correction == 0.0 && length == limit - self.time;
         let end = if whole { limit } else { (self.time + length * (1.0 + correction)).min(limit) };
         if self.recorder.has_samples_before(end) {
             let (half, step, first) = (0.5 * length, &self.step, self.recorder.written);
-            self.recorder.polynomials(end, self.time + half, half, |component| step.centred(component))?;
+            if step.is_series() {
+                self.recorder.polynomials(end, self.time, length, |component| step.series[component])?;
+            } else {
+                self.recorder.polynomials(end, self.time + half, half, |component| step.centred(component))?;
+            }
             self.accelerate(first, piece)?;
         }
         let Self { step, field, recorder, branch, time, before, .. } = self;

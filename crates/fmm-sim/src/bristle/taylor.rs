@@ -1,0 +1,226 @@
+//! Taylor series of a motion about the beginning of a step, for laws that expand themselves.
+
+use fmm_friction::{BristleLaw, Expansion};
+use fmm_model::{Restoring, Scalar};
+
+use super::field::{Branch, Field};
+use super::first_root::{bernstein, first_root};
+use super::guard::Guard;
+use super::motion::{Motion, ROUNDING, Series, Span, value};
+use super::run::Run;
+use crate::SimulationError;
+use crate::drive::Piece;
+
+/// Highest order of the series.
+pub(super) const ORDER: usize = Expansion::<f64>::TERMS - 1;
+
+/// The error allowed in a step, in units of the tolerance: many steps add up.
+const SAFETY: f64 = 0.1;
+
+/// Step times stiffness up to which a step damps what is off the motion: |1 − x + x²/2! − … + x²⁴/24!| < 0.05.
+const STABLE: f64 = 9.0;
+
+/// The method: what it needs beside the motion.
+pub(super) struct Taylor<D> {
+    law: Expansion<D>,
+    force: Series<D>,
+}
+
+impl<D: Scalar> Taylor<D> {
+    pub(super) fn new() -> Self {
+        Self { law: Expansion::new(), force: [D::from(0.0); ORDER + 1] }
+    }
+
+    /// Writes the series of all components into those of `motion`, in time since `time` (s) in units of `unit` (s). False if machine or
+    /// law have none here.
+    pub(super) fn expand<L: BristleLaw<D>>(
+        &mut self,
+        motion: &mut Motion<D>,
+        field: &Field<D, L>,
+        branch: Branch,
+        piece: &Piece<D>,
+        (time, unit): (f64, f64),
+    ) -> bool {
+        let Some(damping) = field.linear_damping else { return false };
+        if motion.size != 3 || !matches!(field.oscillator.restoring(), Restoring::Linear) {
+            return false;
+        }
+        piece.series(time, unit, &mut self.force);
+        let Self { law, force } = self;
+        let [position, velocity, state] = &mut motion.series[..] else { return false };
+        for (series, begin) in [&mut *position, velocity, state].into_iter().zip(&motion.begin) {
+            series[0] = *begin;
+        }
+        let (sign, stiffness) = (branch.direction.sign(), field.oscillator.stiffness());
+        law.held = field.is_saturated(0);
+        for order in 0..ORDER {
+            let per_order = unit / (order + 1) as f64;
+            let relative = if order == 0 { velocity[0] - field.belt } else { velocity[order] };
+            law.velocity[order] = relative * sign;
+            law.state[order] = state[order] * sign;
+            if !field.law.expand(order, law) {
+                return false;
+            }
+            let friction = field.normal_load * law.coefficient[order] * sign;
+            let machine = velocity[order] * damping + stiffness * position[order];
+            let acceleration =
+                if field.guided { force[order] } else { (force[order] - machine - friction) * field.per_mass };
+            position[order + 1] = velocity[order] * per_order;
+            velocity[order + 1] = acceleration * per_order;
+            state[order + 1] = if law.held { D::from(0.0) } else { law.rate[order] * (per_order * sign) };
+        }
+        true
+    }
+}
+
+impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
+    /// Goes on by one step of the series, to `limit` (s) at most, or to an event before it. False if there is no series here.
+    pub(super) fn expand(&mut self, piece: &Piece<D>, limit: f64) -> Result<bool, SimulationError> {
+        let at_zero = self.step.begin[1].value() == self.field.belt.value();
+        let unit = self.first_length().min(limit - self.time);
+        let Self { step, taylor, field, branch, time, .. } = self;
+        if !taylor.expand(step, field, *branch, piece, (*time, unit)) {
+            return Ok(false);
+        }
+        self.count_step()?;
+        let forces = self.field.force_size(piece.force(self.time), self.branch, &self.step.begin);
+        let mass = self.field.oscillator.mass().value();
+        let tolerance = self.tolerance;
+        let rounding = |length: f64| ROUNDING / tolerance * forces / mass * length;
+        let mut length = unit * ratio(&self.step, tolerance, rounding(unit));
+        let room = limit - self.time;
+        length = if length < room { length } else { room };
+        if !(length > self.least(length)) {
+            return Ok(false);
+        }
+        self.step.take_series(length / unit);
+        let stiffness = self.stiffness_at_end();
+        if stiffness * length > STABLE {
+            let part = (STABLE / (stiffness * length)).max(0.2);
+            self.step.take_series(part);
+            length *= part;
+        }
+        let span = Span { begin: self.time, length, tolerance };
+        self.step.rescale(span, rounding(length));
+        let found = self.first_guard_of_series(at_zero);
+        if let Some(Found { tau, guard, grazing }) = found {
+            if tau * length <= self.least(length) {
+                if at_zero && guard == Guard::Speed {
+                    return Ok(false);
+                }
+                return self.arrive(guard, piece, false).map(|()| true);
+            }
+            self.step.take_series(tau);
+            self.finish(length * tau, 0.0, limit, piece)?;
+            return self.arrive(guard, piece, grazing).map(|()| true);
+        }
+        let reach = self.step.reach_of_stages(tolerance).min((room - length) / length);
+        self.pace.expand(stiffness * length / STABLE, reach, length);
+        if self.pace.implicit {
+            self.collocation.forget();
+            self.step.fill_stages();
+        }
+        self.finish(length, 0.0, limit, piece).map(|()| true)
+    }
+
+    /// The greatest rate (1/s) at which velocity and state follow themselves at the end of the step.
+    fn stiffness_at_end(&mut self) -> f64 {
+        let size = self.field.size();
+        let mut jacobian = [0.0; 9];
+        self.step.at(1.0, &mut self.after);
+        self.field.jacobian(self.branch, &self.after, self.step.scale(1), &mut jacobian);
+        (1..size).fold(0.0, |most: f64, i| most.max(jacobian[i * size + i].abs()))
+    }
+
+    /// The first guard that is reached within the step, and where. A step that begins `at_zero` velocity does not find that zero.
+    fn first_guard_of_series(&self, at_zero: bool) -> Option<Found> {
+        let (belt, sign) = (self.field.belt.value(), self.branch.direction.sign());
+        let speed = zero_of(self.step.plain_series(1, belt, sign), at_zero).map(|tau| (tau, Guard::Speed));
+        let state = self.step.begin[2].value();
+        let is_below = self.field.is_below(0) && state != 0.0;
+        let corner = if is_below { zero_of(self.step.plain_series(2, 0.0, state.signum()), false) } else { None };
+        let corner = corner.map(|tau| (tau, Guard::Corner(2)));
+        let (tau, guard) = match (speed, corner) {
+            (Some(speed), Some(corner)) => {
+                if corner.0 < speed.0 {
+                    corner
+                } else {
+                    speed
+                }
+            }
+            (found, None) | (None, found) => found?,
+        };
+        if guard != Guard::Speed {
+            return Some(Found { tau, guard, grazing: false });
+        }
+        let series = self.step.plain_series(1, belt, sign);
+        let [slope, curvature] = slopes(&series, tau);
+        let size = series.iter().fold(0.0f64, |size, term| size.max(term.abs()));
+        // Where the slope is that small, rounding moves the zero further than it is from the turning point.
+        let grazing = slope >= 0.0 || slope * slope <= 4.0 * f64::EPSILON * size * curvature.abs();
+        Some(Found { tau, guard, grazing })
+    }
+}
+
+/// A guard reached within a step, at `tau` in its units.
+struct Found {
+    tau: f64,
+    guard: Guard,
+    /// Whether the guard has no slope there.
+    grazing: bool,
+}
+
+/// The length of a step that the last two terms allow, in the unit of the series. `rounding` is that of
+/// [`rescale`](Motion::rescale).
+fn ratio<D: Scalar>(motion: &Motion<D>, tolerance: f64, rounding: f64) -> f64 {
+    let mut ratio: f64 = 1.0;
+    for _ in 0..3 {
+        let [mut last, mut before] = [0.0f64; 2];
+        for (component, series) in motion.series.iter().enumerate() {
+            let [_, first, second, ..] = series;
+            let moves = (first.value().abs() * ratio).max(second.value().abs() * ratio * ratio);
+            let per_scale = 1.0 / motion.least_scale(component, tolerance, rounding).max(moves);
+            last = last.max(series[ORDER].value().abs() * per_scale);
+            before = before.max(series[ORDER - 1].value().abs() * per_scale);
+        }
+        let allowed = SAFETY * tolerance;
+        let by_last = (allowed / last).powf(1.0 / ORDER as f64);
+        let next = by_last.min((allowed / before).powf(1.0 / (ORDER - 1) as f64));
+        let settled = (next / ratio - 1.0).abs() < 0.05;
+        ratio = next;
+        if settled {
+            break;
+        }
+    }
+    ratio
+}
+
+/// The first zero in [0, 1] of a series that is positive before; of one that begins `at_zero` the first after that.
+fn zero_of(mut series: Series<f64>, at_zero: bool) -> Option<f64> {
+    if at_zero {
+        // That zero is divided out.
+        series.rotate_left(1);
+        series[ORDER] = 0.0;
+    }
+    let lowest = series[0] + series[1..].iter().map(|term| term.min(0.0)).sum::<f64>();
+    if lowest > 0.0 {
+        return None;
+    }
+    let tau = first_root(bernstein(series))?;
+    let [slope, _] = slopes(&series, tau);
+    let nearer = tau - value(&series, tau) / slope;
+    Some(if (nearer - tau).abs() < 1e-6 && nearer <= 1.0 { nearer } else { tau })
+}
+
+/// First and second derivatives of a series at `tau`.
+fn slopes(series: &Series<f64>, tau: f64) -> [f64; 2] {
+    let terms = series.iter().enumerate().rev();
+    terms.fold([0.0; 2], |[slope, curvature], (order, term)| {
+        let order = order as f64;
+        if order < 1.0 {
+            return [slope, curvature];
+        }
+        let curvature = if order < 2.0 { curvature } else { curvature * tau + order * (order - 1.0) * term };
+        [slope * tau + order * term, curvature]
+    })
+}
