@@ -102,9 +102,9 @@ impl<D: Scalar> BristleLaw<D> for BoucWen<D> {
         }
         let (sign, shape) =
             if deflection < 0.0 { (-1.0, self.gamma - self.beta) } else { (1.0, self.gamma + self.beta) };
-        let [size, slope, powers, logarithm] = &mut series.room;
+        let [size, slope, powers, room, ..] = &mut series.room;
         size[order] = series.state[order] * sign;
-        raise(size, self.exponent, powers, logarithm, order);
+        raise(size, self.exponent, powers, room, order);
         let softening = shape * powers[order];
         slope[order] = if order == 0 { self.amplitude - softening } else { -softening };
         series.rate[order] = product(&series.velocity, slope, order);

@@ -94,13 +94,13 @@ impl<D: Scalar> BristleLaw<D> for Dahl<D> {
         if series.held {
             return true;
         }
-        let [reserve, powers, logarithm, _] = &mut series.room;
+        let [reserve, powers, room, ..] = &mut series.room;
         let used = series.coefficient[order] / self.coefficient;
         reserve[order] = if order == 0 { D::from(1.0) - used } else { -used };
         if reserve[0].value() <= 0.0 {
             return false;
         }
-        raise(reserve, self.exponent, powers, logarithm, order);
+        raise(reserve, self.exponent, powers, room, order);
         series.rate[order] = product(&series.velocity, powers, order);
         true
     }

@@ -3,7 +3,7 @@
 use fmm_model::Scalar;
 
 use crate::elements::direction;
-use crate::expansion::{Expansion, decay, dot, is_whole, is_whole_with_derivatives, product, raise};
+use crate::expansion::{Expansion, convolve, decay, is_whole, is_whole_with_derivatives, product, raise};
 use crate::family::{law_family, static_not_below};
 use crate::stribeck::EXPONENT;
 use crate::{BristleLaw, LawError, LawFamily, LawParameter, Regime, Role, SlidingLaw, Stribeck};
@@ -114,7 +114,8 @@ impl<D: Scalar> BristleLaw<D> for LuGre<D> {
     }
 
     fn expand(&self, order: usize, series: &mut Expansion<D>) -> bool {
-        let Expansion { velocity, state, rate, coefficient, held, room: [ratio, power, fallen, reserve] } = series;
+        let Expansion { velocity, state, rate, coefficient, held, room: [ratio, power, fallen, reserve, room, slope] } =
+            series;
         if *held {
             coefficient[order] = self.stiffness * state[order] + self.viscous * velocity[order];
             return true;
@@ -125,14 +126,13 @@ impl<D: Scalar> BristleLaw<D> for LuGre<D> {
         if is_whole_with_derivatives(self.exponent) || is_slow || speed > FAST {
             return false;
         }
-        // No exponent has derivatives here: none needs the room for a logarithm.
-        raise(ratio, self.exponent, power, rate, order);
-        decay(power, fallen, order);
+        raise(ratio, self.exponent, power, room, order);
+        decay(power, fallen, slope, order);
         // 1 − σ z/g, from g (1 − σ z/g) = g − σ z.
         let excess = self.breakaway - self.sliding;
         let level = self.sliding + excess * fallen[0];
         let apart = if order == 0 { level } else { excess * fallen[order] } - self.stiffness * state[order];
-        let known = dot((1..=order).map(|j| fallen[j] * reserve[order - j]));
+        let known = convolve(&reserve[..order], &fallen[1..=order]);
         reserve[order] = (apart - excess * known) / level;
         rate[order] = product(velocity, reserve, order);
         coefficient[order] =

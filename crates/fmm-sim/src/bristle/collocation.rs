@@ -89,7 +89,10 @@ impl<D: Scalar> Collocation<D> {
         let (mut before, mut iterations) = (f64::INFINITY, 0);
         loop {
             self.iterate(motion, field, branch, span, true);
-            motion.rescale(span, rounding);
+            if iterations < 2 {
+                // What errors are compared with hardly changes any more.
+                motion.rescale(span, rounding);
+            }
             let correction = self.correction(motion, D::value);
             iterations += 1;
             let ratio = correction / before;
@@ -106,6 +109,7 @@ impl<D: Scalar> Collocation<D> {
             }
             before = correction;
         }
+        motion.rescale(span, rounding);
         if D::DIRECTIONS > 0 {
             self.solve_derivatives(motion, field, branch, span, goal)?;
         }

@@ -20,6 +20,9 @@ const SAFETY: f64 = 0.1;
 /// Step times stiffness up to which a step damps what is off the motion: |1 − x + x²/2! − … + x²⁴/24!| < 0.05.
 const STABLE: f64 = 9.0;
 
+/// Corrections of a zero by Newton's method.
+const MOST_CORRECTIONS: usize = 8;
+
 /// The method: what it needs beside the motion.
 pub(super) struct Taylor<D> {
     law: Expansion<D>,
@@ -206,10 +209,18 @@ fn zero_of(mut series: Series<f64>, at_zero: bool) -> Option<f64> {
     if lowest > 0.0 {
         return None;
     }
-    let tau = first_root(bernstein(series))?;
-    let [slope, _] = slopes(&series, tau);
-    let nearer = tau - value(&series, tau) / slope;
-    Some(if (nearer - tau).abs() < 1e-6 && nearer <= 1.0 { nearer } else { tau })
+    let found = first_root(bernstein(series))?;
+    let mut tau = found;
+    for _ in 0..MOST_CORRECTIONS {
+        let [slope, _] = slopes(&series, tau);
+        let correction = value(&series, tau) / slope;
+        tau -= correction;
+        if !(correction.abs() > f64::EPSILON * tau) {
+            break;
+        }
+    }
+    // Next to another zero, corrections may lead anywhere.
+    Some(if (tau - found).abs() < 1e-3 * found && tau <= 1.0 { tau } else { found })
 }
 
 /// First and second derivatives of a series at `tau`.
