@@ -11,7 +11,7 @@ mod ratio;
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group};
-use fmm_friction::{Berger, Coulomb, Dahl, LawFamily, MaxwellSlip, SlidingLaw};
+use fmm_friction::{Berger, Coulomb, Dahl, LawFamily, LuGre, MaxwellSlip, SlidingLaw};
 use fmm_model::{Damping, Dual, Oscillator, Scalar};
 use fmm_sim::{
     Bristle, Channels, Engine, Exact, Excitation, Moreau, RungeKutta, Sampling, Scenario, Thesis, Trajectory,
@@ -156,6 +156,13 @@ fn ring_down(criterion: &mut Criterion) {
     group.bench_function("bristle", |bencher| {
         bencher.iter(|| Bristle::default().run_into(black_box(&dahl), &sampling, &mut trajectory));
     });
+    // Bristles ten times as stiff, of rates up to 7e4/s, under a level that falls within a tenth of the greatest speed.
+    let lugre = LuGre::new(0.15, 0.2, 0.01, 2.0, 1e5, 1.0, 0.02).expect("valid");
+    let lugre = Scenario::new(*scenario.oscillator(), lugre, 7.2).and_then(|case| case.starting_at(0.0, 0.101));
+    let lugre = lugre.expect("valid");
+    group.bench_function("bristle_lugre", |bencher| {
+        bencher.iter(|| Bristle::default().run_into(black_box(&lugre), &sampling, &mut trajectory));
+    });
     let elements = MaxwellSlip::new(&[(6e3, 0.05), (4e3, 0.1)]).expect("valid");
     let maxwell = Scenario::new(*scenario.oscillator(), elements, 7.2).and_then(|case| case.starting_at(0.0, 0.101));
     let maxwell = maxwell.expect("valid");
@@ -167,6 +174,12 @@ fn ring_down(criterion: &mut Criterion) {
     group.bench_function("exact_gradient", |bencher| {
         bencher.iter(|| Exact.run_into(black_box(&scenario), &sampling, &mut trajectory));
     });
+    let dahl = Dahl::new(Dual::<2>::variable(0.15, 0), Dual::variable(1e4, 1), Dual::from(1.0)).expect("valid");
+    let dahl = Scenario::new(*scenario.oscillator(), dahl, Dual::from(7.2)).expect("valid");
+    let dahl = dahl.starting_at(Dual::from(0.0), Dual::from(0.101)).expect("valid");
+    group.bench_function("bristle_gradient", |bencher| {
+        bencher.iter(|| Bristle::default().run_into(black_box(&dahl), &sampling, &mut trajectory));
+    });
     group.finish();
 }
 
@@ -177,7 +190,9 @@ fn print_ratios() {
     print_ratio("ring_down/thesis", "ring_down/moreau", "");
     print_ratio("ring_down/thesis", "ring_down/runge_kutta", "");
     print_ratio("ring_down/thesis", "ring_down/exact_elements", "");
-    print_ratio("ring_down/bristle", "ring_down/thesis", "");
+    print_ratio("ring_down/bristle", "ring_down/thesis", "at most 8");
+    print_ratio("ring_down/bristle_lugre", "ring_down/thesis", "at most 30");
+    print_ratio("ring_down/bristle_gradient", "ring_down/bristle", "two columns");
     print_ratio("berger/thesis", "berger/runge_kutta_1e-10", "at least 1");
     print_ratio("berger/thesis", "berger/runge_kutta", "");
     print_ratio("berger/own_law", "berger/runge_kutta", "at most 2");

@@ -95,7 +95,8 @@ fn only_root<const N: usize>(coefficients: &[f64; N]) -> Option<f64> {
     for _ in 0..MOST_SECANTS {
         let tau = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
         if !(tau > low.0 && tau < high.0) {
-            return Some(high.0);
+            // Rounding puts it at one of the ends, next to which it is.
+            return Some(if tau > low.0 { high.0 } else { low.0 });
         }
         let value = at(coefficients, tau);
         if value > 0.0 {

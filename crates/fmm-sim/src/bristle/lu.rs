@@ -25,7 +25,16 @@ impl Factors {
 
     /// Factors the matrix. False if it is singular or not finite.
     pub(super) fn factor(&mut self) -> bool {
-        let size = self.size;
+        // Loops of the usual lengths, for laws of one state, are unrolled.
+        match self.size {
+            2 => self.factor_rows(2),
+            4 => self.factor_rows(4),
+            size => self.factor_rows(size),
+        }
+    }
+
+    #[inline]
+    fn factor_rows(&mut self, size: usize) -> bool {
         self.swaps.clear();
         for column in 0..size {
             let entry = |row: usize| self.entries[row * size + column].abs();
@@ -63,24 +72,33 @@ impl Factors {
 
     /// Replaces `right` by the solution for it.
     pub(super) fn solve<D: Scalar>(&self, right: &mut [D]) {
-        let size = self.size;
+        match self.size {
+            2 => self.solve_rows(2, right),
+            4 => self.solve_rows(4, right),
+            size => self.solve_rows(size, right),
+        }
+    }
+
+    #[inline]
+    fn solve_rows<D: Scalar>(&self, size: usize, right: &mut [D]) {
+        let (right, entries) = (&mut right[..size], &self.entries[..size * size]);
         for (row, pivot) in self.swaps.iter().enumerate() {
             right.swap(row, *pivot);
         }
         for row in 0..size {
             let mut sum = right[row];
-            for (factor, known) in self.entries[row * size..row * size + row].iter().zip(&right[..row]) {
+            for (factor, known) in entries[row * size..row * size + row].iter().zip(&right[..row]) {
                 sum -= *known * *factor;
             }
             right[row] = sum;
         }
         for row in (0..size).rev() {
             let mut sum = right[row];
-            let upper = &self.entries[row * size + row + 1..(row + 1) * size];
+            let upper = &entries[row * size + row + 1..(row + 1) * size];
             for (factor, known) in upper.iter().zip(&right[row + 1..]) {
                 sum -= *known * *factor;
             }
-            right[row] = sum * self.entries[row * size + row];
+            right[row] = sum * entries[row * size + row];
         }
     }
 }

@@ -23,9 +23,11 @@ const STIFF: f64 = 8.0;
 const NOT_STIFF: f64 = 4.0;
 
 /// Steps of the series that an implicit one must be worth, the part of the longest stable one from which on they are limited by
-/// stiffness, and step times stiffness up to which an implicit step is not worth those that it replaces.
+/// stiffness, the part of its reach that the first implicit one is tried with, and step times stiffness up to which an implicit step
+/// is not worth those that it replaces.
 const WORTH_AN_IMPLICIT_ONE: f64 = 6.0;
 const NEARLY: f64 = 0.9;
+const PART_OF_REACH: f64 = 0.7;
 const NOT_STIFF_FOR_SERIES: f64 = 30.0;
 
 /// Explicit steps that have to be limited by stiffness in a row, and implicit ones that have to be refused in vain.
@@ -163,7 +165,7 @@ impl Pace {
         (self.proposed, self.last) = (length, NO_STEP);
         if limited > NEARLY && reach > WORTH_AN_IMPLICIT_ONE {
             self.implicit = true;
-            self.proposed = reach.min(FIRST) * length;
+            self.proposed = PART_OF_REACH * reach.min(FIRST) * length;
         }
     }
 

@@ -20,6 +20,12 @@ const SAFETY: f64 = 0.1;
 /// Step times stiffness up to which a step damps what is off the motion: |1 − x + x²/2! − … + x²⁴/24!| < 0.05.
 const STABLE: f64 = 9.0;
 
+/// The angle (rad) that a step may go on by: the next term is below 1e-10.
+const ANGLE: f64 = 4.0;
+
+/// How many times as fast as the machine a wave may be that exists in derivatives only, which step lengths do not see.
+const CALM: f64 = 4.0;
+
 /// Corrections of a zero by Newton's method.
 const MOST_CORRECTIONS: usize = 8;
 
@@ -97,9 +103,9 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
             return Ok(false);
         }
         self.step.take_series(length / unit);
-        let stiffness = self.stiffness_at_end();
-        if stiffness * length > STABLE {
-            let part = (STABLE / (stiffness * length)).max(0.2);
+        let Some(rate) = self.rate_at_end() else { return Ok(false) };
+        if rate * length > STABLE {
+            let part = STABLE / (rate * length);
             self.step.take_series(part);
             length *= part;
         }
@@ -118,7 +124,7 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
             return self.arrive(guard, piece, grazing).map(|()| true);
         }
         let reach = self.step.reach_of_stages(tolerance).min((room - length) / length);
-        self.pace.expand(stiffness * length / STABLE, reach, length);
+        self.pace.expand(rate * length / STABLE, reach, length);
         if self.pace.implicit {
             self.collocation.forget();
             self.step.fill_stages();
@@ -126,13 +132,20 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
         self.finish(length, 0.0, limit, piece).map(|()| true)
     }
 
-    /// The greatest rate (1/s) at which velocity and state follow themselves at the end of the step.
-    fn stiffness_at_end(&mut self) -> f64 {
-        let size = self.field.size();
-        let mut jacobian = [0.0; 9];
+    /// The greatest rate (1/s) at which velocity and state follow themselves at the end of the step, or swing, the latter in units of the
+    /// angle that a step may go on by. `None` if there is no end.
+    ///
+    /// Derivatives swing where values stand still, and tell no step how long it may be.
+    fn rate_at_end(&mut self) -> Option<f64> {
         self.step.at(1.0, &mut self.after);
+        if !self.after.iter().all(|y| y.value().is_finite()) {
+            return None;
+        }
+        let mut jacobian = [0.0; 9];
         self.field.jacobian(self.branch, &self.after, self.step.scale(1), &mut jacobian);
-        (1..size).fold(0.0, |most: f64, i| most.max(jacobian[i * size + i].abs()))
+        let [_, _, _, spring, drag, bristle, _, bend, relax] = jacobian.map(f64::abs);
+        let swing = (CALM * spring.sqrt()).max((bristle * bend).sqrt());
+        Some(drag.max(relax).max(swing * (STABLE / ANGLE)))
     }
 
     /// The first guard that is reached within the step, and where. A step that begins `at_zero` velocity does not find that zero.
