@@ -67,8 +67,8 @@ pub(crate) fn convolve<D: Scalar>(a: &[D], b: &[D]) -> D {
         *sum = *a * *b;
     }
     for (a, b) in parts.zip(ends) {
-        for lane in 0..4 {
-            sums[lane] += a[lane] * b[3 - lane];
+        for (lane, sum) in sums.iter_mut().enumerate() {
+            *sum += a[lane] * b[3 - lane];
         }
     }
     (sums[0] + sums[2]) + (sums[1] + sums[3])

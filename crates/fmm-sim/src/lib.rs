@@ -29,7 +29,7 @@
 //! |---|---|---|---|
 //! | [`Exact`] | piecewise linear laws on a linear machine | closed form between events; event times in closed form or by steps that provably miss none | nonlinear damping, a pendulum, resonance without damping, no spring or next to none |
 //! | [`RungeKutta`] | any law of the sliding speed, any machine | order 8 from event to event, landing on each, to a tolerance | cases that [`Exact`] takes |
-//! | [`Bristle`] | laws with internal state | explicit steps, and an L-stable collocation method where the law is stiff, landing on every zero of the velocity and every yield | [`MaxwellSlip`](fmm_friction::MaxwellSlip) on a linear machine, which [`Exact`] can do |
+//! | [`Bristle`] | laws with internal state | Taylor series or other explicit steps, and an L-stable collocation method where the law is stiff, landing on every zero of the velocity and every yield | [`MaxwellSlip`](fmm_friction::MaxwellSlip) on a linear machine, which [`Exact`] can do |
 //! | [`Moreau`] | cross-check | time stepping of the set-valued law, of first order | fits: no derivatives |
 //! | [`Thesis`] | reproduction of the thesis only | the appendix' semi-implicit Euler, branch for branch | fits: its sum of squares jumps |
 //!
@@ -97,7 +97,7 @@
 //! |---|---|---|---|
 //! | [`Exact`] | 0.09 µs | 0.5 ns | 1.6 times as long |
 //! | [`RungeKutta`] | 12 µs; to 1e-10 half of it | 1 to 6 ns | 1.6 times |
-//! | [`Bristle`] | 95 µs for one state | 30 ns | 2 times |
+//! | [`Bristle`] | 7 µs for Dahl, 70 µs for stiff LuGre | 30 ns | 2 times |
 //! | [`Thesis`], [`Moreau`] | - | 18 ns, 28 ns | none |
 //!
 //! While a measured force acts, [`Exact`] goes from sample to sample of the force, 0.3 µs each.

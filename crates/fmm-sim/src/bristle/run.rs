@@ -164,6 +164,11 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
             return Ok(());
         }
         self.step.take_stages();
+        self.advance_by_stages(piece, limit)
+    }
+
+    /// The same by a step of order 8 or an implicit one.
+    fn advance_by_stages(&mut self, piece: &Piece<D>, limit: f64) -> Result<(), SimulationError> {
         let at_zero = self.step.begin[1].value() == self.field.belt.value();
         let room = limit - self.time;
         let mut length = self.first_length().min(room);
