@@ -30,7 +30,7 @@ impl<'a> KnownInputs<'a> {
         let has_force = experiments.iter().any(|experiment| experiment.drive().is_some_and(Drive::is_force));
         let machine = *found.machine();
         let mut shifts = Vec::new();
-        for ends in machine.with_inputs_moved(has_force) {
+        for (_, ends) in machine.with_inputs_moved(has_force) {
             let [below, above] = ends.map(|machine| -> Result<Fit, IdentifyError> {
                 let law = found.family();
                 let problem = Problem::of(law, machine, found.terms().clone(), experiments)?;
