@@ -13,7 +13,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
-use judgement::{Cell, Found, Summary, cells, document, study, text};
+use judgement::{Cell, Found, Summary, cells, document, speed, study, text};
 
 /// Coverage and confusion of the default judgement.
 #[derive(Debug, Parser)]
@@ -37,6 +37,9 @@ struct Arguments {
     /// List the cells, and stop
     #[arg(long)]
     list: bool,
+    /// Time fits by the laws of many shapes instead, on one thread
+    #[arg(long)]
+    speed: bool,
 }
 
 /// Records a cell with `--quick`.
@@ -73,7 +76,30 @@ impl Arguments {
     }
 }
 
+/// Fits by the laws of many shapes: their time, and where they end.
+fn run_speed(arguments: &Arguments) -> Found<()> {
+    let is_chosen = |name: &str| arguments.names.is_empty() || arguments.names.iter().any(|chosen| chosen == name);
+    let count = arguments.seeds.unwrap_or(FEW);
+    let mut fits = Vec::new();
+    for law in speed::FITS.iter().filter(|law| is_chosen(law.name)) {
+        fits.push((law, (0..count).map(|record| law.run(record)).collect::<Found<Vec<_>>>()?));
+        if !arguments.json {
+            eprint!("{}", speed::table(&fits[fits.len() - 1..]));
+        }
+    }
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        writeln!(out, "{}", serde_json::to_string_pretty(&speed::document(&fits))?)?;
+    } else {
+        write!(out, "{}", speed::table(&fits))?;
+    }
+    Ok(())
+}
+
 fn run(arguments: &Arguments) -> Found<()> {
+    if arguments.speed {
+        return run_speed(arguments);
+    }
     let cells = arguments.chosen()?;
     let mut out = std::io::stdout().lock();
     if arguments.list {

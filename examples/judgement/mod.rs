@@ -20,6 +20,7 @@ mod laws;
 mod noise;
 mod random;
 mod setup;
+pub(crate) mod speed;
 mod study;
 mod summary;
 mod text;

@@ -65,7 +65,7 @@
 //! | are my own derivatives right? | [`check_jacobian`]; [`solve`] looks once in debug builds |
 //! | give each residual its uncertainty | [`Weighted`] |
 //! | let outliers count less | [`solve_robust`], as a problem of its own [`Robust`] |
-//! | find the lowest of many minima | [`MultiStart`] |
+//! | find the lowest of many minima | [`MultiStart`]; from starts of one's own, the worse given up early, [`solve_best`] |
 //! | fit several records that share parameters | [`Joint`], [`Block`] |
 //! | which parameters are determined? | [`Fit::null_directions`], [`Estimate::status`] |
 //! | how well? | [`Fit::covariance`], [`Fit::interval`] |
@@ -177,7 +177,7 @@ pub use solver::{
     BoundedLevenbergMarquardt, FitError, JacobianDoubt, Minimizer, NonFinite, Options, Outcome, Progress,
     check_jacobian, solve, solve_observed,
 };
-pub use starts::{Minima, Minimum, MultiStart, StartFailure};
+pub use starts::{Minima, Minimum, MultiStart, StartFailure, solve_best};
 pub use uncertainty::{
     CorrelatedCovariance, Prediction, ProfileEnd, ProfileError, ProfileInterval, PropagatedCovariance, Refit,
     RefitError, ResidualVariance, Sensitivity, SensitivityError, coverage_factor, profile_interval,

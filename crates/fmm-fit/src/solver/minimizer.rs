@@ -176,6 +176,11 @@ impl Minimizer {
         Fit::new(&self, residuals)
     }
 
+    /// Σᵢ rᵢ² of the best values so far, those of earlier searches of this fit among them.
+    pub(crate) fn lowest(&self) -> f64 {
+        self.best.as_ref().map_or(f64::INFINITY, |best| best.sum_of_squares).min(self.current.sum_of_squares)
+    }
+
     pub(crate) fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }

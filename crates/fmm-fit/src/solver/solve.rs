@@ -59,7 +59,7 @@ pub fn solve_observed<P: Residuals + ?Sized>(
     let mut outcome = minimizer.outcome();
     while outcome.is_none() {
         outcome = minimizer.iterate(problem);
-        if observer(&Progress { minimizer: &minimizer }).is_break() && outcome.is_none() {
+        if observer(&Progress::of(&minimizer)).is_break() && outcome.is_none() {
             outcome = Some(minimizer.cancel(problem));
         }
     }
@@ -70,6 +70,13 @@ pub fn solve_observed<P: Residuals + ?Sized>(
 #[derive(Debug, Clone, Copy)]
 pub struct Progress<'a> {
     minimizer: &'a Minimizer,
+}
+
+impl<'a> Progress<'a> {
+    /// That of `minimizer`.
+    pub(crate) fn of(minimizer: &'a Minimizer) -> Self {
+        Self { minimizer }
+    }
 }
 
 impl Progress<'_> {

@@ -1,12 +1,13 @@
 //! Many starts and profile intervals: what they find, and what they say when there is nothing to find.
 
 use std::cell::Cell;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use fmm_fit::{
     EvaluationError, FitError, Minima, MultiStart, Options, Outcome, ProfileEnd, ProfileError, ProfileInterval,
-    ResidualVariance, Residuals, StartFailure, profile_interval, solve,
+    Progress, ResidualVariance, Residuals, StartFailure, profile_interval, solve, solve_best, solve_observed,
 };
 use fmm_model::{Bounds, Parameter};
 
@@ -339,4 +340,48 @@ fn limits_of_one_fit_hold_for_all_of_a_search() {
     // 64 fits of some 60 calls take 4 s; a batch that has begun may run over by one step per start.
     assert!(calls.get() < 1000, "{} calls", calls.get());
     assert!(found.starts() < 64 && found.starts() >= 1);
+}
+
+/// The lower of two minima is found, and with far fewer steps than all fits take: those that lead to the higher one are given up.
+#[test]
+fn of_several_starts_the_best_is_finished() {
+    let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
+    let starts: Vec<Vec<f64>> = (0..8).map(|i| vec![3.0 * f64::from(i) - 4.0, 1.5 * f64::from(i) - 5.0]).collect();
+    let mut steps = 0;
+    let mut count = |_: &Progress<'_>| {
+        steps += 1;
+        ControlFlow::Continue(())
+    };
+    let best = solve_best(&problem, &starts, &Options::default(), &mut count).unwrap();
+    assert!((best.values()[0] - 5.0).abs() < 1e-9 && (best.values()[1] - 4.0).abs() < 1e-9, "{:?}", best.values());
+    let mut all = 0;
+    for start in &starts {
+        let count = |_: &Progress<'_>| {
+            all += 1;
+            ControlFlow::Continue(())
+        };
+        solve_observed(&problem, start, &Options::default(), count).unwrap();
+    }
+    println!("{steps} steps in place of {all}");
+    assert!(2 * steps < all, "{steps} steps in place of {all}");
+    assert!(matches!(
+        solve_best(&problem, &[], &Options::default(), |_| ControlFlow::Continue(())),
+        Err(FitError::NotStarted)
+    ));
+}
+
+/// An observer that breaks ends all fits, and the best so far is given.
+#[test]
+fn an_observer_ends_all_fits() {
+    let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
+    let starts = [vec![0.5, -2.0], vec![6.0, 5.0], vec![20.0, 20.0]];
+    let mut steps = 0;
+    let few = |_: &Progress<'_>| {
+        steps += 1;
+        if steps < 8 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    let best = solve_best(&problem, &starts, &Options::default(), few).unwrap();
+    assert_eq!(steps, 8);
+    let at = |start: &[f64]| freudenstein_roth(start, 0).powi(2) + freudenstein_roth(start, 1).powi(2);
+    assert!(starts.iter().all(|start| best.sum_of_squares() <= at(start)));
 }

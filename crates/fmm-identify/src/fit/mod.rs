@@ -8,6 +8,7 @@ mod machine_problem;
 pub(crate) mod pool;
 pub(crate) mod problem;
 mod profile;
+pub(crate) mod response;
 pub(crate) mod stages;
 pub(crate) mod tangent;
 

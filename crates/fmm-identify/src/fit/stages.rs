@@ -2,11 +2,12 @@
 
 use std::ops::ControlFlow;
 
-use fmm_fit::{Fit, Options, Outcome, Progress, Residuals, solve_observed};
+use fmm_fit::{Fit, Options, Outcome, Progress, Residuals, solve_best, solve_observed};
 use fmm_friction::CoulombViscous;
 use fmm_model::Restoring;
 
 use crate::fit::problem::Problem;
+use crate::fit::response::Response;
 use crate::{Identification, IdentifyError, Sign};
 
 /// A fit by Coulomb and viscous friction to begin another one near, and what its residuals ask for.
@@ -22,6 +23,19 @@ pub(crate) struct Near<'a> {
 /// Iterations after which a law that still fits worse than Coulomb and viscous friction is given up.
 const ENOUGH_TO_BE_BETTER: usize = 30;
 
+/// Relative fall of the sum of squares (1) below which a search for the lowest minimum ends, and its most iterations from one start.
+const ROUGH: f64 = 1e-6;
+const MOST_ROUGH: usize = 30;
+
+/// A fall of the sum of squares, in variances of a residual (1), that no record can tell, and the trial steps in which a fit has to gain
+/// more.
+const TOLD: f64 = 3e-3;
+const PATIENCE: usize = 15;
+
+/// Starts that are taken from the linear response of a record, and those that are fitted of all, the nearest to the records.
+const MOST_FOLLOWED: usize = 3;
+const MOST_STARTS: usize = 4;
+
 /// Starts of a driven motion that are fitted, those nearest to the records.
 const MOST_DRIVEN_STARTS: usize = 2;
 
@@ -36,13 +50,19 @@ pub(crate) fn fit_in_stages(
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
-    if let Some(thinned) = problem.thinned() {
-        // One fit of all samples, begun where a search with few of them has ended.
-        let search = problem.with_records(&thinned);
-        let found = fit_in_search(&search, options, observer)?;
-        return best_fit(problem, problem.name(), vec![found.values().to_vec()], options, observer);
+    let thinned = problem.thinned();
+    let few = thinned.as_ref().map(|thinned| problem.with_records(thinned));
+    let search = few.as_ref().unwrap_or(problem);
+    if problem.is_elaborate() && !problem.has_spring() {
+        let found = fit_roughly(search, options, observer)?;
+        return finished(problem, found.values(), options, observer);
     }
-    fit_in_search(problem, options, observer)
+    let found = fit_simple(search, options, observer)?;
+    if few.is_none() {
+        return Ok(found);
+    }
+    // One fit of all samples, begun where a search with few of them has ended.
+    best_fit(problem, problem.name(), vec![found.values().to_vec()], options, observer)
 }
 
 /// The best end of the fits from the starts near a simple fit, or near one by another law, with few of the samples first. The latter
@@ -96,20 +116,56 @@ fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec
     sums.into_iter().take(count).map(|(_, start)| start).collect()
 }
 
-/// The best end of the fits from everything that may be a start.
-fn fit_in_search(
+/// Where the fits of a law with shapes go from everything that may be a start, near enough to tell which is the lowest minimum.
+fn fit_roughly(
     problem: &Problem<'_>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
-    if !problem.is_elaborate() || problem.has_spring() {
-        return fit_simple(problem, options, observer);
-    }
     let simple = Problem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
     let known = fit_simple(&simple, options, observer)?;
     let mut starts = problem.continued(&simple, known.values());
     starts.extend(problem.starts().into_iter().next());
-    best_fit(problem, problem.name(), starts, options, observer)
+    if let Some(response) = Response::of(problem, &simple, known.values()) {
+        starts.extend(response.followed(&starts).into_iter().take(MOST_FOLLOWED));
+    }
+    let starts = lowest(problem, starts, MOST_STARTS);
+    solve_best(problem, &starts, &rough(options), |progress| observer(progress))
+        .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
+}
+
+/// The fit from `start`, which is near a minimum. Along a valley in which nothing is gained that a record could tell it is not followed.
+fn finished(
+    problem: &Problem<'_>,
+    start: &[f64],
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, IdentifyError> {
+    let failed = |source| IdentifyError::Fit { law: problem.name(), source };
+    let told = TOLD / problem.len() as f64;
+    let (mut lowest, mut since, mut is_left) = (f64::INFINITY, 0, false);
+    let fit = solve_observed(problem, start, options, |progress| {
+        since += 1;
+        if progress.sum_of_squares() < lowest * (1.0 - told) {
+            (lowest, since) = (progress.sum_of_squares(), 0);
+        }
+        is_left = since > PATIENCE;
+        if is_left { ControlFlow::Break(()) } else { observer(progress) }
+    })
+    .map_err(failed)?;
+    if !is_left || fit.outcome().is_success() {
+        return Ok(fit);
+    }
+    let most = options.max_iterations().min(PATIENCE);
+    // Near enough to end well by a tolerance that is no finer than what the record tells.
+    let shallow = options.clone().with_cost_tolerance(told).with_restarts(0).with_max_iterations(most);
+    solve_observed(problem, fit.values(), &shallow, |progress| observer(progress)).map_err(failed)
+}
+
+/// The `options` of a search that only has to decide where the lowest minimum is.
+fn rough(options: &Options) -> Options {
+    let most = options.max_iterations().min(MOST_ROUGH);
+    options.clone().with_cost_tolerance(ROUGH).with_polish_steps(0).with_restarts(0).with_max_iterations(most)
 }
 
 /// The best end of the fits from start values that the records show.

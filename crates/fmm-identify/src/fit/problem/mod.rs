@@ -189,6 +189,18 @@ impl<'a> Problem<'a> {
         Ok(())
     }
 
+    /// The motion of the first record by these values.
+    pub(crate) fn trace(
+        &self,
+        p: &[f64],
+        sampling: &Sampling,
+        trajectory: &mut Trajectory,
+    ) -> Result<(), EvaluationError> {
+        let values = self.values::<f64>(0, p, 0);
+        let motion = self.layout.motion(&self.machine, &self.terms, &self.decays[0], &values)?;
+        (self.law().plain)(&motion, sampling, trajectory)
+    }
+
     /// The events of `record` up to its end.
     pub(crate) fn events(&self, record: usize, p: &[f64]) -> Result<Trajectory, EvaluationError> {
         let values = self.values::<f64>(record, p, 0);

@@ -1,0 +1,131 @@
+//! Successive halving: fits from several starts, of which the worse are given up.
+
+use std::ops::ControlFlow;
+
+use crate::{Fit, FitError, Minimizer, Options, Outcome, Progress, Residuals};
+
+/// Trial steps of each fit before the first are given up.
+const FIRST: usize = 6;
+/// Two fits are one if what is between them moves the residuals by less than this share of their scatter (1).
+const SAME: f64 = 0.1;
+
+/// The best end of the fits from `starts`, of which most are given up early.
+///
+/// All fits go a few steps; the better half goes twice as many, and so on until one is left, which is finished. Of fits that have come
+/// to the same place one goes on. The lowest minimum is missed if its fit is among the worse half at first; where that may be, give
+/// fewer starts, or [`solve`](crate::solve) each.
+///
+/// ```
+/// # use fmm_fit::EvaluationError;
+/// use std::ops::ControlFlow;
+///
+/// use fmm_fit::{Options, Residuals, solve_best};
+/// use fmm_model::Parameter;
+///
+/// /// sin(b t) of unknown b: one minimum for each whole number of waves more or less.
+/// struct Sine([Parameter; 1]);
+/// impl Residuals for Sine {
+///     fn parameters(&self) -> &[Parameter] {
+///         &self.0
+///     }
+///     fn len(&self) -> usize {
+///         100
+///     }
+///     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+///         for (i, residual) in residuals.iter_mut().enumerate() {
+///             let t = 0.1 * i as f64;
+///             *residual = (p[0] * t).sin() - (3.3 * t).sin();
+///         }
+///         Ok(())
+///     }
+/// }
+/// let starts: Vec<_> = (1..=8).map(|b| vec![f64::from(b)]).collect();
+/// let problem = Sine([Parameter::new("rate", "b", "1/s")]);
+/// let fit = solve_best(&problem, &starts, &Options::default(), |_| ControlFlow::Continue(()))?;
+/// assert!((fit.values()[0] - 3.3).abs() < 1e-9);
+/// # Ok::<(), fmm_fit::FitError>(())
+/// ```
+///
+/// `observer` is told of every trial step of every fit, and may end them all. Limits on iterations and evaluations hold for each fit,
+/// that on time for all together.
+///
+/// # Errors
+/// [`FitError`] of the last start if no fit can begin; [`FitError::NotStarted`] without starts.
+///
+/// # References
+/// K. Jamieson, A. Talwalkar, "Non-stochastic best arm identification and hyperparameter optimization", Proc. 19th Int. Conf. Artificial
+/// Intelligence and Statistics (2016) 240, <https://doi.org/10.48550/arXiv.1502.07943>.
+pub fn solve_best<P: Residuals + ?Sized>(
+    problem: &P,
+    starts: &[Vec<f64>],
+    options: &Options,
+    mut observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, FitError> {
+    let mut refused = FitError::NotStarted;
+    let mut fits = Vec::with_capacity(starts.len());
+    for start in starts {
+        let mut minimizer = Minimizer::new(options.clone());
+        match minimizer.begin(problem, start) {
+            Ok(()) => fits.push(minimizer),
+            Err(error) => refused = error,
+        }
+    }
+    let mut steps = FIRST;
+    while fits.len() > 1 {
+        for fit in &mut fits {
+            if go(fit, problem, steps, &mut observer).is_break() {
+                return fits.into_iter().min_by(lower).map(Minimizer::into_fit).ok_or(refused);
+            }
+        }
+        fits.sort_by(lower);
+        keep_distinct(&mut fits);
+        fits.truncate(fits.len().div_ceil(2));
+        steps *= 2;
+    }
+    let Some(mut last) = fits.pop() else { return Err(refused) };
+    let _ = go(&mut last, problem, usize::MAX, &mut observer);
+    Ok(last.into_fit())
+}
+
+/// Takes at most so many trial steps; a break if there is nothing to gain by any other fit, or if the observer says so.
+fn go<P: Residuals + ?Sized>(
+    fit: &mut Minimizer,
+    problem: &P,
+    steps: usize,
+    observer: &mut impl FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    for _ in 0..steps {
+        if fit.outcome().is_some() {
+            break;
+        }
+        let outcome = fit.iterate(problem);
+        if observer(&Progress::of(fit)).is_break() && outcome.is_none() {
+            fit.cancel(problem);
+            return ControlFlow::Break(());
+        }
+    }
+    if fit.outcome() == Some(Outcome::AtNoiseFloor) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
+fn lower(one: &Minimizer, other: &Minimizer) -> std::cmp::Ordering {
+    one.lowest().total_cmp(&other.lowest())
+}
+
+/// Drops fits that are where a better one is; `fits` are sorted.
+fn keep_distinct(fits: &mut Vec<Minimizer>) {
+    let mut distinct: Vec<Minimizer> = Vec::with_capacity(fits.len());
+    for fit in fits.drain(..) {
+        if !distinct.iter().any(|better| is_same(better, &fit)) {
+            distinct.push(fit);
+        }
+    }
+    *fits = distinct;
+}
+
+fn is_same(one: &Minimizer, other: &Minimizer) -> bool {
+    let freedom = one.residuals().len().saturating_sub(one.free().len()).max(1);
+    let scatter = one.sum_of_squares() / freedom as f64;
+    let change: Vec<f64> = one.free().iter().map(|&j| other.values()[j] - one.values()[j]).collect();
+    let square: f64 = (0..change.len()).map(|row| one.triangle().row_times(row, &change).powi(2)).sum();
+    square <= SAME * SAME * scatter
+}
