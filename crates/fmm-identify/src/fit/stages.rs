@@ -54,7 +54,7 @@ pub(crate) fn fit_in_stages(
     let few = thinned.as_ref().map(|thinned| problem.with_records(thinned));
     let search = few.as_ref().unwrap_or(problem);
     if problem.is_elaborate() && !problem.has_spring() {
-        let found = fit_roughly(search, options, observer)?;
+        let found = fit_roughly(&search.clone().bending_in_sight(), options, observer)?;
         return finished(problem, found.values(), options, observer);
     }
     let found = fit_simple(search, options, observer)?;
