@@ -27,11 +27,6 @@ const ENOUGH_TO_BE_BETTER: usize = 30;
 const ROUGH: f64 = 1e-6;
 const MOST_ROUGH: usize = 30;
 
-/// A fall of the sum of squares, in variances of a residual (1), that no record can tell, and the trial steps in which a fit has to gain
-/// more.
-const TOLD: f64 = 3e-3;
-const PATIENCE: usize = 15;
-
 /// Starts that are taken from the linear response of a record, and those that are fitted of all, the nearest to the records.
 const MOST_FOLLOWED: usize = 3;
 const MOST_STARTS: usize = 4;
@@ -55,7 +50,7 @@ pub(crate) fn fit_in_stages(
     let search = few.as_ref().unwrap_or(problem);
     if problem.is_elaborate() && !problem.has_spring() {
         let found = fit_roughly(&search.clone().bending_in_sight(), options, observer)?;
-        return finished(problem, found.values(), options, observer);
+        return best_fit(problem, problem.name(), vec![found.values().to_vec()], options, observer);
     }
     let found = fit_simple(search, options, observer)?;
     if few.is_none() {
@@ -132,34 +127,6 @@ fn fit_roughly(
     let starts = lowest(problem, starts, MOST_STARTS);
     solve_best(problem, &starts, &rough(options), |progress| observer(progress))
         .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
-}
-
-/// The fit from `start`, which is near a minimum. Along a valley in which nothing is gained that a record could tell it is not followed.
-fn finished(
-    problem: &Problem<'_>,
-    start: &[f64],
-    options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
-) -> Result<Fit, IdentifyError> {
-    let failed = |source| IdentifyError::Fit { law: problem.name(), source };
-    let told = TOLD / problem.len() as f64;
-    let (mut lowest, mut since, mut is_left) = (f64::INFINITY, 0, false);
-    let fit = solve_observed(problem, start, options, |progress| {
-        since += 1;
-        if progress.sum_of_squares() < lowest * (1.0 - told) {
-            (lowest, since) = (progress.sum_of_squares(), 0);
-        }
-        is_left = since > PATIENCE;
-        if is_left { ControlFlow::Break(()) } else { observer(progress) }
-    })
-    .map_err(failed)?;
-    if !is_left || fit.outcome().is_success() {
-        return Ok(fit);
-    }
-    let most = options.max_iterations().min(PATIENCE);
-    // Near enough to end well by a tolerance that is no finer than what the record tells.
-    let shallow = options.clone().with_cost_tolerance(told).with_restarts(0).with_max_iterations(most);
-    solve_observed(problem, fit.values(), &shallow, |progress| observer(progress)).map_err(failed)
 }
 
 /// The `options` of a search that only has to decide where the lowest minimum is.
