@@ -56,11 +56,7 @@ impl IntervalComparison {
 }
 
 /// The intervals of all findings that the records share.
-pub(super) fn compared(
-    found: &Identification,
-    profiles: &Profiles,
-    marginals: &[Marginal],
-) -> Vec<IntervalComparison> {
+pub(super) fn compared(found: &Identification, profiles: &Profiles, marginals: &[Marginal]) -> Vec<IntervalComparison> {
     let compare = |marginal: &Marginal| {
         let finding = found.finding(marginal.parameter().name()).filter(|finding| !finding.is_of_record())?;
         let name = finding.parameter().name();
