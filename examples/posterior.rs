@@ -1,6 +1,6 @@
 //! What a posterior costs, and whether it is right: effective draws a second, and ranks of true values over simulated ring-downs.
 //!
-//! `cargo run --release -p fmm-identify --features sampler --example posterior -- [RECORDS]`; the times are of one thread.
+//! `cargo run --release --example posterior -- [RECORDS]`; the times are of one thread.
 
 use std::error::Error;
 use std::time::{Duration, Instant};
