@@ -3,6 +3,7 @@
 use fmm_fit::Marginal;
 
 use crate::figure::{Cells, Layer, Panel, Role, drawn_corner, label};
+use crate::page::words;
 
 /// More panels side by side cannot be read.
 const MOST: usize = 6;
@@ -19,7 +20,7 @@ pub(crate) fn corner(marginals: &[&Marginal]) -> String {
     let shown = &marginals[..marginals.len().min(MOST)];
     let last = shown.len().saturating_sub(1);
     let of = |marginal: &Marginal| {
-        let name = marginal.parameter().name().replace('_', " ");
+        let name = words(marginal.parameter().name());
         if marginal.parameter().unit() == "1" { name } else { label(name, marginal.parameter().unit()) }
     };
     let panel = |row: usize, column: usize| {
