@@ -78,7 +78,7 @@ fn timed<F: LawFamily>(name: &str, law: &[(&'static str, f64)]) -> Result<(), Bo
     let fit = solve(&problem, problem.values(), &Options::default())?;
     let (begun, clock) = (processor_time(), Instant::now());
     let posterior = Sampler::default().with_check_steps(0).sample(&problem, &fit)?;
-    let spent = processor_time().zip(begun).map_or_else(|| clock.elapsed(), |(end, begun)| end - begun);
+    let spent = processor_time().zip(begun).map_or_else(|| clock.elapsed(), |(end, begun)| end.saturating_sub(begun));
     report(name, &posterior, spent);
     Ok(())
 }

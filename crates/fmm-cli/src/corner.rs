@@ -44,7 +44,7 @@ fn range(marginal: &Marginal) -> (f64, f64) {
 /// The bin of a value, if it is in one of `count` over the range.
 fn bin(value: f64, (low, high): (f64, f64), count: usize) -> Option<usize> {
     let share = (value - low) / (high - low);
-    (0.0..1.0).contains(&share).then(|| (share * count as f64) as usize)
+    (0.0..1.0).contains(&share).then_some((share * count as f64) as usize)
 }
 
 /// The outline of a histogram.

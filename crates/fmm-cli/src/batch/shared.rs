@@ -18,6 +18,9 @@ pub(crate) struct SharedPart {
     pub(crate) u: f64,
 }
 
+/// Contributions of one input, each with the place of its record.
+type Parts = Vec<(usize, f64)>;
+
 /// Results of records in parts.
 pub(super) struct Parted {
     /// With the uncertainties of what is the records' own.
@@ -32,7 +35,7 @@ impl Parted {
     /// Of what records tell of one quantity. Inputs of one source, value and uncertainty are one input.
     pub(super) fn of(told: &[(&Row, &Told)]) -> Self {
         let mut own: Vec<f64> = vec![0.0; told.len()];
-        let mut by_input: BTreeMap<(&str, u64, u64), (&Stated, Vec<(usize, f64)>)> = BTreeMap::new();
+        let mut by_input: BTreeMap<(&str, u64, u64), (&Stated, Parts)> = BTreeMap::new();
         for (record, (row, told)) in told.iter().enumerate() {
             for part in &told.contributions {
                 let mut stated = row.found().into_iter().flat_map(|found| &found.stated);

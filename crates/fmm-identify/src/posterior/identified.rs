@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
 use crate::fit::problem::Problem;
-use crate::posterior::intervals::compared;
+use crate::posterior::intervals::{LEVEL, compared};
 use crate::posterior::known_inputs::KnownInputs;
 use crate::posterior::predictive::predicted;
 use crate::{Experiment, Identification, IdentifyError, IntervalComparison, Origin, PredictiveCheck};
