@@ -28,6 +28,8 @@ const FEWEST_RECORDS: usize = 5 * BINS;
 ///
 /// ```
 /// use fmm_fit::{Automatic, Bounds, Calibration, EvaluationError, Model, Parameter, Prior, ResidualVariance, Sampler, Scalar, Weighted};
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// use rand_distr::{Distribution, Normal};
 ///
 /// /// A decay at five times.
 /// struct Decay {
@@ -54,8 +56,7 @@ const FEWEST_RECORDS: usize = 5 * BINS;
 ///     }
 /// }
 ///
-/// // A noise of 0.02, by a generator that nobody should take for more than an example.
-/// let noise = |seed: u64, i: usize| 0.035 * (((seed ^ (seed >> 32)) as f64 * 1e-3 + i as f64 * 0.618_034).fract() * 2.0 - 1.0);
+/// let noise = Normal::new(0.0, 0.02)?;
 /// let parameters = ["amplitude", "rate"].map(|name| Parameter::from(name).bounded(Bounds::NOT_NEGATIVE));
 /// let sampler = Sampler::default()
 ///     .with_prior("amplitude", Prior::normal(2.0, 0.2)?)
@@ -64,7 +65,8 @@ const FEWEST_RECORDS: usize = 5 * BINS;
 ///     .with_draws(100)
 ///     .with_check_steps(0);
 /// let calibration = Calibration::of(&sampler, &parameters, 100, |p, seed| {
-///     let data = [0, 1, 2, 3, 4].map(|i| decay(p, i as f64) + noise(seed, i));
+///     let mut random = ChaCha8Rng::seed_from_u64(seed);
+///     let data = [0.0, 1.0, 2.0, 3.0, 4.0].map(|t| decay(p, t) + noise.sample(&mut random));
 ///     Ok(Weighted::new(Automatic::<_, 2>::new(Decay { data, parameters: parameters.clone() }), vec![0.02; 5])?)
 /// })?;
 /// assert!(calibration.p_value("rate").expect("a parameter") > 0.01);
