@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use std::time::Instant;
 
 use clap::Parser;
-use fmm_fit::{Options, solve};
+use fmm_fit::{Options, Residuals, solve};
 use fmm_friction::{Berger, CoulombViscous, LawFamily};
 use fmm_identify::{
     Candidate, DesignPrediction, Experiment, Guess, Known, Machine, Plan, PlannedSensor, PlannedTest, Preparation,
@@ -74,14 +74,19 @@ fn scatter<F: LawFamily>(law: &[f64], tests: &[Test], refits: u64) -> Result<(f6
             decays.push(Experiment::ring_down(&record, &Preparation::default())?.with_load_factor(load / LOAD)?);
         }
         let problem = Problem::new::<F>(machine()?, &decays)?;
-        // Frequency and law, then position, velocity and offset of each record.
+        // Frequency and law, then what belongs to each record.
         let mut start = vec![(STIFFNESS / MASS).sqrt() / TAU];
         let force = LOAD / MASS;
         start.extend(F::PARAMETERS.iter().zip(law).map(|(parameter, value)| match parameter.role() {
             fmm_friction::Role::Shape => *value,
             _ => value * force,
         }));
-        start.extend(tests.iter().flat_map(|(release, _)| [*release, 0.0, 0.0]));
+        let mut releases = tests.iter().map(|(release, _)| *release);
+        for parameter in &problem.parameters()[start.len()..] {
+            // A record in which a hum was seen by chance has parameters of that as well.
+            let is_position = parameter.name().starts_with("initial_position");
+            start.push(if is_position { releases.next().unwrap_or(0.0) } else { 0.0 });
+        }
         let fit = solve(&problem, &start, &Options::default())?;
         if fit.outcome().is_success() {
             found.push(fit.values()[1]);

@@ -1,4 +1,6 @@
-//! Ratios of criterion's medians: of one run, they are worth more than times on a machine that others use too.
+//! Ratios of criterion's medians with their goals: of one run, they are worth more than times on a machine that others use too.
+
+use std::ops::{Bound, RangeBounds};
 
 /// Criterion's median of the benchmark `group/name` of this run (ns), if it was measured.
 pub(crate) fn median(benchmark: &str) -> Option<f64> {
@@ -9,10 +11,22 @@ pub(crate) fn median(benchmark: &str) -> Option<f64> {
     estimates["median"]["point_estimate"].as_f64()
 }
 
-/// Prints how many times as long one benchmark takes as another, beside what is wanted.
-pub(crate) fn print_ratio(slow: &str, fast: &str, wanted: &str) {
+/// Prints a number as a row of a Markdown table: what it is, its value, its goal (`..` for none), and whether that is missed.
+pub(crate) fn print_row(what: &str, value: f64, goal: impl RangeBounds<f64>) {
+    let wanted = match (goal.start_bound(), goal.end_bound()) {
+        (Bound::Included(least), _) => format!("at least {least}"),
+        (_, Bound::Included(most)) => format!("at most {most}"),
+        _ => "-".to_owned(),
+    };
+    let missed = if goal.contains(&value) { "" } else { ", missed" };
+    // Three significant digits, and whole numbers above a hundred.
+    let digits = (2.0 - value.abs().max(1e-3).log10().floor()).clamp(0.0, 5.0) as usize;
+    println!("| {what} | {value:.digits$} | {wanted}{missed} |");
+}
+
+/// The row of how many times as long one benchmark takes as another, where both were measured.
+pub(crate) fn print_ratio(slow: &str, fast: &str, goal: impl RangeBounds<f64>) {
     if let (Some(slow_time), Some(fast_time)) = (median(slow), median(fast)) {
-        let wanted = if wanted.is_empty() { String::new() } else { format!(" (wanted: {wanted})") };
-        println!("{slow} / {fast} = {:.2}{wanted}", slow_time / fast_time);
+        print_row(&format!("`{slow}` / `{fast}`"), slow_time / fast_time, goal);
     }
 }

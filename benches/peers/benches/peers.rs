@@ -12,7 +12,7 @@ use std::hint::black_box;
 use criterion::Criterion;
 use fmm_peers::{berger, by_diffsol};
 use fmm_sim::{Engine, RungeKutta, Thesis, Trajectory};
-use ratio::median;
+use ratio::{median, print_row};
 
 /// Tolerances tried (1).
 const TOLERANCES: [f64; 5] = [1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
@@ -67,7 +67,7 @@ fn main() {
         }
     }
     if let (Some(thesis), [Some(ours), Some(theirs)]) = (median("berger/thesis"), best) {
-        println!("diffsol / fmm at {WANTED:e} m/s: {:.1} (wanted: at least 5)", theirs / ours);
-        println!("thesis / fmm at {WANTED:e} m/s: {:.2} (wanted: at least 1)", thesis / ours);
+        print_row(&format!("diffsol / fmm at {WANTED:e} m/s"), theirs / ours, 5.0..);
+        print_row(&format!("thesis / fmm at {WANTED:e} m/s"), thesis / ours, 1.0..);
     }
 }

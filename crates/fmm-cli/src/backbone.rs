@@ -166,7 +166,10 @@ pub(crate) fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggesti
     let decibels = |square: &f64| 10.0 * square.max(f64::MIN_POSITIVE).log10();
     let lines = spectrum.squares.iter().enumerate().skip(1).map(|(k, square)| (k as f64 * per_line, decibels(square)));
     let points = backbone.points();
-    let envelope = |sign: f64| backbone.envelope().map(move |(time, seen)| (time, sign * seen)).collect::<Vec<_>>();
+    // An offset of the sensor is no part of the mode.
+    let middle = record.values().iter().sum::<f64>() / count as f64;
+    let envelope =
+        |sign: f64| backbone.envelope().map(move |(time, seen)| (time, middle + sign * seen)).collect::<Vec<_>>();
     let velocity = |point: &BackbonePoint| TAU * point.frequency.value * point.amplitude.value;
     let said = |point: &BackbonePoint| suggestion.damping_at(velocity(point));
     let sprung = |point: &BackbonePoint| suggestion.frequency_at(point.amplitude.value).unwrap_or(f64::NAN);
@@ -210,7 +213,7 @@ pub(crate) fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggesti
     if let (true, Some(cells)) = (own.len() > 1, spectrogram(record, &own)) {
         let path = points.iter().map(|point| (point.time, point.frequency.value)).collect();
         let panel = Panel::new("time / s", "frequency / Hz", 340.0).over(cells);
-        panels.insert(2, panel.with(Layer::new(Role::Fitted, "frequency of the mode", path)));
+        panels.insert(2, panel.with(Layer::new(Role::Fitted, "frequency of the mode; the darker, the stronger", path)));
     }
     panels
 }

@@ -19,7 +19,7 @@ struct Program {
     command: Command,
 }
 
-const AFTER_HELP: &str = "Exit codes: 0 found, 1 refused or failed, 2 wrong usage. Results go to standard output, everything else to \
+const AFTER_HELP: &str = "Begin with `fmm identify`, which takes a bundled record. Exit codes: 0 found, 1 refused or failed, 2 wrong usage. Results go to standard output, everything else to \
                           standard error. `fmm COMMAND --help` explains a command.";
 
 #[derive(Debug, Subcommand)]

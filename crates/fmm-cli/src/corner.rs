@@ -3,6 +3,7 @@
 use fmm_fit::Marginal;
 
 use crate::figure::{Cells, Layer, Panel, Role, drawn_corner, label};
+use crate::page::words;
 
 /// More panels side by side cannot be read.
 const MOST: usize = 6;
@@ -19,7 +20,7 @@ pub(crate) fn corner(marginals: &[&Marginal]) -> String {
     let shown = &marginals[..marginals.len().min(MOST)];
     let last = shown.len().saturating_sub(1);
     let of = |marginal: &Marginal| {
-        let name = marginal.parameter().name().replace('_', " ");
+        let name = words(marginal.parameter().name());
         if marginal.parameter().unit() == "1" { name } else { label(name, marginal.parameter().unit()) }
     };
     let panel = |row: usize, column: usize| {
@@ -43,7 +44,7 @@ fn range(marginal: &Marginal) -> (f64, f64) {
 /// The bin of a value, if it is in one of `count` over the range.
 fn bin(value: f64, (low, high): (f64, f64), count: usize) -> Option<usize> {
     let share = (value - low) / (high - low);
-    (0.0..1.0).contains(&share).then(|| (share * count as f64) as usize)
+    (0.0..1.0).contains(&share).then_some((share * count as f64) as usize)
 }
 
 /// The outline of a histogram.

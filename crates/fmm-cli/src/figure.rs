@@ -26,6 +26,10 @@ const HEADROOM: f64 = 0.28;
 const LINE: f64 = 20.0;
 const AROUND: f64 = 75.0;
 
+/// Steps between ticks along x at most, and in the narrow panels of a triangle.
+const STEPS: f64 = 8.0;
+const CORNER_STEPS: f64 = 3.0;
+
 /// Left and right of the axes (px): equal for all panels, so that their time axes agree.
 const MARGINS: (f64, f64) = (90.0, 24.0);
 
@@ -169,11 +173,11 @@ impl Panel {
     }
 
     fn layout(&self) -> Layout {
-        self.layout_below(self.headroom())
+        self.layout_below(self.headroom(), STEPS)
     }
 
-    /// With this share of the data's range free above it.
-    fn layout_below(&self, headroom: f64) -> Layout {
+    /// With this share of the data's range free above it, and at most so many steps of ticks along x.
+    fn layout_below(&self, headroom: f64, steps: f64) -> Layout {
         let corners = self.cells.iter().flat_map(|cells| [(cells.x.0, cells.y.0), (cells.x.1, cells.y.1)]);
         let points = self.layers.iter().flat_map(|layer| layer.points.iter().copied());
         let shown: Vec<(f64, f64)> = corners.chain(points).collect();
@@ -186,7 +190,7 @@ impl Panel {
             .with_y_label(self.y_label.as_str())
             .with_x_axis_min(x_low - 0.015 * (x_high - x_low))
             .with_x_axis_max(x_high + 0.015 * (x_high - x_low))
-            .with_x_tick_step(step(x_high - x_low))
+            .with_x_tick_step(step(x_high - x_low, steps))
             .with_force_margins(MARGINS.0, MARGINS.1)
             .with_y_axis_min(y_low - 0.05 * span)
             .with_y_axis_max(y_high + headroom * span)
@@ -222,7 +226,7 @@ pub fn drawn_corner(rows: &[Vec<Panel>]) -> String {
     let count = rows.len();
     let cells = || rows.iter().flat_map(|row| row.iter().map(Some).chain(std::iter::repeat_n(None, count - row.len())));
     let layout = |panel: Option<&Panel>| {
-        panel.map_or_else(|| Layout::new((0.0, 1.0), (0.0, 1.0)), |panel| panel.layout_below(0.03))
+        panel.map_or_else(|| Layout::new((0.0, 1.0), (0.0, 1.0)), |panel| panel.layout_below(0.03, CORNER_STEPS))
     };
     let grid = Grid::new(count, count)
         .with_plots(cells().map(|panel| panel.map_or_else(Vec::new, Panel::plots)).collect())
@@ -277,7 +281,7 @@ pub fn drawn_histogram(x_label: &str, name: &str, values: &[f64]) -> String {
         .with_y_axis_min(0.0)
         .with_y_axis_max(top * (1.0 + HEADROOM))
         .with_x_tick_format(ticks(high - low))
-        .with_x_tick_step(step(high - low))
+        .with_x_tick_step(step(high - low, STEPS))
         .with_force_margins(MARGINS.0, MARGINS.1)
         .with_y_tick_format(ticks(top));
     let grid = Grid::new(1, 1).with_plots(vec![plots]).with_layouts(vec![layout]).with_keep_panel_legends();
@@ -304,8 +308,10 @@ fn renumbered(svg: &str) -> String {
 }
 
 /// Fonts, frame and legend that all figures share.
-fn styled(layout: Layout) -> Layout {
+fn styled(mut layout: Layout) -> Layout {
     let theme = Theme { font_family: Some("Helvetica, Arial, sans-serif".into()), ..Theme::minimal() };
+    // The bar of shades that `kuva` adds to cells would lie on them, as all panels have the same margins.
+    layout.show_colorbar = false;
     layout
         .with_theme(theme)
         .with_label_size(14)
@@ -316,11 +322,11 @@ fn styled(layout: Layout) -> Layout {
         .with_ticks(6)
 }
 
-/// A tick step of 1, 2 or 5 times a power of ten, for about six ticks over `span`.
-fn step(span: f64) -> f64 {
-    let power = 10f64.powf((span / 6.0).log10().floor());
+/// The smallest tick step of 1, 2 or 5 times a power of ten of which `span` has `most` at most.
+fn step(span: f64, most: f64) -> f64 {
+    let power = 10f64.powf((span / most).log10().floor());
     let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
-    steps.into_iter().find(|step| span / step <= 8.0).unwrap_or(10.0 * power)
+    steps.into_iter().find(|step| span / step <= most).unwrap_or(10.0 * power)
 }
 
 /// Enough decimals for about six ticks over `span`.

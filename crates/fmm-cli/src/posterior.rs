@@ -5,7 +5,7 @@ use fmm_identify::{IdentificationPosterior, IntervalComparison};
 use fmm_model::Rounded;
 
 use crate::corner::corner;
-use crate::page::{cell, escaped, figure, table, text_cell};
+use crate::page::{cell, escaped, figure, table, text_cell, words};
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;
@@ -30,7 +30,7 @@ pub(crate) fn html(posterior: &IdentificationPosterior) -> String {
     } else {
         figure(
             &corner(&drawn),
-            "The posterior of what the records share: each quantity, and each pair of them.",
+            "The posterior of what the records share: the density of each quantity, and each pair of them, darker where it is more probable.",
             "corner",
         )
     };
@@ -58,7 +58,7 @@ fn row(marginal: &Marginal, intervals: &IntervalComparison) -> Vec<String> {
     });
     let effective = marginal.bulk_effective_size().min(marginal.tail_effective_size());
     vec![
-        format!("<th scope=\"row\">{}</th>", escaped(&intervals.name().replace('_', " "))),
+        format!("<th scope=\"row\">{}</th>", escaped(&words(intervals.name()))),
         text_cell(&rounded.to_string()),
         text_cell(marginal.parameter().unit()),
         or_none(marginal.interval(LEVEL).map(both)),

@@ -35,6 +35,30 @@ fn lists_are_documents_too() {
 }
 
 #[test]
+fn every_command_prints_one_document() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    for (arguments, key) in [
+        ("identify data/flexure/run_1.csv --law coulomb_viscous --json", "models"),
+        ("compare data/flexure/run_1.csv --law coulomb,coulomb_viscous --json", "models"),
+        ("force data/damper_1Hz_36lb_1amplitude.csv --average 0.05 --model coulomb --json", "models"),
+        ("backbone --json", "points"),
+        ("simulate scenarios/berger_16mm.json --json", "samples"),
+        ("frf data/hammer_1.mat --json", "modes"),
+        ("budget budgets/stiffness.toml --trials 10000 --json", "results"),
+        ("design designs/berger.toml --json", "tests"),
+        ("batch data/flexure --json -- --law coulomb_viscous", "records"),
+    ] {
+        let output = Command::new(env!("CARGO_BIN_EXE_fmm"))
+            .args(arguments.split_whitespace())
+            .current_dir(&examples)
+            .output()
+            .unwrap();
+        let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert!(output.status.success() && document.get(key).is_some(), "{arguments}: {document}");
+    }
+}
+
+#[test]
 fn nothing_has_colours() {
     for arguments in [&["--help"][..], &["identify", "--no-such-option"], &["laws"], &["compare", "no such file.csv"]] {
         let output = fmm(arguments);
@@ -44,8 +68,10 @@ fn nothing_has_colours() {
 
 #[test]
 fn shells_and_man_know_every_command() {
-    let commands =
-        ["identify", "compare", "force", "backbone", "simulate", "frf", "budget", "batch", "merge", "laws", "formats"];
+    let commands = [
+        "identify", "compare", "force", "backbone", "simulate", "frf", "budget", "design", "batch", "merge", "laws",
+        "formats",
+    ];
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let script = String::from_utf8(fmm(&["completions", shell]).stdout).unwrap();
         assert!(commands.iter().all(|command| script.contains(command)), "{shell}");

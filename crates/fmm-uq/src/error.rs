@@ -296,6 +296,16 @@ impl UncertaintyError {
         }
     }
 
+    /// A shared input of a consensus that does not say what it contributes to each result.
+    pub(crate) fn unequal_contributions(input: usize, found: usize, results: usize) -> Self {
+        Self::Inputs {
+            what: format!(
+                "a shared input contributes to each of the {results} results, by 0 where it has no part, but for input {input} there are \
+                 {found} contributions"
+            ),
+        }
+    }
+
     /// An input in two ensembles, or twice in one.
     pub(crate) fn already_in_ensemble(name: &str) -> Self {
         Self::Inputs {

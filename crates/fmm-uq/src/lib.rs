@@ -41,7 +41,7 @@
 //! | what if the model is a text, known at run time only? | `Formula` (feature `formula`) | models with conditions or loops |
 //! | how is a result stated? | a [`Budget`] prints; [`Budget::statement`], [`MonteCarlo::statement`], [`Budget::to_csv`] | |
 //! | what differs between runs, laboratories or specimens? | [`AnalysisOfVariance`], [`Precision`] | |
-//! | which value do several results agree on? | [`Consensus`] | results that share an error |
+//! | which value do several results agree on? | [`Consensus`], [with what they share](Consensus::with_shared) | shared errors that nobody stated |
 //! | several results together? | [`Propagation`] with its regions, [`OutputSample::ellipsoid`], [`OutputSample::rectangle`] | |
 //!
 //! Write a model once, generic in its number: `f64` for trials, [`Taylor`] for exact derivatives. A closure has one number

@@ -62,7 +62,7 @@ fn kinds_fit_the_motion(setup: &Setup, motion: &Trajectory) {
     }
 }
 
-fn check<L: BristleLaw<f64>>(seed: u64, law: impl Fn(&mut ChaCha8Rng, &Contact) -> L) {
+fn check<L: BristleLaw<f64> + std::fmt::Debug>(seed: u64, law: impl Fn(&mut ChaCha8Rng, &Contact) -> L) {
     let (mut checked, mut given_up) = (0, 0);
     for (setup, scenario) in scenarios(seed, false, law) {
         let sampling = setup.sampling(SAMPLES).with_work();
@@ -76,7 +76,11 @@ fn check<L: BristleLaw<f64>>(seed: u64, law: impl Fn(&mut ChaCha8Rng, &Contact) 
         };
         // Some hundred swings, each off by up to the tolerance.
         let imbalance = motion.energy_imbalance(&scenario).unwrap();
-        assert!(imbalance < 300.0 * Bristle::default().tolerance(), "{imbalance:e} of the energy is missing: {setup}");
+        assert!(
+            imbalance < 300.0 * Bristle::default().tolerance(),
+            "{imbalance:e} of the energy is missing: {:?} {setup}",
+            scenario.law()
+        );
         samples_follow_the_modes(&setup, &sampling, &motion, 1e-8);
         kinds_fit_the_motion(&setup, &motion);
         checked += 1;

@@ -9,6 +9,7 @@ mod joint;
 mod manifest;
 mod page;
 mod row;
+mod shared;
 mod sheet;
 mod summary;
 mod table;

@@ -20,7 +20,8 @@ pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> Stri
     let body = format!(
         "<h1>{TITLE}</h1>\n<p class=\"verdict\">{} of {} records identified</p>\n{}\n\
          <section><h2>Together</h2>\n<p>Consensus with random effects; its interval is that of Hartung and Knapp, which holds for few records. \
-         The mean without effects takes the records to differ by their uncertainties only.</p>\n{}{}</section>\n{}{}{}\
+         The mean without effects takes the records to differ by their uncertainties only. What records share, such as one mass, does not \
+         average out.</p>\n{}{}</section>\n{}{}{}\
          <section><h2>Records</h2>\n{}</section>\n\
          <section><h2>How this was made</h2>\n<dl><dt>Program</dt><dd><code>fmm {}</code></dd><dt>Options for all</dt><dd><code>{}</code></dd></dl></section>\n",
         summary.found,
@@ -60,6 +61,7 @@ fn together(summary: &Summary) -> String {
             format!("<th scope=\"row\">{}</th>", escaped(&quantity.name.replace('_', " "))),
             text_cell(&quantity_text(quantity, mean, u)),
             text_cell(&Rounded::new(mean, Some(u)).interval(low, high)),
+            text_cell(&format!("{:.1e}", quantity.shared_u)),
             text_cell(&format!("{:.3e}", quantity.between)),
             text_cell(&format!("{:.3e}", quantity.between_der_simonian_laird)),
             text_cell(&format!("{:.2e}", quantity.homogeneity_p)),
@@ -74,6 +76,7 @@ fn together(summary: &Summary) -> String {
         "quantity",
         "consensus ± u",
         "95 % interval",
+        "of u shared by records",
         "τ (Mandel-Paule)",
         "τ (DerSimonian-Laird)",
         "p of homogeneity",

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use fmm_fit::EstimateStatus;
-use fmm_identify::{Experiment, Finding, Identification, Origin};
+use fmm_identify::{Experiment, Finding, Identification, Origin, Source};
 use serde::{Deserialize, Serialize};
 
 use super::campaign::{Campaign, write_at_once};
@@ -49,6 +49,8 @@ pub(crate) struct Found {
     pub(crate) law: String,
     pub(crate) is_decided: bool,
     pub(crate) findings: Vec<Told>,
+    /// What was stated of machine and instrument with an uncertainty.
+    pub(crate) stated: Vec<Stated>,
     pub(crate) rms_residual: f64,
     pub(crate) unit: String,
     /// Largest amplitude, in the unit of the record.
@@ -67,6 +69,26 @@ pub(crate) struct Told {
     pub(crate) u: Option<f64>,
     /// Without it, infinitely many.
     pub(crate) degrees_of_freedom: Option<f64>,
+    /// What each source makes of u.
+    pub(crate) contributions: Vec<Part>,
+}
+
+/// A part of an uncertainty.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Part {
+    pub(crate) source: String,
+    /// What it alone makes of the uncertainty, in the unit of the quantity.
+    pub(crate) u: f64,
+}
+
+/// An input that was stated with an uncertainty.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Stated {
+    /// The source of uncertainty that it is.
+    pub(crate) source: String,
+    /// In the unit of its option, as u is.
+    pub(crate) value: f64,
+    pub(crate) u: f64,
 }
 
 impl Row {
@@ -145,12 +167,16 @@ impl OfRecord {
         let comparison =
             self.question.answer(std::slice::from_ref(&decay), &candidates, |_, _| ControlFlow::Continue(()))?;
         let preferred = comparison.preferred();
+        let gain =
+            Some((Source::Gain, self.given.scale.unwrap_or(1.0), self.question.scale_u)).filter(|gain| gain.2 > 0.0);
+        let stated = self.question.stated().chain(gain);
         let warnings = input.warnings.into_iter().chain(comparison.warnings().iter().map(ToString::to_string));
         Ok(Found {
             origin: input.origin,
             law: preferred.law().to_owned(),
             is_decided: comparison.is_decided(),
             findings: told(preferred),
+            stated: stated.map(|(source, value, u)| Stated { source: source.to_string(), value, u }).collect(),
             rms_residual: preferred.rms_residual(),
             unit: decay.record().unit().to_owned(),
             amplitude: decay.summary().amplitudes.0,
@@ -170,6 +196,10 @@ pub(super) fn told(found: &Identification) -> Vec<Told> {
         value: finding.value(),
         u: finding.uncertainty(),
         degrees_of_freedom: Some(finding.degrees_of_freedom()).filter(|freedom| freedom.is_finite()),
+        contributions: finding
+            .contributions()
+            .map(|part| Part { source: part.source.to_string(), u: part.uncertainty })
+            .collect(),
     };
     found.findings().iter().filter(is_of_machine).map(value).collect()
 }

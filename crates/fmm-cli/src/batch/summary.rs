@@ -1,13 +1,14 @@
 //! What the records of a campaign say together.
 
 use fmm_model::Estimated;
-use fmm_uq::{Consensus, Interval, Outlier, Precision, RandomEffects};
+use fmm_uq::{Interval, Outlier, Precision, RandomEffects};
 use serde::Serialize;
 
 use super::campaign::Campaign;
 use super::dependence::{Dependence, FRICTION, dependences};
 use super::joint::{Joint, Together};
-use super::row::{Row, quantities};
+use super::row::{Row, Told, quantities};
+use super::shared::{Parted, SharedPart};
 use super::sheet::Field;
 
 /// Coverage probability of intervals (1).
@@ -40,6 +41,9 @@ pub(crate) struct Quantity {
     pub(crate) mean: f64,
     pub(crate) u: f64,
     pub(crate) interval_95: [f64; 2],
+    /// What inputs that records share make of u, together and each.
+    pub(crate) shared_u: f64,
+    pub(crate) shared: Vec<SharedPart>,
     /// Standard deviation between the records beyond their uncertainties.
     pub(crate) between: f64,
     /// The same after DerSimonian and Laird.
@@ -104,15 +108,13 @@ fn by_joint(together: &Together, (name, unit): (&str, &str)) -> Option<(f64, Opt
 
 impl Quantity {
     fn of(campaign: &Campaign, rows: &[Row], together: Option<&Together>, quantity: (&str, &str)) -> Option<Self> {
-        let shown: Vec<(&Row, f64, Option<f64>)> =
-            rows.iter().filter_map(|row| row.told(quantity).map(|told| (row, told.value, told.u))).collect();
-        let told: Vec<(&Row, Estimated)> = shown
-            .iter()
-            .filter_map(|(row, value, u)| Some((*row, Estimated::new(*value, u.filter(|u| *u > 0.0)?))))
-            .collect();
-        let results: Vec<Estimated> = told.iter().map(|(_, result)| *result).collect();
-        let consensus = Consensus::of(&results, RandomEffects::MandelPaule).ok()?;
-        let other = Consensus::of(&results, RandomEffects::DerSimonianLaird).ok()?;
+        let shown: Vec<(&Row, &Told)> =
+            rows.iter().filter_map(|row| row.told(quantity).map(|told| (row, told))).collect();
+        let told: Vec<(&Row, &Told)> =
+            shown.iter().copied().filter(|(_, told)| told.u.is_some_and(|u| u > 0.0)).collect();
+        let parted = Parted::of(&told);
+        let consensus = parted.consensus(RandomEffects::MandelPaule).ok()?;
+        let other = parted.consensus(RandomEffects::DerSimonianLaird).ok()?;
         let Interval { low, high, .. } = consensus.interval(LEVEL).ok()?;
         let Estimated { value: mean, uncertainty: u } = consensus.mean();
         let moved = consensus.influences().into_iter().zip(&told).filter_map(|(influence, (row, _))| {
@@ -127,6 +129,8 @@ impl Quantity {
             mean,
             u,
             interval_95: [low, high],
+            shared_u: consensus.shared_uncertainty(),
+            shared: parted.shared(&consensus),
             between: consensus.between(),
             between_der_simonian_laird: other.between(),
             homogeneity_p: consensus.p_value(),
@@ -140,13 +144,13 @@ impl Quantity {
 }
 
 impl ByGroup {
-    fn of(column: &str, told: &[(&Row, Estimated)]) -> Option<Self> {
+    fn of(column: &str, told: &[(&Row, &Told)]) -> Option<Self> {
         let mut groups: Vec<(String, Vec<f64>)> = Vec::new();
-        for (row, result) in told {
+        for (row, told) in told {
             let group = row.description.get(column)?;
             match groups.iter_mut().find(|(name, _)| name == group) {
-                Some((_, values)) => values.push(result.value),
-                None => groups.push((group.clone(), vec![result.value])),
+                Some((_, values)) => values.push(told.value),
+                None => groups.push((group.clone(), vec![told.value])),
             }
         }
         let (names, values): (Vec<String>, Vec<Vec<f64>>) = groups.into_iter().unzip();

@@ -74,10 +74,22 @@ pub(super) fn statement(quantity: &Quantity) -> String {
         format!("the records agree within their uncertainties (p = {homogeneity_p:.2})")
     };
     format!(
-        "{} = {}, 95 % within {interval}, from {records} records; {differ}",
+        "{} = {}, 95 % within {interval}, from {records} records{}; {differ}",
         quantity.name,
-        quantity_text(quantity, *mean, *u)
+        quantity_text(quantity, *mean, *u),
+        shared(quantity)
     )
+}
+
+/// What of u the records share, if anything.
+fn shared(quantity: &Quantity) -> String {
+    if quantity.shared.is_empty() {
+        return String::new();
+    }
+    let mut sources: Vec<&str> = quantity.shared.iter().map(|part| part.input.source.as_str()).collect();
+    sources.dedup();
+    let unit = if quantity.unit == "1" { String::new() } else { format!(" {}", quantity.unit) };
+    format!(" (of u shared by records: {:.1e}{unit} by {})", quantity.shared_u, sources.join(", "))
 }
 
 /// What a joint fit said, in sentences.

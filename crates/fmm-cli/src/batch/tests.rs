@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use std::collections::BTreeMap;
 
-use super::row::{Found, Outcome, Told};
+use super::row::{Found, Outcome, Part, Told};
 use super::*;
 
 fn folder(name: &str) -> PathBuf {
@@ -89,9 +89,13 @@ fn any_split_gives_the_same_bytes() {
     let rows: Vec<Row> = (0..8).map(|index| Row::read(&home.join("whole"), index).unwrap()).collect();
     assert_eq!(rows.iter().filter_map(Row::found).count(), 5);
     assert!(rows.iter().all(|row| !matches!(&row.outcome, Outcome::Refused(why) if why.is_empty())));
-    // A row of which only a part was written is done again.
+    // A row of which only a part was written is done again, and one that does not say what was stated.
     std::fs::write(home.join("whole/rows/0000003.json"), "{\"file\":").unwrap();
-    assert!(Row::read(&home.join("whole"), 3).is_none());
+    let found =
+        home.join("whole/rows").join(format!("{:07}.json", rows.iter().position(|row| row.found().is_some()).unwrap()));
+    let text = std::fs::read_to_string(&found).unwrap();
+    std::fs::write(&found, text.replace("\"stated\":[],", "")).unwrap();
+    assert_eq!((0..8).filter(|index| Row::read(&home.join("whole"), *index).is_none()).count(), 2);
     assert!(whole == done("whole", &[(1, 1)]));
     // Another campaign does not go into the same folder.
     let other = Campaign { options: Vec::new(), ..campaign.clone() };
@@ -148,12 +152,21 @@ fn a_manifest_sets_options_and_groups() {
 #[test]
 fn the_most_influential_record_is_named() {
     let row = |(index, value): (usize, &f64)| {
-        let told = Told { name: "mu".into(), unit: "1".into(), value: *value, u: Some(0.1), degrees_of_freedom: None };
+        let contributions = vec![Part { source: "residuals of the fit".into(), u: 0.1 }];
+        let told = Told {
+            name: "mu".into(),
+            unit: "1".into(),
+            value: *value,
+            u: Some(0.1),
+            degrees_of_freedom: None,
+            contributions,
+        };
         let found = Found {
             origin: String::new(),
             law: LAW.to_owned(),
             is_decided: true,
             findings: vec![told],
+            stated: Vec::new(),
             rms_residual: 1.0,
             unit: "m".to_owned(),
             amplitude: 1.0,
@@ -168,6 +181,42 @@ fn the_most_influential_record_is_named() {
     let summary = Summary::of(&campaign, &rows, &[], None);
     let (file, moved) = summary.quantities[0].most_influential.as_ref().unwrap();
     assert!(file == "run_2.csv" && *moved < -0.5, "{file}: {moved}");
+}
+
+/// Six runs under one load that is known to 0.5 %: the consensus does not know μ better than that. Two loads that are weighed apart average
+/// out between them, and an input of one record alone is its own.
+#[test]
+fn what_records_share_does_not_average_out() {
+    let home = folder("shared");
+    records(&home, &[0.02, 0.0202, 0.0199, 0.0201, 0.0198, 0.0200]);
+    let mu = |loads: [(f64, f64); 6]| {
+        let mut manifest = "file,mass,normal_load,normal_load_u\n".to_owned();
+        for (run, (load, u)) in loads.iter().enumerate() {
+            manifest.extend([format!("run_{run:02}.csv,10,{load},{u}\n")]);
+        }
+        std::fs::write(home.join("runs.csv"), manifest).unwrap();
+        let campaign = Campaign::of_manifest(&home.join("runs.csv"), law(), None).unwrap();
+        let rows = rows(&campaign);
+        let summary = Summary::of(&campaign, &rows, &[], None);
+        let text = table::text(&rows, &summary);
+        (summary.quantities.into_iter().find(|quantity| quantity.name == "mu").unwrap(), text)
+    };
+    let (without, text) = mu([(2.0, 0.0); 6]);
+    assert!(without.shared.is_empty() && !text.contains("of u shared"), "{text}");
+    let (one_load, text) = mu([(2.0, 0.01); 6]);
+    let by_load = 0.005 * one_load.mean;
+    assert!((one_load.shared_u / by_load - 1.0).abs() < 1e-3 && one_load.u > by_load, "{one_load:?}");
+    assert!((one_load.u / without.u.hypot(one_load.shared_u) - 1.0).abs() < 1e-9, "{one_load:?}");
+    // The weights and what differs are those of the records' own.
+    assert_eq!((one_load.mean, one_load.between), (without.mean, without.between));
+    assert!(one_load.shared[0].records == 6 && one_load.shared[0].input.value == 2.0, "{one_load:?}");
+    assert!(text.contains("from 6 records (of u shared by records: 5.0e-4 by normal load)"), "{text}");
+    // Values that differ by less than their uncertainty, to leave μ alike: half of each contribution, in squares.
+    let (two_loads, _) = mu([(2.0, 0.01), (2.0, 0.01), (2.0, 0.01), (2.001, 0.01), (2.001, 0.01), (2.001, 0.01)]);
+    let records: Vec<usize> = two_loads.shared.iter().map(|part| part.records).collect();
+    assert!(records == [3, 3] && (two_loads.shared_u / (by_load / 2_f64.sqrt()) - 1.0).abs() < 0.01, "{two_loads:?}");
+    let (one_apart, _) = mu([(2.0, 0.01), (2.0, 0.01), (2.0, 0.01), (2.0, 0.01), (2.0, 0.01), (2.001, 0.01)]);
+    assert!(one_apart.shared.len() == 1 && one_apart.shared[0].records == 5, "{one_apart:?}");
 }
 
 /// Runs at three loads, listed as CSV and as TOML.

@@ -27,7 +27,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     source: Source,
     /// Models to fit, separated by commas: a law, then after plus signs damping (linear, quadratic, cubic, any sign) and what else acts
-    /// or is measured (zero, inertia, stiffness, gravity, asymmetry, load offset, channels, delay)
+    /// or is measured (zero, inertia, stiffness, gravity, asymmetry, load offset, channels, delay); unless given, coulomb and dahl, each
+    /// with linear and asymmetry
     #[arg(long, value_delimiter = ',')]
     model: Vec<String>,
     /// Hold a parameter at a value, in the unit in which it is fitted

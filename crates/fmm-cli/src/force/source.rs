@@ -16,7 +16,7 @@ pub(crate) struct Source {
     /// The column of positions
     #[arg(long, value_name = "NAME|INDEX")]
     position: Option<String>,
-    /// The column of velocities; those of the positions are taken without one
+    /// The column of velocities; without it, they follow from the positions
     #[arg(long, value_name = "NAME|INDEX")]
     velocity: Option<String>,
     /// The column of forces or torques
@@ -37,7 +37,7 @@ pub(crate) struct Source {
     /// Unit of force that the numbers are in, if the table does not say it
     #[arg(long, value_name = "UNIT", default_value = "N")]
     force_unit: String,
-    /// Speed up to which the contact is taken to rest; a thousandth of the largest unless given
+    /// Speed up to which the contact counts as at rest; unless given, a thousandth of the largest speed
     #[arg(long, value_name = "SPEED")]
     rest_speed: Option<f64>,
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::Args;
 use fmm_fit::{Options, Progress};
 use fmm_identify::{
-    Candidate, Comparison, Experiment, Known, Machine, Search, Sensor, compare_observed, search_observed,
+    Candidate, Comparison, Experiment, Known, Machine, Search, Sensor, Source, compare_observed, search_observed,
 };
 use fmm_model::Restoring;
 use fmm_record::Quantity;
@@ -157,6 +157,17 @@ impl Question {
     /// The normal load (N).
     pub(crate) fn normal_load(&self) -> Option<f64> {
         self.normal_load
+    }
+
+    /// What is stated of the machine with an uncertainty: source of uncertainty, value and standard uncertainty in their units.
+    pub(crate) fn stated(&self) -> impl Iterator<Item = (Source, f64, f64)> {
+        let stated = [
+            (Source::Mass, self.mass, self.mass_u),
+            (Source::Stiffness, self.stiffness, self.stiffness_u),
+            (Source::Damping, self.damping, self.damping_u),
+            (Source::NormalLoad, self.normal_load, self.normal_load_u),
+        ];
+        stated.into_iter().filter_map(|(source, value, u)| Some((source, value?, u))).filter(|(_, _, u)| *u > 0.0)
     }
 
     /// What is asked of several records that are one problem, each with its name: the question of the first, and the normal load of

@@ -3,6 +3,7 @@
 mod svg;
 mod text;
 
+pub(crate) use text::words;
 pub use text::{escaped, marked};
 
 const STYLE: &str = include_str!("style.css");

@@ -35,9 +35,20 @@ pub fn marked(text: &str) -> String {
     })
 }
 
+/// The name of a quantity as words, without the unit at its end, which stands beside it.
+pub(crate) fn words(name: &str) -> String {
+    name.strip_suffix("_hz").unwrap_or(name).replace('_', " ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_are_words() {
+        assert_eq!(words("natural_frequency_hz"), "natural frequency");
+        assert_eq!(words("friction_per_mass"), "friction per mass");
+    }
 
     #[test]
     fn nothing_gets_through() {

@@ -3,7 +3,7 @@
 use fmm_identify::{Contribution, Finding, Identification};
 use fmm_model::Rounded;
 
-use crate::page::{escaped, table, text_cell};
+use crate::page::{escaped, table, text_cell, words};
 
 /// A share below this is not worth a number (1).
 const LITTLE: f64 = 5e-4;
@@ -26,7 +26,7 @@ pub(super) fn budget(preferred: &Identification) -> String {
         return "<p>No finding has an uncertainty.</p>\n".to_owned();
     }
     let row = |(finding, parts): &(&Finding, Vec<Contribution>)| {
-        let name = finding.parameter().name().replace('_', " ");
+        let name = words(finding.parameter().name());
         let u = of_size(finding.uncertainty()?);
         let mut cells = vec![
             format!("<th scope=\"row\">{}</th>", escaped(&name)),

@@ -16,7 +16,7 @@ use self::profiles::profiles;
 use crate::backbone;
 use crate::figure::{Layer, Panel, Role, drawn, drawn_histogram, label};
 use crate::identify::Found;
-use crate::page::{cell, escaped, figure, page, table, text_cell};
+use crate::page::{cell, escaped, figure, page, table, text_cell, words};
 use crate::pictures::Pictures;
 use crate::posterior;
 
@@ -84,7 +84,7 @@ fn findings(found: &Found) -> String {
         };
         let or_none = |text: Option<String>| text_cell(&text.unwrap_or_else(|| "–".to_owned()));
         vec![
-            format!("<th scope=\"row\">{}</th>", escaped(&parameter.name().replace('_', " "))),
+            format!("<th scope=\"row\">{}</th>", escaped(&words(parameter.name()))),
             text_cell(&rounded.to_string()),
             text_cell(parameter.unit()),
             or_none(interval),

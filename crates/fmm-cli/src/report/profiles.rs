@@ -9,7 +9,7 @@ use fmm_model::Rounded;
 use super::LEVEL;
 use crate::figure::{Layer, Panel, Role, drawn, label};
 use crate::identify::Found;
-use crate::page::{escaped, figure, table, text_cell};
+use crate::page::{escaped, figure, table, text_cell, words};
 
 /// Points of a parabola.
 const POINTS: usize = 200;
@@ -73,7 +73,7 @@ pub(super) fn profiles(found: &Found) -> Result<String, Box<dyn Error>> {
 }
 
 fn name(parameter: &fmm_model::Parameter) -> String {
-    escaped(&parameter.name().replace('_', " "))
+    escaped(&words(parameter.name()))
 }
 
 /// Half the width of the interval by value ± k u, to which its ends are rounded.
@@ -131,14 +131,14 @@ fn picture(number: usize, profile: &Profile) -> String {
         .map(|value| (value, profile.parabola(value)))
         .filter(|(_, rise)| *rise <= TOP * threshold)
         .collect();
-    let axis = label(profile.parameter().name().replace('_', " "), profile.parameter().unit());
-    let panel = Panel::new(axis, "rise of the sum of squares / s²", 300.0)
+    let axis = label(words(profile.parameter().name()), profile.parameter().unit());
+    let panel = Panel::new(axis, "rise of the sum of squares over the variance", 300.0)
         .with(Layer::new(Role::Fitted, "profile", curve.to_vec()))
         .with(Layer::new(Role::Measured, "value ± k u", parabola))
         .with(Layer::new(Role::Reference, "95 %", vec![(first, threshold), (last, threshold)]));
     let caption = format!(
         "{}: the sum of squares with all others fitted anew, beside the parabola of value ± k u; below the line lies the 95 % interval.",
-        profile.parameter().name().replace('_', " ")
+        words(profile.parameter().name())
     );
     figure(&drawn(&[panel]), &caption, &format!("profile-{number}"))
 }

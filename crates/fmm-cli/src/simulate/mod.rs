@@ -19,7 +19,7 @@ pub(crate) use text::HELP;
 /// Simulates a machine with a sliding contact.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The scenario
+    /// The scenario, a file of JSON
     scenario: PathBuf,
     #[command(flatten)]
     output: Output,

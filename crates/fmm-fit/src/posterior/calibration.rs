@@ -27,11 +27,36 @@ const FEWEST_RECORDS: usize = 5 * BINS;
 /// It is a tool for a law of one's own: simulate records with it, and see whether its posterior is right.
 ///
 /// ```
-/// use fmm_fit::{Bounds, Calibration, Parameter, Prior, ResidualVariance, Sampler, Scalar, Weighted, curve};
+/// use fmm_fit::{Automatic, Bounds, Calibration, EvaluationError, Model, Parameter, Prior, ResidualVariance, Sampler, Scalar, Weighted};
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// use rand_distr::{Distribution, Normal};
 ///
-/// // A decay at five times with a noise of 0.02, by a generator that nobody should take for more than an example.
-/// let times = [0.0, 1.0, 2.0, 3.0, 4.0];
-/// let noise = |seed: u64, i: usize| 0.035 * (((seed ^ (seed >> 32)) as f64 * 1e-3 + i as f64 * 0.618_034).fract() * 2.0 - 1.0);
+/// /// A decay at five times.
+/// struct Decay {
+///     data: [f64; 5],
+///     parameters: [Parameter; 2],
+/// }
+///
+/// fn decay<S: Scalar>(p: &[S], t: f64) -> S {
+///     p[0] * (-p[1] * t).exp()
+/// }
+///
+/// impl Model for Decay {
+///     fn parameters(&self) -> &[Parameter] {
+///         &self.parameters
+///     }
+///     fn len(&self) -> usize {
+///         5
+///     }
+///     fn residuals<S: Scalar>(&self, p: &[S], residuals: &mut [S]) -> Result<(), EvaluationError> {
+///         for (i, (r, data)) in residuals.iter_mut().zip(self.data).enumerate() {
+///             *r = decay(p, i as f64) - data;
+///         }
+///         Ok(())
+///     }
+/// }
+///
+/// let noise = Normal::new(0.0, 0.02)?;
 /// let parameters = ["amplitude", "rate"].map(|name| Parameter::from(name).bounded(Bounds::NOT_NEGATIVE));
 /// let sampler = Sampler::default()
 ///     .with_prior("amplitude", Prior::normal(2.0, 0.2)?)
@@ -40,9 +65,9 @@ const FEWEST_RECORDS: usize = 5 * BINS;
 ///     .with_draws(100)
 ///     .with_check_steps(0);
 /// let calibration = Calibration::of(&sampler, &parameters, 100, |p, seed| {
-///     let data: Vec<f64> = times.iter().enumerate().map(|(i, t)| p[0] * (-p[1] * t).exp() + noise(seed, i)).collect();
-///     let decay = curve(&times, &data, parameters.clone(), |t, [a, b]| a * (-b * t).exp())?;
-///     Ok(Weighted::new(decay, vec![0.02; 5])?)
+///     let mut random = ChaCha8Rng::seed_from_u64(seed);
+///     let data = [0.0, 1.0, 2.0, 3.0, 4.0].map(|t| decay(p, t) + noise.sample(&mut random));
+///     Ok(Weighted::new(Automatic::<_, 2>::new(Decay { data, parameters: parameters.clone() }), vec![0.02; 5])?)
 /// })?;
 /// assert!(calibration.p_value("rate").expect("a parameter") > 0.01);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

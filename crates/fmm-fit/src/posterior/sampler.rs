@@ -291,13 +291,11 @@ impl Sampler {
     ) -> Result<Posterior, PosteriorError> {
         let sizes = (self.warm_up, self.is_correlated);
         let posterior = Posterior::new(plan.target.parameters(), plan.target.free(), chains, sizes, self.variance)?;
-        Ok(match walks {
-            [] => posterior,
-            _ => {
-                let check = GradientFreeCheck::of(&posterior, walks);
-                posterior.checked(check)
-            }
-        })
+        if walks.is_empty() {
+            return Ok(posterior);
+        }
+        let check = GradientFreeCheck::of(&posterior, walks);
+        Ok(posterior.checked(check))
     }
 }
 
@@ -312,7 +310,7 @@ impl<P: Residuals + ?Sized> Plan<'_, P> {
     fn start(&self, target: &mut Target<'_, P>, random: &mut ChaCha8Rng) -> Result<(Vec<f64>, f64), PosteriorError> {
         let (mut psi, mut gradient) = (Vec::new(), vec![0.0; self.whitening.order()]);
         for attempt in 0..TRIES {
-            let reach = OVERDISPERSION * 0.5f64.powi((attempt / 10) as i32);
+            let reach = OVERDISPERSION * 0.5f64.powf((attempt / 10) as f64);
             let z: Vec<f64> = gradient.iter().map(|_| reach * standard_normal(random)).collect();
             self.whitening.coordinates(&z, &mut psi);
             if let Some(density) = target.log_density_and_gradient(&psi, &mut gradient) {

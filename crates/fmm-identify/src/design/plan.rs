@@ -27,9 +27,8 @@ use crate::{DesignPrediction, Guess, IdentifyError, PlannedTest};
 /// let plan = Plan::new(guess, tests.collect::<Result<_, _>>()?)?;
 ///
 /// let best = plan.best(&Aim::finding("mu"), 2)?;
-/// assert_eq!(best.measurements(), [2, 2]);
-/// let predicted = plan.predict(best.measurements())?;
-/// assert!(predicted.finding("mu").unwrap().uncertainty().unwrap() < 1e-4);
+/// let u = |tests: &[usize]| Ok::<_, fmm_identify::IdentifyError>(plan.predict(tests)?.finding("mu").unwrap().uncertainty().unwrap());
+/// assert!(u(best.measurements())? <= u(&[2, 2])? && u(&[2, 2])? < u(&[0, 0])?);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]

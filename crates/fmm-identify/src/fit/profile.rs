@@ -84,7 +84,7 @@ impl Profile {
 /// The profiles of one identification.
 #[derive(Debug)]
 pub struct Profiles {
-    profiles: Vec<Profile>,
+    computed: Vec<Profile>,
     left_out: Vec<(Parameter, ProfileError)>,
     residual_evaluations: usize,
 }
@@ -97,7 +97,7 @@ impl Profiles {
 
     /// One for each quantity that all records share and that has a variance, as if its bound were not there.
     pub fn profiles(&self) -> &[Profile] {
-        &self.profiles
+        &self.computed
     }
 
     /// The quantities of which there is none, and why.
@@ -131,7 +131,7 @@ impl Identification {
     pub fn profiles(&self, decays: &[Experiment], level: f64) -> Result<Profiles, IdentifyError> {
         let decays = self.experiments(decays)?;
         let problem = Problem::of(self.family(), *self.machine(), self.terms().clone(), &decays)?;
-        let mut found = Profiles { profiles: Vec::new(), left_out: Vec::new(), residual_evaluations: 0 };
+        let mut found = Profiles { computed: Vec::new(), left_out: Vec::new(), residual_evaluations: 0 };
         if !self.structure().is_noisy() {
             return Ok(found);
         }
@@ -143,7 +143,7 @@ impl Identification {
             }
             let parameter = estimate.parameter().clone();
             match self.profile(&problem, index, level, &mut found.residual_evaluations) {
-                Ok(profile) => found.profiles.push(profile),
+                Ok(profile) => found.computed.push(profile),
                 Err(error) => found.left_out.push((parameter, error)),
             }
         }

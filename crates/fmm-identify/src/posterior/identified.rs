@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
 use crate::fit::problem::Problem;
-use crate::posterior::intervals::compared;
+use crate::posterior::intervals::{LEVEL, compared};
 use crate::posterior::known_inputs::KnownInputs;
 use crate::posterior::predictive::predicted;
 use crate::{Experiment, Identification, IdentifyError, IntervalComparison, Origin, PredictiveCheck};
@@ -100,6 +100,7 @@ impl Identification {
         experiments: &[Experiment],
         sampler: &Sampler,
     ) -> Result<IdentificationPosterior, IdentifyError> {
+        let profiles = self.profiles(experiments, LEVEL)?;
         let experiments = self.experiments(experiments)?;
         let problem = Problem::of(self.family(), *self.machine(), self.terms().clone(), &experiments)?;
         let failed = |source: PosteriorError| IdentifyError::Posterior { law: self.law().to_owned(), source };
@@ -115,7 +116,7 @@ impl Identification {
             let values = draws.iter().map(|draw| draw[index]).collect();
             findings.extend(Marginal::new(finding.parameter().clone(), values, posterior.chains()));
         }
-        let intervals = compared(self, &problem, &findings);
+        let intervals = compared(self, &profiles, &findings);
         let checks = predicted(&problem, &posterior, &mut random)
             .map_err(|error| IdentifyError::simulation(problem.name(), error))?;
         Ok(IdentificationPosterior { law: self.law().to_owned(), posterior, findings, intervals, checks })

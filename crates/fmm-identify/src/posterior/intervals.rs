@@ -1,9 +1,8 @@
 //! Intervals of three kinds beside each other.
 
-use fmm_fit::{Marginal, Options, ProfileInterval, ResidualVariance, profile_interval};
+use fmm_fit::Marginal;
 
-use crate::fit::problem::Problem;
-use crate::{Finding, Identification};
+use crate::{Finding, Identification, Profile, Profiles};
 
 /// Probability of the intervals.
 pub(super) const LEVEL: f64 = 0.95;
@@ -37,7 +36,7 @@ impl IntervalComparison {
     }
 
     /// The ends of the profile interval, each `None` where it is open; `None` for what was not fitted but follows, or where it failed.
-    /// It takes residuals as independent, and what the machine is known to be as exact.
+    /// It takes what the machine is known to be as exact.
     pub fn profile(&self) -> Option<(Option<f64>, Option<f64>)> {
         self.profile
     }
@@ -57,18 +56,12 @@ impl IntervalComparison {
 }
 
 /// The intervals of all findings that the records share.
-pub(super) fn compared(
-    found: &Identification,
-    problem: &Problem<'_>,
-    marginals: &[Marginal],
-) -> Vec<IntervalComparison> {
+pub(super) fn compared(found: &Identification, profiles: &Profiles, marginals: &[Marginal]) -> Vec<IntervalComparison> {
     let compare = |marginal: &Marginal| {
         let finding = found.finding(marginal.parameter().name()).filter(|finding| !finding.is_of_record())?;
         let name = finding.parameter().name();
-        let profile = found.fit().estimate(name).and_then(|_| {
-            profile_interval(problem, found.fit(), name, LEVEL, ResidualVariance::Estimated, &Options::default()).ok()
-        });
-        let ends = |profile: ProfileInterval| (profile.lower().value(), profile.upper().value());
+        let profile = profiles.profiles().iter().find(|profile| profile.parameter().name() == name);
+        let ends = |profile: &Profile| (profile.interval().lower().value(), profile.interval().upper().value());
         let posterior = marginal.interval(LEVEL)?;
         let error = ERROR_OF_END * marginal.standard_deviation() / marginal.tail_effective_size().sqrt();
         Some(IntervalComparison {

@@ -20,9 +20,9 @@ impl Serialize for Row<'_> {
         document.serialize_field("standard_deviation", &marginal.standard_deviation())?;
         document.serialize_field("interval_95", &marginal.interval(LEVEL))?;
         document.serialize_field("shortest_interval_95", &marginal.shortest_interval(LEVEL))?;
-        document.serialize_field("interval_95_by_uncertainty", &intervals.and_then(|all| all.wald()))?;
-        document.serialize_field("interval_95_by_profile", &intervals.and_then(|all| all.profile()))?;
-        document.serialize_field("intervals_agree", &intervals.map(|all| all.agrees()))?;
+        document.serialize_field("interval_95_by_uncertainty", &intervals.and_then(IntervalComparison::wald))?;
+        document.serialize_field("interval_95_by_profile", &intervals.and_then(IntervalComparison::profile))?;
+        document.serialize_field("intervals_agree", &intervals.map(IntervalComparison::agrees))?;
         document.serialize_field("r_hat", &marginal.r_hat())?;
         document.serialize_field("effective_draws", &marginal.bulk_effective_size())?;
         document.serialize_field("effective_draws_in_tails", &marginal.tail_effective_size())?;

@@ -26,6 +26,9 @@ fn record() -> Record {
     Record::new(0.0, 1e-3, values, Quantity::Velocity, "m/s").unwrap()
 }
 
+/// Points of the quadrature in each direction.
+const POINTS: usize = 90;
+
 /// Moments to 1 % of those by the midpoint rule on a grid, σ integrated out as in the sampler.
 #[test]
 fn moments_are_those_of_quadrature() {
@@ -43,7 +46,6 @@ fn moments_are_those_of_quadrature() {
     println!("{posterior}");
     assert!(posterior.warnings().is_empty(), "{posterior}");
 
-    const POINTS: usize = 90;
     let (mut p, mut residuals) = (problem.values().to_vec(), vec![0.0; problem.len()]);
     let centre = posterior.marginal("coefficient").unwrap();
     let reach = 7.0 * centre.standard_deviation();

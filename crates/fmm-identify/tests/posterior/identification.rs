@@ -1,7 +1,7 @@
 //! Posteriors of identifications: findings, the three intervals, predictive checks.
 
 use fmm_friction::{Coulomb, CoulombViscous};
-use fmm_identify::{Experiment, Identification, Known, Machine, Preparation, identify};
+use fmm_identify::{Experiment, Identification, Known, Machine, PredictiveCheck, Preparation, identify};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -48,7 +48,7 @@ fn the_posterior_of_a_plain_ring_down_is_value_and_uncertainty() {
         assert!((0.01..=0.99).contains(&check.p_value()), "{}: {}", check.feature(), check.p_value());
     }
     assert_eq!(
-        posterior.checks().iter().map(|check| check.feature()).collect::<Vec<_>>(),
+        posterior.checks().iter().map(PredictiveCheck::feature).collect::<Vec<_>>(),
         ["stop time", "half cycles", "decrement"]
     );
 }

@@ -26,6 +26,13 @@ const ANGLE: f64 = 4.0;
 /// How many times as fast as the machine a wave may be that exists in derivatives only, which step lengths do not see.
 const CALM: f64 = 4.0;
 
+/// The defect of a step, in units of the tolerance, from which on its series has not seen all of the law. That of a series which has is
+/// 24 times the error allowed.
+const MOST_DEFECT: f64 = 100.0;
+
+/// Parts of a step at which it is looked for where that is slowest.
+const PARTS: u32 = 16;
+
 /// Corrections of a zero by Newton's method.
 const MOST_CORRECTIONS: usize = 8;
 
@@ -112,6 +119,9 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
         let span = Span { begin: self.time, length, tolerance };
         self.step.rescale(span, rounding(length));
         let found = self.first_guard_of_series(at_zero);
+        if !self.is_obeyed(piece, length, found.as_ref().map_or(1.0, |found| found.tau)) {
+            return Ok(false);
+        }
         if let Some(Found { tau, guard, grazing }) = found {
             if tau * length <= self.least(length) {
                 if at_zero && guard == Guard::Speed {
@@ -146,6 +156,28 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
         let [_, _, _, spring, drag, bristle, _, bend, relax] = jacobian.map(f64::abs);
         let swing = (CALM * spring.sqrt()).max((bristle * bend).sqrt());
         Some(drag.max(relax).max(swing * (STABLE / ANGLE)))
+    }
+
+    /// Whether the series obeys the equation of motion up to `end`, a part of the step of this `length`: at its quarters, and where it is
+    /// slowest. Its last terms do not tell of a part of the law that begins within the step, such as the rise of the friction of a fast
+    /// motion where that is slow for a while.
+    fn is_obeyed(&mut self, piece: &Piece<D>, length: f64, end: f64) -> bool {
+        let series = [0, 1, 2].map(|component| self.step.plain_series(component, 0.0, 1.0));
+        let belt = self.field.belt.value();
+        let at = |part: u32| end * f64::from(part) / f64::from(PARTS);
+        let speed = |part: &u32| (value(&series[1], at(*part)) - belt).abs();
+        let slowest = (1..PARTS).min_by(|a, b| speed(a).total_cmp(&speed(b)));
+        let quarters = (1..=4).rev().map(|quarter| quarter * PARTS / 4);
+        let mut rates = [D::from(0.0); 3];
+        quarters.chain(slowest).all(|part| {
+            let tau = at(part);
+            self.step.at(tau, &mut self.after);
+            self.field.rates(piece.force(self.time + length * tau), self.branch, &self.after, &mut rates);
+            series.iter().zip(&rates).enumerate().all(|(component, (series, rate))| {
+                let defect = (slopes(series, tau)[0] - rate.value() * length).abs();
+                defect <= MOST_DEFECT * self.tolerance * self.step.scale(component)
+            })
+        })
     }
 
     /// The first guard that is reached within the step, and where. A step that begins `at_zero` velocity does not find that zero.

@@ -52,6 +52,8 @@ pub struct Influence {
 /// is an interval that covers more than it says where the results do not differ (τ = 0): 99 % of six results and more of
 /// fewer, instead of 95 %.
 ///
+/// What several results share, such as the mass of one machine, does not average out: see [`Consensus::with_shared`].
+///
 /// ```
 /// use fmm_model::Estimated;
 /// use fmm_uq::{Consensus, RandomEffects};
@@ -79,6 +81,8 @@ pub struct Consensus {
     mean: f64,
     uncertainty: f64,
     homogeneity: f64,
+    /// Contributions of each shared input to the results.
+    shared: Vec<Vec<f64>>,
 }
 
 /// Steps of the search for τ² at most; six are the rule. Each at least doubles what is small beside the solution, and f64 has
@@ -121,17 +125,94 @@ impl Consensus {
         if !(mean.is_finite() && uncertainty.is_finite()) {
             return Err(UncertaintyError::observation_not_finite(0, results[0].value));
         }
-        Ok(Self { results: results.to_vec(), effects, variance, mean, uncertainty, homogeneity })
+        Ok(Self { results: results.to_vec(), effects, variance, mean, uncertainty, homogeneity, shared: Vec::new() })
     }
 
-    /// μ̂ with u(μ̂), whose degrees of freedom are p − 1 (unit of the results).
+    /// The same consensus of results that share inputs, such as the mass of one machine. Each input is a list of what it contributes to
+    /// each result, c_i = (∂x_i/∂input) u(input) with its sign, in the unit of the results; 0 for a result without it. The uncertainties
+    /// u_i of the results must then be those of what is their own.
+    ///
+    /// ```text
+    /// u_s = |Σ w_i c_i|/Σ w_i     for each shared input s
+    /// u² = u(μ̂)² + Σ_s u_s²,     ν = (p − 1) u⁴/u(μ̂)⁴,     μ̂ ± t(ν) u
+    /// ```
+    ///
+    /// An input is one quantity, so its contributions add up with their signs before they are squared (JCGM 100:2008, 5.2.2, correlation 1),
+    /// and more results do not make them smaller. They do not enter the weights or τ. The shared inputs are taken to be known with
+    /// infinitely many degrees of freedom, which makes ν that of Welch and Satterthwaite (G.4.1).
+    ///
+    /// ```
+    /// use fmm_model::Estimated;
+    /// use fmm_uq::{Consensus, RandomEffects};
+    ///
+    /// // Six runs that each know their own to 0.3, under one load that makes 0.5 of each.
+    /// let runs = [10.0; 6].map(|mu| Estimated::new(mu, 0.3));
+    /// let found = Consensus::of(&runs, RandomEffects::MandelPaule)?.with_shared(&[vec![0.5; 6]])?;
+    /// assert!((found.mean().uncertainty - (0.3_f64.powi(2) / 6.0 + 0.5_f64.powi(2)).sqrt()).abs() < 1e-14);
+    /// # Ok::<(), fmm_uq::UncertaintyError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`UncertaintyError::Inputs`] for an input with another number of contributions than results; [`UncertaintyError::OutOfRange`] if a
+    /// contribution, or the uncertainty with all of them, is not finite.
+    pub fn with_shared(self, inputs: &[Vec<f64>]) -> Result<Self, UncertaintyError> {
+        for (input, contributions) in inputs.iter().enumerate() {
+            if contributions.len() != self.results.len() {
+                return Err(UncertaintyError::unequal_contributions(input, contributions.len(), self.results.len()));
+            }
+            if let Some(wrong) = contributions.iter().find(|contribution| !contribution.is_finite()) {
+                let name = format!("contribution of shared input {input}");
+                return Err(UncertaintyError::out_of_range(&name, *wrong, "finite"));
+            }
+        }
+        let with_shared = Self { shared: inputs.to_vec(), ..self };
+        for Estimated { uncertainty, .. } in [with_shared.mean(), with_shared.without_effects()] {
+            if !uncertainty.is_finite() {
+                return Err(UncertaintyError::out_of_range("uncertainty with shared inputs", uncertainty, "finite"));
+            }
+        }
+        Ok(with_shared)
+    }
+
+    /// μ̂ with u, that of the shared inputs included (unit of the results).
     pub fn mean(&self) -> Estimated {
-        Estimated::new(self.mean, self.uncertainty)
+        Estimated::new(self.mean, self.uncertainty.hypot(self.shared_uncertainty()))
     }
 
-    /// p − 1 (1).
+    /// ν, the degrees of freedom of u (1): p − 1, and more where inputs are shared.
     pub fn degrees_of_freedom(&self) -> f64 {
+        self.freedom() * (self.mean().uncertainty / self.uncertainty).powi(4)
+    }
+
+    /// p − 1.
+    fn freedom(&self) -> f64 {
         (self.results.len() - 1) as f64
+    }
+
+    /// u_s of each shared input, in their order (unit of the results).
+    pub fn shared(&self) -> Vec<f64> {
+        self.shared_at(self.variance)
+    }
+
+    /// √Σ u_s², what the shared inputs together make of u (unit of the results).
+    pub fn shared_uncertainty(&self) -> f64 {
+        self.shared().into_iter().fold(0.0, f64::hypot)
+    }
+
+    /// u_s of each shared input in a mean with `variance` between the results.
+    fn shared_at(&self, variance: f64) -> Vec<f64> {
+        let shares = self.shares(variance);
+        let of = |contributions: &Vec<f64>| {
+            shares.iter().zip(contributions).map(|(share, contribution)| share * contribution).sum::<f64>().abs()
+        };
+        self.shared.iter().map(of).collect()
+    }
+
+    /// Shares of the weights with `variance` between the results.
+    fn shares(&self, variance: f64) -> Vec<f64> {
+        let weight = |result: &Estimated| (result.uncertainty * result.uncertainty + variance).recip();
+        let all: f64 = self.results.iter().map(weight).sum();
+        self.results.iter().map(|result| weight(result) / all).collect()
     }
 
     /// τ, standard deviation between the results beyond their uncertainties (their unit).
@@ -144,17 +225,17 @@ impl Consensus {
     /// # Errors
     /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1.
     pub fn interval(&self, level: f64) -> Result<Interval, UncertaintyError> {
-        let reach = self.uncertainty * coverage_factor(level, self.degrees_of_freedom())?;
+        let reach = self.mean().uncertainty * coverage_factor(level, self.degrees_of_freedom())?;
         Ok(Interval { low: self.mean - reach, high: self.mean + reach, level })
     }
 
     /// The mean weighted by the uncertainties alone, 1/u², as if the results differed by no more, and its standard uncertainty by them
-    /// (unit of the results).
+    /// and the shared inputs (unit of the results).
     ///
     /// It claims too little where they differ by more: of four results with τ = 2 and u near 0.4, its 95 % interval holds in 27 % of cases.
     pub fn without_effects(&self) -> Estimated {
         let (mean, _, weights) = weighted(&self.results, 0.0);
-        Estimated::new(mean, weights.sqrt().recip())
+        Estimated::new(mean, self.shared_at(0.0).into_iter().fold(weights.sqrt().recip(), f64::hypot))
     }
 
     /// Q, Cochran's statistic of homogeneity (1).
@@ -164,15 +245,15 @@ impl Consensus {
 
     /// Probability of a Q as large if the results differed by their uncertainties only (1).
     pub fn p_value(&self) -> f64 {
-        ChiSquared::new(self.degrees_of_freedom()).map_or(1.0, |distribution| distribution.sf(self.homogeneity))
+        ChiSquared::new(self.freedom()).map_or(1.0, |distribution| distribution.sf(self.homogeneity))
     }
 
     /// I², share of the squares that the uncertainties do not explain (1).
     pub fn i_squared(&self) -> f64 {
-        if self.homogeneity > 0.0 { (1.0 - self.degrees_of_freedom() / self.homogeneity).max(0.0) } else { 0.0 }
+        if self.homogeneity > 0.0 { (1.0 - self.freedom() / self.homogeneity).max(0.0) } else { 0.0 }
     }
 
-    /// The consensus of the other results, after the same method.
+    /// The consensus of the other results, after the same method and with the same shared inputs.
     ///
     /// ```
     /// use fmm_model::Estimated;
@@ -194,18 +275,20 @@ impl Consensus {
         }
         let mut others = self.results.clone();
         others.remove(index);
-        Self::of(&others, self.effects)
+        let mut shared = self.shared.clone();
+        for contributions in &mut shared {
+            contributions.remove(index);
+        }
+        Self::of(&others, self.effects)?.with_shared(&shared)
     }
 
     /// Influence of each result on the consensus, in their order; [`Consensus::without`] has the intervals.
     pub fn influences(&self) -> Vec<Influence> {
-        let weight = |result: &Estimated| (result.uncertainty * result.uncertainty + self.variance).recip();
-        let all: f64 = self.results.iter().map(weight).sum();
-        let influence = |(index, result): (usize, &Estimated)| {
+        let influence = |(index, weight): (usize, f64)| {
             let without = self.without(index).ok().map(|consensus| consensus.mean());
-            Influence { weight: weight(result) / all, without }
+            Influence { weight, without }
         };
-        self.results.iter().enumerate().map(influence).collect()
+        self.shares(self.variance).into_iter().enumerate().map(influence).collect()
     }
 }
 

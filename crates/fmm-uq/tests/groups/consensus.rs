@@ -146,6 +146,72 @@ fn influences_of_the_groups() {
     }
 }
 
+/// n results alike with a shared contribution c: u² = u_own²/n + c²; an input of one result in n adds (c/n)².
+#[test]
+fn what_is_shared_does_not_average_out() {
+    for count in [2_u32, 6, 1000] {
+        let n = f64::from(count);
+        let results = vec![Estimated::new(10.0, 0.3); count as usize];
+        let plain = Consensus::of(&results, RandomEffects::default()).unwrap();
+        let mut of_one = vec![0.0; count as usize];
+        of_one[1] = 0.2;
+        let found = plain.clone().with_shared(&[vec![0.5; count as usize], of_one]).unwrap();
+        let square = 0.09 / n + 0.25 + 0.04 / (n * n);
+        assert!(near(found.mean().uncertainty, square.sqrt(), 1e-13), "{found:?}");
+        assert!(near(found.degrees_of_freedom(), (n - 1.0) * (square * n / 0.09).powi(2), 1e-12), "{found:?}");
+        assert!(near(found.shared_uncertainty(), (0.25 + 0.04 / (n * n)).sqrt(), 1e-13), "{found:?}");
+        assert!(near(found.shared()[0], 0.5, 1e-13) && near(found.shared()[1], 0.2 / n, 1e-13), "{found:?}");
+        assert_eq!((found.mean().value, found.between()), (plain.mean().value, plain.between()));
+        assert_eq!((found.q(), found.p_value(), found.i_squared()), (plain.q(), plain.p_value(), plain.i_squared()));
+    }
+    // Contributions of one input to two results of equal weight with opposite signs cancel, those of two inputs do not.
+    let pair = Consensus::of(&[Estimated::new(1.0, 0.1); 2], RandomEffects::default()).unwrap();
+    assert_eq!(pair.clone().with_shared(&[vec![0.5, -0.5]]).unwrap().shared_uncertainty(), 0.0);
+    let apart = pair.with_shared(&[vec![0.5, 0.0], vec![0.0, -0.5]]).unwrap();
+    assert!(near(apart.shared_uncertainty(), 0.5_f64.sqrt() / 2.0, 1e-14), "{apart:?}");
+    // Results that differ: τ² of Mandel and Paule is s² − u² where all u are alike, so that u² = s²/n + c².
+    let differ = [1.0, 2.0, 6.0].map(|value| Estimated::new(value, 0.1));
+    let found = Consensus::of(&differ, RandomEffects::MandelPaule).unwrap().with_shared(&[vec![2.0; 3]]).unwrap();
+    assert!(near(found.mean().uncertainty, (7.0_f64 / 3.0 + 4.0).sqrt(), 1e-12), "{found:?}");
+    // Each is missing once, and what it shared goes with it.
+    let without = found.without(2).unwrap();
+    assert!(near(without.shared_uncertainty(), 2.0, 1e-14), "{without:?}");
+    assert_eq!(found.influences()[2].without, Some(without.mean()));
+}
+
+/// One error in all results of a campaign, drawn anew for each: the interval holds, that of results taken for independent does not.
+#[test]
+fn intervals_of_results_that_share_an_error_hold() {
+    const CAMPAIGNS: u32 = 2000;
+    for (count, between, shared) in [(3, 0.5, 0.5), (6, 0.5, 0.25), (6, 0.5, 1.0), (6, 0.3, 0.5), (20, 0.2, 0.5)] {
+        let mut random = ChaCha8Rng::seed_from_u64(200 + count);
+        let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+        let (mut held, mut independent) = (0, 0);
+        for _ in 0..CAMPAIGNS {
+            let error = shared * draw();
+            let owns = (0..count).map(|index| 0.2 + 0.2 * index as f64 / count as f64);
+            let results: Vec<Estimated> =
+                owns.map(|u| Estimated::new(10.0 + error + between * draw() + u * draw(), u)).collect();
+            let holds = |consensus: Consensus| {
+                let interval = consensus.interval(0.95).unwrap();
+                u32::from((interval.low..interval.high).contains(&10.0))
+            };
+            let contributions = vec![shared; results.len()];
+            let consensus = Consensus::of(&results, RandomEffects::default()).unwrap();
+            held += holds(consensus.with_shared(&[contributions]).unwrap());
+            let whole: Vec<Estimated> =
+                results.iter().map(|own| Estimated::new(own.value, own.uncertainty.hypot(shared))).collect();
+            independent += holds(Consensus::of(&whole, RandomEffects::default()).unwrap());
+        }
+        let [held, independent] = [held, independent].map(|count| f64::from(count) / f64::from(CAMPAIGNS));
+        println!(
+            "{count} results, {between} between, {shared} shared: {held} of the intervals hold, {independent} if taken for independent"
+        );
+        // Student's t of three results hides it.
+        assert!((0.92..0.98).contains(&held) && (count < 6 || independent < 0.9), "{count}: {held}, {independent}");
+    }
+}
+
 /// Large constants, uncertainties of very different sizes, and units that are far from 1.
 #[test]
 fn extreme_results() {

@@ -26,6 +26,12 @@ fn what_makes_no_groups_is_refused() {
     assert!(matches!(consensus.without(2), Err(UncertaintyError::OutOfRange { .. })));
     assert!(matches!(consensus.without(0), Err(UncertaintyError::TooFewObservations { .. })));
     assert!(consensus.influences().iter().all(|influence| influence.without.is_none()));
+    let sharing = |contributions: &[f64]| consensus.clone().with_shared(&[contributions.to_vec()]);
+    assert!(matches!(sharing(&[1.0]), Err(UncertaintyError::Inputs { .. })));
+    assert!(matches!(sharing(&[1.0, f64::NAN]), Err(UncertaintyError::OutOfRange { .. })));
+    assert!(sharing(&[f64::MAX, f64::MAX]).is_ok_and(|shared| shared.interval(0.5).is_ok()));
+    let all = vec![vec![f64::MAX; 2]; 2];
+    assert!(matches!(consensus.with_shared(&all), Err(UncertaintyError::OutOfRange { .. })));
 }
 
 /// Nothing differs within the groups, but something between them.

@@ -1,6 +1,6 @@
 //! What a posterior costs, and whether it is right: effective draws a second, and ranks of true values over simulated ring-downs.
 //!
-//! `cargo run --release -p fmm-identify --features sampler --example posterior -- [RECORDS]`; the times are of one thread.
+//! `cargo run --release --example posterior -- [RECORDS]`; the times are of one thread.
 
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -78,7 +78,7 @@ fn timed<F: LawFamily>(name: &str, law: &[(&'static str, f64)]) -> Result<(), Bo
     let fit = solve(&problem, problem.values(), &Options::default())?;
     let (begun, clock) = (processor_time(), Instant::now());
     let posterior = Sampler::default().with_check_steps(0).sample(&problem, &fit)?;
-    let spent = processor_time().zip(begun).map_or_else(|| clock.elapsed(), |(end, begun)| end - begun);
+    let spent = processor_time().zip(begun).map_or_else(|| clock.elapsed(), |(end, begun)| end.saturating_sub(begun));
     report(name, &posterior, spent);
     Ok(())
 }
