@@ -6,6 +6,7 @@ use fmm_fit::{Fit, Options, Outcome, Progress, Residuals, solve_best, solve_obse
 use fmm_friction::CoulombViscous;
 use fmm_model::Restoring;
 
+use crate::experiment::scaled;
 use crate::fit::problem::Problem;
 use crate::fit::response::Response;
 use crate::{Identification, IdentifyError, Sign};
@@ -26,6 +27,13 @@ const ENOUGH_TO_BE_BETTER: usize = 30;
 /// Relative fall of the sum of squares (1) below which a search for the lowest minimum ends, and its most iterations from one start.
 const ROUGH: f64 = 1e-6;
 const MOST_ROUGH: usize = 30;
+
+/// Share of a record's amplitude (1) that the noise of no instrument stays below. Where a fit leaves less, minima differ that noise would
+/// make equal, and all starts are followed to their end.
+const NOISELESS: f64 = 1e-6;
+
+/// Most iterations of a fit that begins where a search has ended. One that needs more creeps along a valley that the noise fills.
+const MOST_FINAL: usize = 300;
 
 /// Starts that are taken from the linear response of a record, and those that are fitted of all, the nearest to the records.
 const MOST_FOLLOWED: usize = 3;
@@ -50,7 +58,10 @@ pub(crate) fn fit_in_stages(
     let search = few.as_ref().unwrap_or(problem);
     if problem.is_elaborate() && !problem.has_spring() {
         let found = fit_roughly(&search.clone().bending_in_sight(), options, observer)?;
-        return best_fit(problem, problem.name(), vec![found.values().to_vec()], options, observer);
+        let most = options.max_iterations().min(MOST_FINAL);
+        let options = options.clone().with_max_iterations(most);
+        let start = found.values().to_vec();
+        return best_fit(&problem.clone().bending_in_sight(), problem.name(), vec![start], &options, observer);
     }
     let found = fit_simple(search, options, observer)?;
     if few.is_none() {
@@ -121,12 +132,25 @@ fn fit_roughly(
     let known = fit_simple(&simple, options, observer)?;
     let mut starts = problem.continued(&simple, known.values());
     starts.extend(problem.starts().into_iter().next());
+    starts.dedup();
+    let blind = starts.clone();
     if let Some(response) = Response::of(problem, &simple, known.values()) {
         starts.extend(response.followed(&starts).into_iter().take(MOST_FOLLOWED));
     }
     let starts = lowest(problem, starts, MOST_STARTS);
-    solve_best(problem, &starts, &rough(options), |progress| observer(progress))
-        .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
+    let found = solve_best(problem, &starts, &rough(options), |progress| observer(progress))
+        .map_err(|source| IdentifyError::Fit { law: problem.name(), source })?;
+    if found.outcome() == Outcome::AtNoiseFloor || !is_noiseless(problem, &found) {
+        return Ok(found);
+    }
+    best_fit(problem, problem.name(), blind, options, observer)
+}
+
+/// Whether `fit` leaves less than the noise of any instrument.
+fn is_noiseless(problem: &Problem<'_>, fit: &Fit) -> bool {
+    let amplitudes = scaled(problem.decays()).map(|(decay, weight)| weight * decay.summary().amplitudes.0);
+    let least = NOISELESS * amplitudes.fold(0.0, f64::max);
+    fit.sum_of_squares() < least * least * problem.len() as f64
 }
 
 /// The `options` of a search that only has to decide where the lowest minimum is.

@@ -47,6 +47,11 @@ impl Powers {
         (self.position != 0.0 && self.time == -self.position).then_some(self.position)
     }
 
+    /// The value that stands for a `stiffness` of a parameter that is a force over a length beside it; `None` for others.
+    pub(crate) fn at_stiffness(&self, stiffness: f64) -> Option<f64> {
+        (self.position == -1.0 && self.time == 0.0).then(|| stiffness / self.factor)
+    }
+
     /// The value of the parameter that stands for a `speed`.
     pub(crate) fn at_speed(&self, speed: f64) -> f64 {
         speed.powf(self.position) / self.factor

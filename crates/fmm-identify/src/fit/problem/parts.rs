@@ -1,5 +1,7 @@
 //! The same problem with a part of its records, or within narrower bounds: what a search begins with.
 
+use std::f64::consts::PI;
+
 use fmm_friction::Role;
 use fmm_model::Bounds;
 use fmm_record::Quantity;
@@ -42,11 +44,15 @@ impl Problem<'_> {
         any.then(|| complete.collect())
     }
 
-    /// The same problem with laws that bend at no less than 1e-4 of the largest speed: below, a law is to the records as good as one
-    /// that leaps, and its motion takes far longer to simulate.
+    /// The same problem with laws that bend at no less than 1e-4 of the largest speed, and contacts on which the machine would vibrate at
+    /// no more than 300 times its own frequency: beyond, a law is to the records as good as one that leaps, and its motion takes far
+    /// longer to simulate.
     pub(crate) fn bending_in_sight(mut self) -> Self {
         const SLOWEST: f64 = 1e-4;
+        const STIFFEST: f64 = 1e5;
         let slowest = SLOWEST * reference(self.decays).scales().1;
+        let stiffest = STIFFEST * (2.0 * PI * reference(self.decays).guess().frequency()).powi(2);
+        let is_per_mass = self.layout.oscillator == 1;
         for (index, law) in self.law().fitted().enumerate() {
             let powers = self.law().powers(law);
             let parameter = &mut self.parameters[self.layout.law + index];
@@ -55,7 +61,10 @@ impl Problem<'_> {
             let bounds = match powers.of_speed().filter(|_| law.role() == Role::Shape) {
                 Some(power) if power > 0.0 => Bounds::new(bounds.lower().max(value), bounds.upper()),
                 Some(_) => Bounds::new(bounds.lower(), bounds.upper().min(value)),
-                None => continue,
+                None => match powers.at_stiffness(stiffest).filter(|_| law.role() == Role::Level && is_per_mass) {
+                    Some(value) => Bounds::new(bounds.lower(), bounds.upper().min(value)),
+                    None => continue,
+                },
             };
             // One that is held elsewhere stays so.
             if let Ok(bounds) = bounds {
