@@ -57,11 +57,7 @@ pub(crate) fn fit_in_stages(
     let few = thinned.as_ref().map(|thinned| problem.with_records(thinned));
     let search = few.as_ref().unwrap_or(problem);
     if problem.is_elaborate() && !problem.has_spring() {
-        let found = fit_roughly(&search.clone().bending_in_sight(), options, observer)?;
-        let most = options.max_iterations().min(MOST_FINAL);
-        let options = options.clone().with_max_iterations(most);
-        let start = found.values().to_vec();
-        return best_fit(&problem.clone().bending_in_sight(), problem.name(), vec![start], &options, observer);
+        return fit_with_shapes(problem, search, options, observer);
     }
     let found = fit_simple(search, options, observer)?;
     if few.is_none() {
@@ -122,28 +118,47 @@ fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec
     sums.into_iter().take(count).map(|(_, start)| start).collect()
 }
 
-/// Where the fits of a law with shapes go from everything that may be a start, near enough to tell which is the lowest minimum.
-fn fit_roughly(
+/// The fit of a law with shapes, begun where a `search` with few of the samples ends.
+fn fit_with_shapes(
     problem: &Problem<'_>,
+    search: &Problem<'_>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
-    let simple = Problem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
+    let simple = Problem::new::<CoulombViscous>(*search.machine(), search.decays())?;
     let known = fit_simple(&simple, options, observer)?;
-    let mut starts = problem.continued(&simple, known.values());
-    starts.extend(problem.starts().into_iter().next());
+    let mut starts = search.continued(&simple, known.values());
+    starts.extend(search.starts().into_iter().next());
     starts.dedup();
-    let blind = starts.clone();
-    if let Some(response) = Response::of(problem, &simple, known.values()) {
+    let in_sight = search.clone().bending_in_sight();
+    let found = fit_roughly(&in_sight, (&simple, known.values()), starts.clone(), options, observer)?;
+    let final_options = options.clone().with_max_iterations(options.max_iterations().min(MOST_FINAL));
+    let start = vec![found.values().to_vec()];
+    let fit = best_fit(&problem.clone().bending_in_sight(), problem.name(), start, &final_options, observer)?;
+    if fit.outcome() == Outcome::AtNoiseFloor || !is_noiseless(problem, &fit) {
+        return Ok(fit);
+    }
+    let found = best_fit(search, problem.name(), starts, options, observer)?;
+    let other = best_fit(problem, problem.name(), vec![found.values().to_vec()], options, observer)?;
+    Ok(if other.sum_of_squares() < fit.sum_of_squares() { other } else { fit })
+}
+
+/// Where the fits of a law with shapes go from `starts` and from those that the response of a `simple` fit leads to, near enough to tell
+/// which is the lowest minimum.
+fn fit_roughly(
+    problem: &Problem<'_>,
+    simple: (&Problem<'_>, &[f64]),
+    starts: Vec<Vec<f64>>,
+    options: &Options,
+    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Fit, IdentifyError> {
+    let mut starts: Vec<Vec<f64>> = starts.iter().map(|start| problem.clamped(start)).collect();
+    if let Some(response) = Response::of(problem, simple.0, simple.1) {
         starts.extend(response.followed(&starts).into_iter().take(MOST_FOLLOWED));
     }
     let starts = lowest(problem, starts, MOST_STARTS);
-    let found = solve_best(problem, &starts, &rough(options), |progress| observer(progress))
-        .map_err(|source| IdentifyError::Fit { law: problem.name(), source })?;
-    if found.outcome() == Outcome::AtNoiseFloor || !is_noiseless(problem, &found) {
-        return Ok(found);
-    }
-    best_fit(problem, problem.name(), blind, options, observer)
+    solve_best(problem, &starts, &rough(options), |progress| observer(progress))
+        .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
 }
 
 /// Whether `fit` leaves less than the noise of any instrument.

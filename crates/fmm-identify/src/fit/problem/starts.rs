@@ -249,7 +249,8 @@ impl Problem<'_> {
         }));
     }
 
-    fn clamped(&self, start: &[f64]) -> Vec<f64> {
+    /// The `start`, each value within its bounds.
+    pub(crate) fn clamped(&self, start: &[f64]) -> Vec<f64> {
         start.iter().zip(&self.parameters).map(|(value, parameter)| parameter.bounds().clamp(*value)).collect()
     }
 }
