@@ -13,10 +13,11 @@ use crate::figure;
 use crate::input::{Choice, Given, Question};
 use crate::output::{Output, drawn, print};
 use crate::pictures::Pictures;
+use crate::posterior::Posterior;
 use crate::report;
 use clap::Args;
 use fmm_fit::Progress;
-use fmm_identify::{Candidate, Comparison, Drive, Experiment, IdentificationPosterior, Preparation};
+use fmm_identify::{Candidate, Comparison, Drive, Experiment, Preparation};
 use fmm_record::{Column, Quantity, Record, Request};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
@@ -35,7 +36,8 @@ pub(crate) struct Arguments {
     /// The channel with the measured motion of the base that drives the machine, best its acceleration
     #[arg(long, value_name = "NAME|INDEX")]
     base: Option<Column>,
-    /// Draw from the posterior of the preferred law: its intervals beside the others, and records that it predicts beside the measured one
+    /// Draw from the posterior of the preferred law: its intervals beside the others, and records that it predicts beside the measured one; in
+    /// builds with the feature `posterior`
     #[arg(long)]
     posterior: bool,
     #[command(flatten)]
@@ -101,7 +103,7 @@ pub(crate) struct Found {
     pub(crate) decay: Experiment,
     pub(crate) comparison: Comparison,
     /// Of the preferred law, if that was asked for.
-    pub(crate) posterior: Option<IdentificationPosterior>,
+    pub(crate) posterior: Option<Posterior>,
 }
 
 /// What a program gets: the comparison, and the posterior beside it if there is one.
@@ -110,7 +112,7 @@ struct Document<'a> {
     #[serde(flatten)]
     comparison: &'a Comparison,
     #[serde(skip_serializing_if = "Option::is_none")]
-    posterior: &'a Option<IdentificationPosterior>,
+    posterior: &'a Option<Posterior>,
 }
 
 /// Reads, prepares and fits the record; by a search unless there are `candidates`.
@@ -121,8 +123,7 @@ fn found(arguments: &Arguments, candidates: &[Candidate]) -> Result<Found, Box<d
     let decay = experiment(arguments, &input.record, &preparation)?;
     let comparison = fitted(arguments, &decay, candidates)?;
     let preferred = comparison.preferred();
-    let sampled = || preferred.posterior(std::slice::from_ref(&decay), &preferred.sampler());
-    let posterior = arguments.posterior.then(sampled).transpose()?;
+    let posterior = arguments.posterior.then(|| Posterior::of(preferred, &decay)).transpose()?;
     Ok(Found { origin: input.origin, decay, comparison, posterior })
 }
 
@@ -147,7 +148,7 @@ fn give_out(arguments: &Arguments, candidates: &[Candidate], command: &str) -> R
     } else {
         print(format_args!("{}\n{}", found.origin, found.comparison))?;
         if let Some(posterior) = &found.posterior {
-            print(posterior)?;
+            print(posterior.text())?;
         }
     }
     if let Some(folder) = folder {

@@ -15,7 +15,6 @@ mod backbone;
 mod batch;
 mod budget;
 mod commands;
-mod corner;
 mod design;
 pub mod figure;
 mod force;

@@ -77,7 +77,11 @@ pub(crate) struct Contact<'a, D, V> {
 }
 
 impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
-    pub(crate) fn new<L>(scenario: &'a Scenario<D, L>, levels: V, drive: &Drive<D>) -> Result<Self, SimulationError> {
+    pub(crate) fn new<L: ?Sized>(
+        scenario: &'a Scenario<D, L>,
+        levels: V,
+        drive: &Drive<D>,
+    ) -> Result<Self, SimulationError> {
         let most = scenario.largest_load() * levels.breakaway();
         if !most.value().is_finite() {
             return Err(SimulationError::NotFinite { time: 0.0 });

@@ -128,7 +128,7 @@ pub(crate) struct Drive<'a, D> {
 }
 
 impl<'a, D: Scalar> Drive<'a, D> {
-    pub(crate) fn of<L>(scenario: &'a Scenario<D, L>) -> Self {
+    pub(crate) fn of<L: ?Sized>(scenario: &'a Scenario<D, L>) -> Self {
         let drive = Self::new(scenario.excitations(), scenario.oscillator().mass());
         drive.under(scenario.normal_load(), scenario.sampled_load())
     }

@@ -20,7 +20,7 @@ impl Energy {
     }
 }
 
-impl<L> Scenario<f64, L> {
+impl<L: ?Sized> Scenario<f64, L> {
     /// Kinetic and potential energy (J) at `state`.
     pub fn stored_energy(&self, state: State) -> (f64, f64) {
         (self.oscillator().kinetic_energy(state.velocity), self.oscillator().potential_energy(state.position))
@@ -45,7 +45,7 @@ impl Trajectory {
     /// assert!(motion.energy_imbalance(&scenario).is_some_and(|imbalance| imbalance < 1e-14));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn energy<L>(&self, scenario: &Scenario<f64, L>, index: usize) -> Option<Energy> {
+    pub fn energy<L: ?Sized>(&self, scenario: &Scenario<f64, L>, index: usize) -> Option<Energy> {
         let position = *self.position().values().get(index)?;
         let velocity = *self.velocity().values().get(index)?;
         let (kinetic, potential) = scenario.stored_energy(State { position, velocity });
@@ -56,7 +56,7 @@ impl Trajectory {
     /// relative to the greatest sum of the magnitudes of these terms; `None` if [`energy`](Self::energy) has none.
     ///
     /// It checks a simulation from outside: states and works are found independently of each other.
-    pub fn energy_imbalance<L>(&self, scenario: &Scenario<f64, L>) -> Option<f64> {
+    pub fn energy_imbalance<L: ?Sized>(&self, scenario: &Scenario<f64, L>) -> Option<f64> {
         let (kinetic, potential) = scenario.stored_energy(scenario.initial());
         let initial = kinetic + potential;
         let (mut imbalance, mut scale) = (0.0f64, initial);

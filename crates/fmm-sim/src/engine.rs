@@ -14,7 +14,7 @@ use crate::{Sampling, Scenario, SimulationError, Trajectory};
 ///    before or at the last sample;
 /// 3. at a dual number the derivatives include those of the event times;
 /// 4. the result depends on the arguments only, and all its numbers are finite.
-pub trait Engine<D: Scalar, L> {
+pub trait Engine<D: Scalar, L: ?Sized> {
     /// Simulates `scenario` into `trajectory`, whose memory is used again.
     ///
     /// # Errors

@@ -14,9 +14,9 @@ pub(crate) trait Levels<D> {
 }
 
 /// A [`SlidingLaw`] as levels.
-pub(crate) struct Sliding<'a, L>(pub(crate) &'a L);
+pub(crate) struct Sliding<'a, L: ?Sized>(pub(crate) &'a L);
 
-impl<D: Scalar, L: SlidingLaw<D>> Levels<D> for Sliding<'_, L> {
+impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Levels<D> for Sliding<'_, L> {
     fn gaining(&self, speed: D) -> D {
         self.0.coefficient(speed)
     }

@@ -48,7 +48,7 @@ impl Moreau {
     }
 }
 
-impl<L: SlidingLaw<f64>> Engine<f64, L> for Moreau {
+impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Moreau {
     fn run_into(
         &self,
         scenario: &Scenario<f64, L>,

@@ -30,15 +30,16 @@ pub struct State<D = f64> {
 /// force per mass (m/s²). A scenario begins at rest in the force-free position until
 /// [`starting_at`](Self::starting_at) says otherwise.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Scenario<D, L> {
+pub struct Scenario<D, L: ?Sized> {
     oscillator: Oscillator<D>,
-    law: L,
     normal_load: D,
     sampled_load: Option<SampledLoad<D>>,
     initial: State<D>,
     /// States of the law at t = 0, up to the last that is not zero.
     deflections: Vec<D>,
     excitations: Vec<Excitation<D>>,
+    /// Last, so that a scenario of any law is also one of `dyn SlidingLaw`.
+    law: L,
 }
 
 /// A normal load (N) that is given at equal distances in time.
@@ -61,12 +62,12 @@ impl<D: Scalar, L> Scenario<D, L> {
         let initial = State { position: zero, velocity: zero };
         Ok(Self {
             oscillator,
-            law,
             normal_load,
             sampled_load: None,
             initial,
             deflections: Vec::new(),
             excitations: Vec::new(),
+            law,
         })
     }
 
@@ -121,7 +122,9 @@ impl<D: Scalar, L> Scenario<D, L> {
         self.sampled_load = (values.len() > 1).then_some(SampledLoad { interval, values });
         Ok(self)
     }
+}
 
+impl<D: Scalar, L: ?Sized> Scenario<D, L> {
     /// The normal load at its samples, if it varies.
     pub(crate) fn sampled_load(&self) -> Option<&SampledLoad<D>> {
         self.sampled_load.as_ref()

@@ -45,7 +45,7 @@ impl Thesis {
     pub const A6: Self = Self { level: StaticLevel::AtSpeed };
 }
 
-impl<L: SlidingLaw<f64>> Engine<f64, L> for Thesis {
+impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Thesis {
     fn run_into(
         &self,
         scenario: &Scenario<f64, L>,

@@ -18,7 +18,6 @@ use crate::figure::{Layer, Panel, Role, drawn, drawn_histogram, label};
 use crate::identify::Found;
 use crate::page::{cell, escaped, figure, page, table, text_cell, words};
 use crate::pictures::Pictures;
-use crate::posterior;
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;
@@ -39,7 +38,7 @@ pub(crate) fn document(found: &Found, bytes: &[u8], command: &str) -> Result<Str
         format!("<h1>{}</h1>\n<p class=\"verdict\">{}</p>\n", escaped(&title), escaped(&comparison.headline())),
         format!("<p>{}. {}.</p>\n", escaped(origin), escaped(&decay.summary().to_string())),
         section("Findings", &findings(found)),
-        posterior.as_ref().map_or_else(String::new, |posterior| section("Posterior", &posterior::html(posterior))),
+        posterior.as_ref().map_or_else(String::new, |posterior| section("Posterior", &posterior.html())),
         section("Limits", &warnings(found)),
         section(
             "Record and fit",

@@ -106,6 +106,7 @@ impl Kind<Smoothed<AnySliding>> for OfSmoothed {
         scenario: &Scenario<f64, Smoothed<AnySliding>>,
         sampling: &Sampling,
     ) -> Result<Trajectory, SimulationError> {
+        let scenario: &Scenario<f64, dyn SlidingLaw<f64>> = scenario;
         RungeKutta::default().run(scenario, sampling)
     }
 }
@@ -186,8 +187,6 @@ impl<L> LawVisitor<f64, L> for Engines<'_, L> {
 }
 
 /// Runs the engine that is chosen by name, or the one that suits the law; `None` if it does not take the law.
-///
-/// All laws of the speed share one copy of each engine for them: compiled for each law, these copies were a sixth of the program.
 struct Run<'a, K, L> {
     law: L,
     kind: PhantomData<K>,
@@ -196,15 +195,14 @@ struct Run<'a, K, L> {
     sampling: &'a Sampling,
 }
 
-impl<K: Kind<L>, L: 'static> LawVisitor<f64, L> for Run<'_, K, L> {
+impl<K: Kind<L>, L> LawVisitor<f64, L> for Run<'_, K, L> {
     type Output = Result<Option<Trajectory>, SimulationError>;
 
     fn sliding(self) -> Self::Output
     where
         L: SlidingLaw<f64>,
     {
-        let scenario = self.setting.with(AnySliding(Rc::new(self.law)))?;
-        self.choice.sliding(&scenario, self.sampling).transpose()
+        self.choice.sliding(&self.setting.with(self.law)?, self.sampling)
     }
 
     fn piecewise_linear(self) -> Self::Output

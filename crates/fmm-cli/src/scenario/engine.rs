@@ -47,15 +47,6 @@ pub(crate) struct Choice {
 }
 
 impl Choice {
-    /// The Runge-Kutta engine at the tolerance chosen.
-    pub(crate) fn runge_kutta<L: SlidingLaw<f64>>(
-        self,
-        scenario: &Scenario<f64, L>,
-        sampling: &Sampling,
-    ) -> Result<Trajectory, SimulationError> {
-        self.tolerance.map_or_else(|| Ok(RungeKutta::default()), RungeKutta::new)?.run(scenario, sampling)
-    }
-
     /// The bristle engine at the tolerance chosen.
     pub(crate) fn bristle<L: BristleLaw<f64>>(
         self,
@@ -66,16 +57,19 @@ impl Choice {
     }
 
     /// An engine for laws of the sliding speed alone; `None` if the one chosen is not.
-    pub(crate) fn sliding<L: SlidingLaw<f64>>(
+    pub(crate) fn sliding(
         self,
-        scenario: &Scenario<f64, L>,
+        scenario: &Scenario<f64, dyn SlidingLaw<f64> + '_>,
         sampling: &Sampling,
-    ) -> Option<Result<Trajectory, SimulationError>> {
+    ) -> Result<Option<Trajectory>, SimulationError> {
         match self.engine {
-            EngineName::Auto | EngineName::RungeKutta => Some(self.runge_kutta(scenario, sampling)),
-            EngineName::Thesis => Some(Thesis::default().run(scenario, sampling)),
-            EngineName::Moreau => Some(Moreau::default().run(scenario, sampling)),
-            EngineName::Exact | EngineName::Bristle => None,
+            EngineName::Auto | EngineName::RungeKutta => {
+                self.tolerance.map_or_else(|| Ok(RungeKutta::default()), RungeKutta::new)?.run(scenario, sampling)
+            }
+            EngineName::Thesis => Thesis::default().run(scenario, sampling),
+            EngineName::Moreau => Moreau::default().run(scenario, sampling),
+            EngineName::Exact | EngineName::Bristle => return Ok(None),
         }
+        .map(Some)
     }
 }

@@ -15,8 +15,8 @@ use crate::work::Power;
 use crate::{Direction, Event, EventKind, Mode, Scenario, SimulationError, State};
 
 /// A machine with a contact of elements in parallel, on its way.
-pub(super) struct Yielding<'a, D, L> {
-    scenario: &'a Scenario<D, L>,
+pub(super) struct Yielding<'a, D> {
+    scenario: &'a Scenario<D, dyn PiecewiseLinearLaw<D> + 'a>,
     drive: &'a Drive<'a, D>,
     elements: &'a [Element<D>],
     belt: D,
@@ -41,8 +41,8 @@ enum Guard {
     Yield(usize),
 }
 
-impl<'a, D: Scalar, L: PiecewiseLinearLaw<D>> Yielding<'a, D, L> {
-    pub(super) fn new(scenario: &'a Scenario<D, L>, drive: &'a Drive<'a, D>) -> Self {
+impl<'a, D: Scalar> Yielding<'a, D> {
+    pub(super) fn new(scenario: &'a Scenario<D, dyn PiecewiseLinearLaw<D> + 'a>, drive: &'a Drive<'a, D>) -> Self {
         let elements = scenario.law().elements();
         Self {
             scenario,

@@ -38,7 +38,7 @@ pub(super) struct BySpeed<D> {
 
 impl<D: Scalar> BySpeed<D> {
     /// Follows the motion over `taken`, which begins at `at`; `None` if its speed turns or hardly changes.
-    pub(super) fn follow<L: SlidingLaw<D>>(
+    pub(super) fn follow<L: SlidingLaw<D> + ?Sized>(
         field: &Field<D, L>,
         phase: &Phase<D>,
         at: &Progress<D>,
@@ -97,7 +97,7 @@ impl<D: Scalar> BySpeed<D> {
     ///
     /// Next to a steep rest the acceleration changes within the error of a step: that of the state itself makes a time of a
     /// speed, or a time of an event would not be that of this speed.
-    pub(super) fn derive<L: SlidingLaw<D>>(
+    pub(super) fn derive<L: SlidingLaw<D> + ?Sized>(
         &self,
         field: &Field<D, L>,
         phase: &Phase<D>,

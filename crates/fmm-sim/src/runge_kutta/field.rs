@@ -13,7 +13,7 @@ use crate::work::Power;
 use crate::{Scenario, State};
 
 /// The right-hand side of the equation of motion.
-pub(super) struct Field<'a, D, L> {
+pub(super) struct Field<'a, D, L: ?Sized> {
     pub(super) oscillator: &'a Oscillator<D>,
     /// The spring on the side of its corners on which the step is.
     pub(super) spring: Spring<'a, D>,
@@ -49,7 +49,7 @@ pub(super) enum Side {
     Above,
 }
 
-impl<'a, D: Scalar, L: SlidingLaw<D>> Field<'a, D, L> {
+impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Field<'a, D, L> {
     pub(super) fn new(scenario: &'a Scenario<D, L>, drive: &Drive<D>) -> Self {
         let oscillator = scenario.oscillator();
         let capture = scenario.law().capture_speed();

@@ -80,7 +80,7 @@ impl RungeKutta {
     }
 }
 
-impl<D: Scalar, L: SlidingLaw<D>> Engine<D, L> for RungeKutta {
+impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Engine<D, L> for RungeKutta {
     fn run_into(
         &self,
         scenario: &Scenario<D, L>,

@@ -38,7 +38,7 @@ impl Refiner {
 
     /// Puts the derivatives at the end of `step`, which begins at `at`, right, and gives those within; `None` if the step has
     /// good ones, or if its speed is no measure of time.
-    pub(super) fn refine<D: Scalar, L: SlidingLaw<D>>(
+    pub(super) fn refine<D: Scalar, L: SlidingLaw<D> + ?Sized>(
         &mut self,
         field: &Field<D, L>,
         phase: &Phase<D>,

@@ -32,7 +32,7 @@ const DIP: f64 = 10.0;
 const NOT_LANDED: f64 = 256.0;
 
 /// Follows stretches of sliding for the Runge-Kutta engine.
-pub(super) struct Integrator<'a, D, L> {
+pub(super) struct Integrator<'a, D, L: ?Sized> {
     field: Field<'a, D, L>,
     tolerance: f64,
     /// ω₀ of small vibrations, or what turns little within the sampled time if that is faster (rad/s).
@@ -54,7 +54,7 @@ pub(super) struct Progress<D> {
     pub(super) side: Side,
 }
 
-impl<'a, D: Scalar, L: SlidingLaw<D>> Integrator<'a, D, L> {
+impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
     pub(super) fn new(scenario: &'a Scenario<D, L>, drive: &Drive<D>, tolerance: f64, end: f64) -> Self {
         let oscillator = scenario.oscillator();
         // A spring too weak to matter within the sampled time gives no scale.
@@ -335,7 +335,7 @@ fn factor(error: f64) -> f64 {
     0.9 / error.sqrt().sqrt().sqrt()
 }
 
-impl<D: Scalar, L: SlidingLaw<D>> Slide<D> for Integrator<'_, D, L> {
+impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Slide<D> for Integrator<'_, D, L> {
     fn slide(&mut self, phase: &Phase<D>, recorder: &mut Recorder<D>) -> Result<Ended<D>, SimulationError> {
         self.field.spring.begin(phase.state);
         let mut at = self.depart(phase, phase.time, phase.state, self.field.first_side(phase));

@@ -1,49 +1,69 @@
 //! The posterior on the page of a record: intervals of three kinds, the corner plot, and predictive checks.
 
-use fmm_fit::Marginal;
-use fmm_identify::{IdentificationPosterior, IntervalComparison};
-use fmm_model::Rounded;
+use std::error::Error;
 
-use crate::corner::corner;
+use fmm_fit::Marginal;
+use fmm_identify::{Experiment, Identification, IdentificationPosterior, IntervalComparison};
+use fmm_model::Rounded;
+use serde::Serialize;
+
+use super::corner::corner;
 use crate::page::{cell, escaped, figure, table, text_cell, words};
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;
 
-/// What the page says below the heading.
-pub(crate) fn html(posterior: &IdentificationPosterior) -> String {
-    let headings =
-        ["quantity", "mean ± deviation", "unit", "posterior", "value ± k u", "profile", "agree", "effective draws"];
-    let rows = posterior.intervals().iter().filter_map(|intervals| {
-        let marginal = posterior.finding(intervals.name())?;
-        Some(row(marginal, intervals))
-    });
-    let intervals = table("posterior", &headings, rows);
-    let drawn: Vec<&Marginal> = posterior
-        .intervals()
-        .iter()
-        .filter(|intervals| posterior.posterior().marginal(intervals.name()).is_some())
-        .filter_map(|intervals| posterior.finding(intervals.name()))
-        .collect();
-    let plot = if drawn.is_empty() {
-        String::new()
-    } else {
-        figure(
-            &corner(&drawn),
-            "The posterior of what the records share: the density of each quantity, and each pair of them, darker where it is more probable.",
-            "corner",
+/// Draws from the posterior of one record.
+#[derive(Serialize)]
+pub(crate) struct Posterior(IdentificationPosterior);
+
+impl Posterior {
+    /// Draws from the posterior of what `preferred` found in `decay`.
+    pub(crate) fn of(preferred: &Identification, decay: &Experiment) -> Result<Self, Box<dyn Error>> {
+        Ok(Self(preferred.posterior(std::slice::from_ref(decay), &preferred.sampler())?))
+    }
+
+    /// What a terminal shows.
+    pub(crate) fn text(&self) -> String {
+        self.0.to_string()
+    }
+
+    /// What the page says below the heading.
+    pub(crate) fn html(&self) -> String {
+        let posterior = &self.0;
+        let headings =
+            ["quantity", "mean ± deviation", "unit", "posterior", "value ± k u", "profile", "agree", "effective draws"];
+        let rows = posterior.intervals().iter().filter_map(|intervals| {
+            let marginal = posterior.finding(intervals.name())?;
+            Some(row(marginal, intervals))
+        });
+        let intervals = table("posterior", &headings, rows);
+        let drawn: Vec<&Marginal> = posterior
+            .intervals()
+            .iter()
+            .filter(|intervals| posterior.posterior().marginal(intervals.name()).is_some())
+            .filter_map(|intervals| posterior.finding(intervals.name()))
+            .collect();
+        let plot = if drawn.is_empty() {
+            String::new()
+        } else {
+            figure(
+                &corner(&drawn),
+                "The posterior of what the records share: the density of each quantity, and each pair of them, darker where it is more probable.",
+                "corner",
+            )
+        };
+        let items =
+            posterior.warnings().iter().map(|warning| format!("<li>{}</li>\n", escaped(warning))).collect::<Vec<_>>();
+        let warnings = if items.is_empty() { String::new() } else { format!("<ul>\n{}</ul>\n", items.concat()) };
+        format!(
+            "<p>By {} draws of {} chains: {}. All intervals hold 95 %.</p>\n{warnings}{intervals}{plot}{}",
+            posterior.posterior().len(),
+            posterior.posterior().chains(),
+            escaped(&posterior.verdict()),
+            checks(posterior)
         )
-    };
-    let items =
-        posterior.warnings().iter().map(|warning| format!("<li>{}</li>\n", escaped(warning))).collect::<Vec<_>>();
-    let warnings = if items.is_empty() { String::new() } else { format!("<ul>\n{}</ul>\n", items.concat()) };
-    format!(
-        "<p>By {} draws of {} chains: {}. All intervals hold 95 %.</p>\n{warnings}{intervals}{plot}{}",
-        posterior.posterior().len(),
-        posterior.posterior().chains(),
-        escaped(&posterior.verdict()),
-        checks(posterior)
-    )
+    }
 }
 
 fn row(marginal: &Marginal, intervals: &IntervalComparison) -> Vec<String> {
