@@ -130,17 +130,18 @@ fn fit_with_shapes(
     let mut starts = search.continued(&simple, known.values());
     starts.extend(search.starts().into_iter().next());
     starts.dedup();
-    let in_sight = search.clone().bending_in_sight();
-    let found = fit_roughly(&in_sight, (&simple, known.values()), starts.clone(), options, observer)?;
-    let final_options = options.clone().with_max_iterations(options.max_iterations().min(MOST_FINAL));
-    let start = vec![found.values().to_vec()];
-    let fit = best_fit(&problem.clone().bending_in_sight(), problem.name(), start, &final_options, observer)?;
+    let known = (&simple, known.values());
+    let found = fit_roughly(&search.clone().bending_in_sight(), known, starts.clone(), options, observer)?;
+    let in_sight = problem.clone().bending_in_sight();
+    let few_steps = options.clone().with_max_iterations(options.max_iterations().min(MOST_FINAL));
+    let start = in_sight.clamped(found.values());
+    let fit = best_fit(&in_sight, problem.name(), vec![start], &few_steps, observer)?;
     if fit.outcome() == Outcome::AtNoiseFloor || !is_noiseless(problem, &fit) {
         return Ok(fit);
     }
-    let found = best_fit(search, problem.name(), starts, options, observer)?;
-    let other = best_fit(problem, problem.name(), vec![found.values().to_vec()], options, observer)?;
-    Ok(if other.sum_of_squares() < fit.sum_of_squares() { other } else { fit })
+    let thorough = best_fit(search, problem.name(), starts, options, observer)
+        .and_then(|found| best_fit(problem, problem.name(), vec![found.values().to_vec()], options, observer));
+    Ok(thorough.ok().filter(|other| other.sum_of_squares() < fit.sum_of_squares()).unwrap_or(fit))
 }
 
 /// Where the fits of a law with shapes go from `starts` and from those that the response of a `simple` fit leads to, near enough to tell
