@@ -6,9 +6,9 @@ use fmm_fit::{Fit, Options, Outcome, Progress, Residuals, solve_best, solve_obse
 use fmm_friction::CoulombViscous;
 use fmm_model::Restoring;
 
-use crate::experiment::scaled;
 use crate::fit::problem::Problem;
 use crate::fit::response::Response;
+use crate::residuals::structure::ResidualStructure;
 use crate::{Identification, IdentifyError, Sign};
 
 /// A fit by Coulomb and viscous friction to begin another one near, and what its residuals ask for.
@@ -28,11 +28,7 @@ const ENOUGH_TO_BE_BETTER: usize = 30;
 const ROUGH: f64 = 1e-6;
 const MOST_ROUGH: usize = 30;
 
-/// Share of a record's amplitude (1) that the noise of no instrument stays below. Where a fit leaves less, minima differ that noise would
-/// make equal, and all starts are followed to their end.
-const NOISELESS: f64 = 1e-6;
-
-/// Most iterations of a fit that begins where a search has ended. One that needs more creeps along a valley that the noise fills.
+/// Most iterations of one fit by a law with shapes. One that needs more creeps along a valley that the noise fills.
 const MOST_FINAL: usize = 300;
 
 /// Starts that are taken from the linear response of a record, and those that are fitted of all, the nearest to the records.
@@ -118,7 +114,8 @@ fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec
     sums.into_iter().take(count).map(|(_, start)| start).collect()
 }
 
-/// The fit of a law with shapes, begun where a `search` with few of the samples ends.
+/// The fit of a law with shapes, begun where a `search` with few of the samples ends. If its residuals do not look like noise, all starts
+/// are followed to their end, and the better of both is given.
 fn fit_with_shapes(
     problem: &Problem<'_>,
     search: &Problem<'_>,
@@ -131,16 +128,18 @@ fn fit_with_shapes(
     starts.extend(search.starts().into_iter().next());
     starts.dedup();
     let known = (&simple, known.values());
-    let found = fit_roughly(&search.clone().bending_in_sight(), known, starts.clone(), options, observer)?;
-    let in_sight = problem.clone().bending_in_sight();
-    let few_steps = options.clone().with_max_iterations(options.max_iterations().min(MOST_FINAL));
-    let start = in_sight.clamped(found.values());
-    let fit = best_fit(&in_sight, problem.name(), vec![start], &few_steps, observer)?;
-    if fit.outcome() == Outcome::AtNoiseFloor || !is_noiseless(problem, &fit) {
+    let (search, problem) = (search.clone().bending_in_sight(), problem.clone().bending_in_sight());
+    let options = &options.clone().with_max_iterations(options.max_iterations().min(MOST_FINAL));
+    let found = fit_roughly(&search, known, &starts, options, observer)?;
+    let start = problem.clamped(found.values());
+    let fit = best_fit(&problem, problem.name(), vec![start], options, observer)?;
+    // Beside residuals that look like noise, no other minimum is lower by more than chance.
+    if fit.outcome() == Outcome::AtNoiseFloor || !ResidualStructure::of(&fit, problem.decays()).is_correlated() {
         return Ok(fit);
     }
-    let thorough = best_fit(search, problem.name(), starts, options, observer)
-        .and_then(|found| best_fit(problem, problem.name(), vec![found.values().to_vec()], options, observer));
+    let starts = starts.iter().map(|start| search.clamped(start)).collect();
+    let thorough = best_fit(&search, problem.name(), starts, options, observer)
+        .and_then(|end| best_fit(&problem, problem.name(), vec![problem.clamped(end.values())], options, observer));
     Ok(thorough.ok().filter(|other| other.sum_of_squares() < fit.sum_of_squares()).unwrap_or(fit))
 }
 
@@ -149,7 +148,7 @@ fn fit_with_shapes(
 fn fit_roughly(
     problem: &Problem<'_>,
     simple: (&Problem<'_>, &[f64]),
-    starts: Vec<Vec<f64>>,
+    starts: &[Vec<f64>],
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
@@ -160,13 +159,6 @@ fn fit_roughly(
     let starts = lowest(problem, starts, MOST_STARTS);
     solve_best(problem, &starts, &rough(options), |progress| observer(progress))
         .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
-}
-
-/// Whether `fit` leaves less than the noise of any instrument.
-fn is_noiseless(problem: &Problem<'_>, fit: &Fit) -> bool {
-    let amplitudes = scaled(problem.decays()).map(|(decay, weight)| weight * decay.summary().amplitudes.0);
-    let least = NOISELESS * amplitudes.fold(0.0, f64::max);
-    fit.sum_of_squares() < least * least * problem.len() as f64
 }
 
 /// The `options` of a search that only has to decide where the lowest minimum is.
