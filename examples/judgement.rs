@@ -18,6 +18,7 @@ use judgement::{Cell, Found, Summary, cells, document, speed, study, text};
 /// Coverage and confusion of the default judgement.
 #[derive(Debug, Parser)]
 #[command(name = "judgement")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own on the command line")]
 struct Arguments {
     /// Few records: 2 a cell
     #[arg(long)]

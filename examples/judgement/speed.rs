@@ -30,8 +30,11 @@ pub(crate) struct Fits {
     law: &'static str,
     held: &'static [(&'static str, f64)],
     values: fn(Scales, &mut Random) -> Vec<f64>,
-    fit: fn(&Terms, &[Experiment], Option<&[f64]>) -> Found<Ended>,
+    fit: Fitting,
 }
+
+/// Fits of a family beside terms to a record, as the crate begins them and from the truth if it is given.
+type Fitting = fn(&Terms, &[Experiment], Option<&[f64]>) -> Found<Ended>;
 
 /// Scales of a motion by a law per unit of mass.
 #[derive(Debug, Clone, Copy)]
