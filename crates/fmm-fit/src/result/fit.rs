@@ -8,7 +8,7 @@ use crate::solver::evaluation::Scheme;
 use crate::solver::minimizer::Minimizer;
 use crate::solver::spectrum::Spectrum;
 use crate::solver::triangle::Triangle;
-use crate::{JacobianDoubt, NonFinite, Outcome, coverage_factor};
+use crate::{JacobianMismatch, NonFinite, Outcome, coverage_factor};
 
 /// The result of a fit: estimates, their uncertainty, and what the residuals could not tell.
 ///
@@ -49,7 +49,7 @@ pub struct Fit {
     has_exact_jacobian: bool,
     model_error: Option<String>,
     non_finite: Option<NonFinite>,
-    jacobian_doubts: Vec<JacobianDoubt>,
+    jacobian_doubts: Vec<JacobianMismatch>,
 }
 
 impl Fit {
@@ -261,7 +261,7 @@ impl Fit {
 
     /// Where the derivatives of the problem disagree with differences at the start, if that was
     /// [looked at](crate::Options::with_jacobian_check).
-    pub fn jacobian_doubts(&self) -> &[JacobianDoubt] {
+    pub fn jacobian_doubts(&self) -> &[JacobianMismatch] {
         &self.jacobian_doubts
     }
 

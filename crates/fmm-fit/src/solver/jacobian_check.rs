@@ -21,7 +21,7 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// `Display` gives it in words.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct JacobianDoubt {
+pub struct JacobianMismatch {
     /// Name of the parameter.
     pub parameter: String,
     /// Index of the residual whose derivative is most wrong, from 0.
@@ -32,7 +32,7 @@ pub struct JacobianDoubt {
     pub difference: f64,
 }
 
-impl fmt::Display for JacobianDoubt {
+impl fmt::Display for JacobianMismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [derivative, difference] = [self.derivative, self.difference].map(|value| Rounded::new(value, None));
         write!(
@@ -80,7 +80,7 @@ impl fmt::Display for JacobianDoubt {
 ///
 /// # Errors
 /// [`FitError`] if a fit could not begin at `values`.
-pub fn check_jacobian<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Result<Vec<JacobianDoubt>, FitError> {
+pub fn check_jacobian<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Result<Vec<JacobianMismatch>, FitError> {
     let parameters = problem.parameters();
     check_parameters(parameters)?;
     check_start(parameters, values)?;
@@ -118,7 +118,7 @@ pub fn check_jacobian<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Res
             let error = |k: usize| (own[k] - central[k]).abs();
             let worst = (0..own.len()).fold(0, |worst, k| if error(k) > error(worst) { k } else { worst });
             let residual = evaluator.structure.columns_of(j).flat_map(|column| column.rows).nth(worst);
-            doubts.push(JacobianDoubt {
+            doubts.push(JacobianMismatch {
                 parameter: parameters[j].name().to_owned(),
                 residual: residual.unwrap_or(worst),
                 derivative: own[worst],

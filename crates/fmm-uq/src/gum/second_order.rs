@@ -140,14 +140,14 @@ impl Sums {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Gum, Input, Inputs, Outcome, Propagation, Taylor};
+    use crate::{Gum, Input, Inputs, ModelOutput, Propagation, Taylor};
 
     fn inputs() -> Inputs {
         let (a, b) = (Input::new("a", 2.0, 0.5, "").unwrap(), Input::new("b", 3.0, 0.1, "").unwrap());
         Inputs::new([a, b]).unwrap()
     }
 
-    fn both<R: Outcome<Taylor>, S: Outcome<f64>>(
+    fn both<R: ModelOutput<Taylor>, S: ModelOutput<f64>>(
         exact: impl Fn(&[Taylor]) -> R,
         stepped: impl Fn(&[f64]) -> S,
     ) -> [(&'static str, Propagation); 2] {
