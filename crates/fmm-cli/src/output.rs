@@ -1,4 +1,4 @@
-//! Where results go: standard output, and folders of figures.
+//! Destinations of results: standard output, and folders of figures.
 
 use std::error::Error;
 use std::fmt::Display;

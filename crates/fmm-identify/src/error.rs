@@ -1,4 +1,4 @@
-//! Why an identification could not be done.
+//! Errors of an identification.
 
 use std::error::Error;
 

@@ -1,4 +1,4 @@
-//! Many records, one table: `fmm batch` and `fmm merge`.
+//! Campaign of many records: `fmm batch` and `fmm merge`.
 //!
 //! Each record is identified by itself, in parallel; one that is refused is a row with its reason. Into a folder, each row is a file of its
 //! own, written at once or not at all, so that a campaign can be cut into shards, killed and resumed at any time.

@@ -1,4 +1,4 @@
-//! What the records of a campaign say together.
+//! Summary of a campaign: what its records say together.
 
 use fmm_model::Estimated;
 use fmm_uq::{Interval, Outlier, Precision, RandomEffects};

@@ -1,4 +1,4 @@
-//! Which test next: `fmm design FILE.toml`.
+//! Choice of the next tests: `fmm design FILE.toml`.
 //!
 //! Reads a machine, a guess of its friction and the tests that may be made, and says what each would tell, which set of them tells most,
 //! and what each of that set tells that the others do not.

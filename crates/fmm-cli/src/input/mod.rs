@@ -1,4 +1,4 @@
-//! What a command is told: the record, a mode of it, the machine, the laws.
+//! Input of a command: the record, a mode of it, the machine, the laws.
 
 mod question;
 mod source;

@@ -1,4 +1,4 @@
-//! When to stop, and how far to go at first.
+//! Options of a fit: when to stop, and how far to go at first.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
