@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::manifest::{FILE, Manifest};
 use super::row::OfRecord;
 use super::sheet::Sheet;
+use crate::output::write_at_once;
 
 /// The records of a campaign, in their order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -141,14 +142,4 @@ impl Campaign {
         })?;
         Ok(serde_json::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?)
     }
-}
-
-/// Writes a file so that at no time there is a part of it.
-pub(crate) fn write_at_once(path: &Path, text: &str) -> Result<(), String> {
-    // Another process may write the same, and then it is the same.
-    let mut part = path.as_os_str().to_owned();
-    part.push(format!(".part-{}", std::process::id()));
-    let unwritable = |error| format!("cannot write {}: {error}", path.display());
-    std::fs::write(&part, text).map_err(unwritable)?;
-    std::fs::rename(&part, path).map_err(unwritable)
 }

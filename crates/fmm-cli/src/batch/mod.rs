@@ -25,7 +25,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
-use crate::output::print;
+use crate::output::{print, write_at_once};
 use campaign::Campaign;
 use joint::Joint;
 use row::Row;
@@ -181,7 +181,7 @@ fn put_together(folder: &Path, campaign: &Campaign, asked: &Asked, json: bool) -
         ("campaign.json", table::document(&rows, &summary)?),
         ("campaign.html", page::page(campaign, &rows, &summary)),
     ] {
-        campaign::write_at_once(&folder.join(name), &text)?;
+        write_at_once(&folder.join(name), &text)?;
     }
     eprintln!("written: {}", folder.join("campaign.{csv,json,html}").display());
     give_out(&rows, &summary, json)

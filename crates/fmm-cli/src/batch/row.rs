@@ -10,8 +10,9 @@ use fmm_fit::EstimateStatus;
 use fmm_identify::{Experiment, Finding, Identification, Origin, Source};
 use serde::{Deserialize, Serialize};
 
-use super::campaign::{Campaign, write_at_once};
+use super::campaign::Campaign;
 use crate::input::{Given, Input, Question};
+use crate::output::write_at_once;
 
 /// What `fmm identify` is told of one record.
 #[derive(Debug, Parser)]

@@ -6,9 +6,8 @@ use fmm_fit::ProfileEnd;
 use fmm_identify::{Profile, Profiles};
 use fmm_model::Rounded;
 
-use super::LEVEL;
+use super::{Found, LEVEL};
 use crate::figure::{Layer, Panel, Role, drawn, label};
-use crate::identify::Found;
 use crate::page::{escaped, figure, table, text_cell, words};
 
 /// Points of a parabola.

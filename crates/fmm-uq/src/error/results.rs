@@ -34,7 +34,9 @@ impl UncertaintyError {
 
     /// A spread so small that it would count as none.
     pub(crate) fn too_small(of: &str) -> Self {
-        Self::NoAnswer { what: format!("the spread of {of} is so small that its square loses its digits; take a smaller unit") }
+        Self::NoAnswer {
+            what: format!("the spread of {of} is so small that its square loses its digits; take a smaller unit"),
+        }
     }
 
     /// An output that does not vary has no variance to share among inputs.

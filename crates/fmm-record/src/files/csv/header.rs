@@ -1,10 +1,10 @@
 //! Header of a table: names of the columns, their units, statements about the sampling.
 
+use super::faults::{not_a_number, ragged};
 use super::fields::{Separator, split, text};
-use super::layout::{Kind, Row};
 use super::lines::Line;
 use super::number;
-use super::table::{not_a_number, ragged};
+use super::row::{Kind, Row};
 use crate::files::clock::Clock;
 use crate::files::reading::seconds_in;
 use crate::{RecordError, WrittenUnit};
