@@ -2,6 +2,7 @@
 
 mod contribution;
 pub(crate) mod finding;
+mod limits;
 #[cfg(feature = "serde")]
 mod serialised;
 mod warning;
