@@ -36,7 +36,7 @@ pub(super) fn profiles(found: &Found) -> Result<String, Box<dyn Error>> {
                 "All intervals are symmetric within {within:.0} % of k u, as value ± k u takes them: no profile is drawn."
             )
         }
-        (false, true) => "About none of the fitted quantities value ± k u says the truth.".to_owned(),
+        (false, true) => "For none of the fitted quantities does value ± k u hold.".to_owned(),
         (false, false) => format!("All other intervals are symmetric within {within:.0} % of k u."),
     };
     let rows = bent.iter().map(|profile| {

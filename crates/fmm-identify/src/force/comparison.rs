@@ -56,7 +56,9 @@ pub fn compare_force(models: &[ForceModel], records: &[ForceRecord]) -> Result<F
     let contenders: Vec<Contender> = (0..models.len()).map(contender).collect();
     let comparing = ComparisonOptions::default().by(Criterion::Bayesian);
     let table = ModelTable::of(&contenders, comparing).map_err(|error| match error {
-        fmm_fit::ModelTableError::NoContender => IdentifyError::missing("give a model at least, to be compared"),
+        fmm_fit::ModelTableError::NoContender => {
+            IdentifyError::missing("there is no model to compare; give at least one")
+        }
         fmm_fit::ModelTableError::TooFewResiduals { parameters, residuals, .. } => {
             IdentifyError::too_short(residuals, parameters + 3)
         }

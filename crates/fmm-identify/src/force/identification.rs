@@ -294,7 +294,7 @@ impl ForceIdentification {
         let both = || predicted.iter().zip(record.forces()).filter_map(|(said, force)| Some(((*said)?, *force)));
         if both().next().is_none() {
             return Err(IdentifyError::not_seen(
-                "the contact slides at no sample of the record, so that no force is said",
+                "the contact slides at no sample of the record, so that the model predicts no force",
             ));
         }
         let squares: f64 = both().map(|(said, force)| (said - force).powi(2)).sum();
