@@ -29,10 +29,10 @@ pub struct ForceIdentification {
     counted: usize,
 }
 
-/// How well a model says the forces of a record to which it was not fitted.
+/// How well a model predicts the forces of a record to which it was not fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Validation {
-    /// Root mean square of what it says less the force, in the unit of the force.
+    /// Root mean square of what it predicts less the force, in the unit of the force.
     pub rms: f64,
     /// Standard deviation of the force, in its unit.
     pub force: f64,
@@ -285,7 +285,7 @@ impl ForceIdentification {
         Ok(all)
     }
 
-    /// How well it says the forces of a record to which it was not fitted.
+    /// How well it predicts the forces of a record to which it was not fitted.
     ///
     /// # Errors
     /// As for [`identify_force`], and [`IdentifyError::NotSeen`] if no sample of it counts.
