@@ -80,7 +80,7 @@ pub enum UncertaintyError {
         /// Number of trials done.
         trials: u64,
     },
-    /// PartialRun results that do not make a whole: merge those of one run, each once.
+    /// Partial runs that do not make a whole: merge those of one run, each once.
     #[error("{what}")]
     PartialRun {
         /// Fault of the parts.
