@@ -94,9 +94,9 @@ impl UncertaintyError {
     }
 }
 
-/// PartialRun results.
+/// Partial runs.
 impl UncertaintyError {
-    /// PartialRun results of different runs.
+    /// Parts of different runs.
     pub(crate) fn layout_mismatch(what: &str, first: u64, second: u64) -> Self {
         Self::PartialRun {
             what: format!(
