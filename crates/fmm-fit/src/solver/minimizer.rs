@@ -71,7 +71,7 @@ pub struct Minimizer {
     pub(crate) best: Option<Attempt>,
     /// Whether the fit has left a point where the gradient vanishes and the sum of squares falls all the same.
     pub(crate) is_saddle_left: bool,
-    pub(crate) doubts: Vec<JacobianMismatch>,
+    pub(crate) mismatches: Vec<JacobianMismatch>,
     pub(crate) iterations: usize,
     pub(crate) began: Option<Instant>,
     /// What a stored fit has that waits for its problem.
@@ -224,7 +224,7 @@ impl Minimizer {
         check_start(parameters, start)?;
         self.began = self.options.time_limit.map(|_| Instant::now());
         (self.iterations, self.attempt, self.best, self.is_saddle_left) = (0, 0, None, false);
-        self.doubts.clear();
+        self.mismatches.clear();
         self.start.clear();
         self.start.extend_from_slice(start);
         let bounds = parameters.iter().map(|parameter| (parameter.bounds().lower(), parameter.bounds().upper()));
