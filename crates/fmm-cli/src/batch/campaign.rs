@@ -8,7 +8,7 @@ use clap::CommandFactory;
 use serde::{Deserialize, Serialize};
 
 use super::manifest::{FILE, Manifest};
-use super::row::OfRecord;
+use super::record_options::RecordOptions;
 use super::sheet::Sheet;
 use crate::output::write_at_once;
 
@@ -72,7 +72,7 @@ impl Campaign {
         group: Option<String>,
     ) -> Result<Self, Box<dyn Error>> {
         let manifest = Manifest::read(path)?;
-        let command = OfRecord::command();
+        let command = RecordOptions::command();
         let is_option =
             |column: &str| command.get_arguments().any(|option| option.get_long() == Some(&column.replace('_', "-")));
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
@@ -96,6 +96,12 @@ impl Campaign {
             campaign.require_column(column).map_err(|error| format!("{}: {error}", path.display()))?;
         }
         Ok(campaign)
+    }
+
+    /// What is told of the record of this index.
+    pub(crate) fn record(&self, index: usize) -> Result<RecordOptions, Box<dyn Error>> {
+        let entry = &self.entries[index];
+        RecordOptions::of(self.options.iter().chain(&entry.options).cloned(), &entry.file)
     }
 
     /// Refuses a column that no record has.

@@ -4,13 +4,16 @@
 //! own, written at once or not at all, so that a campaign can be cut into shards, killed and resumed at any time.
 
 mod campaign;
+mod cells;
 mod dependence;
 mod joint;
 mod manifest;
 mod page;
+mod record_options;
 mod row;
 mod shared;
 mod sheet;
+mod sheet_fields;
 mod summary;
 mod table;
 
