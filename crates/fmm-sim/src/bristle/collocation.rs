@@ -72,7 +72,7 @@ impl<D: Scalar> Collocation<D> {
     ///
     /// The values are iterated first, by rules that look at nothing but values, and then left alone while the derivatives
     /// are iterated: the values are those of plain numbers to the last bit.
-    pub(super) fn solve<L: BristleLaw<D>>(
+    pub(super) fn solve<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
         field: &mut Field<D, L>,
@@ -134,7 +134,7 @@ impl<D: Scalar> Collocation<D> {
     }
 
     /// Guesses the increments: the polynomial of another step, or straight lines.
-    fn predict<L: BristleLaw<D>>(
+    fn predict<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
         field: &mut Field<D, L>,
@@ -163,7 +163,7 @@ impl<D: Scalar> Collocation<D> {
     }
 
     /// The Jacobian in the middle of the step, factored. False if that cannot be.
-    fn prepare<L: BristleLaw<D>>(
+    fn prepare<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &Motion<D>,
         field: &mut Field<D, L>,
@@ -177,7 +177,7 @@ impl<D: Scalar> Collocation<D> {
 
     /// One iteration of Newton's method; afterwards `residual` holds the change of the increments. Without `values` these
     /// stay what they are.
-    fn iterate<L: BristleLaw<D>>(
+    fn iterate<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
         field: &mut Field<D, L>,
@@ -265,7 +265,7 @@ impl<D: Scalar> Collocation<D> {
         most
     }
 
-    fn solve_derivatives<L: BristleLaw<D>>(
+    fn solve_derivatives<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
         field: &mut Field<D, L>,

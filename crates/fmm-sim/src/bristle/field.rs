@@ -29,7 +29,7 @@ const FAST: f64 = 1e6;
 /// the law is odd, so this changes nothing but which side of its kink u = 0 belongs to, and that is the side of the
 /// swing. Behind the end of the swing, where a step may reach before its end is found, the law is that of its end; and
 /// so it is behind the zero of a state, where the law may have a corner.
-pub(super) struct Field<'a, D, L> {
+pub(super) struct Field<'a, D, L: ?Sized> {
     pub(super) oscillator: &'a Oscillator<D>,
     /// The spring on the side of its corners on which the step is.
     pub(super) spring: Spring<'a, D>,
@@ -55,7 +55,7 @@ pub(super) struct Field<'a, D, L> {
     saturated: Vec<bool>,
 }
 
-impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
+impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
     pub(super) fn new(oscillator: &'a Oscillator<D>, law: &'a L, normal_load: D, belt: D) -> Self {
         let zeros = vec![D::from(0.0); law.states()];
         Self {

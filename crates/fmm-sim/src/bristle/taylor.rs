@@ -49,7 +49,7 @@ impl<D: Scalar> Taylor<D> {
 
     /// Writes the series of all components into those of `motion`, in time since `time` (s) in units of `unit` (s). False if machine or
     /// law have none here.
-    pub(super) fn expand<L: BristleLaw<D>>(
+    pub(super) fn expand<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
         field: &Field<D, L>,
@@ -89,7 +89,7 @@ impl<D: Scalar> Taylor<D> {
     }
 }
 
-impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
+impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
     /// Goes on by one step of the series, to `limit` (s) at most, or to an event before it. False if there is no series here.
     pub(super) fn expand(&mut self, piece: &Piece<D>, limit: f64) -> Result<bool, SimulationError> {
         let at_zero = self.step.begin[1].value() == self.field.belt.value();
