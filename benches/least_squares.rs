@@ -128,7 +128,7 @@ fn solver(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Workload W3: friction coefficient and position of a noise-free ring-down of 1501 velocities. The exact engine gives its
+/// Friction coefficient and position of a noise-free ring-down of 1501 velocities. The exact engine gives its
 /// gradient, the thesis' Euler engine leaves it to differences.
 struct Repeated<E> {
     engine: E,
@@ -140,7 +140,7 @@ struct Repeated<E> {
     carrying: RefCell<Trajectory<Dual<2>>>,
 }
 
-/// What the data of workload W3 were made with: μ (1), x₀ (m).
+/// What the data of that fit were made with: μ (1), x₀ (m).
 const TRUTH: [f64; 2] = [0.15, 0.0];
 /// Where the thesis begins: μ (1), x₀ (m).
 const START: [f64; 2] = [0.15, 1e-4];
@@ -255,7 +255,7 @@ fn repeat<F: LawFamily>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, pr
     });
 }
 
-/// Workload W4: the fit of workload W3 on other machines; and one of the Berger law's three parameters and a
+/// The same fit on other machines; and one of the Berger law's three parameters and a
 /// position, simulated to 1e-9.
 fn refits(criterion: &mut Criterion) {
     let sampling = Sampling::uniform(1e-3, 1501).expect("valid").keeping(Channels::Velocity);

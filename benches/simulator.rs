@@ -18,7 +18,7 @@ use fmm_sim::{
 };
 use ratio::print_ratio;
 
-/// Workload W1: the Monte Carlo case of the thesis, 1501 velocity samples at 1 kHz.
+/// The Monte Carlo case of the thesis, 1501 velocity samples at 1 kHz.
 fn thesis_case<D: Scalar>(coefficient: D, position: D) -> (Scenario<D, Coulomb<D>>, Sampling) {
     let number = |value: f64| D::from(value);
     let damping = Damping::linear(number(0.275)).expect("valid");
@@ -29,7 +29,7 @@ fn thesis_case<D: Scalar>(coefficient: D, position: D) -> (Scenario<D, Coulomb<D
     (scenario.starting_at(position, number(0.101)).expect("valid"), sampling)
 }
 
-/// Workload W2: the Berger law of the thesis' Table 5, released from 16 mm, 1751 velocity samples at 1 kHz.
+/// The Berger law of the thesis' Table 5, released from 16 mm, 1751 velocity samples at 1 kHz.
 fn berger_case<D: Scalar>(mu0: D, mu1: D) -> (Scenario<D, Berger<D>>, Sampling) {
     let number = |value: f64| D::from(value);
     let damping = Damping::new(number(0.2005), number(0.437)).expect("valid");
@@ -80,7 +80,7 @@ fn velocity_laws(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Workload W6: a half-sine blow of 1.42 N s on the resting machine of the thesis' chapter 8, 330 000 samples at 10 kHz; and
+/// A half-sine blow of 1.42 N s on the resting machine of the thesis' chapter 8, 330 000 samples at 10 kHz; and
 /// the same blow sampled at 10 kHz.
 fn impact_case(blow: Excitation) -> (Scenario<f64, Coulomb>, Sampling) {
     let damping = Damping::linear(0.275).expect("valid");

@@ -1,4 +1,4 @@
-//! Records on which a judgement went wrong once: each must be right, or say what is the matter.
+//! Records that are hard to judge: each judgement must be right, or say what is the matter.
 
 use std::f64::consts::TAU;
 use std::path::PathBuf;

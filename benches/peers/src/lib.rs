@@ -6,7 +6,7 @@ use fmm_model::{Damping, Oscillator};
 use fmm_sim::{Channels, Sampling, Scenario};
 
 /// Mass (kg), stiffness (N/m), linear (N s/m) and quadratic damping (N s²/m²), normal load (N) and the three parameters of
-/// the Berger law of workload W2: the thesis' Table 5, released from 16 mm.
+/// the Berger law of the thesis' Table 5, released from 16 mm.
 pub const BERGER: [f64; 8] = [10.391, 1982.0, 0.2005, 0.437, 14.0, 0.228, 0.261, 2.852];
 
 /// Where it is released (m).

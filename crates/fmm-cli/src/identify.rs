@@ -14,7 +14,7 @@ use crate::input::{Choice, Given, Question};
 use crate::output::{Output, drawn, print};
 use crate::pictures::Pictures;
 use crate::posterior::Posterior;
-use crate::report;
+use crate::report::{self, Found};
 use clap::Args;
 use fmm_fit::Progress;
 use fmm_identify::{Candidate, Comparison, Drive, Experiment, Preparation};
@@ -94,16 +94,6 @@ fn draw(folder: &Path, decay: &Experiment, comparison: &Comparison) -> Result<()
     let unit = figure::label("residual", decay.record().unit());
     figure::histogram(&folder.join("residuals.svg"), &unit, "residuals", &pictures.residuals)?;
     Ok(())
-}
-
-/// A record, as it was prepared and fitted.
-pub(crate) struct Found {
-    /// The file, the channel, what it was taken for.
-    pub(crate) origin: String,
-    pub(crate) decay: Experiment,
-    pub(crate) comparison: Comparison,
-    /// Of the preferred law, if that was asked for.
-    pub(crate) posterior: Option<Posterior>,
 }
 
 /// What a program gets: the comparison, and the posterior beside it if there is one.

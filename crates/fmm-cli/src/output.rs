@@ -1,4 +1,4 @@
-//! Where results go: standard output, and folders of figures.
+//! Destinations of results: standard output, and folders of figures.
 
 use std::error::Error;
 use std::fmt::Display;
@@ -40,4 +40,14 @@ pub(crate) fn print(result: impl Display) -> Result<(), Box<dyn Error>> {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         written => Ok(written?),
     }
+}
+
+/// Writes a file so that at no time there is a part of it.
+pub(crate) fn write_at_once(path: &Path, text: &str) -> Result<(), String> {
+    // Another process may write the same, and then it is the same.
+    let mut part = path.as_os_str().to_owned();
+    part.push(format!(".part-{}", std::process::id()));
+    let unwritable = |error| format!("cannot write {}: {error}", path.display());
+    std::fs::write(&part, text).map_err(unwritable)?;
+    std::fs::rename(&part, path).map_err(unwritable)
 }

@@ -57,7 +57,7 @@
 //!
 //! | question | item |
 //! |---|---|
-//! | fit a curve, or residuals that a closure gives | [`curve_fit`], [`fit`]; with options or weights [`curve`], [`Formula`] |
+//! | fit a curve, or residuals that a closure gives | [`curve_fit`], [`fit`]; with options or weights [`curve`], [`ClosureProblem`] |
 //! | fit once | [`solve`]; with progress and cancellation [`solve_observed`] |
 //! | fit a hundred thousand times | [`Refit`] where only what was held changes; else [`Minimizer`], which keeps its buffers |
 //! | fit under argmin's executor | [`BoundedLevenbergMarquardt`] |
@@ -150,7 +150,7 @@ mod starts;
 mod uncertainty;
 
 pub use comparison::{
-    Comparing, ComparisonError, Contender, Criterion, Doubt, FTest, ModelRow, ModelTable, ModelTableError,
+    ComparisonError, ComparisonOptions, Contender, Criterion, Doubt, FTest, ModelRow, ModelTable, ModelTableError,
     NestedComparison, ResidualCount, Verdict, f_tail, f_test,
 };
 pub use design::{ChosenDesign, DesignCase, DesignCriterion, DesignError, DesignSearch, Information};
@@ -164,8 +164,8 @@ pub use posterior::{
     Calibration, Disagreement, GradientFreeCheck, Marginal, Posterior, PosteriorError, PosteriorWarning, Prior, Sampler,
 };
 pub use problem::{
-    Automatic, Block, EvaluationError, Formula, Held, Joint, JointError, JointPart, Model, Residuals, Weighted, curve,
-    curve_fit, fit,
+    Automatic, Block, ClosureProblem, EvaluationError, Held, Joint, JointError, JointPart, Model, Residuals, Weighted,
+    curve, curve_fit, fit,
 };
 pub use regression::{
     LinearRegression, Polynomial, PowerLaw, RandomEffectsLine, RegressionError, StraightLine, UncertainPoint,
@@ -174,7 +174,7 @@ pub use regression::{
 pub use result::{Estimate, EstimateStatus, Fit, NullDirection};
 pub use robust::{Loss, Robust, RobustFit, Scale, median_deviation, solve_robust};
 pub use solver::{
-    BoundedLevenbergMarquardt, FitError, JacobianDoubt, Minimizer, NonFinite, Options, Outcome, Progress,
+    BoundedLevenbergMarquardt, FitError, JacobianMismatch, Minimizer, NonFinite, Options, Outcome, Progress,
     check_jacobian, solve, solve_observed,
 };
 pub use starts::{Minima, Minimum, MultiStart, StartFailure, solve_best};

@@ -47,7 +47,7 @@ impl Channel {
         let [from, to] = [force, response].map(Record::start);
         if !((from - to).abs() * response.rate() <= 1e-3) {
             let what = format!(
-                "force and response must begin together, but begin at {from} s and {to} s; crop them to the same begin"
+                "force and response must begin together, but begin at {from} s and {to} s; crop them to the same beginning"
             );
             return Err(FrfError::Mismatch { what });
         }

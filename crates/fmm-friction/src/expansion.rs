@@ -103,7 +103,7 @@ pub(crate) fn raise<D: Scalar>(
             room[order] = base[order] * order as f64;
             let rising = convolve(&power_of[..order], &room[1..=order]);
             let whole = convolve(&power_of[..order], &base[1..=order]);
-            (rising * (exponent + 1.0) - whole * order as f64) / (base[0] * order as f64)
+            (rising * (exponent + 1.0) - whole * order as f64) * (D::from(1.0) / (base[0] * order as f64))
         };
         return;
     }

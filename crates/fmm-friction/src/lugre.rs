@@ -120,7 +120,9 @@ impl<D: Scalar> BristleLaw<D> for LuGre<D> {
             coefficient[order] = self.stiffness * state[order] + self.viscous * velocity[order];
             return true;
         }
-        ratio[order] = velocity[order] / self.fall_speed;
+        // The coefficients of an order wait for those before, and none should wait for a division.
+        let one = D::from(1.0);
+        ratio[order] = velocity[order] * (one / self.fall_speed);
         let speed = ratio[0].value();
         let is_slow = speed < SLOW && !is_whole(self.exponent);
         if is_whole_with_derivatives(self.exponent) || is_slow || speed > FAST {
@@ -133,7 +135,7 @@ impl<D: Scalar> BristleLaw<D> for LuGre<D> {
         let level = self.sliding + excess * fallen[0];
         let apart = if order == 0 { level } else { excess * fallen[order] } - self.stiffness * state[order];
         let known = convolve(&reserve[..order], &fallen[1..=order]);
-        reserve[order] = (apart - excess * known) / level;
+        reserve[order] = (apart - excess * known) * (one / level);
         rate[order] = product(velocity, reserve, order);
         coefficient[order] =
             self.stiffness * state[order] + self.bristle_damping * rate[order] + self.viscous * velocity[order];

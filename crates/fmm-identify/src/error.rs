@@ -1,4 +1,4 @@
-//! Why an identification could not be done.
+//! Errors of an identification.
 
 use std::error::Error;
 
@@ -181,7 +181,7 @@ impl IdentifyError {
     /// Turning points that do not lie to either side of the centre by turns: at `time` (s) the `amplitude` is not positive.
     pub(crate) fn amplitude(time: f64, amplitude: f64, unit: &str) -> Self {
         Self::not_seen(format!(
-            "amplitudes must be positive, but is {amplitude} {unit} at {time} s; end the record before it"
+            "amplitudes must be positive, but one is {amplitude} {unit} at {time} s; end the record before it"
         ))
     }
 

@@ -1,9 +1,9 @@
-//! Friction parameters out of measured ring-downs, driven motions, hammer blows and forces along motions, with their uncertainty and what the record could not
-//! tell.
+//! Friction parameters out of measured ring-downs, driven motions, hammer blows and forces along motions, with their uncertainty and what
+//! the record could not tell.
 //!
 //! A [`Record`](fmm_record::Record) of a machine that vibrates freely or is driven is prepared ([`Experiment`]), what is known of the machine
-//! is stated ([`Machine`]), and as many laws as it asks for ([`search`]), several ([`compare`]) or one ([`identify`]) are fitted to it by simulating the motion
-//! exactly, through every reversal and stop.
+//! is stated ([`Machine`]), and as many laws as the record asks for ([`search`]), several ([`compare`]) or one ([`identify`]) are fitted to it
+//! by simulating the motion exactly, through every reversal and stop.
 //!
 //! ```
 //! use fmm_friction::CoulombViscous;

@@ -224,7 +224,7 @@ mod tests {
             work[1] += damping.cycle_equivalent(peak) * v * v;
         }
         assert!((work[0] / work[1] - 1.0).abs() < 1e-8, "ratio {}", work[0] / work[1]);
-        // Thesis Eq. 5.5 has 0.437; the instantaneous law needs 0.5148 (verification, E23).
+        // Thesis Eq. 5.5 has 0.437; the instantaneous law needs 0.5148 (errata, E23).
         assert!((damping.cycle_equivalent(1.0) - 0.2005 - 0.437).abs() < 5e-5);
     }
 

@@ -118,7 +118,7 @@ pub use sampling::{JITTER, RATE_ROUNDING, Sampling, UniformTimes};
 pub use units::label::Label;
 pub use units::meaning::{Meaning, MeaningError};
 pub use units::request::Request;
-pub use units::unit::{Unit, UnknownUnit};
+pub use units::written_unit::{UnknownUnit, WrittenUnit};
 
 /// Runs the example of the README.
 #[cfg(all(doctest, feature = "csv"))]

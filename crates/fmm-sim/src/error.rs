@@ -47,7 +47,7 @@ pub enum SimulationError {
     },
     /// The motion has come to where the spring no longer restores.
     #[error(
-        "at {time} s the position is {position} m, where the spring pushes away from the origin: its polynomial does not hold so far"
+        "at {time} s the position is {position} m, where the spring pushes away from the origin: its polynomial does not hold that far out"
     )]
     NotRestoring {
         /// Time (s).

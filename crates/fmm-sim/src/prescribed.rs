@@ -191,7 +191,7 @@ fn require_times<D: Scalar>(times: &[D], points: usize) -> Result<(), Simulation
 /// # Errors
 /// [`SimulationError::Quantity`] if the load is negative or not finite, and what an integration can end with
 /// ([`Bristle`](crate::Bristle)).
-pub fn friction_along<D: Scalar, L: BristleLaw<D>>(
+pub fn friction_along<D: Scalar, L: BristleLaw<D> + ?Sized>(
     law: &L,
     normal_load: D,
     path: &Path<D>,

@@ -37,7 +37,7 @@
 //! | how many trials? | [`Adaptive`], until the digits are stable | a cost that must be known in advance |
 //! | is the interval of the GUM valid? | [`validate`], with [`Adaptive::for_validation`] | |
 //! | which input matters? | [`Budget::contributions`]; with interactions [`variance_shares`] (Sobol'); [`MonteCarlo::run_one_at_a_time`] | [`variance_shares`]: correlated inputs |
-//! | what if a trial takes a second? | [`QuasiMonteCarlo`]; or many machines and [`Partial`] results | [`QuasiMonteCarlo`]: more than 64 dimensions, models with kinks |
+//! | what if a trial takes a second? | [`QuasiMonteCarlo`]; or many machines and [`PartialRun`]s | [`QuasiMonteCarlo`]: more than 64 dimensions, models with kinks |
 //! | what if the model is a text, known at run time only? | `Formula` (feature `formula`) | models with conditions or loops |
 //! | how is a result stated? | a [`Budget`] prints; [`Budget::statement`], [`MonteCarlo::statement`], [`Budget::to_csv`] | |
 //! | what differs between runs, laboratories or specimens? | [`AnalysisOfVariance`], [`Precision`] | |
@@ -77,7 +77,7 @@
 //!
 //! * `formula`: models as text, `Formula`.
 //! * `rayon`: blocks of trials on all threads of the current pool, with the same bits.
-//! * `serde`: [`Partial`] results, failures, intervals, histograms, statements and budgets as text.
+//! * `serde`: [`PartialRun`]s, failures, intervals, histograms, statements and budgets as text.
 //!
 //! # Neighbours
 //!
@@ -109,9 +109,9 @@ pub use inputs::{Evaluation, Input, Inputs, Observations};
 pub use interval::Interval;
 #[cfg(feature = "formula")]
 pub use model::Formula;
-pub use model::{Outcome, Taylor, at_values};
+pub use model::{ModelOutput, Taylor, at_values};
 pub use monte_carlo::{
-    Adaptive, Failure, FailureKind, Failures, Histogram, IntervalKind, Moments, MonteCarlo, OutputSample, Partial,
+    Adaptive, Failure, FailureKind, Failures, Histogram, IntervalKind, Moments, MonteCarlo, OutputSample, PartialRun,
     Progress, QuasiMonteCarlo, QuasiSample, Region, VarianceShare, numerical_tolerance, variance_shares,
 };
 pub use report::{Statement, TrialStatement};

@@ -10,7 +10,7 @@
 //! target/release/monte-carlo-mpi --merge b.json a.json                  and one that puts them together
 //! ```
 //!
-//! Every rank runs its share of the blocks of trials and sends a [`Partial`] to rank 0, which merges them. What is
+//! Every rank runs its share of the blocks of trials and sends a [`PartialRun`] to rank 0, which merges them. What is
 //! measured stands in `model.rs`. Building needs an MPI library and libclang; on Debian these are the packages
 //! `openmpi-bin`, `libopenmpi-dev` and `libclang-dev`.
 
@@ -24,7 +24,7 @@ use std::str::FromStr;
 use std::time::Instant;
 
 use clap::Parser;
-use fmm_uq::{MonteCarlo, OutputSample, Partial};
+use fmm_uq::{MonteCarlo, OutputSample, PartialRun};
 use mpi::traits::{Communicator, CommunicatorCollectives, Destination, Source};
 
 /// Runs a Monte Carlo over the ranks of MPI.
@@ -100,7 +100,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 }
 
 /// All parts in one on rank 0, and nothing on the others.
-fn over_ranks(plan: &MonteCarlo) -> Result<Option<Partial>, Box<dyn Error>> {
+fn over_ranks(plan: &MonteCarlo) -> Result<Option<PartialRun>, Box<dyn Error>> {
     let universe = mpi::initialize().ok_or("MPI cannot be started")?;
     let world = universe.world();
     let (rank, ranks) = (world.rank(), world.size());
@@ -120,22 +120,22 @@ fn over_ranks(plan: &MonteCarlo) -> Result<Option<Partial>, Box<dyn Error>> {
     let others = (1..ranks).map(|rank| {
         let (message, _) = world.process_at_rank(rank).receive_vec::<u8>();
         bytes += message.len();
-        Ok(serde_json::from_slice::<Result<Partial, String>>(&message)??)
+        Ok(serde_json::from_slice::<Result<PartialRun, String>>(&message)??)
     });
     // All messages are received before an error ends this rank, so that no other one hangs.
-    let others: Vec<Result<Partial, Box<dyn Error>>> = others.collect();
+    let others: Vec<Result<PartialRun, Box<dyn Error>>> = others.collect();
     let merged = merge(std::iter::once(own.map_err(Into::into)).chain(others))?;
     let waited = 1e3 * start.elapsed().as_secs_f64();
     eprintln!("{ranks} ranks: {seconds:.3} s on rank 0, then {bytes} bytes gathered and merged in {waited:.1} ms");
     Ok(Some(merged))
 }
 
-fn read(path: &Path) -> Result<Partial, Box<dyn Error>> {
+fn read(path: &Path) -> Result<PartialRun, Box<dyn Error>> {
     let text = fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
     serde_json::from_str(&text).map_err(|error| format!("{} is no part: {error}", path.display()).into())
 }
 
-fn merge(parts: impl IntoIterator<Item = Result<Partial, Box<dyn Error>>>) -> Result<Partial, Box<dyn Error>> {
+fn merge(parts: impl IntoIterator<Item = Result<PartialRun, Box<dyn Error>>>) -> Result<PartialRun, Box<dyn Error>> {
     let merged = parts.into_iter().reduce(|first, second| Ok(first?.merge(second?)?));
     merged.unwrap_or_else(|| Err("there is nothing to merge".into()))
 }

@@ -8,8 +8,9 @@ use clap::CommandFactory;
 use serde::{Deserialize, Serialize};
 
 use super::manifest::{FILE, Manifest};
-use super::row::OfRecord;
+use super::record_options::RecordOptions;
 use super::sheet::Sheet;
+use crate::output::write_at_once;
 
 /// The records of a campaign, in their order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -71,7 +72,7 @@ impl Campaign {
         group: Option<String>,
     ) -> Result<Self, Box<dyn Error>> {
         let manifest = Manifest::read(path)?;
-        let command = OfRecord::command();
+        let command = RecordOptions::command();
         let is_option =
             |column: &str| command.get_arguments().any(|option| option.get_long() == Some(&column.replace('_', "-")));
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
@@ -95,6 +96,12 @@ impl Campaign {
             campaign.require_column(column).map_err(|error| format!("{}: {error}", path.display()))?;
         }
         Ok(campaign)
+    }
+
+    /// What is told of the record of this index.
+    pub(crate) fn record(&self, index: usize) -> Result<RecordOptions, Box<dyn Error>> {
+        let entry = &self.entries[index];
+        RecordOptions::of(self.options.iter().chain(&entry.options).cloned(), &entry.file)
     }
 
     /// Refuses a column that no record has.
@@ -141,14 +148,4 @@ impl Campaign {
         })?;
         Ok(serde_json::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?)
     }
-}
-
-/// Writes a file so that at no time there is a part of it.
-pub(crate) fn write_at_once(path: &Path, text: &str) -> Result<(), String> {
-    // Another process may write the same, and then it is the same.
-    let mut part = path.as_os_str().to_owned();
-    part.push(format!(".part-{}", std::process::id()));
-    let unwritable = |error| format!("cannot write {}: {error}", path.display());
-    std::fs::write(&part, text).map_err(unwritable)?;
-    std::fs::rename(&part, path).map_err(unwritable)
 }

@@ -8,7 +8,7 @@ use fmm_identify::Experiment;
 use serde::Serialize;
 
 use super::campaign::Campaign;
-use super::row::{OfRecord, Row, Told, told};
+use super::row::{Row, Told, told};
 use crate::input::Question;
 
 /// The usual law with its viscous part as damping of the machine.
@@ -63,7 +63,7 @@ impl Together {
         let law = one_law(rows)?;
         let (mut questions, mut experiments) = (Vec::new(), Vec::new());
         for index in (0..rows.len()).filter(|index| rows[*index].found().is_some()) {
-            let record = OfRecord::of(campaign, index)?;
+            let record = campaign.record(index)?;
             let (_, experiment) = record.prepared()?;
             questions.push((record.question, rows[index].file.display().to_string()));
             experiments.push(experiment);

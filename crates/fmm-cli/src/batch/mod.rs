@@ -1,16 +1,19 @@
-//! Many records, one table: `fmm batch` and `fmm merge`.
+//! Campaign of many records: `fmm batch` and `fmm merge`.
 //!
 //! Each record is identified by itself, in parallel; one that is refused is a row with its reason. Into a folder, each row is a file of its
 //! own, written at once or not at all, so that a campaign can be cut into shards, killed and resumed at any time.
 
 mod campaign;
+mod cells;
 mod dependence;
 mod joint;
 mod manifest;
 mod page;
+mod record_options;
 mod row;
 mod shared;
 mod sheet;
+mod sheet_fields;
 mod summary;
 mod table;
 
@@ -25,7 +28,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
-use crate::output::print;
+use crate::output::{print, write_at_once};
 use campaign::Campaign;
 use joint::Joint;
 use row::Row;
@@ -181,7 +184,7 @@ fn put_together(folder: &Path, campaign: &Campaign, asked: &Asked, json: bool) -
         ("campaign.json", table::document(&rows, &summary)?),
         ("campaign.html", page::page(campaign, &rows, &summary)),
     ] {
-        campaign::write_at_once(&folder.join(name), &text)?;
+        write_at_once(&folder.join(name), &text)?;
     }
     eprintln!("written: {}", folder.join("campaign.{csv,json,html}").display());
     give_out(&rows, &summary, json)

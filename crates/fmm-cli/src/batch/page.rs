@@ -7,7 +7,7 @@ use fmm_model::Rounded;
 use super::campaign::Campaign;
 use super::dependence::{Dependence, Line};
 use super::row::{Outcome, Row, quantities};
-use super::sheet::Field;
+use super::sheet_fields::Field;
 use super::summary::{Quantity, Summary};
 use super::table::{group_lines, joint_lines, quantity_text, statement};
 use crate::figure::{Layer, Panel, Role, drawn, label};

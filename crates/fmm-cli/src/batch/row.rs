@@ -5,23 +5,13 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use clap::Parser;
 use fmm_fit::EstimateStatus;
-use fmm_identify::{Experiment, Finding, Identification, Origin, Source};
+use fmm_identify::{Finding, Identification, Origin, Source};
 use serde::{Deserialize, Serialize};
 
-use super::campaign::{Campaign, write_at_once};
-use crate::input::{Given, Input, Question};
-
-/// What `fmm identify` is told of one record.
-#[derive(Debug, Parser)]
-#[command(no_binary_name = true, args_override_self = true, allow_negative_numbers = true, disable_help_flag = true)]
-pub(crate) struct OfRecord {
-    #[command(flatten)]
-    given: Given,
-    #[command(flatten)]
-    pub(super) question: Question,
-}
+use super::campaign::Campaign;
+use super::record_options::RecordOptions;
+use crate::output::write_at_once;
 
 /// What became of one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -95,7 +85,7 @@ impl Row {
     /// Identifies the record of this index.
     pub(crate) fn of(campaign: &Campaign, index: usize) -> Self {
         let entry = &campaign.entries[index];
-        let found = OfRecord::of(campaign, index).and_then(|record| record.found());
+        let found = campaign.record(index).and_then(|record| found(&record));
         let outcome = found.map_or_else(|error| Outcome::Refused(error.to_string()), Outcome::Found);
         Self { file: entry.file.clone(), description: entry.description.clone(), outcome }
     }
@@ -140,50 +130,29 @@ pub(crate) fn quantities(rows: &[Row]) -> Vec<(&str, &str)> {
     quantities
 }
 
-fn first_line(text: &str) -> String {
-    text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned()
-}
-
-impl OfRecord {
-    /// What is told of the record of this index.
-    pub(crate) fn of(campaign: &Campaign, index: usize) -> Result<Self, Box<dyn Error>> {
-        let entry = &campaign.entries[index];
-        let options = campaign.options.iter().chain(&entry.options).cloned();
-        let arguments = options.chain(["--".to_owned(), entry.file.display().to_string()]);
-        Ok(Self::try_parse_from(arguments).map_err(|error| first_line(&error.to_string()))?)
-    }
-
-    /// The record as it was read, and as it is fitted.
-    pub(crate) fn prepared(&self) -> Result<(Input, Experiment), Box<dyn Error>> {
-        let input = self.given.read_mode()?;
-        let preparation = self.given.preparation().gain_uncertainty(self.question.scale_u);
-        let experiment = self.question.seen(Experiment::ring_down(&input.record, &preparation)?)?;
-        Ok((input, experiment))
-    }
-
-    fn found(&self) -> Result<Found, Box<dyn Error>> {
-        let (input, decay) = self.prepared()?;
-        let candidates = self.question.candidates()?;
-        let comparison =
-            self.question.answer(std::slice::from_ref(&decay), &candidates, |_, _| ControlFlow::Continue(()))?;
-        let preferred = comparison.preferred();
-        let gain =
-            Some((Source::Gain, self.given.scale.unwrap_or(1.0), self.question.scale_u)).filter(|gain| gain.2 > 0.0);
-        let stated = self.question.stated().chain(gain);
-        let warnings = input.warnings.into_iter().chain(comparison.warnings().iter().map(ToString::to_string));
-        Ok(Found {
-            origin: input.origin,
-            law: preferred.law().to_owned(),
-            is_decided: comparison.is_decided(),
-            findings: told(preferred),
-            stated: stated.map(|(source, value, u)| Stated { source: source.to_string(), value, u }).collect(),
-            rms_residual: preferred.rms_residual(),
-            unit: decay.record().unit().to_owned(),
-            amplitude: decay.summary().amplitudes.0,
-            half_swings: decay.summary().half_swings,
-            warnings: warnings.collect(),
-        })
-    }
+/// What the search finds in one record.
+fn found(record: &RecordOptions) -> Result<Found, Box<dyn Error>> {
+    let (input, decay) = record.prepared()?;
+    let candidates = record.question.candidates()?;
+    let comparison =
+        record.question.answer(std::slice::from_ref(&decay), &candidates, |_, _| ControlFlow::Continue(()))?;
+    let preferred = comparison.preferred();
+    let gain =
+        Some((Source::Gain, record.given.scale.unwrap_or(1.0), record.question.scale_u)).filter(|gain| gain.2 > 0.0);
+    let stated = record.question.stated().chain(gain);
+    let warnings = input.warnings.into_iter().chain(comparison.warnings().iter().map(ToString::to_string));
+    Ok(Found {
+        origin: input.origin,
+        law: preferred.law().to_owned(),
+        is_decided: comparison.is_decided(),
+        findings: told(preferred),
+        stated: stated.map(|(source, value, u)| Stated { source: source.to_string(), value, u }).collect(),
+        rms_residual: preferred.rms_residual(),
+        unit: decay.record().unit().to_owned(),
+        amplitude: decay.summary().amplitudes.0,
+        half_swings: decay.summary().half_swings,
+        warnings: warnings.collect(),
+    })
 }
 
 /// What was found of the machine.

@@ -1,4 +1,4 @@
-//! What the records of a campaign say together.
+//! Summary of a campaign: what its records say together.
 
 use fmm_model::Estimated;
 use fmm_uq::{Interval, Outlier, Precision, RandomEffects};
@@ -9,7 +9,7 @@ use super::dependence::{Dependence, FRICTION, dependences};
 use super::joint::{Joint, Together};
 use super::row::{Row, Told, quantities};
 use super::shared::{Parted, SharedPart};
-use super::sheet::Field;
+use super::sheet_fields::Field;
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;

@@ -8,7 +8,7 @@ use fmm_model::Rounded;
 use super::campaign::Campaign;
 use super::joint::Joint;
 use super::row::{Found, Outcome, Row, Told, quantities};
-use super::sheet::Field;
+use super::sheet_fields::Field;
 use super::summary::{ByGroup, Quantity, Summary};
 
 /// One line for each record, with all digits.

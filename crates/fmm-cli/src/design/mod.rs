@@ -1,4 +1,4 @@
-//! Which test next: `fmm design FILE.toml`.
+//! Choice of the next tests: `fmm design FILE.toml`.
 //!
 //! Reads a machine, a guess of its friction and the tests that may be made, and says what each would tell, which set of them tells most,
 //! and what each of that set tells that the others do not.
@@ -195,12 +195,13 @@ fn text(answer: &Answer) -> String {
     }
     let count: usize = best.chosen.iter().map(|(_, count)| count).sum();
     let how = if best.is_exhaustive { "of all sets" } else { "by exchanges" };
-    let _ = writeln!(text, "\nthe best set {how}, {count} tests at a cost of {}: u = {}", best.cost, percent(best.u));
+    let tests_of_it = if count == 1 { "1 test".to_owned() } else { format!("{count} tests") };
+    let _ = writeln!(text, "\nthe best set {how}, {tests_of_it} at a cost of {}: u = {}", best.cost, percent(best.u));
     for (place, count) in &best.chosen {
         let _ = writeln!(text, "  {count} × {}", tests[*place].name);
     }
     if let Some(repeats) = answer.repeats {
-        let _ = writeln!(text, "as many of the single best: u = {}", percent(Some(repeats)));
+        let _ = writeln!(text, "the single best as many times: u = {}", percent(Some(repeats)));
     }
     let _ = writeln!(text, "\nwhat the set would find:\n{}", best.text);
     let _ = writeln!(text, "what each test of it tells that the others do not:");

@@ -1,7 +1,7 @@
 //! Friction out of a measured force along a measured motion: `fmm force FILES...`.
 //!
 //! Reads time, position or velocity, and force (or torque) of a joint, a tribometer or a damper, at equal or unequal steps; fits each
-//! model and gives out what was found. `--validate` tells how well a model says a record to which it was not fitted.
+//! model and gives out what was found. `--validate` tells how well a model predicts a record to which it was not fitted.
 
 mod source;
 

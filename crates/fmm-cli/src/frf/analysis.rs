@@ -1,4 +1,4 @@
-//! What a set of trials says: impulses, response, coherence, resonances, and what is doubtful.
+//! Analysis of a set of trials: impulses, response, coherence, resonances, and what is doubtful.
 
 use std::error::Error;
 use std::ops::Range;

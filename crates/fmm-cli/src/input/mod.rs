@@ -1,4 +1,4 @@
-//! What a command is told: the record, a mode of it, the machine, the laws.
+//! Input of a command: the record, a mode of it, the machine, the laws.
 
 mod question;
 mod source;
@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use fmm_frf::{BackboneOptions, IsolatedMode, decay_modes};
 use fmm_identify::Preparation;
-use fmm_record::{Column, Quantity, Record, Request, Unit};
+use fmm_record::{Column, Quantity, Record, Request, WrittenUnit};
 
 pub(crate) use question::Question;
 use source::BUNDLED;
@@ -43,7 +43,7 @@ pub(crate) struct Given {
     /// Unit of the channel, such as mm/s, rad or V, after scaling by --scale; needed if the file tells none. With --quantity
     /// but no unit anywhere, SI units are taken
     #[arg(long)]
-    pub(crate) unit: Option<Unit>,
+    pub(crate) unit: Option<WrittenUnit>,
     /// Use the record from this time on
     #[arg(long, value_name = "S")]
     from: Option<f64>,

@@ -1,4 +1,4 @@
-//! What is asked of a record: the machine, the laws, the sensor.
+//! Question to a record: the machine, the laws, the sensor.
 
 use std::error::Error;
 use std::ops::ControlFlow;

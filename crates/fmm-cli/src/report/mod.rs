@@ -1,28 +1,27 @@
 //! The report of one record as a page: what was found, how sure it is, and how it was made.
 
 mod budget;
+mod found;
 mod profiles;
 
 use std::error::Error;
 
 use fmm_fit::{EstimateStatus, autocorrelation, coverage_factor};
 use fmm_frf::{Backbone, BackboneOptions};
-use fmm_identify::{Finding, FittedMotion, Origin};
+use fmm_identify::{Finding, FittedMotion, Identification, Origin};
 use fmm_model::Rounded;
 use sha2::{Digest, Sha256};
 
 use self::budget::{budget, of_size};
+pub(crate) use self::found::Found;
 use self::profiles::profiles;
 use crate::backbone;
 use crate::figure::{Layer, Panel, Role, drawn, drawn_histogram, label};
-use crate::identify::Found;
 use crate::page::{cell, escaped, figure, page, table, text_cell, words};
 use crate::pictures::Pictures;
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;
-/// Below this probability a law counts as excluded (1).
-const EXCLUDED: f64 = 5e-4;
 /// Periods over which residuals are correlated with themselves, and points drawn of that.
 const PERIODS: f64 = 2.0;
 const LAGS: usize = 300;
@@ -115,6 +114,7 @@ fn laws(found: &Found) -> String {
     let comparison = &found.comparison;
     let best = comparison.scores().iter().copied().fold(f64::INFINITY, f64::min);
     let standings = comparison.scores().iter().zip(comparison.probabilities());
+    let is_excluded = |law: &Identification| !comparison.not_excluded().any(|left| std::ptr::eq(left, law));
     let rows = comparison.identifications().iter().zip(standings).map(|(law, (score, probability))| {
         let stop = law.motions().iter().find_map(FittedMotion::stop_time);
         vec![
@@ -124,7 +124,7 @@ fn laws(found: &Found) -> String {
             text_cell(&law.motions().iter().map(FittedMotion::half_swings).sum::<usize>().to_string()),
             text_cell(&stop.map_or_else(|| "–".to_owned(), |time| format!("{time:.4}"))),
             text_cell(&format!("{:.1}", score - best)),
-            if *probability < EXCLUDED { cell("excluded") } else { text_cell(&format!("{probability:.3}")) },
+            if is_excluded(law) { cell("excluded") } else { text_cell(&format!("{probability:.3}")) },
         ]
     });
     let unit = found.decay.record().unit();

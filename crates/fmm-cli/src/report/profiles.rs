@@ -6,9 +6,8 @@ use fmm_fit::ProfileEnd;
 use fmm_identify::{Profile, Profiles};
 use fmm_model::Rounded;
 
-use super::LEVEL;
+use super::{Found, LEVEL};
 use crate::figure::{Layer, Panel, Role, drawn, label};
-use crate::identify::Found;
 use crate::page::{escaped, figure, table, text_cell, words};
 
 /// Points of a parabola.
@@ -37,7 +36,7 @@ pub(super) fn profiles(found: &Found) -> Result<String, Box<dyn Error>> {
                 "All intervals are symmetric within {within:.0} % of k u, as value ± k u takes them: no profile is drawn."
             )
         }
-        (false, true) => "About none of the fitted quantities value ± k u says the truth.".to_owned(),
+        (false, true) => "For none of the fitted quantities does value ± k u hold.".to_owned(),
         (false, false) => format!("All other intervals are symmetric within {within:.0} % of k u."),
     };
     let rows = bent.iter().map(|profile| {
@@ -61,7 +60,7 @@ pub(super) fn profiles(found: &Found) -> Result<String, Box<dyn Error>> {
     let table = if bent.is_empty() { String::new() } else { table("profiles", &headings, rows) };
     let figures = bent.iter().enumerate().map(|(number, profile)| picture(number, profile));
     Ok(format!(
-        "<p>Each fitted quantity is moved away from its value and all others are fitted anew, until the sum of squares has risen by as \
+        "<p>Each fitted quantity is moved away from its value and all others are fitted again, until the sum of squares has risen by as \
          much as 95 % allow: that interval follows the bends of the model, value ± k u does not. Both speak of the residuals alone, with \
          the noise that they show; gains, inputs and other laws come on top of it. A quantity counts as bent from a difference of \
          {:.0} % of k u on. The search took {} evaluations of the motion, and ends after {}.</p>\n<p>{said}</p>\n{left_out}{table}{}",
@@ -137,7 +136,7 @@ fn picture(number: usize, profile: &Profile) -> String {
         .with(Layer::new(Role::Measured, "value ± k u", parabola))
         .with(Layer::new(Role::Reference, "95 %", vec![(first, threshold), (last, threshold)]));
     let caption = format!(
-        "{}: the sum of squares with all others fitted anew, beside the parabola of value ± k u; below the line lies the 95 % interval.",
+        "{}: the sum of squares with all others fitted again, beside the parabola of value ± k u; below the line lies the 95 % interval.",
         words(profile.parameter().name())
     );
     figure(&drawn(&[panel]), &caption, &format!("profile-{number}"))

@@ -1,4 +1,4 @@
-//! What can be wrong with a scenario file.
+//! Errors of a scenario file.
 
 use fmm_friction::LawError;
 use fmm_model::ModelError;

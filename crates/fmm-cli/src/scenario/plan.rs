@@ -1,4 +1,4 @@
-//! When a motion is sampled and when it ends.
+//! Plan of a simulation: when it is sampled and when it ends.
 
 use fmm_model::ModelError;
 use fmm_sim::Sampling;

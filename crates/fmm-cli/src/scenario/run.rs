@@ -1,4 +1,4 @@
-//! From the text of a scenario to its motion.
+//! Run of a scenario: from its text to its motion.
 
 use fmm_model::Restoring;
 use fmm_sim::State;

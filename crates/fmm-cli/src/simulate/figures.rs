@@ -14,7 +14,7 @@ const POINTS: usize = 2000;
 /// Events marked in a curve; more of them would hide it.
 const MOST_MARKS: usize = 500;
 
-/// Draws what the motion was and what friction did, into `folder`. The curves are sampled anew, whatever the output of
+/// Draws what the motion was and what friction did, into `folder`. The curves are sampled again, whatever the output of
 /// the scenario.
 ///
 /// # Errors

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use crate::{Comparing, Contender, Criterion, Doubt, ModelTableError, ResidualCount, RunsTest, Verdict};
+use crate::{ComparisonOptions, Contender, Criterion, Doubt, ModelTableError, ResidualCount, RunsTest, Verdict};
 
 /// One model of a comparison.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,7 +61,7 @@ pub struct NestedComparison {
 /// `Display` gives the table, the best model first.
 ///
 /// ```
-/// use fmm_fit::{Comparing, Contender, ModelTable, Polynomial, ResidualCount, Weighting};
+/// use fmm_fit::{ComparisonOptions, Contender, ModelTable, Polynomial, ResidualCount, Weighting};
 ///
 /// let x: Vec<f64> = (0..30).map(|i| 0.1 * f64::from(i)).collect();
 /// let noise = |i: usize| 0.02 * (1.7 * (i * i) as f64).sin();
@@ -71,7 +71,7 @@ pub struct NestedComparison {
 ///     Ok::<_, fmm_fit::RegressionError>(Contender::of_regression(name, fit.regression()))
 /// };
 /// let models = [contender("line", 1)?, contender("parabola", 2)?.containing("line")];
-/// let table = ModelTable::of(&models, Comparing::default().counting(ResidualCount::All))?;
+/// let table = ModelTable::of(&models, ComparisonOptions::default().counting(ResidualCount::All))?;
 /// assert!(table.verdict().is_decided());
 /// assert_eq!(table.rows()[table.verdict().preferred()].name, "parabola");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -102,7 +102,7 @@ impl ModelTable {
     /// # Errors
     /// [`ModelTableError`] if there is no model, if their data differ, a name is used twice or not known, or a setting
     /// makes no sense.
-    pub fn of(contenders: &[Contender], comparing: Comparing) -> Result<Self, ModelTableError> {
+    pub fn of(contenders: &[Contender], comparing: ComparisonOptions) -> Result<Self, ModelTableError> {
         check(contenders, &comparing)?;
         let residuals = contenders[0].count;
         let best = contenders.iter().min_by(|a, b| a.sum_of_squares.total_cmp(&b.sum_of_squares));
@@ -152,7 +152,7 @@ impl ModelTable {
     }
 }
 
-fn check(contenders: &[Contender], comparing: &Comparing) -> Result<(), ModelTableError> {
+fn check(contenders: &[Contender], comparing: &ComparisonOptions) -> Result<(), ModelTableError> {
     let first = contenders.first().ok_or(ModelTableError::NoContender)?;
     let names: HashSet<&str> = contenders.iter().map(|contender| contender.name.as_str()).collect();
     let mut seen = HashSet::new();
@@ -235,7 +235,12 @@ fn tests(contenders: &[Contender], counted: f64) -> Vec<NestedComparison> {
     nested(contenders).filter_map(test).collect()
 }
 
-fn verdict(contenders: &[Contender], scores: &[f64], tests: &[NestedComparison], comparing: &Comparing) -> Verdict {
+fn verdict(
+    contenders: &[Contender],
+    scores: &[f64],
+    tests: &[NestedComparison],
+    comparing: &ComparisonOptions,
+) -> Verdict {
     let least = scores.iter().copied().fold(f64::INFINITY, f64::min);
     let close = (0..scores.len()).filter(|&i| scores[i] - least <= comparing.margin);
     let simpler =

@@ -1,4 +1,4 @@
-//! Why models cannot be compared.
+//! Errors of a comparison of models.
 
 use fmm_model::Rounded;
 

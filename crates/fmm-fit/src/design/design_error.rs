@@ -1,4 +1,4 @@
-//! Why a design cannot be judged or searched for.
+//! Errors of a design of measurements and of the search for one.
 
 use crate::FitError;
 

@@ -4,7 +4,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use crate::posterior::coordinates::Whitening;
-use crate::posterior::sampler::standard_normal;
+use crate::posterior::normal::standard_normal;
 use crate::posterior::target::Target;
 use crate::uncertainty::definite::{add_square, factor};
 use crate::{Marginal, Posterior, Residuals};

@@ -7,6 +7,7 @@ mod coordinates;
 mod error;
 mod marginal;
 mod mode;
+mod normal;
 mod nuts;
 mod prior;
 mod report;

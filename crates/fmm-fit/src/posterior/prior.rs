@@ -5,7 +5,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use crate::PosteriorError;
-use crate::posterior::sampler::standard_normal;
+use crate::posterior::normal::standard_normal;
 
 /// Values drawn in search of one within the bounds.
 const TRIES: usize = 10_000;

@@ -3,11 +3,12 @@
 use fmm_model::Parameter;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{ChiSquared, Distribution, StandardNormal};
+use rand_distr::{ChiSquared, Distribution};
 
 use crate::posterior::check::{self, GradientFreeCheck};
 use crate::posterior::coordinates::Whitening;
 use crate::posterior::mode::{no_start, whiten};
+use crate::posterior::normal::standard_normal;
 use crate::posterior::nuts::{self, Run};
 use crate::posterior::target::Target;
 use crate::{Fit, Posterior, PosteriorError, Prior, ResidualVariance, Residuals};
@@ -325,10 +326,6 @@ impl<P: Residuals + ?Sized> Plan<'_, P> {
         let positions: Vec<&[f64]> = chains.iter().map(|chain| chain.run.positions.as_slice()).collect();
         check::Walk::of(&positions.concat(), self.whitening.order())
     }
-}
-
-pub(super) fn standard_normal(random: &mut ChaCha8Rng) -> f64 {
-    StandardNormal.sample(random)
 }
 
 /// The draws of one chain.

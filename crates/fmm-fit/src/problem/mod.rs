@@ -2,7 +2,7 @@
 
 mod automatic;
 pub(crate) mod block;
-mod formula;
+mod closure;
 pub(crate) mod forward;
 mod held;
 mod joint;
@@ -12,7 +12,7 @@ mod weighted;
 
 pub use automatic::{Automatic, Model};
 pub use block::Block;
-pub use formula::{Formula, curve, curve_fit, fit};
+pub use closure::{ClosureProblem, curve, curve_fit, fit};
 pub use held::Held;
 pub use joint::{Joint, JointPart};
 pub use joint_error::JointError;

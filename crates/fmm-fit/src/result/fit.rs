@@ -8,7 +8,7 @@ use crate::solver::evaluation::Scheme;
 use crate::solver::minimizer::Minimizer;
 use crate::solver::spectrum::Spectrum;
 use crate::solver::triangle::Triangle;
-use crate::{JacobianDoubt, NonFinite, Outcome, coverage_factor};
+use crate::{JacobianMismatch, NonFinite, Outcome, coverage_factor};
 
 /// The result of a fit: estimates, their uncertainty, and what the residuals could not tell.
 ///
@@ -49,7 +49,7 @@ pub struct Fit {
     has_exact_jacobian: bool,
     model_error: Option<String>,
     non_finite: Option<NonFinite>,
-    jacobian_doubts: Vec<JacobianDoubt>,
+    jacobian_mismatches: Vec<JacobianMismatch>,
 }
 
 impl Fit {
@@ -107,7 +107,7 @@ impl Fit {
             has_exact_jacobian: minimizer.scheme() == Scheme::Exact,
             model_error: minimizer.model_error().map(str::to_owned),
             non_finite: minimizer.non_finite().cloned(),
-            jacobian_doubts: minimizer.doubts.clone(),
+            jacobian_mismatches: minimizer.mismatches.clone(),
         };
         for j in 0..fit.estimates.len() {
             fit.estimates[j].standard_uncertainty = fit.covariance(j, j).map(f64::sqrt);
@@ -261,8 +261,8 @@ impl Fit {
 
     /// Where the derivatives of the problem disagree with differences at the start, if that was
     /// [looked at](crate::Options::with_jacobian_check).
-    pub fn jacobian_doubts(&self) -> &[JacobianDoubt] {
-        &self.jacobian_doubts
+    pub fn jacobian_mismatches(&self) -> &[JacobianMismatch] {
+        &self.jacobian_mismatches
     }
 
     /// What the model said when it last failed at a trial point.

@@ -102,7 +102,7 @@ impl Fit {
             .map(crate::Estimate::name)
             .collect();
         let is_plain = at_bound.is_empty() && self.null_directions().is_empty() && self.model_error().is_none();
-        let is_quiet = is_plain && self.jacobian_doubts().is_empty();
+        let is_quiet = is_plain && self.jacobian_mismatches().is_empty();
         if is_quiet && self.outcome().is_success() {
             return Ok(());
         }
@@ -115,8 +115,8 @@ impl Fit {
         {
             writeln!(f, "  what had no finite value beyond them: {reason}")?;
         }
-        for doubt in self.jacobian_doubts() {
-            writeln!(f, "  {doubt}")?;
+        for mismatch in self.jacobian_mismatches() {
+            writeln!(f, "  {mismatch}")?;
         }
         for direction in self.null_directions() {
             writeln!(f, "  {direction}")?;

@@ -67,7 +67,7 @@ impl From<Checkpoint> for Minimizer {
 
 impl Minimizer {
     /// Takes up a stored fit of `problem` where it was and brings it to its end, as if it had not been interrupted; one of
-    /// another problem is not found out. A time limit begins anew. (Feature `serde`.)
+    /// another problem is not found out. A time limit begins again. (Feature `serde`.)
     ///
     /// # Errors
     /// [`FitError`] if the problem does not allow it; [`FitError::NotStarted`] if nothing was stored.
@@ -119,11 +119,11 @@ mod tests {
     use fmm_model::{Parameter, Scalar};
 
     use super::*;
-    use crate::{BoundedLevenbergMarquardt, Formula};
+    use crate::{BoundedLevenbergMarquardt, ClosureProblem};
 
     fn problem() -> impl Residuals {
         let names = ["a", "b", "c"].map(Parameter::from);
-        Formula::new(names, 40, |[a, b, c]: [fmm_model::Dual<3>; 3], residuals: &mut [fmm_model::Dual<3>]| {
+        ClosureProblem::new(names, 40, |[a, b, c]: [fmm_model::Dual<3>; 3], residuals: &mut [fmm_model::Dual<3>]| {
             for (i, r) in (0_u32..).zip(residuals) {
                 let t = 0.1 * f64::from(i);
                 *r = a * (-b * t).exp() + c - 2.0 * (-0.7 * t).exp() - 0.01 * (f64::from(i * 37 % 11) - 5.0);

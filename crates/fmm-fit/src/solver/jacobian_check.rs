@@ -10,7 +10,7 @@ use crate::{FitError, Residuals};
 
 /// The relative difference between a column of derivatives and differences that is no error of the latter.
 const DIFFERENT: f64 = 1e-3;
-/// Differences over steps a thousandfold apart that disagree by more, in units of the doubt, are no evidence: the model
+/// Differences over steps a thousandfold apart that disagree by more, in units of the mismatch, are no evidence: the model
 /// is not smooth there.
 const SMOOTH: f64 = 0.1;
 /// Rounding of a residual, in its last digits.
@@ -21,7 +21,7 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// `Display` gives it in words.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct JacobianDoubt {
+pub struct JacobianMismatch {
     /// Name of the parameter.
     pub parameter: String,
     /// Index of the residual whose derivative is most wrong, from 0.
@@ -32,7 +32,7 @@ pub struct JacobianDoubt {
     pub difference: f64,
 }
 
-impl fmt::Display for JacobianDoubt {
+impl fmt::Display for JacobianMismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [derivative, difference] = [self.derivative, self.difference].map(|value| Rounded::new(value, None));
         write!(
@@ -69,10 +69,10 @@ impl fmt::Display for JacobianDoubt {
 ///     }
 /// }
 /// let problem = Square(["x", "y"].map(|name| Parameter::new(name, name, "1")));
-/// let doubts = check_jacobian(&problem, &[3.0, 1.0])?;
-/// assert_eq!(doubts.len(), 1);
+/// let mismatches = check_jacobian(&problem, &[3.0, 1.0])?;
+/// assert_eq!(mismatches.len(), 1);
 /// assert_eq!(
-///     doubts[0].to_string(),
+///     mismatches[0].to_string(),
 ///     "the derivative of residual 0 by x is 3 as the problem gives it and 6 by differences"
 /// );
 /// # Ok::<(), fmm_fit::FitError>(())
@@ -80,7 +80,7 @@ impl fmt::Display for JacobianDoubt {
 ///
 /// # Errors
 /// [`FitError`] if a fit could not begin at `values`.
-pub fn check_jacobian<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Result<Vec<JacobianDoubt>, FitError> {
+pub fn check_jacobian<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Result<Vec<JacobianMismatch>, FitError> {
     let parameters = problem.parameters();
     check_parameters(parameters)?;
     check_start(parameters, values)?;
@@ -96,7 +96,7 @@ pub fn check_jacobian<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Res
         let columns = evaluator.structure.columns_of(j);
         columns.flat_map(|column| evaluator.jacobian[column.elements].iter().copied()).collect()
     };
-    let mut doubts = Vec::new();
+    let mut mismatches = Vec::new();
     for j in evaluator.free.clone() {
         // Differences overwrite the derivatives in their place; no parameter needs those of another.
         let own = column(&evaluator, j);
@@ -118,7 +118,7 @@ pub fn check_jacobian<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Res
             let error = |k: usize| (own[k] - central[k]).abs();
             let worst = (0..own.len()).fold(0, |worst, k| if error(k) > error(worst) { k } else { worst });
             let residual = evaluator.structure.columns_of(j).flat_map(|column| column.rows).nth(worst);
-            doubts.push(JacobianDoubt {
+            mismatches.push(JacobianMismatch {
                 parameter: parameters[j].name().to_owned(),
                 residual: residual.unwrap_or(worst),
                 derivative: own[worst],
@@ -126,7 +126,7 @@ pub fn check_jacobian<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Res
             });
         }
     }
-    Ok(doubts)
+    Ok(mismatches)
 }
 
 fn norm(column: &[f64]) -> f64 {

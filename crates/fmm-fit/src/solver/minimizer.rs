@@ -10,7 +10,7 @@ use crate::solver::evaluation::{Evaluator, Point, Scheme};
 use crate::solver::non_finite::worst;
 use crate::solver::triangle::Triangle;
 use crate::solver::trust_region::TrustRegion;
-use crate::{Fit, FitError, JacobianDoubt, NonFinite, Options, Outcome, Residuals};
+use crate::{Fit, FitError, JacobianMismatch, NonFinite, Options, Outcome, Residuals};
 
 /// The square of the rounding of a smaller residual, √10⁻³⁰⁸/ε, is no normal number.
 const SMALLEST_RESIDUAL: f64 = 1e-138;
@@ -71,7 +71,7 @@ pub struct Minimizer {
     pub(crate) best: Option<Attempt>,
     /// Whether the fit has left a point where the gradient vanishes and the sum of squares falls all the same.
     pub(crate) is_saddle_left: bool,
-    pub(crate) doubts: Vec<JacobianDoubt>,
+    pub(crate) mismatches: Vec<JacobianMismatch>,
     pub(crate) iterations: usize,
     pub(crate) began: Option<Instant>,
     /// What a stored fit has that waits for its problem.
@@ -229,7 +229,7 @@ impl Minimizer {
         check_start(parameters, start)?;
         self.began = self.options.time_limit.map(|_| Instant::now());
         (self.iterations, self.attempt, self.best, self.is_saddle_left) = (0, 0, None, false);
-        self.doubts.clear();
+        self.mismatches.clear();
         self.start.clear();
         self.start.extend_from_slice(start);
         let bounds = parameters.iter().map(|parameter| (parameter.bounds().lower(), parameter.bounds().upper()));

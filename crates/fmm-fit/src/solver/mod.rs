@@ -25,7 +25,7 @@ mod trust_region;
 
 pub use argmin_solver::BoundedLevenbergMarquardt;
 pub use error::FitError;
-pub use jacobian_check::{JacobianDoubt, check_jacobian};
+pub use jacobian_check::{JacobianMismatch, check_jacobian};
 pub use minimizer::Minimizer;
 pub use non_finite::NonFinite;
 pub use options::Options;

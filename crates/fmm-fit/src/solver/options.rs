@@ -1,4 +1,4 @@
-//! When to stop, and how far to go at first.
+//! Options of a fit: when to stop, and how far to go at first.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -131,7 +131,7 @@ impl Options {
 
     /// Whether [`solve`](crate::solve) compares the derivatives that a problem gives with differences at the start, as
     /// [`check_jacobian`](crate::check_jacobian) does (in debug builds yes, in release builds no). What it finds is in
-    /// [`Fit::jacobian_doubts`](crate::Fit::jacobian_doubts) and changes nothing else; its evaluations are not counted.
+    /// [`Fit::jacobian_mismatches`](crate::Fit::jacobian_mismatches) and changes nothing else; its evaluations are not counted.
     #[must_use]
     pub fn with_jacobian_check(mut self, check: bool) -> Self {
         self.jacobian_check = check;

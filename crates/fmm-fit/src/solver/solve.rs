@@ -53,9 +53,9 @@ pub fn solve_observed<P: Residuals + ?Sized>(
 ) -> Result<Fit, FitError> {
     let mut minimizer = Minimizer::new(options.clone());
     // Before the fit has its own buffers.
-    let doubts = if options.jacobian_check { check_jacobian(problem, start)? } else { Vec::new() };
+    let mismatches = if options.jacobian_check { check_jacobian(problem, start)? } else { Vec::new() };
     minimizer.begin(problem, start)?;
-    minimizer.doubts = doubts;
+    minimizer.mismatches = mismatches;
     let mut outcome = minimizer.outcome();
     while outcome.is_none() {
         outcome = minimizer.iterate(problem);

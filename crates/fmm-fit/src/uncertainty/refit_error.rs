@@ -1,4 +1,4 @@
-//! Why a prepared fit could not be repeated.
+//! Errors of a repeated fit.
 
 use fmm_model::ModelError;
 

@@ -1,7 +1,8 @@
 //! Models side by side: figures against statsmodels, and verdicts.
 
 use fmm_fit::{
-    Comparing, Contender, Criterion, Doubt, ModelTable, ModelTableError, Polynomial, ResidualCount, Verdict, Weighting,
+    ComparisonOptions, Contender, Criterion, Doubt, ModelTable, ModelTableError, Polynomial, ResidualCount, Verdict,
+    Weighting,
 };
 
 const Y: [f64; 12] = [1.1, 1.4, 2.2, 2.3, 3.1, 3.2, 4.3, 4.4, 5.5, 5.6, 6.9, 7.2];
@@ -21,8 +22,8 @@ fn polynomials() -> [Contender; 4] {
     ]
 }
 
-fn all() -> Comparing {
-    Comparing::default().counting(ResidualCount::All)
+fn all() -> ComparisonOptions {
+    ComparisonOptions::default().counting(ResidualCount::All)
 }
 
 /// Sums of squares and F-test of statsmodels 0.15, OLS; criteria by their formulas from these.
@@ -88,11 +89,12 @@ fn correlated_residuals_count_once() {
     assert!(naive.rows()[0].difference > 110.0, "{naive}");
     let Verdict::Undecided { doubts, .. } = naive.verdict() else { panic!("{naive}") };
     assert!(matches!(doubts.as_slice(), [Doubt::Correlated { p_value }] if *p_value < 1e-6), "{naive}");
-    let honest = ModelTable::of(&contenders(), Comparing::default()).unwrap();
+    let honest = ModelTable::of(&contenders(), ComparisonOptions::default()).unwrap();
     assert!(honest.counted() < 100.0, "{}", honest.counted());
     assert_eq!(honest.verdict().preferred(), 0, "{honest}");
     assert!(!honest.verdict().is_decided(), "{honest}");
-    let given = ModelTable::of(&contenders(), Comparing::default().counting(ResidualCount::Given(50.0))).unwrap();
+    let given =
+        ModelTable::of(&contenders(), ComparisonOptions::default().counting(ResidualCount::Given(50.0))).unwrap();
     assert_eq!(given.counted(), 50.0);
 }
 

@@ -151,10 +151,10 @@ fn derivatives_that_are_not_those_of_the_residuals_are_named() {
         assert_eq!(check_jacobian(&kinked(1.0), &p).unwrap(), [], "at {p:?}");
     }
     for wrong in [-1.0, 0.0, 0.99, 2.0] {
-        let doubts = check_jacobian(&kinked(wrong), &[1.0, 0.5]).unwrap();
-        assert_eq!(doubts.len(), 1);
-        assert_eq!(doubts[0].parameter, "b");
-        assert!((doubts[0].derivative - wrong * doubts[0].difference).abs() < 1e-6);
+        let mismatches = check_jacobian(&kinked(wrong), &[1.0, 0.5]).unwrap();
+        assert_eq!(mismatches.len(), 1);
+        assert_eq!(mismatches[0].parameter, "b");
+        assert!((mismatches[0].derivative - wrong * mismatches[0].difference).abs() < 1e-6);
         // At the kink no difference tells anything.
         assert_eq!(check_jacobian(&kinked(wrong), &[1.0, 1.0]).unwrap(), []);
     }
@@ -162,7 +162,7 @@ fn derivatives_that_are_not_those_of_the_residuals_are_named() {
     assert!(
         looked(true).to_string().contains("by differences") && !looked(false).to_string().contains("by differences")
     );
-    assert_eq!((looked(true).jacobian_doubts().len(), looked(false).jacobian_doubts().len()), (1, 0));
+    assert_eq!((looked(true).jacobian_mismatches().len(), looked(false).jacobian_mismatches().len()), (1, 0));
     assert_eq!(looked(true).values(), looked(false).values());
     assert_eq!(check_jacobian(&Plain(kinked(2.0)), &[1.0, 0.5]).unwrap(), []);
 }

@@ -151,7 +151,7 @@ impl TrialAverage {
         Ok(())
     }
 
-    /// Adds a trial of two records, whose quantities, rates and begins must fit. Units are not converted: the force must be
+    /// Adds a trial of two records, whose quantities, rates and beginnings must fit. Units are not converted: the force must be
     /// in N and the response in its SI unit.
     ///
     /// # Errors

@@ -64,7 +64,7 @@ impl ForceWindow {
         Ok(self)
     }
 
-    /// Begin (s) of the full weight.
+    /// Beginning (s) of the full weight.
     pub fn from(&self) -> f64 {
         self.from
     }

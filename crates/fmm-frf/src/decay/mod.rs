@@ -1,6 +1,7 @@
 //! Free decays looked at before a fit: their modes, and how frequency and damping go with the amplitude.
 
 mod backbone;
+mod criterion;
 mod half_cycles;
 mod isolated;
 mod local;

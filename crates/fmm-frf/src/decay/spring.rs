@@ -3,7 +3,7 @@
 use fmm_model::Estimated;
 
 use crate::BackbonePoint;
-use crate::decay::suggestion::{SIGNIFICANT, scored};
+use crate::decay::criterion::{SIGNIFICANT, scored};
 
 /// Relative error of the closed form for the square of the frequency (1): at best, and as a multiple of (k₃ A²)³, the first power that it omits.
 const ACCURACY: (f64, f64) = (2e-6, 0.02);

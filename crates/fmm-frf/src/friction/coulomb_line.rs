@@ -1,4 +1,4 @@
-//! Friction out of how receptance peaks grow with the impulse.
+//! Friction out of the growth of receptance peaks with the impulse.
 
 use std::f64::consts::PI;
 use std::fmt;

@@ -1,4 +1,4 @@
-//! What a set of tests would find, before it is made.
+//! Prediction: what a set of tests would find, before it is made.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! In words, what a test tells that others do not.
+//! Sentences on what a test tells that others do not.
 
 use crate::report::{Finding, Origin};
 use crate::{DesignPrediction, IdentifyError, Plan};

@@ -27,8 +27,8 @@ use crate::experiment::nuisance::Nuisance;
 use crate::fit::first_guess::{Dissipation, FirstGuess};
 use crate::{IdentifyError, Machine, Warning};
 
-/// An experiment on a machine: a ring-down ([`ring_down`](Self::ring_down)), or a motion that is driven by a measured force or by a
-/// measured motion of the base ([`driven`](Self::driven)).
+/// An experiment on a machine: a ring-down ([`ring_down`](Self::ring_down)), a hammer blow ([`impact`](Self::impact)), or a motion that
+/// is driven by a measured force or by a measured motion of the base ([`driven`](Self::driven)).
 ///
 /// Experiments of all kinds are fitted together: they share the machine and the law, and each has its own initial state and offset,
 /// its own normal load ([`with_load_factor`](Self::with_load_factor)) and its own sensor ([`seen_by`](Self::seen_by)).

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fmm_fit::{Comparing, Contender, Criterion, ModelTable};
+use fmm_fit::{ComparisonOptions, Contender, Criterion, ModelTable};
 
 use crate::{ForceIdentification, ForceModel, ForceRecord, IdentifyError, identify_force};
 
@@ -54,9 +54,11 @@ pub fn compare_force(models: &[ForceModel], records: &[ForceRecord]) -> Result<F
         special.fold(contender, |contender, (other, _)| contender.containing(identifications[other].model()))
     };
     let contenders: Vec<Contender> = (0..models.len()).map(contender).collect();
-    let comparing = Comparing::default().by(Criterion::Bayesian);
+    let comparing = ComparisonOptions::default().by(Criterion::Bayesian);
     let table = ModelTable::of(&contenders, comparing).map_err(|error| match error {
-        fmm_fit::ModelTableError::NoContender => IdentifyError::missing("give a model at least, to be compared"),
+        fmm_fit::ModelTableError::NoContender => {
+            IdentifyError::missing("there is no model to compare; give at least one")
+        }
         fmm_fit::ModelTableError::TooFewResiduals { parameters, residuals, .. } => {
             IdentifyError::too_short(residuals, parameters + 3)
         }

@@ -29,10 +29,10 @@ pub struct ForceIdentification {
     counted: usize,
 }
 
-/// How well a model says the forces of a record to which it was not fitted.
+/// How well a model predicts the forces of a record to which it was not fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Validation {
-    /// Root mean square of what it says less the force, in the unit of the force.
+    /// Root mean square of what it predicts less the force, in the unit of the force.
     pub rms: f64,
     /// Standard deviation of the force, in its unit.
     pub force: f64,
@@ -285,7 +285,7 @@ impl ForceIdentification {
         Ok(all)
     }
 
-    /// How well it says the forces of a record to which it was not fitted.
+    /// How well it predicts the forces of a record to which it was not fitted.
     ///
     /// # Errors
     /// As for [`identify_force`], and [`IdentifyError::NotSeen`] if no sample of it counts.
@@ -294,7 +294,7 @@ impl ForceIdentification {
         let both = || predicted.iter().zip(record.forces()).filter_map(|(said, force)| Some(((*said)?, *force)));
         if both().next().is_none() {
             return Err(IdentifyError::not_seen(
-                "the contact slides at no sample of the record, so that no force is said",
+                "the contact slides at no sample of the record, so that the model predicts no force",
             ));
         }
         let squares: f64 = both().map(|(said, force)| (said - force).powi(2)).sum();

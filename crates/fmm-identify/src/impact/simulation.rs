@@ -88,7 +88,7 @@ impl ImpactProblem<'_> {
         (0..scale).filter(|number| self.is_wanted(Self::index(*number))).chain(has_scale.then_some(scale)).collect()
     }
 
-    /// Simulates `trial` by `simulate` from the begin of its blow on, with derivatives by the numbers of a simulation in
+    /// Simulates `trial` by `simulate` from the beginning of its blow on, with derivatives by the numbers of a simulation in
     /// `directions`, as far as its residuals need it.
     fn simulate<D: Scalar>(
         &self,
@@ -277,7 +277,7 @@ impl ImpactProblem<'_> {
         Ok(model)
     }
 
-    /// The motion of `trial`, with its events counted from the begin of the blow.
+    /// The motion of `trial`, with its events counted from the beginning of the blow.
     pub(crate) fn motion(&self, trial: usize, p: &[f64]) -> Result<Trajectory, EvaluationError> {
         let mut trajectory = Trajectory::new();
         self.simulate(self.law().plain, trial, p, &[], &mut trajectory)?;

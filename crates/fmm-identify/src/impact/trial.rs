@@ -99,7 +99,7 @@ impl ImpactTrial {
     /// towards positive velocities.
     ///
     /// # Errors
-    /// [`IdentifyError::Impact`] with what is wrong between the two: quantity, number of samples, rate or begin;
+    /// [`IdentifyError::Impact`] with what is wrong between the two: quantity, number of samples, rate or beginning;
     /// [`IdentifyError::WrongRecord`] for a channel of another quantity or unit, [`IdentifyError::TooFew`] if one is never quiet, and
     /// [`IdentifyError::NotSeen`] without a blow, without motion, or for motion against the force.
     pub fn prepare(force: &Record, velocity: &Record) -> Result<Self, IdentifyError> {
@@ -169,7 +169,7 @@ impl ImpactTrial {
         self.begin
     }
 
-    /// Indices of the samples from the begin of the blow until a while after the motion was last seen.
+    /// Indices of the samples from the beginning of the blow until a while after the motion was last seen.
     pub fn motion(&self) -> Range<usize> {
         self.begin..self.end
     }

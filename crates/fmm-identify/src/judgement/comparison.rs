@@ -29,9 +29,8 @@ pub struct NestedTest {
 /// sampled. Among the others the simplest with a probability of at least 0.0125 is preferred. The preference is *decided* if its
 /// probability is at least 0.05 and what is left beside it are laws that have it as a special case, whose further parameters the record
 /// does not ask for, if no filter in the sensor would explain the record as well, and if no drift was fitted beside residuals that are
-/// still correlated. If a simple law is true, it is undecided in about one record of eight, and excluded in less than one of a hundred.
-/// The uncertainties of the preferred law include what the laws that are left
-/// would change, by how probable they are.
+/// still correlated. Where a simple law is true, about one simulated record of seven stays undecided (example `judgement`). The
+/// uncertainties of the preferred law include what the laws that are left would change, by how probable they are.
 ///
 /// `Display` gives the report.
 #[derive(Debug, Clone)]

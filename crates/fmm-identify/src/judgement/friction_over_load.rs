@@ -191,7 +191,7 @@ impl fmt::Display for FrictionOverLoad {
             ),
             LoadVerdict::Independent => write!(
                 f,
-                "friction does not show to grow with the load between {smallest} N and {largest} N: F₀ + μ N has μ = {coefficient}, zero \
+                "friction is not seen to grow with the load between {smallest} N and {largest} N: F₀ + μ N has μ = {coefficient}, zero \
                  within its 95 % interval, and F₀ = {intercept} N"
             ),
         }
@@ -250,7 +250,7 @@ mod tests {
         let (verdict, text) = of(&|i, load| 0.1 * load - 0.05 + noise(i));
         assert!(verdict == LoadVerdict::Offset && text.contains("F/N rises"), "{text}");
         let (verdict, text) = of(&|i, _| 0.5 + noise(i));
-        assert!(verdict == LoadVerdict::Independent && text.contains("does not show to grow"), "{text}");
+        assert!(verdict == LoadVerdict::Independent && text.contains("is not seen to grow"), "{text}");
     }
 
     /// The uncertainty of a load makes that of F/N and of 1/N: what the line says of μ is that of one run, u(N)/N.

@@ -109,7 +109,7 @@ impl<D: Scalar> Guide<'_, D> {
     }
 
     /// Friction of a law without a closed form, which is followed from sample to sample; between them it is taken to be straight.
-    fn stepped<L: BristleLaw<D>>(&self, law: &L, friction: &mut Vec<D>) -> Result<(), EvaluationError> {
+    fn stepped(&self, law: &dyn BristleLaw<D>, friction: &mut Vec<D>) -> Result<(), EvaluationError> {
         let MeasuredMotion { times, positions, .. } = self.motion;
         // Bristles are at first as after a long way in the direction in which the record begins, as fast as it begins.
         let mut slopes = vec![D::from(0.0); law.states()];
@@ -168,7 +168,7 @@ impl Leg {
     }
 
     /// Carries the state of a law through the first `elapsed` of it (s); whether the law has a closed form for that.
-    fn carry<D: Scalar, L: BristleLaw<D>>(&self, law: &L, elapsed: D, state: &mut [D]) -> bool {
+    fn carry<D: Scalar>(&self, law: &dyn BristleLaw<D>, elapsed: D, state: &mut [D]) -> bool {
         let go =
             |velocity: D, duration: D, state: &mut [D]| velocity.value() == 0.0 || law.carry(velocity, duration, state);
         match self.turn.filter(|turn| *turn < elapsed.value()) {

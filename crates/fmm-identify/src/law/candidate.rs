@@ -54,7 +54,7 @@ impl Candidate {
         Ok(self)
     }
 
-    /// Viscous, Coulomb, and both: the three that a ring-down is compared by when nothing else is asked for.
+    /// Viscous, Coulomb, and both: the three with which a [`search`](crate::search) begins.
     pub const fn standard() -> [Self; 3] {
         [Self::of::<Viscous>(), Self::of::<Coulomb>(), Self::of::<CoulombViscous>()]
     }

@@ -26,7 +26,7 @@ pub(crate) struct Motion<D> {
     /// One value per parameter of the law.
     pub(crate) law: Vec<D>,
     pub(crate) normal_load: D,
-    /// Position and velocity at the begin.
+    /// Position and velocity at the beginning.
     pub(crate) initial: [D; 2],
     pub(crate) force: Option<Excitation<D>>,
 }

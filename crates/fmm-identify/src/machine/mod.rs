@@ -76,10 +76,11 @@ impl Machine {
         Ok(Self { scale: Scale::Stiffness(stiffness), ..Self::per_unit_mass() })
     }
 
-    /// A machine whose mass *and* stiffness are to be found from the record, as the thesis' appendix A1 tries.
+    /// A machine whose mass *and* stiffness are to be found, which takes a measured force: [`Drive::force`](crate::Drive::force) or
+    /// [`Experiment::impact`](crate::Experiment::impact).
     ///
-    /// They cannot be: the fit reports the direction in which mass, stiffness, damping and friction may be scaled
-    /// together. It is here to show that.
+    /// Free vibrations alone do not tell them, as the thesis' appendix A1 supposes: the fit then reports the direction in which mass,
+    /// stiffness, damping and friction may be scaled together.
     pub const fn unknown() -> Self {
         Self { scale: Scale::Unknown, damping: None, normal_load: None, restoring: Restoring::Linear }
     }

@@ -2,6 +2,7 @@
 
 mod contribution;
 pub(crate) mod finding;
+mod limits;
 #[cfg(feature = "serde")]
 mod serialised;
 mod warning;
@@ -118,7 +119,7 @@ impl Comparison {
         let sure = match (self.is_decided(), others.is_empty()) {
             _ if !is_explained => "of the laws that were tried none explains the record to its noise".to_owned(),
             (true, true) => "the record excludes every other law that was tried".to_owned(),
-            (true, false) => format!("the record does not ask for more, nor exclude it ({})", others.join(", ")),
+            (true, false) => format!("the record neither asks for more nor excludes it ({})", others.join(", ")),
             (false, true) => "a law that was tried could not be fitted to the end".to_owned(),
             (false, false) => format!("the record does not decide: {} may be true as well", others.join(", ")),
         };

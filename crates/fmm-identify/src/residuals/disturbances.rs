@@ -138,7 +138,7 @@ impl Warning {
             ),
             Self::Undecided => write!(
                 f,
-                "the record does not decide between the laws that are left; the simplest that it bears well is shown as preferred"
+                "the record does not decide between the laws that are left; the simplest of those that agree well with it is shown as preferred"
             ),
             _ => Ok(()),
         }

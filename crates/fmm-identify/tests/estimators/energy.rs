@@ -1,4 +1,4 @@
-//! Chapter 6 of the thesis: energy rates and turning points, with the figures of the verification.
+//! Chapter 6 of the thesis: energy rates and turning points, with the figures of an independent recomputation.
 
 use fmm_friction::Coulomb;
 use fmm_identify::{EnergyMethod, EnergyRates, Experiment, Preparation, half_swing_losses, half_swing_losses_of};

@@ -1,4 +1,4 @@
-//! The weak form against the figures of the verification, and against truth in all its unknowns.
+//! The weak form against the figures of an independent recomputation, and against truth in all its unknowns.
 
 use std::f64::consts::TAU;
 

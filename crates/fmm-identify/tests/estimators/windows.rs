@@ -18,7 +18,7 @@ fn first_windows(quadratic: f64, windows: Windows) -> Vec<WindowFit> {
     PEAKS.iter().map(one).collect()
 }
 
-/// As the thesis fits, through the first sample: the slopes of the verification to 0.1 %.
+/// As the thesis fits, through the first sample: the slopes of an independent recomputation to 0.1 %.
 #[test]
 fn lines_of_the_thesis() {
     for (quadratic, by_mean, by_first) in [(0.5148, 0.4372, 0.431), (0.437, 0.3711, 0.366)] {

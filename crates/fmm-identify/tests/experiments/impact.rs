@@ -152,8 +152,8 @@ fn gain_and_delay_of_a_drive_are_found() {
         assert!((finding.value() - truth).abs() < 4.0 * u(&found, name), "{name} {}", finding.value());
     }
     let problem = Problem::new::<CoulombViscous>(machine(), &experiments).unwrap();
-    let doubts = check_jacobian(&problem, found.fit().values()).unwrap();
-    assert!(doubts.is_empty(), "{doubts:?}");
+    let mismatches = check_jacobian(&problem, found.fit().values()).unwrap();
+    assert!(mismatches.is_empty(), "{mismatches:?}");
     assert_eq!(problem.parameters().iter().filter(|parameter| parameter.name() == "delay").count(), 1);
     // The same delay stated as that of the sensor.
     let stated = of(plain().with_gain_uncertainty(0.05).unwrap());

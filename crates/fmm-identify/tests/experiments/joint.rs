@@ -144,6 +144,6 @@ fn rows_are_weighed_and_their_derivatives_are_right() {
         problem.parameters().iter().position(|parameter| parameter.name().starts_with("sensor_corner")).unwrap();
     let mut values = fit.fit().values().to_vec();
     values[corner] = 30.0;
-    let doubts = check_jacobian(&problem, &values).unwrap();
-    assert!(doubts.is_empty(), "{doubts:?}");
+    let mismatches = check_jacobian(&problem, &values).unwrap();
+    assert!(mismatches.is_empty(), "{mismatches:?}");
 }

@@ -1,4 +1,4 @@
-//! Simulated records of the machine of the thesis (T. 3.1), with noise.
+//! Simulated records of the machine of the thesis, with noise.
 
 use fmm_friction::LawFamily;
 use fmm_identify::{Known, Machine};

@@ -1,7 +1,7 @@
 //! The label of a channel: what a file tells in its name, and where the format has a place for it.
 
 use crate::units::word::Word;
-use crate::{Quantity, Unit};
+use crate::{Quantity, WrittenUnit};
 
 /// Statement of a file about a channel: the unit, and a word for the quantity.
 ///
@@ -41,7 +41,7 @@ pub struct Label {
 enum Written {
     Nothing,
     Unknown(String),
-    Known(Unit),
+    Known(WrittenUnit),
 }
 
 impl Label {
@@ -79,7 +79,7 @@ impl Label {
     }
 
     /// The unit, if one is written that is known.
-    pub fn unit(&self) -> Option<&Unit> {
+    pub fn unit(&self) -> Option<&WrittenUnit> {
         if let Written::Known(unit) = &self.unit { Some(unit) } else { None }
     }
 
@@ -95,7 +95,7 @@ impl Label {
 
     /// The quantity that the unit measures, if it tells one.
     pub fn quantity_of_unit(&self) -> Option<Quantity> {
-        self.unit().map(Unit::quantity).filter(|quantity| *quantity != Quantity::Other)
+        self.unit().map(WrittenUnit::quantity).filter(|quantity| *quantity != Quantity::Other)
     }
 
     /// The quantity that the file states beside the name.
@@ -205,7 +205,7 @@ pub(crate) fn is_remark(text: &str) -> bool {
 }
 
 /// The last word, where only a unit looks like it.
-fn behind_space(bare: &str, word: Word) -> Option<Unit> {
+fn behind_space(bare: &str, word: Word) -> Option<WrittenUnit> {
     let (before, last) = bare.rsplit_once([' ', '\t', ',', ':', ';']).unwrap_or(("", bare));
     // A channel called by nothing but its unit has a slash in it: letters alone may be a symbol.
     match before.trim_end() {
@@ -216,10 +216,10 @@ fn behind_space(bare: &str, word: Word) -> Option<Unit> {
 }
 
 /// Unit behind the first slash, unless a unit stands before it.
-fn behind_slash(bare: &str) -> Option<Unit> {
+fn behind_slash(bare: &str) -> Option<WrittenUnit> {
     let (before, behind) = bare.split_once('/')?;
     let last = before.trim().rsplit([' ', '_']).next().unwrap_or_default();
-    if last.is_empty() || last.parse::<Unit>().is_ok() { None } else { behind.parse().ok() }
+    if last.is_empty() || last.parse::<WrittenUnit>().is_ok() { None } else { behind.parse().ok() }
 }
 
 /// Units that a suffix or a last word may be, in small letters.
@@ -236,7 +236,7 @@ const PER_TIME: [&str; 15] =
     ["m", "mm", "cm", "um", "µm", "μm", "nm", "km", "ft", "rad", "mrad", "urad", "deg", "mdeg", "rev"];
 
 /// The unit in the last parts of `vel_mm_s`, `omega_rad_per_s`, `theta_rad`.
-fn behind_underscore(bare: &str, word: Word) -> Option<Unit> {
+fn behind_underscore(bare: &str, word: Word) -> Option<WrittenUnit> {
     let parts: Vec<&str> = bare.split('_').map(str::trim).collect();
     let lower: Vec<String> = parts.iter().map(|part| part.to_lowercase()).collect();
     let lower: Vec<&str> = lower.iter().map(String::as_str).collect();
@@ -251,7 +251,7 @@ fn behind_underscore(bare: &str, word: Word) -> Option<Unit> {
 }
 
 /// The unit that the last part of a name is.
-fn last_part(written: &str, word: Word) -> Option<Unit> {
+fn last_part(written: &str, word: Word) -> Option<WrittenUnit> {
     let lower = &*written.to_lowercase();
     let spelled = match lower {
         "ms2" | "mps2" => "m/s2",
@@ -264,7 +264,10 @@ fn last_part(written: &str, word: Word) -> Option<Unit> {
         _ if written == "kN" || (written == "N" && word.quantity == Some(Quantity::Force)) => written,
         _ if SUFFIXES.contains(&lower) => lower,
         _ if DOUBTFUL.contains(&lower) => {
-            return lower.parse().ok().filter(|unit: &Unit| !word.is_angular && word.quantity == Some(unit.quantity()));
+            return lower
+                .parse()
+                .ok()
+                .filter(|unit: &WrittenUnit| !word.is_angular && word.quantity == Some(unit.quantity()));
         }
         _ => return None,
     };
@@ -387,10 +390,13 @@ mod tests {
     #[test]
     fn what_the_format_states_stands_above_the_name() {
         let label = Label::of("x [mm]").with_unit(" m/s ").with_quantity(Quantity::Velocity);
-        assert_eq!((label.unit().map(Unit::si), label.stated_quantity()), (Some("m/s"), Some(Quantity::Velocity)));
+        assert_eq!(
+            (label.unit().map(WrittenUnit::si), label.stated_quantity()),
+            (Some("m/s"), Some(Quantity::Velocity))
+        );
         assert_eq!(label.to_string(), "\"x [mm]\" (velocity in m/s)");
         let nothing = Label::of("x [mm]").with_unit(" ").with_quantity(Quantity::Other);
-        assert_eq!((nothing.unit().map(Unit::si), nothing.stated_quantity()), (Some("m"), None));
+        assert_eq!((nothing.unit().map(WrittenUnit::si), nothing.stated_quantity()), (Some("m"), None));
         assert_eq!(
             Label::of("3+Z").with_unit("knot").to_string(),
             "\"3+Z\" (quantity not told, unit \"knot\" not known)"

@@ -4,5 +4,5 @@ pub(crate) mod label;
 pub(crate) mod meaning;
 pub(crate) mod request;
 pub(crate) mod spelling;
-pub(crate) mod unit;
 pub(crate) mod word;
+pub(crate) mod written_unit;

@@ -1,6 +1,6 @@
 //! Request: quantity and unit of a channel as the caller states them, and those that follow with the file.
 
-use crate::{Label, Meaning, MeaningError, Quantity, Unit};
+use crate::{Label, Meaning, MeaningError, Quantity, WrittenUnit};
 
 /// Quantity and unit of a channel as the caller states them, beside the file. It may be empty where the file tells enough.
 ///
@@ -25,7 +25,7 @@ use crate::{Label, Meaning, MeaningError, Quantity, Unit};
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Request {
     quantity: Option<Quantity>,
-    unit: Option<Unit>,
+    unit: Option<WrittenUnit>,
     scale: Option<f64>,
 }
 
@@ -42,7 +42,7 @@ impl Request {
 
     /// Says the unit of the numbers, or of the scaled numbers if a scale is said as well.
     #[must_use]
-    pub fn unit(mut self, unit: Unit) -> Self {
+    pub fn unit(mut self, unit: WrittenUnit) -> Self {
         self.unit = Some(unit);
         self
     }
@@ -56,7 +56,7 @@ impl Request {
 
     /// The quantity said: by itself, or as that of the unit.
     fn said_quantity(&self) -> Option<Quantity> {
-        let of_unit = self.unit.as_ref().map(Unit::quantity).filter(|quantity| *quantity != Quantity::Other);
+        let of_unit = self.unit.as_ref().map(WrittenUnit::quantity).filter(|quantity| *quantity != Quantity::Other);
         self.quantity.or(of_unit)
     }
 
@@ -95,7 +95,7 @@ impl Request {
     }
 
     /// The unit that was said or is written, and the factor to its SI unit; `None` if there is no unit at all.
-    fn unit_in_use<'a>(&'a self, label: &'a Label) -> Result<Option<(f64, &'a Unit)>, MeaningError> {
+    fn unit_in_use<'a>(&'a self, label: &'a Label) -> Result<Option<(f64, &'a WrittenUnit)>, MeaningError> {
         let channel = || label.name().to_owned();
         if let (Some(unit), Some(scale)) = (&self.unit, self.scale) {
             return Ok(Some((scale * unit.factor(), unit)));
@@ -133,7 +133,7 @@ impl Request {
         if let Some(told) = label.stated_quantity().filter(|told| *told != quantity) {
             return Err(MeaningError::Contradiction { channel, told, unit: None, other: quantity });
         }
-        let likely = Unit::of_motion(quantity, label.is_angular()).unwrap_or("N");
+        let likely = WrittenUnit::of_motion(quantity, label.is_angular()).unwrap_or("N");
         if self.quantity.is_none() || label.needs_unit() {
             return Err(MeaningError::NoUnit { channel, quantity, likely });
         }

@@ -11,7 +11,7 @@ use crate::SimulationError;
 use crate::drive::Piece;
 
 /// Iterations for the values; one that needs more is better off with a shorter step.
-const MOST_ITERATIONS: usize = 15;
+const MOST_ITERATIONS: i32 = 15;
 
 /// Iterations for the derivatives, which converge as the values do, but from wherever these have left them.
 const MOST_DERIVATIVE_ITERATIONS: usize = 60;
@@ -24,6 +24,9 @@ pub(super) struct Collocation<D> {
     /// f(Yᵢ) at all stages, for each component.
     rates: Vec<Stages<D>>,
     residual: Vec<Stages<D>>,
+    /// The last change that Newton's method has proposed, and what the increments have changed by then.
+    proposed: Vec<Stages<f64>>,
+    changed: Vec<Stages<f64>>,
     modes: Modes<D>,
     state: Vec<D>,
     rate: Vec<D>,
@@ -42,6 +45,8 @@ impl<D: Scalar> Collocation<D> {
         Self {
             rates: stages(),
             residual: stages(),
+            proposed: vec![[0.0; STAGES]; size],
+            changed: vec![[0.0; STAGES]; size],
             modes: Modes::new(size),
             state: vec![zero; size],
             rate: vec![zero; size],
@@ -67,7 +72,7 @@ impl<D: Scalar> Collocation<D> {
     ///
     /// The values are iterated first, by rules that look at nothing but values, and then left alone while the derivatives
     /// are iterated: the values are those of plain numbers to the last bit.
-    pub(super) fn solve<L: BristleLaw<D>>(
+    pub(super) fn solve<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
         field: &mut Field<D, L>,
@@ -86,7 +91,7 @@ impl<D: Scalar> Collocation<D> {
             return Ok(None);
         }
         let goal = (LEFT_OVER * span.tolerance).max(ROUNDING);
-        let (mut before, mut iterations) = (f64::INFINITY, 0);
+        let (mut before, mut contraction, mut iterations) = (f64::INFINITY, 0.0f64, 0);
         loop {
             self.iterate(motion, field, branch, span, true);
             if iterations < 2 {
@@ -96,7 +101,9 @@ impl<D: Scalar> Collocation<D> {
             let correction = self.correction(motion, D::value);
             iterations += 1;
             let ratio = correction / before;
-            let left = if ratio < 1.0 { ratio / (1.0 - ratio) * correction } else { correction };
+            // What is extrapolated shrinks faster than the change proposed last, which is not, does in one more iteration.
+            contraction = contraction.max(ratio);
+            let left = if contraction < 1.0 { contraction / (1.0 - contraction) * correction } else { correction };
             if (iterations > 1 && left <= goal) || correction <= goal * 1e-2 {
                 break;
             }
@@ -104,10 +111,13 @@ impl<D: Scalar> Collocation<D> {
             if stagnates {
                 break;
             }
-            if !(correction.is_finite() && iterations < MOST_ITERATIONS && (ratio < 0.9 || iterations < 3)) {
+            // At this rate, the iterations left do not get there.
+            let is_slow = iterations > 2 && ratio.powi(MOST_ITERATIONS - iterations) * correction > goal;
+            if !(correction.is_finite() && iterations < MOST_ITERATIONS && (ratio < 0.9 || iterations < 3)) || is_slow {
                 return Ok(None);
             }
             before = correction;
+            self.extrapolate(motion, iterations > 1 && ratio < 0.9);
         }
         motion.rescale(span, rounding);
         if D::DIRECTIONS > 0 {
@@ -124,7 +134,7 @@ impl<D: Scalar> Collocation<D> {
     }
 
     /// Guesses the increments: the polynomial of another step, or straight lines.
-    fn predict<L: BristleLaw<D>>(
+    fn predict<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
         field: &mut Field<D, L>,
@@ -153,7 +163,7 @@ impl<D: Scalar> Collocation<D> {
     }
 
     /// The Jacobian in the middle of the step, factored. False if that cannot be.
-    fn prepare<L: BristleLaw<D>>(
+    fn prepare<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &Motion<D>,
         field: &mut Field<D, L>,
@@ -167,7 +177,7 @@ impl<D: Scalar> Collocation<D> {
 
     /// One iteration of Newton's method; afterwards `residual` holds the change of the increments. Without `values` these
     /// stay what they are.
-    fn iterate<L: BristleLaw<D>>(
+    fn iterate<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
         field: &mut Field<D, L>,
@@ -205,12 +215,49 @@ impl<D: Scalar> Collocation<D> {
         }
     }
 
+    /// Goes on, if `again`, to where the changes d that Newton's method proposes would vanish if they went on as in the last two iterations:
+    /// with a Jacobian that stays what it is, they shrink by much the same factor each time.
+    ///
+    /// ```text
+    /// Wₖ₊₁ = Gₖ − γ (Gₖ − Gₖ₋₁),     G = W + d,     γ = ⟨dₖ, dₖ − dₖ₋₁⟩/|dₖ − dₖ₋₁|²
+    /// ```
+    ///
+    /// # References
+    /// D. G. Anderson, "Iterative procedures for nonlinear integral equations", J. ACM 12 (1965) 547, doi 10.1145/321296.321305, with one
+    /// iteration before the last.
+    fn extrapolate(&mut self, motion: &mut Motion<D>, again: bool) {
+        let Self { residual, proposed, changed, .. } = self;
+        let (mut product, mut square) = (0.0, 0.0);
+        for (component, (changes, before)) in residual.iter().zip(&*proposed).enumerate() {
+            let per_scale = 1.0 / motion.scale(component);
+            for index in 0..STAGES {
+                let change = changes[index].value() * per_scale;
+                let difference = change - before[index] * per_scale;
+                product += change * difference;
+                square += difference * difference;
+            }
+        }
+        let part = product / square;
+        let part = if again && part.is_finite() { part } else { 0.0 };
+        for (component, changes) in residual.iter().enumerate() {
+            let (increments, before) = (&mut motion.increments[component], &mut proposed[component]);
+            let changed = &mut changed[component];
+            for index in 0..STAGES {
+                let change = changes[index].value();
+                let further = part * (before[index] - changed[index] - change);
+                increments[index] += further;
+                (before[index], changed[index]) = (change, change + further);
+            }
+        }
+    }
+
     /// The greatest `part` of the last change of an increment, relative to its scale.
     fn correction(&self, motion: &Motion<D>, part: impl Fn(D) -> f64) -> f64 {
         let mut most = 0.0f64;
         for (component, changes) in self.residual.iter().enumerate() {
+            let per_scale = 1.0 / motion.scale(component);
             for change in changes {
-                let relative = (part(*change) / motion.scale(component)).abs();
+                let relative = (part(*change) * per_scale).abs();
                 // NaN must not be lost in a maximum.
                 most = if relative > most || relative.is_nan() { relative } else { most };
             }
@@ -218,7 +265,7 @@ impl<D: Scalar> Collocation<D> {
         most
     }
 
-    fn solve_derivatives<L: BristleLaw<D>>(
+    fn solve_derivatives<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
         field: &mut Field<D, L>,

@@ -34,7 +34,7 @@ impl<D: Scalar> Explicit<D> {
     }
 
     /// Takes the step over `span`. `None` if it leaves the range of numbers.
-    pub(super) fn take<L: BristleLaw<D>>(
+    pub(super) fn take<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
         field: &mut Field<D, L>,
@@ -119,7 +119,7 @@ impl<D: Scalar> Explicit<D> {
     }
 
     /// The rate (1/s) at which states that are settled would return to where they are.
-    fn return_rate<L: BristleLaw<D>>(
+    fn return_rate<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &Motion<D>,
         field: &mut Field<D, L>,
@@ -162,7 +162,7 @@ impl<D: Scalar> Explicit<D> {
     }
 
     /// The polynomial within the step.
-    fn follow<L: BristleLaw<D>>(
+    fn follow<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
         field: &mut Field<D, L>,

@@ -29,7 +29,7 @@ const FAST: f64 = 1e6;
 /// the law is odd, so this changes nothing but which side of its kink u = 0 belongs to, and that is the side of the
 /// swing. Behind the end of the swing, where a step may reach before its end is found, the law is that of its end; and
 /// so it is behind the zero of a state, where the law may have a corner.
-pub(super) struct Field<'a, D, L> {
+pub(super) struct Field<'a, D, L: ?Sized> {
     pub(super) oscillator: &'a Oscillator<D>,
     /// The spring on the side of its corners on which the step is.
     pub(super) spring: Spring<'a, D>,
@@ -45,6 +45,8 @@ pub(super) struct Field<'a, D, L> {
     pub(super) linear_damping: Option<D>,
     mirrored: Vec<D>,
     rate: Vec<D>,
+    /// Rates that the Jacobian compares with.
+    centre: Vec<f64>,
     /// Which states have a corner of their rate at zero.
     bends: Vec<bool>,
     /// Which states have not yet come back through zero in this swing, and stay below it until that is found.
@@ -53,7 +55,7 @@ pub(super) struct Field<'a, D, L> {
     saturated: Vec<bool>,
 }
 
-impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
+impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
     pub(super) fn new(oscillator: &'a Oscillator<D>, law: &'a L, normal_load: D, belt: D) -> Self {
         let zeros = vec![D::from(0.0); law.states()];
         Self {
@@ -69,6 +71,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
             mirrored: zeros.clone(),
             below: vec![false; zeros.len()],
             saturated: vec![false; zeros.len()],
+            centre: vec![0.0; zeros.len()],
             rate: zeros,
         }
     }
@@ -254,7 +257,9 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
             *mirrored = D::from(mirrored.value());
         }
         let before = self.mirrored_friction(branch, u).value();
-        let rates: Vec<f64> = self.rate.iter().map(|rate| rate.value()).collect();
+        for (centre, rate) in self.centre.iter_mut().zip(&self.rate) {
+            *centre = rate.value();
+        }
 
         let reach = DIFFERENCE * u.value().max(1e-2 * speed).max(f64::MIN_POSITIVE / DIFFERENCE);
         let change = (u + reach - u).value();
@@ -263,11 +268,11 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
         let damping = |v: f64| self.oscillator.damping().force(D::from(v)).value();
         let drag = slope(damping(v + sign * reach) - damping(v), (v + sign * reach) - v);
         jacobian[size + 1] = -(drag + slope(after - before, change)) / mass;
-        for (row, rate) in rates.iter().enumerate() {
+        for (row, rate) in self.centre.iter().enumerate() {
             jacobian[(2 + row) * size + 1] = slope(self.rate[row].value() - rate, change);
         }
 
-        for column in 0..rates.len() {
+        for column in 0..self.rate.len() {
             let z = self.mirrored[column];
             let bound = self.law.bound(column).value().abs();
             let reach =
@@ -278,7 +283,7 @@ impl<'a, D: Scalar, L: BristleLaw<D>> Field<'a, D, L> {
             let change = (z + reach - z).value();
             let after = self.mirrored_friction(branch, u).value();
             jacobian[size + 2 + column] = -slope(after - before, change) / mass;
-            for (row, rate) in rates.iter().enumerate() {
+            for (row, rate) in self.centre.iter().enumerate() {
                 jacobian[(2 + row) * size + 2 + column] = slope(self.rate[row].value() - rate, change);
             }
             self.mirrored[column] = z;

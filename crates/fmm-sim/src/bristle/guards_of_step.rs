@@ -18,7 +18,7 @@ const TANGENT: f64 = 1e-9;
 /// How far from the end of a step (in its units) its polynomial says something of a zero.
 const NEAR: f64 = 0.1;
 
-impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
+impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
     /// The first guard that is reached within the step, and where. A step that begins `at_zero` velocity does not find that
     /// zero.
     pub(super) fn first_guard(&mut self, at_zero: bool) -> Option<(f64, Guard)> {

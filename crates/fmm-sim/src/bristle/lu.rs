@@ -33,7 +33,8 @@ impl Factors {
         }
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "loops of known lengths are unrolled only where they are inlined")]
+    #[inline(always)]
     fn factor_rows(&mut self, size: usize) -> bool {
         self.swaps.clear();
         for column in 0..size {
@@ -79,7 +80,8 @@ impl Factors {
         }
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "loops of known lengths are unrolled only where they are inlined")]
+    #[inline(always)]
     fn solve_rows<D: Scalar>(&self, size: usize, right: &mut [D]) {
         let (right, entries) = (&mut right[..size], &self.entries[..size * size]);
         for (row, pivot) in self.swaps.iter().enumerate() {

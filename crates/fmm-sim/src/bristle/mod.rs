@@ -126,7 +126,7 @@ impl Bristle {
     }
 }
 
-impl<D: Scalar, L: BristleLaw<D>> Engine<D, L> for Bristle {
+impl<D: Scalar, L: BristleLaw<D> + ?Sized> Engine<D, L> for Bristle {
     fn run_into(
         &self,
         scenario: &Scenario<D, L>,
@@ -144,7 +144,7 @@ impl<D: Scalar, L: BristleLaw<D>> Engine<D, L> for Bristle {
 }
 
 /// x, v and the states of the law at t = 0.
-fn beginning<D: Scalar, L: BristleLaw<D>>(scenario: &Scenario<D, L>) -> Vec<D> {
+fn beginning<D: Scalar, L: BristleLaw<D> + ?Sized>(scenario: &Scenario<D, L>) -> Vec<D> {
     let State { position, velocity } = scenario.initial();
     let deflections = (0..scenario.law().states()).map(|index| scenario.deflection(index));
     [position, velocity].into_iter().chain(deflections).collect()

@@ -12,7 +12,7 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// # Errors
 /// [`SimulationError::NotOdd`] if rate or coefficient are not opposite.
-pub(super) fn require_odd<D: Scalar, L: BristleLaw<D>>(law: &L) -> Result<(), SimulationError> {
+pub(super) fn require_odd<D: Scalar, L: BristleLaw<D> + ?Sized>(law: &L) -> Result<(), SimulationError> {
     let size = law.states();
     let mut buffers = [(); 2].map(|()| (vec![D::from(0.0); size], vec![D::from(0.0); size]));
     for part in [0.0, 0.3, 0.7] {

@@ -10,7 +10,7 @@ use crate::curve::Curve;
 use crate::drive::Piece;
 use crate::{Direction, Event, EventKind, Mode, SimulationError, State};
 
-impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
+impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
     /// Passes what `guard` has led to.
     pub(super) fn arrive(&mut self, guard: Guard, piece: &Piece<D>, grazing: bool) -> Result<(), SimulationError> {
         self.field.rates(piece.force(self.time), self.branch, &self.step.begin, &mut self.before);

@@ -14,7 +14,7 @@ use crate::{Direction, Path, Sampling, SimulationError, Trajectory};
 const TOLERANCE: f64 = 1e-13;
 
 /// Follows `path` and gives `visit` the force and the states at each of its points.
-pub(crate) fn follow<D: Scalar, L: BristleLaw<D>>(
+pub(crate) fn follow<D: Scalar, L: BristleLaw<D> + ?Sized>(
     law: &L,
     normal_load: D,
     path: &Path<D>,

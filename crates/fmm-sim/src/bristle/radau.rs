@@ -204,10 +204,13 @@ pub(super) static CENTRED_COLUMNS: Columns<{ STAGES + 1 }> = columns(&CENTRED);
 /// `matrix` · `values`.
 #[inline]
 pub(super) fn product<D: Scalar, const ROWS: usize>(matrix: &Columns<ROWS>, values: &Stages<D>) -> [D; ROWS] {
-    let mut product = matrix[0].map(|factor| values[0] * factor);
-    for (column, value) in matrix.iter().zip(values).skip(1) {
-        for (sum, factor) in product.iter_mut().zip(column) {
-            *sum += *value * *factor;
+    let mut product = [values[0]; ROWS];
+    for (sum, factor) in product.iter_mut().zip(&matrix[0]) {
+        *sum *= *factor;
+    }
+    for index in 1..STAGES {
+        for (sum, factor) in product.iter_mut().zip(&matrix[index]) {
+            *sum += values[index] * *factor;
         }
     }
     product

@@ -29,7 +29,7 @@ const NEAR: f64 = 0.99;
 const WEAK: f64 = 1e-2;
 
 /// A simulation under way.
-pub(super) struct Run<'a, D, L> {
+pub(super) struct Run<'a, D, L: ?Sized> {
     pub(super) field: Field<'a, D, L>,
     pub(super) step: Motion<D>,
     pub(super) collocation: Collocation<D>,
@@ -51,7 +51,7 @@ pub(super) struct Run<'a, D, L> {
     pub(super) after: Vec<D>,
 }
 
-impl<'a, D: Scalar, L: BristleLaw<D>> Run<'a, D, L> {
+impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
     /// A simulation that begins at `begin`: x, v and the states of the law.
     pub(super) fn new(field: Field<'a, D, L>, begin: Vec<D>, tolerance: f64, recorder: Recorder<'a, D>) -> Self {
         Self {

@@ -31,7 +31,7 @@ const CALM: f64 = 4.0;
 const MOST_DEFECT: f64 = 100.0;
 
 /// Parts of a step at which it is looked for where that is slowest.
-const PARTS: u32 = 16;
+const PARTS: usize = 16;
 
 /// Corrections of a zero by Newton's method.
 const MOST_CORRECTIONS: usize = 8;
@@ -49,7 +49,7 @@ impl<D: Scalar> Taylor<D> {
 
     /// Writes the series of all components into those of `motion`, in time since `time` (s) in units of `unit` (s). False if machine or
     /// law have none here.
-    pub(super) fn expand<L: BristleLaw<D>>(
+    pub(super) fn expand<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
         field: &Field<D, L>,
@@ -89,7 +89,7 @@ impl<D: Scalar> Taylor<D> {
     }
 }
 
-impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
+impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
     /// Goes on by one step of the series, to `limit` (s) at most, or to an event before it. False if there is no series here.
     pub(super) fn expand(&mut self, piece: &Piece<D>, limit: f64) -> Result<bool, SimulationError> {
         let at_zero = self.step.begin[1].value() == self.field.belt.value();
@@ -160,22 +160,26 @@ impl<D: Scalar, L: BristleLaw<D>> Run<'_, D, L> {
 
     /// Whether the series obeys the equation of motion up to `end`, a part of the step of this `length`: at its quarters, and where it is
     /// slowest. Its last terms do not tell of a part of the law that begins within the step, such as the rise of the friction of a fast
-    /// motion where that is slow for a while.
+    /// motion where that is slow for a while. That the position follows the velocity is no matter of the law, and its last terms tell.
     fn is_obeyed(&mut self, piece: &Piece<D>, length: f64, end: f64) -> bool {
-        let series = [0, 1, 2].map(|component| self.step.plain_series(component, 0.0, 1.0));
+        let [position, velocity, state] = [0, 1, 2].map(|component| self.step.plain_series(component, 0.0, 1.0));
         let belt = self.field.belt.value();
-        let at = |part: u32| end * f64::from(part) / f64::from(PARTS);
-        let speed = |part: &u32| (value(&series[1], at(*part)) - belt).abs();
-        let slowest = (1..PARTS).min_by(|a, b| speed(a).total_cmp(&speed(b)));
-        let quarters = (1..=4).rev().map(|quarter| quarter * PARTS / 4);
+        let parts: [f64; PARTS] = std::array::from_fn(|part| end * (part + 1) as f64 / PARTS as f64);
+        let speeds = values(&velocity, &parts).map(|velocity| (velocity - belt).abs());
+        let slowest = (1..PARTS).min_by(|a, b| speeds[a - 1].total_cmp(&speeds[b - 1])).unwrap_or(PARTS);
+        let places = [PARTS, 3 * PARTS / 4, PARTS / 2, PARTS / 4, slowest].map(|part| parts[part - 1]);
+        let motion = [&position, &velocity, &state].map(|series| values(series, &places));
+        let slopes = [&velocity, &state].map(|series| values(&derivative(series), &places));
         let mut rates = [D::from(0.0); 3];
-        quarters.chain(slowest).all(|part| {
-            let tau = at(part);
-            self.step.at(tau, &mut self.after);
-            self.field.rates(piece.force(self.time + length * tau), self.branch, &self.after, &mut rates);
-            series.iter().zip(&rates).enumerate().all(|(component, (series, rate))| {
-                let defect = (slopes(series, tau)[0] - rate.value() * length).abs();
-                defect <= MOST_DEFECT * self.tolerance * self.step.scale(component)
+        (0..places.len()).all(|place| {
+            for (y, values) in self.after.iter_mut().zip(&motion) {
+                *y = D::from(values[place]);
+            }
+            let force = piece.force(self.time + length * places[place]);
+            self.field.rates(force, self.branch, &self.after, &mut rates);
+            slopes.iter().enumerate().all(|(component, slopes)| {
+                let defect = (slopes[place] - rates[component + 1].value() * length).abs();
+                defect <= MOST_DEFECT * self.tolerance * self.step.scale(component + 1)
             })
         })
     }
@@ -266,6 +270,22 @@ fn zero_of(mut series: Series<f64>, at_zero: bool) -> Option<f64> {
     }
     // Next to another zero, corrections may lead anywhere.
     Some(if (tau - found).abs() < 1e-3 * found && tau <= 1.0 { tau } else { found })
+}
+
+/// The values of a series at several `places`, whose sums do not wait for each other.
+fn values<const N: usize>(series: &Series<f64>, places: &[f64; N]) -> [f64; N] {
+    let mut sums = [0.0; N];
+    for term in series.iter().rev() {
+        for (sum, place) in sums.iter_mut().zip(places) {
+            *sum = *sum * place + term;
+        }
+    }
+    sums
+}
+
+/// The series of the derivative.
+fn derivative(series: &Series<f64>) -> Series<f64> {
+    std::array::from_fn(|order| if order < ORDER { (order + 1) as f64 * series[order + 1] } else { 0.0 })
 }
 
 /// First and second derivatives of a series at `tau`.

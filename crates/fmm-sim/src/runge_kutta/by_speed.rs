@@ -4,7 +4,7 @@ use fmm_friction::SlidingLaw;
 use fmm_model::Scalar;
 
 use super::field::Field;
-use super::slide::Progress;
+use super::progress::Progress;
 use super::step::Step;
 use crate::State;
 use crate::automaton::Phase;

@@ -3,7 +3,7 @@
 use fmm_friction::SlidingLaw;
 use fmm_model::{Oscillator, Scalar};
 
-use super::guard::Guard;
+use super::guard::{Guard, Side};
 use crate::automaton::{Branch, Phase};
 use crate::drive::Drive;
 use crate::first_zero::ROUNDING;
@@ -39,14 +39,6 @@ pub(super) struct Outside<D> {
     force: Option<D>,
     /// Normal load (N).
     normal_load: D,
-}
-
-/// A side of the capture speed, at which the law may jump: whether the speed has exceeded it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
-    Below,
-    /// The contact is caught once the speed is down at it again.
-    Above,
 }
 
 impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Field<'a, D, L> {

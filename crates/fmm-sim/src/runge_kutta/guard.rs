@@ -1,7 +1,14 @@
 //! Guards: ends of a smooth part of a stretch of sliding.
 
-use super::field::Side;
 use crate::automaton::{Branch, Phase};
+
+/// A side of the capture speed, at which the law may jump: whether the speed has exceeded it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    Below,
+    /// The contact is caught once the speed is down at it again.
+    Above,
+}
 
 /// A quantity that is positive before what it stands for, and zero there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

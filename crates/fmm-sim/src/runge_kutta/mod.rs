@@ -3,6 +3,7 @@
 mod by_speed;
 mod field;
 mod guard;
+mod progress;
 mod refiner;
 mod slide;
 mod step;

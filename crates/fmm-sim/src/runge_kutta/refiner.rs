@@ -5,7 +5,7 @@ use fmm_model::Scalar;
 
 use super::by_speed::BySpeed;
 use super::field::Field;
-use super::slide::Progress;
+use super::progress::Progress;
 use super::step::Step;
 use crate::State;
 use crate::automaton::Phase;

@@ -4,8 +4,9 @@ use fmm_friction::SlidingLaw;
 use fmm_model::Scalar;
 
 use super::by_speed::BySpeed;
-use super::field::{Field, Side};
-use super::guard::Guard;
+use super::field::Field;
+use super::guard::{Guard, Side};
+use super::progress::Progress;
 use super::refiner::Refiner;
 use super::step::{Step, first_zero_within};
 use crate::automaton::{Ended, Ending, Phase, Slide};
@@ -43,15 +44,6 @@ pub(super) struct Integrator<'a, D, L: ?Sized> {
     length: f64,
     budget: usize,
     refiner: Refiner,
-}
-
-/// A stretch in progress: the state at a time that is a plain number.
-#[derive(Clone, Copy)]
-pub(super) struct Progress<D> {
-    pub(super) time: f64,
-    pub(super) state: State<D>,
-    pub(super) acceleration: D,
-    pub(super) side: Side,
 }
 
 impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {

@@ -1,11 +1,7 @@
 //! Linearisation: validity of a first-order uncertainty.
 
 use crate::SecondOrder;
-use crate::gum::second_order::Curvature;
-
-/// Largest effect of the curvature, relative to u(y), at which the linear approximation is still accepted. An uncertainty is stated
-/// to two digits, of which the last is worth 5 % at least once in ten times that much.
-pub(crate) const TOLERATED: f64 = 0.05;
+use crate::gum::second_order::{Curvature, TOLERATED};
 
 /// The verdict on the linear approximation of a model within the uncertainties of its inputs.
 #[derive(Debug, Clone, Copy, PartialEq)]

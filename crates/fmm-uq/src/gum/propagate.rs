@@ -5,7 +5,7 @@ use crate::gum::second_order::second_order;
 use crate::model::derivatives::Derivatives;
 use crate::model::differences::Differences;
 use crate::model::exact_derivatives::Exact;
-use crate::{Budget, Inputs, Outcome, Propagation, Taylor, UncertaintyError};
+use crate::{Budget, Inputs, ModelOutput, Propagation, Taylor, UncertaintyError};
 
 /// Propagates the uncertainty of `inputs` through a `model` of one output, with exact derivatives.
 ///
@@ -14,7 +14,7 @@ use crate::{Budget, Inputs, Outcome, Propagation, Taylor, UncertaintyError};
 /// ```
 ///
 /// The model receives the values in the order of the inputs and must be deterministic. It may fail: whatever is an
-/// [`Outcome`] can be given back. [`Gum`] has more outputs, differences, and a way to save the second order.
+/// [`ModelOutput`] can be given back. [`Gum`] has more outputs, differences, and a way to save the second order.
 ///
 /// ```
 /// use fmm_uq::{Input, Inputs, Linearisation, propagate};
@@ -38,7 +38,7 @@ use crate::{Budget, Inputs, Outcome, Propagation, Taylor, UncertaintyError};
 ///
 /// # Panics
 /// If the model does.
-pub fn propagate<R: Outcome<Taylor>>(
+pub fn propagate<R: ModelOutput<Taylor>>(
     inputs: &Inputs,
     model: impl Fn(&[Taylor]) -> R,
 ) -> Result<Budget, UncertaintyError> {
@@ -97,7 +97,7 @@ impl<'a> Gum<'a> {
     ///
     /// # Panics
     /// If the model does.
-    pub fn propagate<R: Outcome<Taylor>>(
+    pub fn propagate<R: ModelOutput<Taylor>>(
         &self,
         model: impl Fn(&[Taylor]) -> R,
     ) -> Result<Propagation, UncertaintyError> {
@@ -115,7 +115,7 @@ impl<'a> Gum<'a> {
     ///
     /// # Panics
     /// If the model does.
-    pub fn propagate_by_differences<R: Outcome<f64>>(
+    pub fn propagate_by_differences<R: ModelOutput<f64>>(
         &self,
         model: impl Fn(&[f64]) -> R,
     ) -> Result<Propagation, UncertaintyError> {

@@ -5,6 +5,10 @@ use crate::model::derivatives::{Derivatives, Expansion};
 use crate::model::excursion::{Departure, Excursion};
 use crate::{Budget, Input, Inputs, UncertaintyError};
 
+/// Largest effect of the curvature, relative to u(y), at which the linear approximation is still accepted (1). An uncertainty is stated
+/// to two digits, so that rounding changes it by up to 5 % as well.
+pub(crate) const TOLERATED: f64 = 0.05;
+
 /// The second-order terms of the GUM.
 ///
 /// With z independent standard normal and x − x̄ = D z, D the root of the covariance matrix, derivatives g are those
@@ -68,7 +72,7 @@ pub(crate) fn second_order(
     asked &= !flat || excursion.together(&directions, &mut departures);
     let finish = |(k, sums): (usize, Sums)| {
         let (u, departure) = (budgets[k].standard_uncertainty(), departures[k]);
-        let terms = sums.finish(excursion.rounding(k)).filter(|_| asked && departure.is_tolerable(u));
+        let terms = sums.finish(excursion.rounding(k)).filter(|_| asked && departure.is_tolerable(u, TOLERATED));
         let slopes = (0..inputs.as_slice().len()).any(|i| budgets[k].signed(i) != 0.0);
         let still = asked && departure.moved == 0.0 && terms.is_some_and(|terms| terms.size() <= excursion.rounding(k));
         Curvature { terms, cancels: u == 0.0 && slopes && still }
@@ -140,14 +144,14 @@ impl Sums {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Gum, Input, Inputs, Outcome, Propagation, Taylor};
+    use crate::{Gum, Input, Inputs, ModelOutput, Propagation, Taylor};
 
     fn inputs() -> Inputs {
         let (a, b) = (Input::new("a", 2.0, 0.5, "").unwrap(), Input::new("b", 3.0, 0.1, "").unwrap());
         Inputs::new([a, b]).unwrap()
     }
 
-    fn both<R: Outcome<Taylor>, S: Outcome<f64>>(
+    fn both<R: ModelOutput<Taylor>, S: ModelOutput<f64>>(
         exact: impl Fn(&[Taylor]) -> R,
         stepped: impl Fn(&[f64]) -> S,
     ) -> [(&'static str, Propagation); 2] {

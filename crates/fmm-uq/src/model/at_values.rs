@@ -4,7 +4,7 @@ use std::error::Error;
 
 use fmm_model::Scalar;
 
-use crate::{Outcome, Taylor};
+use crate::{ModelOutput, Taylor};
 
 /// A model over [`Taylor`] numbers as one over plain numbers, with the same bits: what a Monte Carlo, a Sobol' analysis or
 /// a difference wants of a closure that [`propagate`](crate::propagate) takes.
@@ -24,7 +24,7 @@ use crate::{Outcome, Taylor};
 /// assert!((ratio - 1.0).abs() < 0.02);
 /// # Ok::<(), fmm_uq::UncertaintyError>(())
 /// ```
-pub fn at_values<R: Outcome<Taylor>>(
+pub fn at_values<R: ModelOutput<Taylor>>(
     model: impl Fn(&[Taylor]) -> R,
 ) -> impl Fn(&[f64]) -> Result<Vec<f64>, Box<dyn Error + Send + Sync>> {
     move |values| {

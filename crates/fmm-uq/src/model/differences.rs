@@ -1,7 +1,7 @@
 //! Derivatives by differences, for models that only take plain numbers.
 
 use crate::model::derivatives::{Derivatives, Expansion, Slopes, place};
-use crate::{Inputs, Outcome, UncertaintyError};
+use crate::{Inputs, ModelOutput, UncertaintyError};
 
 /// A model that is evaluated a standard uncertainty away from the estimates, on both sides.
 pub(crate) struct Differences<'a, F> {
@@ -12,7 +12,7 @@ pub(crate) struct Differences<'a, F> {
 impl<'a, F, R> Differences<'a, F>
 where
     F: Fn(&[f64]) -> R,
-    R: Outcome<f64>,
+    R: ModelOutput<f64>,
 {
     pub(crate) fn new(inputs: &'a Inputs, model: F) -> Self {
         Self { inputs, model }
@@ -45,7 +45,7 @@ fn as_many(outputs: Vec<f64>, first: usize) -> Result<Vec<f64>, UncertaintyError
 impl<F, R> Derivatives for Differences<'_, F>
 where
     F: Fn(&[f64]) -> R,
-    R: Outcome<f64>,
+    R: ModelOutput<f64>,
 {
     /// ```text
     /// c_i u_i = (f(x + u_i) − f(x − u_i))/2                            (JCGM 100:2008, 5.1.3, note 2)

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use fmm_model::Scalar;
 
 use crate::model::derivatives::{Derivatives, Expansion, Slopes, place};
-use crate::{Inputs, Outcome, Taylor, UncertaintyError};
+use crate::{Inputs, ModelOutput, Taylor, UncertaintyError};
 
 /// A model that is evaluated in Taylor numbers.
 pub(crate) struct Exact<'a, F> {
@@ -17,7 +17,7 @@ pub(crate) struct Exact<'a, F> {
 impl<'a, F, R> Exact<'a, F>
 where
     F: Fn(&[Taylor]) -> R,
-    R: Outcome<Taylor>,
+    R: ModelOutput<Taylor>,
 {
     pub(crate) fn new(inputs: &'a Inputs, model: F) -> Self {
         Self { inputs, model, values: RefCell::new(None) }
@@ -51,7 +51,7 @@ where
 impl<F, R> Derivatives for Exact<'_, F>
 where
     F: Fn(&[Taylor]) -> R,
-    R: Outcome<Taylor>,
+    R: ModelOutput<Taylor>,
 {
     fn slopes(&self) -> Result<Slopes, UncertaintyError> {
         let inputs = self.inputs.as_slice();

@@ -1,6 +1,5 @@
 //! Excursion of a model: its values as far from the estimates as the inputs may be.
 
-use crate::gum::linearisation::TOLERATED;
 use crate::model::derivatives::{Derivatives, Expansion};
 use crate::{Distribution, Input, Inputs};
 
@@ -21,9 +20,9 @@ pub(crate) struct Departure {
 }
 
 impl Departure {
-    /// Whether it changes an uncertainty and an estimate by no more than is tolerated of curvature.
-    pub(crate) fn is_tolerable(self, standard_uncertainty: f64) -> bool {
-        let tolerated = TOLERATED * standard_uncertainty;
+    /// Whether it changes an uncertainty and an estimate by no more than the share `tolerated` (1) of the uncertainty.
+    pub(crate) fn is_tolerable(self, standard_uncertainty: f64, tolerated: f64) -> bool {
+        let tolerated = tolerated * standard_uncertainty;
         // 2 u Δu.
         self.mean <= tolerated && self.variance <= 2.0 * standard_uncertainty * tolerated
     }

@@ -7,11 +7,11 @@ pub(crate) mod exact_derivatives;
 pub(crate) mod excursion;
 #[cfg(feature = "formula")]
 mod formula;
-mod outcome;
+mod output;
 mod taylor;
 
 pub use at_values::at_values;
 #[cfg(feature = "formula")]
 pub use formula::Formula;
-pub use outcome::Outcome;
+pub use output::ModelOutput;
 pub use taylor::Taylor;

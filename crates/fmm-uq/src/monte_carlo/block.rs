@@ -3,7 +3,7 @@
 use crate::monte_carlo::failure::Failure;
 use crate::monte_carlo::sampler::Sampler;
 use crate::random::stream::Stream;
-use crate::{FailureKind, Failures, Outcome};
+use crate::{FailureKind, Failures, ModelOutput};
 
 /// Trials of a block. Small enough that a hundred thousand trials keep a hundred processors busy, large enough that
 /// starting a stream costs nothing beside them.
@@ -26,7 +26,7 @@ pub(crate) struct Block {
 impl Block {
     /// Runs a block, or gives up where `watch` says so: it is asked after each batch, with the number of trials done
     /// since and that of failures so far.
-    pub(crate) fn run<R: Outcome<f64>>(
+    pub(crate) fn run<R: ModelOutput<f64>>(
         (seed, index, trials): (u64, u64, usize),
         sampler: &Sampler,
         model: &impl Fn(&[f64]) -> R,
@@ -65,7 +65,7 @@ impl Block {
         rows[trial % BATCH * width..][..width].to_vec()
     }
 
-    fn evaluate<R: Outcome<f64>>(
+    fn evaluate<R: ModelOutput<f64>>(
         &mut self,
         row: &[f64],
         model: &impl Fn(&[f64]) -> R,

@@ -11,7 +11,7 @@ mod histogram;
 mod moments;
 mod order_statistics;
 mod output_sample;
-mod partial;
+mod partial_run;
 mod pool;
 mod quasi_monte_carlo;
 mod region;
@@ -26,7 +26,7 @@ pub use failure::{Failure, FailureKind, Failures};
 pub use histogram::Histogram;
 pub use moments::Moments;
 pub use output_sample::OutputSample;
-pub use partial::Partial;
+pub use partial_run::PartialRun;
 pub use quasi_monte_carlo::{QuasiMonteCarlo, QuasiSample};
 pub use region::Region;
 pub use sensitivity::{VarianceShare, variance_shares};
@@ -39,7 +39,7 @@ use crate::monte_carlo::block::{BLOCK_TRIALS, Block};
 use crate::monte_carlo::heavy_tail::HeavyTail;
 use crate::monte_carlo::run::Plan;
 use crate::monte_carlo::sampler::Sampler;
-use crate::{Inputs, Outcome, UncertaintyError};
+use crate::{Inputs, ModelOutput, UncertaintyError};
 
 /// A run of JCGM 101:2008 (one output) or JCGM 102:2011 (several): the distributions of the inputs propagated through the
 /// model by random trials.
@@ -48,7 +48,7 @@ use crate::{Inputs, Outcome, UncertaintyError};
 /// seed as the key and the index of the block as the stream; blocks are put together by index. So the bits of a result
 /// depend on seed, inputs, model and number of trials, and on nothing else: not on the number of threads (feature
 /// `rayon`, in the current pool), nor on how blocks are spread over machines
-/// ([`MonteCarlo::run_blocks`], [`Partial`]).
+/// ([`MonteCarlo::run_blocks`], [`PartialRun`]).
 ///
 /// A trial fails if the model gives back an error or a number that is not finite. By default a single failure is an error:
 /// results without the failed trials are conditional on success, and that must be asked for
@@ -174,7 +174,10 @@ impl<'a> MonteCarlo<'a> {
     ///
     /// # Panics
     /// If the model does: a panic ends the run and passes through. What may fail should give back an error.
-    pub fn run<R: Outcome<f64>>(&self, model: impl Fn(&[f64]) -> R + Sync) -> Result<OutputSample, UncertaintyError> {
+    pub fn run<R: ModelOutput<f64>>(
+        &self,
+        model: impl Fn(&[f64]) -> R + Sync,
+    ) -> Result<OutputSample, UncertaintyError> {
         self.run_plan(&model)
     }
 
@@ -186,11 +189,11 @@ impl<'a> MonteCarlo<'a> {
     ///
     /// # Panics
     /// If the model does.
-    pub fn run_blocks<R: Outcome<f64>>(
+    pub fn run_blocks<R: ModelOutput<f64>>(
         &self,
         blocks: Range<u64>,
         model: impl Fn(&[f64]) -> R + Sync,
-    ) -> Result<Partial, UncertaintyError> {
+    ) -> Result<PartialRun, UncertaintyError> {
         self.run_range(blocks, &model)
     }
 
@@ -218,9 +221,9 @@ impl<'a> MonteCarlo<'a> {
     /// Pools the trials of a complete partial result; for an adaptive run, those up to the stop.
     ///
     /// # Errors
-    /// [`UncertaintyError::Partial`] if it is of another run, or with the first block that is still needed; and those of
+    /// [`UncertaintyError::PartialRun`] if it is of another run, or with the first block that is still needed; and those of
     /// [`MonteCarlo::run`].
-    pub fn finish(&self, partial: Partial) -> Result<OutputSample, UncertaintyError> {
+    pub fn finish(&self, partial: PartialRun) -> Result<OutputSample, UncertaintyError> {
         self.finish_plan(partial)
     }
 

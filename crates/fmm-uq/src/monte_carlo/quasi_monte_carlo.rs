@@ -9,7 +9,7 @@ use crate::monte_carlo::heavy_tail::HeavyTail;
 use crate::monte_carlo::order_statistics::ranked;
 use crate::monte_carlo::sampler::Sampler;
 use crate::random::sobol_sequence::{SobolSequence, mix};
-use crate::{FailureKind, Failures, Inputs, Moments, Outcome, OutputSample, UncertaintyError};
+use crate::{FailureKind, Failures, Inputs, ModelOutput, Moments, OutputSample, UncertaintyError};
 
 /// Propagation of distributions on scrambled Sobol sequences instead of random numbers.
 ///
@@ -92,7 +92,10 @@ impl QuasiMonteCarlo {
     ///
     /// # Panics
     /// If the model does.
-    pub fn run<R: Outcome<f64>>(&self, model: impl Fn(&[f64]) -> R + Sync) -> Result<QuasiSample, UncertaintyError> {
+    pub fn run<R: ModelOutput<f64>>(
+        &self,
+        model: impl Fn(&[f64]) -> R + Sync,
+    ) -> Result<QuasiSample, UncertaintyError> {
         let one = |scrambling: usize| self.run_one(scrambling as u64, &model);
         #[cfg(feature = "rayon")]
         let results: Vec<_> = (0..self.scramblings).into_par_iter().map(one).collect();
@@ -120,7 +123,7 @@ impl QuasiMonteCarlo {
     }
 
     /// The values of one scrambling by output, and the points that failed; their block is the scrambling.
-    fn run_one<R: Outcome<f64>>(
+    fn run_one<R: ModelOutput<f64>>(
         &self,
         scrambling: u64,
         model: &impl Fn(&[f64]) -> R,

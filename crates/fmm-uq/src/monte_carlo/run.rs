@@ -10,7 +10,7 @@ use crate::monte_carlo::adaptive::{Adaptive, Stability};
 use crate::monte_carlo::block::{BLOCK_TRIALS, Block};
 use crate::monte_carlo::heavy_tail::HeavyTail;
 use crate::monte_carlo::pool::Pool;
-use crate::{Failures, MonteCarlo, Outcome, OutputSample, Partial, Progress, UncertaintyError};
+use crate::{Failures, ModelOutput, MonteCarlo, OutputSample, PartialRun, Progress, UncertaintyError};
 
 /// Planned number of trials.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,7 +64,7 @@ impl Sequences {
 }
 
 impl MonteCarlo<'_> {
-    pub(crate) fn run_plan<R: Outcome<f64>>(
+    pub(crate) fn run_plan<R: ModelOutput<f64>>(
         &self,
         model: &(impl Fn(&[f64]) -> R + Sync),
     ) -> Result<OutputSample, UncertaintyError> {
@@ -92,7 +92,7 @@ impl MonteCarlo<'_> {
         }
     }
 
-    pub(crate) fn finish_plan(&self, partial: Partial) -> Result<OutputSample, UncertaintyError> {
+    pub(crate) fn finish_plan(&self, partial: PartialRun) -> Result<OutputSample, UncertaintyError> {
         for (what, first, second) in
             [("seeds", self.seed, partial.seed()), ("inputs (by fingerprint)", self.fingerprint, partial.inputs())]
         {
@@ -128,11 +128,11 @@ impl MonteCarlo<'_> {
         }
     }
 
-    pub(crate) fn run_range<R: Outcome<f64>>(
+    pub(crate) fn run_range<R: ModelOutput<f64>>(
         &self,
         range: Range<u64>,
         model: &(impl Fn(&[f64]) -> R + Sync),
-    ) -> Result<Partial, UncertaintyError> {
+    ) -> Result<PartialRun, UncertaintyError> {
         let end = match self.plan {
             Plan::Fixed(trials) => range.end.min(blocks_of(trials)),
             Plan::Adaptive(_) => range.end,
@@ -148,13 +148,13 @@ impl MonteCarlo<'_> {
         {
             return Err(UncertaintyError::output_count_changed(first, again));
         }
-        Partial::assemble(self.seed, self.fingerprint, all)
+        PartialRun::assemble(self.seed, self.fingerprint, all)
     }
 
     /// Runs blocks in groups that are taken in by `take`, in their order.
     ///
     /// A group is no more than keeps all threads busy, so that its memory is used again for the next one.
-    fn run_groups<R: Outcome<f64>>(
+    fn run_groups<R: ModelOutput<f64>>(
         &self,
         range: Range<u64>,
         model: &(impl Fn(&[f64]) -> R + Sync),
@@ -170,7 +170,7 @@ impl MonteCarlo<'_> {
         Ok(())
     }
 
-    fn run_group<R: Outcome<f64>>(
+    fn run_group<R: ModelOutput<f64>>(
         &self,
         state: &State,
         range: Range<u64>,

@@ -8,7 +8,7 @@ use crate::monte_carlo::block::BLOCK_TRIALS;
 use crate::monte_carlo::heavy_tail::HeavyTail;
 use crate::monte_carlo::sampler::Sampler;
 use crate::random::stream::Stream;
-use crate::{Inputs, Moments, MonteCarlo, Outcome, OutputSample, UncertaintyError};
+use crate::{Inputs, ModelOutput, Moments, MonteCarlo, OutputSample, UncertaintyError};
 
 /// Streams of the second, independent set of inputs: those with the top bit set, which no run of trials reaches.
 const SECOND: u64 = 1 << 63;
@@ -55,7 +55,7 @@ pub struct VarianceShare {
 /// # References
 /// A. Saltelli, P. Annoni, I. Azzini, F. Campolongo, M. Ratto, S. Tarantola, "Variance based sensitivity analysis of model
 /// output", Comput. Phys. Commun. 181 (2010) 259, doi:10.1016/j.cpc.2009.09.018, Table 2 (b) and (f).
-pub fn variance_shares<R: Outcome<f64>>(
+pub fn variance_shares<R: ModelOutput<f64>>(
     inputs: &Inputs,
     trials: u64,
     seed: u64,
@@ -121,7 +121,7 @@ struct Rows {
 }
 
 impl Rows {
-    fn run<R: Outcome<f64>>(seed: u64, block: u64, sampler: &Sampler, model: &impl Fn(&[f64]) -> R) -> Self {
+    fn run<R: ModelOutput<f64>>(seed: u64, block: u64, sampler: &Sampler, model: &impl Fn(&[f64]) -> R) -> Self {
         let width = sampler.width();
         let (mut first, mut second) = (vec![0.0; width * BLOCK_TRIALS], vec![0.0; width * BLOCK_TRIALS]);
         sampler.fill(&mut Stream::new(seed, block), &mut first);
@@ -179,7 +179,7 @@ impl MonteCarlo<'_> {
     ///
     /// # Panics
     /// If the model does.
-    pub fn run_one_at_a_time<R: Outcome<f64>>(
+    pub fn run_one_at_a_time<R: ModelOutput<f64>>(
         &self,
         model: impl Fn(&[f64]) -> R + Sync,
     ) -> Result<Vec<(String, OutputSample)>, UncertaintyError> {

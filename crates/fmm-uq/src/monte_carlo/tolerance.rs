@@ -1,4 +1,4 @@
-//! To how many digits a result is meant.
+//! Numerical tolerance: the digits to which a result is meant.
 
 use crate::UncertaintyError;
 

@@ -3,7 +3,9 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use fmm_uq::{Adaptive, Distribution, FailureKind, Input, Inputs, MonteCarlo, OutputSample, Partial, UncertaintyError};
+use fmm_uq::{
+    Adaptive, Distribution, FailureKind, Input, Inputs, MonteCarlo, OutputSample, PartialRun, UncertaintyError,
+};
 
 fn inputs() -> Inputs {
     Inputs::new([
@@ -51,8 +53,8 @@ fn shards_do_not_change_a_bit() {
     let run = MonteCarlo::new(&inputs, 54_321).unwrap().with_seed(3);
     let whole = bits(&run.run(model).unwrap());
     for parts in [1, 2, 7, 100] {
-        let shards: Vec<Partial> = (0..parts).map(|k| run.run_blocks(run.shard(k, parts), model).unwrap()).collect();
-        assert_eq!(shards.iter().map(Partial::trials).sum::<u64>(), 54_321);
+        let shards: Vec<PartialRun> = (0..parts).map(|k| run.run_blocks(run.shard(k, parts), model).unwrap()).collect();
+        assert_eq!(shards.iter().map(PartialRun::trials).sum::<u64>(), 54_321);
         let merged = shards.into_iter().rev().reduce(|a, b| a.merge(b).unwrap()).unwrap();
         assert!(bits(&run.finish(merged).unwrap()) == whole, "{parts} shards");
     }
@@ -65,7 +67,7 @@ fn an_adaptive_run_stops_at_the_same_block_in_shards() {
     let whole = run.run(model).unwrap();
     let first = run.run_blocks(0..57, model).unwrap();
     let missing = run.finish(first.clone());
-    assert!(matches!(missing, Err(UncertaintyError::Partial { block: Some(57), .. })), "{missing:?}");
+    assert!(matches!(missing, Err(UncertaintyError::PartialRun { block: Some(57), .. })), "{missing:?}");
     let merged = run.run_blocks(57..400, model).unwrap().merge(first).unwrap();
     assert_eq!(run.finish(merged).unwrap(), whole);
 }
@@ -77,7 +79,7 @@ fn parts_travel_as_text() {
     let run = MonteCarlo::new(&inputs, 5500).unwrap().with_allowed_failures(0.5).unwrap();
     let sometimes = |x: &[f64]| if x[2] < 0.9 { Ok(model(x)) } else { Err("too large") };
     let parts = (0..3).map(|k| serde_json::to_string(&run.run_blocks(run.shard(k, 3), sometimes).unwrap()).unwrap());
-    let read = parts.map(|text| serde_json::from_str::<Partial>(&text).unwrap());
+    let read = parts.map(|text| serde_json::from_str::<PartialRun>(&text).unwrap());
     let merged = read.reduce(|a, b| b.merge(a).unwrap()).unwrap();
     assert_eq!(run.finish(merged).unwrap(), run.run(sometimes).unwrap());
 
@@ -92,7 +94,7 @@ fn parts_travel_as_text() {
         ("a value that is not finite", with_values("7ff")),
         ("unknown field", text.replacen("\"seed\":", "\"sead\":1,\"seed\":", 1)),
     ] {
-        let error = serde_json::from_str::<Partial>(&damaged).unwrap_err().to_string();
+        let error = serde_json::from_str::<PartialRun>(&damaged).unwrap_err().to_string();
         assert!(error.contains(damage), "{damage}: {error}");
     }
 }
@@ -108,9 +110,9 @@ fn parts_travel_as_text_to_the_last_bit_and_merge_in_any_order() {
         [x[0] / 3.0, tiny, x[1].powi(40) * 1e100]
     };
     let whole = run.run(awkward).unwrap();
-    let parts: Vec<Partial> = (0..4).map(|k| run.run_blocks(run.shard(k, 4), awkward).unwrap()).collect();
+    let parts: Vec<PartialRun> = (0..4).map(|k| run.run_blocks(run.shard(k, 4), awkward).unwrap()).collect();
     let texts: Vec<String> = parts.iter().map(|part| serde_json::to_string(part).unwrap()).collect();
-    let read: Vec<Partial> = texts.iter().map(|text| serde_json::from_str(text).unwrap()).collect();
+    let read: Vec<PartialRun> = texts.iter().map(|text| serde_json::from_str(text).unwrap()).collect();
     assert_eq!(read, parts);
     assert_eq!(read.iter().map(|part| serde_json::to_string(part).unwrap()).collect::<Vec<_>>(), texts);
     for a in 0..4 {
@@ -129,7 +131,7 @@ fn parts_travel_as_text_to_the_last_bit_and_merge_in_any_order() {
     let mut twice: serde_json::Value = serde_json::from_str(&texts[0]).unwrap();
     let blocks = twice["blocks"].as_array_mut().unwrap();
     blocks.push(blocks[0].clone());
-    let error = serde_json::from_value::<Partial>(twice).unwrap_err().to_string();
+    let error = serde_json::from_value::<PartialRun>(twice).unwrap_err().to_string();
     assert!(error.contains("block 0 is in both partial results"), "{error}");
 }
 
@@ -139,7 +141,7 @@ fn parts_must_belong_together() {
     let run = MonteCarlo::new(&inputs, 4000).unwrap();
     let part = run.run_blocks(0..2, model).unwrap();
     let twice = part.clone().merge(run.run_blocks(1..3, model).unwrap());
-    assert!(matches!(twice, Err(UncertaintyError::Partial { block: Some(1), .. })), "{twice:?}");
+    assert!(matches!(twice, Err(UncertaintyError::PartialRun { block: Some(1), .. })), "{twice:?}");
     let seed = part.clone().merge(run.clone().with_seed(1).run_blocks(2..4, model).unwrap()).unwrap_err();
     assert_eq!(
         seed.to_string(),
@@ -147,11 +149,11 @@ fn parts_must_belong_together() {
     );
     let other = inputs.clone().with_correlations(&[("a", "b", 0.6)]).unwrap();
     let other = MonteCarlo::new(&other, 4000).unwrap().run_blocks(2..4, model).unwrap();
-    assert!(matches!(part.clone().merge(other.clone()), Err(UncertaintyError::Partial { block: None, .. })));
-    assert!(matches!(run.finish(other), Err(UncertaintyError::Partial { block: None, .. })));
+    assert!(matches!(part.clone().merge(other.clone()), Err(UncertaintyError::PartialRun { block: None, .. })));
+    assert!(matches!(run.finish(other), Err(UncertaintyError::PartialRun { block: None, .. })));
     let single = run.run_blocks(2..4, |x| x[0]).unwrap();
-    assert!(matches!(part.clone().merge(single), Err(UncertaintyError::Partial { block: None, .. })));
-    assert!(matches!(run.finish(part), Err(UncertaintyError::Partial { block: Some(2), .. })));
+    assert!(matches!(part.clone().merge(single), Err(UncertaintyError::PartialRun { block: None, .. })));
+    assert!(matches!(run.finish(part), Err(UncertaintyError::PartialRun { block: Some(2), .. })));
 }
 
 #[test]

@@ -83,7 +83,7 @@ fn runs_of_no_trials() {
     let nothing = run.run_blocks(0..0, |x| x[0]).unwrap();
     assert_eq!(nothing.trials(), 0);
     let error = run.finish(nothing).unwrap_err();
-    assert!(matches!(error, UncertaintyError::Partial { block: Some(0), .. }), "{error}");
+    assert!(matches!(error, UncertaintyError::PartialRun { block: Some(0), .. }), "{error}");
 }
 
 #[test]
@@ -135,5 +135,5 @@ fn parts_of_different_runs_or_twice_the_same() {
     let pair = first.clone().merge(pair).unwrap_err();
     assert!(pair.to_string().contains("if their numbers of outputs agree, but one has 1 and another 2"), "{pair}");
     let twice = first.clone().merge(second).unwrap().merge(first).unwrap_err();
-    assert!(matches!(twice, UncertaintyError::Partial { block: Some(0), .. }), "{twice}");
+    assert!(matches!(twice, UncertaintyError::PartialRun { block: Some(0), .. }), "{twice}");
 }

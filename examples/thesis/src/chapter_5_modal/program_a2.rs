@@ -81,7 +81,7 @@ mod tests {
         assert_eq!(local_maxima(&[]), Vec::<usize>::new());
     }
 
-    /// 80 s from 10 mm: the scatter about c(V) = 0.2005 + 8/(3π) c₂ V that the verification found at three noises, within 40 %.
+    /// 80 s from 10 mm: the scatter about c(V) = 0.2005 + 8/(3π) c₂ V that an independent recomputation found at three noises, within 40 %.
     #[test]
     fn damping_scatters_with_the_noise() {
         let motion = motion(machine(INSTANTANEOUS_SLOPE).unwrap(), (0.01, 0.0), 80.0).unwrap();

@@ -1,13 +1,13 @@
 //! Header of a table: names of the columns, their units, statements about the sampling.
 
+use super::faults::{not_a_number, ragged};
 use super::fields::{Separator, split, text};
-use super::layout::{Kind, Row};
 use super::lines::Line;
 use super::number;
-use super::table::{not_a_number, ragged};
+use super::row::{Kind, Row};
 use crate::files::clock::Clock;
 use crate::files::reading::seconds_in;
-use crate::{RecordError, Unit};
+use crate::{RecordError, WrittenUnit};
 
 /// Lines above a table.
 #[derive(Debug, Default)]
@@ -155,7 +155,7 @@ fn are_units(fields: &[String]) -> bool {
     let is_unit = |field: &&String| {
         let plain = plain(field);
         let is_enclosed = plain.len() < field.len();
-        is_enclosed || plain.parse::<Unit>().is_ok() || seconds_in(plain).is_some()
+        is_enclosed || plain.parse::<WrittenUnit>().is_ok() || seconds_in(plain).is_some()
     };
     let may_be = |field: &&String| {
         is_unit(field)

@@ -1,21 +1,12 @@
 //! Layout of a text file: beginning of the table, separator, names of the columns.
 
-use std::ops::Range;
-
-use super::fields::{Separator, split, text};
+use super::faults::NO_ROWS;
+use super::fields::{Separator, text};
 use super::header::{Header, header};
 use super::lines::Line;
 use super::number;
-use super::table::NO_ROWS;
+use super::row::{Kind, Row};
 use crate::RecordError;
-
-/// Content of a column, by the last rows that are known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    Number,
-    Text,
-    Blank,
-}
 
 /// The layout of a table.
 pub(super) struct Layout {
@@ -62,28 +53,6 @@ fn preamble(lines: &[Line]) -> (usize, Option<Separator>) {
         // Behind it may be separators, as some spreadsheets put them behind every line.
         Some(&[sign, ..]) => (1, Some(Separator::Sign(sign))),
         _ => (0, None),
-    }
-}
-
-/// A line and its fields.
-pub(super) struct Row<'a> {
-    line: &'a Line,
-    fields: Vec<Range<usize>>,
-}
-
-impl<'a> Row<'a> {
-    pub(super) fn of(line: &'a Line, separator: Separator) -> Self {
-        let mut fields = Vec::new();
-        split(&line.text, separator, &mut fields);
-        Self { line, fields }
-    }
-
-    pub(super) fn len(&self) -> usize {
-        self.fields.len()
-    }
-
-    pub(super) fn field(&self, column: usize) -> &'a [u8] {
-        self.fields.get(column).map_or(&[], |range| &self.line.text[range.clone()])
     }
 }
 

@@ -9,12 +9,14 @@
 //! Memory goes to the two columns in use only, so that a file may be larger than the memory. A quote is closed on its own
 //! line or is a sign like others.
 
+mod faults;
 mod fields;
 mod header;
 mod layout;
 mod lines;
 mod number;
 mod reader;
+mod row;
 mod table;
 #[cfg(test)]
 mod tests;

@@ -4,11 +4,13 @@ use std::collections::VecDeque;
 use std::io::{BufReader, Read};
 use std::ops::Range;
 
+use super::faults::{NO_ROWS, not_a_number, ragged};
 use super::fields::{Separator, split};
 use super::header::Header;
-use super::layout::{Kind, Layout};
+use super::layout::Layout;
 use super::lines::{Line, Lines};
 use super::number::{self, Digits, Mark};
+use super::row::Kind;
 use crate::files::reading::quoted;
 use crate::{Column, RecordError};
 
@@ -17,25 +19,6 @@ const HEAD: usize = 1 << 16;
 
 /// Rows that the last one is compared with before it is called cut off.
 const ENOUGH: usize = 8;
-
-/// A header without a table.
-pub(super) const NO_ROWS: &str = "the file has a header but no rows of data below it";
-
-/// A row with more or fewer fields than the first.
-pub(super) fn ragged(line: u64, expected: usize, found: usize, separator: Separator) -> RecordError {
-    let remedy = if separator.leaves_comma() {
-        ""
-    } else {
-        "; if the numbers have decimal commas, save the file with semicolons or tabs between the columns; if lines stand above \
-         the table, skip them"
-    };
-    RecordError::on_line(line, format!("line {line} has {found} fields, but the first row has {expected}{remedy}"))
-}
-
-/// A field that is not a number.
-pub(super) fn not_a_number(line: u64, column: &str, text: &str) -> RecordError {
-    RecordError::on_line(line, format!("line {line}, column \"{column}\": \"{text}\" is not a number"))
-}
 
 /// An open table: the names of its columns are known, its rows are read one by one.
 pub(super) struct Table<R> {

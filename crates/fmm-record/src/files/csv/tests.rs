@@ -303,7 +303,7 @@ mod programs {
     fn picoscope() {
         let found = reading("Time;Channel A;Channel B\n(µs);(mV);(V)\n\n-10,0;0,5;1,5\n-5,0;0,25;1,0\n0,0;0,125;0,5\n");
         assert_eq!((found.record.interval(), &found.channel[..]), (5e-6, "Channel A [mV]"));
-        assert_eq!(crate::Label::from(&found).unit().map(crate::Unit::si), Some("V"));
+        assert_eq!(crate::Label::from(&found).unit().map(crate::WrittenUnit::si), Some("V"));
         assert_eq!(found.record.values(), [0.5, 0.25, 0.125]);
         // Either name chooses the channel.
         let text = "Time,A,B\n(ms),(V),(V)\n0.0,1,4\n0.5,2,5\n1.0,3,6\n";

@@ -1,4 +1,4 @@
-//! Outcome of a model: the types it may return.
+//! Output of a model: the types it may return.
 
 use std::error::Error;
 
@@ -10,14 +10,14 @@ use crate::Taylor;
 /// formula, generic in `D: Scalar`, serves them all.
 ///
 /// ```
-/// use fmm_uq::Outcome;
+/// use fmm_uq::ModelOutput;
 ///
 /// let mut values = Vec::new();
 /// assert!(Ok::<_, String>([1.0, 2.0]).append_to(&mut values).is_ok());
 /// assert_eq!(values, [1.0, 2.0]);
 /// assert!(Err::<f64, _>("no root").append_to(&mut values).is_err());
 /// ```
-pub trait Outcome<D> {
+pub trait ModelOutput<D> {
     /// Appends the outputs in their order, or gives the reason why there are none.
     ///
     /// # Errors
@@ -25,7 +25,7 @@ pub trait Outcome<D> {
     fn append_to(self, outputs: &mut Vec<D>) -> Result<(), Box<dyn Error + Send + Sync>>;
 }
 
-impl Outcome<Self> for f64 {
+impl ModelOutput<Self> for f64 {
     #[inline]
     fn append_to(self, outputs: &mut Vec<Self>) -> Result<(), Box<dyn Error + Send + Sync>> {
         outputs.push(self);
@@ -33,7 +33,7 @@ impl Outcome<Self> for f64 {
     }
 }
 
-impl Outcome<Self> for Taylor {
+impl ModelOutput<Self> for Taylor {
     #[inline]
     fn append_to(self, outputs: &mut Vec<Self>) -> Result<(), Box<dyn Error + Send + Sync>> {
         outputs.push(self);
@@ -41,7 +41,7 @@ impl Outcome<Self> for Taylor {
     }
 }
 
-impl<D, const N: usize> Outcome<D> for [D; N] {
+impl<D, const N: usize> ModelOutput<D> for [D; N] {
     #[inline]
     fn append_to(self, outputs: &mut Vec<D>) -> Result<(), Box<dyn Error + Send + Sync>> {
         outputs.extend(self);
@@ -49,7 +49,7 @@ impl<D, const N: usize> Outcome<D> for [D; N] {
     }
 }
 
-impl<D> Outcome<D> for Vec<D> {
+impl<D> ModelOutput<D> for Vec<D> {
     #[inline]
     fn append_to(self, outputs: &mut Vec<D>) -> Result<(), Box<dyn Error + Send + Sync>> {
         outputs.extend(self);
@@ -57,7 +57,7 @@ impl<D> Outcome<D> for Vec<D> {
     }
 }
 
-impl<D, T: Outcome<D>, E: Into<Box<dyn Error + Send + Sync>>> Outcome<D> for Result<T, E> {
+impl<D, T: ModelOutput<D>, E: Into<Box<dyn Error + Send + Sync>>> ModelOutput<D> for Result<T, E> {
     #[inline]
     fn append_to(self, outputs: &mut Vec<D>) -> Result<(), Box<dyn Error + Send + Sync>> {
         self.map_err(Into::into)?.append_to(outputs)

@@ -6,13 +6,13 @@ use crate::monte_carlo::block::{BLOCK_TRIALS, Block};
 /// The results of some blocks of a run, in the order of the blocks.
 ///
 /// Parts come from [`MonteCarlo::run_blocks`](crate::MonteCarlo::run_blocks), on any machine and in any order, and are
-/// [merged](Partial::merge) until [`MonteCarlo::finish`](crate::MonteCarlo::finish) has them all. The result has the bits
+/// [merged](PartialRun::merge) until [`MonteCarlo::finish`](crate::MonteCarlo::finish) has them all. The result has the bits
 /// of a single run. With the feature `serde` a part can be written to a file; its values travel as bits.
 ///
 /// ```
 /// # #[cfg(feature = "serde")]
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// use fmm_uq::{Input, Inputs, MonteCarlo, Partial};
+/// use fmm_uq::{Input, Inputs, MonteCarlo, PartialRun};
 ///
 /// let inputs = Inputs::new([Input::new("x", 1.0, 0.1, "m")?])?;
 /// let run = MonteCarlo::new(&inputs, 5000)?.with_seed(7);
@@ -22,7 +22,7 @@ use crate::monte_carlo::block::{BLOCK_TRIALS, Block};
 /// };
 /// let files = [job(1)?, job(0)?];
 ///
-/// let mut parts = files.iter().map(|text| serde_json::from_str::<Partial>(text));
+/// let mut parts = files.iter().map(|text| serde_json::from_str::<PartialRun>(text));
 /// let merged = parts.next().unwrap()?.merge(parts.next().unwrap()?)?;
 /// assert_eq!(run.finish(merged)?, run.run(|x| x[0] * x[0])?);
 /// # Ok(())
@@ -35,8 +35,8 @@ use crate::monte_carlo::block::{BLOCK_TRIALS, Block};
 /// bit between platforms.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "unchecked::Partial"))]
-pub struct Partial {
+#[cfg_attr(feature = "serde", serde(try_from = "unchecked::PartialRun"))]
+pub struct PartialRun {
     seed: u64,
     inputs: u64,
     blocks: Vec<Block>,
@@ -51,16 +51,16 @@ mod unchecked {
 
     #[derive(serde::Deserialize)]
     #[serde(deny_unknown_fields)]
-    pub(super) struct Partial {
+    pub(super) struct PartialRun {
         seed: u64,
         inputs: u64,
         blocks: Vec<Block>,
     }
 
-    impl TryFrom<Partial> for super::Partial {
+    impl TryFrom<PartialRun> for super::PartialRun {
         type Error = UncertaintyError;
 
-        fn try_from(read: Partial) -> Result<Self, UncertaintyError> {
+        fn try_from(read: PartialRun) -> Result<Self, UncertaintyError> {
             for block in &read.blocks {
                 super::check(block)?;
             }
@@ -69,7 +69,7 @@ mod unchecked {
     }
 }
 
-impl Partial {
+impl PartialRun {
     /// Puts blocks in order and sees that they belong together.
     pub(crate) fn assemble(seed: u64, inputs: u64, mut blocks: Vec<Block>) -> Result<Self, UncertaintyError> {
         blocks.sort_by_key(|block| block.index);
@@ -87,7 +87,7 @@ impl Partial {
     /// Both parts as one; the order does not matter.
     ///
     /// # Errors
-    /// [`UncertaintyError::Partial`] if seed, inputs or number of outputs differ, or a block is in both.
+    /// [`UncertaintyError::PartialRun`] if seed, inputs or number of outputs differ, or a block is in both.
     pub fn merge(mut self, other: Self) -> Result<Self, UncertaintyError> {
         for (what, first, second) in
             [("seeds", self.seed, other.seed), ("inputs (by fingerprint)", self.inputs, other.inputs)]

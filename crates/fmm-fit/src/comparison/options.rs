@@ -26,14 +26,14 @@ pub enum Criterion {
 /// How models are compared.
 ///
 /// ```
-/// use fmm_fit::{Comparing, Criterion, ResidualCount};
+/// use fmm_fit::{ComparisonOptions, Criterion, ResidualCount};
 ///
-/// let comparing = Comparing::default().by(Criterion::Bayesian).counting(ResidualCount::All).with_margin(2.0);
+/// let comparing = ComparisonOptions::default().by(Criterion::Bayesian).counting(ResidualCount::All).with_margin(2.0);
 /// # let _ = comparing;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub struct Comparing {
+pub struct ComparisonOptions {
     pub(crate) criterion: Criterion,
     pub(crate) count: ResidualCount,
     pub(crate) margin: f64,
@@ -41,7 +41,7 @@ pub struct Comparing {
     pub(crate) floor: f64,
 }
 
-impl Default for Comparing {
+impl Default for ComparisonOptions {
     fn default() -> Self {
         Self {
             criterion: Criterion::default(),
@@ -53,7 +53,7 @@ impl Default for Comparing {
     }
 }
 
-impl Comparing {
+impl ComparisonOptions {
     /// The criterion that ranks (corrected Akaike).
     #[must_use]
     pub fn by(mut self, criterion: Criterion) -> Self {

@@ -10,13 +10,13 @@ use crate::{EvaluationError, Fit, FitError, Options, Residuals, solve};
 /// problem. A closure that fails says so by a residual that is not finite; a type that implements
 /// [`Model`](crate::Model) can say why.
 #[derive(Debug, Clone)]
-pub struct Formula<F, const N: usize> {
+pub struct ClosureProblem<F, const N: usize> {
     parameters: [Parameter; N],
     count: usize,
     residuals: F,
 }
 
-impl<F: Fn([Dual<N>; N], &mut [Dual<N>]), const N: usize> Formula<F, N> {
+impl<F: Fn([Dual<N>; N], &mut [Dual<N>]), const N: usize> ClosureProblem<F, N> {
     /// The problem of these parameters (a name alone makes an unbounded pure number) and `count` residuals, all of which
     /// the closure fills, model minus data.
     pub fn new(parameters: [impl Into<Parameter>; N], count: usize, residuals: F) -> Self {
@@ -31,7 +31,7 @@ impl<F: Fn([Dual<N>; N], &mut [Dual<N>]), const N: usize> Formula<F, N> {
     }
 }
 
-impl<F: Fn([Dual<N>; N], &mut [Dual<N>]), const N: usize> Residuals for Formula<F, N> {
+impl<F: Fn([Dual<N>; N], &mut [Dual<N>]), const N: usize> Residuals for ClosureProblem<F, N> {
     fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
@@ -90,11 +90,11 @@ pub fn curve<'a, X: Copy, const N: usize>(
     y: &'a [f64],
     parameters: [impl Into<Parameter>; N],
     model: impl Fn(X, [Dual<N>; N]) -> Dual<N> + 'a,
-) -> Result<Formula<impl Fn([Dual<N>; N], &mut [Dual<N>]) + 'a, N>, FitError> {
+) -> Result<ClosureProblem<impl Fn([Dual<N>; N], &mut [Dual<N>]) + 'a, N>, FitError> {
     if x.len() != y.len() {
         return Err(FitError::data_length(x.len(), y.len()));
     }
-    Ok(Formula::new(parameters, y.len(), move |p: [Dual<N>; N], residuals: &mut [Dual<N>]| {
+    Ok(ClosureProblem::new(parameters, y.len(), move |p: [Dual<N>; N], residuals: &mut [Dual<N>]| {
         for ((r, x), y) in residuals.iter_mut().zip(x).zip(y) {
             *r = model(*x, p) - *y;
         }
@@ -156,8 +156,8 @@ pub fn fit<const N: usize>(
     residuals: impl Fn([Dual<N>; N], &mut [Dual<N>]),
 ) -> Result<Fit, FitError> {
     let values = start.each_ref().map(|(_, value)| *value);
-    let formula = Formula::new(start.map(|(parameter, _)| parameter), count, residuals);
-    solve(&formula, &values, &Options::default())
+    let problem = ClosureProblem::new(start.map(|(parameter, _)| parameter), count, residuals);
+    solve(&problem, &values, &Options::default())
 }
 
 #[cfg(test)]
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn an_abscissa_may_have_several_numbers_and_a_formula_no_residual() {
+    fn an_abscissa_may_have_several_numbers_and_a_closure_no_residual() {
         let x = [[0.0, 1.0], [1.0, 0.0], [1.0, 1.0], [2.0, 1.0]];
         let plane = curve_fit(&x, &[3.0, 2.0, 5.0, 7.0], [("a", 0.0), ("b", 0.0)], |x, [a, b]| a * x[0] + b * x[1]);
         let plane = plane.unwrap();

@@ -20,23 +20,23 @@ use crate::units::spelling::{COUNTS, MOTIONS, meaning};
 /// and `MN`, `g` and `G`; words and other units of motion may be in any case, as in `MM/S`.
 ///
 /// ```
-/// use fmm_record::{Quantity, Unit};
+/// use fmm_record::{Quantity, WrittenUnit};
 ///
-/// let unit: Unit = "mm/s²".parse()?;
+/// let unit: WrittenUnit = "mm/s²".parse()?;
 /// assert_eq!((unit.factor(), unit.si(), unit.quantity()), (1e-3, "m/s²", Quantity::Acceleration));
-/// assert_eq!("mV".parse::<Unit>()?.quantity(), Quantity::Other);
-/// assert_eq!("furlong".parse::<Unit>().unwrap_err().to_string(), "the unit \"furlong\" is not known");
+/// assert_eq!("mV".parse::<WrittenUnit>()?.quantity(), Quantity::Other);
+/// assert_eq!("furlong".parse::<WrittenUnit>().unwrap_err().to_string(), "the unit \"furlong\" is not known");
 /// # Ok::<(), fmm_record::UnknownUnit>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct Unit {
+pub struct WrittenUnit {
     written: String,
     si: &'static str,
     factor: f64,
     quantity: Quantity,
 }
 
-/// A unit that is spelled in no way that [`Unit`] knows.
+/// A unit that is spelled in no way that [`WrittenUnit`] knows.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the unit \"{written}\" is not known")]
 pub struct UnknownUnit {
@@ -44,7 +44,7 @@ pub struct UnknownUnit {
     pub written: String,
 }
 
-impl Unit {
+impl WrittenUnit {
     /// The SI unit: `m`, `rad`, `m/s`, `rad/s`, `m/s²`, `rad/s²`, `N`, `N m`, `V`, `A`; or `counts`, which has none.
     pub fn si(&self) -> &'static str {
         self.si
@@ -83,13 +83,13 @@ impl Unit {
 }
 
 /// As it was written.
-impl std::fmt::Display for Unit {
+impl std::fmt::Display for WrittenUnit {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(&self.written)
     }
 }
 
-impl FromStr for Unit {
+impl FromStr for WrittenUnit {
     type Err = UnknownUnit;
 
     fn from_str(text: &str) -> Result<Self, UnknownUnit> {
@@ -107,7 +107,7 @@ mod tests {
 
     fn all_mean(spellings: &[&str], factor: f64, si: &str, quantity: Quantity) {
         for spelling in spellings {
-            let unit: Unit = spelling.parse().unwrap_or_else(|error| panic!("{error}"));
+            let unit: WrittenUnit = spelling.parse().unwrap_or_else(|error| panic!("{error}"));
             assert_eq!((unit.si(), unit.quantity()), (si, quantity), "{spelling}");
             assert!((unit.factor() / factor - 1.0).abs() < 1e-12, "{spelling}: {} against {factor}", unit.factor());
             assert_eq!(unit.to_string(), spelling.trim());
@@ -223,13 +223,13 @@ mod tests {
             "[m]",
         ];
         for text in unknown {
-            assert_eq!(text.parse::<Unit>(), Err(UnknownUnit { written: text.trim().into() }), "{text:?}");
+            assert_eq!(text.parse::<WrittenUnit>(), Err(UnknownUnit { written: text.trim().into() }), "{text:?}");
         }
     }
 
     #[test]
     fn the_same_unit_in_two_spellings() {
-        let unit = |text: &str| text.parse::<Unit>().unwrap();
+        let unit = |text: &str| text.parse::<WrittenUnit>().unwrap();
         assert!(unit("µm/s").is_same_as(&unit("um/sec")) && !unit("mm/s").is_same_as(&unit("m/s")));
         assert!(!unit("m").is_same_as(&unit("rad")) && !unit("V").is_same_as(&unit("counts")));
         assert!(unit("ticks").is_counts() && !unit("V").is_counts());
