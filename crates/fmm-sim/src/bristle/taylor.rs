@@ -17,6 +17,10 @@ pub(super) const ORDER: usize = Expansion::<f64>::TERMS - 1;
 /// The error allowed in a step, in units of the tolerance: many steps add up.
 const SAFETY: f64 = 0.1;
 
+/// Share of the first terms of a component that its last ones may have, above rounding. Beyond that the step has passed a singularity, as
+/// of a state that reaches its bound in finite time, which a tolerance as large as what is left of the way does not see.
+const FALL: f64 = 1e-3;
+
 /// Step times stiffness up to which a step damps what is off the motion: |1 − x + x²/2! − … + x²⁴/24!| < 0.05.
 const STABLE: f64 = 9.0;
 
@@ -229,15 +233,16 @@ fn ratio<D: Scalar>(motion: &Motion<D>, tolerance: f64, rounding: f64) -> f64 {
     for _ in 0..3 {
         let [mut last, mut before] = [0.0f64; 2];
         for (component, series) in motion.series.iter().enumerate() {
-            let [_, first, second, ..] = series;
-            let moves = (first.value().abs() * ratio).max(second.value().abs() * ratio * ratio);
-            let per_scale = 1.0 / motion.least_scale(component, tolerance, rounding).max(moves);
-            last = last.max(series[ORDER].value().abs() * per_scale);
-            before = before.max(series[ORDER - 1].value().abs() * per_scale);
+            let [begin, first, second, third, ..] = series.map(|term| term.value().abs());
+            let moves = (first * ratio).max(second * ratio * ratio);
+            let allowed = SAFETY * tolerance * motion.least_scale(component, tolerance, rounding).max(moves);
+            let largest = FALL * moves.max(third * ratio.powi(3));
+            let per_allowed = 1.0 / allowed.min(largest.max(f64::EPSILON * begin));
+            last = last.max(series[ORDER].value().abs() * per_allowed);
+            before = before.max(series[ORDER - 1].value().abs() * per_allowed);
         }
-        let allowed = SAFETY * tolerance;
-        let by_last = (allowed / last).powf(1.0 / ORDER as f64);
-        let next = by_last.min((allowed / before).powf(1.0 / (ORDER - 1) as f64));
+        let by_last = last.powf(-1.0 / ORDER as f64);
+        let next = by_last.min(before.powf(-1.0 / (ORDER - 1) as f64));
         let settled = (next / ratio - 1.0).abs() < 0.05;
         ratio = next;
         if settled {

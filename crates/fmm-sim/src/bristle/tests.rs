@@ -231,6 +231,22 @@ fn stiff_bristles_turn_where_coulomb_friction_does() {
     }
 }
 
+/// With an exponent below 1 the bound is reached in finite time: a singularity, at which a series must not stand still.
+#[test]
+fn bristles_that_reach_their_bound_are_followed_beyond() {
+    let machine = Oscillator::new(10.391, 1982.0).unwrap();
+    for exponent in [0.05, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.6, 0.8, 0.95] {
+        for stiffness in [3e2, 3e3, 1e5] {
+            let law = Dahl::new(0.15, stiffness, exponent).unwrap();
+            let scenario = Scenario::new(machine, law, 7.2).unwrap().starting_at(0.02, 0.0).unwrap();
+            let [motion, accurate] =
+                [1e-10, 1e-13].map(|tolerance| Bristle::new(tolerance).unwrap().run(&scenario, &sampling()).unwrap());
+            let difference = difference(&motion, &accurate);
+            assert!(difference < 1e-10, "exponent {exponent}, {stiffness} 1/m: {difference:e}");
+        }
+    }
+}
+
 #[test]
 fn bristle_damping_of_any_size_can_be_integrated() {
     let machine = Oscillator::new(10.0, 2000.0).unwrap();
