@@ -51,20 +51,21 @@ pub(crate) struct Response<'a> {
 }
 
 impl<'a> Response<'a> {
-    /// That of the record of `problem` about the fit of `simple`, by Coulomb and viscous friction, with these `values`; `None` where
-    /// there is more than one free ring-down on a linear spring, or a parameter that is not looked for here.
-    pub(crate) fn of(problem: &'a Problem<'a>, simple: &Problem<'_>, values: &[f64]) -> Option<Self> {
-        let [decay] = problem.decays() else { return None };
-        let layout = problem.layout();
-        let is_plain = layout.oscillator == 1
+    /// Whether there is one: of one free vibration on a linear spring under a constant load.
+    pub(crate) fn exists(problem: &Problem<'_>) -> bool {
+        let [decay] = problem.decays() else { return false };
+        problem.layout().oscillator == 1
             && problem.machine().restoring() == Restoring::Linear
             && !problem.has_spring()
             && decay.drive().is_none()
             && decay.first_corner().is_none()
-            && decay.load_factor() == 1.0;
-        if !is_plain {
-            return None;
-        }
+            && decay.load_factor() == 1.0
+    }
+
+    /// That of the record of `problem` about the fit of `simple`, by Coulomb and viscous friction, with these `values`; `None` where
+    /// there is more than one free ring-down on a linear spring, or a parameter that is not looked for here.
+    pub(crate) fn of(problem: &'a Problem<'a>, simple: &Problem<'_>, values: &[f64]) -> Option<Self> {
+        let decay = problem.decays().first().filter(|_| Self::exists(problem))?;
         let record = decay.record();
         let interval = record.interval();
         let stride = ((values[0] * interval * SAMPLES_PER_SWING).recip() as usize).max(1);

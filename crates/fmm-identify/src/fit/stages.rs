@@ -52,10 +52,18 @@ pub(crate) fn fit_in_stages(
     let thinned = problem.thinned();
     let few = thinned.as_ref().map(|thinned| problem.with_records(thinned));
     let search = few.as_ref().unwrap_or(problem);
-    if problem.is_elaborate() && !problem.has_spring() {
-        return fit_with_shapes(problem, search, options, observer);
-    }
-    let found = fit_simple(search, options, observer)?;
+    let found = if problem.is_elaborate() && !problem.has_spring() {
+        let simple = Problem::new::<CoulombViscous>(*search.machine(), search.decays())?;
+        let known = fit_simple(&simple, options, observer)?;
+        let mut starts = search.continued(&simple, known.values());
+        starts.extend(search.starts().into_iter().next());
+        if Response::exists(search) {
+            return fit_with_shapes(problem, search, (&simple, known.values()), &starts, options, observer);
+        }
+        best_fit(search, problem.name(), starts, options, observer)?
+    } else {
+        fit_simple(search, options, observer)?
+    };
     if few.is_none() {
         return Ok(found);
     }
@@ -114,23 +122,19 @@ fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec
     sums.into_iter().take(count).map(|(_, start)| start).collect()
 }
 
-/// The fit of a law with shapes, begun where a `search` with few of the samples ends. If its residuals do not look like noise, all starts
-/// are followed to their end, and the better of both is given.
+/// The fit of a law with shapes to free vibrations on a linear spring, begun from `starts` and near a `simple` fit, where a `search` with
+/// few of the samples ends. If its residuals do not look like noise, all starts are followed to their end, and the better of both is given.
 fn fit_with_shapes(
     problem: &Problem<'_>,
     search: &Problem<'_>,
+    simple: (&Problem<'_>, &[f64]),
+    starts: &[Vec<f64>],
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
-    let simple = Problem::new::<CoulombViscous>(*search.machine(), search.decays())?;
-    let known = fit_simple(&simple, options, observer)?;
-    let mut starts = search.continued(&simple, known.values());
-    starts.extend(search.starts().into_iter().next());
-    starts.dedup();
-    let known = (&simple, known.values());
     let (search, problem) = (search.clone().bending_in_sight(), problem.clone().bending_in_sight());
     let options = &options.clone().with_max_iterations(options.max_iterations().min(MOST_FINAL));
-    let found = fit_roughly(&search, known, &starts, options, observer)?;
+    let found = fit_roughly(&search, simple, starts, options, observer)?;
     let start = problem.clamped(found.values());
     let fit = best_fit(&problem, problem.name(), vec![start], options, observer)?;
     // Beside residuals that look like noise, no other minimum is lower by more than chance.
