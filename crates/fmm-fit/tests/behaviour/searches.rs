@@ -362,7 +362,6 @@ fn of_several_starts_the_best_is_finished() {
         };
         solve_observed(&problem, start, &Options::default(), count).unwrap();
     }
-    println!("{steps} steps in place of {all}");
     assert!(2 * steps < all, "{steps} steps in place of {all}");
     assert!(matches!(
         solve_best(&problem, &[], &Options::default(), |_| ControlFlow::Continue(())),

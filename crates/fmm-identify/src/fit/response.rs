@@ -62,8 +62,8 @@ impl<'a> Response<'a> {
             && decay.load_factor() == 1.0
     }
 
-    /// That of the record of `problem` about the fit of `simple`, by Coulomb and viscous friction, with these `values`; `None` where
-    /// there is more than one free ring-down on a linear spring, or a parameter that is not looked for here.
+    /// That of the record of `problem` about the fit of `simple`, by Coulomb and viscous friction, with these `values`; `None` where none
+    /// [exists](Self::exists), or the motion is too short.
     pub(crate) fn of(problem: &'a Problem<'a>, simple: &Problem<'_>, values: &[f64]) -> Option<Self> {
         let decay = problem.decays().first().filter(|_| Self::exists(problem))?;
         let record = decay.record();
@@ -324,7 +324,6 @@ mod tests {
         let most = std::f64::consts::TAU / SAMPLES_PER_SWING;
         for (quantity, unit) in [(Quantity::Velocity, "m/s"), (Quantity::Displacement, "m")] {
             let found = differences(quantity, unit);
-            println!("{quantity:?}: {found:?} of {most}");
             assert!(found.iter().all(|difference| *difference < most), "{quantity:?}: {found:?}");
         }
     }
