@@ -2,7 +2,7 @@
 
 use fmm_friction::{BoucWen, BristleLaw, Dahl, LuGre, MaxwellSlip, Regime};
 use fmm_model::{Damping, Dual, Oscillator, Scalar};
-use fmm_sim::{Bristle, Engine, EventKind, Excitation, Path, Sampling, Scenario, friction_along};
+use fmm_sim::{Bristle, Engine, EventKind, Excitation, PrescribedMotion, Sampling, Scenario, friction_along};
 use serde_json::Value;
 
 use crate::oracle::{number, numbers, read};
@@ -151,7 +151,7 @@ fn loops<L: BristleLaw<f64>>(law: &L, entry: &Value) {
     let mut path = vec![0.0];
     path.extend(points.iter().map(|point| number(&point["x"])));
     for speed in [1e-5, 1.0, 1e3] {
-        let got = friction_along(law, 1.0, &Path::at_speed(&path, speed).unwrap()).unwrap();
+        let got = friction_along(law, 1.0, &PrescribedMotion::at_speed(&path, speed).unwrap()).unwrap();
         assert_eq!((got.len(), got[0].force, got[0].position), (path.len(), 0.0, 0.0));
         for (got, point) in got[1..].iter().zip(points) {
             let (got, expected, absolute) = if point["F"].is_null() {
@@ -186,7 +186,7 @@ fn lugre_at_constant_velocity() {
     let law = lugre(&entry["params"], 2.0);
     for point in entry["points"].as_array().unwrap() {
         let [v, t, z, force] = ["v", "t", "z", "F"].map(|name| number(&point[name]));
-        let got = friction_along(&law, 1.0, &Path::at_speed(&[0.0, v * t], v).unwrap()).unwrap();
+        let got = friction_along(&law, 1.0, &PrescribedMotion::at_speed(&[0.0, v * t], v).unwrap()).unwrap();
         let off = ((got[1].states[0] / z - 1.0).abs(), (got[1].force / force - 1.0).abs());
         assert!(off.0 < 1e-12 && off.1 < 1e-12, "{v} m/s after {t} s: {:e} and {:e}", off.0, off.1);
     }
@@ -199,7 +199,7 @@ fn loops_have_derivatives_in_the_path_and_the_law() {
     let number = |value, direction| Dual::<3>::variable(value, direction);
     let law = Dahl::new(number(level, 0), number(stiffness, 1), Dual::from(1.0)).unwrap();
     let far = number(reach, 2);
-    let path = Path::at_speed(&[Dual::from(0.0), far, far * 0.5], Dual::from(0.3)).unwrap();
+    let path = PrescribedMotion::at_speed(&[Dual::from(0.0), far, far * 0.5], Dual::from(0.3)).unwrap();
     let points = friction_along(&law, Dual::from(1.0), &path).unwrap();
     let force = |level: Dual<3>, stiffness: Dual<3>, x: Dual<3>| {
         let out = level * (Dual::from(1.0) - (-(stiffness * x / level)).exp());

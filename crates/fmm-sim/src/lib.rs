@@ -152,7 +152,7 @@ pub use event::{Direction, Event, EventKind, Mode};
 pub use exact::Exact;
 pub use excitation::Excitation;
 pub use moreau::Moreau;
-pub use prescribed::{Path, PathPoint, friction_along};
+pub use prescribed::{FrictionPoint, PrescribedMotion, friction_along};
 pub use runge_kutta::RungeKutta;
 pub use samples::Samples;
 pub use sampling::{Channels, Sampling};

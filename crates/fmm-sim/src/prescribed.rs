@@ -6,9 +6,9 @@ use fmm_model::{ModelError, Scalar};
 use crate::bristle;
 use crate::{SimulationError, State};
 
-/// The contact at one point of a path.
+/// Friction at one point of a prescribed motion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PathPoint<D = f64> {
+pub struct FrictionPoint<D = f64> {
     /// Position (m).
     pub position: D,
     /// Friction force (N) on arrival there, positive if it opposes a motion towards greater positions.
@@ -19,12 +19,12 @@ pub struct PathPoint<D = f64> {
 
 /// A motion that something outside prescribes, whatever the forces are.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Path<D = f64> {
+pub struct PrescribedMotion<D = f64> {
     pub(crate) first: Option<D>,
     pub(crate) legs: Vec<Leg<D>>,
 }
 
-/// From one point of a path to the next: acceleration grows in proportion to time.
+/// From one point of the motion to the next: acceleration grows in proportion to time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Leg<D> {
     pub(crate) duration: D,
@@ -35,7 +35,7 @@ pub(crate) struct Leg<D> {
     pub(crate) jerk: D,
 }
 
-impl<D: Scalar> Path<D> {
+impl<D: Scalar> PrescribedMotion<D> {
     /// Straight lines from each of `positions` (m) to the next at constant `speed` (m/s); the velocity jumps where the direction
     /// changes.
     ///
@@ -68,11 +68,11 @@ impl<D: Scalar> Path<D> {
     ///
     /// ```
     /// use fmm_friction::Dahl;
-    /// use fmm_sim::{Path, friction_along};
+    /// use fmm_sim::{PrescribedMotion, friction_along};
     ///
     /// // Force (N) at 10 N and µ = 0.3 after 2 µm, where bristles of 0.1 per µm have given way to 3 µm (1 − e^(−2/3)).
-    /// let path = Path::lines(&[0.0, 1.0, 3.0], &[0.0, 2e-6, -2e-6])?;
-    /// let points = friction_along(&Dahl::new(0.3, 1e5, 1.0)?, 10.0, &path)?;
+    /// let motion = PrescribedMotion::lines(&[0.0, 1.0, 3.0], &[0.0, 2e-6, -2e-6])?;
+    /// let points = friction_along(&Dahl::new(0.3, 1e5, 1.0)?, 10.0, &motion)?;
     /// assert!((points[1].force - 3.0 * (1.0 - f64::exp(-2.0 / 3.0))).abs() < 1e-12);
     /// assert!(points[2].force < 0.0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -106,7 +106,7 @@ impl<D: Scalar> Path<D> {
     ///
     /// ```
     /// use fmm_friction::LuGre;
-    /// use fmm_sim::{Path, State, friction_along};
+    /// use fmm_sim::{PrescribedMotion, State, friction_along};
     ///
     /// // One swing of 1 mm at 1 Hz, in 200 steps.
     /// let times: Vec<f64> = (0..=200).map(|i| f64::from(i) / 200.0).collect();
@@ -114,7 +114,7 @@ impl<D: Scalar> Path<D> {
     /// let state = |t: &f64| State { position: 1e-3 * (turn * t).sin(), velocity: 1e-3 * turn * (turn * t).cos() };
     /// let states: Vec<_> = times.iter().map(state).collect();
     /// let law = LuGre::new(0.2, 0.25, 1e-3, 2.0, 1e5, 300.0, 0.1)?;
-    /// let points = friction_along(&law, 10.0, &Path::through(&times, &states)?)?;
+    /// let points = friction_along(&law, 10.0, &PrescribedMotion::through(&times, &states)?)?;
     /// // On the way back, at full speed, friction of steady sliding acts the other way: 2 N and σ₂ v N = 6.3 mN.
     /// assert!((points[100].force + 2.006_283).abs() < 1e-5, "{} N", points[100].force);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -167,7 +167,7 @@ fn require_times<D: Scalar>(times: &[D], points: usize) -> Result<(), Simulation
     Ok(())
 }
 
-/// Friction of a `law` with internal state under `normal_load` (N) along a `path`: one entry for each of its points. Bristles are
+/// Friction of a `law` with internal state under `normal_load` (N) along a `motion`: one entry for each of its points. Bristles are
 /// not deflected at the first.
 ///
 /// Laws such as [`Dahl`](fmm_friction::Dahl), [`BoucWen`](fmm_friction::BoucWen) and
@@ -178,11 +178,11 @@ fn require_times<D: Scalar>(times: &[D], points: usize) -> Result<(), Simulation
 ///
 /// ```
 /// use fmm_friction::Dahl;
-/// use fmm_sim::{Path, friction_along};
+/// use fmm_sim::{PrescribedMotion, friction_along};
 ///
 /// // Out and back: on the way out F = μ N (1 − exp(−σ x/μ)), and at the end of the way back the loop is open.
-/// let path = Path::at_speed(&[0.0, 2e-5, 0.0], 1e-3)?;
-/// let points = friction_along(&Dahl::new(0.25, 1e4, 1.0)?, 7.0, &path)?;
+/// let motion = PrescribedMotion::at_speed(&[0.0, 2e-5, 0.0], 1e-3)?;
+/// let points = friction_along(&Dahl::new(0.25, 1e4, 1.0)?, 7.0, &motion)?;
 /// assert!((points[1].force - 1.75 * (1.0 - (-0.8f64).exp())).abs() < 1e-12);
 /// assert!(points[2].force < -0.5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -194,13 +194,13 @@ fn require_times<D: Scalar>(times: &[D], points: usize) -> Result<(), Simulation
 pub fn friction_along<D: Scalar, L: BristleLaw<D> + ?Sized>(
     law: &L,
     normal_load: D,
-    path: &Path<D>,
-) -> Result<Vec<PathPoint<D>>, SimulationError> {
+    motion: &PrescribedMotion<D>,
+) -> Result<Vec<FrictionPoint<D>>, SimulationError> {
     ModelError::require_not_negative("normal load", normal_load.value(), "N")?;
-    let mut points = Vec::with_capacity(path.legs.len() + 1);
-    let mut positions = path.first.into_iter().chain(path.legs.iter().map(|leg| leg.end.position));
-    bristle::follow(law, normal_load, path, |force, states| {
-        points.extend(positions.next().map(|position| PathPoint { position, force, states: states.to_vec() }));
+    let mut points = Vec::with_capacity(motion.legs.len() + 1);
+    let mut positions = motion.first.into_iter().chain(motion.legs.iter().map(|leg| leg.end.position));
+    bristle::follow(law, normal_load, motion, |force, states| {
+        points.extend(positions.next().map(|position| FrictionPoint { position, force, states: states.to_vec() }));
     })?;
     Ok(points)
 }
@@ -221,8 +221,8 @@ mod tests {
             let law: Vec<Dual<1>> =
                 values.iter().enumerate().map(|(j, value)| Dual::variable(*value, j.wrapping_sub(direction))).collect();
             let times = [0.0, 20.0, 20.1].map(Dual::from);
-            let path = Path::lines(&times, &[0.0, 80.0, 80.4].map(Dual::from)).unwrap();
-            let points = friction_along(&GmsOf::<2>::at(&law).unwrap(), Dual::from(3.0), &path).unwrap();
+            let motion = PrescribedMotion::lines(&times, &[0.0, 80.0, 80.4].map(Dual::from)).unwrap();
+            let points = friction_along(&GmsOf::<2>::at(&law).unwrap(), Dual::from(3.0), &motion).unwrap();
             points[2].force
         };
         // F = N (μ_c + β v): the curve has fallen to its end.

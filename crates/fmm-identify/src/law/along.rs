@@ -3,7 +3,7 @@
 use fmm_fit::EvaluationError;
 use fmm_friction::{BristleLaw, LawFamily, LawVisitor, Regime, SlidingLaw};
 use fmm_model::Scalar;
-use fmm_sim::{Path, State, friction_along};
+use fmm_sim::{PrescribedMotion, State, friction_along};
 
 /// A motion that was measured: one value a sample.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -130,7 +130,7 @@ impl<D: Scalar> Guide<'_, D> {
         let state =
             |(position, velocity): (f64, f64)| State { position: D::from(position), velocity: D::from(velocity) };
         let (since, states): (Vec<D>, Vec<_>) = path.into_iter().map(|(since, at)| (D::from(since), state(at))).unzip();
-        let points = friction_along(law, D::from(1.0), &Path::through(&since, &states)?)?;
+        let points = friction_along(law, D::from(1.0), &PrescribedMotion::through(&since, &states)?)?;
         friction.clear();
         for (row, place) in (self.first..).zip(self.places) {
             let node = place.node.min(times.len() - 2);

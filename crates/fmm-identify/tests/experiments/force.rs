@@ -2,7 +2,7 @@
 
 use fmm_friction::{BristleLaw, Dahl, FamilyVisitor, LawFamily, LawVisitor, SlidingLaw, family_named};
 use fmm_identify::{ForceModel, ForceRecord, IdentifyError, Warning, compare_force, identify_force};
-use fmm_sim::{Path, PathPoint, State, friction_along};
+use fmm_sim::{FrictionPoint, PrescribedMotion, State, friction_along};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
@@ -44,7 +44,7 @@ impl<L> LawVisitor<f64, L> for AlongMotion<'_, L> {
         L: BristleLaw<f64>,
     {
         let states: Vec<State> = self.times.iter().map(|time| motion(*time)).collect();
-        let path = Path::through(self.times, &states).unwrap();
+        let path = PrescribedMotion::through(self.times, &states).unwrap();
         friction_along(self.law, 1.0, &path).unwrap().into_iter().map(|point| point.force).collect()
     }
 }
@@ -355,11 +355,11 @@ fn a_joint_is_known_from_the_steps_of_its_encoder() {
 fn the_model_behind_the_forces_wins() {
     let times: Vec<f64> = (0..1500).map(|i| 2e-3 * f64::from(i)).collect();
     let states: Vec<State> = times.iter().map(|t| motion(*t)).collect();
-    let path = Path::through(&times, &states).unwrap();
+    let path = PrescribedMotion::through(&times, &states).unwrap();
     let law = Dahl::new(4.0, 3e3, 1.0).unwrap();
     let friction = friction_along(&law, 1.0, &path).unwrap();
     let mut random = ChaCha8Rng::seed_from_u64(11);
-    let mut force = |(state, point): (&State, &PathPoint)| {
+    let mut force = |(state, point): (&State, &FrictionPoint)| {
         let draw: f64 = StandardNormal.sample(&mut random);
         point.force + 20.0 * state.velocity + 0.05 * draw
     };

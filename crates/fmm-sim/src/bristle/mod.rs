@@ -13,7 +13,7 @@ mod motion;
 mod odd;
 mod pace;
 mod passage;
-mod path;
+mod prescribed;
 mod radau;
 mod run;
 mod taylor;
@@ -27,7 +27,7 @@ use crate::{Engine, Sampling, Scenario, SimulationError, State, Trajectory};
 use field::Field;
 use run::Run;
 
-pub(crate) use path::follow;
+pub(crate) use prescribed::follow;
 
 /// Integrates laws with internal state, however stiff, from kink to kink of the motion.
 ///

@@ -2,7 +2,7 @@
 
 use fmm_friction::{BristleLaw, Regime};
 use fmm_model::{Oscillator, Scalar};
-use fmm_sim::{Bristle, Engine, Path, Sampling, Scenario, SimulationError, friction_along};
+use fmm_sim::{Bristle, Engine, PrescribedMotion, Sampling, Scenario, SimulationError, friction_along};
 
 /// Dahl's law with another level in each direction.
 struct OneSided {
@@ -36,7 +36,7 @@ fn a_law_that_is_not_odd_is_refused() {
     let odd = scenario(OneSided { positive: 0.2, negative: 0.2 });
     assert!(Bristle::default().run(&odd, &sampling).is_ok());
     let law = OneSided { positive: 0.2, negative: 0.3 };
-    let path = Path::at_speed(&[0.0, 1e-4, -1e-4], 1e-3).unwrap();
+    let path = PrescribedMotion::at_speed(&[0.0, 1e-4, -1e-4], 1e-3).unwrap();
     assert!(matches!(friction_along(&law, 1.0, &path), Err(SimulationError::NotOdd { .. })));
     let refused = Bristle::default().run(&scenario(law), &sampling);
     assert!(matches!(refused, Err(SimulationError::NotOdd { .. })), "{refused:?}");

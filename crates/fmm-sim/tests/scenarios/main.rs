@@ -8,7 +8,7 @@ mod hands;
 mod limits;
 mod loads;
 mod memory;
-mod paths;
+mod prescribed;
 mod rest;
 mod springs;
 mod weak_springs;

@@ -1,4 +1,4 @@
-//! Following a path that something outside prescribes.
+//! Following a motion that something outside prescribes.
 
 use fmm_friction::{BristleLaw, Regime};
 use fmm_model::{Oscillator, Scalar};
@@ -8,21 +8,21 @@ use super::odd::require_odd;
 use super::run::Run;
 use crate::drive::Piece;
 use crate::recorder::Recorder;
-use crate::{Direction, Path, Sampling, SimulationError, Trajectory};
+use crate::{Direction, PrescribedMotion, Sampling, SimulationError, Trajectory};
 
 /// Well below what a law can be told apart by, and well above rounding.
 const TOLERANCE: f64 = 1e-13;
 
-/// Follows `path` and gives `visit` the force and the states at each of its points.
+/// Follows `motion` and gives `visit` the force and the states at each of its points.
 pub(crate) fn follow<D: Scalar, L: BristleLaw<D> + ?Sized>(
     law: &L,
     normal_load: D,
-    path: &Path<D>,
+    motion: &PrescribedMotion<D>,
     mut visit: impl FnMut(D, &[D]),
 ) -> Result<(), SimulationError> {
     require_odd(law)?;
     let zero = D::from(0.0);
-    // The machine does not matter: of unit mass, it is accelerated as the path says.
+    // The machine does not matter: of unit mass, it is accelerated as the motion says.
     let oscillator = Oscillator::new(D::from(1.0), D::from(1.0))?;
     let mut field = Field::new(&oscillator, law, normal_load, zero);
     field.guided = true;
@@ -30,13 +30,13 @@ pub(crate) fn follow<D: Scalar, L: BristleLaw<D> + ?Sized>(
     // Nothing is sampled; the recorder counts the events.
     let sampling = Sampling::at([f64::MAX])?;
     let recorder = Recorder::new("bristle", law.states(), &sampling, &mut scratch)?;
-    let Some(first) = path.first else { return Ok(()) };
+    let Some(first) = motion.first else { return Ok(()) };
     let mut begin = vec![zero; field.size()];
     begin[0] = first;
     let mut run = Run::new(field, begin, TOLERANCE, recorder);
     visit(zero, &run.step.begin[2..]);
     let (mut before, mut rates) = (0.0, vec![zero; law.states()]);
-    for leg in &path.legs {
+    for leg in &motion.legs {
         let duration = leg.duration.value();
         let piece = Piece::line_from_zero(leg.acceleration, leg.jerk);
         run.time = 0.0;

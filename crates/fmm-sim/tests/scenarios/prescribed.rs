@@ -2,7 +2,9 @@
 
 use fmm_friction::{Dahl, LuGre, MaxwellSlip};
 use fmm_model::{Dual, Oscillator, Scalar};
-use fmm_sim::{Bristle, Engine, Path, PathPoint, Sampling, Scenario, SimulationError, State, friction_along};
+use fmm_sim::{
+    Bristle, Engine, FrictionPoint, PrescribedMotion, Sampling, Scenario, SimulationError, State, friction_along,
+};
 
 const LEVEL: f64 = 2.0;
 const STIFFNESS: f64 = 4e4;
@@ -24,7 +26,7 @@ fn a_motion_may_turn_rest_and_jump() {
     let state = |position: f64, velocity: f64| State { position, velocity };
     let states =
         [state(0.0, 4e-4), state(0.0, -4e-4), state(0.0, 0.0), state(0.0, 0.0), state(0.0, 1e-3), state(1e-4, 1e-3)];
-    let path = Path::through(&[0.0, 1.0, 1.0, 2.0, 2.0, 2.1], &states).unwrap();
+    let path = PrescribedMotion::through(&[0.0, 1.0, 1.0, 2.0, 2.0, 2.1], &states).unwrap();
     let points = friction_along(&dahl(), 10.0, &path).unwrap();
     let back = after(after(0.0, 1.0, 1e-4), -1.0, 1e-4);
     let expected = [0.0, back, back, back, back, after(back, 1.0, 1e-4)];
@@ -38,10 +40,10 @@ fn a_motion_may_turn_rest_and_jump() {
 #[test]
 fn starts_from_rest_and_straight_lines() {
     let state = |position: f64, velocity: f64| State { position, velocity };
-    let path = Path::through(&[0.0, 1.0], &[state(0.0, 0.0), state(-1e-4, -2e-4)]).unwrap();
+    let path = PrescribedMotion::through(&[0.0, 1.0], &[state(0.0, 0.0), state(-1e-4, -2e-4)]).unwrap();
     let force = friction_along(&dahl(), 10.0, &path).unwrap()[1].force;
     assert!((force - after(0.0, -1.0, 1e-4)).abs() < 1e-11, "{force} N");
-    let line = Path::at_speed(&[0.0, 1e-4, 1e-4, -1e-4], 1e-3).unwrap();
+    let line = PrescribedMotion::at_speed(&[0.0, 1e-4, 1e-4, -1e-4], 1e-3).unwrap();
     let forces: Vec<f64> = friction_along(&dahl(), 10.0, &line).unwrap().iter().map(|point| point.force).collect();
     let out = after(0.0, 1.0, 1e-4);
     for (got, expected) in forces.iter().zip([0.0, out, out, after(out, -1.0, 2e-4)]) {
@@ -62,8 +64,8 @@ fn a_simulated_motion_has_its_own_bristles() {
         let states = motion.position().values().iter().zip(motion.velocity().values());
         let states: Vec<_> = states.map(|(&position, &velocity)| State { position, velocity }).collect();
         let times: Vec<f64> = (0..states.len()).map(|index| index as f64 * interval).collect();
-        let points = friction_along(&law, 10.0, &Path::through(&times, &states).unwrap()).unwrap();
-        let off = |(point, z): (&fmm_sim::PathPoint, &f64)| (point.states[0] - z).abs();
+        let points = friction_along(&law, 10.0, &PrescribedMotion::through(&times, &states).unwrap()).unwrap();
+        let off = |(point, z): (&fmm_sim::FrictionPoint, &f64)| (point.states[0] - z).abs();
         points.iter().zip(motion.states()[0].values()).map(off).fold(0.0, f64::max)
     };
     // Deflections of 0.15 mm; a kink of the acceleration at each reversal, which a cubic does not see.
@@ -79,8 +81,10 @@ fn motions_have_derivatives() {
         let law =
             LuGre::new(number(0.2), number(0.3), number(0.02), number(2.0), number(2e3), number(1.0), number(0.1));
         let state = |x: f64, v: f64| State { position: reach * x, velocity: reach / scale * v };
-        let path =
-            Path::through(&[number(0.0), scale, scale * 1.5], &[state(0.0, 4.0), state(0.0, -4.0), state(0.3, 1.0)]);
+        let path = PrescribedMotion::through(
+            &[number(0.0), scale, scale * 1.5],
+            &[state(0.0, 4.0), state(0.0, -4.0), state(0.3, 1.0)],
+        );
         friction_along(&law.unwrap(), number(10.0), &path.unwrap()).unwrap()[2].force
     };
     let at = |scale: f64, reach: f64| run(scale.into(), reach.into()).value();
@@ -99,7 +103,7 @@ fn motions_have_derivatives() {
 #[test]
 fn what_is_no_motion_is_refused() {
     let state = |position: f64| State { position, velocity: 0.0 };
-    let times = |times: &[f64], states: &[State]| Path::through(times, states).map(|_| ());
+    let times = |times: &[f64], states: &[State]| PrescribedMotion::through(times, states).map(|_| ());
     let second =
         |refused| matches!(refused, Err(SimulationError::OutOfRange { what, .. }) if what.contains("time 1 is"));
     assert!(second(times(&[0.0, 1.0], &[state(0.0)])));
@@ -107,9 +111,11 @@ fn what_is_no_motion_is_refused() {
     assert!(second(times(&[0.0, -1.0], &[state(0.0); 2])));
     assert!(times(&[0.0, 0.0], &[state(0.0), state(1.0)]).is_err());
     assert!(times(&[0.0], &[state(f64::NAN)]).is_err());
-    assert!(second(Path::lines(&[0.0, 0.0], &[0.0, 1.0]).map(|_| ())));
-    assert!(Path::at_speed(&[0.0], 0.0).is_err() && Path::at_speed(&[f64::INFINITY], 1.0).is_err());
-    let nothing = Path::<f64>::through(&[], &[]).unwrap();
+    assert!(second(PrescribedMotion::lines(&[0.0, 0.0], &[0.0, 1.0]).map(|_| ())));
+    assert!(
+        PrescribedMotion::at_speed(&[0.0], 0.0).is_err() && PrescribedMotion::at_speed(&[f64::INFINITY], 1.0).is_err()
+    );
+    let nothing = PrescribedMotion::<f64>::through(&[], &[]).unwrap();
     assert_eq!(friction_along(&dahl(), 1.0, &nothing), Ok(vec![]));
 }
 
@@ -119,7 +125,7 @@ fn what_is_no_motion_is_refused() {
 fn closed_forms_are_what_steps_find() {
     let times: Vec<f64> = (0..60).map(|i| 0.01 * f64::from(i) + 1e-3 * f64::from(i % 3)).collect();
     let positions: Vec<f64> = times.iter().map(|t| 2e-4 * (7.0 * t).sin() + 5e-5 * (31.0 * t).cos()).collect();
-    let lines = Path::lines(&times, &positions).unwrap();
+    let lines = PrescribedMotion::lines(&times, &positions).unwrap();
     let mut stepped = (vec![0.0], vec![]);
     for (index, (times, positions)) in times.windows(2).zip(positions.windows(2)).enumerate() {
         let velocity = (positions[1] - positions[0]) / (times[1] - times[0]);
@@ -137,8 +143,8 @@ fn closed_forms_are_what_steps_find() {
         stepped.0.push(times[1]);
         stepped.1.push(State { position: positions[1], velocity });
     }
-    let stepped = Path::through(&stepped.0, &stepped.1).unwrap();
-    let same = |one: Vec<PathPoint>, other: Vec<PathPoint>| {
+    let stepped = PrescribedMotion::through(&stepped.0, &stepped.1).unwrap();
+    let same = |one: Vec<FrictionPoint>, other: Vec<FrictionPoint>| {
         let size = one.iter().fold(0.0f64, |size, point| size.max(point.force.abs()));
         let others =
             other.iter().enumerate().filter(|(index, _)| *index == 0 || index % 3 == 2).map(|(_, point)| point);
@@ -161,7 +167,7 @@ fn closed_forms_are_what_steps_find() {
 /// A closed form that leaves the range of numbers is refused as steps are.
 #[test]
 fn a_force_that_is_not_finite_is_refused() {
-    let path = Path::lines(&[0.0, 1.0], &[0.0, 1.0]).unwrap();
+    let path = PrescribedMotion::lines(&[0.0, 1.0], &[0.0, 1.0]).unwrap();
     let refused = friction_along(&Dahl::new(1e3, 1e5, 1.0).unwrap(), 1e307, &path);
     assert!(matches!(refused, Err(SimulationError::NotFinite { .. })), "{refused:?}");
 }
