@@ -2,8 +2,6 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use rand::{Rng, RngExt};
-
 /// The arc sine (U-shaped) distribution U(a, b) of a quantity that cycles between two limits (JCGM 101:2008, 6.4.6).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ArcSine {
@@ -25,21 +23,18 @@ impl ArcSine {
         self.amplitude / SQRT_2
     }
 
-    /// A random point of the unit disc has a random phase, and the cosine of twice that needs no cosine.
     /// The smallest and the largest value.
     pub(crate) fn limits(&self) -> (f64, f64) {
         (self.centre - self.amplitude, self.centre + self.amplitude)
     }
 
-    pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
-        loop {
-            let (x, y) = (rng.random::<f64>(), rng.random::<f64>());
-            let (xx, yy) = (x * x, y * y);
-            let square = xx + yy;
-            if square <= 1.0 && square > 0.0 {
-                return self.centre + self.amplitude * ((xx - yy) / square);
-            }
-        }
+    /// The value of a point of the unit square, and whether that lies in the unit disc: such a point has a random phase, and
+    /// the cosine of twice that needs no cosine.
+    #[inline]
+    pub(crate) fn of(&self, [x, y]: [f64; 2]) -> (f64, bool) {
+        let (xx, yy) = (x * x, y * y);
+        let square = xx + yy;
+        (self.centre + self.amplitude * ((xx - yy) / square), square <= 1.0 && square > 0.0)
     }
 
     pub(crate) fn quantile(&self, probability: f64) -> f64 {

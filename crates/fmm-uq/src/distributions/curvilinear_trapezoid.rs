@@ -1,7 +1,5 @@
 //! A rectangular distribution whose limits are themselves uncertain.
 
-use rand::{Rng, RngExt};
-
 /// The curvilinear trapezoid CTrap(a, b, d): rectangular between limits that are each known to ±d, their mean
 /// fixed (JCGM 101:2008, 6.4.3).
 ///
@@ -32,7 +30,6 @@ impl CurvilinearTrapezoid {
         (self.half_width / 3f64.sqrt()).hypot(self.inexactness / 3.0)
     }
 
-    /// The half width is drawn first, then the place within it (JCGM 101:2008, 6.4.3.4).
     /// d.
     pub(crate) const fn inexactness(&self) -> f64 {
         self.inexactness
@@ -44,8 +41,9 @@ impl CurvilinearTrapezoid {
         (self.centre - reach, self.centre + reach)
     }
 
-    pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
-        let (first, second): (f64, f64) = (rng.random(), rng.random());
+    /// The value of two uniform numbers: the half width is drawn first, then the place within it (JCGM 101:2008, 6.4.3.4).
+    #[inline]
+    pub(crate) fn of(&self, [first, second]: [f64; 2]) -> f64 {
         let half_width = self.half_width + self.inexactness * (2.0 * first - 1.0);
         self.centre + half_width * (2.0 * second - 1.0)
     }

@@ -1,7 +1,5 @@
 //! The symmetric trapezoid, and the triangle as its limit.
 
-use rand::{Rng, RngExt};
-
 /// The trapezoidal distribution Trap(a, b, β): a sum of two rectangular ones (JCGM 101:2008, 6.4.4); β, the ratio
 /// of its top to its base, is 0 for the triangle (6.4.5).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,8 +40,9 @@ impl Trapezoid {
         (self.centre - self.base, self.centre + self.base)
     }
 
-    pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
-        let (first, second): (f64, f64) = (rng.random(), rng.random());
+    /// The value of two uniform numbers.
+    #[inline]
+    pub(crate) fn of(&self, [first, second]: [f64; 2]) -> f64 {
         self.centre + (self.base + self.top) * (first - 0.5) + (self.base - self.top) * (second - 0.5)
     }
 

@@ -1,7 +1,5 @@
 //! Triangular distribution, symmetric or not.
 
-use rand::{Rng, RngExt};
-
 /// The triangular distribution between two limits with its highest density at a mode anywhere between.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Triangle {
@@ -30,10 +28,6 @@ impl Triangle {
         let (p, q) = (self.mode - self.lower, self.upper - self.mode);
         let whole = p + q;
         whole * ((1.0 - (p / whole) * (q / whole)) / 18.0).sqrt()
-    }
-
-    pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
-        self.quantile(rng.random())
     }
 
     pub(crate) fn quantile(&self, probability: f64) -> f64 {

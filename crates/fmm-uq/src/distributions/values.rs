@@ -1,6 +1,6 @@
 //! Quantiles and random values of all distributions.
 
-use rand::{Rng, RngExt};
+use rand::Rng;
 use rand_distr::{Distribution as _, Exp1, StandardNormal};
 use statrs::distribution::{ContinuousCDF, Normal};
 use statrs::function::gamma::gamma_ur;
@@ -58,11 +58,11 @@ impl Distribution {
         match &self.shape {
             Shape::Constant(value) => each(values, stride, || *value),
             Shape::Rectangular { lower, upper } => {
-                each(values, stride, || lower + (upper - lower) * rng.random::<f64>());
+                many(values, stride, rng, |[u]| (lower + (upper - lower) * u, true));
             }
-            Shape::CurvilinearTrapezoid(shape) => each(values, stride, || shape.sample(rng)),
-            Shape::Trapezoid(shape) => each(values, stride, || shape.sample(rng)),
-            Shape::ArcSine(shape) => each(values, stride, || shape.sample(rng)),
+            Shape::CurvilinearTrapezoid(shape) => many(values, stride, rng, |u| (shape.of(u), true)),
+            Shape::Trapezoid(shape) => many(values, stride, rng, |u| (shape.of(u), true)),
+            Shape::ArcSine(shape) => many(values, stride, rng, |u| shape.of(u)),
             Shape::Normal { mean, standard_deviation } => each(values, stride, || {
                 let z: f64 = StandardNormal.sample(rng);
                 mean + standard_deviation * z
@@ -73,7 +73,7 @@ impl Distribution {
                 mean * e
             }),
             Shape::Gamma { sampler, .. } => each(values, stride, || sampler.sample(rng)),
-            Shape::Triangle(shape) => each(values, stride, || shape.sample(rng)),
+            Shape::Triangle(shape) => many(values, stride, rng, |[u]| (shape.quantile(u), true)),
             Shape::Beta(shape) => each(values, stride, || shape.sample(rng)),
             Shape::TruncatedNormal(shape) => each(values, stride, || shape.sample(rng)),
             Shape::LogNormal { median, deviation } => each(values, stride, || {
@@ -91,6 +91,39 @@ fn each(values: &mut [f64], stride: usize, mut draw: impl FnMut() -> f64) {
     for value in values.iter_mut().step_by(stride) {
         *value = draw();
     }
+}
+
+/// Numbers that are drawn together by [`many`].
+const TOGETHER: usize = 25;
+
+/// Draws every `stride`th element by a rule that makes a value of N uniform numbers, or refuses them and takes others.
+///
+/// Numbers are drawn many at a time, and never more than are needed: they are those that one draw after the other has.
+fn many<const N: usize, R: Rng + ?Sized>(
+    values: &mut [f64],
+    stride: usize,
+    rng: &mut R,
+    rule: impl Fn([f64; N]) -> (f64, bool),
+) {
+    let count = values.len().div_ceil(stride);
+    let mut words = [[[0; 8]; N]; TOGETHER];
+    let mut done = 0;
+    while done < count {
+        let words = &mut words[..TOGETHER.min(count - done)];
+        rng.fill_bytes(words.as_flattened_mut().as_flattened_mut());
+        for &word in words.iter() {
+            // Written always and counted if accepted, since a branch could not be guessed.
+            let (value, accepted) = rule(word.map(uniform));
+            values[done * stride] = value;
+            done += usize::from(accepted);
+        }
+    }
+}
+
+/// A number in [0, 1) from the 53 highest bits of a word.
+#[inline]
+fn uniform(word: [u8; 8]) -> f64 {
+    (u64::from_le_bytes(word) >> 11) as f64 * (0.5 * f64::EPSILON)
 }
 
 /// The smallest number of events of which as many or fewer have at least the given probability, Q(k + 1, λ).
@@ -114,4 +147,35 @@ fn poisson_quantile(mean: f64, probability: f64) -> f64 {
         }
     }
     above
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::stream::Stream;
+
+    /// Values of a sampler that takes a number at a time, and numbers left in the stream as it leaves them.
+    #[test]
+    fn values_drawn_together_are_those_drawn_one_by_one() {
+        for distribution in [
+            Distribution::rectangular(-1.0, 3.0),
+            Distribution::curvilinear_trapezoid(-1.0, 1.0, 0.1),
+            Distribution::trapezoid(0.0, 2.0, 0.3),
+            Distribution::arc_sine(-0.5, 0.5),
+            Distribution::asymmetric_triangle(0.0, 0.2, 1.0),
+        ] {
+            let distribution = distribution.unwrap();
+            let (mut together, mut single) = (Stream::new(5, 1), Stream::new(5, 1));
+            let mut values = [f64::NAN; 3 * 211];
+            distribution.fill(&mut together, &mut values, 3);
+            for (i, value) in values.iter().enumerate() {
+                if i % 3 == 0 {
+                    assert_eq!(*value, distribution.sample(&mut single), "{distribution}, {i}");
+                } else {
+                    assert!(value.is_nan());
+                }
+            }
+            assert_eq!(together.next_u64(), single.next_u64(), "{distribution}");
+        }
+    }
 }
