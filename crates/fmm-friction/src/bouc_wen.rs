@@ -41,12 +41,13 @@ law_family! {
     pub struct BoucWen, "bouc_wen", bristle {
         stiffness: LawParameter::positive("stiffness", "κ", "1/m", Role::Level).typically(50.0),
         amplitude: LawParameter::positive("amplitude", "A", "1", Role::Shape),
-        beta: LawParameter::positive("beta", "β", "1/m^n", Role::Shape).typically(25.0),
-        gamma: LawParameter::new(Parameter::new("gamma", "γ", "1/m^n"), Role::Shape),
+        beta: LawParameter::positive("beta", "β", "1/m^n", Role::Shape).typically(353.6),
+        gamma: LawParameter::new(Parameter::new("gamma", "γ", "1/m^n"), Role::Shape).typically(0.0),
         exponent: LawParameter::new(
             Parameter::new("exponent", "n", "1").bounded(Bounds::POSITIVE.at_least(1.0)),
             Role::Shape,
-        ),
+        )
+        .typically(1.5),
     }
 
     /// `stiffness` κ (1/m), `amplitude` A (1), `beta` β and `gamma` γ (1/mⁿ), `exponent` n (1).

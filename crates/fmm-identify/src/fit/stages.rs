@@ -28,6 +28,9 @@ const ENOUGH_TO_BE_BETTER: usize = 30;
 const ROUGH: f64 = 1e-6;
 const MOST_ROUGH: usize = 30;
 
+/// Most iterations from each start where all are followed, before the lowest end is.
+const MOST_THOROUGH: usize = 60;
+
 /// Most iterations of one fit by a law with shapes. One that needs more creeps along a valley that the noise fills.
 const MOST_FINAL: usize = 300;
 
@@ -123,7 +126,7 @@ fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec
 }
 
 /// The fit of a law with shapes to free vibrations on a linear spring, begun from `starts` and near a `simple` fit, where a `search` with
-/// few of the samples ends. If its residuals do not look like noise, all starts are followed to their end, and the better of both is given.
+/// few of the samples ends. If its residuals do not look like noise, all starts are followed, the lowest end of them to its own, and the better of both is given.
 fn fit_with_shapes(
     problem: &Problem<'_>,
     search: &Problem<'_>,
@@ -142,7 +145,8 @@ fn fit_with_shapes(
         return Ok(fit);
     }
     let starts = starts.iter().map(|start| search.clamped(start)).collect();
-    let thorough = best_fit(&search, problem.name(), starts, options, observer)
+    let thorough = best_fit(&search, problem.name(), starts, &rough(options, MOST_THOROUGH), observer)
+        .and_then(|end| best_fit(&search, problem.name(), vec![end.values().to_vec()], options, observer))
         .and_then(|end| best_fit(&problem, problem.name(), vec![problem.clamped(end.values())], options, observer));
     Ok(thorough.ok().filter(|other| other.sum_of_squares() < fit.sum_of_squares()).unwrap_or(fit))
 }
@@ -161,13 +165,13 @@ fn fit_roughly(
         starts.extend(response.followed(&starts).into_iter().take(MOST_FOLLOWED));
     }
     let starts = lowest(problem, starts, MOST_STARTS);
-    solve_best(problem, &starts, &rough(options), |progress| observer(progress))
+    solve_best(problem, &starts, &rough(options, MOST_ROUGH), |progress| observer(progress))
         .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
 }
 
-/// The `options` of a search that only has to decide where the lowest minimum is.
-fn rough(options: &Options) -> Options {
-    let most = options.max_iterations().min(MOST_ROUGH);
+/// The `options` of a search with so many iterations, that only has to decide where the lowest minimum is.
+fn rough(options: &Options, most: usize) -> Options {
+    let most = options.max_iterations().min(most);
     options.clone().with_cost_tolerance(ROUGH).with_polish_steps(0).with_restarts(0).with_max_iterations(most)
 }
 
