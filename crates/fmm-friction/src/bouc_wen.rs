@@ -39,6 +39,7 @@ law_family! {
     /// M. Ismail, F. Ikhouane, J. Rodellar, "The hysteresis Bouc-Wen model, a survey", Arch. Computational Methods in
     /// Engineering 16 (2009) 161, doi 10.1007/s11831-009-9031-8.
     pub struct BoucWen, "bouc_wen", bristle {
+        // Between the bounds, where κ (A/(β + γ))^(1/n), the coefficient that is reached, is 1.
         stiffness: LawParameter::positive("stiffness", "κ", "1/m", Role::Level).typically(50.0),
         amplitude: LawParameter::positive("amplitude", "A", "1", Role::Shape),
         beta: LawParameter::positive("beta", "β", "1/m^n", Role::Shape).typically(353.6),

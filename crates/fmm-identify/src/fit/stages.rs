@@ -126,7 +126,8 @@ fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec
 }
 
 /// The fit of a law with shapes to free vibrations on a linear spring, begun from `starts` and near a `simple` fit, where a `search` with
-/// few of the samples ends. If its residuals do not look like noise, all starts are followed, the lowest end of them to its own, and the better of both is given.
+/// few of the samples ends. If its residuals do not look like noise, all starts are followed, of which the lowest goes on to its end, and
+/// the better of both is given.
 fn fit_with_shapes(
     problem: &Problem<'_>,
     search: &Problem<'_>,
