@@ -28,7 +28,7 @@ const ENOUGH_TO_BE_BETTER: usize = 30;
 const ROUGH: f64 = 1e-6;
 const MOST_ROUGH: usize = 30;
 
-/// Most iterations from each start where all are followed, before the lowest end is.
+/// The same where all starts are followed.
 const MOST_THOROUGH: usize = 60;
 
 /// Most iterations of one fit by a law with shapes. One that needs more creeps along a valley that the noise fills.
@@ -126,8 +126,8 @@ fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec
 }
 
 /// The fit of a law with shapes to free vibrations on a linear spring, begun from `starts` and near a `simple` fit, where a `search` with
-/// few of the samples ends. If its residuals do not look like noise, all starts are followed, of which the lowest goes on to its end, and
-/// the better of both is given.
+/// few of the samples ends. If its residuals do not look like noise, all starts are followed as far as they are not given up, and the better
+/// of both ends is given.
 fn fit_with_shapes(
     problem: &Problem<'_>,
     search: &Problem<'_>,
@@ -145,9 +145,9 @@ fn fit_with_shapes(
     if fit.outcome() == Outcome::AtNoiseFloor || !ResidualStructure::of(&fit, problem.decays()).is_correlated() {
         return Ok(fit);
     }
-    let starts = starts.iter().map(|start| search.clamped(start)).collect();
-    let thorough = best_fit(&search, problem.name(), starts, &rough(options, MOST_THOROUGH), observer)
-        .and_then(|end| best_fit(&search, problem.name(), vec![end.values().to_vec()], options, observer))
+    let starts: Vec<Vec<f64>> = starts.iter().map(|start| search.clamped(start)).collect();
+    let thorough = solve_best(&search, &starts, &rough(options, MOST_THOROUGH), |progress| observer(progress))
+        .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
         .and_then(|end| best_fit(&problem, problem.name(), vec![problem.clamped(end.values())], options, observer));
     Ok(thorough.ok().filter(|other| other.sum_of_squares() < fit.sum_of_squares()).unwrap_or(fit))
 }
