@@ -39,16 +39,14 @@ law_family! {
     /// M. Ismail, F. Ikhouane, J. Rodellar, "The hysteresis Bouc-Wen model, a survey", Arch. Computational Methods in
     /// Engineering 16 (2009) 161, doi 10.1007/s11831-009-9031-8.
     pub struct BoucWen, "bouc_wen", bristle {
-        // Between the bounds, where κ (A/(β + γ))^(1/n), the coefficient that is reached, is 1.
         stiffness: LawParameter::positive("stiffness", "κ", "1/m", Role::Level).typically(50.0),
         amplitude: LawParameter::positive("amplitude", "A", "1", Role::Shape),
-        beta: LawParameter::positive("beta", "β", "1/m^n", Role::Shape).typically(353.6),
-        gamma: LawParameter::new(Parameter::new("gamma", "γ", "1/m^n"), Role::Shape).typically(0.0),
+        beta: LawParameter::positive("beta", "β", "1/m^n", Role::Shape).typically(25.0),
+        gamma: LawParameter::new(Parameter::new("gamma", "γ", "1/m^n"), Role::Shape),
         exponent: LawParameter::new(
             Parameter::new("exponent", "n", "1").bounded(Bounds::POSITIVE.at_least(1.0)),
             Role::Shape,
-        )
-        .typically(1.5),
+        ),
     }
 
     /// `stiffness` κ (1/m), `amplitude` A (1), `beta` β and `gamma` γ (1/mⁿ), `exponent` n (1).
