@@ -28,9 +28,6 @@ const ENOUGH_TO_BE_BETTER: usize = 30;
 const ROUGH: f64 = 1e-6;
 const MOST_ROUGH: usize = 30;
 
-/// The same where all starts are followed.
-const MOST_THOROUGH: usize = 60;
-
 /// Most iterations of one fit by a law with shapes. One that needs more creeps along a valley that the noise fills.
 const MOST_FINAL: usize = 300;
 
@@ -126,8 +123,7 @@ fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec
 }
 
 /// The fit of a law with shapes to free vibrations on a linear spring, begun from `starts` and near a `simple` fit, where a `search` with
-/// few of the samples ends. If its residuals do not look like noise, all starts are followed as far as they are not given up, and the better
-/// of both ends is given.
+/// few of the samples ends. If its residuals do not look like noise, all starts are followed to their end, and the better of both is given.
 fn fit_with_shapes(
     problem: &Problem<'_>,
     search: &Problem<'_>,
@@ -145,9 +141,8 @@ fn fit_with_shapes(
     if fit.outcome() == Outcome::AtNoiseFloor || !ResidualStructure::of(&fit, problem.decays()).is_correlated() {
         return Ok(fit);
     }
-    let starts: Vec<Vec<f64>> = starts.iter().map(|start| search.clamped(start)).collect();
-    let thorough = solve_best(&search, &starts, &rough(options, MOST_THOROUGH), |progress| observer(progress))
-        .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
+    let starts = starts.iter().map(|start| search.clamped(start)).collect();
+    let thorough = best_fit(&search, problem.name(), starts, options, observer)
         .and_then(|end| best_fit(&problem, problem.name(), vec![problem.clamped(end.values())], options, observer));
     Ok(thorough.ok().filter(|other| other.sum_of_squares() < fit.sum_of_squares()).unwrap_or(fit))
 }
@@ -166,13 +161,13 @@ fn fit_roughly(
         starts.extend(response.followed(&starts).into_iter().take(MOST_FOLLOWED));
     }
     let starts = lowest(problem, starts, MOST_STARTS);
-    solve_best(problem, &starts, &rough(options, MOST_ROUGH), |progress| observer(progress))
+    solve_best(problem, &starts, &rough(options), |progress| observer(progress))
         .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
 }
 
-/// The `options` of a search with so many iterations, that only has to decide where the lowest minimum is.
-fn rough(options: &Options, most: usize) -> Options {
-    let most = options.max_iterations().min(most);
+/// The `options` of a search that only has to decide where the lowest minimum is.
+fn rough(options: &Options) -> Options {
+    let most = options.max_iterations().min(MOST_ROUGH);
     options.clone().with_cost_tolerance(ROUGH).with_polish_steps(0).with_restarts(0).with_max_iterations(most)
 }
 
