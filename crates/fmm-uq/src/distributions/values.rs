@@ -151,6 +151,8 @@ fn poisson_quantile(mean: f64, probability: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use rand::RngExt;
+
     use super::*;
     use crate::random::stream::Stream;
 
@@ -176,6 +178,15 @@ mod tests {
                 }
             }
             assert_eq!(together.next_u64(), single.next_u64(), "{distribution}");
+        }
+    }
+
+    #[test]
+    fn uniform_numbers_are_those_of_rand() {
+        let (mut stream, mut plain) = (Stream::new(5, 1), Stream::new(5, 1));
+        let unit = Distribution::rectangular(0.0, 1.0).unwrap();
+        for _ in 0..100 {
+            assert_eq!(unit.sample(&mut stream), plain.random::<f64>());
         }
     }
 }
