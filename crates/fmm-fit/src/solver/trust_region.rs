@@ -187,6 +187,30 @@ mod tests {
         }
     }
 
+    /// The second and third parameter do the same, and a bound holds the third. The second then moves with a part along the direction that
+    /// the residuals do not see, and here across one that they hardly see.
+    #[test]
+    fn a_step_along_a_bound_gains_what_it_would_without_the_parameter_that_is_held() {
+        let measured: Vec<f64> = (0..6).map(|i| -(1.0 + 7.0 * f64::from(i)).sin()).collect();
+        let level: Vec<f64> = (0..6).map(|i| 1.0 + 0.01 * f64::from(i)).collect();
+        let gain = |columns: &[Vec<f64>], lower: &[f64]| {
+            let mut triangle = Triangle::default();
+            triangle.reset(columns.len());
+            triangle.fold(&mut columns.iter().chain([&measured]).flatten().copied().collect::<Vec<_>>());
+            let mut region = TrustRegion::default();
+            region.begin(&triangle, columns.iter().map(|_| 1.0), 1.0);
+            assert_eq!(region.set_model(&triangle, 1e-12), 2);
+            region.gauss_newton(lower, &[f64::INFINITY; 3][..columns.len()]);
+            (region.predicted_reduction(&triangle), region.boxed.step.clone())
+        };
+        let ones = vec![1.0; 6];
+        let (alone, step) = gain(&[ones.clone(), level.clone()], &[f64::NEG_INFINITY; 2]);
+        assert!(step[1] < 0.0, "the bound would not hold: {step:?}");
+        let (held, step) = gain(&[ones, level.clone(), level], &[f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0]);
+        assert_eq!(step[2], 0.0);
+        assert!(held > (1.0 - 1e-5) * alone, "{held} of {alone}");
+    }
+
     #[test]
     fn a_step_keeps_to_box_and_radius_together() {
         let (lower, upper) = ([-1e-3, f64::NEG_INFINITY, 0.0], [1.0, f64::INFINITY, 10.0]);
