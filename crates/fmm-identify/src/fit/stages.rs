@@ -28,6 +28,9 @@ const ENOUGH_TO_BE_BETTER: usize = 30;
 const ROUGH: f64 = 1e-6;
 const MOST_ROUGH: usize = 30;
 
+/// Most iterations of a search for corners of a spring. One that needs more creeps where the motion does not meet them.
+const MOST_WITH_CORNERS: usize = 100;
+
 /// Most iterations of one fit by a law with shapes. One that needs more creeps along a valley that the noise fills.
 const MOST_FINAL: usize = 300;
 
@@ -64,10 +67,10 @@ pub(crate) fn fit_in_stages(
     } else {
         fit_simple(search, options, observer)?
     };
-    if few.is_none() {
+    if few.is_none() && !search.has_corners() {
         return Ok(found);
     }
-    // One fit of all samples, begun where a search with few of them has ended.
+    // One fit of all samples, begun where a rough search or one with few of them has ended.
     best_fit(problem, problem.name(), vec![found.values().to_vec()], options, observer)
 }
 
@@ -204,18 +207,21 @@ fn fit_simple(
     best_fit(problem, problem.name(), starts, options, observer)
 }
 
-/// The best end of the fits from `starts` of a spring with corners: all of them to few swings, the best of these to more and more.
+/// Where the fits from `starts` of a spring with corners go, near enough to begin the last one: all of them to few swings, the best of these
+/// to more and more.
 fn fit_with_corners(
     problem: &Problem<'_>,
     mut starts: Vec<Vec<f64>>,
     options: &Options,
     observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
+    let most = options.max_iterations().min(MOST_WITH_CORNERS);
+    let coarse = options.clone().with_cost_tolerance(ROUGH).with_polish_steps(0).with_max_iterations(most);
     for share in BEGINNINGS {
         let beginning = problem.beginnings(share);
         let problem = problem.with_records(&beginning);
         let fits = starts.iter().filter_map(|start| {
-            let fit = solve_observed(&problem, start, options, |progress| observer(progress)).ok()?;
+            let fit = solve_observed(&problem, start, &coarse, |progress| observer(progress)).ok()?;
             Some((fit.sum_of_squares(), fit.values().to_vec()))
         });
         let mut ends: Vec<_> = fits.collect();
@@ -225,7 +231,8 @@ fn fit_with_corners(
             starts = ends.into_iter().map(|(_, values)| values).collect();
         }
     }
-    best_fit(problem, problem.name(), starts, options, observer)
+    solve_best(problem, &starts, &coarse, |progress| observer(progress))
+        .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
 }
 
 /// The best end of the fits from `starts`. No other end is better than one that leaves rounding only.
