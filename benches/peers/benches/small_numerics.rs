@@ -9,7 +9,7 @@ mod ratio;
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, criterion_group};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, StudentT};
@@ -122,20 +122,33 @@ fn systems(criterion: &mut Criterion) {
     group.finish();
     let mut group = criterion.benchmark_group("lu");
     for order in ORDERS {
-        let matrix = DMatrix::from_fn(order, order, element);
-        let right = DVector::from_fn(order, |i, _| element(i, 1));
+        // Complex systems that differ on their diagonals.
+        let entry = |system: usize, i: usize, j: usize| {
+            let diagonal = if i == j { system as f64 } else { 0.0 };
+            Complex::new(element(i, j) + diagonal, diagonal)
+        };
+        let matrices: [DMatrix<Complex<f64>>; lu::SYSTEMS] =
+            std::array::from_fn(|system| DMatrix::from_fn(order, order, |i, j| entry(system, i, j)));
+        let right = DVector::from_fn(order, |i, _| Complex::new(element(i, 1), 0.0));
+        let part = |values: [Complex<f64>; lu::SYSTEMS]| {
+            std::array::from_fn(|i| if i < lu::SYSTEMS { values[i].re } else { values[i - lu::SYSTEMS].im })
+        };
         group.bench_function(BenchmarkId::new("own", order), |bencher| {
             let mut factors = lu::Factors::default();
-            let mut solution = vec![0.0; order];
+            let entries: Vec<lu::Complex<f64>> = (0..order * order)
+                .map(|index| part(std::array::from_fn(|system| matrices[system][(index / order, index % order)])))
+                .collect();
+            let rights: Vec<lu::Complex<f64>> = right.iter().map(|right| part([*right; lu::SYSTEMS])).collect();
+            let mut solution = rights.clone();
             bencher.iter(|| {
-                factors.matrix(order).copy_from_slice(black_box(matrix.as_slice()));
-                solution.copy_from_slice(right.as_slice());
+                factors.matrix(order).copy_from_slice(black_box(&entries));
+                solution.copy_from_slice(&rights);
                 assert!(factors.factor());
                 factors.solve(&mut solution);
             });
         });
         group.bench_function(BenchmarkId::new("nalgebra", order), |bencher| {
-            bencher.iter(|| black_box(&matrix).clone().lu().solve(&right));
+            bencher.iter(|| black_box(&matrices).each_ref().map(|matrix| matrix.clone().lu().solve(&right)));
         });
     }
     group.finish();

@@ -6,7 +6,10 @@ use fmm_model::Scalar;
 use super::field::{Branch, Field};
 use super::modes::Modes;
 use super::motion::{Motion, ROUNDING, Solved, Span};
-use super::radau::{FROM_MODES_COLUMNS, INVERSE_COLUMNS, NODES, STAGES, Stages, TO_MODES_COLUMNS, basis, dot, product};
+use super::radau::{
+    CENTRED_COLUMNS, COEFFICIENTS_COLUMNS, FROM_MODES_COLUMNS, INVERSE_COLUMNS, NODES, STAGES, Stages,
+    TO_MODES_COLUMNS, product,
+};
 use crate::SimulationError;
 use crate::drive::Piece;
 
@@ -19,14 +22,15 @@ const MOST_DERIVATIVE_ITERATIONS: usize = 60;
 /// What is left over by Newton's method, in units of the tolerance.
 const LEFT_OVER: f64 = 0.01;
 
+/// Step times stiffness below which the stiffness of a state does not count beside the eigenvalues of the method, of 10 to 13; found by
+/// the number of iterations, which is the least for 5 to 6.
+const LEAST_STIFF: f64 = 6.0;
+
 /// The method: what it needs beside the motion.
 pub(super) struct Collocation<D> {
     /// f(Yᵢ) at all stages, for each component.
     rates: Vec<Stages<D>>,
     residual: Vec<Stages<D>>,
-    /// The last change that Newton's method has proposed, and what the increments have changed by then.
-    proposed: Vec<Stages<f64>>,
-    changed: Vec<Stages<f64>>,
     modes: Modes<D>,
     state: Vec<D>,
     rate: Vec<D>,
@@ -36,6 +40,9 @@ pub(super) struct Collocation<D> {
     guess_length: f64,
     guess_begin: f64,
     forces: [D; STAGES],
+    /// What residuals of the states are multiplied by, for each state.
+    weights: Vec<Stages<f64>>,
+    relaxations: Vec<f64>,
 }
 
 impl<D: Scalar> Collocation<D> {
@@ -45,8 +52,6 @@ impl<D: Scalar> Collocation<D> {
         Self {
             rates: stages(),
             residual: stages(),
-            proposed: vec![[0.0; STAGES]; size],
-            changed: vec![[0.0; STAGES]; size],
             modes: Modes::new(size),
             state: vec![zero; size],
             rate: vec![zero; size],
@@ -54,6 +59,8 @@ impl<D: Scalar> Collocation<D> {
             guess_length: 0.0,
             guess_begin: 1.0,
             forces: [zero; STAGES],
+            weights: vec![[1.0; STAGES]; size - 2],
+            relaxations: vec![0.0; size - 2],
         }
     }
 
@@ -93,15 +100,15 @@ impl<D: Scalar> Collocation<D> {
         let goal = (LEFT_OVER * span.tolerance).max(ROUNDING);
         let (mut before, mut contraction, mut iterations) = (f64::INFINITY, 0.0f64, 0);
         loop {
-            self.iterate(motion, field, branch, span, true);
-            if iterations < 2 {
+            self.evaluate(motion, field, branch, span, iterations == 0);
+            self.correct(motion, span, true);
+            if iterations < 1 {
                 // What errors are compared with hardly changes any more.
                 motion.rescale(span, rounding);
             }
             let correction = self.correction(motion, D::value);
             iterations += 1;
             let ratio = correction / before;
-            // What is extrapolated shrinks faster than the change proposed last, which is not, does in one more iteration.
             contraction = contraction.max(ratio);
             let left = if contraction < 1.0 { contraction / (1.0 - contraction) * correction } else { correction };
             if (iterations > 1 && left <= goal) || correction <= goal * 1e-2 {
@@ -117,7 +124,6 @@ impl<D: Scalar> Collocation<D> {
                 return Ok(None);
             }
             before = correction;
-            self.extrapolate(motion, iterations > 1 && ratio < 0.9);
         }
         motion.rescale(span, rounding);
         if D::DIRECTIONS > 0 {
@@ -143,14 +149,19 @@ impl<D: Scalar> Collocation<D> {
     ) {
         if self.guess_length > 0.0 {
             let ratio = span.length / self.guess_length;
-            let origin = basis(self.guess_begin);
-            for (index, node) in NODES.iter().enumerate() {
-                let mut ahead = basis(self.guess_begin + node * ratio);
-                for (ahead, origin) in ahead.iter_mut().zip(origin) {
-                    *ahead -= origin;
+            let places = NODES.map(|node| 2.0 * (self.guess_begin + node * ratio) - 1.0);
+            for (increments, guess) in motion.increments.iter_mut().zip(&self.guess).skip(1) {
+                let polynomial = product(&CENTRED_COLUMNS, guess);
+                // Of the state at its own beginning.
+                let origin = if self.guess_begin > 0.0 { guess[STAGES - 1] } else { D::from(0.0) };
+                *increments = [polynomial[STAGES]; STAGES];
+                for term in polynomial[..STAGES].iter().rev() {
+                    for (increment, place) in increments.iter_mut().zip(places) {
+                        *increment = *increment * place + *term;
+                    }
                 }
-                for (increments, known) in motion.increments.iter_mut().zip(&self.guess) {
-                    increments[index] = dot(&ahead, known);
+                for increment in increments {
+                    *increment -= origin;
                 }
             }
         } else {
@@ -160,6 +171,7 @@ impl<D: Scalar> Collocation<D> {
                 *increments = NODES.map(|node| rate * (node * span.length));
             }
         }
+        follow_velocity(motion, span.length);
     }
 
     /// The Jacobian in the middle of the step, factored. False if that cannot be.
@@ -175,15 +187,14 @@ impl<D: Scalar> Collocation<D> {
         self.modes.factor(span.length)
     }
 
-    /// One iteration of Newton's method; afterwards `residual` holds the change of the increments. Without `values` these
-    /// stay what they are.
-    fn iterate<L: BristleLaw<D> + ?Sized>(
+    /// The rates at all stages; with `weigh` also how stiff the states are at each.
+    fn evaluate<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
         field: &mut Field<D, L>,
         branch: Branch,
         span: Span,
-        values: bool,
+        weigh: bool,
     ) {
         for (index, force) in self.forces.iter().enumerate() {
             motion.load(index, &mut self.state);
@@ -191,10 +202,28 @@ impl<D: Scalar> Collocation<D> {
             for (rates, rate) in self.rates.iter_mut().zip(&self.rate) {
                 rates[index] = *rate;
             }
+            if weigh {
+                field.relaxations(branch, &self.state, &mut self.relaxations);
+                let least = LEAST_STIFF / span.length;
+                for (state, (weights, relaxation)) in self.weights.iter_mut().zip(&self.relaxations).enumerate() {
+                    let middle = self.modes.relaxation(2 + state);
+                    // A difference across a jump is no stiffness, and must not hide a residual.
+                    weights[index] = ((least + middle.max(0.0)) / (least + relaxation.max(0.0))).clamp(0.1, 10.0);
+                }
+            }
         }
+    }
+
+    /// One iteration of Newton's method; afterwards `residual` holds the change of the increments. Without `values` these
+    /// stay what they are.
+    ///
+    /// The Jacobian is that in the middle of the step. The equations of a state are multiplied by how stiff they are there over how stiff
+    /// they are at their stage, so that it is that of all stages where a state follows the motion.
+    fn correct(&mut self, motion: &mut Motion<D>, span: Span, values: bool) {
         // f(Y) − (1/h) A⁻¹ W
         let per_second = 1.0 / span.length;
-        for ((modes, increments), rates) in self.modes.values.iter_mut().zip(&motion.increments).zip(&self.rates) {
+        let unknowns = motion.increments[1..].iter().zip(&self.rates[1..]);
+        for (component, (modes, (increments, rates))) in self.modes.values.iter_mut().zip(unknowns).enumerate() {
             let mut residual = product(&INVERSE_COLUMNS, increments);
             for (residual, rate) in residual.iter_mut().zip(rates) {
                 *residual = *rate - *residual * per_second;
@@ -202,59 +231,29 @@ impl<D: Scalar> Collocation<D> {
                     *residual -= residual.value();
                 }
             }
+            if component > 0 {
+                for (residual, weight) in residual.iter_mut().zip(&self.weights[component - 1]) {
+                    *residual *= *weight;
+                }
+            }
             *modes = product(&TO_MODES_COLUMNS, &residual);
         }
         self.modes.solve();
         for ((residual, modes), increments) in
-            self.residual.iter_mut().zip(&self.modes.values).zip(&mut motion.increments)
+            self.residual[1..].iter_mut().zip(&self.modes.values).zip(&mut motion.increments[1..])
         {
             *residual = product(&FROM_MODES_COLUMNS, modes);
             for (increment, change) in increments.iter_mut().zip(residual) {
                 *increment += *change;
             }
         }
-    }
-
-    /// Goes on, if `again`, to where the changes d that Newton's method proposes would vanish if they went on as in the last two iterations:
-    /// with a Jacobian that stays what it is, they shrink by much the same factor each time.
-    ///
-    /// ```text
-    /// Wₖ₊₁ = Gₖ − γ (Gₖ − Gₖ₋₁),     G = W + d,     γ = ⟨dₖ, dₖ − dₖ₋₁⟩/|dₖ − dₖ₋₁|²
-    /// ```
-    ///
-    /// # References
-    /// D. G. Anderson, "Iterative procedures for nonlinear integral equations", J. ACM 12 (1965) 547, doi 10.1145/321296.321305, with one
-    /// iteration before the last.
-    fn extrapolate(&mut self, motion: &mut Motion<D>, again: bool) {
-        let Self { residual, proposed, changed, .. } = self;
-        let (mut product, mut square) = (0.0, 0.0);
-        for (component, (changes, before)) in residual.iter().zip(&*proposed).enumerate() {
-            let per_scale = 1.0 / motion.scale(component);
-            for index in 0..STAGES {
-                let change = changes[index].value() * per_scale;
-                let difference = change - before[index] * per_scale;
-                product += change * difference;
-                square += difference * difference;
-            }
-        }
-        let part = product / square;
-        let part = if again && part.is_finite() { part } else { 0.0 };
-        for (component, changes) in residual.iter().enumerate() {
-            let (increments, before) = (&mut motion.increments[component], &mut proposed[component]);
-            let changed = &mut changed[component];
-            for index in 0..STAGES {
-                let change = changes[index].value();
-                let further = part * (before[index] - changed[index] - change);
-                increments[index] += further;
-                (before[index], changed[index]) = (change, change + further);
-            }
-        }
+        follow_velocity(motion, span.length);
     }
 
     /// The greatest `part` of the last change of an increment, relative to its scale.
     fn correction(&self, motion: &Motion<D>, part: impl Fn(D) -> f64) -> f64 {
         let mut most = 0.0f64;
-        for (component, changes) in self.residual.iter().enumerate() {
+        for (component, changes) in self.residual.iter().enumerate().skip(1) {
             let per_scale = 1.0 / motion.scale(component);
             for change in changes {
                 let relative = (part(*change) * per_scale).abs();
@@ -275,7 +274,8 @@ impl<D: Scalar> Collocation<D> {
     ) -> Result<(), SimulationError> {
         let mut before = vec![f64::INFINITY; D::DIRECTIONS];
         for _ in 0..MOST_DERIVATIVE_ITERATIONS {
-            self.iterate(motion, field, branch, span, false);
+            self.evaluate(motion, field, branch, span, false);
+            self.correct(motion, span, false);
             let mut converged = true;
             for (direction, before) in before.iter_mut().enumerate() {
                 let correction = self.correction(motion, |change| change.partial(direction));
@@ -297,5 +297,15 @@ impl<D: Scalar> Collocation<D> {
             }
         }
         Err(SimulationError::step_too_small(span.tolerance, span.begin))
+    }
+}
+
+/// Makes the position follow the velocity.
+fn follow_velocity<D: Scalar>(motion: &mut Motion<D>, length: f64) {
+    let velocity = motion.begin[1];
+    let [position, increments, ..] = &mut motion.increments[..] else { return };
+    *position = product(&COEFFICIENTS_COLUMNS, increments);
+    for (position, node) in position.iter_mut().zip(NODES) {
+        *position = (*position + velocity * node) * length;
     }
 }

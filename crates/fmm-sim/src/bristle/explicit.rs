@@ -185,10 +185,10 @@ impl<D: Scalar> Explicit<D> {
 
 /// The factors of the terms of the interpolant at the stages of the collocation method, term by term: θ, θ(1 − θ),
 /// θ²(1 − θ), …
-static TERMS: Columns<STAGES> = {
-    let mut terms = [NODES; STAGES];
+static TERMS: Columns<STAGES, 7> = {
+    let mut terms = [NODES; 7];
     let mut term = 1;
-    while term < STAGES {
+    while term < terms.len() {
         let mut stage = 0;
         while stage < STAGES {
             let factor = if term % 2 == 0 { NODES[stage] } else { 1.0 - NODES[stage] };

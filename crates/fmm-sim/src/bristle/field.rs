@@ -212,6 +212,25 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         }
     }
 
+    /// Writes at which rates (1/s) the states return to where they tend to, from differences with the rates at `state` that
+    /// [`rates`](Self::rates) has just left, all states moved at once: exact for states that do not act upon each other.
+    pub(super) fn relaxations(&mut self, branch: Branch, state: &[D], relaxations: &mut [f64]) {
+        for (centre, rate) in self.centre.iter_mut().zip(&self.rate) {
+            *centre = rate.value();
+        }
+        let speed = self.mirror(branch, state);
+        for (index, (mirrored, relaxation)) in self.mirrored.iter_mut().zip(&mut *relaxations).enumerate() {
+            let z = mirrored.value();
+            *mirrored += reach_of(z, self.law.bound(index).value());
+            *relaxation = mirrored.value() - z;
+        }
+        self.law.rate(speed, &self.mirrored, branch.regime, &mut self.rate);
+        for (index, relaxation) in relaxations.iter_mut().enumerate() {
+            let change = self.centre[index] - self.rate[index].value();
+            *relaxation = if self.saturated[index] { 0.0 } else { slope(change, *relaxation) };
+        }
+    }
+
     /// How far element `index` is from sliding, if it holds and can.
     pub(super) fn reserve(&mut self, index: usize, branch: Branch, state: &[D]) -> Option<D> {
         if branch.regime.slides(index) {
@@ -274,11 +293,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
 
         for column in 0..self.rate.len() {
             let z = self.mirrored[column];
-            let bound = self.law.bound(column).value().abs();
-            let reach =
-                DIFFERENCE * z.value().abs().max(1e-2 * bound.min(f64::MAX)).max(f64::MIN_POSITIVE / DIFFERENCE);
-            // Towards the origin, where the states of the motion come from.
-            let reach = if z.value() > 0.0 { -reach } else { reach };
+            let reach = reach_of(z.value(), self.law.bound(column).value());
             self.mirrored[column] = z + reach;
             let change = (z + reach - z).value();
             let after = self.mirrored_friction(branch, u).value();
@@ -292,6 +307,12 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
             jacobian[size..2 * size].fill(0.0);
         }
     }
+}
+
+/// By how much to move a state `z` of this `bound` for a difference: towards the origin, where the states of the motion come from.
+fn reach_of(z: f64, bound: f64) -> f64 {
+    let reach = DIFFERENCE * z.abs().max(1e-2 * bound.abs().min(f64::MAX)).max(f64::MIN_POSITIVE / DIFFERENCE);
+    if z > 0.0 { -reach } else { reach }
 }
 
 /// What makes a speed of a deflection (1/s): the machine's frequency; any without a spring.

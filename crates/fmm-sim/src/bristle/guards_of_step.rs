@@ -18,10 +18,17 @@ const TANGENT: f64 = 1e-9;
 /// How far from the end of a step (in its units) its polynomial says something of a zero.
 const NEAR: f64 = 0.1;
 
+/// A step has to be shorter for its guards to be seen.
+pub(super) struct NotSmooth;
+
 impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
-    /// The first guard that is reached within the step, and where. A step that begins `at_zero` velocity does not find that
-    /// zero.
-    pub(super) fn first_guard(&mut self, at_zero: bool) -> Option<(f64, Guard)> {
+    /// The first guard that is reached within the step, and where, if there is one. A step that begins `at_zero` velocity does not find
+    /// that zero.
+    ///
+    /// # Errors
+    /// [`NotSmooth`] if the reserve of an element is no polynomial on the step as good as those of the motion, so that its zeros cannot be
+    /// sought on that: it may depend on the velocity in a way that the motion does not.
+    pub(super) fn first_guard(&mut self, at_zero: bool) -> Result<Option<(f64, Guard)>, NotSmooth> {
         let mut first: Option<(f64, Guard)> = None;
         let mut look = |coefficients: [f64; STAGES + 1], guard| {
             let begins_there = match guard {
@@ -38,8 +45,14 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         };
         look(self.guard_polynomial(Guard::Speed), Guard::Speed);
         for index in 0..self.field.size() - 2 {
-            if self.field.reserve(index, self.branch, &self.step.begin).is_some() {
-                look(self.guard_polynomial(Guard::Reserve(index)), Guard::Reserve(index));
+            if let Some(size) = self.field.reserve_size(index, self.branch, &self.step.begin) {
+                let coefficients = self.guard_polynomial(Guard::Reserve(index));
+                let most = coefficients.iter().fold(0.0f64, |most, coefficient| most.max(coefficient.abs()));
+                // Where little of the reserve is left, most of it is the rounding of its terms.
+                if !(last_coefficient(coefficients) * most <= SMOOTH * most + ROUNDING * size) {
+                    return Err(NotSmooth);
+                }
+                look(coefficients, Guard::Reserve(index));
             }
         }
         let drag = !self.field.oscillator.damping().is_linear() && self.field.belt.value() != 0.0;
@@ -53,19 +66,7 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
             let guard = Guard::SpringCorner(corner.next);
             look(self.guard_polynomial(guard), guard);
         }
-        first
-    }
-
-    /// Whether the reserves of all elements are polynomials on the step as good as those of the motion, so that their
-    /// zeros can be sought on these: a reserve may depend on the velocity in a way that the motion does not.
-    pub(super) fn guards_are_smooth(&mut self) -> bool {
-        (0..self.field.size() - 2).all(|index| {
-            let Some(size) = self.field.reserve_size(index, self.branch, &self.step.begin) else { return true };
-            let coefficients = self.guard_polynomial(Guard::Reserve(index));
-            let most = coefficients.iter().fold(0.0f64, |most, coefficient| most.max(coefficient.abs()));
-            // Where little of the reserve is left, most of it is the rounding of its terms.
-            last_coefficient(coefficients) * most <= SMOOTH * most + ROUNDING * size
-        })
+        Ok(first)
     }
 
     /// Bernstein coefficients of a guard, positive before it is reached.

@@ -44,7 +44,7 @@ pub(crate) use prescribed::follow;
 /// [`BoucWen`](fmm_friction::BoucWen) do but for powers next to where they bend. The last terms say how far the series reaches, so that no
 /// step is tried twice. Without one, steps are those of the explicit method of order 8 that
 /// [`RungeKutta`](crate::RungeKutta) uses. Once the bristles only follow the sliding speed, which is where the equations are stiff,
-/// each step solves the 7 stages of the Radau IIA method of order 13 together, by Newton's method with a Jacobian from
+/// each step solves the 8 stages of the Radau IIA method of order 15 together, by Newton's method with a Jacobian from
 /// differences of the law's own formulas: the method is L-stable, so that the stiffness of the bristles does not limit the
 /// step. Rates from differences, or the two last stages of a step of order 8, measure the stiffness, and with it which of the methods is
 /// cheaper. A state
@@ -68,7 +68,7 @@ pub(crate) use prescribed::follow;
 /// there is no series, and values agree within the tolerance. At rest the derivatives are held as well; a start at rest that the
 /// inputs would disturb is marked as [`grazing`](crate::Event::grazing).
 ///
-/// A half swing takes about nine steps of a series, and some twenty implicit ones on top where bristles are stiff at all speeds (LuGre).
+/// A half swing takes about eight steps of a series, and some fourteen implicit ones on top where bristles are stiff at all speeds (LuGre).
 /// What it costs does not grow with the stiffness of the bristles, but a contact that no longer slides goes on
 /// swinging on them, as often as √(N σ/m)/π a second.
 ///

@@ -2,7 +2,9 @@
 
 use fmm_model::Scalar;
 
-use super::radau::{BERNSTEIN, CENTRED_COLUMNS, INVERSE, LEGENDRE, NODES, STAGES, Stages, basis, dot, product};
+use super::radau::{
+    BERNSTEIN_COLUMNS, CENTRED_COLUMNS, INVERSE, LEGENDRE_COLUMNS, NODES, STAGES, Stages, basis, dot, product,
+};
 use super::taylor::ORDER;
 
 /// Rounding of the state, relative to it.
@@ -137,6 +139,15 @@ impl<D: Scalar> Motion<D> {
         dot(&INVERSE[STAGES - 1], &self.increments[component]).value()
     }
 
+    /// How far it is from the end of the step to where the velocity reaches that of the counterface, `belt`, along the tangent, in units of
+    /// the step; infinite if it does not fall, or has fallen to a small part of what it was in this swing.
+    pub(super) fn to_turn(&self, belt: f64) -> f64 {
+        const SMALL: f64 = 0.1;
+        let relative = self.begin[1].value() + self.increments[1][STAGES - 1].value() - belt;
+        let ahead = -relative / self.end_slope(1);
+        if ahead > 0.0 && relative.abs() > SMALL * self.scale[1] { ahead } else { f64::INFINITY }
+    }
+
     /// The Bernstein coefficients of the polynomial through what `value` gives at the states at the beginning and at all
     /// stages.
     pub(super) fn bernstein(&mut self, mut value: impl FnMut(&[D]) -> f64) -> [f64; STAGES + 1] {
@@ -223,7 +234,7 @@ impl<D: Scalar> Motion<D> {
         let missing = self.series.iter().zip(&self.scale);
         let missing = missing.fold(0.0f64, |most, (series, scale)| most.max(series[STAGES + 1].value().abs() / scale));
         let spread = f64::from(1u32 << (2 * STAGES + 1));
-        (tolerance * spread / missing).sqrt().sqrt().sqrt()
+        (tolerance * spread / missing).powf(1.0 / (STAGES + 1) as f64)
     }
 
     /// How far a component has moved in this swing, this step included.
@@ -234,7 +245,11 @@ impl<D: Scalar> Motion<D> {
             return self.moved[component].max(distance.abs()).max(end.abs());
         }
         let increments = &self.increments[component];
-        increments.iter().fold(self.moved[component], |most, w| most.max((distance + w.value()).abs()))
+        increments.iter().fold(self.moved[component], |most, w| {
+            let moved = (distance + w.value()).abs();
+            // Nothing but a comparison, as NaN is seen elsewhere.
+            if moved > most { moved } else { most }
+        })
     }
 
     /// The first coefficient that the polynomial of y′ lacks, extrapolated from the decay of its last four, as an error
@@ -242,8 +257,7 @@ impl<D: Scalar> Motion<D> {
     pub(super) fn error(&self) -> f64 {
         let mut worst = 0.0f64;
         for (increments, scale) in self.increments.iter().zip(&self.scale) {
-            let values = increments.map(D::value);
-            let [first, second, third, last] = LEGENDRE.map(|row| dot(&row, &values).abs());
+            let [first, second, third, last] = product(&LEGENDRE_COLUMNS, &increments.map(D::value)).map(f64::abs);
             // Even and odd coefficients may differ in size, so pairs of them are compared.
             let pair = third.max(last);
             let decay = if pair < first.max(second) { (pair / first.max(second)).sqrt() } else { 1.0 };
@@ -270,5 +284,5 @@ pub(super) fn value<D: Scalar>(series: &Series<D>, tau: f64) -> f64 {
 
 /// Bernstein coefficients from values at the beginning and at all stages.
 fn coefficients(nodal: &[f64; STAGES + 1]) -> [f64; STAGES + 1] {
-    BERNSTEIN.map(|row| row.iter().zip(nodal).map(|(factor, value)| factor * value).sum())
+    product(&BERNSTEIN_COLUMNS, nodal)
 }

@@ -1,6 +1,7 @@
 //! Pace: length and method of the next step.
 
 use super::motion::Solved;
+use super::radau::STAGES;
 
 /// Step times stiffness above which states that follow the motion are what limits an explicit step.
 const AT_LIMIT: f64 = 0.5;
@@ -22,13 +23,16 @@ const SMOOTH_CHANGE: f64 = 1.0;
 const STIFF: f64 = 8.0;
 const NOT_STIFF: f64 = 4.0;
 
-/// Steps of the series that an implicit one must be worth, the part of the longest stable one from which on they are limited by
-/// stiffness, the part of its reach that the first implicit one is tried with, and step times stiffness up to which an implicit step
-/// is not worth those that it replaces.
-const WORTH_AN_IMPLICIT_ONE: f64 = 6.0;
+/// Steps of the series that an implicit one, which costs about as much, must be worth, the part of the longest stable one from which on
+/// they are limited by stiffness, the part of its reach that the first implicit one is tried with, and step times stiffness up to which an
+/// implicit step is not worth those that it replaces.
+const WORTH_AN_IMPLICIT_ONE: f64 = 2.0;
 const NEARLY: f64 = 0.9;
 const PART_OF_REACH: f64 = 0.7;
-const NOT_STIFF_FOR_SERIES: f64 = 30.0;
+const NOT_STIFF_FOR_SERIES: f64 = 15.0;
+
+/// The part of the way to the next turn that an implicit step goes at most: laws fall with the speed, so that steps become shorter with it.
+const PART_TO_TURN: f64 = 0.3;
 
 /// Explicit steps that have to be limited by stiffness in a row, and implicit ones that have to be refused in vain.
 const PERSISTENT: usize = 3;
@@ -121,8 +125,9 @@ impl Pace {
     }
 
     /// Takes note of an accepted step of `length` (s) from relative rest (`at_zero`) or not, where the motion has the angular
-    /// frequency `slow` (rad/s) and `room` (s) is left after it.
-    pub(super) fn accept(&mut self, solved: Solved, length: f64, at_zero: bool, slow: f64, room: f64) {
+    /// frequency `slow` (rad/s), and `room` (s) is left after it, `to_turn` (s) to where the relative velocity would pass zero if it went on
+    /// falling as it does.
+    pub(super) fn accept(&mut self, solved: Solved, length: f64, at_zero: bool, slow: f64, [room, to_turn]: [f64; 2]) {
         if std::mem::take(&mut self.opens) && at_zero {
             self.opening = length / self.first;
         }
@@ -130,6 +135,7 @@ impl Pace {
         let growth = self.growth(length, solved.error);
         self.proposed = length * if solved.quick { growth } else { growth.min(1.0) };
         if self.implicit {
+            self.proposed = self.proposed.min(PART_TO_TURN * to_turn);
             // What still grows is no measure.
             let not_stiff = if self.expands { NOT_STIFF_FOR_SERIES } else { NOT_STIFF };
             if solved.stiffness <= not_stiff && self.proposed <= 1.5 * length {
@@ -177,7 +183,7 @@ impl Pace {
         let in_vain = self.implicit && solved.error > VAIN * self.refused;
         (self.refused, self.vain) = (solved.error, if in_vain { self.vain + 1 } else { 0 });
         if self.vain < PERSISTENT {
-            return length * change(solved.error);
+            return length * self.change(solved.error);
         }
         // States that do not begin where they would follow the motion jump there, however short the step is, until it is
         // as short as the jump.
@@ -194,15 +200,20 @@ impl Pace {
     /// K. Gustafsson, "Control-theoretic techniques for stepsize selection in implicit Runge-Kutta methods", ACM Trans.
     /// Math. Software 20 (1994) 496, doi 10.1145/198429.198437.
     fn growth(&mut self, length: f64, error: f64) -> f64 {
-        let growth = change(error);
+        let growth = self.change(error);
         let (before, error_before) = std::mem::replace(&mut self.last, (length, error));
-        let trend = if before.is_finite() { length / before * growth / change(error_before) } else { 1.0 };
+        let trend = if before.is_finite() { length / before * growth / self.change(error_before) } else { 1.0 };
         growth * trend.clamp(0.5, 1.0)
     }
-}
 
-/// By which factor to change the length of a step with this error, in units of the tolerance.
-fn change(error: f64) -> f64 {
-    // Both estimates grow with the eighth power of the length.
-    (0.9 / error.sqrt().sqrt().sqrt()).clamp(0.1, 3.0)
+    /// By which factor to change the length of a step with this error, in units of the tolerance.
+    fn change(&self, error: f64) -> f64 {
+        if self.implicit {
+            // Of so high an order, a step hardly longer is one too long: what is left of the error is worth little length.
+            (0.8 * error.powf(-1.0 / (STAGES + 1) as f64)).clamp(0.1, 2.0)
+        } else {
+            // The estimate grows with the eighth power of the length.
+            (0.9 / error.sqrt().sqrt().sqrt()).clamp(0.1, 3.0)
+        }
+    }
 }

@@ -191,12 +191,12 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
                 approach = None;
                 continue;
             };
-            if solved.followed && !self.guards_are_smooth() {
+            let found = if solved.followed { self.first_guard(at_zero) } else { Ok(None) };
+            let Ok(found) = found else {
                 self.retry(length);
                 length *= 0.5;
                 continue;
-            }
-            let found = if solved.followed { self.first_guard(at_zero) } else { None };
+            };
             // What is not accurate enough says nothing about where it begins.
             let at_once = |tau: f64| tau * length <= self.least(length);
             let found = found.filter(|(tau, _)| solved.error <= 1.0 || !at_once(*tau));
@@ -254,7 +254,8 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
                 }
             }
             let was_implicit = self.pace.implicit;
-            self.pace.accept(solved, length, at_zero, self.slow(piece), room - length);
+            let to_turn = length * self.step.to_turn(self.field.belt.value());
+            self.pace.accept(solved, length, at_zero, self.slow(piece), [room - length, to_turn]);
             if self.pace.implicit != was_implicit {
                 self.collocation.forget();
             }
