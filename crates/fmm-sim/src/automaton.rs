@@ -215,13 +215,17 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         let end = recorder.sampling.end();
         loop {
             let (limit, last) = (piece.end.min(end), piece.end > end);
-            let phase = |direction, branch| Phase { time, state, direction, branch, piece: &piece, limit, last };
+            let branch = match mode {
+                Mode::Gaining(_) => Branch::Gaining,
+                Mode::Losing(_) => Branch::Losing,
+                _ => Branch::Only,
+            };
+            let direction = mode.direction().unwrap_or(Direction::Positive);
+            let phase = Phase { time, state, direction, branch, piece: &piece, limit, last };
             let (ended, next) = match mode {
-                Mode::Stick => self.hold(&phase(Direction::Positive, Branch::Only), None, recorder)?,
-                Mode::Steady(direction) => self.hold(&phase(direction, Branch::Only), Some(direction), recorder)?,
-                Mode::Slip(direction) => (slide.slide(&phase(direction, Branch::Only), recorder)?, mode),
-                Mode::Gaining(direction) => (slide.slide(&phase(direction, Branch::Gaining), recorder)?, mode),
-                Mode::Losing(direction) => (slide.slide(&phase(direction, Branch::Losing), recorder)?, mode),
+                Mode::Stick => self.hold(&phase, None, recorder)?,
+                Mode::Steady(direction) => self.hold(&phase, Some(direction), recorder)?,
+                _ => (slide.slide(&phase, recorder)?, mode),
             };
             (time, state) = (ended.time, ended.state);
             let (kind, next, load) = match ended.ending {

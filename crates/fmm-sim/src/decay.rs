@@ -73,12 +73,18 @@ impl<D: Scalar> Decay<D> {
         self.rate * state.velocity + self.square * state.position
     }
 
+    /// e^(−aτ) cos ωτ and e^(−aτ) sin ωτ.
+    pub(crate) fn turn(&self, angular: D, elapsed: D) -> (D, D) {
+        let (sin, cos) = (angular * elapsed).sin_cos();
+        let envelope = (-self.rate * elapsed).exp();
+        (envelope * cos, envelope * sin)
+    }
+
     /// e^(−aτ) C(τ) and e^(−aτ) S(τ).
     fn basis(&self, elapsed: D) -> (D, D) {
         if let Some(HalfSwing { angular, .. }) = self.half_swing {
-            let (sin, cos) = (angular * elapsed).sin_cos();
-            let envelope = (-self.rate * elapsed).exp();
-            return (envelope * cos, envelope * sin / angular);
+            let (cosine, sine) = self.turn(angular, elapsed);
+            return (cosine, sine / angular);
         }
         let argument = self.spread * elapsed * elapsed;
         if argument.value().abs() < SERIES {
@@ -93,9 +99,8 @@ impl<D: Scalar> Decay<D> {
             (envelope * even, envelope * odd * elapsed)
         } else if argument.value() < 0.0 {
             let angular = (-self.spread).sqrt();
-            let (sin, cos) = (angular * elapsed).sin_cos();
-            let envelope = (-self.rate * elapsed).exp();
-            (envelope * cos, envelope * sin / angular)
+            let (cosine, sine) = self.turn(angular, elapsed);
+            (cosine, sine / angular)
         } else {
             // The slow rate a − σ as ω₀²/(a + σ): no cancellation, and neither exponential can overflow.
             let sigma = self.spread.sqrt();
@@ -116,7 +121,13 @@ impl<D: Scalar> Decay<D> {
 
     /// The same decay without derivatives.
     pub(crate) fn plain(&self) -> Decay<f64> {
-        Decay::new(self.rate.value(), self.square.value())
+        let half_swing = self.half_swing.map(|HalfSwing { angular, duration, ratio }| HalfSwing {
+            angular: angular.value(),
+            duration: duration.value(),
+            ratio: ratio.value(),
+        });
+        let [rate, square, spread] = [self.rate, self.square, self.spread].map(D::value);
+        Decay { rate, square, spread, half_swing }
     }
 
     /// Velocity and acceleration at `state`: the derivative of a free decay is a free decay.
@@ -135,22 +146,15 @@ impl<D: Scalar> Decay<D> {
         position.abs() + push.abs() * (self.rate.value() + sigma) / (self.square.value() * std::f64::consts::E)
     }
 
-    /// Bound of the magnitudes of position and velocity from `state` on; not finite if the motion exceeds
-    /// the range of this number type.
-    pub(crate) fn reach(&self, state: State<D>) -> f64 {
-        let per_angular = self.half_swing.map_or(0.0, |half_swing| half_swing.angular.value().recip());
-        let sine = (state.velocity + self.rate * state.position).value() * per_angular;
-        let velocity_sine = self.pull(state).value() * per_angular;
-        state.position.value().abs() + sine.abs() + state.velocity.value().abs() + velocity_sine.abs()
-    }
-
     /// Time (s) until the velocity is zero again, the zero at which `state` may sit left aside; `None` if it never is.
     pub(crate) fn time_to_zero_velocity(&self, state: State<D>) -> Option<D> {
         let velocity = state.velocity;
         if velocity.value() == 0.0 {
             // A velocity of zero may still have a derivative: a push in the direction of the motion to come starts
             // that motion earlier.
-            return self.half_swing.map(|half_swing| half_swing.duration + velocity / self.pull(state));
+            let is_pushed = (0..D::DIRECTIONS).any(|direction| velocity.partial(direction) != 0.0);
+            let late = if is_pushed { velocity / self.pull(state) } else { velocity };
+            return self.half_swing.map(|half_swing| half_swing.duration + late);
         }
         // v = 0 where S/C = v₀/(a v₀ + ω₀² x₀); S/C is tan(ωτ)/ω below and tanh(στ)/σ above critical damping.
         let pull = self.pull(state);

@@ -140,6 +140,7 @@ mod scenario;
 mod spring;
 mod thesis;
 mod trajectory;
+mod wide;
 mod within;
 mod work;
 

@@ -36,6 +36,10 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         Ok(Self { sampling, trajectory, written: 0, work: Work::none(), worked: 0, pieces: PIECE_BUDGET })
     }
 
+    /// Adds an event.
+    ///
+    /// Inline, as a free swing of the exact engine is: to copy what had just been written took 4 % of a ring-down in either place.
+    #[inline]
     pub(crate) fn push(&mut self, event: Event<D>) -> Result<(), SimulationError> {
         let finite = event.time.value().is_finite()
             && event.position.value().is_finite()

@@ -6,6 +6,7 @@ use fmm_model::Scalar;
 use pulp::Arch;
 
 use crate::SimulationError;
+use crate::wide::Wide;
 
 /// The samples of one quantity: one value each, and one column of partial derivatives per direction of the
 /// number type `D`.
@@ -85,7 +86,7 @@ impl<D: Scalar> Samples<D> {
         coefficients: &[D; N],
         theta: impl Fn(u32) -> f64,
     ) {
-        Arch::new().dispatch(
+        Arch::new().dispatch(Wide(
             #[inline(always)]
             || {
                 let fill = |out: &mut [f64], coefficients: [f64; N]| {
@@ -101,13 +102,13 @@ impl<D: Scalar> Samples<D> {
                     fill(column, coefficients.map(|coefficient| coefficient.partial(direction)));
                 }
             },
-        );
+        ));
     }
 
     /// Writes `constant` plus the sum of the `terms`, samples times a factor, at every index of `range`.
     pub(crate) fn combine(&mut self, range: std::ops::Range<usize>, constant: D, terms: [(&Self, D); 2]) {
         let count = self.values.len();
-        Arch::new().dispatch(
+        Arch::new().dispatch(Wide(
             #[inline(always)]
             || {
                 let [(x, by_x), (y, by_y)] = terms;
@@ -127,7 +128,7 @@ impl<D: Scalar> Samples<D> {
                     }
                 }
             },
-        );
+        ));
     }
 
     /// Writes the same number at every index of `range`.

@@ -169,8 +169,8 @@ impl Sampling {
                 // a branch, as which way they go is as good as random.
                 let (first, end) = (self.first as i64, (self.first + self.count) as i64);
                 let guess = ((time / interval) as i64).clamp(first, end);
-                let is_before = |index: i64| i64::from(index as f64 * interval < time);
-                let index = guess - 1 + is_before(guess - 1) + is_before(guess) + is_before(guess + 1);
+                let (near, is_before) = (guess as f64, |index: f64| i64::from(index * interval < time));
+                let index = guess - 1 + is_before(near - 1.0) + is_before(near) + is_before(near + 1.0);
                 (index.clamp(first, end) - first) as usize
             }
             Grid::Times(times) => times[self.first..self.first + self.count].partition_point(|&t| t < time),

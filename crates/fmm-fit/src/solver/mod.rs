@@ -22,6 +22,7 @@ pub(crate) mod spectrum;
 pub(crate) mod sums;
 pub(crate) mod triangle;
 mod trust_region;
+mod wide;
 
 pub use argmin_solver::BoundedLevenbergMarquardt;
 pub use error::FitError;

@@ -5,6 +5,7 @@ use std::array;
 use pulp::Arch;
 
 use crate::solver::sums::products;
+use crate::solver::wide::Wide;
 
 /// Numbers per block at most: the block and its copy share the first-level cache.
 const BLOCK: usize = 1536;
@@ -122,10 +123,10 @@ impl Triangle {
     /// `residuals`; `scratch` may have any length.
     pub(crate) fn factor(&mut self, jacobian: &[f64], columns: &[usize], residuals: &[f64], scratch: &mut Vec<f64>) {
         if !self.factor_few(jacobian, columns, residuals) {
-            Arch::new().dispatch(
+            Arch::new().dispatch(Wide(
                 #[inline(always)]
                 || self.factor_here(jacobian, columns, residuals, scratch),
-            );
+            ));
         }
     }
 
@@ -475,10 +476,10 @@ mod tests {
         for columns in 0..=6 {
             let columns: Vec<usize> = (0..columns).collect();
             let (mut wide, mut narrow) = (Triangle::default(), Triangle::default());
-            Arch::new().dispatch(
+            Arch::new().dispatch(Wide(
                 #[inline(always)]
                 || wide.factor_here(&jacobian, &columns, &residuals, &mut Vec::new()),
-            );
+            ));
             narrow.factor_here(&jacobian, &columns, &residuals, &mut Vec::new());
             assert_eq!(wide.entries, narrow.entries);
         }

@@ -5,15 +5,16 @@ use pulp::Arch;
 
 use crate::decay::Decay;
 use crate::recorder::Recorder;
-use crate::{Samples, Sampling, State};
+use crate::wide::Wide;
+use crate::{Samples, Sampling, SimulationError, State};
 
 /// zʲ = exp((−a + iω)Δt)ʲ for j from 0 on, real and imaginary parts apart.
 ///
 /// All swings of a run have the same decay, so one table serves every sample: position and velocity are linear
 /// combinations of the two parts, and so are their derivatives once j Δt is allowed as a factor.
 pub(super) struct Powers {
-    /// Real parts, then as many imaginary parts.
-    parts: Vec<f64>,
+    /// Real and imaginary parts, a stride of either at a time.
+    strides: Vec<[[f64; STRIDE]; 2]>,
     /// Time between samples (s).
     interval: f64,
 }
@@ -35,27 +36,33 @@ impl Powers {
 
     /// Powers for at least `longest` samples, or [`LONGEST`] if that is less.
     pub(super) fn new(rate: f64, angular: f64, interval: f64, longest: usize) -> Self {
-        let count = longest.clamp(1, LONGEST).next_multiple_of(STRIDE);
-        let mut parts = vec![0.0; 2 * count];
         let power = |exponent: usize| {
             let time = exponent as f64 * interval;
             let (sin, cos) = (angular * time).sin_cos();
             let envelope = (-rate * time).exp();
             (envelope * cos, envelope * sin)
         };
-        let (one, stride) = (power(1), power(STRIDE));
-        let (real, imaginary) = parts.split_at_mut(count);
-        Arch::new().dispatch(
+        let (first, stride) = (Self::first_stride(power(1)), power(STRIDE));
+        let count = longest.clamp(1, LONGEST).div_ceil(STRIDE);
+        let mut strides = Vec::with_capacity(count);
+        Arch::new().dispatch(Wide(
             #[inline(always)]
-            || Self::fill(real, imaginary, one, stride),
-        );
-        Self { parts, interval }
+            || {
+                let [mut real, mut imaginary] = first;
+                for _ in 0..count {
+                    strides.push([real, imaginary]);
+                    for (re, im) in real.iter_mut().zip(&mut imaginary) {
+                        (*re, *im) = (*re * stride.0 - *im * stride.1, *re * stride.1 + *im * stride.0);
+                    }
+                }
+            },
+        ));
+        Self { strides, interval }
     }
 
-    /// Fills the table from the first power and that of the stride.
-    #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
-    #[inline(always)]
-    fn fill(real: &mut [f64], imaginary: &mut [f64], one: (f64, f64), stride: (f64, f64)) {
+    /// The powers from 0 on of the first, real parts and imaginary parts.
+    fn first_stride(one: (f64, f64)) -> [[f64; STRIDE]; 2] {
+        let [mut real, mut imaginary] = [[0.0; STRIDE]; 2];
         real[0] = 1.0;
         let mut factor = one;
         let mut known = 1;
@@ -67,48 +74,51 @@ impl Powers {
             factor = (factor.0 * factor.0 - factor.1 * factor.1, 2.0 * factor.0 * factor.1);
             known *= 2;
         }
-        let (mut reals, mut imaginaries) = (real.chunks_exact_mut(STRIDE), imaginary.chunks_exact_mut(STRIDE));
-        let (Some(mut re), Some(mut im)) = (reals.next(), imaginaries.next()) else { return };
-        for (later_re, later_im) in reals.zip(imaginaries) {
-            for j in 0..STRIDE {
-                later_re[j] = re[j] * stride.0 - im[j] * stride.1;
-                later_im[j] = re[j] * stride.1 + im[j] * stride.0;
-            }
-            (re, im) = (later_re, later_im);
-        }
+        [real, imaginary]
     }
 
     pub(super) fn len(&self) -> usize {
-        self.parts.len() / 2
+        self.strides.len() * STRIDE
     }
 
-    /// The powers, real and imaginary part of each.
-    fn powers(&self) -> impl Iterator<Item = (&f64, &f64)> {
-        let (real, imaginary) = self.parts.split_at(self.len());
-        real.iter().zip(imaginary)
-    }
-
-    /// Writes the next `count` samples, the motion about `centre` being in `state` at the first.
+    /// Writes the samples before `end` of a motion that goes on freely about `centre` from `free` at `start`.
+    ///
+    /// # Errors
+    /// [`SimulationError::NotFinite`].
     pub(super) fn write<D: Scalar>(
         &self,
         recorder: &mut Recorder<D>,
-        count: usize,
+        end: f64,
         decay: &Decay<D>,
-        centre: D,
-        state: State<D>,
-    ) {
-        let Some(half_swing) = decay.half_swing() else { return };
+        (centre, free): (D, State<D>),
+        start: D,
+    ) -> Result<(), SimulationError> {
+        let Some(half_swing) = decay.half_swing() else { return Ok(()) };
         let wave = Wave { rate: decay.rate(), angular: half_swing.angular, interval: self.interval };
-        let range = recorder.written..recorder.written + count;
         let channels = recorder.sampling.channels();
-        if channels.position() {
-            let sine = (state.velocity + decay.rate() * state.position) / wave.angular;
-            self.write_wave(recorder.trajectory.position_mut(), range.clone(), &wave, centre, state.position, sine);
+        let stop = recorder.sampling.index_at_or_after(end);
+        while recorder.written < stop {
+            let anchor = recorder.sampling.time(recorder.written);
+            let (cos, sin) = decay.turn(wave.angular, -start + anchor);
+            let turned = |cosine: D, sine: D| (cosine * cos + sine * sin, sine * cos - cosine * sin);
+            let range = recorder.written..stop.min(recorder.written + self.len());
+            recorder.written = range.end;
+            let mut is_finite = true;
+            if channels.position() {
+                let (cosine, sine) = turned(free.position, (free.velocity + wave.rate * free.position) / wave.angular);
+                is_finite &= (centre.value().abs() + cosine.value().abs() + sine.value().abs()).is_finite();
+                self.write_wave(recorder.trajectory.position_mut(), range.clone(), &wave, centre, cosine, sine);
+            }
+            if channels.velocity() {
+                let (cosine, sine) = turned(free.velocity, -decay.pull(free) / wave.angular);
+                is_finite &= (cosine.value().abs() + sine.value().abs()).is_finite();
+                self.write_wave(recorder.trajectory.velocity_mut(), range, &wave, D::from(0.0), cosine, sine);
+            }
+            if !is_finite {
+                return Err(SimulationError::NotFinite { time: anchor });
+            }
         }
-        if channels.velocity() {
-            let sine = -decay.pull(state) / wave.angular;
-            self.write_wave(recorder.trajectory.velocity_mut(), range, &wave, D::from(0.0), state.velocity, sine);
-        }
+        Ok(())
     }
 
     /// Writes e^(−aτ) (`cosine` cos ωτ + `sine` sin ωτ) + `offset` at τ = 0, Δt, 2Δt, … into `range`.
@@ -121,10 +131,10 @@ impl Powers {
         cosine: D,
         sine: D,
     ) {
-        Arch::new().dispatch(
+        Arch::new().dispatch(Wide(
             #[inline(always)]
-            || self.write_wave_here(samples, range, wave, offset, cosine, sine),
-        );
+            || self.write_wave_here(samples, range.clone(), wave, offset, cosine, sine),
+        ));
     }
 
     #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
@@ -139,28 +149,51 @@ impl Powers {
         sine: D,
     ) {
         let (c, s, o) = (cosine.value(), sine.value(), offset.value());
-        let powers = || self.powers();
-        for (out, (re, im)) in samples.values_mut()[range.clone()].iter_mut().zip(powers()) {
-            *out = o + (c * re + s * im);
-        }
+        self.fill_with(&mut samples.values_mut()[range.clone()], |re, im, _| o + (c * re + s * im));
         for direction in 0..D::DIRECTIONS {
             let (rate, angular) = (wave.rate.partial(direction), wave.angular.partial(direction));
             let (c0, s0, o0) = (cosine.partial(direction), sine.partial(direction), offset.partial(direction));
             let out = &mut samples.partial_mut(direction)[range.clone()];
             if rate == 0.0 && angular == 0.0 {
-                for (out, (re, im)) in out.iter_mut().zip(powers()) {
-                    *out = o0 + (c0 * re + s0 * im);
-                }
+                self.fill_with(out, |re, im, _| o0 + (c0 * re + s0 * im));
             } else {
                 // ∂/∂a and ∂/∂ω of the wave, per interval: τ times the wave itself turned and scaled.
                 let (c1, s1) = ((angular * s - rate * c) * wave.interval, -(rate * s + angular * c) * wave.interval);
-                for (j, (out, (re, im))) in out.iter_mut().zip(powers()).enumerate() {
-                    let j = j as f64;
-                    *out = o0 + ((c0 + c1 * j) * re + (s0 + s1 * j) * im);
-                }
+                self.fill_with(out, |re, im, j| o0 + ((c0 + c1 * j) * re + (s0 + s1 * j) * im));
             }
         }
     }
+
+    /// Fills `out`, which is not longer than the table, with what `of` makes of each power, real and imaginary part, and its
+    /// exponent.
+    ///
+    /// In strides, the last one found whole and cut: with a loop over all of `out`, which every swing gives another length, a
+    /// ring-down took a seventh longer.
+    #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
+    #[inline(always)]
+    fn fill_with(&self, out: &mut [f64], of: impl Fn(f64, f64, f64) -> f64) {
+        let (whole, rest) = out.as_chunks_mut::<STRIDE>();
+        let (before, after) = self.strides.split_at(whole.len());
+        let mut first = 0.0;
+        for (out, powers) in whole.iter_mut().zip(before) {
+            *out = stride_of(powers, first, &of);
+            first += STRIDE as f64;
+        }
+        if let Some(powers) = after.first() {
+            rest.copy_from_slice(&stride_of(powers, first, &of)[..rest.len()]);
+        }
+    }
+}
+
+/// What `of` makes of each power of a stride that begins with the exponent `first`.
+#[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
+#[inline(always)]
+fn stride_of([re, im]: &[[f64; STRIDE]; 2], first: f64, of: &impl Fn(f64, f64, f64) -> f64) -> [f64; STRIDE] {
+    let mut numbers = [0.0; STRIDE];
+    for j in 0..STRIDE {
+        numbers[j] = of(re[j], im[j], first + j as f64);
+    }
+    numbers
 }
 
 /// Rate and angular frequency of a wave, and the time between its samples (s).
@@ -178,7 +211,8 @@ mod tests {
     fn powers_are_exact_to_rounding() {
         let powers = Powers::new(0.7, 13.8, 1e-3, 1000);
         assert_eq!(powers.len(), LONGEST);
-        for (j, (real, imaginary)) in powers.powers().enumerate() {
+        let powers = powers.strides.iter().flat_map(|[real, imaginary]| real.iter().zip(imaginary));
+        for (j, (real, imaginary)) in powers.enumerate() {
             let time = j as f64 * 1e-3;
             let (sin, cos) = (13.8 * time).sin_cos();
             let envelope = (-0.7 * time).exp();

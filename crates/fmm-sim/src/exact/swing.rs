@@ -162,6 +162,7 @@ impl<'a, D: Scalar> Swing<'a, D> {
 
     /// A phase under a constant force that ends at rest, as all of a ring-down do: what the general way gives to the last bit, at
     /// a third of its cost. `None` where another quantity is asked for, or another end comes first.
+    #[inline]
     fn swing_freely(
         &mut self,
         flow: &Flow<D>,
@@ -181,7 +182,7 @@ impl<'a, D: Scalar> Swing<'a, D> {
             self.rhythm = rhythm;
             return Ok(None);
         }
-        write_free(powers, (&flow.decay, free), centre, phase.time, time.value(), recorder)?;
+        powers.write(recorder, time.value(), &flow.decay, (centre, free), phase.time)?;
         Ok(Some(Ended {
             ending: Ending::RelativeRest,
             time,
@@ -233,11 +234,24 @@ impl<'a, D: Scalar> Swing<'a, D> {
 }
 
 impl<D: Scalar> Slide<D> for Swing<'_, D> {
+    #[inline]
     fn slide(&mut self, phase: &Phase<D>, recorder: &mut Recorder<D>) -> Result<Ended<D>, SimulationError> {
         let flow = self.flows.on(phase.branch);
-        if let Some(ended) = self.swing_freely(flow, phase, recorder)? {
-            return Ok(ended);
+        match self.swing_freely(flow, phase, recorder)? {
+            Some(ended) => Ok(ended),
+            None => self.swing(flow, phase, recorder),
         }
+    }
+}
+
+impl<D: Scalar> Swing<'_, D> {
+    /// A phase in the general way.
+    fn swing(
+        &mut self,
+        flow: &Flow<D>,
+        phase: &Phase<D>,
+        recorder: &mut Recorder<D>,
+    ) -> Result<Ended<D>, SimulationError> {
         let path = self.position(flow, phase)?;
         let undisturbed = path.is_plainly_free() && !self.has_belt && phase.branch == Branch::Only;
         let found = match path.free() {
@@ -341,36 +355,13 @@ fn write<D: Scalar>(
     end: f64,
     recorder: &mut Recorder<D>,
 ) -> Result<(), SimulationError> {
-    let (Some(powers), Some(decaying)) = (powers, path.free()) else {
+    let (Some(powers), Some((decay, free))) = (powers, path.free()) else {
         return recorder.samples(end, |time| path.state(-start + time));
     };
     let first = recorder.written;
-    write_free(powers, decaying, path.constant, start, end, recorder)?;
+    powers.write(recorder, end, decay, (path.constant, free), start)?;
     if !path.is_free() {
         add_forced(path, start, first, recorder)?;
-    }
-    Ok(())
-}
-
-/// Writes the samples of the free decay about `centre`, counted from `start`, that come before `end`.
-fn write_free<D: Scalar>(
-    powers: &Powers,
-    (decay, free): (&Decay<D>, State<D>),
-    centre: D,
-    start: D,
-    end: f64,
-    recorder: &mut Recorder<D>,
-) -> Result<(), SimulationError> {
-    let stop = recorder.sampling.index_at_or_after(end);
-    while recorder.written < stop {
-        let anchor = recorder.sampling.time(recorder.written);
-        let at_anchor = decay.advance(free, -start + anchor);
-        if !(decay.reach(at_anchor) + centre.value().abs()).is_finite() {
-            return Err(SimulationError::NotFinite { time: anchor });
-        }
-        let count = powers.len().min(stop - recorder.written);
-        powers.write(recorder, count, decay, centre, at_anchor);
-        recorder.written += count;
     }
     Ok(())
 }

@@ -1,0 +1,18 @@
+//! Work for the widest vectors of the processor.
+
+use pulp::{Simd, WithSimd};
+
+/// Work to be compiled for the vectors that there are.
+///
+/// A bare closure is not enough: a function around it makes one call of it, and is compiled for any processor if it is long.
+pub(crate) struct Wide<F>(pub(crate) F);
+
+impl<R, F: FnMut() -> R> WithSimd for Wide<F> {
+    type Output = R;
+
+    #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, _: S) -> R {
+        (self.0)()
+    }
+}
