@@ -3,9 +3,9 @@
 use crate::solver::sums::{dot, sum_of_squares};
 use crate::solver::triangle::Triangle;
 
-/// Weight of the wish not to move along a direction that the residuals do not see, as a share of the least of those that they see (1). A
-/// step then gains all but its square of what there is.
-const WISH: f64 = 1e-3;
+/// Weight of the wish not to move along a direction that the residuals do not see, as a share of what a parameter moves them by (1): less
+/// than what they see of any direction that matters, and more than rounding.
+const WISH: f64 = 1e-6;
 
 /// Singular value decomposition `R S⁻¹ = U Σ Vᵀ` with `S` the column norms of `R`, by one-sided Jacobi rotations,
 /// which find small singular values to high relative accuracy.
@@ -76,11 +76,10 @@ impl Spectrum {
     /// has to be weaker than what the residuals say of any other.
     pub(crate) fn anchor(&self, rank: usize, anchored: &mut Triangle, block: &mut Vec<f64>) {
         let order = self.scales.len();
-        let wish = WISH * self.singular[..rank].last().unwrap_or(&1.0);
         block.clear();
         for j in 0..order {
             for (i, right) in self.right.iter().enumerate() {
-                let weight = if i < rank { self.singular[i] } else { wish };
+                let weight = if i < rank { self.singular[i] } else { WISH };
                 block.push(weight * right[j] * self.scales[j]);
             }
         }
