@@ -21,6 +21,7 @@ use ratio::print_ratio;
 mod solver {
     pub(crate) mod sums;
     pub(crate) mod triangle;
+    mod wide;
 }
 
 use solver::triangle::Triangle;

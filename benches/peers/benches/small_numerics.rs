@@ -22,6 +22,7 @@ mod solver {
     pub(crate) mod spectrum;
     pub(crate) mod sums;
     pub(crate) mod triangle;
+    mod wide;
 }
 #[path = "../../../crates/fmm-identify/src/estimators/banded.rs"]
 #[allow(dead_code, unused_imports, reason = "only parts are measured, and their tests do not run here")]
