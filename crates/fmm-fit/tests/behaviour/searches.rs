@@ -369,6 +369,37 @@ fn of_several_starts_the_best_is_finished() {
     ));
 }
 
+/// At first the fit that leads to the lower minimum is far behind the one that is at the other: half of the fits are given up, no more.
+#[test]
+fn a_fit_of_the_better_half_may_overtake_the_best() {
+    let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
+    let starts = [vec![5.0, 60.0], vec![5.0, 600.0], vec![5.0, 2000.0], vec![11.4, -0.9]];
+    let best = solve_best(&problem, &starts, &Options::default(), |_| ControlFlow::Continue(())).unwrap();
+    assert!((best.values()[0] - 5.0).abs() < 1e-9 && (best.values()[1] - 4.0).abs() < 1e-9, "{:?}", best.values());
+}
+
+/// Fits that have come to the same place by the first comparison, after six steps, are one from there on.
+#[test]
+fn fits_that_meet_go_on_as_one() {
+    let noisy = problem(&[FREE, FREE, FREE], 101, |p, i| {
+        let t = 0.1 * i as f64;
+        p[1] * (p[0] * t).cos() + p[2] * (p[0] * t).sin() - (3.0 * t + 0.4).sin() - 0.01 * ((i * 37 % 11) as f64 - 5.0)
+    });
+    let steps_from = |starts: &[Vec<f64>]| {
+        let mut steps = 0;
+        let count = |_: &Progress<'_>| {
+            steps += 1;
+            ControlFlow::Continue(())
+        };
+        solve_best(&noisy, starts, &Options::default(), count).unwrap();
+        steps
+    };
+    let start = vec![2.8, 1.0, 1.0];
+    let alone = steps_from(std::slice::from_ref(&start));
+    assert!(alone > 6, "{alone} steps say nothing");
+    assert_eq!(steps_from(&vec![start; 4]), alone + 3 * 6);
+}
+
 /// An observer that breaks ends all fits, and the best so far is given.
 #[test]
 fn an_observer_ends_all_fits() {
