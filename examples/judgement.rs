@@ -38,7 +38,7 @@ struct Arguments {
     /// List the cells, and stop
     #[arg(long)]
     list: bool,
-    /// Time fits by the laws of many shapes instead, on one thread
+    /// Time fits by the laws of many shapes instead, on all threads
     #[arg(long)]
     speed: bool,
 }

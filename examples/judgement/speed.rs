@@ -50,7 +50,7 @@ struct Scales {
 /// How two fits of a record have ended.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ended {
-    /// Processor time (s).
+    /// Time on all threads (s).
     seconds: f64,
     /// Trial steps of all searches.
     steps: usize,
@@ -128,28 +128,16 @@ impl Scales {
     }
 }
 
-/// Processor time of all threads so far (s), or that of the clock where the system does not tell.
-fn processor_seconds(begun: Instant) -> f64 {
-    let of_thread = |thread: std::fs::DirEntry| {
-        let text = std::fs::read_to_string(thread.path().join("schedstat")).ok()?;
-        text.split_whitespace().next()?.parse::<f64>().ok()
-    };
-    let threads = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
-    let nanoseconds: f64 = threads.filter_map(of_thread).sum();
-    if nanoseconds > 0.0 { 1e-9 * nanoseconds } else { begun.elapsed().as_secs_f64() }
-}
-
 /// Fits by a family as the crate begins them, and from the `truth`.
 fn fit<F: LawFamily>(terms: &Terms, decays: &[Experiment], truth: Option<&[f64]>) -> Found<Ended> {
     let machine = Machine::per_unit_mass();
     let (begun, mut steps) = (Instant::now(), 0);
-    let before = processor_seconds(begun);
     let mut count = |_: &Progress<'_>| {
         steps += 1;
         ControlFlow::Continue(())
     };
     let found = identify_observed::<F>(&machine, terms, decays, &Options::default(), &mut count)?;
-    let seconds = processor_seconds(begun) - before;
+    let seconds = begun.elapsed().as_secs_f64();
     let problem = Problem::with_terms::<F>(machine, terms.clone(), decays)?;
     let from = |truth: &[f64]| -> Found<f64> {
         let bounded = truth.iter().zip(problem.parameters()).map(|(value, parameter)| parameter.bounds().clamp(*value));

@@ -1,6 +1,10 @@
 //! Successive halving: fits from several starts, of which the worse are given up.
 
 use std::ops::ControlFlow;
+use std::sync::{Mutex, PoisonError};
+
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
 
 use crate::{Fit, FitError, Minimizer, Options, Outcome, Progress, Residuals};
 
@@ -47,7 +51,8 @@ const SAME: f64 = 0.1;
 /// ```
 ///
 /// `observer` is told of every trial step of every fit, and may end them all. Limits on iterations and evaluations hold for each fit,
-/// that on time for all together.
+/// that on time for all together. With the feature `rayon` the fits go on all threads of the current pool, with the same result; their
+/// steps are then told in any order.
 ///
 /// # Errors
 /// [`FitError`] of the last start if no fit can begin; [`FitError::NotStarted`] without starts.
@@ -55,56 +60,87 @@ const SAME: f64 = 0.1;
 /// # References
 /// K. Jamieson, A. Talwalkar, "Non-stochastic best arm identification and hyperparameter optimization", Proc. 19th Int. Conf. Artificial
 /// Intelligence and Statistics (2016) 240, <https://doi.org/10.48550/arXiv.1502.07943>.
-pub fn solve_best<P: Residuals + ?Sized>(
+pub fn solve_best<P: Residuals + Sync + ?Sized>(
     problem: &P,
     starts: &[Vec<f64>],
     options: &Options,
-    mut observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
+    observer: impl FnMut(&Progress<'_>) -> ControlFlow<()> + Send,
 ) -> Result<Fit, FitError> {
+    let watch = Watch(Mutex::new((observer, false)));
+    let begin = |start: &Vec<f64>| {
+        let mut fit = Minimizer::new(options.clone());
+        fit.begin(problem, start).map(|()| fit)
+    };
     let mut refused = FitError::NotStarted;
     let mut fits = Vec::with_capacity(starts.len());
-    for start in starts {
-        let mut minimizer = Minimizer::new(options.clone());
-        match minimizer.begin(problem, start) {
-            Ok(()) => fits.push(minimizer),
+    for begun in each(starts.iter().collect(), begin) {
+        match begun {
+            Ok(fit) => fits.push(fit),
             Err(error) => refused = error,
         }
     }
     let mut steps = FIRST;
     while fits.len() > 1 {
-        for fit in &mut fits {
-            if go(fit, problem, steps, &mut observer).is_break() {
-                return fits.into_iter().min_by(lower).map(Minimizer::into_fit).ok_or(refused);
-            }
+        fits = each(fits, |mut fit| {
+            go(&mut fit, problem, steps, &watch);
+            fit
+        });
+        if let Some(exact) = fits.iter().position(|fit| fit.outcome() == Some(Outcome::AtNoiseFloor)) {
+            return Ok(fits.swap_remove(exact).into_fit());
         }
         fits.sort_by(lower);
+        if watch.is_over() {
+            break;
+        }
         keep_distinct(&mut fits);
         fits.truncate(fits.len().div_ceil(2));
         steps *= 2;
     }
-    let Some(mut last) = fits.pop() else { return Err(refused) };
-    let _ = go(&mut last, problem, usize::MAX, &mut observer);
+    let Some(mut last) = fits.into_iter().next() else { return Err(refused) };
+    go(&mut last, problem, usize::MAX, &watch);
     Ok(last.into_fit())
 }
 
-/// Takes at most so many trial steps; a break if there is nothing to gain by any other fit, or if the observer says so.
-fn go<P: Residuals + ?Sized>(
+/// The observer of all fits, and whether it has ended them.
+struct Watch<F>(Mutex<(F, bool)>);
+
+impl<F: FnMut(&Progress<'_>) -> ControlFlow<()>> Watch<F> {
+    /// Tells the observer of a step, unless it has ended all fits already.
+    fn is_told_to_end(&self, progress: Progress<'_>) -> bool {
+        let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        state.1 = state.1 || (state.0)(&progress).is_break();
+        state.1
+    }
+
+    fn is_over(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).1
+    }
+}
+
+/// What `work` makes of each of `items`, in their order.
+fn each<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
+    #[cfg(feature = "rayon")]
+    return items.into_par_iter().with_max_len(1).map(work).collect();
+    #[cfg(not(feature = "rayon"))]
+    return items.into_iter().map(work).collect();
+}
+
+/// Takes at most so many trial steps, unless the observer ends all fits.
+fn go<P: Residuals + ?Sized, F: FnMut(&Progress<'_>) -> ControlFlow<()>>(
     fit: &mut Minimizer,
     problem: &P,
     steps: usize,
-    observer: &mut impl FnMut(&Progress<'_>) -> ControlFlow<()>,
-) -> ControlFlow<()> {
+    watch: &Watch<F>,
+) {
     for _ in 0..steps {
         if fit.outcome().is_some() {
             break;
         }
         let outcome = fit.iterate(problem);
-        if observer(&Progress::of(fit)).is_break() && outcome.is_none() {
+        if watch.is_told_to_end(Progress::of(fit)) && outcome.is_none() {
             fit.cancel(problem);
-            return ControlFlow::Break(());
         }
     }
-    if fit.outcome() == Some(Outcome::AtNoiseFloor) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 fn lower(one: &Minimizer, other: &Minimizer) -> std::cmp::Ordering {

@@ -142,10 +142,13 @@ pub fn identify_observed<F: LawFamily>(
     terms: &Terms,
     decays: &[Experiment],
     options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+    observer: &mut (dyn FnMut(&Progress<'_>) -> ControlFlow<()> + Send),
 ) -> Result<Identification, IdentifyError> {
     identify_by(Law::of::<F>(), machine, terms, decays, Begin::Anywhere, options, observer)
 }
+
+/// An observer of trial steps that may end the fit.
+pub(crate) type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + Send + 'a;
 
 /// Where a fit begins.
 #[derive(Clone, Copy)]
@@ -166,7 +169,7 @@ pub(crate) fn identify_by(
     decays: &[Experiment],
     begin: Begin<'_>,
     options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+    observer: &mut Observer<'_>,
 ) -> Result<Identification, IdentifyError> {
     let problem = Problem::of(law, *machine, terms.clone(), decays)?;
     let fit = match begin {

@@ -1,11 +1,16 @@
 //! The stages in which a fit is begun: with few samples, with a simple law, with a part of the record, or near another fit.
 
 use std::ops::ControlFlow;
+#[cfg(feature = "rayon")]
+use std::sync::Mutex;
 
-use fmm_fit::{Fit, Options, Outcome, Progress, Residuals, solve_best, solve_observed};
+use fmm_fit::{Fit, FitError, Options, Outcome, Progress, Residuals, solve_best, solve_observed};
 use fmm_friction::CoulombViscous;
 use fmm_model::Restoring;
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
 
+use crate::fit::identification::Observer;
 use crate::fit::problem::Problem;
 use crate::fit::response::Response;
 use crate::residuals::structure::ResidualStructure;
@@ -50,7 +55,7 @@ const BEGINNINGS: [f64; 2] = [0.125, 0.4];
 pub(crate) fn fit_in_stages(
     problem: &Problem<'_>,
     options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+    observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
     let thinned = problem.thinned();
     let few = thinned.as_ref().map(|thinned| problem.with_records(thinned));
@@ -80,7 +85,7 @@ pub(crate) fn fit_near(
     problem: &Problem<'_>,
     near: &Near<'_>,
     options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+    observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
     let simple = Problem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
     let mut starts = problem.near(&simple, near.simple.fit().values(), near.signs);
@@ -133,7 +138,7 @@ fn fit_with_shapes(
     simple: (&Problem<'_>, &[f64]),
     starts: &[Vec<f64>],
     options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+    observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
     let (search, problem) = (search.clone().bending_in_sight(), problem.clone().bending_in_sight());
     let options = &options.clone().with_max_iterations(options.max_iterations().min(MOST_FINAL));
@@ -145,7 +150,7 @@ fn fit_with_shapes(
         return Ok(fit);
     }
     let starts = starts.iter().map(|start| search.clamped(start)).collect();
-    let thorough = best_fit(&search, problem.name(), starts, options, observer)
+    let thorough = best_fit_of_all(&search, starts, options, observer)
         .and_then(|end| best_fit(&problem, problem.name(), vec![problem.clamped(end.values())], options, observer));
     Ok(thorough.ok().filter(|other| other.sum_of_squares() < fit.sum_of_squares()).unwrap_or(fit))
 }
@@ -157,7 +162,7 @@ fn fit_roughly(
     simple: (&Problem<'_>, &[f64]),
     starts: &[Vec<f64>],
     options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+    observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
     let mut starts: Vec<Vec<f64>> = starts.iter().map(|start| problem.clamped(start)).collect();
     if let Some(response) = Response::of(problem, simple.0, simple.1) {
@@ -175,11 +180,7 @@ fn rough(options: &Options) -> Options {
 }
 
 /// The best end of the fits from start values that the records show.
-fn fit_simple(
-    problem: &Problem<'_>,
-    options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
-) -> Result<Fit, IdentifyError> {
+fn fit_simple(problem: &Problem<'_>, options: &Options, observer: &mut Observer<'_>) -> Result<Fit, IdentifyError> {
     let mut starts = problem.starts();
     if problem.decays().iter().any(|decay| decay.drive().is_some()) {
         starts = lowest(problem, starts, MOST_DRIVEN_STARTS);
@@ -213,7 +214,7 @@ fn fit_with_corners(
     problem: &Problem<'_>,
     mut starts: Vec<Vec<f64>>,
     options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+    observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
     let most = options.max_iterations().min(MOST_WITH_CORNERS);
     let coarse = options.clone().with_cost_tolerance(ROUGH).with_polish_steps(0).with_max_iterations(most);
@@ -241,12 +242,38 @@ pub(crate) fn best_fit(
     law: &'static str,
     starts: Vec<Vec<f64>>,
     options: &Options,
-    observer: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+    observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
+    best(law, starts.iter().map(|start| solve_observed(problem, start, options, |progress| observer(progress))))
+}
+
+/// As [`best_fit`], with all fits at once.
+fn best_fit_of_all(
+    problem: &Problem<'_>,
+    starts: Vec<Vec<f64>>,
+    options: &Options,
+    observer: &mut Observer<'_>,
+) -> Result<Fit, IdentifyError> {
+    #[cfg(feature = "rayon")]
+    {
+        let observer = Mutex::new(observer);
+        let observe = |progress: &Progress<'_>| match observer.lock() {
+            Ok(mut observer) => observer(progress),
+            Err(_) => ControlFlow::Break(()),
+        };
+        let fits = starts.par_iter().with_max_len(1).map(|start| solve_observed(problem, start, options, observe));
+        best(problem.name(), fits.collect::<Vec<_>>())
+    }
+    #[cfg(not(feature = "rayon"))]
+    best_fit(problem, problem.name(), starts, options, observer)
+}
+
+/// The best of `fits`.
+fn best(law: &'static str, fits: impl IntoIterator<Item = Result<Fit, FitError>>) -> Result<Fit, IdentifyError> {
     let mut best: Option<Fit> = None;
     let mut failure = None;
-    for start in starts {
-        match solve_observed(problem, &start, options, |progress| observer(progress)) {
+    for fit in fits {
+        match fit {
             Ok(fit) if fit.outcome() == Outcome::AtNoiseFloor => return Ok(fit),
             Ok(fit) if best.as_ref().is_none_or(|best| fit.sum_of_squares() < best.sum_of_squares()) => {
                 best = Some(fit);

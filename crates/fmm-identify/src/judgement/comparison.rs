@@ -65,7 +65,7 @@ pub fn compare_observed(
     decays: &[Experiment],
     candidates: &[Candidate],
     options: &Options,
-    mut observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()>,
+    mut observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
 ) -> Result<Comparison, IdentifyError> {
     let mut fit = |decays: &[Experiment]| {
         let fitted = candidates.iter().map(|candidate| {

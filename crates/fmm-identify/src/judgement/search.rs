@@ -2,10 +2,11 @@
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use fmm_fit::{Options, Progress};
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
 
 use crate::fit::identification::closest;
 use crate::fit::stages::Near;
@@ -15,7 +16,7 @@ use crate::judgement::{Judgement, shortcomings};
 use crate::residuals::filtering::behind_filter;
 use crate::{Candidate, Comparison, Experiment, Identification, IdentifyError, Machine, Warning};
 
-/// How laws are searched for. The default tries as many as the record asks for, on two threads.
+/// How laws are searched for. The default tries as many as the record asks for, on all threads of the current rayon pool.
 ///
 /// ```
 /// use std::time::Duration;
@@ -25,18 +26,12 @@ use crate::{Candidate, Comparison, Experiment, Identification, IdentifyError, Ma
 /// let search = Search::default().within(Duration::from_secs(2));
 /// assert_eq!(search, Search::default().within(Duration::from_millis(2000)));
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Search {
     held: Vec<(Option<String>, String, f64)>,
     time_limit: Option<Duration>,
-    threads: usize,
-}
-
-impl Default for Search {
-    fn default() -> Self {
-        Self { held: Vec::new(), time_limit: None, threads: 2 }
-    }
+    threads: Option<usize>,
 }
 
 impl Search {
@@ -54,10 +49,10 @@ impl Search {
         Self { time_limit: Some(limit), ..self }
     }
 
-    /// The same on so many threads, at least one. The result does not depend on it.
+    /// The same on so many threads of its own, at least one; without the feature `rayon` there is one. The result does not depend on it.
     #[must_use]
     pub fn on_threads(self, threads: usize) -> Self {
-        Self { threads: threads.max(1), ..self }
+        Self { threads: Some(threads.max(1)), ..self }
     }
 
     /// The candidate of this name, with what is held.
@@ -171,8 +166,24 @@ pub fn search_observed(
     options: &Options,
     observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
 ) -> Result<Comparison, IdentifyError> {
-    let (observer, begun) = (Mutex::new(observer), Instant::now());
-    let run = Run { machine, decays, search, options, observer: &observer, begun };
+    let observer = Mutex::new(observer);
+    let run = Run { machine, decays, search, options, observer: &observer, begun: Instant::now() };
+    #[cfg(feature = "rayon")]
+    if let Some(threads) = search.threads {
+        // A system that grants no threads leaves those that there are.
+        if let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+            return pool.install(|| search_by(run));
+        }
+    }
+    search_by(run)
+}
+
+/// The search of `run`.
+fn search_by<F>(run: Run<'_, F>) -> Result<Comparison, IdentifyError>
+where
+    F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
+{
+    let Run { machine, decays, search, options, .. } = run;
     if !search.held.is_empty() {
         search.require_known(machine, decays)?;
     }
@@ -353,46 +364,32 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
         self.search.time_limit.is_some_and(|limit| self.begun.elapsed() >= limit)
     }
 
-    /// Fits the `candidates`, each a piece of work for whichever thread is idle. Those that are not begun near others must be there,
+    /// Fits the `candidates`. Those that are not begun near others must be there,
     /// whatever the time.
     fn fit(&self, candidates: Vec<Candidate>, near: Option<&Near<'_>>) -> Result<Found, IdentifyError> {
         let must = near.is_none();
         let mut found = Found::default();
-        let next = AtomicUsize::new(0);
-        let results: Vec<Mutex<Option<Result<Identification, IdentifyError>>>> =
-            candidates.iter().map(|_| Mutex::new(None)).collect();
-        let work = || {
-            loop {
-                let index = next.fetch_add(1, Ordering::Relaxed);
-                let Some(candidate) = candidates.get(index) else { break };
+        let fit = |candidate: &Candidate| {
+            if !must && self.is_late() {
+                return None;
+            }
+            let name = candidate.name();
+            let mut observe = |progress: &Progress<'_>| {
                 if !must && self.is_late() {
-                    break;
+                    return ControlFlow::Break(());
                 }
-                let name = candidate.name();
-                let mut observe = |progress: &Progress<'_>| {
-                    if !must && self.is_late() {
-                        return ControlFlow::Break(());
-                    }
-                    match self.observer.lock() {
-                        Ok(mut observer) => observer(&name, progress),
-                        Err(_) => ControlFlow::Break(()),
-                    }
-                };
-                let result = candidate.identify_near(self.machine, self.decays, near, self.options, &mut observe);
-                if let Ok(mut slot) = results[index].lock() {
-                    *slot = Some(result);
+                match self.observer.lock() {
+                    Ok(mut observer) => observer(&name, progress),
+                    Err(_) => ControlFlow::Break(()),
                 }
-            }
+            };
+            Some(candidate.identify_near(self.machine, self.decays, near, self.options, &mut observe))
         };
-        let threads = self.search.threads.min(candidates.len());
-        std::thread::scope(|scope| {
-            for _ in 1..threads {
-                scope.spawn(work);
-            }
-            work();
-        });
+        #[cfg(feature = "rayon")]
+        let results: Vec<_> = candidates.par_iter().with_max_len(1).map(fit).collect();
+        #[cfg(not(feature = "rayon"))]
+        let results: Vec<_> = candidates.iter().map(fit).collect();
         for (candidate, result) in candidates.into_iter().zip(results) {
-            let result = result.into_inner().ok().flatten();
             match result {
                 Some(Ok(identification)) if must || !self.is_late() || identification.fit().outcome().is_success() => {
                     found.candidates.push(candidate);

@@ -1,19 +1,14 @@
 //! A law that takes part in a comparison.
 
-use std::ops::ControlFlow;
-
-use fmm_fit::{Options, Progress};
+use fmm_fit::Options;
 use fmm_friction::{Coulomb, CoulombViscous, FamilyVisitor, LawFamily, SpecialCase, Viscous, catalogue, family_named};
 
-use crate::fit::identification::{Begin, identify_by};
+use crate::fit::identification::{Begin, Observer, identify_by};
 use crate::fit::layout::Layout;
 use crate::fit::stages::Near;
 use crate::law::Law;
 use crate::machine::terms::Term;
 use crate::{Experiment, Identification, IdentifyError, Machine, Terms};
-
-/// An observer of trial steps that may end the fit.
-pub(crate) type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
 
 /// A law family as a value, with terms beside it, so that laws can be chosen at run time and compared in one list.
 #[derive(Debug, Clone)]

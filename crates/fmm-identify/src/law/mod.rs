@@ -99,6 +99,12 @@ impl Law {
         matches!((self.kind)(), LawKind::Sliding | LawKind::PiecewiseLinear)
     }
 
+    /// Whether its motion has a closed form from event to event.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn is_piecewise_linear(&self) -> bool {
+        (self.kind)() == LawKind::PiecewiseLinear
+    }
+
     /// The same law with its static level fitted, as what it lies above the sliding level by.
     pub(crate) const fn with_breakaway(self) -> Self {
         Self { fits_breakaway: true, ..self }

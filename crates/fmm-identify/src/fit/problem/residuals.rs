@@ -4,9 +4,21 @@ use std::ops::Range;
 
 use fmm_fit::{Block, EvaluationError, Residuals};
 use fmm_model::Parameter;
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
 
 use super::Problem;
 use crate::law::DIRECTIONS;
+
+/// What one simulation with derivatives fills: the columns of a few directions of one record, and with the first of them its residuals
+/// and the column of its sensor's corner.
+struct Part<'o> {
+    record: usize,
+    first: usize,
+    columns: &'o mut [f64],
+    residuals: Option<&'o mut [f64]>,
+    by_corner: Option<&'o mut [f64]>,
+}
 
 impl Problem<'_> {
     /// That the motion follows the parameter at `index`, of this `value`, less steeply than any that can be fitted.
@@ -25,6 +37,64 @@ impl Problem<'_> {
         }
         let name = self.parameters[index].name();
         Err(EvaluationError::message(format!("the motion changes with {name} by leaps near {value:e}")))
+    }
+
+    /// Fills the columns of `record` that no simulation is needed for: those of the offset and of the disturbances. The one of the sensor's
+    /// corner, which is the last, is returned.
+    fn fill_beside<'o>(&self, record: usize, mut columns: &'o mut [f64]) -> Option<&'o mut [f64]> {
+        let decay = &self.decays[record];
+        let (rows, weight) = (decay.summary().samples, self.weights[record]);
+        if decay.fixed_offset().is_none() {
+            let column;
+            (column, columns) = columns.split_at_mut(rows);
+            column.fill(weight);
+        }
+        for shape in decay.shapes() {
+            let column;
+            (column, columns) = columns.split_at_mut(rows);
+            let kept = decay.kept().iter().flat_map(|range| &shape[range.clone()]);
+            column.iter_mut().zip(kept).for_each(|(out, shape)| *out = weight * shape);
+        }
+        Some(columns).filter(|columns| !columns.is_empty())
+    }
+
+    /// Fills all `parts`. What has no closed form takes long enough to be spread over threads; the result is the same.
+    fn differentiate(&self, p: &[f64], parts: Vec<Part<'_>>) -> Result<(), EvaluationError> {
+        #[cfg(feature = "rayon")]
+        if parts.len() > 1 && !self.law().is_piecewise_linear() {
+            let results: Vec<_> = parts.into_par_iter().map(|part| self.fill(p, part)).collect();
+            return results.into_iter().collect();
+        }
+        parts.into_iter().try_for_each(|part| self.fill(p, part))
+    }
+
+    /// Fills one part by a simulation.
+    fn fill(&self, p: &[f64], part: Part<'_>) -> Result<(), EvaluationError> {
+        let Part { record, first, columns, mut residuals, mut by_corner } = part;
+        let rows = self.decays[record].summary().samples;
+        let simulate = self.law().with_derivatives;
+        self.simulate(simulate, record, p, first, self.decays[record].kept(), |before, samples, inside, simulated| {
+            if let Some(residuals) = &mut residuals {
+                self.write_residuals(record, before, p, samples, &simulated.values()[inside.clone()], residuals);
+            }
+            if let (Some(out), Some(by_corner)) = (&mut by_corner, simulated.by_corner()) {
+                out[before..before + inside.len()].copy_from_slice(&by_corner[inside.clone()]);
+            }
+            for (direction, column) in columns.chunks_exact_mut(rows).enumerate() {
+                let Some(partial) = simulated.partial(direction) else { continue };
+                column[before..before + inside.len()].copy_from_slice(&partial[inside.clone()]);
+            }
+        })?;
+        for (direction, column) in (first..).zip(columns.chunks_exact(rows)) {
+            let index = self.layout.index(record, direction);
+            self.require_smooth(record, index, p[index], column)?;
+        }
+        let weight = self.weights[record];
+        if weight != 1.0 {
+            columns.iter_mut().for_each(|element| *element *= weight);
+            by_corner.into_iter().flatten().for_each(|element| *element *= weight);
+        }
+        Ok(())
     }
 
     /// Writes the residuals of `record`, which begin at `base`.
@@ -89,58 +159,22 @@ impl Residuals for Problem<'_> {
         jacobian: &mut [f64],
     ) -> Result<bool, EvaluationError> {
         jacobian.fill(0.0);
-        let mut elements = 0;
-        for (record, base) in self.bases() {
-            let rows = self.decays[record].summary().samples;
-            for first in (0..self.layout.directions(record)).step_by(DIRECTIONS) {
-                let carried = (self.layout.directions(record) - first).min(DIRECTIONS);
-                let kept = self.decays[record].kept();
-                self.simulate(
-                    self.law().with_derivatives,
-                    record,
-                    p,
-                    first,
-                    kept,
-                    |before, samples, inside, simulated| {
-                        if first == 0 && !residuals.is_empty() {
-                            let values = &simulated.values()[inside.clone()];
-                            self.write_residuals(record, base + before, p, samples, values, residuals);
-                        }
-                        if let (0, Some(by_corner)) = (first, simulated.by_corner()) {
-                            let start = elements + (self.blocks[record].parameters().len() - 1) * rows + before;
-                            jacobian[start..start + inside.len()].copy_from_slice(&by_corner[inside.clone()]);
-                        }
-                        for direction in 0..carried {
-                            let Some(partial) = simulated.partial(direction) else { continue };
-                            let start = elements + (first + direction) * rows + before;
-                            jacobian[start..start + inside.len()].copy_from_slice(&partial[inside.clone()]);
-                        }
-                    },
-                )?;
-                for direction in first..first + carried {
-                    let index = self.layout.index(record, direction);
-                    let column = &jacobian[elements + direction * rows..][..rows];
-                    self.require_smooth(record, index, p[index], column)?;
-                }
+        let (mut columns, mut values) = (jacobian, residuals);
+        let mut parts = Vec::new();
+        for (record, decay) in self.decays.iter().enumerate() {
+            let rows = decay.summary().samples;
+            let (own, others) = columns.split_at_mut(rows * self.blocks[record].parameters().len());
+            let (of_record, of_others) = values.split_at_mut(rows.min(values.len()));
+            (columns, values) = (others, of_others);
+            let (of_motion, beside) = own.split_at_mut(rows * self.layout.directions(record));
+            let by_corner = self.fill_beside(record, beside);
+            let (mut of_record, mut by_corner) = (Some(of_record).filter(|values| !values.is_empty()), by_corner);
+            for (number, columns) in of_motion.chunks_mut(DIRECTIONS * rows).enumerate() {
+                let (residuals, by_corner) = (of_record.take(), by_corner.take());
+                parts.push(Part { record, first: number * DIRECTIONS, columns, residuals, by_corner });
             }
-            if self.decays[record].fixed_offset().is_none() {
-                let start = elements + self.layout.directions(record) * rows;
-                jacobian[start..start + rows].fill(1.0);
-            }
-            let decay = &self.decays[record];
-            let beside = self.layout.directions(record) + usize::from(decay.fixed_offset().is_none());
-            for (column, shape) in decay.shapes().iter().enumerate() {
-                let start = elements + (beside + column) * rows;
-                let kept = decay.kept().iter().flat_map(|range| &shape[range.clone()]);
-                jacobian[start..start + rows].iter_mut().zip(kept).for_each(|(out, shape)| *out = *shape);
-            }
-            let end = elements + rows * self.blocks[record].parameters().len();
-            let weight = self.weights[record];
-            if weight != 1.0 {
-                jacobian[elements..end].iter_mut().for_each(|element| *element *= weight);
-            }
-            elements = end;
         }
+        self.differentiate(p, parts)?;
         Ok(true)
     }
 
