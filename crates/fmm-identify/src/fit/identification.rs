@@ -177,7 +177,7 @@ pub(crate) fn identify_by(
             fit_near(&problem.clone().bending_in_sight(), near, options, observer)?
         }
         Begin::Behind(plain) => {
-            best_fit(&problem, law.name, vec![problem.behind_sensors(plain.fit().values())], options, observer)?
+            best_fit(&problem, law.name, &[problem.behind_sensors(plain.fit().values())], options, observer)?
         }
         _ => fit_in_stages(&problem, options, observer)?,
     };

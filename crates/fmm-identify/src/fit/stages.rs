@@ -68,7 +68,7 @@ pub(crate) fn fit_in_stages(
         if Response::exists(search) {
             return fit_with_shapes(problem, search, (&simple, known.values()), &starts, options, observer);
         }
-        best_fit(search, problem.name(), starts, options, observer)?
+        best_fit(search, problem.name(), &starts, options, observer)?
     } else {
         fit_simple(search, options, observer)?
     };
@@ -76,7 +76,7 @@ pub(crate) fn fit_in_stages(
         return Ok(found);
     }
     // One fit of all samples, begun where a rough search or one with few of them has ended.
-    best_fit(problem, problem.name(), vec![found.values().to_vec()], options, observer)
+    best_fit(problem, problem.name(), &[found.values().to_vec()], options, observer)
 }
 
 /// The best end of the fits from the starts near a simple fit, or near one by another law, with few of the samples first. The latter
@@ -108,11 +108,11 @@ pub(crate) fn fit_near(
     if let Some(thinned) = problem.thinned() {
         let search = problem.with_records(&thinned);
         let found =
-            best_fit(&search, problem.name(), starts, options, &mut |progress| observe(progress, search.len()))?;
+            best_fit(&search, problem.name(), &starts, options, &mut |progress| observe(progress, search.len()))?;
         starts = vec![found.values().to_vec()];
         polish = polish.with_max_iterations(options.max_iterations().div_ceil(3));
     }
-    best_fit(problem, problem.name(), starts, &polish, &mut |progress| observe(progress, problem.len()))
+    best_fit(problem, problem.name(), &starts, &polish, &mut |progress| observe(progress, problem.len()))
 }
 
 /// Those of `starts` with the smallest sums of squares, at most `count`.
@@ -144,14 +144,14 @@ fn fit_with_shapes(
     let options = &options.clone().with_max_iterations(options.max_iterations().min(MOST_FINAL));
     let found = fit_roughly(&search, simple, starts, options, observer)?;
     let start = problem.clamped(found.values());
-    let fit = best_fit(&problem, problem.name(), vec![start], options, observer)?;
+    let fit = best_fit(&problem, problem.name(), &[start], options, observer)?;
     // Beside residuals that look like noise, no other minimum is lower by more than chance.
     if fit.outcome() == Outcome::AtNoiseFloor || !ResidualStructure::of(&fit, problem.decays()).is_correlated() {
         return Ok(fit);
     }
-    let starts = starts.iter().map(|start| search.clamped(start)).collect();
-    let thorough = best_fit_of_all(&search, starts, options, observer)
-        .and_then(|end| best_fit(&problem, problem.name(), vec![problem.clamped(end.values())], options, observer));
+    let starts: Vec<Vec<f64>> = starts.iter().map(|start| search.clamped(start)).collect();
+    let thorough = best_fit_of_all(&search, &starts, options, observer)
+        .and_then(|end| best_fit(&problem, problem.name(), &[problem.clamped(end.values())], options, observer));
     Ok(thorough.ok().filter(|other| other.sum_of_squares() < fit.sum_of_squares()).unwrap_or(fit))
 }
 
@@ -190,7 +190,7 @@ fn fit_simple(problem: &Problem<'_>, options: &Options, observer: &mut Observer<
     }
     if let Some(swinging) = problem.up_to_last_peaks() {
         let problem = problem.with_records(&swinging);
-        if let Ok(fit) = best_fit(&problem, problem.name(), problem.starts(), options, observer) {
+        if let Ok(fit) = best_fit(&problem, problem.name(), &problem.starts(), options, observer) {
             starts.push(fit.values().to_vec());
         }
     }
@@ -199,13 +199,13 @@ fn fit_simple(problem: &Problem<'_>, options: &Options, observer: &mut Observer<
         for share in BEGINNINGS {
             let beginning = problem.beginnings(share);
             let problem = problem.with_records(&beginning);
-            if let Ok(fit) = best_fit(&problem, problem.name(), std::mem::take(&mut begun), options, observer) {
+            if let Ok(fit) = best_fit(&problem, problem.name(), &std::mem::take(&mut begun), options, observer) {
                 begun.push(fit.values().to_vec());
             }
         }
         starts.extend(begun);
     }
-    best_fit(problem, problem.name(), starts, options, observer)
+    best_fit(problem, problem.name(), &starts, options, observer)
 }
 
 /// Where the fits from `starts` of a spring with corners go, near enough to begin the last one: all of them to few swings, the best of these
@@ -240,7 +240,7 @@ fn fit_with_corners(
 pub(crate) fn best_fit(
     problem: &impl Residuals,
     law: &'static str,
-    starts: Vec<Vec<f64>>,
+    starts: &[Vec<f64>],
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
@@ -250,7 +250,7 @@ pub(crate) fn best_fit(
 /// As [`best_fit`], with all fits at once.
 fn best_fit_of_all(
     problem: &Problem<'_>,
-    starts: Vec<Vec<f64>>,
+    starts: &[Vec<f64>],
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {

@@ -133,17 +133,17 @@ fn fit_in_stages(problem: &ImpactProblem<'_>, options: &ImpactOptions) -> Result
         // The best dry friction is a better begin for other laws than the closed form, which has errors of its own.
         let dry = ImpactOptions { band: options.band, ..ImpactOptions::default() };
         let dry = ImpactProblem::new::<Coulomb>(problem.machine(), problem.trials(), &dry)?;
-        if let Ok(fit) = best_fit(&dry, dry.law().name, dry.starts(coefficient), &options.solver, &mut observe) {
+        if let Ok(fit) = best_fit(&dry, dry.law().name, &dry.starts(coefficient), &options.solver, &mut observe) {
             coefficient = fit.values()[LAW];
         }
     }
     let starts = problem.starts(coefficient);
-    let found = best_fit(&band, name, starts.clone(), &options.solver, &mut observe);
+    let found = best_fit(&band, name, &starts, &options.solver, &mut observe);
     match (problem.domain(), found) {
         (ImpactDomain::Mobility, found) => found,
-        (_, Ok(found)) => best_fit(problem, name, vec![found.values().to_vec()], &options.solver, &mut observe),
+        (_, Ok(found)) => best_fit(problem, name, &[found.values().to_vec()], &options.solver, &mut observe),
         // A band of few lines may not determine what the time record does.
-        (_, Err(_)) => best_fit(problem, name, starts, &options.solver, &mut observe),
+        (_, Err(_)) => best_fit(problem, name, &starts, &options.solver, &mut observe),
     }
 }
 

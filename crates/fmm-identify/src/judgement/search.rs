@@ -167,23 +167,29 @@ pub fn search_observed(
     observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
 ) -> Result<Comparison, IdentifyError> {
     let observer = Mutex::new(observer);
-    let run = Run { machine, decays, search, options, observer: &observer, begun: Instant::now() };
+    let go = || search_here(machine, decays, search, options, &observer);
     #[cfg(feature = "rayon")]
     if let Some(threads) = search.threads {
         // A system that grants no threads leaves those that there are.
         if let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-            return pool.install(|| search_by(run));
+            return pool.install(go);
         }
     }
-    search_by(run)
+    go()
 }
 
-/// The search of `run`.
-fn search_by<F>(run: Run<'_, F>) -> Result<Comparison, IdentifyError>
+/// As [`search_observed`], in the current pool.
+fn search_here<F>(
+    machine: &Machine,
+    decays: &[Experiment],
+    search: &Search,
+    options: &Options,
+    observer: &Mutex<F>,
+) -> Result<Comparison, IdentifyError>
 where
     F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
 {
-    let Run { machine, decays, search, options, .. } = run;
+    let run = Run { machine, decays, search, options, observer, begun: Instant::now() };
     if !search.held.is_empty() {
         search.require_known(machine, decays)?;
     }

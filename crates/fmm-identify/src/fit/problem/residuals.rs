@@ -91,8 +91,9 @@ impl Problem<'_> {
         }
         let weight = self.weights[record];
         if weight != 1.0 {
-            columns.iter_mut().for_each(|element| *element *= weight);
-            by_corner.into_iter().flatten().for_each(|element| *element *= weight);
+            for element in columns.iter_mut().chain(by_corner.into_iter().flatten()) {
+                *element *= weight;
+            }
         }
         Ok(())
     }
