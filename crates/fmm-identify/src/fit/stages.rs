@@ -39,6 +39,9 @@ const MOST_WITH_CORNERS: usize = 100;
 /// Most iterations of one fit by a law with shapes. One that needs more creeps along a valley that the noise fills.
 const MOST_FINAL: usize = 300;
 
+/// The same where all starts are followed: which of them leads to the lowest minimum shows long before one has crept to its end.
+const MOST_THOROUGH: usize = 50;
+
 /// Starts that are taken from the linear response of a record, and those that are fitted of all, the nearest to the records.
 const MOST_FOLLOWED: usize = 3;
 const MOST_STARTS: usize = 4;
@@ -131,7 +134,7 @@ fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec
 }
 
 /// The fit of a law with shapes to free vibrations on a linear spring, begun from `starts` and near a `simple` fit, where a `search` with
-/// few of the samples ends. If its residuals do not look like noise, all starts are followed to their end, and the better of both is given.
+/// few of the samples ends. If its residuals do not look like noise, all starts are followed, and the better of both is given.
 fn fit_with_shapes(
     problem: &Problem<'_>,
     search: &Problem<'_>,
@@ -150,7 +153,8 @@ fn fit_with_shapes(
         return Ok(fit);
     }
     let starts: Vec<Vec<f64>> = starts.iter().map(|start| search.clamped(start)).collect();
-    let thorough = best_fit_of_all(&search, &starts, options, observer)
+    let thorough = options.clone().with_max_iterations(options.max_iterations().min(MOST_THOROUGH));
+    let thorough = best_fit_of_all(&search, &starts, &thorough, observer)
         .and_then(|end| best_fit(&problem, problem.name(), &[problem.clamped(end.values())], options, observer));
     Ok(thorough.ok().filter(|other| other.sum_of_squares() < fit.sum_of_squares()).unwrap_or(fit))
 }
