@@ -5,7 +5,7 @@ use fmm_model::{Bounds, Parameter, Scalar};
 use crate::expansion::{Expansion, is_whole, is_whole_with_derivatives, product, raise};
 use crate::family::law_family;
 use crate::power::power;
-use crate::{BristleLaw, LawError, LawFamily, LawParameter, Regime, Role};
+use crate::{BoucWenByLevel, BristleLaw, LawError, LawFamily, LawParameter, Regime, Role};
 
 /// The part of the bound within which the series of a power that is not whole is no good.
 const NEAR_ZERO: f64 = 0.2;
@@ -60,6 +60,7 @@ law_family! {
             return Err(LawError::NotDissipative { beta: beta.value(), gamma: gamma.value() });
         }
     }
+    fitted by BoucWenByLevel
     special cases [crate::SpecialCase::of("coulomb")]
 }
 

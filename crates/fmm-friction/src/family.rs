@@ -1,12 +1,13 @@
 //! A law as a family over its number types, and the vocabulary of its parameters.
 
 use alloc::borrow::ToOwned;
+use alloc::vec::Vec;
 use core::fmt::Debug;
 
 use fmm_model::{Bounds, Parameter, Scalar};
 
 use crate::kind::{KindOf, SteadyCoefficient};
-use crate::{LawError, LawKind, LawVisitor};
+use crate::{FamilyVisitor, LawError, LawKind, LawVisitor};
 
 /// Role of a parameter in the friction force. It says in which form the parameter remains when the normal
 /// load and the mass are unknown.
@@ -202,6 +203,13 @@ pub trait LawFamily: 'static {
         Self::visit(SteadyCoefficient { law, speed, losing })
     }
 
+    /// A family of the same laws by parameters that a fit finds in fewer steps; `None`, the default, for one that is fitted by its own. No
+    /// parameter of either may be a [`LevelAbove`](Role::LevelAbove) or a [`Breakaway`](Role::Breakaway).
+    fn recast<V: FamilyVisitor>(visitor: &mut V) -> Option<Recast<V::Output>> {
+        let _ = visitor;
+        None
+    }
+
     /// The `values` one by one, exactly as many as the law has parameters and each within its bounds: how
     /// [`at`](Self::at) of a law of one's own begins.
     ///
@@ -220,6 +228,15 @@ pub trait LawFamily: 'static {
     fn checked<const N: usize, D: Scalar>(values: &[D]) -> Result<[D; N], LawError> {
         checked(Self::PARAMETERS, exactly(Self::NAME, values)?)
     }
+}
+
+/// A family of the same laws as another one, by other parameters.
+#[derive(Debug, Clone, Copy)]
+pub struct Recast<O> {
+    /// What the visitor made of the family.
+    pub family: O,
+    /// Values of the other's parameters for values of its own.
+    pub values: fn(&[f64]) -> Result<Vec<f64>, LawError>,
 }
 
 /// A law at one number type: which type that is, and the family that it is a member of.
@@ -302,6 +319,7 @@ macro_rules! law_family {
 
         $(#[$new_doc:meta])*
         pub fn $new:ident { $($condition:tt)* }
+        $(fitted by $recast:ident)?
         $(special cases $cases:expr)?
     ) => {
         $(#[$law_doc])*
@@ -338,6 +356,12 @@ macro_rules! law_family {
             fn visit<D: Scalar, V: $crate::LawVisitor<D, $law<D>>>(visitor: V) -> V::Output {
                 visitor.$kind()
             }
+            $(
+                fn recast<V: $crate::FamilyVisitor>(visitor: &mut V) -> Option<$crate::Recast<V::Output>> {
+                    let values: fn(&[f64]) -> _ = |values| Ok($recast::at(values)?.values().to_vec());
+                    Some($crate::Recast { family: visitor.visit::<$recast>(), values })
+                }
+            )?
         }
 
         impl<D: Scalar> $crate::FamilyMember for $law<D> {

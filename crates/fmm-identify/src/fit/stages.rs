@@ -183,6 +183,11 @@ fn rough(options: &Options) -> Options {
     options.clone().with_cost_tolerance(ROUGH).with_polish_steps(0).with_restarts(0).with_max_iterations(most)
 }
 
+/// The `options` of a fit that is begun where another one has ended: one that needs many steps creeps.
+pub(crate) fn polishing(options: &Options) -> Options {
+    options.clone().with_max_iterations(options.max_iterations().min(MOST_ROUGH))
+}
+
 /// The best end of the fits from start values that the records show.
 fn fit_simple(problem: &Problem<'_>, options: &Options, observer: &mut Observer<'_>) -> Result<Fit, IdentifyError> {
     let mut starts = problem.starts();

@@ -9,7 +9,7 @@ pub(crate) mod naming;
 pub use candidate::Candidate;
 
 use fmm_fit::EvaluationError;
-use fmm_friction::{LawFamily, LawKind, LawParameter, Role, SpecialCase};
+use fmm_friction::{FamilyVisitor, LawFamily, LawKind, LawParameter, Recast, Role, SpecialCase};
 use fmm_model::{Dual, Oscillator, Scalar};
 use fmm_sim::{Excitation, Sampling, Scenario, Trajectory, simulate_into};
 
@@ -65,10 +65,23 @@ pub(crate) struct Law {
     pub(crate) with_derivatives: Simulate<Dual<DIRECTIONS>>,
     pub(crate) along: Along<f64>,
     pub(crate) along_with_derivatives: Along<Dual<DIRECTIONS>>,
+    /// The same laws by parameters that a fit finds in fewer steps.
+    pub(crate) recast: fn() -> Option<Recast<Self>>,
     kind: fn() -> LawKind,
     /// Whether static levels of their own are fitted.
     fits_breakaway: bool,
     steady: fn(&[f64], f64, bool) -> Option<f64>,
+}
+
+/// Makes values of families.
+struct Laws;
+
+impl FamilyVisitor for Laws {
+    type Output = Law;
+
+    fn visit<F: LawFamily>(&mut self) -> Law {
+        Law::of::<F>()
+    }
 }
 
 impl Law {
@@ -82,6 +95,7 @@ impl Law {
             with_derivatives: Motion::simulate::<F>,
             along: along::<F, f64>,
             along_with_derivatives: along::<F, Dual<DIRECTIONS>>,
+            recast: || F::recast(&mut Laws),
             kind: F::kind,
             fits_breakaway: false,
             steady: steady::<F>,

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fmm_friction::Role;
+use fmm_friction::{Recast, Role};
 use fmm_model::Bounds;
 use fmm_record::Quantity;
 
@@ -85,5 +85,20 @@ impl Problem<'_> {
             blocks: blocks(&self.layout, decays),
             weights: self.weights.clone(),
         }
+    }
+}
+
+impl<'a> Problem<'a> {
+    /// The same problem by parameters that a fit finds in fewer steps, and what makes of its values those of this problem; `None` for a law
+    /// without such parameters, and where one that only this problem has is held.
+    pub(crate) fn recast(&self) -> Option<(Self, impl Fn(&[f64]) -> Option<Vec<f64>> + use<'a>)> {
+        let Recast { family, values } = (self.law().recast)()?;
+        let recast = Self::of(family, self.machine, self.terms.clone(), self.decays).ok()?;
+        let of_law = recast.layout.law..recast.layout.shared;
+        let back = move |found: &[f64]| {
+            let own = values(&found[of_law.clone()]).ok()?;
+            Some([&found[..of_law.start], &own, &found[of_law.end..]].concat())
+        };
+        Some((recast, back))
     }
 }
