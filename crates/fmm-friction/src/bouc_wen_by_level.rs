@@ -38,8 +38,14 @@ impl LawFamily for BoucWenByLevel {
         LawParameter::positive("stiffness", "κ", "1/m", Role::Level).typically(50.0),
         LawParameter::positive("amplitude", "A", "1", Role::Shape),
         LawParameter::positive("coefficient", "μ", "1", Role::Level),
-        LawParameter::new(Parameter::new("unloading", "u", "1").bounded(Bounds::NOT_NEGATIVE.at_most(100.0)), Role::Shape),
-        LawParameter::new(Parameter::new("exponent", "n", "1").bounded(Bounds::POSITIVE.at_least(1.0).at_most(20.0)), Role::Shape),
+        LawParameter::new(
+            Parameter::new("unloading", "u", "1").bounded(Bounds::NOT_NEGATIVE.at_most(100.0)),
+            Role::Shape,
+        ),
+        LawParameter::new(
+            Parameter::new("exponent", "n", "1").bounded(Bounds::POSITIVE.at_least(1.0).at_most(20.0)),
+            Role::Shape,
+        ),
     ];
     type At<D: Scalar> = BoucWen<D>;
 

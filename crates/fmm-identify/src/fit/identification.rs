@@ -10,7 +10,7 @@ use crate::experiment::nuisance::Nuisance;
 use crate::experiment::scaled;
 use crate::fit::layout::Layout;
 use crate::fit::problem::Problem;
-use crate::fit::stages::{Near, best_fit, fit_in_stages, fit_near, polishing};
+use crate::fit::stages::{Begin, fit_begun};
 use crate::fit::tangent::Tangent;
 use crate::law::Law;
 use crate::law::naming::{Level, level_name};
@@ -150,17 +150,6 @@ pub fn identify_observed<F: LawFamily>(
 /// An observer of trial steps that may end the fit.
 pub(crate) type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + Send + 'a;
 
-/// Where a fit begins.
-#[derive(Clone, Copy)]
-pub(crate) enum Begin<'a> {
-    /// Wherever the records say.
-    Anywhere,
-    /// Near another fit.
-    Near(&'a Near<'a>),
-    /// Where a fit by the same law to the same records has ended, of which now the sensors filter.
-    Behind(&'a Identification),
-}
-
 /// As [`identify_observed`], by a law that is known at run time.
 pub(crate) fn identify_by(
     law: Law,
@@ -172,15 +161,7 @@ pub(crate) fn identify_by(
     observer: &mut Observer<'_>,
 ) -> Result<Identification, IdentifyError> {
     let problem = Problem::of(law, *machine, terms.clone(), decays)?;
-    let recast = problem.recast().filter(|_| !matches!(begin, Begin::Behind(_)));
-    let by_recast = recast.and_then(|(recast, back)| {
-        let found = fit_begun(&recast, begin, options, observer).ok()?;
-        best_fit(&problem, law.name, &[back(found.values())?], &polishing(options), observer).ok()
-    });
-    let fit = match by_recast {
-        Some(fit) => fit,
-        None => fit_begun(&problem, begin, options, observer)?,
-    };
+    let fit = fit_begun(&problem, begin, options, observer)?;
     // One instrument for all records; the worst statement counts.
     let gain = decays.iter().map(|decay| decay.summary().gain_uncertainty).fold(0.0, f64::max);
     let failure = |error: EvaluationError| IdentifyError::simulation(law.name, error);
@@ -231,24 +212,6 @@ pub(crate) fn identify_by(
         .warnings
         .extend(held.map(|held| Warning::StaticLevelHeld { parameter: held.parameter().name().to_owned() }));
     Ok(identification)
-}
-
-/// The best fit from where `begin` says.
-fn fit_begun(
-    problem: &Problem<'_>,
-    begin: Begin<'_>,
-    options: &Options,
-    observer: &mut Observer<'_>,
-) -> Result<Fit, IdentifyError> {
-    match begin {
-        Begin::Near(near) if !problem.has_spring() => {
-            fit_near(&problem.clone().bending_in_sight(), near, options, observer)
-        }
-        Begin::Behind(plain) => {
-            best_fit(problem, problem.name(), &[problem.behind_sensors(plain.fit().values())], options, observer)
-        }
-        _ => fit_in_stages(problem, options, observer),
-    }
 }
 
 /// By how many standard uncertainties the linear damping would leave the bound that it lies on; `None` if it lies on none.

@@ -26,6 +26,17 @@ pub(crate) struct Near<'a> {
     pub(crate) tries: usize,
 }
 
+/// Where a fit begins.
+#[derive(Clone, Copy)]
+pub(crate) enum Begin<'a> {
+    /// Wherever the records say.
+    Anywhere,
+    /// Near another fit.
+    Near(&'a Near<'a>),
+    /// Where a fit by the same law to the same records has ended, of which now the sensors filter.
+    Behind(&'a Identification),
+}
+
 /// Iterations after which a law that still fits worse than Coulomb and viscous friction is given up.
 const ENOUGH_TO_BE_BETTER: usize = 30;
 
@@ -38,6 +49,9 @@ const MOST_WITH_CORNERS: usize = 100;
 
 /// Most iterations of one fit by a law with shapes. One that needs more creeps along a valley that the noise fills.
 const MOST_FINAL: usize = 300;
+
+/// The same by parameters in which fits take few steps.
+const MOST_RECAST: usize = 100;
 
 /// The same where all starts are followed: which of them leads to the lowest minimum shows long before one has crept to its end.
 const MOST_THOROUGH: usize = 50;
@@ -53,13 +67,41 @@ const MOST_DRIVEN_STARTS: usize = 2;
 /// error of it adds up.
 const BEGINNINGS: [f64; 2] = [0.125, 0.4];
 
-/// The best end of the fits from all start values. Displacements are first fitted up to their last peak, and from
-/// there as a whole. Laws with more than a level and a viscous part continue the fit of one that has just these.
-pub(crate) fn fit_in_stages(
+/// The best fit from where `begin` says: by parameters in which it takes few steps, if the law has such, and from there on by its own.
+pub(crate) fn fit_begun(
     problem: &Problem<'_>,
+    begin: Begin<'_>,
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
+    if let Begin::Behind(plain) = begin {
+        return best_fit(problem, problem.name(), &[problem.behind_sensors(plain.fit().values())], options, observer);
+    }
+    let limited = |most: usize| options.clone().with_max_iterations(options.max_iterations().min(most));
+    let by_recast = problem.recast().and_then(|(recast, back)| {
+        let found = fit_by_own(&recast, begin, &limited(MOST_RECAST), observer).ok()?;
+        best_fit(problem, problem.name(), &[back(found.values())?], &limited(MOST_ROUGH), observer).ok()
+    });
+    by_recast.map_or_else(|| fit_by_own(problem, begin, options, observer), Ok)
+}
+
+fn fit_by_own(
+    problem: &Problem<'_>,
+    begin: Begin<'_>,
+    options: &Options,
+    observer: &mut Observer<'_>,
+) -> Result<Fit, IdentifyError> {
+    match begin {
+        Begin::Near(near) if !problem.has_spring() => {
+            fit_near(&problem.clone().bending_in_sight(), near, options, observer)
+        }
+        _ => fit_in_stages(problem, options, observer),
+    }
+}
+
+/// The best end of the fits from all start values. Displacements are first fitted up to their last peak, and from
+/// there as a whole. Laws with more than a level and a viscous part continue the fit of one that has just these.
+fn fit_in_stages(problem: &Problem<'_>, options: &Options, observer: &mut Observer<'_>) -> Result<Fit, IdentifyError> {
     let thinned = problem.thinned();
     let few = thinned.as_ref().map(|thinned| problem.with_records(thinned));
     let search = few.as_ref().unwrap_or(problem);
@@ -84,7 +126,7 @@ pub(crate) fn fit_in_stages(
 
 /// The best end of the fits from the starts near a simple fit, or near one by another law, with few of the samples first. The latter
 /// is given up if it stays worse than the simple fit.
-pub(crate) fn fit_near(
+fn fit_near(
     problem: &Problem<'_>,
     near: &Near<'_>,
     options: &Options,
@@ -181,11 +223,6 @@ fn fit_roughly(
 fn rough(options: &Options) -> Options {
     let most = options.max_iterations().min(MOST_ROUGH);
     options.clone().with_cost_tolerance(ROUGH).with_polish_steps(0).with_restarts(0).with_max_iterations(most)
-}
-
-/// The `options` of a fit that is begun where another one has ended: one that needs many steps creeps.
-pub(crate) fn polishing(options: &Options) -> Options {
-    options.clone().with_max_iterations(options.max_iterations().min(MOST_ROUGH))
 }
 
 /// The best end of the fits from start values that the records show.

@@ -3,9 +3,9 @@
 use fmm_fit::Options;
 use fmm_friction::{Coulomb, CoulombViscous, FamilyVisitor, LawFamily, SpecialCase, Viscous, catalogue, family_named};
 
-use crate::fit::identification::{Begin, Observer, identify_by};
+use crate::fit::identification::{Observer, identify_by};
 use crate::fit::layout::Layout;
-use crate::fit::stages::Near;
+use crate::fit::stages::{Begin, Near};
 use crate::law::Law;
 use crate::machine::terms::Term;
 use crate::{Experiment, Identification, IdentifyError, Machine, Terms};

@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 
 use fmm_fit::Options;
 
-use crate::fit::identification::{Begin, closest, identify_by};
+use crate::fit::identification::{closest, identify_by};
+use crate::fit::stages::Begin;
 use crate::{Experiment, Identification, Sensor, Warning};
 
 /// Order of the filter that is tried: that of most sensors with one.
