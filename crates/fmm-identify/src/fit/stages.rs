@@ -78,9 +78,9 @@ pub(crate) fn fit_begun(
         return best_fit(problem, problem.name(), &[problem.behind_sensors(plain.fit().values())], options, observer);
     }
     let limited = |most: usize| options.clone().with_max_iterations(options.max_iterations().min(most));
-    let by_recast = problem.recast().and_then(|(recast, back)| {
+    let by_recast = problem.recast().and_then(|recast| {
         let found = fit_by_own(&recast, begin, &limited(MOST_RECAST), observer).ok()?;
-        best_fit(problem, problem.name(), &[back(found.values())?], &limited(MOST_ROUGH), observer).ok()
+        best_fit(problem, problem.name(), &[problem.of_recast(found.values())?], &limited(MOST_ROUGH), observer).ok()
     });
     by_recast.map_or_else(|| fit_by_own(problem, begin, options, observer), Ok)
 }

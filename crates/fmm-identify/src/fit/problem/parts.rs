@@ -86,19 +86,19 @@ impl Problem<'_> {
             weights: self.weights.clone(),
         }
     }
-}
 
-impl<'a> Problem<'a> {
-    /// The same problem by parameters that a fit finds in fewer steps, and what makes of its values those of this problem; `None` for a law
-    /// without such parameters, and where one that only this problem has is held.
-    pub(crate) fn recast(&self) -> Option<(Self, impl Fn(&[f64]) -> Option<Vec<f64>> + use<'a>)> {
+    /// The same problem by parameters that a fit finds in fewer steps; `None` for a law without such parameters, and where one that only
+    /// this problem has is held.
+    pub(crate) fn recast(&self) -> Option<Self> {
+        let recast = (self.law().recast)()?;
+        Self::of(recast.family, self.machine, self.terms.clone(), self.decays).ok()
+    }
+
+    /// The values of this problem where those of the [recast](Self::recast) one have been `found`.
+    pub(crate) fn of_recast(&self, found: &[f64]) -> Option<Vec<f64>> {
         let Recast { family, values } = (self.law().recast)()?;
-        let recast = Self::of(family, self.machine, self.terms.clone(), self.decays).ok()?;
-        let of_law = recast.layout.law..recast.layout.shared;
-        let back = move |found: &[f64]| {
-            let own = values(&found[of_law.clone()]).ok()?;
-            Some([&found[..of_law.start], &own, &found[of_law.end..]].concat())
-        };
-        Some((recast, back))
+        let (before, rest) = found.split_at(self.layout.law);
+        let (of_law, own) = rest.split_at(family.fitted().count());
+        Some([before, &values(of_law).ok()?, own].concat())
     }
 }
