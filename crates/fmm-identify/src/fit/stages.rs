@@ -54,7 +54,7 @@ const MOST_FINAL: usize = 300;
 const MOST_RECAST: usize = 100;
 
 /// The same where all starts are followed: which of them leads to the lowest minimum shows long before one has crept to its end.
-const MOST_THOROUGH: usize = 50;
+const MOST_THOROUGH: usize = 100;
 
 /// Starts that are taken from the linear response of a record, and those that are fitted of all, the nearest to the records.
 const MOST_FOLLOWED: usize = 3;
