@@ -61,7 +61,7 @@ law_family! {
         }
     }
     fitted by BoucWenByLevel
-    special cases [crate::SpecialCase::of("coulomb")]
+    special cases [crate::SpecialCase::only("dahl", &[("exponent", 1.0)]), crate::SpecialCase::of("coulomb")]
 }
 
 impl<D: Scalar> BristleLaw<D> for BoucWen<D> {
