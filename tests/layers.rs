@@ -34,7 +34,7 @@ const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
     ),
     ("fmm-sim", &[PULP, THISERROR]),
     ("fmm-frf", &[PULP, THISERROR]),
-    ("fmm-identify", &[THISERROR]),
+    ("fmm-identify", &[("rayon", "takes derivatives, starts and laws of a fit on all threads"), THISERROR]),
     (
         "fmm-cli",
         &[

@@ -4,6 +4,7 @@ mod blows;
 mod budget;
 mod coverage;
 mod hysteresis;
+mod minima;
 mod profiles;
 mod records;
 mod recovery;
