@@ -110,8 +110,8 @@
 //! * A trial point without finite residuals is no error: the search goes less far, and [`Fit::non_finite`] says what it
 //!   was.
 //! * What is not determined has no uncertainty, but a direction in words.
-//! * The same problem, start and options give the same bits, a time limit aside, a [`MultiStart`] on any number of threads
-//!   as well.
+//! * The same problem, start and options give the same bits, a time limit aside, a [`MultiStart`] and [`solve_best`] on any
+//!   number of threads as well.
 //!
 //! # Cost
 //!
@@ -124,7 +124,7 @@
 //!
 //! All are off by default.
 //!
-//! * `rayon`: [`MultiStart`] on all threads of the current pool, with the same result.
+//! * `rayon`: [`MultiStart`] and [`solve_best`] on all threads of the current pool, with the same result.
 //! * `sampler`: the posterior of the parameters by the no-U-turn sampler of the crate nuts-rs, which brings faer along.
 //! * `serde`: [`Minimizer`] and [`BoundedLevenbergMarquardt`] can be stored between two steps, argmin's checkpoints among
 //!   them, and taken up again by `Minimizer::resume`.

@@ -27,7 +27,7 @@
 //! | rises with a power of the speed | [`PowerLaw`] | stick-slip: it creeps above its floor |
 //! | differs between growing and falling speed | [`AccelerationCoulomb`] (two levels), [`ExponentialPair`] (two curves) | smoothing |
 //! | a peak over a smooth curve | [`MakkarDixon`], [`RegularisedStribeck`]; [`Shifted`] makes the first stick | holding a load: without the shift they creep |
-//! | gives before it slides, path only | [`Dahl`], [`BoucWen`] (one state), [`MaxwellSlip`] (elements) | records that do not resolve some micrometres |
+//! | gives before it slides, path only | [`Dahl`], [`BoucWen`] or, by its level, [`BoucWenByLevel`] (one state), [`MaxwellSlip`] (elements) | records that do not resolve some micrometres |
 //! | gives, lags and falls | [`LuGre`], [`Gms`] | fits without constants held: seven parameters and more |
 //! | has to agree with another simulator | [`Karnopp`] (dead zone), [`Smoothed`] (any law times tanh) | anything else: their error grows with the zone |
 //!

@@ -72,7 +72,7 @@
 //! * Parameters that the record does not tell apart have no uncertainty, but a warning that names them. A static level of
 //!   its own is held, and a warning says so.
 //! * How a fit ends is in the result. Errors are for what does not let it begin.
-//! * The same records and options give the same bits.
+//! * The same records and options give the same bits, on any number of threads.
 //!
 //! # Cost
 //!
@@ -84,8 +84,10 @@
 //!
 //! # Features
 //!
-//! Both are off by default.
+//! `rayon` is on by default, the others are off.
 //!
+//! * `rayon`: the starts and derivatives of a fit by a law without a closed form, and the laws of a search, on all threads of the
+//!   current pool, with the same result.
 //! * `sampler`: the posterior of an identification, its intervals beside the others, and predictive checks.
 //! * `serde`: findings, comparisons and reports serialise.
 //!

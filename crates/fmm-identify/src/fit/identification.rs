@@ -133,7 +133,8 @@ pub fn identify_with<F: LawFamily>(
     identify_observed::<F>(machine, terms, decays, &Options::default(), &mut |_| ControlFlow::Continue(()))
 }
 
-/// As [`identify_with`], with options for the solver and an observer of every trial step, which may end the fit.
+/// As [`identify_with`], with options for the solver and an observer of every trial step, which may end the fit. Where fits from several starts go on
+/// several threads, it is told of their steps in any order.
 ///
 /// # Errors
 /// As for [`identify_with`].
