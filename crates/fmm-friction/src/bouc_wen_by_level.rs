@@ -16,11 +16,11 @@ use crate::{BoucWen, LawError, LawFamily, LawParameter, LawVisitor, Role};
 /// | κ | `stiffness` | 1/m | coefficient per z |
 /// | A | `amplitude` | 1 | slope of z over the displacement at z = 0 |
 /// | μ | `coefficient` | 1 | level of sliding |
-/// | u | `unloading` | 1 | by how much the loop is steeper when it turns back: straight for 0, as steep as it was flat for 1 (γ = 0) |
+/// | u | `unloading` | 1 | how the loop unloads: on a straight line for 0, with the bend of loading mirrored for 1 (γ = 0) |
 /// | n | `exponent` | 1 | sharpness of the bend, ≥ 1 |
 ///
 /// β and γ change by powers of ten with n where the loop stays as it is, and −β < γ ≤ β is no simple bound: fits by them creep. These
-/// parameters have simple bounds, and a fit by them takes a few steps. Beyond u = 100 and n = 20 loops look alike.
+/// parameters have simple bounds, and a fit by them takes a few steps. Those of u and n, 100 and 20, bound a search; [`BoucWen`] takes any.
 ///
 /// ```
 /// use fmm_friction::{BoucWenByLevel, LawFamily};
@@ -29,6 +29,9 @@ use crate::{BoucWen, LawError, LawFamily, LawParameter, LawVisitor, Role};
 /// assert_eq!(law.values(), [2e3, 1.0, 1e8, 0.0, 2.0]);
 /// # Ok::<(), fmm_friction::LawError>(())
 /// ```
+///
+/// # References
+/// The normalised form in M. Ismail, F. Ikhouane, J. Rodellar, doi 10.1007/s11831-009-9031-8, whose σ = β/(β + γ) is (1 + u)/2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BoucWenByLevel;
 

@@ -52,7 +52,7 @@ const SAME: f64 = 0.1;
 ///
 /// `observer` is told of every trial step of every fit, and may end them all. Limits on iterations and evaluations hold for each fit,
 /// that on time for all together. With the feature `rayon` the fits go on all threads of the current pool, with the same result; their
-/// steps are then told in any order.
+/// steps are then told in any order. An observer that itself waits for work of that pool may wait for ever.
 ///
 /// # Errors
 /// [`FitError`] of the last start if no fit can begin; [`FitError::NotStarted`] without starts.
@@ -66,7 +66,7 @@ pub fn solve_best<P: Residuals + Sync + ?Sized>(
     options: &Options,
     observer: impl FnMut(&Progress<'_>) -> ControlFlow<()> + Send,
 ) -> Result<Fit, FitError> {
-    let watch = Watch(Mutex::new((observer, false)));
+    let watch = Watch(Mutex::new(Some(observer)));
     let begin = |start: &Vec<f64>| {
         let mut fit = Minimizer::new(options.clone());
         fit.begin(problem, start).map(|()| fit)
@@ -101,19 +101,21 @@ pub fn solve_best<P: Residuals + Sync + ?Sized>(
     Ok(last.into_fit())
 }
 
-/// The observer of all fits, and whether it has ended them.
-struct Watch<F>(Mutex<(F, bool)>);
+/// The observer of all fits; none once it has ended them.
+struct Watch<F>(Mutex<Option<F>>);
 
 impl<F: FnMut(&Progress<'_>) -> ControlFlow<()>> Watch<F> {
     /// Tells the observer of a step, unless it has ended all fits already.
     fn is_told_to_end(&self, progress: Progress<'_>) -> bool {
-        let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        state.1 = state.1 || (state.0)(&progress).is_break();
-        state.1
+        let mut observer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if observer.as_mut().is_some_and(|observer| observer(&progress).is_break()) {
+            *observer = None;
+        }
+        observer.is_none()
     }
 
     fn is_over(&self) -> bool {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).1
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_none()
     }
 }
 

@@ -134,7 +134,7 @@ pub fn identify_with<F: LawFamily>(
 }
 
 /// As [`identify_with`], with options for the solver and an observer of every trial step, which may end the fit. Where fits from several starts go on
-/// several threads, it is told of their steps in any order.
+/// several threads, it is told of their steps in any order, and must not wait for work of the pool.
 ///
 /// # Errors
 /// As for [`identify_with`].

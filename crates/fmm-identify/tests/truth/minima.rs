@@ -5,7 +5,7 @@ use fmm_fit::{Options, Residuals, solve};
 use fmm_friction::{BoucWen, BoucWenByLevel, LawFamily};
 use fmm_identify::{Experiment, Identification, Machine, Problem, Terms, identify_with};
 
-use crate::records::{RELEASES, expected, machine, noisy, velocity};
+use crate::records::{NOISE, RELEASES, expected, machine, noisy, velocity};
 
 const SAMPLES: usize = 2000;
 
@@ -38,6 +38,18 @@ fn a_gradual_loop_is_found_as_from_the_truth() {
         // Values that the noise leaves open to half of their uncertainty move the sum by a quarter of the variance.
         assert!(own < theirs * (1.0 + 0.25 / problem.len() as f64), "seed {seed}: {own:e} above {theirs:e}\n{found}");
     }
+}
+
+/// γ = 0 is no value of the parameters in which steps are taken: what is held keeps its value, and the rest is found.
+#[test]
+fn a_loop_is_found_with_gamma_held() {
+    let law = BoucWenByLevel::at(&[2000.0, 1.0, 0.15, 1.0, 1.65]).unwrap().values();
+    let decays = [noisy(&velocity::<BoucWen>(machine(), &law, RELEASES[2], SAMPLES), 1)];
+    let terms = held().holding("gamma", 0.0).unwrap();
+    let found = identify_with::<BoucWen>(&Machine::per_unit_mass(), &terms, &decays).unwrap();
+    assert_eq!(found.fit().estimate("gamma").unwrap().value(), 0.0);
+    // Of 2000 residuals the root mean square scatters by 1.6 %.
+    assert!((found.rms_residual() / NOISE - 1.0).abs() < 0.05, "{found}");
 }
 
 /// Starts, derivatives and their order do not depend on which thread is idle.
