@@ -210,3 +210,18 @@ impl Candidate {
         Ok(parameters.iter().map(|parameter| parameter.name().to_owned()).collect())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bouc-Wen's law is Dahl's where the exponent of the latter is 1, and nowhere else.
+    #[test]
+    fn dahl_is_a_case_of_bouc_wen_with_exponent_one() {
+        let full = Candidate::named("bouc_wen+linear").unwrap().holding("amplitude", 1.0).unwrap();
+        let free = Candidate::named("dahl+linear").unwrap();
+        let [one, two] = [1.0, 2.0].map(|exponent| free.clone().holding("exponent", exponent).unwrap());
+        assert!(one.is_nested_in(&full));
+        assert!(!two.is_nested_in(&full) && !free.is_nested_in(&full) && !full.is_nested_in(&one));
+    }
+}
