@@ -11,6 +11,7 @@ mod profile;
 pub(crate) mod response;
 pub(crate) mod stages;
 pub(crate) mod tangent;
+pub(crate) mod threads;
 
 pub use identification::{FittedMotion, Identification, identify, identify_observed, identify_with};
 pub use machine_problem::MachineProblem;

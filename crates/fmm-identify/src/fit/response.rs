@@ -7,6 +7,7 @@ use fmm_sim::{Channels, Sampling, Trajectory};
 
 use crate::fit::problem::Problem;
 use crate::fit::tangent::inverse_of_products;
+use crate::fit::threads::on_all_threads;
 use crate::law::along::{Guide, MeasuredMotion, Place, places};
 use crate::machine::terms::Term;
 
@@ -138,9 +139,9 @@ impl<'a> Response<'a> {
             .with_jacobian_check(false);
         let layout = self.problem.layout();
         let of_law = layout.oscillator..layout.shared;
+        let fits = on_all_threads(starts.iter().collect(), |start| solve(self, &start[of_law.clone()], &options).ok());
         let mut ends: Vec<(f64, Vec<f64>)> = Vec::with_capacity(starts.len());
-        for start in starts {
-            let Ok(fit) = solve(self, &start[of_law.clone()], &options) else { continue };
+        for fit in fits.into_iter().flatten() {
             let square = fit.sum_of_squares();
             if ends.iter().any(|(other, _)| (square - other).abs() <= ENOUGH * other) {
                 continue;

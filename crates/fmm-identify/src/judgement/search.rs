@@ -5,11 +5,10 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use fmm_fit::{Options, Progress};
-#[cfg(feature = "rayon")]
-use rayon::prelude::*;
 
 use crate::fit::identification::closest;
 use crate::fit::stages::Near;
+use crate::fit::threads::on_all_threads;
 use crate::judgement::comparison::explains;
 use crate::judgement::sign::{Addition, Sign, signs};
 use crate::judgement::{Judgement, shortcomings};
@@ -391,10 +390,7 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
             };
             Some(candidate.identify_near(self.machine, self.decays, near, self.options, &mut observe))
         };
-        #[cfg(feature = "rayon")]
-        let results: Vec<_> = candidates.par_iter().with_max_len(1).map(fit).collect();
-        #[cfg(not(feature = "rayon"))]
-        let results: Vec<_> = candidates.iter().map(fit).collect();
+        let results = on_all_threads(candidates.iter().collect(), fit);
         for (candidate, result) in candidates.into_iter().zip(results) {
             match result {
                 Some(Ok(identification)) if must || !self.is_late() || identification.fit().outcome().is_success() => {

@@ -114,7 +114,6 @@ impl Law {
     }
 
     /// Whether its motion has a closed form from event to event.
-    #[cfg(feature = "rayon")]
     pub(crate) fn is_piecewise_linear(&self) -> bool {
         (self.kind)() == LawKind::PiecewiseLinear
     }

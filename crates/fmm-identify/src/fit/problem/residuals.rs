@@ -4,10 +4,9 @@ use std::ops::Range;
 
 use fmm_fit::{Block, EvaluationError, Residuals};
 use fmm_model::Parameter;
-#[cfg(feature = "rayon")]
-use rayon::prelude::*;
 
 use super::Problem;
+use crate::fit::threads::on_all_threads;
 use crate::law::DIRECTIONS;
 
 /// What one simulation with derivatives fills: the columns of a few directions of one record, and with the first of them its residuals
@@ -60,10 +59,8 @@ impl Problem<'_> {
 
     /// Fills all `parts`. What has no closed form takes long enough to be spread over threads; the result is the same.
     fn differentiate(&self, p: &[f64], parts: Vec<Part<'_>>) -> Result<(), EvaluationError> {
-        #[cfg(feature = "rayon")]
         if parts.len() > 1 && !self.law().is_piecewise_linear() {
-            let results: Vec<_> = parts.into_par_iter().map(|part| self.fill(p, part)).collect();
-            return results.into_iter().collect();
+            return on_all_threads(parts, |part| self.fill(p, part)).into_iter().collect();
         }
         parts.into_iter().try_for_each(|part| self.fill(p, part))
     }
