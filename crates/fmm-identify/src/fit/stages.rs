@@ -1,18 +1,16 @@
 //! The stages in which a fit is begun: with few samples, with a simple law, with a part of the record, or near another fit.
 
 use std::ops::ControlFlow;
-#[cfg(feature = "rayon")]
 use std::sync::Mutex;
 
 use fmm_fit::{Fit, FitError, Options, Outcome, Progress, Residuals, solve_best, solve_observed};
 use fmm_friction::CoulombViscous;
 use fmm_model::Restoring;
-#[cfg(feature = "rayon")]
-use rayon::prelude::*;
 
 use crate::fit::identification::Observer;
 use crate::fit::problem::Problem;
 use crate::fit::response::Response;
+use crate::fit::threads::on_all_threads;
 use crate::residuals::structure::ResidualStructure;
 use crate::{Identification, IdentifyError, Sign};
 
@@ -55,10 +53,11 @@ const MOST_RECAST: usize = 100;
 
 /// The same where all starts are followed: which of them leads to the lowest minimum shows long before one has crept to its end.
 const MOST_THOROUGH: usize = 100;
+const MOST_THOROUGH_STARTS: usize = 8;
 
 /// Starts that are taken from the linear response of a record, and those that are fitted of all, the nearest to the records.
-const MOST_FOLLOWED: usize = 3;
-const MOST_STARTS: usize = 4;
+const MOST_FOLLOWED: usize = 4;
+const MOST_STARTS: usize = 5;
 
 /// Starts of a driven motion that are fitted, those nearest to the records.
 const MOST_DRIVEN_STARTS: usize = 2;
@@ -194,7 +193,7 @@ fn fit_with_shapes(
     if fit.outcome() == Outcome::AtNoiseFloor || !ResidualStructure::of(&fit, problem.decays()).is_correlated() {
         return Ok(fit);
     }
-    let starts: Vec<Vec<f64>> = starts.iter().map(|start| search.clamped(start)).collect();
+    let starts = lowest(&search, starts.iter().map(|start| search.clamped(start)).collect(), MOST_THOROUGH_STARTS);
     let thorough = options.clone().with_max_iterations(options.max_iterations().min(MOST_THOROUGH));
     let thorough = best_fit_of_all(&search, &starts, &thorough, observer)
         .and_then(|end| best_fit(&problem, problem.name(), &[problem.clamped(end.values())], options, observer));
@@ -300,18 +299,13 @@ fn best_fit_of_all(
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
-    #[cfg(feature = "rayon")]
-    {
-        let observer = Mutex::new(observer);
-        let observe = |progress: &Progress<'_>| match observer.lock() {
-            Ok(mut observer) => observer(progress),
-            Err(_) => ControlFlow::Break(()),
-        };
-        let fits = starts.par_iter().with_max_len(1).map(|start| solve_observed(problem, start, options, observe));
-        best(problem.name(), fits.collect::<Vec<_>>())
-    }
-    #[cfg(not(feature = "rayon"))]
-    best_fit(problem, problem.name(), starts, options, observer)
+    let observer = Mutex::new(observer);
+    let observe = |progress: &Progress<'_>| match observer.lock() {
+        Ok(mut observer) => observer(progress),
+        Err(_) => ControlFlow::Break(()),
+    };
+    let fits = on_all_threads(starts.iter().collect(), |start| solve_observed(problem, start, options, observe));
+    best(problem.name(), fits)
 }
 
 /// The best of `fits`.

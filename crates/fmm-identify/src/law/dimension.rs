@@ -6,6 +6,9 @@ use fmm_model::Unit;
 use crate::IdentifyError;
 use crate::law::Law;
 
+/// What two parameters that stand for the same are multiplied and divided by to begin with.
+const APART: [f64; 5] = [3.0, 1.5, 1.0, 1.0 / 1.5, 1.0 / 3.0];
+
 /// The scales of the motion in a record, in its units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scales {
@@ -86,6 +89,34 @@ impl Law {
         parameter.role() != Role::Slope && (position, time) != (0.0, 0.0)
     }
 
+    /// Start values of its [fitted](Self::fitted) parameters: `start`, and others in which two that stand for the same lie apart. Where these
+    /// are equal, the law bends once instead of twice, no derivative tells the two, and a fit that comes near creeps.
+    pub(crate) fn apart(&self, start: &[f64]) -> Vec<Vec<f64>> {
+        let is_alike = |one: &LawParameter, other: &LawParameter| {
+            (one.typical(), one.parameter().unit()) == (other.typical(), other.parameter().unit())
+        };
+        let bends = |(_, parameter): &(usize, &LawParameter)| parameter.role() == Role::Shape && self.bends(parameter);
+        let shapes: Vec<_> = self.fitted().enumerate().filter(bends).collect();
+        let pairs = shapes
+            .iter()
+            .enumerate()
+            .flat_map(|(place, one)| shapes[place + 1..].iter().map(move |other| (one, other)));
+        let twins: Vec<_> =
+            pairs.filter(|(one, other)| is_alike(one.1, other.1)).map(|(one, other)| (one.0, other.0)).collect();
+        if twins.is_empty() {
+            return vec![start.to_vec()];
+        }
+        let moved = |factor: f64| {
+            let mut start = start.to_vec();
+            for (one, other) in &twins {
+                start[*one] *= factor;
+                start[*other] /= factor;
+            }
+            start
+        };
+        APART.map(moved).to_vec()
+    }
+
     /// The power of a record's gain to which `parameter` is proportional.
     pub(crate) fn power_of_gain(&self, parameter: &LawParameter) -> f64 {
         let force = if is_force(parameter.role()) || parameter.role() == Role::Slope { 1.0 } else { 0.0 };
@@ -160,6 +191,16 @@ mod tests {
             assert!((powers.at_speed(0.8) / wanted - 1.0).abs() < 1e-12, "{}", parameter.parameter().unit());
         }
         assert_eq!(law().powers(&ALL[4]).of_speed(), None);
+    }
+
+    #[test]
+    fn parameters_that_stand_for_the_same_begin_apart() {
+        let ratio = |start: Vec<f64>| start[1] / start[4];
+        let makkar_dixon = Law::of::<fmm_friction::MakkarDixon>().apart(&[0.1, 50.0, 3.0, 0.2, 50.0, 0.0]);
+        assert!(makkar_dixon.iter().all(|start| (start[0], start[2], start[3], start[5]) == (0.1, 3.0, 0.2, 0.0)));
+        let ratios: Vec<f64> = makkar_dixon.into_iter().map(ratio).collect();
+        assert!(ratios.iter().any(|ratio| *ratio > 2.0) && ratios.iter().any(|ratio| *ratio < 0.5), "{ratios:?}");
+        assert_eq!(Law::of::<CoulombViscous>().apart(&[0.1, 0.2]), [[0.1, 0.2]]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! threads.
 
 use fmm_fit::{Options, Residuals, solve};
-use fmm_friction::{BoucWen, BoucWenByLevel, LawFamily};
+use fmm_friction::{BoucWen, BoucWenByLevel, LawFamily, MakkarDixon};
 use fmm_identify::{Experiment, Identification, Machine, Problem, Terms, identify_with};
 
 use crate::records::{NOISE, RELEASES, expected, machine, noisy, velocity};
@@ -22,6 +22,18 @@ fn identified(decays: &[Experiment]) -> Identification {
     identify_with::<BoucWen>(&Machine::per_unit_mass(), &held(), decays).unwrap()
 }
 
+/// A fit from the truth, a law of these `values`, ends no lower than `found`.
+fn ends_as_from<F: LawFamily>(values: &[f64], terms: &Terms, decays: &[Experiment], found: &Identification) {
+    let problem = Problem::with_terms::<F>(Machine::per_unit_mass(), terms.clone(), decays).unwrap();
+    let mut start = found.fit().values().to_vec();
+    start[1..=values.len()].copy_from_slice(&expected::<F>(values));
+    let from_truth = solve(&problem, &start, &Options::default().with_max_iterations(1000)).unwrap();
+    let (own, theirs) = (found.fit().sum_of_squares(), from_truth.sum_of_squares());
+    println!("{own:e} beside {theirs:e} from the truth, {:?}", found.fit().outcome());
+    // Values that the noise leaves open to half of their uncertainty move the sum by a quarter of the variance.
+    assert!(own < theirs * (1.0 + 0.25 / problem.len() as f64), "{own:e} above {theirs:e}\n{found}");
+}
+
 /// β and γ of a bent loop lie in a valley along which a fit by them creeps: begun far away it is to end where one from the truth does, or
 /// lower.
 #[test]
@@ -29,14 +41,19 @@ fn a_gradual_loop_is_found_as_from_the_truth() {
     for seed in 1..=3 {
         let decays = [noisy(&velocity::<BoucWen>(machine(), &gradual(), RELEASES[2], SAMPLES), seed)];
         let found = identified(&decays);
-        let problem = Problem::with_terms::<BoucWen>(Machine::per_unit_mass(), held(), &decays).unwrap();
-        let mut start = found.fit().values().to_vec();
-        start[1..6].copy_from_slice(&expected::<BoucWen>(&gradual()));
-        let from_truth = solve(&problem, &start, &Options::default().with_max_iterations(1000)).unwrap();
-        let (own, theirs) = (found.fit().sum_of_squares(), from_truth.sum_of_squares());
-        println!("seed {seed}: {own:e} beside {theirs:e} from the truth, {:?}", found.fit().outcome());
-        // Values that the noise leaves open to half of their uncertainty move the sum by a quarter of the variance.
-        assert!(own < theirs * (1.0 + 0.25 / problem.len() as f64), "seed {seed}: {own:e} above {theirs:e}\n{found}");
+        ends_as_from::<BoucWen>(&gradual(), &held(), &decays, &found);
+    }
+}
+
+/// Where γ₂ and γ₅ are equal the law rises once instead of twice, and a fit that gets there creeps: one that began there ended 0.6 % above
+/// the truth in the first of these records.
+#[test]
+fn a_law_of_two_rises_is_found_as_from_the_truth() {
+    let law = [0.06, 300.0, 20.0, 0.15, 80.0, 0.01];
+    for seed in [2, 4] {
+        let decays = [noisy(&velocity::<MakkarDixon>(machine(), &law, RELEASES[2], SAMPLES), seed)];
+        let found = identify_with::<MakkarDixon>(&Machine::per_unit_mass(), &Terms::default(), &decays).unwrap();
+        ends_as_from::<MakkarDixon>(&law, &Terms::default(), &decays, &found);
     }
 }
 

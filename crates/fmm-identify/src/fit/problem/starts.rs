@@ -147,7 +147,7 @@ impl Problem<'_> {
                 let mut start = oscillator.to_vec();
                 self.push_dissipation(share, *sharpness, &mut start);
                 start.extend_from_slice(&values[simple.layout.shared..]);
-                starts.push(self.clamped(&start));
+                starts.extend(self.apart(&start));
             }
         }
         starts
@@ -213,6 +213,14 @@ impl Problem<'_> {
         };
         let starts: Vec<Vec<f64>> = starts.iter().map(continued).collect();
         curve.followed(&self.layout, &self.terms, &self.parameters, &starts)
+    }
+
+    /// The `start` with values of the law that lie [apart](crate::law::Law::apart), each within its bounds.
+    fn apart(&self, start: &[f64]) -> Vec<Vec<f64>> {
+        let of_law = self.layout.law..self.layout.shared;
+        let moved = |law: Vec<f64>| [&start[..of_law.start], &law, &start[of_law.end..]].concat();
+        let starts = self.law().apart(&start[of_law.clone()]).into_iter().map(moved);
+        starts.map(|start| self.clamped(&start)).collect()
     }
 
     /// Pushes start values of the damping beside the law and of the law.
