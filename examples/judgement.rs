@@ -41,6 +41,9 @@ struct Arguments {
     /// Time fits by the laws of many shapes instead, on all threads
     #[arg(long)]
     speed: bool,
+    /// With `--speed`: only records of the law that is fitted
+    #[arg(long, requires = "speed")]
+    own: bool,
 }
 
 /// Records a cell with `--quick`.
@@ -80,10 +83,11 @@ impl Arguments {
 /// Fits by the laws of many shapes: their time, and where they end.
 fn run_speed(arguments: &Arguments) -> Found<()> {
     let is_chosen = |name: &str| arguments.names.is_empty() || arguments.names.iter().any(|chosen| chosen == name);
-    let count = arguments.seeds.unwrap_or(FEW);
+    let count = arguments.seeds.unwrap_or(FEW) as usize;
     let mut fits = Vec::new();
     for law in speed::FITS.iter().filter(|law| is_chosen(law.name)) {
-        fits.push((law, (0..count).map(|record| law.run(record)).collect::<Found<Vec<_>>>()?));
+        let records = (0..).filter(|record| !arguments.own || law.is_own(*record)).take(count);
+        fits.push((law, records.map(|record| law.run(record)).collect::<Found<Vec<_>>>()?));
         if !arguments.json {
             eprint!("{}", speed::table(&fits[fits.len() - 1..]));
         }

@@ -157,10 +157,15 @@ impl Fits {
         Self { name, law, held, values, fit: fit::<F> }
     }
 
-    /// Both fits of record number `record`. Two in four are of a contact with Stribeck's curve and no presliding, which most laws cannot
-    /// describe.
+    /// Whether record number `record` is of the law. Two in four are of a contact with Stribeck's curve and no presliding, which most laws
+    /// cannot describe.
+    pub(crate) fn is_own(&self, record: u64) -> bool {
+        record % 4 < 2 || self.law == "stribeck"
+    }
+
+    /// Both fits of record number `record`.
     pub(crate) fn run(&self, record: u64) -> Found<Ended> {
-        let is_own = record % 4 < 2 || self.law == "stribeck";
+        let is_own = self.is_own(record);
         let (law, values): (_, fn(Scales, &mut Random) -> Vec<f64>) =
             if is_own { (self.law, self.values) } else { ("stribeck", stribeck) };
         let mut random = Random::of(&format!("speed/{law}"), record);
