@@ -133,7 +133,7 @@ mod tests {
         let by_speed = ("stribeck_speed".to_owned(), slowest, f64::INFINITY);
         let by_stiffness = ("contact_stiffness_per_mass".to_owned(), f64::MIN_POSITIVE, stiffest);
         assert_eq!(bounded_in_sight(&lugre), [by_speed.clone(), by_stiffness]);
-        // By a stiffness that is no longer per mass a machine is not compared with its own.
+        // Where the mass is found as well, a stiffness is no square of a frequency.
         let lugre = Problem::new::<LuGre>(Machine::unknown(), &decays).unwrap();
         assert_eq!(bounded_in_sight(&lugre), [by_speed]);
         let makkar = Problem::new::<MakkarDixon>(machine, &decays).unwrap();
