@@ -66,7 +66,7 @@ impl LawFamily for BoucWenByLevel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BristleLaw, Regime};
+    use crate::{BristleLaw, Coulomb, FamilyVisitor, Regime};
 
     /// The slopes that the documentation states, at half the way to the bound.
     #[test]
@@ -83,5 +83,24 @@ mod tests {
             assert!((rate(1.0) - 0.5 * (1.0 - share)).abs() < 1e-15, "{unloading}, {exponent}");
             assert!((rate(-1.0) + 0.5 * (1.0 + unloading * share)).abs() < 1e-14, "{unloading}, {exponent}");
         }
+    }
+
+    #[test]
+    fn bouc_wen_is_fitted_by_these_parameters() {
+        struct Names;
+        impl FamilyVisitor for Names {
+            type Output = &'static str;
+
+            fn visit<F: LawFamily>(&mut self) -> &'static str {
+                F::NAME
+            }
+        }
+        let recast = BoucWen::recast(&mut Names).unwrap();
+        assert_eq!(recast.family, BoucWenByLevel::NAME);
+        // β + γ = 1e8 1/m², β − γ half of it.
+        let values = (recast.values)(&[2e3, 1.0, 0.2, 0.5, 2.0]).unwrap();
+        assert_eq!(values, [2e3, 1.0, 7.5e7, 2.5e7, 2.0]);
+        assert!((recast.values)(&[2e3, 1.0, 0.2, -0.5, 2.0]).is_err(), "out of bounds");
+        assert!(Coulomb::recast(&mut Names).is_none());
     }
 }

@@ -184,4 +184,13 @@ mod tests {
         }
         assert!(!factors.factor(), "a singular matrix");
     }
+
+    #[test]
+    fn a_pivot_is_looked_for_in_its_own_column() {
+        let mut factors = Factors::default();
+        for (entry, value) in factors.matrix(3).iter_mut().zip([1.0, 0.0, 2.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0]) {
+            *entry = std::array::from_fn(|i| if i < SYSTEMS { value } else { 0.0 });
+        }
+        assert!(factors.factor(), "the second pivot is in the last row");
+    }
 }

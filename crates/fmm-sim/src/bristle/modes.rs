@@ -93,6 +93,8 @@ mod tests {
         let mut modes = Modes::<f64>::new(4);
         modes.jacobian_mut().copy_from_slice(&jacobian.concat());
         assert!(modes.factor(length));
+        assert_eq!([1, 2, 3].map(|component| modes.relaxation(component)), [0.3, 30.0, 8.0]);
+        assert_eq!(modes.stiffness(), 30.0);
         for (component, row) in jacobian.iter().enumerate() {
             let slopes = product(&INVERSE_COLUMNS, &known[component]);
             let right: Stages<f64> = std::array::from_fn(|stage| {

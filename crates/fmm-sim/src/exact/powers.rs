@@ -205,6 +205,8 @@ struct Wave<D> {
 
 #[cfg(test)]
 mod tests {
+    use fmm_model::Dual;
+
     use super::*;
 
     #[test]
@@ -220,5 +222,36 @@ mod tests {
             assert!((imaginary - envelope * sin).abs() < 5e-15, "power {j}");
         }
         assert_eq!(Powers::new(0.7, 13.8, 1e-3, 3).len(), STRIDE);
+    }
+
+    /// A wave whose decay, frequency, centre and parts depend on inputs alone and together, beside the formula at each sample.
+    #[test]
+    fn waves_have_the_derivatives_of_their_formula() {
+        type Number = Dual<4>;
+        let interval = 1e-2;
+        let number = |value: f64, slopes: [f64; 4]| {
+            let input = |direction: usize| Number::variable(0.0, direction) * slopes[direction];
+            (0..4).fold(Number::from(value), |sum, direction| sum + input(direction))
+        };
+        let rate = number(0.7, [1.0, 0.0, 0.0, 0.4]);
+        let angular = number(13.8, [0.0, 1.0, 0.0, -0.6]);
+        let offset = number(0.3, [0.1, 0.2, 1.0, 0.5]);
+        let (cosine, sine) = (number(0.9, [0.3, -0.2, 0.7, 1.1]), number(-0.4, [0.8, 0.6, -0.9, 1.3]));
+        let powers = Powers::new(0.7, 13.8, interval, 1000);
+        let mut samples = Samples::<Number>::new();
+        samples.reset(50).unwrap();
+        // Two whole strides and a part of one.
+        powers.write_wave(&mut samples, 5..45, &Wave { rate, angular, interval }, offset, cosine, sine);
+        for j in 0..40 {
+            let time = j as f64 * interval;
+            let (sin, cos) = (angular * time).sin_cos();
+            let expected = (-rate * time).exp() * (cosine * cos + sine * sin) + offset;
+            let got = samples.get(5 + j);
+            assert!((got.value() - expected.value()).abs() < 1e-13, "sample {j}: {got:?} in place of {expected:?}");
+            for direction in 0..4 {
+                let error = got.partial(direction) - expected.partial(direction);
+                assert!(error.abs() < 1e-13, "sample {j}: {got:?} in place of {expected:?}");
+            }
+        }
     }
 }

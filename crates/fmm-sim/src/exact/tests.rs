@@ -27,6 +27,20 @@ fn story(motion: &Trajectory) -> Vec<(EventKind, f64)> {
     motion.events().iter().map(|event| (event.kind, event.position)).collect()
 }
 
+/// x = x₀ e^(−at) (cos ωt + (a/ω) sin ωt), v = −x₀ (k/mω) e^(−at) sin ωt.
+#[test]
+fn without_friction_samples_are_those_of_the_closed_form() {
+    let motion = run(machine(0.4), Coulomb::new(0.0).unwrap(), 1.0, (0.5, 0.0)).unwrap();
+    let (rate, angular) = (0.2, 1.96f64.sqrt());
+    for (i, (x, v)) in motion.position().values().iter().zip(motion.velocity().values()).enumerate() {
+        let time = 0.01 * i as f64;
+        let (sin, cos) = (angular * time).sin_cos();
+        let envelope = 0.5 * (-rate * time).exp();
+        assert!((x - envelope * (cos + rate / angular * sin)).abs() < 1e-13, "{x} m at {time} s");
+        assert!((v + envelope * 2.0 / angular * sin).abs() < 1e-13, "{v} m/s at {time} s");
+    }
+}
+
 #[test]
 fn a_load_equal_to_the_static_level_holds() {
     for sign in [1.0, -1.0] {

@@ -341,7 +341,7 @@ mod tests {
     use crate::Preparation;
 
     /// Two velocity records of a machine of 2 Hz, c/m = 0.05 1/s, F/m = 0.3 m/s², of different length.
-    fn decays() -> Vec<Experiment> {
+    pub(super) fn decays() -> Vec<Experiment> {
         [(0.02, 2000), (0.025, 2300)]
             .map(|(position, samples)| {
                 let law = CoulombViscous::new(0.3, 0.05).unwrap();
@@ -356,17 +356,13 @@ mod tests {
             .to_vec()
     }
 
-    #[test]
-    fn derivatives_of_joint_records_are_those_of_differences() {
-        let decays = decays();
-        let problem = Problem::new::<CoulombViscous>(Machine::per_unit_mass(), &decays).unwrap();
-        // Off the bounds, so that differences have room.
-        let p: Vec<f64> = problem.starts()[0].iter().map(|value| value + 1e-3).collect();
+    /// That the derivatives at `p` are those of differences.
+    pub(super) fn require_derivatives(problem: &Problem<'_>, p: &[f64]) {
         let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
         let mut jacobian = vec![0.0; elements];
-        assert!(problem.jacobian(&p, &mut jacobian).unwrap());
+        assert!(problem.jacobian(p, &mut jacobian).unwrap());
         let at = |j: usize, by: f64| {
-            let mut moved = p.clone();
+            let mut moved = p.to_vec();
             moved[j] += by;
             let mut residuals = vec![0.0; problem.len()];
             problem.residuals(&moved, &mut residuals).unwrap();
@@ -390,6 +386,15 @@ mod tests {
             row += block.rows();
         }
         assert_eq!((row, columns.len()), (problem.len(), 0));
+    }
+
+    #[test]
+    fn derivatives_of_joint_records_are_those_of_differences() {
+        let decays = decays();
+        let problem = Problem::new::<CoulombViscous>(Machine::per_unit_mass(), &decays).unwrap();
+        // Off the bounds, so that differences have room.
+        let p: Vec<f64> = problem.starts()[0].iter().map(|value| value + 1e-3).collect();
+        require_derivatives(&problem, &p);
     }
 
     /// A law put beside another begins with its friction over the speed, and with its oscillator and initial state.

@@ -102,3 +102,85 @@ impl Problem<'_> {
         Some([before, &values(of_law).ok()?, own].concat())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fmm_fit::Residuals;
+    use fmm_friction::{BoucWen, BoucWenByLevel, Coulomb, LawFamily, LuGre, MakkarDixon};
+
+    use super::super::tests::decays;
+    use super::*;
+    use crate::{Machine, Terms};
+
+    /// Every parameter that is bounded otherwise in sight, with its lower and upper bound.
+    fn bounded_in_sight(problem: &Problem<'_>) -> Vec<(String, f64, f64)> {
+        let sight = problem.clone().bending_in_sight();
+        let pairs = sight.parameters().iter().zip(problem.parameters());
+        let bounded = pairs.filter(|(seen, before)| seen.bounds() != before.bounds()).map(|(seen, _)| {
+            let bounds = seen.bounds();
+            (seen.name().to_owned(), bounds.lower(), bounds.upper())
+        });
+        bounded.collect()
+    }
+
+    #[test]
+    fn laws_bend_in_sight() {
+        let decays = decays();
+        let slowest = 1e-4 * decays[0].scales().1;
+        let stiffest = 1e5 * (2.0 * PI * decays[0].guess().frequency()).powi(2);
+        let machine = Machine::per_unit_mass();
+        let lugre = Problem::new::<LuGre>(machine, &decays).unwrap();
+        let by_speed = ("stribeck_speed".to_owned(), slowest, f64::INFINITY);
+        let by_stiffness = ("contact_stiffness_per_mass".to_owned(), f64::MIN_POSITIVE, stiffest);
+        assert_eq!(bounded_in_sight(&lugre), [by_speed.clone(), by_stiffness]);
+        // Where the mass is found as well, a stiffness is no square of a frequency.
+        let lugre = Problem::new::<LuGre>(Machine::unknown(), &decays).unwrap();
+        assert_eq!(bounded_in_sight(&lugre), [by_speed]);
+        let makkar = Problem::new::<MakkarDixon>(machine, &decays).unwrap();
+        let below = |name: &str, lower: f64| (name.to_owned(), lower, slowest.recip());
+        let expected = [below("rise", f64::MIN_POSITIVE), below("fall", f64::MIN_POSITIVE), below("level_rise", 0.0)];
+        assert_eq!(bounded_in_sight(&makkar), expected);
+        // What is held keeps its value.
+        let held = Terms::default().holding("rise", 1e9).unwrap();
+        let makkar = Problem::with_terms::<MakkarDixon>(machine, held, &decays).unwrap();
+        assert_eq!(bounded_in_sight(&makkar), expected[1..]);
+    }
+
+    #[test]
+    fn each_record_has_its_beginning() {
+        let decays = decays();
+        let problem = Problem::new::<Coulomb>(Machine::per_unit_mass(), &decays).unwrap();
+        let beginnings = problem.beginnings(0.9);
+        assert_eq!(beginnings.len(), decays.len());
+        for (beginning, whole) in beginnings.iter().zip(&decays) {
+            let (got, expected) = (beginning.record().duration(), 0.9 * whole.record().duration());
+            assert!((got - expected).abs() <= whole.record().interval(), "{got} s in place of {expected} s");
+        }
+    }
+
+    #[test]
+    fn a_recast_problem_is_the_same_by_other_values() {
+        let decays = decays();
+        let machine = Machine::per_unit_mass();
+        let problem = Problem::new::<BoucWen>(machine, &decays).unwrap();
+        let recast = problem.recast().unwrap();
+        assert_eq!(recast.name(), BoucWenByLevel::NAME);
+        let law = [2000.0, 1.0, 0.3, 0.5, 1.65];
+        let mut found = recast.starts()[0].clone();
+        found[1..6].copy_from_slice(&law);
+        let values = problem.of_recast(&found).unwrap();
+        assert_eq!(values[1..6], BoucWenByLevel::at(&law).unwrap().values());
+        let residuals = |problem: &Problem<'_>, p: &[f64]| {
+            let mut residuals = vec![0.0; problem.len()];
+            problem.residuals(p, &mut residuals).unwrap();
+            residuals
+        };
+        assert_eq!(residuals(&problem, &values), residuals(&recast, &found));
+        assert!(Problem::new::<Coulomb>(machine, &decays).unwrap().recast().is_none());
+        let holding = |name: &str| {
+            let held = Terms::default().holding(name, 1.0).unwrap();
+            Problem::with_terms::<BoucWen>(machine, held, &decays).unwrap().recast().is_some()
+        };
+        assert!(holding("amplitude") && !holding("gamma"), "gamma is no parameter of the recast law");
+    }
+}

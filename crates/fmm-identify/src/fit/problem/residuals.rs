@@ -180,3 +180,95 @@ impl Residuals for Problem<'_> {
         &self.blocks
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fmm_friction::{CoulombViscous, Stribeck};
+    use fmm_model::Oscillator;
+    use fmm_record::{Quantity, Record};
+    use fmm_sim::{Engine, Exact, Sampling, Scenario};
+
+    use super::super::WINDOW;
+    use super::super::tests::require_derivatives;
+    use super::*;
+    use crate::experiment::nuisance::DRIFT;
+    use crate::{Experiment, Machine, Preparation, Sensor};
+
+    /// A velocity behind a filter whose corner is fitted, and a displacement that drifts, in more samples than are simulated at a time.
+    fn decays() -> Vec<Experiment> {
+        let record = |quantity: Quantity, unit: &'static str, interval: f64, count: usize| {
+            let law = CoulombViscous::new(0.3, 0.05).unwrap();
+            let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), law, 1.0).unwrap();
+            let sampling = Sampling::uniform(interval, count).unwrap();
+            let motion = Exact.run(&scenario.starting_at(0.02, 0.0).unwrap(), &sampling).unwrap();
+            let samples = if quantity == Quantity::Velocity { motion.velocity() } else { motion.position() };
+            // Without lines that a hum would have.
+            let noise = |i: usize| 1e-4 * (((i * i * 7919) % 10_007) as f64 / 10_007.0 - 0.5);
+            let values = samples.values().iter().enumerate().map(|(i, value)| value + noise(i)).collect();
+            let record = Record::new(0.0, interval, values, quantity, unit).unwrap();
+            Experiment::ring_down(&record, &Preparation::default()).unwrap()
+        };
+        let sensor = Sensor::default().with_free_low_pass(2).unwrap();
+        vec![
+            record(Quantity::Velocity, "m/s", 1e-3, 2000).seen_by(sensor).unwrap(),
+            record(Quantity::Displacement, "m", 3e-5, WINDOW + 1000).beside(DRIFT.to_vec()),
+        ]
+    }
+
+    /// Values of a curve that falls, offset and disturbances among them.
+    fn values(problem: &Problem<'_>) -> Vec<f64> {
+        let named = |parameter: &Parameter| match parameter.name() {
+            "natural_frequency_hz" => 2.01,
+            name if name.starts_with("offset") => 1e-3,
+            name if name.starts_with("drift") => 2e-3,
+            name if name.starts_with("initial_position") => 0.021,
+            name if name.starts_with("initial_velocity") => 1e-3,
+            name if name.contains("corner") => 40.0,
+            "exponent" => 1.5,
+            _ => 0.25,
+        };
+        problem.parameters().iter().map(named).collect()
+    }
+
+    #[test]
+    fn derivatives_behind_sensors_and_beside_drift_are_those_of_differences() {
+        let decays = decays();
+        let problem = Problem::new::<Stribeck>(Machine::per_unit_mass(), &decays).unwrap();
+        assert!(problem.weights[1] != 1.0 && problem.layout().directions(0) > DIRECTIONS);
+        require_derivatives(&problem, &values(&problem));
+    }
+
+    #[test]
+    fn residuals_are_the_model_less_the_record_by_weight() {
+        let decays = decays();
+        let problem = Problem::new::<Stribeck>(Machine::per_unit_mass(), &decays).unwrap();
+        let p = values(&problem);
+        let mut residuals = vec![f64::NAN; problem.len()];
+        problem.residuals(&p, &mut residuals).unwrap();
+        let mut left = residuals.as_slice();
+        for (record, decay) in decays.iter().enumerate() {
+            let model = problem.model(record, &p).unwrap();
+            for i in decay.kept().iter().cloned().flatten() {
+                let expected = (model[i] - decay.record().values()[i]) * problem.weights[record];
+                assert!((left[0] - expected).abs() < 1e-12, "{} in place of {expected}, record {record}, {i}", left[0]);
+                left = &left[1..];
+            }
+        }
+        assert!(left.is_empty());
+        let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
+        let mut beside = vec![f64::NAN; problem.len()];
+        assert!(problem.residuals_and_jacobian(&p, &mut beside, &mut vec![f64::NAN; elements]).unwrap());
+        assert_eq!(beside, residuals);
+    }
+
+    #[test]
+    fn a_motion_that_leaps_is_refused() {
+        let decays = decays();
+        let problem = Problem::new::<Stribeck>(Machine::per_unit_mass(), &decays).unwrap();
+        let steepest = 1e8 * decays[0].summary().amplitudes.0 / 4.0;
+        assert!(problem.require_smooth(0, 0, 4.0, &[0.0, -0.99 * steepest]).is_ok());
+        for derivative in [1.01 * steepest, -1.01 * steepest, f64::NAN] {
+            assert!(problem.require_smooth(0, 0, 4.0, &[0.0, derivative]).is_err(), "{derivative:e}");
+        }
+    }
+}
