@@ -18,13 +18,14 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
             Guard::Speed => {
                 let velocity = self.step.begin[1];
                 let speed = velocity - self.field.belt;
-                let shift = -(speed - speed.value()) / self.before[1].value();
+                let acceleration = self.before[1].value();
+                let shift = -(speed - speed.value()) / acceleration;
                 self.step.begin[1] = velocity - velocity.value() + self.field.belt.value();
                 let before = self.branch.direction;
                 let direction = self.departure(piece);
                 self.go(direction);
-                // A velocity that goes on as it came has only touched zero.
-                let grazing = grazing || direction == Some(before);
+                // A velocity that goes on as it came has only touched zero, and one that dies away on the bristles reaches it at no time.
+                let grazing = grazing || direction == Some(before) || acceleration == 0.0;
                 let kind = if direction.is_none() { EventKind::Stop } else { EventKind::Reversal };
                 self.pass(kind, piece, shift, grazing)
             }

@@ -354,3 +354,31 @@ fn imbalance<L: BristleLaw<f64>>(scenario: Scenario<f64, L>, force: Option<Excit
     let scenario = force.into_iter().fold(scenario, Scenario::driven_by);
     Bristle::default().run(&scenario, &sampling()).unwrap().energy_imbalance(&scenario).unwrap()
 }
+
+/// The velocity dies away on bristles with much damping until speed and acceleration are no more than rounding: some of these motions
+/// reach an acceleration of exactly zero, from which no time follows.
+#[test]
+fn a_motion_that_dies_away_on_its_bristles_comes_to_rest() {
+    type Number = Dual<2>;
+    let input = Number::variable;
+    for step in 0..60 {
+        let law = LuGre::new(
+            input(0.0127, 0),
+            Number::from(0.0171),
+            Number::from(9.84e-3),
+            Number::from(2.0),
+            Number::from(1843.0),
+            Number::from(76.8),
+            Number::from(0.0674),
+        );
+        let machine = Oscillator::per_unit_mass(Number::from(1.4)).unwrap();
+        let release = input(6.5e-3 + 1e-5 * f64::from(step), 1);
+        let scenario = Scenario::new(machine, law.unwrap(), Number::from(1.0)).unwrap();
+        let scenario = scenario.starting_at(release, Number::from(0.0)).unwrap();
+        let motion = Bristle::default().run(&scenario, &Sampling::uniform(4e-3, 2000).unwrap()).unwrap();
+        let (position, velocity) = (motion.position().get(1999), motion.velocity().get(1999));
+        assert!(velocity.value().abs() < 1e-12, "{velocity:?}");
+        // The resting place changes by about as much as the release, and less by the level.
+        assert!((0..2).all(|direction| position.partial(direction).abs() < 5.0), "{position:?}");
+    }
+}
