@@ -20,6 +20,10 @@ const DIFFERENCE: f64 = 1e-7;
 /// The part of its bound within which a state is near zero.
 const NEAR_ZERO: f64 = 1e-4;
 
+/// Tolerances (1) from its bound at which a bristle is at it. Where its rate has an infinite slope there, steps that are not implicit leave a
+/// value one or two short of it, and derivatives would grow from step to step.
+const AT_BOUND: f64 = 8.0;
+
 /// A speed (m/s) beyond all that a law may depend on.
 const FAST: f64 = 1e6;
 
@@ -139,7 +143,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         for index in 0..self.rate.len() {
             let bound = self.law.bound(index);
             let speed = self.mirror(branch, state);
-            let near = (self.mirrored[index] - bound).value().abs() <= tolerance * bound.value();
+            let near = (self.mirrored[index] - bound).value().abs() <= AT_BOUND * tolerance * bound.value();
             if self.saturated[index] || !near {
                 continue;
             }

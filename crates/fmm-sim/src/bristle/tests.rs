@@ -382,3 +382,27 @@ fn a_motion_that_dies_away_on_its_bristles_comes_to_rest() {
         assert!((0..2).all(|direction| position.partial(direction).abs() < 5.0), "{position:?}");
     }
 }
+
+/// With an exponent below 1 the bristle reaches its bound in finite time, and the slope of its rate there is infinite: derivatives stay those
+/// of a contact that slides.
+#[test]
+fn derivatives_stay_finite_where_bristles_saturate() {
+    type Number = Dual<3>;
+    let input = Number::variable;
+    for step in 0..40 {
+        let exponent = input(0.87 + 1e-3 * f64::from(step), 2);
+        let law = Dahl::new(input(0.1937, 0), input(13_544.0, 1), exponent).unwrap();
+        let machine = Oscillator::per_unit_mass(Number::from(2.3)).unwrap();
+        let scenario = Scenario::new(machine, law, Number::from(1.0)).unwrap();
+        let scenario = scenario.starting_at(Number::from(0.0183), Number::from(0.0)).unwrap();
+        let motion = Bristle::default().run(&scenario, &Sampling::uniform(1e-3, 1000).unwrap()).unwrap();
+        for index in 0..1000 {
+            let position = motion.position().get(index);
+            // Two shifts of the centre a swing by the level, of 5 mm each for a level of 1 m/s²; stiffness and exponent do less.
+            assert!(
+                (0..3).all(|input| position.partial(input).abs() < 0.1),
+                "{exponent:?}, sample {index}: {position:?}"
+            );
+        }
+    }
+}
