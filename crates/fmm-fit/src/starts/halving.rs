@@ -15,8 +15,8 @@ const SAME: f64 = 0.1;
 
 /// The best end of the fits from `starts`, of which most are given up early.
 ///
-/// All fits go a few steps; the better half goes twice as many, and so on until one is left, which is finished. Of fits that have come
-/// to the same place one goes on. The lowest minimum is missed if its fit is among the worse half at first; where that may be, give
+/// All fits go a few steps; half of them, the better ones, go twice as many, and so on until one is left, which is finished. Of fits that
+/// have come to the same place one goes on, and the next best takes the room of the others. The lowest minimum is missed if its fit is among the worse half at first; where that may be, give
 /// fewer starts, or [`solve`](crate::solve) each.
 ///
 /// ```
@@ -92,8 +92,9 @@ pub fn solve_best<P: Residuals + Sync + ?Sized>(
         if watch.is_over() {
             break;
         }
+        let most = fits.len().div_ceil(2);
         keep_distinct(&mut fits);
-        fits.truncate(fits.len().div_ceil(2));
+        fits.truncate(most);
         steps *= 2;
     }
     let Some(mut last) = fits.into_iter().next() else { return Err(refused) };

@@ -245,6 +245,7 @@ impl Layout {
             normal_load: D::from(experiment.load_factor()),
             initial: [values[self.shared], values[self.shared + 1]],
             force,
+            tolerance: None,
         })
     }
 }

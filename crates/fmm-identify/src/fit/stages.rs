@@ -184,7 +184,8 @@ fn fit_with_shapes(
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
-    let (search, problem) = (search.clone().bending_in_sight(), problem.clone().bending_in_sight());
+    let problem = problem.clone().bending_in_sight();
+    let search = search.clone().bending_in_sight().simulated_roughly();
     let options = &options.clone().with_max_iterations(options.max_iterations().min(MOST_FINAL));
     let found = fit_roughly(&search, simple, starts, options, observer)?;
     let start = problem.clamped(found.values());

@@ -116,6 +116,7 @@ impl ImpactProblem<'_> {
             normal_load: of_machine(3),
             initial: [D::from(0.0); 2],
             force: Some(Excitation::sampled_force(trial.interval(), force)?),
+            tolerance: None,
         };
         let (motion, all) = (trial.motion().len(), trial.velocity().len() - trial.begin());
         let sampling = Sampling::uniform(trial.interval(), all)?.keeping(Channels::Velocity);

@@ -29,6 +29,8 @@ pub(crate) struct Motion<D> {
     /// Position and velocity at the beginning.
     pub(crate) initial: [D; 2],
     pub(crate) force: Option<Excitation<D>>,
+    /// Relative tolerance (1) of an engine that integrates, if not the one that it has by itself.
+    pub(crate) tolerance: Option<f64>,
 }
 
 impl<D: Scalar> Motion<D> {
@@ -43,7 +45,7 @@ impl<D: Scalar> Motion<D> {
         if let Some(force) = &self.force {
             scenario = scenario.driven_by(force.clone());
         }
-        Ok(simulate_into::<F, _>(&scenario, sampling, None, trajectory)?)
+        Ok(simulate_into::<F, _>(&scenario, sampling, self.tolerance, trajectory)?)
     }
 }
 

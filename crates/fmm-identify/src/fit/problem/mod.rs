@@ -11,7 +11,7 @@ use crate::experiment::sight::{Seen, Sight};
 use crate::experiment::{Drive, scaled};
 use crate::fit::layout::Layout;
 use crate::law::naming::Units;
-use crate::law::{Law, Simulate};
+use crate::law::{Law, Motion, Simulate};
 use crate::machine::Scale;
 use crate::machine::terms::Term;
 use crate::{Experiment, IdentifyError, Machine, Terms};
@@ -37,6 +37,8 @@ pub struct Problem<'a> {
     blocks: Vec<Block>,
     /// By what the residuals of each record are multiplied.
     weights: Vec<f64>,
+    /// Relative tolerance (1) of simulations that integrate, if not the engine's own.
+    tolerance: Option<f64>,
 }
 
 /// Samples simulated at a time: memory beyond the solver's own stays below 4 MB however long the record.
@@ -94,7 +96,7 @@ impl<'a> Problem<'a> {
         let (layout, parameters) = Layout::of(law, &machine, &terms, decays)?;
         let blocks = blocks(&layout, decays);
         let weights = scaled(decays).map(|(_, weight)| weight).collect();
-        Ok(Self { machine, terms, decays, parameters, layout, blocks, weights })
+        Ok(Self { machine, terms, decays, parameters, layout, blocks, weights, tolerance: None })
     }
 
     fn law(&self) -> &Law {
@@ -134,15 +136,17 @@ impl<'a> Problem<'a> {
         &self.layout
     }
 
-    /// Shared values and initial state of `record` as numbers of type `D`, direction `first` being direction 0.
-    fn values<D: Scalar>(&self, record: usize, p: &[f64], first: usize) -> Vec<D> {
-        (0..self.layout.directions(record))
+    /// The motion of `record` in numbers of type `D`, direction `first` being direction 0.
+    fn motion<D: Scalar>(&self, record: usize, p: &[f64], first: usize) -> Result<Motion<D>, EvaluationError> {
+        let values: Vec<D> = (0..self.layout.directions(record))
             .map(|direction| {
                 let value = p[self.layout.index(record, direction)];
                 // A direction below `first` wraps to one that no number carries, which makes it a constant.
                 D::variable(value, direction.wrapping_sub(first))
             })
-            .collect()
+            .collect();
+        let motion = self.layout.motion(&self.machine, &self.terms, &self.decays[record], &values)?;
+        Ok(Motion { tolerance: self.tolerance, ..motion })
     }
 
     /// Simulates `record` by `simulate` once, window by window; `visit` gets, for each of `ranges` in a window, the number of
@@ -158,7 +162,7 @@ impl<'a> Problem<'a> {
     ) -> Result<(), EvaluationError> {
         let (Some(first_range), Some(last_range)) = (ranges.first(), ranges.last()) else { return Ok(()) };
         let decay = &self.decays[record];
-        let motion = self.layout.motion(&self.machine, &self.terms, decay, &self.values::<D>(record, p, first))?;
+        let motion = self.motion::<D>(record, p, first)?;
         let mut sight = Sight::of(decay, self.corner(record, p));
         let sampling = Sampling::uniform(decay.record().interval(), decay.record().len())?.keeping(sight.channels());
         let mut trajectory = Trajectory::new();
@@ -196,18 +200,14 @@ impl<'a> Problem<'a> {
         sampling: &Sampling,
         trajectory: &mut Trajectory,
     ) -> Result<(), EvaluationError> {
-        let values = self.values::<f64>(0, p, 0);
-        let motion = self.layout.motion(&self.machine, &self.terms, &self.decays[0], &values)?;
-        (self.law().plain)(&motion, sampling, trajectory)
+        (self.law().plain)(&self.motion(0, p, 0)?, sampling, trajectory)
     }
 
     /// The events of `record` up to its end.
     pub(crate) fn events(&self, record: usize, p: &[f64]) -> Result<Trajectory, EvaluationError> {
-        let values = self.values::<f64>(record, p, 0);
-        let motion = self.layout.motion(&self.machine, &self.terms, &self.decays[record], &values)?;
         let mut trajectory = Trajectory::new();
         let ends = Sampling::uniform(self.decays[record].record().duration(), 2)?.keeping(Channels::Position);
-        (self.law().plain)(&motion, &ends, &mut trajectory)?;
+        (self.law().plain)(&self.motion(record, p, 0)?, &ends, &mut trajectory)?;
         Ok(trajectory)
     }
 

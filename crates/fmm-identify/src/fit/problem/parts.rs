@@ -10,8 +10,9 @@ use super::{Problem, blocks};
 use crate::Experiment;
 use crate::experiment::reference;
 
-/// Samples of a record, and of each of its periods, that are enough to search with.
-const ENOUGH_SAMPLES: usize = 1500;
+/// Samples of a record, and of each of its periods, that are enough to search with. With fewer, a run takes as long, and the last fit begins
+/// farther from its end.
+const ENOUGH_SAMPLES: usize = 3000;
 const SAMPLES_PER_SWING: f64 = 24.0;
 
 impl Problem<'_> {
@@ -74,6 +75,12 @@ impl Problem<'_> {
         self
     }
 
+    /// The same problem for a search, with simulations to a relative tolerance of 1e-10: to that of the fit itself, motions by laws of the
+    /// sliding speed take twice as long.
+    pub(crate) fn simulated_roughly(self) -> Self {
+        Self { tolerance: Some(1e-10), ..self }
+    }
+
     /// The same problem with other records of the same kind and number.
     pub(crate) fn with_records<'b>(&self, decays: &'b [Experiment]) -> Problem<'b> {
         Problem {
@@ -84,6 +91,7 @@ impl Problem<'_> {
             layout: self.layout.clone(),
             blocks: blocks(&self.layout, decays),
             weights: self.weights.clone(),
+            tolerance: self.tolerance,
         }
     }
 
