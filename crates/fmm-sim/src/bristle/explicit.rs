@@ -64,9 +64,10 @@ impl<D: Scalar> Explicit<D> {
             return None;
         }
         let (mut error, mut stiffness) = (error, self.stiffness(motion, length));
-        if field.guided && self.is_settled(motion) {
+        if self.is_settled(motion) {
             stiffness = stiffness.max(length * self.return_rate(motion, field, branch, piece.force(time + length)));
-            // Along a path the values stay where they are however long the step, and move nothing, but derivatives and rounding grow in one that is not stable.
+            // The values stay where they are however long the step, and move nothing, but derivatives and rounding grow in one that is not
+            // stable.
             error = error.max((stiffness / STABLE).powi(ORDER));
         }
         let variation = self.variation(motion);
