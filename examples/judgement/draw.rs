@@ -12,7 +12,7 @@ use super::{Case, Found, Random, Setup, noise};
 pub(crate) struct Ranges {
     /// f₀ (Hz).
     pub(crate) frequency: (f64, f64),
-    /// Half cycles before the stop or the end (1).
+    /// Half swings before the stop or the end (1).
     pub(crate) half_cycles: (f64, f64),
     /// Amplitude over noise (1).
     pub(crate) signal_to_noise: (f64, f64),
@@ -42,7 +42,7 @@ const SAMPLES: (f64, f64) = (30.0, 500.0);
 /// Where a record ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum End {
-    /// After the stop, or after the half cycles drawn.
+    /// After the stop, or after the half swings drawn.
     Any,
     /// While it still moves.
     BeforeStop,
@@ -57,7 +57,7 @@ pub(crate) struct Drawn {
     pub(crate) stiffness: f64,
     pub(crate) damping: f64,
     pub(crate) release: f64,
-    /// Friction force (N) that a contact of one level has, so that the half cycles are as drawn.
+    /// Friction force (N) that a contact of one level has, so that the half swings are as drawn.
     pub(crate) friction: f64,
     half_cycles: f64,
     samples: f64,
@@ -65,7 +65,7 @@ pub(crate) struct Drawn {
 }
 
 /// Amplitude at the release by the deflection that friction holds, for a stop after `half_cycles`, with a share `left` (0 to 1) of
-/// that deflection, when damping takes the amplitude to a share `kept` each half cycle.
+/// that deflection, when damping takes the amplitude to a share `kept` each half swing.
 ///
 /// ```text
 /// A(j + 1) = A(j) q − δ (1 + q),    A(n) = left · δ

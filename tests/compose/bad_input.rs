@@ -79,7 +79,10 @@ fn numbers_that_are_not_finite() {
         assert!(error.to_string().starts_with("1 of 3 samples"), "{bad}: {error}");
     }
     let error = Record::new(0.0, 1.0, vec![0.0, f64::NAN], Quantity::Velocity, "m/s").unwrap_err();
-    assert_eq!(error.to_string(), "1 of 2 samples are not finite; the first is sample 1 (at 1 s)");
+    assert_eq!(
+        error.to_string(),
+        "1 of 2 samples is not finite; the first is sample 1 (at 1 s); cut the record there, or fill the gap"
+    );
 }
 
 #[test]

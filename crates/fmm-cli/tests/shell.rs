@@ -83,3 +83,49 @@ fn shells_and_man_know_every_command() {
         assert!(page.contains(".TH"), "{command}");
     }
 }
+
+/// Options that say something else than the file, or nothing that can be.
+#[test]
+fn what_is_wrong_is_named_with_what_would_be_right() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/data");
+    for (arguments, sentence) in [
+        ("identify flexure", "flexure is a folder; `fmm batch` takes the records in one"),
+        ("identify flexure/run_1.csv --law coulomb --mass nan", "--mass: known value must be finite"),
+        (
+            "identify flexure/run_1.csv --law coulomb --mass 1 --mass-u=-1",
+            "--mass: standard uncertainty must be zero or positive",
+        ),
+        (
+            "identify flexure/run_1.csv --law coulomb --rate 250",
+            "the 250 Hz of --rate were taken, though the file says 500 Hz",
+        ),
+        ("identify flexure/run_1.csv --force 1", "which is a unit of velocity, not of force; name another channel"),
+        (
+            "force damper_1Hz_36lb_1amplitude.csv --model coulomb --hold stribeck.exponent=2",
+            "--hold stribeck.exponent: stribeck is the law of no model",
+        ),
+    ] {
+        let words = arguments.split_whitespace();
+        let output = Command::new(env!("CARGO_BIN_EXE_fmm")).args(words).current_dir(&examples).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains(sentence), "{arguments}: {said}");
+    }
+    let stated = Command::new(env!("CARGO_BIN_EXE_fmm"))
+        .args(["identify", "flexure/run_1.csv", "--law", "coulomb", "--rate", "500"])
+        .current_dir(&examples)
+        .output()
+        .unwrap();
+    assert!(!String::from_utf8(stated.stderr).unwrap().contains("--rate"), "the same rate is no contradiction");
+}
+
+/// A parameter of one model is held, and the others, which do not have it, are fitted beside it.
+#[test]
+fn a_parameter_of_one_model_of_a_force_is_held() {
+    let output = Command::new(env!("CARGO_BIN_EXE_fmm"))
+        .args("force damper_1Hz_36lb_1amplitude.csv --model coulomb,dahl --hold dahl.exponent=1".split_whitespace())
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/data"))
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("by dahl, exponent = 1") && said.contains("Force along a motion by coulomb\n"), "{said}");
+}

@@ -135,7 +135,8 @@ fn signed(value: f64, decimals: usize) -> String {
 /// Six digits, short where the value is round.
 fn plain(value: f64) -> String {
     let magnitude = value.abs();
-    if magnitude == 0.0 {
+    // A value on a bound that excludes zero is the smallest number that is, and reads as zero.
+    if magnitude <= f64::MIN_POSITIVE {
         "0".to_owned()
     } else if (1e-3..1e6).contains(&magnitude) {
         let decimals = (5 - decade(magnitude)).max(0) as usize;
@@ -169,6 +170,7 @@ mod tests {
         let text = |value| Rounded::new(value, None).to_string();
         assert_eq!(text(0.27), "0.27");
         assert_eq!(text(1980.0), "1980");
+        assert_eq!(text(f64::MIN_POSITIVE), "0");
         assert_eq!(text(-1.234_567_89e-7), "-1.23457e-7");
         assert_eq!(format!("{:>6}|", Rounded::new(0.5, None)), "   0.5|");
     }

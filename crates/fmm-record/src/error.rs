@@ -158,7 +158,11 @@ impl RecordError {
 
     /// Samples that are not finite: `count` of `length`, the first of them at `time` (s).
     pub(crate) fn not_finite(index: usize, time: f64, count: usize, length: usize) -> Self {
-        let what = format!("{count} of {length} samples are not finite; the first is sample {index} (at {time} s)");
+        let are = if count == 1 { "is" } else { "are" };
+        let what = format!(
+            "{count} of {length} samples {are} not finite; the first is sample {index} (at {time} s); cut the \
+             record there, or fill the gap"
+        );
         Self::Values { index, what }
     }
 }

@@ -277,7 +277,10 @@ mod tests {
         assert!(matches!(record(&[]), Err(RecordError::Values { index: 0, .. })));
         let error = record(&[0.0, 1.0, f64::NAN, f64::INFINITY]).unwrap_err();
         assert!(matches!(error, RecordError::Values { index: 2, .. }));
-        assert_eq!(error.to_string(), "2 of 4 samples are not finite; the first is sample 2 (at 2 s)");
+        assert_eq!(
+            error.to_string(),
+            "2 of 4 samples are not finite; the first is sample 2 (at 2 s); cut the record there, or fill the gap"
+        );
         for interval in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(
                 Record::new(0.0, interval, vec![0.0], Quantity::Other, ""),

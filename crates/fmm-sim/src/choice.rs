@@ -14,7 +14,9 @@ use crate::{Bristle, Engine, Exact, RungeKutta, Sampling, Scenario, SimulationEr
 /// | any other of the sliding speed | any | [`RungeKutta`](crate::RungeKutta) |
 /// | with internal state, elements on a machine that is not linear among them | any | [`Bristle`](crate::Bristle) |
 ///
-/// [`Trajectory::engine`] says which was taken.
+/// [`Trajectory::engine`] says which was taken. A law of one's own needs [`LawFamily`] and [`FamilyMember`] beside its formula, which tell
+/// what kind of law it is; one that is a [`SlidingLaw`] or a [`BristleLaw`] and no more is moved by [`RungeKutta`](crate::RungeKutta) or
+/// [`Bristle`](crate::Bristle) directly.
 ///
 /// ```
 /// use fmm_friction::Stribeck;

@@ -110,7 +110,8 @@ impl Campaign {
         if columns.contains(&column) {
             return Ok(());
         }
-        Err(format!("there is no column `{column}`; there are {FILE}, {}", columns.join(", ")))
+        let known: Vec<&str> = std::iter::once(FILE).chain(columns).collect();
+        Err(format!("there is no column `{column}`; there are {}", known.join(", ")))
     }
 
     /// What describes the records.

@@ -92,6 +92,15 @@ fn shared(quantity: &Quantity) -> String {
     format!(" (of u shared by records: {:.1e}{unit} by {})", quantity.shared_u, sources.join(", "))
 }
 
+/// Name, value, uncertainty and unit.
+fn named_value(told: &Told) -> String {
+    let value = Rounded::new(told.value, told.u);
+    match told.unit.as_str() {
+        "1" => format!("{} = {value}", told.name),
+        unit => format!("{} = {value} {unit}", told.name),
+    }
+}
+
 /// What a joint fit said, in sentences.
 pub(super) fn joint_lines(summary: &Summary) -> Vec<String> {
     let together = match &summary.joint {
@@ -99,15 +108,7 @@ pub(super) fn joint_lines(summary: &Summary) -> Vec<String> {
         Some(Joint::Refused(why)) => return vec![format!("no joint fit: {why}")],
         Some(Joint::Found(together)) => together,
     };
-    let value = |told: &Told| {
-        let value = Rounded::new(told.value, told.u);
-        if told.unit == "1" {
-            format!("{} = {value}", told.name)
-        } else {
-            format!("{} = {value} {}", told.name, told.unit)
-        }
-    };
-    let values: Vec<String> = together.findings.iter().map(value).collect();
+    let values: Vec<String> = together.findings.iter().map(named_value).collect();
     let load = together.reference_load.map_or_else(String::new, |load| {
         format!(" (levels at a load of {load} N; the law is in proportion to it, linear damping beside the law is not)")
     });
@@ -172,10 +173,7 @@ pub(crate) fn text(rows: &[Row], summary: &Summary) -> String {
         // Writing to a string does not fail.
         let _ = match &row.outcome {
             Outcome::Found(found) => {
-                let values = names
-                    .iter()
-                    .filter_map(|quantity| row.told(*quantity))
-                    .map(|value| format!("{} = {} {}", value.name, Rounded::new(value.value, value.u), value.unit));
+                let values = names.iter().filter_map(|quantity| row.told(*quantity)).map(named_value);
                 let doubts = match found.warnings.len() {
                     0 => String::new(),
                     1 => "  (1 warning)".to_owned(),

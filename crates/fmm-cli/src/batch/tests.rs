@@ -71,6 +71,7 @@ fn any_split_gives_the_same_bytes() {
     std::fs::write(data.join("noise.bin"), [0_u8, 159, 146, 150]).unwrap();
     let campaign = Campaign::of_files(&[data], law()).unwrap();
     assert_eq!(campaign.entries.len(), 8);
+    assert!(campaign.require_column("lab").unwrap_err().ends_with("; there are file"));
     let done = |name: &str, parts: &[(usize, usize)]| {
         let out = home.join(name);
         campaign.keep(&out).unwrap();
@@ -143,6 +144,10 @@ fn a_manifest_sets_options_and_groups() {
     assert!(rows.iter().all(|row| page.contains(&row.file.display().to_string())) && !page.contains("http"));
     let text = table::text(&rows, &summary);
     assert!(text.contains("4 of 5 records identified") && text.contains("by 2 groups: s_r ="), "{text}");
+    assert!(
+        !text.lines().any(|line| line.split(", ").any(|value| value.ends_with(" 1"))),
+        "a number has no unit: {text}"
+    );
 
     let missing = Campaign::of_manifest(&manifest, law(), Some("lab".to_owned())).unwrap_err().to_string();
     assert!(missing.contains("there is no column `lab`") && missing.contains("operator"), "{missing}");

@@ -10,6 +10,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use crate::figure::{self, Layer, Panel, Role, label};
+use crate::input::Held;
 use crate::output::{Output, drawn, print};
 use clap::Args;
 use fmm_identify::{
@@ -31,9 +32,9 @@ pub(crate) struct Arguments {
     /// with linear and asymmetry
     #[arg(long, value_delimiter = ',')]
     model: Vec<String>,
-    /// Hold a parameter at a value, in the unit in which it is fitted
-    #[arg(long, value_name = "NAME=VALUE", value_parser = held)]
-    hold: Vec<(String, f64)>,
+    /// Hold a parameter at a value, in the unit in which it is fitted, as in exponent=2; of one law alone as in stribeck.exponent=2
+    #[arg(long, value_name = "[LAW.]NAME=VALUE")]
+    hold: Vec<Held>,
     /// The longest delay between motion and force that is looked for, in s; twenty samples unless given
     #[arg(long, value_name = "SECONDS")]
     longest_delay: Option<f64>,
@@ -42,12 +43,6 @@ pub(crate) struct Arguments {
     validate: Vec<PathBuf>,
     #[command(flatten)]
     output: Output,
-}
-
-fn held(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or_else(|| format!("{text:?} is not NAME=VALUE"))?;
-    let value = value.trim().parse().map_err(|_| format!("{value:?} is no number"))?;
-    Ok((name.trim().to_owned(), value))
 }
 
 /// Models that are fitted unless others are given.
@@ -61,11 +56,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if models.is_empty() {
         models.extend(MODELS);
     }
+    let law_of = |model: &str| model.split(['+', ',']).next().unwrap_or_default().trim().to_owned();
+    let stray = |held: &&Held| held.law.as_ref().is_some_and(|law| models.iter().all(|model| law_of(model) != *law));
+    if let Some(Held { law: Some(law), name, .. }) = arguments.hold.iter().find(stray) {
+        return Err(format!("--hold {law}.{name}: {law} is the law of no model").into());
+    }
     let mut described = Vec::with_capacity(models.len());
-    for name in models {
+    for name in &models {
         let mut model = ForceModel::named(name)?;
-        for (parameter, value) in &arguments.hold {
-            model = model.holding(parameter, *value)?;
+        let is_meant = |held: &&Held| held.law.as_ref().is_none_or(|law| law_of(name) == *law);
+        for held in arguments.hold.iter().filter(is_meant) {
+            model = model.holding(&held.name, held.value)?;
         }
         if let Some(longest) = arguments.longest_delay {
             model = model.with_delay_up_to(longest)?;

@@ -14,7 +14,7 @@ use fmm_frf::{BackboneOptions, IsolatedMode, decay_modes};
 use fmm_identify::Preparation;
 use fmm_record::{Column, Quantity, Record, Request, WrittenUnit};
 
-pub(crate) use question::Question;
+pub(crate) use question::{Held, Question};
 use source::BUNDLED;
 pub(crate) use source::{Choice, Input};
 

@@ -2,6 +2,7 @@
 
 use std::error::Error;
 use std::ops::ControlFlow;
+use std::str::FromStr;
 use std::time::Duration;
 
 use clap::Args;
@@ -89,16 +90,16 @@ impl Question {
     /// The machine; of one whose driving force is measured, mass and stiffness may be unknown.
     fn machine(&self, force_is_measured: bool) -> Result<Machine, Box<dyn Error>> {
         let mut machine = match (self.mass, self.stiffness) {
-            (Some(mass), _) => Machine::of_mass(Known::new(mass, self.mass_u)?)?,
-            (None, Some(stiffness)) => Machine::of_stiffness(Known::new(stiffness, self.stiffness_u)?)?,
+            (Some(mass), _) => Machine::of_mass(known("--mass", mass, self.mass_u)?)?,
+            (None, Some(stiffness)) => Machine::of_stiffness(known("--stiffness", stiffness, self.stiffness_u)?)?,
             (None, None) if force_is_measured => Machine::unknown(),
             (None, None) => Machine::per_unit_mass(),
         };
         if let Some(damping) = self.damping {
-            machine = machine.with_damping(Known::new(damping, self.damping_u)?)?;
+            machine = machine.with_damping(known("--damping", damping, self.damping_u)?)?;
         }
         if let Some(load) = self.normal_load {
-            machine = machine.with_normal_load(Known::new(load, self.normal_load_u)?)?;
+            machine = machine.with_normal_load(known("--normal-load", load, self.normal_load_u)?)?;
         }
         if let Some(length) = self.pendulum {
             machine = machine.with_restoring(Restoring::sine(length)?);
@@ -132,16 +133,7 @@ impl Question {
     }
 
     fn held(&self) -> Result<Vec<Held>, Box<dyn Error>> {
-        let parse = |held: &String| {
-            let (name, value) =
-                held.split_once('=').ok_or("--hold wants NAME=VALUE or LAW.NAME=VALUE, such as exponent=2")?;
-            let value: f64 = value.trim().parse().map_err(|_| format!("--hold {held}: {value:?} is no number"))?;
-            let (law, name) = match name.split_once('.') {
-                Some((law, name)) => (Some(law.trim().to_owned()), name),
-                None => (None, name),
-            };
-            Ok(Held { law, name: name.trim().to_owned(), value })
-        };
+        let parse = |held: &String| held.parse().map_err(|error| format!("--hold {held}: {error}").into());
         self.hold.iter().map(parse).collect()
     }
 
@@ -252,9 +244,29 @@ impl Question {
     }
 }
 
+/// What is known of the machine by the option of this name.
+fn known(option: &str, value: f64, uncertainty: f64) -> Result<Known, String> {
+    Known::new(value, uncertainty).map_err(|error| format!("{option}: {error}"))
+}
+
 /// A parameter that is held, of one law or of all.
-struct Held {
-    law: Option<String>,
-    name: String,
-    value: f64,
+#[derive(Debug, Clone)]
+pub(crate) struct Held {
+    pub(crate) law: Option<String>,
+    pub(crate) name: String,
+    pub(crate) value: f64,
+}
+
+impl FromStr for Held {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, value) = text.split_once('=').ok_or("give NAME=VALUE or LAW.NAME=VALUE, such as exponent=2")?;
+        let value = value.trim().parse().map_err(|_| format!("{value:?} is no number"))?;
+        let (law, name) = match name.split_once('.') {
+            Some((law, name)) => (Some(law.trim().to_owned()), name),
+            None => (None, name),
+        };
+        Ok(Self { law, name: name.trim().to_owned(), value })
+    }
 }

@@ -53,8 +53,24 @@ impl Choice {
 
     /// Reads a file of any format.
     pub(crate) fn read(&self, path: &Path) -> Result<Input, Box<dyn Error>> {
+        if path.is_dir() {
+            return Err(format!("{} is a folder; `fmm batch` takes the records in one", path.display()).into());
+        }
         let (reading, file) = self.reading(|reader| reader.open(path))?;
-        self.input(path, &Label::from(&reading), &reading, file.warnings())
+        let mut warnings = file.warnings();
+        warnings.extend(self.other_rate(path, &reading));
+        self.input(path, &Label::from(&reading), &reading, warnings)
+    }
+
+    /// That the file states another sampling rate than the user.
+    fn other_rate(&self, path: &Path, reading: &Reading) -> Option<String> {
+        /// Relative difference that counts as one.
+        const OTHER: f64 = 1e-3;
+        let rate = self.rate?;
+        let file = Reader::default().open(path).ok()?;
+        let stated = file.channel(reading.channel.as_str()).ok()?.record.rate();
+        let is_other = (stated / rate - 1.0).abs() > OTHER;
+        is_other.then(|| format!("the {rate} Hz of --rate were taken, though the file says {stated} Hz"))
     }
 
     /// The channel that was named, or else the one that the request tells out, and its file.
@@ -75,7 +91,7 @@ impl Choice {
             None => file.choose(&self.request),
         };
         let reading = reading.map_err(|error| match error {
-            RecordError::Units(error) => with_remedy(error),
+            RecordError::Units(error) => self.with_remedy(error),
             error => error.into(),
         })?;
         Ok((reading, file))
@@ -89,7 +105,7 @@ impl Choice {
         reading: &Reading,
         warnings: Vec<String>,
     ) -> Result<Input, Box<dyn Error>> {
-        let meaning = self.request.meaning(label).map_err(with_remedy)?;
+        let meaning = self.request.meaning(label).map_err(|error| self.with_remedy(error))?;
         let is_motion =
             matches!(meaning.quantity, Quantity::Velocity | Quantity::Displacement | Quantity::Acceleration);
         if !is_motion && !self.is_drive {
@@ -107,10 +123,20 @@ impl Choice {
         let record = reading.record.scaled(meaning.factor, meaning.unit)?.with_quantity(meaning.quantity);
         Ok(Input { record, origin, warnings })
     }
+
+    /// The error, and what helps.
+    fn with_remedy(&self, error: MeaningError) -> Box<dyn Error> {
+        match &error {
+            _ if !self.is_drive => with_options(error),
+            // The options speak of the motion.
+            MeaningError::OtherQuantity { .. } => format!("{error}; name another channel").into(),
+            _ => format!("{error}; write the unit into the name of the channel, as in \"base [m/s^2]\"").into(),
+        }
+    }
 }
 
 /// The error, and the options that help.
-fn with_remedy(error: MeaningError) -> Box<dyn Error> {
+fn with_options(error: MeaningError) -> Box<dyn Error> {
     let remedy = match &error {
         MeaningError::UnknownUnit { .. } => {
             "give --unit, such as m/s, and --scale, the factor that turns the numbers into it".to_owned()

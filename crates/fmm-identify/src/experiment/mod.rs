@@ -89,7 +89,8 @@ impl Experiment {
         let limit = 0.5 * self.record.rate();
         if let Some(value) = sensor.low_pass().and_then(|(_, corner)| corner).filter(|corner| *corner > limit) {
             let subject = "the corner frequency of a sensor (Hz)";
-            return Err(IdentifyError::not_allowed(subject, value, "below half the sampling rate"));
+            let allowed = format!("below half the sampling rate, {limit} Hz");
+            return Err(IdentifyError::not_allowed(subject, value, &allowed));
         }
         if let Some(drive) = self.drive() {
             drive.require_delay(sensor.delay())?;

@@ -7,7 +7,9 @@ use fmm_fit::{Options, Progress, f_tail};
 use crate::fit::identification::closest;
 use crate::judgement::{Judgement, shortcomings};
 use crate::residuals::filtering::filtering_sensor;
-use crate::{Candidate, Experiment, Identification, IdentifyError, Machine, RecordSummary, Sign, Source, Warning};
+use crate::{
+    Candidate, Experiment, Finding, Identification, IdentifyError, Machine, RecordSummary, Sign, Source, Warning,
+};
 
 /// A law and the more general one that it was tested against.
 #[derive(Debug, Clone, PartialEq)]
@@ -159,7 +161,11 @@ fn tests(candidates: &[Candidate], identifications: &[Identification]) -> Vec<Ne
 fn misled(identifications: &[Identification], preferred: usize) -> Option<Warning> {
     /// Residuals that exceed those of the preferred law by this factor do not describe the record.
     const FAR: f64 = 2.0;
+    /// Times its standard uncertainty from which on a level is there.
+    const SHOWN: f64 = 2.0;
     let right = &identifications[preferred];
+    let is_shown = |level: &&Finding| level.uncertainty().is_some_and(|u| level.value() > SHOWN * u);
+    right.main_findings().into_iter().find(is_shown)?;
     // A law that was not fitted to its minimum misleads nobody.
     let friction = right.friction_at_rest().filter(|friction| *friction > 0.0)?;
     let ratio = |found: &Identification| found.friction_at_rest().map(|other| other / friction);

@@ -35,7 +35,7 @@ pub struct PredictiveCheck {
 }
 
 impl PredictiveCheck {
-    /// The feature: `"stop time"`, `"half cycles"` or `"decrement"`.
+    /// The feature: `"stop time"`, `"half swings"` or `"decrement"`.
     pub fn feature(&self) -> &str {
         self.feature
     }
@@ -96,7 +96,7 @@ impl PredictiveCheck {
 /// The features of one record.
 struct Features {
     stop: Option<f64>,
-    half_cycles: f64,
+    half_swings: f64,
     /// Values of the turning points.
     peaks: Vec<f64>,
 }
@@ -105,10 +105,10 @@ impl Features {
     fn of(record: &Record) -> Option<Self> {
         let seen = Experiment::ring_down(record, &Preparation::default()).ok()?;
         let peaks: Vec<f64> = seen.peaks().iter().map(|(_, value)| value.abs()).collect();
-        Some(Self { stop: seen.summary().rest_from, half_cycles: peaks.len() as f64, peaks })
+        Some(Self { stop: seen.summary().rest_from, half_swings: peaks.len() as f64, peaks })
     }
 
-    /// ln of the ratio of the first amplitude to that after `count` half cycles, per half cycle (1).
+    /// ln of the ratio of the first amplitude to that after `count` half swings, per half swing (1).
     fn decrement(&self, count: usize) -> Option<f64> {
         let (first, last) = (self.peaks.first()?, self.peaks.get(count)?);
         (count > 0 && *last > 0.0).then(|| (first / last).ln() / count as f64)
@@ -147,7 +147,7 @@ pub(super) fn predicted(
             }
         };
         check("stop time", "s", &|features| features.stop);
-        check("half cycles", "1", &|features| Some(features.half_cycles));
+        check("half swings", "1", &|features| Some(features.half_swings));
         check("decrement", "1", &|features| features.decrement(last));
     }
     Ok(checks)

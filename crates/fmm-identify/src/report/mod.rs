@@ -126,7 +126,7 @@ impl Comparison {
         let surer = if !is_explained {
             "a law that was not tried, a spring that is not linear or a second mode may"
         } else if self.is_decided() {
-            "more half cycles or less noise would make it surer"
+            "more half swings or less noise would make it surer"
         } else {
             "releases of other amplitudes fitted together, or less noise, would tell the laws apart"
         };

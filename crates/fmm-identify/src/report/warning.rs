@@ -3,6 +3,7 @@
 use std::fmt;
 
 use fmm_frf::Channel;
+use fmm_model::Rounded;
 
 /// Something that limits what the record can tell, or that was done to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -270,6 +271,12 @@ pub enum Warning {
     },
 }
 
+/// Three digits of a value, without an exponent where it needs none.
+fn to_three_digits(value: f64) -> String {
+    let rounded = format!("{value:.2e}").parse().unwrap_or(value);
+    Rounded::new(rounded, None).to_string()
+}
+
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -321,8 +328,7 @@ impl fmt::Display for Warning {
             }
             Self::Spikes { count } => write!(f, "{count} isolated samples far off their neighbours were left out"),
             Self::AtBound { parameter, value } => {
-                // A bound that excludes zero lies just beside it.
-                let value = if value.abs() <= f64::MIN_POSITIVE { 0.0 } else { *value };
+                let value = Rounded::new(*value, None);
                 write!(
                     f,
                     "{parameter} ended on its bound {value}; it has no standard uncertainty, and the others hold for that value"
@@ -352,9 +358,11 @@ impl fmt::Display for Warning {
             ),
             Self::Misled { law, friction, preferred, residuals } => write!(
                 f,
-                "{law} alone would have put the friction at rest at {friction:.3} in place of the {preferred:.3} of the \
+                "{law} alone would have put the friction at rest at {} in place of the {} of the \
                  preferred law: with friction that changes with speed, a level and a straight line share the losses of large \
-                 swings and miss those of small ones (its residuals are {residuals:.1} times larger)"
+                 swings and miss those of small ones (its residuals are {residuals:.1} times larger)",
+                to_three_digits(*friction),
+                to_three_digits(*preferred)
             ),
             Self::FurtherHit { .. }
             | Self::Overload { .. }

@@ -124,6 +124,7 @@ fn corners_lie_below_half_the_rate() {
     assert!(found.finding("sensor_corner_hz").unwrap().value() <= 25.0, "{found}");
     let refused = experiment.seen_by(Sensor::default().with_low_pass(2, 26.0).unwrap());
     assert!(matches!(refused, Err(IdentifyError::OutOfRange { .. })), "{refused:?}");
+    assert!(refused.unwrap_err().to_string().ends_with("below half the sampling rate, 25 Hz, not 26"));
 }
 
 /// A gain that is uncertain makes friction uncertain, and neither frequency nor damping, which do not depend on it.

@@ -7,5 +7,6 @@ mod force;
 mod force_curves;
 mod impact;
 mod joint;
+mod no_friction;
 mod simulated;
 mod springs;

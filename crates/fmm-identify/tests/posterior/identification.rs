@@ -52,7 +52,7 @@ fn the_posterior_of_a_plain_ring_down_is_value_and_uncertainty() {
     }
     assert_eq!(
         posterior.checks().iter().map(PredictiveCheck::feature).collect::<Vec<_>>(),
-        ["stop time", "half cycles", "decrement"]
+        ["stop time", "half swings", "decrement"]
     );
 }
 

@@ -59,8 +59,9 @@ impl ArrayFile {
             }
         }
         let written = |series| Slice::of(array, series).written(self.notation);
-        let (name, row, column) = (array.name(), written(Series::Row(0)), written(Series::Column(0)));
-        let what = format!("\"{name}\" has {rows} rows and {columns} columns; choose one, as in {row} or {column}");
+        let (row, column) = (written(Series::Row(0)), written(Series::Column(0)));
+        let name = if array.name().is_empty() { "the array".to_owned() } else { format!("\"{}\"", array.name()) };
+        let what = format!("{name} has {rows} rows and {columns} columns; choose one, as in {row} or {column}");
         Err(RecordError::WhichChannel { what })
     }
 
@@ -71,6 +72,9 @@ impl ArrayFile {
         let mut candidates = self.arrays.iter().filter(can_be);
         match (candidates.next(), candidates.next()) {
             (Some(array), None) if self.damaged.is_empty() => Ok(array),
+            _ if self.arrays.is_empty() => {
+                Err(RecordError::WhichChannel { what: format!("the file has {}", self.listing()) })
+            }
             _ => Err(RecordError::WhichChannel { what: format!("name the channel; the file has: {}", self.listing()) }),
         }
     }

@@ -95,7 +95,7 @@ pub(super) fn read(input: &mut impl Read, name: &str) -> Result<Header, RecordEr
         1 => take(2)?.iter().rev().fold(0, |length, byte| length << 8 | u64::from(*byte)),
         2 | 3 => take(4)?.iter().rev().fold(0, |length, byte| length << 8 | u64::from(*byte)),
         version => {
-            let what = format!("the array \"{name}\" is of version {version} of the format; known are 1 to 3");
+            let what = format!("{} is of version {version} of the format; known are 1 to 3", called(name));
             return Err(RecordError::damaged(what));
         }
     };
@@ -107,20 +107,28 @@ pub(super) fn read(input: &mut impl Read, name: &str) -> Result<Header, RecordEr
     Literal { rest: &text }.header(name)
 }
 
+/// The array in words: a file of a single array gives it no name.
+fn called(name: &str) -> String {
+    if name.is_empty() { "the array".to_owned() } else { format!("the array \"{name}\"") }
+}
+
 /// An array that promises more bytes than are there.
 pub(super) fn truncated(name: &str, promised: u64, present: usize) -> RecordError {
-    let what = format!("the array \"{name}\" is cut off: it promises {promised} bytes, but {present} are there");
+    let array = called(name);
+    let what = format!("{array} is cut off: it promises {promised} bytes, but {present} are there");
     RecordError::damaged(what)
 }
 
 /// A header that contradicts the format.
 fn damaged(name: &str, what: &str) -> RecordError {
-    RecordError::damaged(format!("the header of the array \"{name}\" is damaged: {what}"))
+    RecordError::damaged(format!("the header of {} is damaged: {what}", called(name)))
 }
 
 /// Numbers that are not real, or no numbers.
 fn unsupported(descr: &str) -> RecordError {
-    RecordError::unsupported(format!("of type {descr} (real numbers of up to 64 bits are read, but not of 16)"))
+    RecordError::unsupported(format!(
+        "of type {descr} (read are integers of up to 64 bits, and real numbers of 32 or 64)"
+    ))
 }
 
 /// Goes through the Python literal of a header, a dictionary.

@@ -56,7 +56,10 @@ fn files_of_numpy() {
         assert_eq!(file.arrays.iter().map(Array::name).collect::<Vec<_>>(), ["t", "v", "fs", "counts"], "{name}");
         assert_eq!(
             file.others,
-            [("note".to_owned(), "of type <U4 (real numbers of up to 64 bits are read, but not of 16)".to_owned())]
+            [(
+                "note".to_owned(),
+                "of type <U4 (read are integers of up to 64 bits, and real numbers of 32 or 64)".to_owned()
+            )]
         );
         let reading = file.channel("v[:,1]").unwrap();
         assert_eq!((reading.record.len(), reading.record.rate(), reading.time.as_deref()), (100, 512.0, Some("t")));
@@ -65,7 +68,7 @@ fn files_of_numpy() {
         assert_eq!(file.array("counts").unwrap().values(), [-3.0, 200.0, 5.0]);
         assert_eq!(
             file.channel("note").unwrap_err().to_string(),
-            "the variable \"note\" is of type <U4 (real numbers of up to 64 bits are read, but not of 16), not a real numeric array; \
+            "the variable \"note\" is of type <U4 (read are integers of up to 64 bits, and real numbers of 32 or 64), not a real numeric array; \
              the file has: t (100), v (100, 2), fs (), counts (3)"
         );
     }
@@ -140,7 +143,7 @@ fn channels_with_time_beside_them() {
     let three = parse_bytes(&doubles("(3, 2)", &[5.0, 0.0, 6.0, 1.0, 8.0, 3.0])).unwrap();
     assert_eq!(
         three.channel("").unwrap_err().to_string(),
-        "\"\" has 3 rows and 2 columns; choose one, as in [0] or [:,0]"
+        "the array has 3 rows and 2 columns; choose one, as in [0] or [:,0]"
     );
     assert_eq!(three.channel("[:,2]").unwrap_err().to_string(), "there is no [:,2]; the array is (3, 2)");
     assert!(says(&three.channel("[1]"), "the sampling rate is not known"));
@@ -165,6 +168,8 @@ fn channels_with_time_beside_them() {
     let both = parse_bytes(&npz(stored, &both)).unwrap();
     assert!(says(&both.channel("v"), "give the rate"));
     assert!(says(&both.read(&Reader::default()), "name the channel"));
+    let empty = parse_bytes(&npz(stored, &[])).unwrap();
+    assert_eq!(empty.read(&Reader::default()).unwrap_err().to_string(), "the file has no real numeric arrays");
 }
 
 #[test]
@@ -176,7 +181,7 @@ fn lies_about_sizes_are_found_out() {
     assert!(says(&parse_bytes(&doubles("(1,)", &[1.0, 2.0])), "data follow the array"));
     let mut header = npy(2, "<f8", false, "(1,)", &[0; 8]);
     header[8..12].copy_from_slice(&u32::MAX.to_le_bytes());
-    assert!(says(&parse_bytes(&header), "cut off"));
+    assert!(says(&parse_bytes(&header), "the array is cut off"));
     header[6] = 4;
     assert!(says(&parse_bytes(&header), "known are 1 to 3"));
     let deflated = CompressionMethod::Deflated;

@@ -1,0 +1,30 @@
+//! A machine that no dry friction brakes.
+
+use fmm_friction::Viscous;
+use fmm_identify::{Candidate, Experiment, Machine, Preparation, Warning, compare};
+use fmm_model::{Damping, Oscillator};
+use fmm_record::Quantity;
+use fmm_sim::{Sampling, Scenario, simulate};
+
+use crate::simulated::{INTERVAL, MASS, STIFFNESS, record};
+
+/// Linear and quadratic damping leave a friction of nothing, and no law can be said to have put that wrong.
+#[test]
+fn a_level_that_is_not_there_misleads_nobody() {
+    let damping = Damping::new(3.0, 60.0).unwrap();
+    let machine = Oscillator::new(MASS, STIFFNESS).unwrap().with_damping(damping);
+    let scenario = Scenario::new(machine, Viscous::new(0.0).unwrap(), 1.0).unwrap().starting_at(0.05, 0.0).unwrap();
+    let motion = simulate(&scenario, &Sampling::uniform(INTERVAL, 4000).unwrap()).unwrap();
+    let candidates = ["coulomb_viscous", "coulomb_viscous + quadratic"].map(|name| Candidate::named(name).unwrap());
+    let mut levels = Vec::new();
+    for seed in 0..6 {
+        let record = record(motion.position().values(), 1e-4, seed, Quantity::Displacement, "m");
+        let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+        let found = compare(&Machine::per_unit_mass(), &[decay], &candidates).unwrap();
+        assert_eq!(found.preferred().law(), "coulomb_viscous + quadratic");
+        levels.push(found.preferred().finding("friction_per_mass").unwrap().value());
+        let is_misled = |warning: &Warning| matches!(warning, Warning::Misled { .. });
+        assert!(!found.warnings().iter().any(is_misled), "seed {seed}: {found}");
+    }
+    assert!(levels.iter().any(|level| *level > 0.0), "m/s²: {levels:?}");
+}
