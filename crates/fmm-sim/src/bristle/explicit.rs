@@ -25,12 +25,20 @@ pub(super) struct Explicit<D> {
     state: Vec<D>,
     end: Vec<D>,
     rate: Vec<D>,
+    /// Rates (1/s) at which the states return, for each state.
+    relaxations: Vec<f64>,
 }
 
 impl<D: Scalar> Explicit<D> {
     pub(super) fn new(size: usize) -> Self {
         let zeros = vec![D::from(0.0); size];
-        Self { rates: vec![[D::from(0.0); 16]; size], state: zeros.clone(), end: zeros.clone(), rate: zeros }
+        Self {
+            rates: vec![[D::from(0.0); 16]; size],
+            state: zeros.clone(),
+            end: zeros.clone(),
+            rate: zeros,
+            relaxations: vec![0.0; size - 2],
+        }
     }
 
     /// Takes the step over `span`. `None` if it leaves the range of numbers.
@@ -43,7 +51,7 @@ impl<D: Scalar> Explicit<D> {
         span: Span,
     ) -> Option<Solved> {
         let Span { begin: time, length, tolerance } = span;
-        let Self { rates, state, end, rate } = self;
+        let Self { rates, state, end, rate, .. } = self;
         let mut rate_at = |elapsed: f64, state: &[D], stage: usize, rates: &mut [Rates<D>]| {
             field.rates(piece.force(time + elapsed), branch, state, rate);
             for (rates, rate) in rates.iter_mut().zip(&*rate) {
@@ -65,7 +73,8 @@ impl<D: Scalar> Explicit<D> {
         }
         let (mut error, mut stiffness) = (error, self.stiffness(motion, length));
         if self.is_settled(motion) {
-            stiffness = stiffness.max(length * self.return_rate(motion, field, branch, piece.force(time + length)));
+            field.relaxations(branch, &self.end, &mut self.relaxations);
+            stiffness = self.relaxations.iter().fold(stiffness, |most, relaxation| most.max(length * relaxation));
             // The values stay where they are however long the step, and move nothing, but derivatives and rounding grow in one that is not
             // stable.
             error = error.max((stiffness / STABLE).powi(ORDER));
@@ -117,29 +126,6 @@ impl<D: Scalar> Explicit<D> {
         let mut states =
             states.map(|(component, (end, state))| ((*end - *state).value() / motion.scale(component)).abs());
         states.all(|change| change <= UNSEEN)
-    }
-
-    /// The rate (1/s) at which states that are settled would return to where they are.
-    fn return_rate<L: BristleLaw<D> + ?Sized>(
-        &mut self,
-        motion: &Motion<D>,
-        field: &mut Field<D, L>,
-        branch: Branch,
-        force: D,
-    ) -> f64 {
-        /// How far they are moved, in units of their scales.
-        const APART: f64 = 1e-6;
-        field.rates(force, branch, &self.end, &mut self.rate);
-        let settled: Vec<f64> = self.rate.iter().map(|rate| rate.value()).collect();
-        self.state.copy_from_slice(&self.end);
-        for (component, state) in self.state.iter_mut().enumerate().skip(2) {
-            *state += APART * motion.scale(component);
-        }
-        field.rates(force, branch, &self.state, &mut self.rate);
-        let changes = self.rate.iter().zip(settled).enumerate().skip(2);
-        changes.fold(0.0, |most, (component, (rate, settled))| {
-            most.max(((rate.value() - settled) / (APART * motion.scale(component))).abs())
-        })
     }
 
     /// By how much the rates of the states have changed over the step, in units of themselves.
