@@ -16,8 +16,8 @@ const SAME: f64 = 0.1;
 /// The best end of the fits from `starts`, of which most are given up early.
 ///
 /// All fits go a few steps; half of them, the better ones, go twice as many, and so on until one is left, which is finished. Of fits that
-/// have come to the same place one goes on, and the next best takes the room of the others. The lowest minimum is missed if its fit is among the worse half at first; where that may be, give
-/// fewer starts, or [`solve`](crate::solve) each.
+/// have come to the same place one goes on, and the next best takes the room of the others. The lowest minimum is missed if its fit is
+/// among the worse half at first; where that may be, give fewer starts, or [`solve`](crate::solve) each.
 ///
 /// ```
 /// # use fmm_fit::EvaluationError;

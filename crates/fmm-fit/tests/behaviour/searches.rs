@@ -400,6 +400,16 @@ fn fits_that_meet_go_on_as_one() {
     assert_eq!(steps_from(&vec![start; 4]), alone + 3 * 6);
 }
 
+/// Three fits of five are at the higher minimum at first. One of them goes on, and so does the last, which leads to the lower one.
+#[test]
+fn the_room_of_fits_that_meet_goes_to_others() {
+    let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
+    let mut starts = vec![vec![11.412_779, -0.896_805]; 3];
+    starts.extend([vec![-50.0, -5.0], vec![5.0, 2000.0]]);
+    let best = solve_best(&problem, &starts, &Options::default(), |_| ControlFlow::Continue(())).unwrap();
+    assert!((best.values()[0] - 5.0).abs() < 1e-9 && (best.values()[1] - 4.0).abs() < 1e-9, "{:?}", best.values());
+}
+
 /// An observer that breaks ends all fits, and the best so far is given.
 #[test]
 fn an_observer_ends_all_fits() {
