@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use fmm_fit::{CorrelatedCovariance, EvaluationError, Fit, Options, Residuals, autocorrelation_time, solve};
+use fmm_fit::{EvaluationError, Fit, Options, Residuals, autocorrelation_time, solve};
 use fmm_model::{Bounds, Dual, Parameter, Scalar};
 use fmm_record::Quantity;
 
 use crate::fit::free_vibration::FreeVibration;
 use crate::law::naming::Units;
+use crate::residuals::correlation::{are_correlated, correlated_covariance};
 use crate::{Estimated, Experiment, IdentifyError};
 
 /// The viscous fit over one window.
@@ -267,13 +268,10 @@ impl<'a> WindowProblem<'a> {
 
     /// Standard uncertainties, 0 for what is held.
     fn uncertainties(&self, fit: &Fit) -> Result<[f64; COUNT], IdentifyError> {
-        const INDEPENDENT: f64 = 3.0;
-        const FEWEST_WINDOWS: usize = 8;
-        const CORRELATION_TIMES: f64 = 5.0;
         let time = autocorrelation_time(fit.residuals()).unwrap_or(1.0);
-        let span = ((CORRELATION_TIMES * time) as usize).min(self.kept.len() / FEWEST_WINDOWS).max(1);
-        let correlated = if time > INDEPENDENT {
-            CorrelatedCovariance::of(self, fit, span, std::slice::from_ref(&(0..self.kept.len()))).map_err(failure)?
+        let series = 0..self.kept.len();
+        let correlated = if are_correlated(time) {
+            correlated_covariance(self, fit, time, std::slice::from_ref(&series)).map_err(failure)?
         } else {
             None
         };

@@ -142,10 +142,8 @@ pub fn identify_force(model: &ForceModel, records: &[ForceRecord]) -> Result<For
             unit: unit.clone(),
             inflation: covariance.inflation(),
         });
-    } else if structure.is_correlated() {
-        warnings
-            .push(Warning::ColouredNoise { time: structure.autocorrelation_time, inflation: covariance.inflation() });
     }
+    warnings.extend(structure.coloured_noise(covariance.inflation()));
     Warning::of_fit(&fit, &mut warnings);
     warnings.extend(
         problem

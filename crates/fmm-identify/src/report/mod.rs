@@ -116,8 +116,10 @@ impl Comparison {
         let others: Vec<&str> =
             self.not_excluded().map(Identification::law).filter(|law| *law != preferred.law()).collect();
         let is_explained = !preferred.structure().is_structured();
+        let is_alone = self.identifications().len() == 1;
         let sure = match (self.is_decided(), others.is_empty()) {
             _ if !is_explained => "of the laws that were tried none explains the record to its noise".to_owned(),
+            (true, true) if is_alone => "no other law was tried".to_owned(),
             (true, true) => "the record excludes every other law that was tried".to_owned(),
             (true, false) => format!("the record neither asks for more nor excludes it ({})", others.join(", ")),
             (false, true) => "a law that was tried could not be fitted to the end".to_owned(),
@@ -125,6 +127,8 @@ impl Comparison {
         };
         let surer = if !is_explained {
             "a law that was not tried, a spring that is not linear or a second mode may"
+        } else if is_alone {
+            "a comparison with other laws would show whether the record asks for this one"
         } else if self.is_decided() {
             "more half swings or less noise would make it surer"
         } else {

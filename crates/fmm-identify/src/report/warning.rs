@@ -191,10 +191,12 @@ pub enum Warning {
         /// Unit of the record.
         unit: String,
     },
-    /// Neighbouring residuals are alike, though not larger than the noise.
+    /// Neighbouring residuals are alike, though not larger than the noise; or they are larger, though hardly alike.
     ColouredNoise {
         /// Autocorrelation time (samples).
         time: f64,
+        /// Root mean square of the residuals beside the noise that neighbouring samples show (1).
+        ratio: f64,
         /// Largest factor by which a standard uncertainty exceeds that of white noise (1).
         inflation: f64,
     },

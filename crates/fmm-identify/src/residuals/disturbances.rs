@@ -4,6 +4,7 @@ use std::fmt;
 
 use fmm_model::Rounded;
 
+use crate::residuals::correlation::are_correlated;
 use crate::{Experiment, Identification, RecordSummary, Warning};
 
 /// A factor of the uncertainties that is worth a word.
@@ -44,12 +45,7 @@ impl Warning {
             let share = growth.instantaneous.hypot(growth.by_amplitude);
             warnings.push(Self::GrowingNoise { floor: growth.floor, share, unit: unit() });
         }
-        if structure.is_correlated() && !structure.is_structured() {
-            warnings.push(Self::ColouredNoise {
-                time: structure.autocorrelation_time,
-                inflation: identification.inflation(),
-            });
-        }
+        warnings.extend(structure.coloured_noise(identification.inflation()));
         warnings
     }
 
@@ -101,11 +97,16 @@ impl Warning {
                  account",
                 100.0 * share
             ),
-            Self::ColouredNoise { time, inflation } => {
+            Self::ColouredNoise { time, ratio, inflation } => {
+                if are_correlated(*time) {
+                    write!(f, "neighbouring residuals are alike over some {time:.0} samples")?;
+                } else {
+                    write!(f, "the residuals are {ratio:.1} times the noise that neighbouring samples show")?;
+                }
                 write!(
                     f,
-                    "neighbouring residuals are alike over some {time:.0} samples: the noise is not white (a filter in the instrument, \
-                     rounding), or the law leaves a little out; the standard uncertainties take that into account"
+                    ": the noise is not white (a filter in the instrument, rounding, a fast vibration), or the law leaves a little out; \
+                     the standard uncertainties take that into account"
                 )?;
                 if *inflation > NOTABLE { write!(f, " (by up to a factor of {inflation:.1})") } else { Ok(()) }
             }

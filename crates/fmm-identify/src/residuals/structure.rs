@@ -2,7 +2,7 @@
 
 use fmm_fit::{EvaluationError, Fit, autocorrelation_time};
 
-use crate::Experiment;
+use crate::{Experiment, Warning};
 use crate::experiment::scaled;
 use crate::fit::problem::Problem;
 use crate::fit::tangent::inverse_of_products;
@@ -53,7 +53,19 @@ impl ResidualStructure {
 
     /// Whether the law misses something that the record shows.
     pub(crate) fn is_structured(&self) -> bool {
-        self.residual > EXCESS * self.noise && self.is_correlated()
+        self.is_excessive() && self.is_correlated()
+    }
+
+    /// What a noise that is not white has to tell, for the largest `inflation` of a standard uncertainty; nothing where the law
+    /// misses something or the noise is white.
+    pub(crate) fn coloured_noise(&self, inflation: f64) -> Option<Warning> {
+        let is_coloured = self.is_noisy() && (self.is_excessive() != self.is_correlated());
+        let ratio = self.residual / self.noise;
+        is_coloured.then_some(Warning::ColouredNoise { time: self.autocorrelation_time, ratio, inflation })
+    }
+
+    fn is_excessive(&self) -> bool {
+        self.residual > EXCESS * self.noise
     }
 }
 
@@ -194,5 +206,33 @@ impl Covariance {
     /// The noise behind it.
     pub(crate) fn noise_of_residuals(&self) -> &ResidualNoise {
         &self.noise
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn residuals_are_white_or_coloured_noise_or_structured() {
+        // Residual (in units of the noise), autocorrelation time (samples): whether structured, whether coloured.
+        let cases = [
+            (1.0, 1.0, false, false),
+            (1.0, 20.0, false, true),
+            (3.3, 2.9994, false, true),
+            (3.3, 3.1, true, false),
+            (3.3, 20.0, true, false),
+            (1.4, 2.9, false, false),
+        ];
+        for (residual, autocorrelation_time, is_structured, is_coloured) in cases {
+            let structure = ResidualStructure { residual, noise: 1.0, rounding: 1e-9, autocorrelation_time };
+            assert_eq!(structure.is_structured(), is_structured, "{structure:?}");
+            let warning = structure.coloured_noise(2.0);
+            assert_eq!(warning.is_some(), is_coloured, "{structure:?}");
+            let sentence = warning.map_or(String::new(), |warning| warning.to_string());
+            assert_eq!(sentence.contains("3.3 times the noise"), residual > 3.0 && is_coloured, "{sentence}");
+        }
+        let exact = ResidualStructure { residual: 1e-10, noise: 1e-9, rounding: 1e-9, autocorrelation_time: 20.0 };
+        assert_eq!(exact.coloured_noise(1.0), None);
     }
 }

@@ -28,3 +28,18 @@ fn a_level_that_is_not_there_misleads_nobody() {
     }
     assert!(levels.iter().any(|level| *level > 0.0), "m/s²: {levels:?}");
 }
+
+/// What one law alone says of a record that it explains, and what it excludes: nothing.
+#[test]
+fn one_law_alone_excludes_no_other() {
+    let machine = Oscillator::new(MASS, STIFFNESS).unwrap().with_damping(Damping::new(3.0, 0.0).unwrap());
+    let scenario = Scenario::new(machine, Viscous::new(0.0).unwrap(), 1.0).unwrap().starting_at(0.05, 0.0).unwrap();
+    let motion = simulate(&scenario, &Sampling::uniform(INTERVAL, 4000).unwrap()).unwrap();
+    let record = record(motion.position().values(), 1e-4, 1, Quantity::Displacement, "m");
+    let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+    let alone = compare(&Machine::per_unit_mass(), &[decay.clone()], &[Candidate::named("viscous").unwrap()]).unwrap();
+    assert!(alone.headline().contains("; no other law was tried; a comparison"), "{}", alone.headline());
+    let both = ["viscous", "coulomb"].map(|name| Candidate::named(name).unwrap());
+    let both = compare(&Machine::per_unit_mass(), &[decay], &both).unwrap();
+    assert!(both.headline().contains("excludes every other law that was tried"), "{}", both.headline());
+}
