@@ -37,7 +37,9 @@ fn one_law_alone_excludes_no_other() {
     let motion = simulate(&scenario, &Sampling::uniform(INTERVAL, 4000).unwrap()).unwrap();
     let record = record(motion.position().values(), 1e-4, 1, Quantity::Displacement, "m");
     let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
-    let alone = compare(&Machine::per_unit_mass(), &[decay.clone()], &[Candidate::named("viscous").unwrap()]).unwrap();
+    let alone =
+        compare(&Machine::per_unit_mass(), std::slice::from_ref(&decay), &[Candidate::named("viscous").unwrap()])
+            .unwrap();
     assert!(alone.headline().contains("; no other law was tried; a comparison"), "{}", alone.headline());
     let both = ["viscous", "coulomb"].map(|name| Candidate::named(name).unwrap());
     let both = compare(&Machine::per_unit_mass(), &[decay], &both).unwrap();
