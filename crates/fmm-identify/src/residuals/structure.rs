@@ -59,7 +59,7 @@ impl ResidualStructure {
     /// What a noise that is not white has to tell, for the largest `inflation` of a standard uncertainty; nothing where the law
     /// misses something or the noise is white.
     pub(crate) fn coloured_noise(&self, inflation: f64) -> Option<Warning> {
-        let is_coloured = self.is_noisy() && (self.is_excessive() != self.is_correlated());
+        let is_coloured = self.is_excessive() != self.is_correlated();
         let ratio = self.residual / self.noise;
         is_coloured.then_some(Warning::ColouredNoise { time: self.autocorrelation_time, ratio, inflation })
     }
