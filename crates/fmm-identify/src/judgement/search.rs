@@ -107,10 +107,11 @@ fn is_meant(law: Option<&str>, candidate: &Candidate) -> bool {
 /// Laws of the first stage.
 const SIMPLE: [&str; 3] = ["viscous", "coulomb", "coulomb_viscous"];
 /// Laws that change with speed, with the viscous part that a simple law has.
-const OF_SPEED: [&str; 7] = [
+const OF_SPEED: [&str; 8] = [
     "berger+linear",
     "stribeck,exponent=2",
     "stribeck_lorentzian",
+    "viscous+quadratic",
     "coulomb+quadratic",
     "coulomb_viscous+quadratic",
     "acceleration_coulomb+linear",
