@@ -57,13 +57,8 @@ impl Source {
         let offered = file.channel(first)?;
         let names = offered.columns;
         let labels: Vec<Label> = names.iter().map(|name| Label::of(name)).collect();
-        // A column may be named without its unit.
-        let whole = |name: &str| {
-            let is_meant = |whole: &&String| whole.split(['[', '(']).next().is_some_and(|bare| bare.trim() == name);
-            Column::from(names.iter().find(is_meant).map_or(name, String::as_str))
-        };
         let column = |given: &Option<String>, meant: &dyn Fn(&Label) -> bool| match given {
-            Some(name) => Some(name.parse::<usize>().map_or_else(|_| whole(name), Column::Index)),
+            Some(name) => Some(Column::from(name.as_str())),
             None => labels.iter().position(meant).map(|place| Column::from(names[place].as_str())),
         };
         let of = |quantity: Quantity| move |label: &Label| label.quantity() == Some(quantity);
@@ -93,7 +88,7 @@ impl Source {
             record = record.under_loads(&series(&file, load)?.values)?;
         }
         for name in &self.channels {
-            record = record.with_channel(name, &series(&file, whole(name))?.values, self.average)?;
+            record = record.with_channel(name, &series(&file, Column::from(name.as_str()))?.values, self.average)?;
         }
         if let Some(speed) = self.rest_speed {
             record = record.resting_up_to(speed)?;

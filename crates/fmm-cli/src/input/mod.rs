@@ -23,8 +23,9 @@ pub(crate) use source::{Choice, Input};
 pub(crate) struct Given {
     /// The record, in a format that `fmm formats` lists; without it, the bundled record of a bicycle fork
     pub(crate) file: Option<PathBuf>,
-    /// The channel with the motion, by name or by number counted from 0. Without it: the only channel, or the one that fits
-    /// --quantity and --unit, or the one whose unit is that of a velocity or else of a displacement
+    /// The channel with the motion, by name, with or without its unit, or by number counted from 0. Without it: the only
+    /// channel, or the one that fits --quantity and --unit, or the one whose unit is that of a velocity or else of a
+    /// displacement
     #[arg(long, value_name = "NAME|INDEX")]
     pub(crate) channel: Option<Column>,
     /// The channel with the time (s)

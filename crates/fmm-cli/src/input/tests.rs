@@ -85,6 +85,8 @@ fn the_channel_is_the_one_that_its_unit_tells_out() {
     assert_eq!(found(&displacement), (Quantity::Displacement, "m", 1e-3));
     let by_name = Choice { channel: Some(Column::from("disp [mm]")), ..Choice::default() };
     assert_eq!(found(&read(&by_name, &three)), (Quantity::Displacement, "m", 1e-3));
+    let without_unit = Choice { channel: Some(Column::from("disp")), ..Choice::default() };
+    assert_eq!(found(&read(&without_unit, &three)), (Quantity::Displacement, "m", 1e-3));
     let refused = refusal(&Choice::default(), &text("two.csv", "v1 [m/s],v2 [m/s]"));
     assert!(refused.contains("\"v1 [m/s]\" (velocity in m/s), \"v2 [m/s]\""), "{refused}");
     assert!(refused.ends_with("choose one by --channel"), "{refused}");

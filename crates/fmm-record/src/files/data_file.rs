@@ -164,10 +164,10 @@ impl DataFile {
         }
     }
 
-    /// The array called `name` in a MATLAB, HDF5 or NumPy file.
+    /// The array called `name` in a MATLAB, HDF5 or NumPy file, with or without its unit.
     ///
     /// # Errors
-    /// [`RecordError::NoSuchChannel`] without such an array, [`RecordError::Unsupported`] if it is not a real numeric array,
+    /// [`RecordError::NoSuchChannel`] without such an array, [`RecordError::WhichChannel`] if several are called so, [`RecordError::Unsupported`] if it is not a real numeric array,
     /// [`RecordError::Damaged`] if it cannot be read.
     #[cfg(any(feature = "mat", feature = "npy"))]
     pub fn array(&self, name: &str) -> Result<&Array, RecordError> {

@@ -3,8 +3,12 @@
 use std::convert::Infallible;
 use std::str::FromStr;
 
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
+use crate::RecordError;
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
+use crate::units::label::without_groups;
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
-use crate::{Quantity, RecordError, Resampling};
+use crate::{Quantity, Resampling};
 use crate::{Record, Sampling};
 
 /// A record as read from a file, with the choices that led to it, so that a report can name them.
@@ -53,8 +57,8 @@ pub(crate) fn too_large() -> RecordError {
 
 /// A column of a table, by name or by position.
 ///
-/// A name matches exactly or, if no column does, without regard to case; a position counts from **0**. Text of
-/// digits only is a position, any other text is a name; a column whose *name* is a number is chosen with
+/// A name matches exactly or, if no column does, without regard to case, or else without what the column has in brackets:
+/// `velocity` means `velocity [m/s]`, if no other column is called so. A position counts from **0**. Text of digits only is a position, any other text is a name; a column whose *name* is a number is chosen with
 /// [`Column::Name`]. In a table without a header row the names are the positions.
 ///
 /// ```
@@ -69,6 +73,59 @@ pub enum Column {
     Name(String),
     /// By position, counted from 0.
     Index(usize),
+}
+
+/// The only position of those `found` of what is `written`; `column` is what was looked for among columns, data sets or variables, as
+/// `kind` calls one.
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
+pub(crate) fn only(found: &[usize], column: &Column, kind: &str, written: &[String]) -> Result<usize, RecordError> {
+    match found {
+        [index] => Ok(*index),
+        [] => {
+            let what = format!("there is no {kind} {column}; the file has: {}", quoted(written));
+            Err(RecordError::NoSuchChannel { what })
+        }
+        _ => {
+            let candidate = |index: &usize| format!("\"{}\" at position {index}", written[*index]);
+            let candidates = found.iter().map(candidate).collect::<Vec<_>>().join(", ");
+            let count = found.len();
+            let what = format!(
+                "{count} {kind}s are called {column}: {candidates}; choose one by its whole name or by its position, counted from 0"
+            );
+            Err(RecordError::WhichChannel { what })
+        }
+    }
+}
+
+#[cfg(any(feature = "csv", feature = "uff"))]
+impl Column {
+    /// Positions of the columns that are meant. They are written in one way or several, of which the first has the units; the first
+    /// way of looking that finds anything counts.
+    pub(crate) fn among(&self, written: &[&[String]]) -> Vec<usize> {
+        let names = written.first().copied().unwrap_or_default();
+        let name = match self {
+            Self::Index(index) => return (0..names.len()).filter(|other| other == index).collect(),
+            Self::Name(name) => name.trim(),
+        };
+        let lower = name.to_lowercase();
+        let exact = |other: &str| other == name;
+        let alike = |other: &str| other.to_lowercase() == lower;
+        let bare: Vec<String> = names.iter().map(|name| without_unit(name)).collect();
+        let matching = |names: &[String], same: &dyn Fn(&str) -> bool| -> Vec<usize> {
+            names.iter().enumerate().filter(|(_, name)| same(name)).map(|(index, _)| index).collect()
+        };
+        let whole = |same: &dyn Fn(&str) -> bool| {
+            written.iter().map(|names| matching(names, same)).find(|found| !found.is_empty()).unwrap_or_default()
+        };
+        let in_turn = [whole(&exact), whole(&alike), matching(&bare, &exact), matching(&bare, &alike)];
+        in_turn.into_iter().find(|found| !found.is_empty()).unwrap_or_default()
+    }
+}
+
+/// A name without what it has in brackets, and without a slash before them.
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
+pub(crate) fn without_unit(name: &str) -> String {
+    without_groups(name).0.trim_end_matches(['/', ' ']).to_owned()
 }
 
 impl From<&str> for Column {
@@ -116,7 +173,7 @@ pub(crate) fn seconds_in(unit: &str) -> Option<f64> {
 }
 
 /// Names for an error that lists them.
-#[cfg(any(feature = "csv", feature = "uff"))]
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 pub(crate) fn quoted(names: &[String]) -> String {
     names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
 }

@@ -1,6 +1,7 @@
 //! The arrays of a file.
 
 use super::{Array, Notation, Slice};
+use crate::files::reading::{only, without_unit};
 use crate::{Column, RecordError};
 
 /// All real numeric arrays of a file, and what else it holds.
@@ -26,7 +27,7 @@ impl ArrayFile {
         self.arrays.push(Array { name, shape, values, notation: self.notation });
     }
 
-    /// The array called `name`.
+    /// The array called `name`, with or without its unit.
     pub(crate) fn array(&self, name: &str) -> Result<&Array, RecordError> {
         if let Some(array) = self.arrays.iter().find(|array| array.name() == name) {
             return Ok(array);
@@ -40,6 +41,11 @@ impl ArrayFile {
             let there = self.listing();
             let what = format!("the variable \"{name}\" is {other}, not a real numeric array; the file has: {there}");
             return Err(RecordError::unsupported(what));
+        }
+        let names: Vec<String> = self.arrays.iter().map(|array| array.name().to_owned()).collect();
+        let bare: Vec<usize> = (0..names.len()).filter(|index| without_unit(&names[*index]) == name).collect();
+        if !bare.is_empty() {
+            return only(&bare, &Column::from(name), "variable", &names).map(|index| &self.arrays[index]);
         }
         // It may be one whose name is not known.
         let unnamed = self.damaged.iter().filter(|(place, _)| place.starts_with('('));
@@ -68,7 +74,10 @@ impl ArrayFile {
     /// The series that a caller means: by name, or by its position among [`ArrayFile::offers`].
     pub(super) fn slice(&self, column: &Column) -> Result<Slice, RecordError> {
         match column {
-            Column::Name(name) => Ok(Slice::parse(name, self.notation)),
+            Column::Name(name) => {
+                let slice = Slice::parse(name, self.notation);
+                Ok(Slice { array: self.array(&slice.array)?.name().to_owned(), ..slice })
+            }
             Column::Index(index) => {
                 let offers = self.offers();
                 let written = || offers.iter().map(|offer| offer.written(self.notation)).collect::<Vec<_>>().join(", ");

@@ -11,7 +11,7 @@ use super::layout::Layout;
 use super::lines::{Line, Lines};
 use super::number::{self, Digits, Mark};
 use super::row::Kind;
-use crate::files::reading::quoted;
+use crate::files::reading::only;
 use crate::{Column, RecordError};
 
 /// Length of the part of the file by which its layout is judged (bytes).
@@ -83,39 +83,8 @@ impl<R: Read> Table<R> {
 
     /// Position of the column that the caller means.
     pub(super) fn find(&self, column: &Column) -> Result<usize, RecordError> {
-        let names = &self.header.names;
-        let found = match column {
-            Column::Index(index) if *index < names.len() => vec![*index],
-            Column::Index(_) => Vec::new(),
-            Column::Name(wanted) => {
-                let wanted = wanted.trim();
-                let lower = wanted.to_lowercase();
-                let matching = |names: &[String], same: &dyn Fn(&str) -> bool| -> Vec<usize> {
-                    names.iter().enumerate().filter(|(_, name)| same(name)).map(|(index, _)| index).collect()
-                };
-                let exact = |name: &str| name == wanted;
-                let alike = |name: &str| name.to_lowercase() == lower;
-                let in_turn = [
-                    matching(names, &exact),
-                    matching(&self.header.bare, &exact),
-                    matching(names, &alike),
-                    matching(&self.header.bare, &alike),
-                ];
-                in_turn.into_iter().find(|found| !found.is_empty()).unwrap_or_default()
-            }
-        };
-        match found[..] {
-            [index] => Ok(index),
-            [] => {
-                let what = format!("there is no column {column}; the file has: {}", quoted(names));
-                Err(RecordError::NoSuchChannel { what })
-            }
-            _ => {
-                let count = found.len();
-                let what = format!("{count} columns are called {column}; choose one by its position, counted from 0");
-                Err(RecordError::WhichChannel { what })
-            }
-        }
+        let found = column.among(&[&self.header.names, &self.header.bare]);
+        only(&found, column, "column", &self.header.names)
     }
 
     /// Reads the chosen columns of all rows.

@@ -84,6 +84,25 @@ fn columns_by_name_and_position() {
 }
 
 #[test]
+fn a_name_without_its_unit_is_enough_where_one_column_has_it() {
+    let text =
+        "t [s],Velocity [m/s],x (left) [mm],x (right) [mm],v,v [mm/s],a / (m/s^2)\n0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n";
+    let channel = |column: &str| Reader::default().channel(column).read_from(text.as_bytes());
+    for (column, found) in [("Velocity", 1), ("velocity", 1), ("v", 4), ("v [mm/s]", 5), ("a", 6)] {
+        assert_eq!(channel(column).unwrap().record.values()[0], f64::from(found), "{column}");
+    }
+    assert_eq!(channel("velocity").unwrap().channel, "Velocity [m/s]", "the unit is that of the column");
+    assert_eq!(
+        channel("x").unwrap_err().to_string(),
+        "2 columns are called \"x\": \"x (left) [mm]\" at position 2, \"x (right) [mm]\" at position 3; choose one by its \
+         whole name or by its position, counted from 0"
+    );
+    assert!(says(&channel("vel"), "there is no column \"vel\""), "a part of a name is none");
+    let timed = Reader::default().time("t").channel("v").read_from(text.as_bytes()).unwrap();
+    assert_eq!(timed.time.as_deref(), Some("t [s]"));
+}
+
+#[test]
 fn channels_are_all_columns_but_the_time() {
     let channels = |text: &str| Reader::default().text_channels(text.as_bytes()).unwrap();
     let positions = |text: &str| channels(text).into_iter().map(|(index, _)| index).collect::<Vec<_>>();

@@ -261,3 +261,24 @@ fn a_damaged_array_leaves_the_others() {
     }
     assert!(says(&file.read(&Reader::default()), "name the channel"), "which one is not known");
 }
+
+#[test]
+fn an_array_is_found_without_its_unit() {
+    let vector = |value: f64| doubles("(2,)", &[value, value]);
+    let entries = [
+        ("t [s].npy", doubles("(2,)", &[0.0, 0.5])),
+        ("velocity [m/s].npy", vector(1.0)),
+        ("x [m].npy", vector(2.0)),
+        ("x [mm].npy", vector(3.0)),
+    ];
+    let file = parse_bytes(&npz(CompressionMethod::Stored, &entries)).unwrap();
+    let reading = file.channel("velocity").unwrap();
+    assert_eq!(
+        (&*reading.channel, reading.record.values(), reading.record.rate()),
+        ("velocity [m/s]", &[1.0, 1.0][..], 2.0)
+    );
+    assert!(says(
+        &file.channel("x"),
+        "2 variables are called \"x\": \"x [m]\" at position 2, \"x [mm]\" at position 3"
+    ));
+}

@@ -1,7 +1,7 @@
 //! Between data sets and records.
 
 use super::{Abscissa, DataSet, DataType, FunctionType, Ordinate, UffFile};
-use crate::files::reading::{quoted, seconds_in};
+use crate::files::reading::{only, quoted, seconds_in};
 use crate::sampling::whole_hertz;
 use crate::{Column, Reading, Record, RecordError, Sampling};
 
@@ -70,31 +70,8 @@ impl UffFile {
     /// # Errors
     /// [`RecordError::NoSuchChannel`], [`RecordError::WhichChannel`], otherwise as [`DataSet::record`].
     pub fn channel(&self, channel: impl Into<Column>) -> Result<Reading, RecordError> {
-        let channel = channel.into();
-        let found: Vec<usize> = match &channel {
-            Column::Index(index) => (0..self.sets().len()).filter(|other| other == index).collect(),
-            Column::Name(name) => {
-                let lower = name.trim().to_lowercase();
-                let called = |same: &dyn Fn(&str) -> bool| -> Vec<usize> {
-                    (0..self.sets().len()).filter(|index| same(&self.sets()[*index].name())).collect()
-                };
-                let exact = called(&|other| other == name.trim());
-                if exact.is_empty() { called(&|other| other.to_lowercase() == lower) } else { exact }
-            }
-        };
-        match found[..] {
-            [index] => self.reading_of(index),
-            [] => {
-                let what = format!("there is no data set {channel}; the file has: {}", quoted(&self.names()));
-                Err(RecordError::NoSuchChannel { what })
-            }
-            _ => {
-                let count = found.len();
-                let what =
-                    format!("{count} data sets are called {channel}; choose one by its position, counted from 0");
-                Err(RecordError::WhichChannel { what })
-            }
-        }
+        let (channel, names) = (channel.into(), self.names());
+        self.reading_of(only(&channel.among(&[&names]), &channel, "data set", &names)?)
     }
 
     /// The only record over time in the file.
