@@ -57,7 +57,7 @@ fn drive(arguments: &Arguments) -> Result<Option<Drive>, Box<dyn Error>> {
     let file = arguments.given.file.as_ref().ok_or("the bundled record is one of a free vibration; give a file")?;
     let request = quantity.map_or_else(Request::default, |quantity| Request::default().quantity(quantity));
     let (time, rate) = (arguments.given.time.clone(), arguments.given.rate);
-    let choice = Choice { channel: Some(channel.clone()), time, rate, request, is_drive: true };
+    let choice = Choice { channel: Some(channel.clone()), time, rate, request, is_drive: true, ..Choice::default() };
     let record = choice.read(file)?.record;
     Ok(Some(if quantity.is_some() { Drive::force(&record)? } else { Drive::base(&record)? }))
 }

@@ -1,8 +1,98 @@
 //! A uniformly sampled series with its quantity and unit.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use crate::{Quantity, RecordError, UniformTimes};
+
+/// The times (s) between which samples are taken, to the end of the record where none is given.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Span {
+    pub(crate) from: Option<f64>,
+    pub(crate) to: Option<f64>,
+}
+
+impl Span {
+    /// The samples inside, of `length` ≥ 1 from `start` (s) on every `interval` (s), as [`Record::crop`] takes them.
+    fn samples(self, start: f64, interval: f64, length: usize) -> Result<Range<usize>, RecordError> {
+        const ROUNDING: f64 = 1e-6;
+        let end = start + interval * (length - 1) as f64;
+        let (from, to) = (self.from.unwrap_or(start), self.to.unwrap_or(end));
+        let nothing = || {
+            RecordError::options(format!(
+                "no sample lies between {from} s and {to} s; the record spans {start} s to {end} s"
+            ))
+        };
+        if from.is_nan() || to.is_nan() {
+            return Err(nothing());
+        }
+        let first = ((from - start) / interval - ROUNDING).ceil().max(0.0);
+        let last = ((to - start) / interval + ROUNDING).floor().min((length - 1) as f64);
+        if first > last { Err(nothing()) } else { Ok(first as usize..last as usize + 1) }
+    }
+
+    /// The part inside of what [`Record::new`] makes; values outside may be anything.
+    pub(crate) fn record(
+        self,
+        start: f64,
+        interval: f64,
+        mut values: Vec<f64>,
+        quantity: Quantity,
+        unit: impl Into<String>,
+    ) -> Result<Record, RecordError> {
+        if !(interval > 0.0 && interval.is_finite()) {
+            return Err(RecordError::interval(interval));
+        }
+        if values.is_empty() {
+            let what = "a record needs at least one sample, but none were given".into();
+            return Err(RecordError::Values { index: 0, what });
+        }
+        let length = values.len();
+        let reach = start.abs() + interval * length as f64;
+        if !(reach.is_finite() && reach * f64::EPSILON < interval) {
+            return Err(RecordError::times_alike(start, interval, length));
+        }
+        let kept = self.samples(start, interval, length)?;
+        let inside = &values[kept.clone()];
+        if let Some(index) = inside.iter().position(|value| !value.is_finite()) {
+            let count = inside.iter().filter(|value| !value.is_finite()).count();
+            let index = kept.start + index;
+            return Err(RecordError::not_finite(index, start + interval * index as f64, count, kept.len()));
+        }
+        values.truncate(kept.end);
+        values.drain(..kept.start);
+        Ok(Record { start: start + interval * kept.start as f64, interval, values, quantity, unit: unit.into() })
+    }
+
+    /// The part inside of what [`Record::sampled`] makes.
+    pub(crate) fn sampled(
+        self,
+        rate: f64,
+        values: Vec<f64>,
+        quantity: Quantity,
+        unit: impl Into<String>,
+    ) -> Result<Record, RecordError> {
+        if !(rate > 0.0 && rate.is_finite() && rate.recip().is_finite()) {
+            return Err(RecordError::rate(rate));
+        }
+        self.record(0.0, rate.recip(), values, quantity, unit)
+    }
+
+    /// The part inside of what [`Record::from_times`] makes.
+    pub(crate) fn timed(
+        self,
+        times: &[f64],
+        values: Vec<f64>,
+        quantity: Quantity,
+        unit: impl Into<String>,
+    ) -> Result<Record, RecordError> {
+        if times.len() != values.len() {
+            return Err(RecordError::length_mismatch(times.len(), values.len()));
+        }
+        let grid = UniformTimes::of(times)?;
+        self.record(grid.start(), grid.interval(), values, quantity, unit)
+    }
+}
 
 /// A measured channel: samples at equal intervals, what they are, and their unit.
 ///
@@ -40,24 +130,7 @@ impl Record {
         quantity: Quantity,
         unit: impl Into<String>,
     ) -> Result<Self, RecordError> {
-        if !(interval > 0.0 && interval.is_finite()) {
-            return Err(RecordError::interval(interval));
-        }
-        if values.is_empty() {
-            let what = "a record needs at least one sample, but none were given".into();
-            return Err(RecordError::Values { index: 0, what });
-        }
-        let length = values.len();
-        let reach = start.abs() + interval * length as f64;
-        if !(reach.is_finite() && reach * f64::EPSILON < interval) {
-            return Err(RecordError::times_alike(start, interval, length));
-        }
-        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-            let count = values.iter().filter(|value| !value.is_finite()).count();
-            let time = start + interval * index as f64;
-            return Err(RecordError::not_finite(index, time, count, length));
-        }
-        Ok(Self { start, interval, values, quantity, unit: unit.into() })
+        Span::default().record(start, interval, values, quantity, unit)
     }
 
     /// A record sampled at `rate` (Hz) from time 0 on.
@@ -70,10 +143,7 @@ impl Record {
         quantity: Quantity,
         unit: impl Into<String>,
     ) -> Result<Self, RecordError> {
-        if !(rate > 0.0 && rate.is_finite() && rate.recip().is_finite()) {
-            return Err(RecordError::rate(rate));
-        }
-        Self::new(0.0, rate.recip(), values, quantity, unit)
+        Span::default().sampled(rate, values, quantity, unit)
     }
 
     /// A record of `values` at `times` (s), which must be uniform as [`UniformTimes`] defines it.
@@ -86,11 +156,7 @@ impl Record {
         quantity: Quantity,
         unit: impl Into<String>,
     ) -> Result<Self, RecordError> {
-        if times.len() != values.len() {
-            return Err(RecordError::length_mismatch(times.len(), values.len()));
-        }
-        let grid = UniformTimes::of(times)?;
-        Self::new(grid.start(), grid.interval(), values, quantity, unit)
+        Span::default().timed(times, values, quantity, unit)
     }
 
     /// Time of the first sample (s).
@@ -191,22 +257,8 @@ impl Record {
     /// # Errors
     /// [`RecordError::Options`] if no sample lies there.
     pub fn crop(&self, from: f64, to: f64) -> Result<Self, RecordError> {
-        const ROUNDING: f64 = 1e-6;
-        let nothing = RecordError::options(format!(
-            "no sample lies between {from} s and {to} s; the record spans {} s to {} s",
-            self.start,
-            self.end()
-        ));
-        if from.is_nan() || to.is_nan() {
-            return Err(nothing);
-        }
-        let first = ((from - self.start) / self.interval - ROUNDING).ceil().max(0.0);
-        let last = ((to - self.start) / self.interval + ROUNDING).floor().min((self.len() - 1) as f64);
-        if first > last {
-            return Err(nothing);
-        }
-        let (first, last) = (first as usize, last as usize);
-        Ok(self.derived(self.time(first), self.values[first..=last].to_vec()))
+        let kept = Span { from: Some(from), to: Some(to) }.samples(self.start, self.interval, self.len())?;
+        Ok(self.derived(self.time(kept.start), self.values[kept].to_vec()))
     }
 
     /// The same motion in `most` samples or fewer: the means of neighbours where there are more.

@@ -141,7 +141,7 @@ impl Given {
             request = request.scale(scale);
         }
         let (channel, time, rate) = (self.channel.clone(), self.time.clone(), self.rate);
-        let choice = Choice { channel, time, rate, request, is_drive: false };
+        let choice = Choice { channel, time, rate, from: self.from, to: self.to, request, is_drive: false };
         match &self.file {
             Some(file) => choice.read(file),
             None => choice.read_bundled(),

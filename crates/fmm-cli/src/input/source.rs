@@ -31,6 +31,9 @@ pub(crate) struct Choice {
     pub(crate) time: Option<Column>,
     /// Sampling rate (Hz).
     pub(crate) rate: Option<f64>,
+    /// The times (s) before and after which nothing is used.
+    pub(crate) from: Option<f64>,
+    pub(crate) to: Option<f64>,
     /// Quantity, unit and scale of the channel.
     pub(crate) request: Request,
     /// Whether the channel is what drives the machine.
@@ -67,10 +70,16 @@ impl Choice {
         /// Relative difference that counts as one.
         const OTHER: f64 = 1e-3;
         let rate = self.rate?;
-        let file = Reader::default().open(path).ok()?;
+        let file = self.cut(Reader::default()).open(path).ok()?;
         let stated = file.channel(reading.channel.as_str()).ok()?.record.rate();
         let is_other = (stated / rate - 1.0).abs() > OTHER;
         is_other.then(|| format!("the {rate} Hz of --rate were taken, though the file says {stated} Hz"))
+    }
+
+    /// The reader of the part that is used.
+    fn cut(&self, reader: Reader) -> Reader {
+        let reader = self.from.map_or(reader.clone(), |from| reader.from(from));
+        self.to.map_or(reader.clone(), |to| reader.to(to))
     }
 
     /// The channel that was named, or else the one that the request tells out, and its file.
@@ -78,7 +87,7 @@ impl Choice {
         &self,
         open: impl FnOnce(&Reader) -> Result<DataFile, RecordError>,
     ) -> Result<(Reading, DataFile), Box<dyn Error>> {
-        let mut reader = Reader::default();
+        let mut reader = self.cut(Reader::default());
         if let Some(time) = &self.time {
             reader = reader.time(time.clone());
         }

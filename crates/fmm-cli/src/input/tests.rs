@@ -158,3 +158,13 @@ fn universal_files_state_quantity_and_unit() {
     let refused = refusal(&Choice { rate: Some(1.0), ..Choice::default() }, &volts);
     assert!(refused.contains("leave out the rate and the time"), "{refused}");
 }
+
+#[test]
+fn what_is_missing_outside_of_the_span_does_not_matter() {
+    let path = file("gap.csv");
+    std::fs::write(&path, "t [s],v [m/s]\n0,NaN\n1,1\n2,2\n3,3\n").unwrap();
+    let refused = refusal(&Choice::default(), &path);
+    assert!(refused.contains("1 of 4 samples is not finite"), "{refused}");
+    let cut = read(&Choice { from: Some(1.0), to: Some(2.0), ..Choice::default() }, &path);
+    assert_eq!((cut.record.start(), cut.record.values()), (1.0, &[1.0, 2.0][..]));
+}

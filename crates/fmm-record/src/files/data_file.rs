@@ -217,7 +217,8 @@ impl DataFile {
                 let channel = |(position, set): (usize, &crate::files::uff::DataSet)| {
                     let axis = &set.header.ordinate;
                     let label = Label::of(&set.name()).with_unit(&axis.unit).with_quantity(axis.data_type.quantity());
-                    Channel { label, position, rate: set.record().ok().map(|record| record.rate()) }
+                    let rate = self.channel(position).ok().map(|reading| reading.record.rate());
+                    Channel { label, position, rate }
                 };
                 Ok(file.sets().iter().enumerate().map(channel).collect())
             }
@@ -265,10 +266,7 @@ impl DataFile {
             #[cfg(any(feature = "mat", feature = "npy"))]
             Content::Arrays(file) => file.read(reader)?,
             #[cfg(feature = "uff")]
-            Content::Universal(file) => match &reader.channel {
-                Some(channel) => file.channel(channel.clone())?,
-                None => file.reading()?,
-            },
+            Content::Universal(file) => file.part(reader.channel.as_ref(), reader.span)?,
         };
         if reading.record.quantity() == crate::Quantity::Other {
             reading.record = reading.record.with_quantity(reader.quantity);

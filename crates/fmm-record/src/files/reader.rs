@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::DataFile;
+use crate::record::Span;
 use crate::{Column, Quantity, Reading, RecordError, Resampling};
 
 /// Opens and reads files of every format. The format is told by the content, the name of the file does not matter; what the
@@ -66,6 +67,7 @@ pub struct Reader {
     pub(crate) channel: Option<Column>,
     pub(crate) rate: Option<f64>,
     pub(crate) resampling: Option<Resampling>,
+    pub(crate) span: Span,
     pub(crate) quantity: Quantity,
     pub(crate) unit: String,
 }
@@ -110,6 +112,21 @@ impl Reader {
     #[must_use]
     pub fn resampling(mut self, resampling: Resampling) -> Self {
         self.resampling = Some(resampling);
+        self
+    }
+
+    /// Leave out the samples before this time (s), whatever they are: values that are not finite are an error only where they are
+    /// kept. Resampling needs all of them.
+    #[must_use]
+    pub fn from(mut self, time: f64) -> Self {
+        self.span.from = Some(time);
+        self
+    }
+
+    /// Leave out the samples after this time (s), as [`Reader::from`] those before.
+    #[must_use]
+    pub fn to(mut self, time: f64) -> Self {
+        self.span.to = Some(time);
         self
     }
 

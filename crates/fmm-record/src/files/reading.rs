@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 use crate::RecordError;
+#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
+use crate::record::Span;
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 use crate::units::label::without_groups;
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
@@ -27,21 +29,24 @@ pub struct Reading {
     pub sampling: Sampling,
 }
 
-/// The record of `values` at `times` (s) in the series called `name`, resampled if asked for.
+/// The part within `span` of the record of `values` at `times` (s) in the series called `name`, resampled if asked for.
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
 pub(crate) fn timed(
     name: String,
     times: &[f64],
     values: Vec<f64>,
     resampling: Option<Resampling>,
+    span: Span,
 ) -> Result<(Record, Sampling), RecordError> {
     let Some(resampling) = resampling else {
-        return Ok((Record::from_times(times, values, Quantity::Other, "")?, Sampling::Times { name }));
+        return Ok((span.timed(times, values, Quantity::Other, "")?, Sampling::Times { name }));
     };
     let resampled = resampling.of(times, &values)?;
     let sampling =
         Sampling::Resampled { name, rate: resampling.rate(), band: resampling.band(), error: resampled.error };
-    Ok((resampled.record(Quantity::Other, "")?, sampling))
+    let record = resampled.record(Quantity::Other, "")?;
+    let (from, to) = (span.from.unwrap_or(record.start()), span.to.unwrap_or(record.end()));
+    Ok((record.crop(from, to)?, sampling))
 }
 
 /// Largest size of the expanded data of one file, all together (bytes): 33 million numbers. A small file can

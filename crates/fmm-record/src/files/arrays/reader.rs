@@ -4,7 +4,7 @@ use super::{Array, ArrayFile, Series, Slice};
 use crate::files::clock::{Clock, are_whole};
 use crate::files::reading::timed;
 use crate::files::stated::stated;
-use crate::{Quantity, Reader, Reading, Record, RecordError, Sampling, UniformTimes};
+use crate::{Quantity, Reader, Reading, RecordError, Sampling, UniformTimes};
 
 impl ArrayFile {
     /// Makes a record of the channel that a reader names.
@@ -27,16 +27,16 @@ impl ArrayFile {
             if is_stated { None } else { around().map(|time| Slice::of(time, Series::Whole)) }
         });
         let (record, sampling) = if let Some(rate) = reader.rate {
-            (Record::sampled(rate, values, Quantity::Other, "")?, Sampling::Given { rate })
+            (reader.span.sampled(rate, values, Quantity::Other, "")?, Sampling::Given { rate })
         } else if let Some(time) = &time {
             let mut times = self.numbers(time)?.1;
             let name = time.written(self.notation);
             // The name of a matrix is not that of its first series.
             let clock = if time.series == Series::Whole { Clock::of(leaf(&time.array)) } else { Clock::nameless() };
             clock.to_seconds(&name, false, &mut times)?;
-            timed(name, &times, values, reader.resampling)?
+            timed(name, &times, values, reader.resampling, reader.span)?
         } else if let Some((rate, sampling)) = stated(self.scalars(array))? {
-            (Record::sampled(rate, values, Quantity::Other, "")?, sampling)
+            (reader.span.sampled(rate, values, Quantity::Other, "")?, sampling)
         } else {
             let there = self.listing();
             return Err(RecordError::time(

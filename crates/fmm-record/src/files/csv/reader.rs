@@ -6,7 +6,7 @@ use super::table::Table;
 use crate::files::clock::{Clock, counter};
 use crate::files::reading::{quoted, timed};
 use crate::files::stated::stated;
-use crate::{Quantity, Reader, Reading, Record, RecordError, Sampling, UniformTimes};
+use crate::{Quantity, Reader, Reading, RecordError, Sampling, UniformTimes};
 
 impl Reader {
     /// Reads one channel of the text in `input`, which is buffered here.
@@ -87,10 +87,10 @@ impl Reader {
         let Series { time, channel, values, scale } = series;
         let (time, channel) = (time.map(|index| columns[index].clone()), columns[channel].clone());
         let (record, sampling) = match (scale, &time) {
-            (Some(Scale::Rate(rate, sampling)), _) => (Record::sampled(rate, values, Quantity::Other, "")?, sampling),
+            (Some(Scale::Rate(rate, sampling)), _) => (self.span.sampled(rate, values, Quantity::Other, "")?, sampling),
             (Some(Scale::Times(by_nature, mut times)), Some(name)) => {
                 Clock::of(name).to_seconds(name, by_nature, &mut times)?;
-                timed(name.clone(), &times, values, self.resampling)?
+                timed(name.clone(), &times, values, self.resampling, self.span)?
             }
             _ => return Err(no_rate(&columns)),
         };

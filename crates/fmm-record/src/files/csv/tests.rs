@@ -461,3 +461,24 @@ fn a_record_whose_times_are_not_uniform_is_resampled() {
     let Sampling::Resampled { error, .. } = reading.sampling else { panic!("{}", reading.sampling) };
     assert!(error < 1e-3, "{error}");
 }
+
+#[test]
+fn values_outside_of_the_span_may_be_missing() {
+    let row =
+        |i: u32| format!("{},{}\n", f64::from(i) / 8.0, if [1, 7].contains(&i) { f64::NAN } else { f64::from(i) });
+    let text = format!("t,v\n{}", (0..9).map(row).collect::<String>());
+    let span = |from: f64, to: f64| Reader::default().from(from).to(to).read_from(text.as_bytes());
+    let record = span(0.25, 0.75).unwrap().record;
+    assert_eq!((record.start(), record.values()), (0.25, &[2.0, 3.0, 4.0, 5.0, 6.0][..]));
+    let late = Reader::default().rate(8.0).from(1.0).read_from(text.as_bytes()).unwrap().record;
+    assert_eq!((late.start(), late.values()), (1.0, &[8.0][..]));
+    let error = span(0.25, 1.0).unwrap_err();
+    assert!(matches!(error, RecordError::Values { index: 7, .. }), "{error}");
+    assert!(
+        error.to_string().starts_with("1 of 7 samples is not finite; the first is sample 7 (at 0.875 s)"),
+        "{error}"
+    );
+    assert!(says(&span(2.0, 3.0), "no sample lies between 2 s and 3 s; the record spans 0 s to 1 s"));
+    let file = Reader::default().from(0.25).to(0.75).parse(text.as_bytes()).unwrap();
+    assert_eq!(file.channels().unwrap()[0].rate, Some(8.0), "a channel that can be read has a rate");
+}

@@ -2,6 +2,7 @@
 
 use super::{Abscissa, DataSet, DataType, FunctionType, Ordinate, UffFile};
 use crate::files::reading::{only, quoted, seconds_in};
+use crate::record::Span;
 use crate::sampling::whole_hertz;
 use crate::{Column, Reading, Record, RecordError, Sampling};
 
@@ -15,7 +16,7 @@ impl DataSet {
     /// [`RecordError::Unsupported`] for a function that is not one of time or not real, [`RecordError::TimeAxis`] for a unit of
     /// time that is not known, otherwise as [`Record::new`] and [`Record::from_times`].
     pub fn record(&self) -> Result<Record, RecordError> {
-        self.sampled_record().map(|(record, _)| record)
+        self.sampled_record(Span::default()).map(|(record, _)| record)
     }
 
     /// Whether it is a record over time.
@@ -27,7 +28,7 @@ impl DataSet {
         }
     }
 
-    fn sampled_record(&self) -> Result<(Record, Sampling), RecordError> {
+    fn sampled_record(&self, span: Span) -> Result<(Record, Sampling), RecordError> {
         let header = &self.header;
         if !self.is_over_time() {
             let (name, function) = (self.name(), header.function);
@@ -47,12 +48,12 @@ impl DataSet {
         Ok(match self.abscissa() {
             Abscissa::Even { start, step } => {
                 let interval = if has_six_digits(*step) { whole_hertz(step * second) } else { step * second };
-                let record = Record::new(start * second, interval, values, quantity, unit)?;
+                let record = span.record(start * second, interval, values, quantity, unit)?;
                 (record, Sampling::Header { interval: step * second, rate: interval.recip() })
             }
             Abscissa::Uneven(times) => {
                 let times: Vec<f64> = times.iter().map(|time| time * second).collect();
-                let record = Record::from_times(&times, values, quantity, unit)?;
+                let record = span.timed(&times, values, quantity, unit)?;
                 (record, Sampling::Times { name: header.abscissa.label.clone() })
             }
         })
@@ -70,8 +71,14 @@ impl UffFile {
     /// # Errors
     /// [`RecordError::NoSuchChannel`], [`RecordError::WhichChannel`], otherwise as [`DataSet::record`].
     pub fn channel(&self, channel: impl Into<Column>) -> Result<Reading, RecordError> {
-        let (channel, names) = (channel.into(), self.names());
-        self.reading_of(only(&channel.among(&[&names]), &channel, "data set", &names)?)
+        self.part(Some(&channel.into()), Span::default())
+    }
+
+    /// The part within `span` of a channel, or else of the only record over time.
+    pub(crate) fn part(&self, channel: Option<&Column>, span: Span) -> Result<Reading, RecordError> {
+        let Some(channel) = channel else { return self.reading_of(self.only_over_time()?, span) };
+        let names = self.names();
+        self.reading_of(only(&channel.among(&[&names]), channel, "data set", &names)?, span)
     }
 
     /// The only record over time in the file.
@@ -79,9 +86,13 @@ impl UffFile {
     /// # Errors
     /// [`RecordError::WhichChannel`] if there are none or several, otherwise as [`DataSet::record`].
     pub fn reading(&self) -> Result<Reading, RecordError> {
+        self.part(None, Span::default())
+    }
+
+    fn only_over_time(&self) -> Result<usize, RecordError> {
         let over_time: Vec<usize> = (0..self.sets().len()).filter(|index| self.sets()[*index].is_over_time()).collect();
         if let [index] = over_time[..] {
-            return self.reading_of(index);
+            return Ok(index);
         }
         let (count, names) = (over_time.len(), quoted(&self.names()));
         let what = format!("name the data set; the file has {count} records over time among: {names}");
@@ -93,9 +104,9 @@ impl UffFile {
         self.sets().iter().map(DataSet::name).collect()
     }
 
-    fn reading_of(&self, index: usize) -> Result<Reading, RecordError> {
+    fn reading_of(&self, index: usize, span: Span) -> Result<Reading, RecordError> {
         let set = &self.sets()[index];
-        let (record, sampling) = set.sampled_record()?;
+        let (record, sampling) = set.sampled_record(span)?;
         Ok(Reading { record, channel: set.name(), time: None, columns: self.names(), sampling })
     }
 }
