@@ -11,7 +11,7 @@ use super::row::{Row, Told, quantities};
 const LEVEL: f64 = 0.95;
 /// Release amplitudes that differ by less than this factor (1) say nothing of what friction does with them.
 const WIDE: f64 = 1.1;
-/// Below this probability a dependence counts as shown (1).
+/// Below this p a dependence counts as shown (1).
 const SHOWN: f64 = 0.05;
 /// Pieces in which the band about a line is drawn.
 const PIECES: u32 = 40;
@@ -50,8 +50,8 @@ pub(crate) struct Line {
     pub(crate) slope_interval_95: Option<(f64, f64)>,
     /// Standard deviation between records beyond their uncertainties: of the slope where the line is over the load, else of the quantity.
     pub(crate) between: f64,
-    /// Probability of an intercept as far from zero if there were none, where the line is over the load; else of a slope.
-    pub(crate) p_value: f64,
+    /// p, probability of an intercept as far from zero if there were none, where the line is over the load; else of a slope.
+    pub(crate) p: f64,
     /// Places with the value of the line and the ends of its interval, for the eye.
     #[serde(skip)]
     pub(crate) band: Vec<(f64, f64, f64, f64)>,
@@ -117,7 +117,7 @@ fn over_load(rows: &[Row]) -> Option<Dependence> {
             slope_u: slope.uncertainty,
             slope_interval_95: found.coefficient_interval(LEVEL),
             between: found.between(),
-            p_value: found.intercept_p_value(),
+            p: found.intercept_p_value(),
             band: (0..=PIECES).map(at).collect(),
         }
     });
@@ -189,7 +189,7 @@ impl Dependence {
                 };
                 let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
                 let slope = Rounded::new(line.slope, Some(line.slope_u));
-                let verb = if line.p_value < SHOWN { "depends on" } else { "does not show to depend on" };
+                let verb = if line.p < SHOWN { "depends on" } else { "does not show to depend on" };
                 let axis = if against_unit.is_empty() { String::new() } else { format!(" {against_unit}") };
                 format!(
                     "{} {verb} {} between {} and {}{axis}: it changes by {slope}{unit} per {per} (p = {:.1e}), from {} records that \
@@ -198,7 +198,7 @@ impl Dependence {
                     words(against),
                     Rounded::new(low, None),
                     Rounded::new(high, None),
-                    line.p_value,
+                    line.p,
                     points.len(),
                     line.between,
                 )
@@ -240,7 +240,7 @@ impl Line {
             slope_u: found.slope_uncertainty(),
             slope_interval_95: found.slope_interval(LEVEL),
             between: found.between(),
-            p_value: found.slope_p_value(),
+            p: found.slope_p_value(),
             band: (0..=PIECES).map(at).collect(),
         }
     }

@@ -48,8 +48,8 @@ pub(crate) struct Quantity {
     pub(crate) between: f64,
     /// The same after DerSimonian and Laird.
     pub(crate) between_der_simonian_laird: f64,
-    /// Probability of differences as large if the records differed by their uncertainties only.
-    pub(crate) homogeneity_p: f64,
+    /// p, probability of differences as large if the records differed by their uncertainties only.
+    pub(crate) p: f64,
     pub(crate) i_squared: f64,
     /// The mean weighted by the uncertainties alone, as if the records did not differ, with the standard uncertainty that it claims.
     pub(crate) weighted_mean: [f64; 2],
@@ -69,12 +69,12 @@ pub(crate) struct ByGroup {
     pub(crate) repeatability: f64,
     pub(crate) between: f64,
     pub(crate) reproducibility: f64,
-    /// Probability of means as different if all groups were alike.
-    pub(crate) p_value: f64,
+    /// p, probability of means as different if all groups were alike.
+    pub(crate) p: f64,
     /// Mandel's statistics of each group.
     pub(crate) h: Vec<f64>,
     pub(crate) k: Vec<Option<f64>>,
-    /// The group whose mean lies farthest off (Grubbs), and the one that scatters most (Cochran), with the probability of that by chance.
+    /// The group whose mean lies farthest off (Grubbs), and the one that scatters most (Cochran), with the p of that.
     pub(crate) farthest: Option<(String, f64)>,
     pub(crate) widest: Option<(String, f64)>,
 }
@@ -133,7 +133,7 @@ impl Quantity {
             shared: parted.shared(&consensus),
             between: consensus.between(),
             between_der_simonian_laird: other.between(),
-            homogeneity_p: consensus.p_value(),
+            p: consensus.p_value(),
             i_squared: consensus.i_squared(),
             weighted_mean: [plain.value, plain.uncertainty],
             most_influential: moved.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())),
@@ -161,7 +161,7 @@ impl ByGroup {
             repeatability: precision.repeatability(),
             between: precision.between(),
             reproducibility: precision.reproducibility(),
-            p_value: precision.analysis().p_value(),
+            p: precision.analysis().p_value(),
             h: precision.h(),
             k: precision.k(),
             farthest: precision.grubbs().map(named),

@@ -64,14 +64,14 @@ pub(super) fn quantity_text(quantity: &Quantity, value: f64, u: f64) -> String {
 
 /// The statement on a quantity in a sentence.
 pub(super) fn statement(quantity: &Quantity) -> String {
-    let Quantity { mean, u, interval_95: [low, high], records, between, homogeneity_p, .. } = quantity;
+    let Quantity { mean, u, interval_95: [low, high], records, between, p, .. } = quantity;
     let interval = Rounded::new(*mean, Some(*u)).interval(*low, *high);
-    let differ = if *homogeneity_p < 0.05 {
+    let differ = if *p < 0.05 {
         let share = 100.0 * between / mean.abs();
-        let p = if *homogeneity_p < 1e-9 { "p < 1e-9".to_owned() } else { format!("p = {homogeneity_p:.1e}") };
-        format!("the records differ beyond their uncertainties ({p}), by {share:.2} % in standard deviation")
+        let less = if *p < 1e-9 { "p < 1e-9".to_owned() } else { format!("p = {p:.1e}") };
+        format!("the records differ beyond their uncertainties ({less}), by {share:.2} % in standard deviation")
     } else {
-        format!("the records agree within their uncertainties (p = {homogeneity_p:.2})")
+        format!("the records agree within their uncertainties (p = {p:.2})")
     };
     format!(
         "{} = {}, 95 % within {interval}, from {records} records{}; {differ}",
@@ -120,7 +120,7 @@ pub(super) fn joint_lines(summary: &Summary) -> Vec<String> {
     let differ: Vec<&str> = summary
         .quantities
         .iter()
-        .filter(|quantity| quantity.joint.is_some() && quantity.homogeneity_p < 0.05)
+        .filter(|quantity| quantity.joint.is_some() && quantity.p < 0.05)
         .map(|quantity| quantity.name.as_str())
         .collect();
     if !differ.is_empty() {
@@ -148,11 +148,11 @@ pub(super) fn sheet_line(fields: &[Field]) -> String {
 }
 
 pub(super) fn group_lines(quantity: &Quantity, group: &ByGroup) -> Vec<String> {
-    let ByGroup { groups, repeatability, between, reproducibility, p_value, farthest, widest, .. } = group;
+    let ByGroup { groups, repeatability, between, reproducibility, p, farthest, widest, .. } = group;
     let unit = if quantity.unit == "1" { String::new() } else { format!(" {}", quantity.unit) };
     let mut lines = vec![format!(
         "by {} groups: s_r = {repeatability:.3e}{unit}, between {between:.3e}{unit}, s_R = {reproducibility:.3e}{unit}; groups alike: p = \
-         {p_value:.2e}",
+         {p:.2e}",
         groups.len()
     )];
     for (outlier, what) in [(farthest, "lies far off"), (widest, "scatters more than the others")] {

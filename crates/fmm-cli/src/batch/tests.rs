@@ -130,7 +130,7 @@ fn a_manifest_sets_options_and_groups() {
     // The consensus takes each force once, and every record weighs about the same.
     let rest: f64 = rows[..4].iter().map(|row| row.told(("friction_force", "N")).unwrap().value).sum();
     assert!((force.mean / (rest / 4.0) - 1.0).abs() < 0.02 && force.records == 4, "{force:?}");
-    assert!(force.homogeneity_p < 1e-6 && force.weighted_mean[1] < 0.2 * force.u, "{force:?}");
+    assert!(force.p < 1e-6 && force.weighted_mean[1] < 0.2 * force.u, "{force:?}");
 
     let csv = table::csv(&campaign, &rows).unwrap();
     let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();

@@ -113,9 +113,9 @@ fn warnings(found: &Found) -> String {
 fn laws(found: &Found) -> String {
     let comparison = &found.comparison;
     let best = comparison.scores().iter().copied().fold(f64::INFINITY, f64::min);
-    let standings = comparison.scores().iter().zip(comparison.probabilities());
+    let standings = comparison.scores().iter().zip(comparison.p_values());
     let is_excluded = |law: &Identification| !comparison.not_excluded().any(|left| std::ptr::eq(left, law));
-    let rows = comparison.identifications().iter().zip(standings).map(|(law, (score, probability))| {
+    let rows = comparison.identifications().iter().zip(standings).map(|(law, (score, p))| {
         let stop = law.motions().iter().find_map(FittedMotion::stop_time);
         vec![
             format!("<th scope=\"row\">{}</th>", escaped(law.law())),
@@ -124,12 +124,12 @@ fn laws(found: &Found) -> String {
             text_cell(&law.motions().iter().map(FittedMotion::half_swings).sum::<usize>().to_string()),
             text_cell(&stop.map_or_else(|| "–".to_owned(), |time| format!("{time:.4}"))),
             text_cell(&format!("{:.1}", score - best)),
-            if is_excluded(law) { cell("excluded") } else { text_cell(&format!("{probability:.3}")) },
+            if is_excluded(law) { cell("excluded") } else { text_cell(&format!("{p:.3}")) },
         ]
     });
     let unit = found.decay.record().unit();
     let rms = label("rms residual", unit);
-    let headings = ["law", &rms, "rank", "half swings", "rest from / s", "misfit + 2 rank", "probability"];
+    let headings = ["law", &rms, "rank", "half swings", "rest from / s", "misfit + 2 rank", "p"];
     table("laws", &headings, rows)
 }
 

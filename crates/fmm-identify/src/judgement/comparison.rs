@@ -26,10 +26,10 @@ pub struct NestedTest {
 
 /// Identifications of the same records by several laws.
 ///
-/// A law is *excluded* if its misfit, beside the law that fits best, has a probability below 0.002 for the noise that the
+/// A law is *excluded* if its misfit, beside the law that fits best, has p below 0.002 for the noise that the
 /// residuals show; correlated residuals count for as much as they tell, so that the answer is the same however often a record is
-/// sampled. Among the others the simplest with a probability of at least 0.0125 is preferred. The preference is *decided* if its
-/// probability is at least 0.05 and what is left beside it are laws that have it as a special case, whose further parameters the record
+/// sampled. Among the others the simplest with p of at least 0.0125 is preferred. The preference is *decided* if its
+/// p is at least 0.05 and what is left beside it are laws that have it as a special case, whose further parameters the record
 /// does not ask for, if no filter in the sensor would explain the record as well, and if no drift was fitted beside residuals that are
 /// still correlated. Where a simple law is true, about one simulated record of seven stays undecided (example `judgement`). The
 /// uncertainties of the preferred law include what the laws that are left would change, by how probable they are.
@@ -300,10 +300,10 @@ impl Comparison {
         (0..self.identifications.len()).filter(left).map(|place| &self.identifications[place])
     }
 
-    /// Probability of a misfit as large as that of each law, beside the law that fits best, if the law were true (1), one per
-    /// identification.
-    pub fn probabilities(&self) -> &[f64] {
-        &self.judgement.probabilities
+    /// p, probability of a misfit at least as large as that of each law, beside the law that fits best, if the law were true (1),
+    /// one per identification. It is no probability of the law.
+    pub fn p_values(&self) -> &[f64] {
+        &self.judgement.p_values
     }
 
     /// The misfit of each law beside the law that fits best in variances of the noise, with 2 for each parameter that is determined

@@ -21,7 +21,7 @@ pub(crate) struct Judgement {
     /// D of each law, by how much it fits worse than the best, in variances of the noise (1).
     misfits: Vec<f64>,
     /// Probability of a misfit as large if that law were the true one (1).
-    pub(crate) probabilities: Vec<f64>,
+    pub(crate) p_values: Vec<f64>,
     /// D + 2 k, by which laws with as many parameters and more are ranked (1).
     pub(crate) scores: Vec<f64>,
     /// Whether each law was fitted to its lowest minimum, as far as is known.
@@ -35,10 +35,10 @@ pub(crate) struct Judgement {
 /// A law that fits worse than this by chance is excluded. The law that is true is excluded by no more than one in a hundred records:
 /// the best of several others is a little better than one other.
 pub(crate) const EXCLUDED: f64 = 0.002;
-/// A law with a smaller probability is not preferred to a more general one. The best of a dozen laws is better than one other by
+/// A law with a smaller p is not preferred to a more general one. The best of a dozen laws is better than one other by
 /// chance about four times as often as that one.
 const UNFIT: f64 = 0.0125;
-/// A preferred law with a smaller probability has the more general ones as rivals. A simple law that is true is called undecided by
+/// A preferred law with a smaller p has the more general ones as rivals. A simple law that is true is called undecided by
 /// about one record in eight.
 pub(crate) const DOUBTED: f64 = 0.05;
 /// A rival with more parameters must come within this of the score of the preferred law: what lies farther off has a twentieth of its
@@ -100,23 +100,23 @@ impl Judgement {
         let standings = identifications.iter().map(|found| {
             let (misfit, freedom) = found.misfit_beside(best);
             let further = best.fit().rank().saturating_sub(found.fit().rank()).max(1) as f64;
-            let probability = (f_tail(misfit / further, further, freedom).unwrap_or(0.0) * best.tries()).min(1.0);
-            (misfit, if misfit > 0.0 { probability } else { 1.0 })
+            let p = (f_tail(misfit / further, further, freedom).unwrap_or(0.0) * best.tries()).min(1.0);
+            (misfit, if misfit > 0.0 { p } else { 1.0 })
         });
-        let (misfits, probabilities): (Vec<f64>, Vec<f64>) = standings.unzip();
+        let (misfits, p_values): (Vec<f64>, Vec<f64>) = standings.unzip();
         let scores = misfits.iter().enumerate().map(|(i, misfit)| misfit + 2.0 * rank(i) as f64).collect();
         let is_finished: Vec<bool> =
             (0..candidates.len()).map(|place| shortcomings(place, candidates, identifications).is_empty()).collect();
         // A fit that has not ended says what the law can do at least, not what its parameters are.
-        let is_any = (0..misfits.len()).any(|i| probabilities[i] >= UNFIT && is_finished[i]);
-        let bears = |i: &usize| probabilities[*i] >= UNFIT && (is_finished[*i] || !is_any);
+        let is_any = (0..misfits.len()).any(|i| p_values[i] >= UNFIT && is_finished[i]);
+        let bears = |i: &usize| p_values[*i] >= UNFIT && (is_finished[*i] || !is_any);
         let preferred = (0..misfits.len()).filter(bears).min_by(|&a, &b| {
             let (near, far) = (misfits[a], misfits[b]);
             let by_misfit = if (near - far).abs() > 1e-6 { near.total_cmp(&far) } else { std::cmp::Ordering::Equal };
             let by_count = candidates[a].parameter_count().cmp(&candidates[b].parameter_count());
             rank(a).cmp(&rank(b)).then(by_misfit).then(by_count)
         })?;
-        let mut judgement = Self { misfits, probabilities, scores, is_finished, preferred, is_decided: true };
+        let mut judgement = Self { misfits, p_values, scores, is_finished, preferred, is_decided: true };
         judgement.is_decided =
             !(0..candidates.len()).any(|place| judgement.is_rival(place, candidates, identifications));
         Some(judgement)
@@ -124,7 +124,7 @@ impl Judgement {
 
     /// Whether the records do not exclude the law at this place.
     pub(crate) fn is_left(&self, place: usize) -> bool {
-        self.probabilities[place] >= EXCLUDED
+        self.p_values[place] >= EXCLUDED
     }
 
     /// Whether the law at this place may be true in the stead of the preferred one: not excluded, and no law that merely says the
@@ -142,7 +142,7 @@ impl Judgement {
         if is_general && candidates[place].differs_by_damping(&candidates[preferred]) {
             return hides_damping(&identifications[preferred], &identifications[place]);
         }
-        if is_general && self.probabilities[preferred] < DOUBTED {
+        if is_general && self.p_values[preferred] < DOUBTED {
             return self.scores[place] < self.scores[preferred];
         }
         let says_the_same = (self.misfits[place] - self.misfits[preferred]).abs() < 1e-6

@@ -148,16 +148,16 @@ impl fmt::Display for Comparison {
         writeln!(f, "\nLaws")?;
         let width = self.identifications().iter().map(|law| law.law().len()).max().unwrap_or(0);
         let best = self.scores().iter().copied().fold(f64::INFINITY, f64::min);
-        writeln!(f, "  {:<width$}  rms residual  rank  half swings    rest from   misfit + 2 rank  probability", "")?;
-        let standings = self.scores().iter().copied().zip(self.probabilities().iter().copied());
-        for (law, (score, probability)) in self.identifications().iter().zip(standings) {
+        writeln!(f, "  {:<width$}  rms residual  rank  half swings    rest from   misfit + 2 rank         p", "")?;
+        let standings = self.scores().iter().copied().zip(self.p_values().iter().copied());
+        for (law, (score, p)) in self.identifications().iter().zip(standings) {
             let stop = law.motions().iter().find_map(crate::FittedMotion::stop_time);
             let stop = stop.map_or_else(|| "-".to_owned(), |time| format!("{time:.4} s"));
             let half_swings: usize = law.motions().iter().map(crate::FittedMotion::half_swings).sum();
-            let probability = if probability < EXCLUDED { "excluded".to_owned() } else { format!("{probability:.3}") };
+            let p = if p < EXCLUDED { "excluded".to_owned() } else { format!("{p:.3}") };
             writeln!(
                 f,
-                "  {:<width$}  {:>12.4e}  {:>4}  {half_swings:>11}  {stop:>11}  {:>16.1}  {probability:>11}",
+                "  {:<width$}  {:>12.4e}  {:>4}  {half_swings:>11}  {stop:>11}  {:>16.1}  {p:>8}",
                 law.law(),
                 law.rms_residual(),
                 law.fit().rank(),

@@ -161,8 +161,8 @@ impl Serialize for Sign {
     }
 }
 
-/// `preferred` (name of the law), `decided`, `summary` (one sentence), `not_excluded` (names), `complete`, `signs`, `probabilities`
-/// and `scores` (one per model, by which laws are preferred), `models`, `preparation` (one object, or a list if there are several
+/// `preferred` (name of the law), `decided`, `summary` (one sentence), `not_excluded` (names), `complete`, `signs`, `p` and
+/// `scores` (one per model, by which laws are preferred), `models`, `preparation` (one object, or a list if there are several
 /// records), `warnings`.
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -175,7 +175,7 @@ impl Serialize for Comparison {
         document.serialize_field("not_excluded", &left)?;
         document.serialize_field("complete", &self.is_complete())?;
         document.serialize_field("signs", self.signs())?;
-        document.serialize_field("probabilities", self.probabilities())?;
+        document.serialize_field("p", self.p_values())?;
         document.serialize_field("scores", self.scores())?;
         document.serialize_field("models", self.identifications())?;
         match self.records() {
