@@ -110,12 +110,18 @@ fn odd_stamp(times: &[f64], tolerance: f64) -> Option<RecordError> {
 
 /// A time stamp (s) off a uniform grid, which would have it at `expected` (s).
 fn not_uniform(index: usize, time: f64, expected: f64, interval: f64) -> RecordError {
-    let deviation = time - expected;
+    let [stamp, step, place, deviation] = [time, interval, expected, time - expected].map(in_six_digits);
     let what = format!(
-        "sampling is not uniform: time stamp {index} is {time} s, but a uniform interval of {interval} s puts it at \
-         {expected} s ({deviation} s off); resample the record, with the band of its motion, or give its rate"
+        "sampling is not uniform: time stamp {index} is {stamp} s, but a uniform interval of {step} s puts it at \
+         {place} s ({deviation} s off); give the rate if the samples are uniform and only their stamps are not, or else resample \
+         them (`Reader::resampling`)"
     );
     RecordError::time(Some(index), what)
+}
+
+/// A number for the eye, in six significant digits or fewer.
+fn in_six_digits(number: f64) -> f64 {
+    format!("{number:.5e}").parse().unwrap_or(number)
 }
 
 /// `interval` (s), or that of the nearest whole number of hertz if it is the same within [`RATE_ROUNDING`].
@@ -286,6 +292,19 @@ mod tests {
         assert!(error.to_string().contains("is 300 s, but a uniform interval of 1 s puts it at 3 s"), "{error}");
         let back = UniformTimes::of(&[0.0, 1.0, 2.0, -7.0, 4.0, 5.0]).unwrap_err();
         assert_eq!(back.to_string(), "time must increase, but time stamp 3 is -7 s after 2 s");
+    }
+
+    #[test]
+    fn the_error_says_what_to_do_in_few_digits() {
+        let mut times = stamps(1000.0, 15, 1000);
+        times.iter_mut().for_each(|time| *time += 0.123_456_789);
+        times[700] += 3e-4 / 7.0;
+        assert_eq!(
+            UniformTimes::of(&times).unwrap_err().to_string(),
+            "sampling is not uniform: time stamp 700 is 0.8235 s, but a uniform interval of 0.001 s puts it at 0.823457 s \
+             (0.0000428571 s off); give the rate if the samples are uniform and only their stamps are not, or else resample \
+             them (`Reader::resampling`)"
+        );
     }
 
     #[test]

@@ -101,6 +101,10 @@ impl Choice {
         };
         let reading = reading.map_err(|error| match error {
             RecordError::Units(error) => self.with_remedy(error),
+            RecordError::TimeAxis { .. } => format!(
+                "{error}; here the rate is --rate and the time is --time, and what must be resampled is resampled before it is given"
+            )
+            .into(),
             error => error.into(),
         })?;
         Ok((reading, file))

@@ -168,3 +168,12 @@ fn what_is_missing_outside_of_the_span_does_not_matter() {
     let cut = read(&Choice { from: Some(1.0), to: Some(2.0), ..Choice::default() }, &path);
     assert_eq!((cut.record.start(), cut.record.values()), (1.0, &[1.0, 2.0][..]));
 }
+
+#[test]
+fn a_wrong_time_names_the_options() {
+    let path = file("uneven.csv");
+    std::fs::write(&path, "t [s],v [m/s]\n0,0\n1,1\n3,2\n4,3\n5,4\n").unwrap();
+    let refused = refusal(&Choice::default(), &path);
+    assert!(refused.contains("time stamp 2 is 3 s") && refused.contains("the rate is --rate"), "{refused}");
+    assert_eq!(read(&Choice { rate: Some(1.0), ..Choice::default() }, &path).record.rate(), 1.0);
+}

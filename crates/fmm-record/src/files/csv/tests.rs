@@ -451,7 +451,7 @@ fn a_record_whose_times_are_not_uniform_is_resampled() {
     let text: String = (0..600).map(row).collect();
     let text = format!("t [ms],v\n{text}");
     let error = read_text(&text).unwrap_err().to_string();
-    assert!(error.contains("resample the record"), "{error}");
+    assert!(error.contains("or else resample them (`Reader::resampling`)"), "{error}");
     let reader = Reader::default().resampling(crate::Resampling::new(200.0, 40.0).unwrap()).unit("m/s");
     let reading = reader.read_from(text.as_bytes()).unwrap();
     assert_eq!((reading.record.rate(), reading.record.unit()), (200.0, "m/s"));
