@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use fmm_model::{Estimated, ModelError, Unit};
-use fmm_record::{Quantity, Record};
+use fmm_record::{Quantity, Record, Swings};
 
 use crate::FrfError;
-use crate::decay::half_cycles::half_cycle_points;
+use crate::decay::half_cycles::{FEWEST_HALF_SWINGS, half_cycle_points};
 use crate::decay::local::{Carrier, LocalRegression, LocalVibration};
 use crate::decay::modes::{DecayMode, decay_modes};
 use crate::decay::spring::{bend, spring_terms};
@@ -151,8 +151,8 @@ impl Backbone {
     /// The backbone of the decay in `record`.
     ///
     /// # Errors
-    /// [`FrfError::NoFit`] if the record shows no line, too few cycles for two windows, or, if the `options` ask for a
-    /// frequency, no mode within a fifth of it.
+    /// [`FrfError::TooFew`] if the record shows too few half swings, [`FrfError::NoFit`] if it shows no line, too few cycles for
+    /// two windows, or, if the `options` ask for a frequency, no mode within a fifth of it.
     pub fn of(record: &Record, options: &BackboneOptions) -> Result<Self, FrfError> {
         let orders = match record.quantity() {
             Quantity::Velocity => 1,
@@ -160,15 +160,30 @@ impl Backbone {
             _ => 0,
         };
         let prepared = Prepared::of(record, options);
-        let is_long = |prepared: &Prepared| prepared.frequency * record.duration() >= FEW_CYCLES;
-        if *options == BackboneOptions::default() && !prepared.as_ref().is_ok_and(is_long) {
+        let is_long = prepared.as_ref().is_ok_and(|prepared| prepared.frequency * record.duration() >= FEW_CYCLES);
+        let is_free = *options == BackboneOptions::default();
+        let by_half_cycles = || {
             let points = half_cycle_points(record);
-            if let [first, .., last] = points.as_slice() {
-                let window = HALF_CYCLES / f64::midpoint(first.frequency.value, last.frequency.value);
-                return Ok(Self::corrected(points, window, record, orders));
-            }
+            let [first, .., last] = points.as_slice() else { return None };
+            let window = HALF_CYCLES / f64::midpoint(first.frequency.value, last.frequency.value);
+            Some(Self::corrected(points, window, record, orders))
+        };
+        if is_free
+            && !is_long
+            && let Some(found) = by_half_cycles()
+        {
+            return Ok(found);
         }
-        let Prepared { taken, frequency, fixed } = prepared?;
+        prepared.and_then(|prepared| Self::by_windows(record, prepared, orders)).or_else(|error| {
+            // What rests after a few cycles is long all the same.
+            let found = if is_free && is_long { by_half_cycles() } else { None };
+            found.ok_or_else(|| too_few_half_swings(record, options).unwrap_or(error))
+        })
+    }
+
+    /// The points of windows on a record.
+    fn by_windows(record: &Record, prepared: Prepared<'_>, orders: i32) -> Result<Self, FrfError> {
+        let Prepared { taken, frequency, fixed } = prepared;
         let (half, values) = (taken.half, taken.values);
         let centres = (half..values.len() - half).step_by((half / 2).max(1));
         let mut locals: Vec<Local> = centres.map(|centre| taken.local(centre, frequency, &fixed)).collect();
@@ -242,6 +257,19 @@ impl Backbone {
 
 fn no_fit(what: impl Into<String>) -> FrfError {
     FrfError::NoFit { what: what.into() }
+}
+
+/// That a record has too few half swings, if no mode was asked for and it swings at all.
+fn too_few_half_swings(record: &Record, options: &BackboneOptions) -> Option<FrfError> {
+    let needed = match (record.quantity(), options.cycles) {
+        (Quantity::Displacement | Quantity::Velocity, None) => FEWEST_HALF_SWINGS,
+        // Two windows.
+        (_, cycles) => (4.0 * cycles.unwrap_or(FEWEST_CYCLES)).ceil() as usize,
+    };
+    let found = Swings::of(record).peaks().len();
+    (options.frequency.is_none() && (1..needed).contains(&found)).then(|| FrfError::TooFew {
+        what: format!("the record shows {found} half swings above its noise; a backbone needs at least {needed}"),
+    })
 }
 
 /// Data that all windows share.

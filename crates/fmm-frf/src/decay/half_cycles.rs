@@ -9,6 +9,8 @@ use crate::BackbonePoint;
 
 /// Amplitudes that a point needs: of three half swings in a row, the first and the last are compared.
 const COMPARED: usize = 3;
+/// Half swings that two points need: one more than amplitudes.
+pub(crate) const FEWEST_HALF_SWINGS: usize = COMPARED + 2;
 /// Deviation of a passage, against that of the mean of the samples it is fitted to: its centre comes from four turning points with weights 1, 3, 3, 1, two of which the
 /// next passage but one has as well, √(1 + ½ 28/64 · 1.5²).
 const PASSAGE: f64 = 1.222;
@@ -59,4 +61,40 @@ pub(crate) fn half_cycle_points(record: &Record) -> Vec<BackbonePoint> {
             })
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::{Backbone, BackboneOptions};
+
+    /// A release by 1 mm on dry friction that stops it after `halves` half swings of 0.1 s, at 1 kHz, with noise of half a micrometre.
+    fn stopped(halves: usize) -> Record {
+        // Each half swing loses twice the friction; what is left after them is less than it.
+        let friction = 1.0 / (2 * halves + 1) as f64;
+        let at = |i: usize| {
+            let time = i as f64 / 1000.0;
+            let half = ((time / 0.1) as usize).min(halves);
+            let side = if half.is_multiple_of(2) { 1.0 } else { -1.0 };
+            let turn = 1.0 - 2.0 * friction * half as f64;
+            let swing = if half < halves { (PI * (time / 0.1 - half as f64)).cos() } else { 1.0 };
+            let noise = ((i as f64 * 12.9898).sin() * 43_758.545_3).fract();
+            1e-3 * (side * (friction + (turn - friction) * swing) + 1e-3 * noise)
+        };
+        Record::sampled(1000.0, (0..3000).map(at).collect(), Quantity::Displacement, "m").unwrap()
+    }
+
+    #[test]
+    fn too_few_half_swings_are_counted() {
+        let of = |halves: usize| Backbone::of(&stopped(halves), &BackboneOptions::default());
+        let refused = of(2).unwrap_err().to_string();
+        assert_eq!(refused, "the record shows 2 half swings above its noise; a backbone needs at least 5");
+        let asked = BackboneOptions::default().over(3.0).unwrap();
+        let refused = Backbone::of(&stopped(5), &asked).unwrap_err().to_string();
+        assert!(refused.ends_with("shows 5 half swings above its noise; a backbone needs at least 12"), "{refused}");
+        assert!(of(FEWEST_HALF_SWINGS).unwrap().points().len() >= 2);
+        assert!(of(FEWEST_HALF_SWINGS - 1).is_err());
+    }
 }
