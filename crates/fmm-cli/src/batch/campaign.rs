@@ -75,6 +75,9 @@ impl Campaign {
         let command = RecordOptions::command();
         let is_option =
             |column: &str| command.get_arguments().any(|option| option.get_long() == Some(&column.replace('_', "-")));
+        for column in manifest.columns.iter().filter(|column| *column != FILE && !is_option(column)) {
+            refuse_misspelt(column, &command).map_err(|error| format!("{}: {error}", path.display()))?;
+        }
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
         let entry = |cells: &Vec<String>| {
             let mut entry = Entry { file: PathBuf::new(), options: Vec::new(), description: BTreeMap::new() };
@@ -148,5 +151,87 @@ impl Campaign {
             format!("{} holds no campaign: cannot read {}: {error}", folder.display(), path.display())
         })?;
         Ok(serde_json::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?)
+    }
+}
+
+/// Refuses a column that is meant for one of the options of `command`, or for the file, but not called like it.
+fn refuse_misspelt(column: &str, command: &clap::Command) -> Result<(), String> {
+    let options = command.get_arguments().filter_map(|option| Some(option.get_long()?.replace('-', "_")));
+    let known: Vec<String> = std::iter::once(FILE.to_owned()).chain(options).collect();
+    let Some(meant) = known.iter().find(|option| is_meant(column, option)) else { return Ok(()) };
+    Err(format!(
+        "column `{column}` is no option and nearly called like `{meant}`; call it so, or otherwise if it only describes the records; \
+         columns that set something are {}",
+        known.join(", ")
+    ))
+}
+
+/// Whether a column is called like an option but for case, spaces, a unit in brackets, or a slip: a letter too many, too few, wrong or
+/// exchanged with the next. Of four letters or fewer only a repeated letter is a slip, as a date is no rate.
+fn is_meant(column: &str, option: &str) -> bool {
+    let bare = column.split(['[', '(']).next().unwrap_or_default();
+    let written: Vec<char> = bare.trim().to_lowercase().replace(['-', ' '], "_").chars().collect();
+    let option: Vec<char> = option.chars().collect();
+    if option.len() > 4 {
+        return is_one_slip(&written, &option);
+    }
+    let once = |word: &[char]| {
+        let mut word = word.to_vec();
+        word.dedup();
+        word
+    };
+    once(&written) == once(&option)
+}
+
+/// Whether two words are the same but for one letter, or for two that changed places.
+fn is_one_slip(one: &[char], other: &[char]) -> bool {
+    let begin = one.iter().zip(other).take_while(|(a, b)| a == b).count();
+    let (one, other) = (&one[begin..], &other[begin..]);
+    let end = one.iter().rev().zip(other.iter().rev()).take_while(|(a, b)| a == b).count();
+    match (&one[..one.len() - end], &other[..other.len() - end]) {
+        ([] | [_], [] | [_]) => true,
+        ([a, b], [c, d]) => a == d && b == c,
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_misspelt_option_is_refused_and_a_description_is_not() {
+        let command = RecordOptions::command();
+        for (column, meant) in [
+            ("Mass", "mass"),
+            ("masss", "mass"),
+            ("mass [kg]", "mass"),
+            ("normal load", "normal_load"),
+            ("normal_laod", "normal_load"),
+            ("norml_load", "normal_load"),
+            ("chanel", "channel"),
+            ("chanmel", "channel"),
+            ("stiffnes", "stiffness"),
+        ] {
+            let refused = refuse_misspelt(column, &command).unwrap_err();
+            assert!(refused.contains(&format!("nearly called like `{meant}`")), "{column}: {refused}");
+            assert!(refused.contains("columns that set something are file, channel, time, rate"), "{refused}");
+        }
+        for column in [
+            "operator",
+            "specimen",
+            "date",
+            "day",
+            "lab",
+            "model",
+            "load",
+            "temperature",
+            "run",
+            "grease",
+            "note",
+            "node",
+        ] {
+            assert_eq!(refuse_misspelt(column, &command), Ok(()), "{column}");
+        }
     }
 }
