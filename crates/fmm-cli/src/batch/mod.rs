@@ -1,7 +1,8 @@
 //! Campaign of many records: `fmm batch` and `fmm merge`.
 //!
 //! Each record is identified by itself, in parallel; one that is refused is a row with its reason. Into a folder, each row is a file of its
-//! own, written at once or not at all, so that a campaign can be cut into shards, killed and resumed at any time.
+//! own, written at once or not at all, so that a campaign can be cut into shards, killed and resumed at any time. Copies of a record
+//! are found when all rows are there.
 
 mod campaign;
 mod cells;
@@ -146,7 +147,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let jobs = arguments.jobs.map_or(0, usize::from);
     let Some(folder) = &arguments.out else {
         let all: Vec<usize> = (0..campaign.entries.len()).collect();
-        let rows = in_parallel(&all, jobs, |index| Ok(Row::of(&campaign, index)))?;
+        let rows = Row::without_copies(in_parallel(&all, jobs, |index| Ok(Row::of(&campaign, index)))?);
         return give_out(&rows, &arguments.asked.summary(&campaign, &rows)?, arguments.json);
     };
     campaign.keep(folder)?;
@@ -177,7 +178,7 @@ fn put_together(folder: &Path, campaign: &Campaign, asked: &Asked, json: bool) -
         )
         .into());
     }
-    let rows: Vec<Row> = rows.into_iter().flatten().collect();
+    let rows = Row::without_copies(rows.into_iter().flatten().collect());
     let summary = asked.summary(campaign, &rows)?;
     for (name, text) in [
         ("campaign.csv", table::csv(campaign, &rows)?),
@@ -191,7 +192,11 @@ fn put_together(folder: &Path, campaign: &Campaign, asked: &Asked, json: bool) -
 }
 
 fn give_out(rows: &[Row], summary: &Summary, json: bool) -> Result<(), Box<dyn Error>> {
-    if json { print(table::document(rows, summary)?) } else { print(table::text(rows, summary)) }
+    if json { print(table::document(rows, summary)?) } else { print(table::text(rows, summary)) }?;
+    if summary.found == 0 {
+        return Err(format!("none of {} records was identified; the reasons are in their rows", rows.len()).into());
+    }
+    Ok(())
 }
 
 /// Does all `tasks`, so many at a time, in their order, and shows how far it is; the first error ends it.

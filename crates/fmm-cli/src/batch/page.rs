@@ -9,7 +9,7 @@ use super::dependence::{Dependence, Line};
 use super::row::{Outcome, Row, quantities};
 use super::sheet_fields::Field;
 use super::summary::{Quantity, Summary};
-use super::table::{group_lines, joint_lines, quantity_text, statement};
+use super::table::{doubt_lines, group_lines, joint_lines, quantity_text, statement};
 use crate::figure::{Layer, Panel, Role, drawn, label};
 use crate::page::{cell, escaped, figure, page as whole_page, table, text_cell};
 
@@ -41,7 +41,8 @@ pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> Stri
 
 /// What the records say together, in sentences.
 fn statements(summary: &Summary) -> String {
-    let mut statements = String::new();
+    let doubts = doubt_lines(summary).map(|line| format!("<p>{}</p>\n", escaped(&line)));
+    let mut statements: String = doubts.collect::<Vec<_>>().concat();
     for quantity in &summary.quantities {
         // Writing to a string does not fail.
         let _ = writeln!(statements, "<p class=\"statement\">{}</p>", escaped(&statement(quantity)));

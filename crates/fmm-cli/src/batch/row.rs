@@ -6,8 +6,10 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use fmm_fit::EstimateStatus;
-use fmm_identify::{Finding, Identification, Origin, Source};
+use fmm_identify::{Finding, Identification, Origin, Source, Warning};
+use fmm_record::Record;
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
 use super::campaign::Campaign;
 use super::record_options::RecordOptions;
@@ -47,6 +49,10 @@ pub(crate) struct Found {
     pub(crate) amplitude: f64,
     pub(crate) half_swings: usize,
     pub(crate) warnings: Vec<String>,
+    /// Those of the warnings that doubt the fit.
+    pub(crate) doubts: Vec<String>,
+    /// SHA-256 of the samples as they were read, by which copies are known.
+    pub(crate) samples: String,
 }
 
 /// A quantity of the machine.
@@ -98,6 +104,22 @@ impl Row {
         }
     }
 
+    /// The rows with all but the first of those with the same samples refused: copies are no further evidence.
+    pub(crate) fn without_copies(mut rows: Vec<Self>) -> Vec<Self> {
+        let mut first: BTreeMap<String, PathBuf> = BTreeMap::new();
+        for row in &mut rows {
+            let Some(samples) = row.found().map(|found| found.samples.clone()) else { continue };
+            match first.get(&samples) {
+                Some(file) => {
+                    let why = format!("the same samples as {}, which counts for both", file.display());
+                    row.outcome = Outcome::Refused(why);
+                }
+                None => drop(first.insert(samples, row.file.clone())),
+            }
+        }
+        rows
+    }
+
     fn path(folder: &Path, index: usize) -> PathBuf {
         folder.join("rows").join(format!("{index:07}.json"))
     }
@@ -140,6 +162,8 @@ fn found(record: &RecordOptions) -> Result<Found, Box<dyn Error>> {
     let gain =
         Some((Source::Gain, record.given.scale.unwrap_or(1.0), record.question.scale_u)).filter(|gain| gain.2 > 0.0);
     let stated = record.question.stated().chain(gain);
+    let doubts = comparison.warnings().iter().filter(|warning| is_doubt(warning)).map(ToString::to_string).collect();
+    let samples = fingerprint(&input.record);
     let warnings = input.warnings.into_iter().chain(comparison.warnings().iter().map(ToString::to_string));
     Ok(Found {
         origin: input.origin,
@@ -152,7 +176,38 @@ fn found(record: &RecordOptions) -> Result<Found, Box<dyn Error>> {
         amplitude: decay.summary().amplitudes.0,
         half_swings: decay.summary().half_swings,
         warnings: warnings.collect(),
+        doubts,
+        samples,
     })
+}
+
+/// Whether a warning says that the fit does not describe the record.
+fn is_doubt(warning: &Warning) -> bool {
+    matches!(
+        warning,
+        Warning::StructuredResiduals { .. }
+            | Warning::PeriodDependsOnAmplitude { .. }
+            | Warning::NoDecay
+            | Warning::Saturated { .. }
+            | Warning::OffsetStep { .. }
+            | Warning::SecondMode { .. }
+            | Warning::NotConverged { .. }
+            | Warning::NegativeDamping { .. }
+            | Warning::Undecided
+            | Warning::Drift
+            | Warning::GrowingNoise { .. }
+            | Warning::FilteringSensor { .. }
+            | Warning::Beginning { .. }
+    )
+}
+
+/// SHA-256 of the samples and their interval.
+fn fingerprint(record: &Record) -> String {
+    let mut digest = Sha256::new();
+    for number in std::iter::once(record.interval()).chain(record.values().iter().copied()) {
+        digest.update(number.to_le_bytes());
+    }
+    digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat()
 }
 
 /// What was found of the machine.

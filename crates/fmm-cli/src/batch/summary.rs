@@ -19,6 +19,8 @@ const LEVEL: f64 = 0.95;
 pub(crate) struct Summary {
     pub(crate) records: usize,
     pub(crate) found: usize,
+    /// Records that are among those found although warnings doubt their fit.
+    pub(crate) doubted: Vec<Doubted>,
     pub(crate) quantities: Vec<Quantity>,
     /// Friction against what differs between the records.
     pub(crate) dependences: Vec<Dependence>,
@@ -26,6 +28,13 @@ pub(crate) struct Summary {
     pub(crate) joint: Option<Joint>,
     /// The record sheet, where the manifest has one.
     pub(crate) sheet: Option<Vec<Field>>,
+}
+
+/// A record whose fit is doubted.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Doubted {
+    pub(crate) file: String,
+    pub(crate) doubts: Vec<String>,
 }
 
 /// A quantity of a campaign.
@@ -84,9 +93,14 @@ impl Summary {
     pub(crate) fn of(campaign: &Campaign, rows: &[Row], against: &[String], joint: Option<Joint>) -> Self {
         let together = joint.as_ref().and_then(Joint::found);
         let of = |quantity| Quantity::of(campaign, rows, together, quantity);
+        let doubted = |row: &Row| {
+            let doubts = row.found().map(|found| found.doubts.clone()).filter(|doubts| !doubts.is_empty())?;
+            Some(Doubted { file: row.file.display().to_string(), doubts })
+        };
         Self {
             records: rows.len(),
             found: rows.iter().filter_map(Row::found).count(),
+            doubted: rows.iter().filter_map(doubted).collect(),
             quantities: quantities(rows).into_iter().filter_map(of).collect(),
             dependences: dependences(rows, against),
             joint,

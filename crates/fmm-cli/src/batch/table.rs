@@ -133,6 +133,14 @@ pub(super) fn joint_lines(summary: &Summary) -> Vec<String> {
     lines
 }
 
+/// The records that count although their fit is doubted.
+pub(super) fn doubt_lines(summary: &Summary) -> impl Iterator<Item = String> {
+    summary
+        .doubted
+        .iter()
+        .map(|record| format!("doubted, but counted below: {}: {}", record.file, record.doubts.join("; ")))
+}
+
 /// What nobody said of the record sheet.
 pub(super) fn sheet_line(fields: &[Field]) -> String {
     let missing: Vec<String> = fields
@@ -185,6 +193,9 @@ pub(crate) fn text(rows: &[Row], summary: &Summary) -> String {
         };
     }
     let _ = writeln!(text, "\n{} of {} records identified", summary.found, summary.records);
+    for line in doubt_lines(summary) {
+        let _ = writeln!(text, "  {line}");
+    }
     for quantity in &summary.quantities {
         let _ = writeln!(text, "  {}", statement(quantity));
         for line in quantity.precision.iter().flat_map(|group| group_lines(quantity, group)) {

@@ -177,6 +177,8 @@ fn the_most_influential_record_is_named() {
             amplitude: 1.0,
             half_swings: 9,
             warnings: Vec::new(),
+            doubts: if index == 2 { vec!["the residuals are structured".to_owned()] } else { Vec::new() },
+            samples: index.to_string(),
         };
         let file = PathBuf::from(format!("run_{index}.csv"));
         Row { file, description: BTreeMap::new(), outcome: Outcome::Found(found) }
@@ -186,6 +188,10 @@ fn the_most_influential_record_is_named() {
     let summary = Summary::of(&campaign, &rows, &[], None);
     let (file, moved) = summary.quantities[0].most_influential.as_ref().unwrap();
     assert!(file == "run_2.csv" && *moved < -0.5, "{file}: {moved}");
+    // It counts, but not in silence.
+    let named = "doubted, but counted below: run_2.csv: the residuals are structured";
+    let (text, page) = (table::text(&rows, &summary), page::page(&campaign, &rows, &summary));
+    assert!(text.contains(named) && text.matches("doubted").count() == 1 && page.contains(named), "{text}");
 }
 
 /// Six runs under one load that is known to 0.5 %: the consensus does not know μ better than that. Two loads that are weighed apart average
@@ -377,4 +383,37 @@ fn a_joint_fit_says_what_it_takes_for_granted() {
     }
     assert!(refused(&campaign, &mixed).contains("different laws: coulomb_viscous (5), viscous (1)"));
     assert!(refused(&campaign, &rows[..1]).contains("two identified records"));
+}
+
+/// The same record three times, under other names and masses, is one record; a disturbed one is doubted.
+#[test]
+fn copies_count_once_and_doubts_are_named() {
+    let home = folder("copies");
+    let paths = records(&home, &[0.02, 0.0202]);
+    let text = std::fs::read_to_string(&paths[0]).unwrap();
+    std::fs::write(home.join("run_02.csv"), &text).unwrap();
+    std::fs::write(home.join("run_03.csv"), text.replace("t [s]", "Time [s]")).unwrap();
+    let disturbed: String = std::iter::once("t [s],v [mm/s]\n".to_owned())
+        .chain(text.lines().skip(1).map(|line| {
+            let (time, value) = line.split_once(',').unwrap();
+            let (at, value): (f64, f64) = (time.parse().unwrap(), value.parse().unwrap());
+            format!("{time},{}\n", value + 3.0 * (5.1 * at).sin() * (-0.1 * at).exp())
+        }))
+        .collect();
+    std::fs::write(home.join("run_04.csv"), disturbed).unwrap();
+    let campaign = Campaign::of_files(std::slice::from_ref(&home), law()).unwrap();
+    let rows = Row::without_copies(rows(&campaign));
+    let refused: Vec<bool> = rows.iter().map(|row| row.found().is_none()).collect();
+    assert_eq!(refused, [false, false, true, true, false], "{rows:?}");
+    let Outcome::Refused(why) = &rows[3].outcome else { panic!("{rows:?}") };
+    assert!(why.starts_with("the same samples as ") && why.contains("run_00.csv"), "{why}");
+    let summary = Summary::of(&campaign, &rows, &[], None);
+    assert_eq!((summary.found, summary.quantities[0].records), (3, 3));
+    let doubted: Vec<&str> = summary.doubted.iter().map(|record| record.file.as_str()).collect();
+    assert!(doubted.len() == 1 && doubted[0].ends_with("run_04.csv"), "{:?}", summary.doubted);
+    assert!(table::text(&rows, &summary).contains("refused: the same samples as "));
+    give_out(&rows, &summary, true).unwrap();
+    let none = &rows[2..4];
+    let failed = give_out(none, &Summary::of(&campaign, none, &[], None), true).unwrap_err().to_string();
+    assert!(failed.starts_with("none of 2 records was identified"), "{failed}");
 }
