@@ -297,7 +297,9 @@ mod tests {
     #[test]
     fn the_error_says_what_to_do_in_few_digits() {
         let mut times = stamps(1000.0, 15, 1000);
-        times.iter_mut().for_each(|time| *time += 0.123_456_789);
+        for time in &mut times {
+            *time += 0.123_456_789;
+        }
         times[700] += 3e-4 / 7.0;
         assert_eq!(
             UniformTimes::of(&times).unwrap_err().to_string(),
