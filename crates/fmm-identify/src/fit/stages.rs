@@ -189,16 +189,23 @@ fn fit_with_shapes(
     let options = &options.clone().with_max_iterations(options.max_iterations().min(MOST_FINAL));
     let found = fit_roughly(&search, simple, starts, options, observer)?;
     let start = problem.clamped(found.values());
-    let fit = best_fit(&problem, problem.name(), &[start], options, observer)?;
+    let fit = best_fit(&problem, problem.name(), &[start], options, observer);
     // Beside residuals that look like noise, no other minimum is lower by more than chance.
-    if fit.outcome() == Outcome::AtNoiseFloor || !ResidualStructure::of(&fit, problem.decays()).is_correlated() {
-        return Ok(fit);
+    let is_noise = |fit: &Fit| {
+        fit.outcome() == Outcome::AtNoiseFloor || !ResidualStructure::of(fit, problem.decays()).is_correlated()
+    };
+    if fit.as_ref().is_ok_and(is_noise) {
+        return fit;
     }
     let starts = lowest(&search, starts.iter().map(|start| search.clamped(start)).collect(), MOST_THOROUGH_STARTS);
     let thorough = options.clone().with_max_iterations(options.max_iterations().min(MOST_THOROUGH));
     let thorough = best_fit_of_all(&search, &starts, &thorough, observer)
         .and_then(|end| best_fit(&problem, problem.name(), &[problem.clamped(end.values())], options, observer));
-    Ok(thorough.ok().filter(|other| other.sum_of_squares() < fit.sum_of_squares()).unwrap_or(fit))
+    match (fit, thorough) {
+        (Ok(fit), Ok(other)) => Ok(if other.sum_of_squares() < fit.sum_of_squares() { other } else { fit }),
+        (Ok(fit), Err(_)) => Ok(fit),
+        (Err(_), thorough) => thorough,
+    }
 }
 
 /// Where the fits of a law with shapes go from `starts` and from those that the response of a `simple` fit leads to, near enough to tell

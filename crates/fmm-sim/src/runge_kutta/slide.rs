@@ -8,7 +8,7 @@ use super::field::Field;
 use super::guard::{Guard, Side};
 use super::progress::Progress;
 use super::refiner::Refiner;
-use super::step::{Step, first_zero_within};
+use super::step::{STABLE, Step, first_zero_within};
 use crate::automaton::{Ended, Ending, Phase, Slide};
 use crate::drive::Drive;
 use crate::load::load;
@@ -368,6 +368,12 @@ impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Slide<D> for Integrator<'_, D, L> {
                 scale.position += rise / self.angular;
             }
             let mut error = step.error(scale) / self.tolerance;
+            // Where a motion creeps, values stay good beyond the limit of stability for long, and derivatives grow without end.
+            let stable = 0.9 * STABLE / step.stiffness();
+            if error <= 1.0 && step.stiffness() > STABLE {
+                self.shorten(&at, length * stable.max(0.1))?;
+                continue;
+            }
             let crossed = Guard::of(phase, at.side, self.field.capture.is_some())
                 .any(|guard| !(self.guard(phase, at.side, &step, guard).value() > 0.0));
             if (crossed || error <= 1.0)
@@ -395,7 +401,7 @@ impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Slide<D> for Integrator<'_, D, L> {
                 self.shorten(&at, length * if error.is_finite() { factor(error).clamp(0.1, 0.9) } else { 0.1 })?;
                 continue;
             }
-            self.adapt(length, 5.0, error);
+            self.adapt(length, stable.min(5.0), error);
             let (next, whole) = (at.time + length, length == rest);
             let next = if whole { phase.limit } else { next };
             let stop = if whole { phase.samples_end() } else { next };

@@ -30,7 +30,14 @@ pub(super) struct Step<D> {
     pub(super) length: f64,
     /// Velocity and acceleration.
     rates: [Rates<D>; 2],
+    stiffness: f64,
 }
+
+/// Length of a step times the decay rate of the velocity up to which the method damps what decays (1).
+pub(super) const STABLE: f64 = 6.0;
+
+/// Differences below so much of their terms (1) are rounding.
+const ROUNDED: f64 = 1e3 * f64::EPSILON;
 
 impl<D: Scalar> Step<D> {
     /// Steps from `begin`, where the acceleration is `acceleration`, over `length`; `accelerate` gives the acceleration
@@ -46,7 +53,13 @@ impl<D: Scalar> Step<D> {
         let start = [begin.position, begin.velocity];
         let (mut state, mut end) = (start, start);
         step(&start, length, &mut rates, &mut state, &mut end, rate_of(accelerate));
-        Self { begin, end: State { position: end[0], velocity: end[1] }, length, rates }
+        let stiffness = length * decay_rate([state[1], end[1]], [rates[1][END - 1], rates[1][END]]);
+        Self { begin, end: State { position: end[0], velocity: end[1] }, length, rates, stiffness }
+    }
+
+    /// Length of the step times the rate at which neighbouring velocities approach each other at its end (1).
+    pub(super) fn stiffness(&self) -> f64 {
+        self.stiffness
     }
 
     /// Acceleration at the end.
@@ -91,6 +104,21 @@ impl<D: Scalar> Step<D> {
         let velocity = nested(&self.rates[1], self.end.velocity - self.begin.velocity, self.length);
         let term = |index: usize| State { position: position[index], velocity: velocity[index] };
         Within::new(self.begin, std::array::from_fn(term))
+    }
+}
+
+/// The rate at which neighbouring velocities approach each other (1/s), of two `velocities` at one time and their `accelerations`; 0
+/// where they part, and where they differ by rounding.
+///
+/// From the two last stages, as in section IV.2 of E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, Springer 1996.
+fn decay_rate<D: Scalar>(velocities: [D; 2], accelerations: [D; 2]) -> f64 {
+    let difference = |[a, b]: [D; 2]| {
+        let (a, b) = (a.value(), b.value());
+        Some(b - a).filter(|difference| difference.abs() > ROUNDED * b.abs())
+    };
+    match (difference(velocities), difference(accelerations)) {
+        (Some(velocity), Some(acceleration)) => (-acceleration / velocity).max(0.0),
+        _ => 0.0,
     }
 }
 
@@ -175,6 +203,25 @@ mod tests {
             assert!((observed - order).abs() < 0.6, "{name}: order {observed} per step");
         }
         assert!(coarse.2 > coarse.0, "the estimate is no bound: {coarse:?}");
+    }
+
+    /// v′ = −λ v.
+    #[test]
+    fn what_decays_is_damped_by_steps_that_are_called_stable() {
+        for tenths in 1..=60 {
+            let stiffness = f64::from(tenths) / 10.0;
+            let step = Step::take(State { position: 0.0, velocity: 1.0 }, -stiffness, 1.0, |_, state| {
+                -stiffness * state.velocity
+            });
+            assert!(step.end.velocity.abs() < 1.0, "{stiffness}: {}", step.end.velocity);
+            assert!(
+                stiffness < 0.5 || (step.stiffness() / stiffness - 1.0).abs() < 1e-9,
+                "{stiffness}: {}",
+                step.stiffness()
+            );
+        }
+        let growing = Step::take(State { position: 0.0, velocity: 1.0 }, 5.0, 1.0, |_, state| 5.0 * state.velocity);
+        assert_eq!(growing.stiffness(), 0.0);
     }
 
     #[test]

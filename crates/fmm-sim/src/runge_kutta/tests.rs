@@ -1,6 +1,6 @@
 //! Derivatives under steep laws and laws that jump, by identities that hold whatever the motion is.
 
-use fmm_friction::{Karnopp, LawFamily, PowerLaw, SlidingLaw, Stribeck};
+use fmm_friction::{Karnopp, LawFamily, MakkarDixon, PowerLaw, SlidingLaw, Stribeck};
 use fmm_model::{Damping, Dual, Oscillator, Scalar};
 
 use super::*;
@@ -94,5 +94,30 @@ fn derivatives_know_the_jump_at_a_dead_zone() {
         for driven in [false, true] {
             check::<Karnopp>(&[(0.05, 0.0), (0.1, 0.0), (zone, -1.0)], driven, GOOD);
         }
+    }
+}
+
+/// A motion that creeps towards rest is so near its end that steps far beyond the limit of stability keep its values good.
+#[test]
+fn derivatives_of_a_motion_that_creeps_stay_small() {
+    let law = [0.013_949, 83_740.9, 17.1668, 0.040_172_7, 348.469, 0.110_452];
+    let sampling = Sampling::uniform(2e-3, 4000).unwrap();
+    let of = |tolerance| {
+        let values: Vec<Dual<6>> = law.iter().enumerate().map(|(index, value)| Dual::variable(*value, index)).collect();
+        let machine =
+            Oscillator::new(Dual::from(1.0), Dual::from((std::f64::consts::TAU * 2.335_720_18f64).powi(2))).unwrap();
+        let scenario = Scenario::new(machine, MakkarDixon::at(&values).unwrap(), Dual::from(1.0))
+            .and_then(|scenario| scenario.starting_at(Dual::from(0.008_379_69), Dual::from(0.0)))
+            .unwrap();
+        RungeKutta::new(tolerance).unwrap().run(&scenario, &sampling).unwrap()
+    };
+    let (fine, coarse) = (of(3e-14), of(1e-10));
+    for (direction, value) in law.iter().enumerate() {
+        let partials = |motion: &Trajectory<Dual<6>>| motion.velocity().partial(direction).unwrap().to_vec();
+        let (fine, coarse) = (partials(&fine), partials(&coarse));
+        let largest = fine.iter().fold(0.0f64, |largest, partial| largest.max(partial.abs()));
+        assert!(largest * value < 1.0, "direction {direction}: {largest:e}");
+        let off = fine.iter().zip(&coarse).fold(0.0f64, |off, (fine, coarse)| off.max((fine - coarse).abs()));
+        assert!(off < 3e-3 * largest, "direction {direction}: {off:e} off, of {largest:e}");
     }
 }
