@@ -30,6 +30,7 @@ pub(super) struct Step<D> {
     pub(super) length: f64,
     /// Velocity and acceleration.
     rates: [Rates<D>; 2],
+    /// Length times the decay rate of the velocity at the end (1).
     stiffness: f64,
 }
 
@@ -57,7 +58,7 @@ impl<D: Scalar> Step<D> {
         Self { begin, end: State { position: end[0], velocity: end[1] }, length, rates, stiffness }
     }
 
-    /// Length of the step times the rate at which neighbouring velocities approach each other at its end (1).
+    /// Length times the rate at which neighbouring velocities approach each other at the end (1).
     pub(super) fn stiffness(&self) -> f64 {
         self.stiffness
     }

@@ -1,4 +1,4 @@
-//! Derivatives under steep laws and laws that jump, by identities that hold whatever the motion is.
+//! Derivatives under steep laws and laws that jump: identities that hold whatever the motion is, and a motion that creeps.
 
 use fmm_friction::{Karnopp, LawFamily, MakkarDixon, PowerLaw, SlidingLaw, Stribeck};
 use fmm_model::{Damping, Dual, Oscillator, Scalar};
