@@ -112,13 +112,14 @@ fn fit_in_stages(problem: &Problem<'_>, options: &Options, observer: &mut Observ
         if Response::exists(search) {
             return fit_with_shapes(problem, search, (&simple, known.values()), &starts, options, observer);
         }
-        best_fit(search, problem.name(), &starts, options, observer)?
+        fit_of_best(search, &starts, &rough(options), observer)?
     } else {
-        fit_simple(search, options, observer)?
+        let found = fit_simple(search, options, observer)?;
+        if few.is_none() && !search.has_corners() {
+            return Ok(found);
+        }
+        found
     };
-    if few.is_none() && !search.has_corners() {
-        return Ok(found);
-    }
     // One fit of all samples, begun where a rough search or one with few of them has ended.
     best_fit(problem, problem.name(), &[found.values().to_vec()], options, observer)
 }
@@ -148,15 +149,26 @@ fn fit_near(
         is_given_up |= !near.others.is_empty() && progress.iterations() > ENOUGH_TO_BE_BETTER && is_worse;
         if is_given_up && is_worse { ControlFlow::Break(()) } else { observer(progress) }
     };
+    let is_driven = problem.is_driven();
+    if is_driven {
+        starts.extend(problem.continued(&simple, near.simple.fit().values()));
+        starts = lowest(problem, starts, MOST_STARTS);
+    }
+    let mut fit = |problem: &Problem<'_>, starts: &[Vec<f64>], options: &Options| {
+        let mut observe = |progress: &Progress<'_>| observe(progress, problem.len());
+        if is_driven {
+            fit_of_best(problem, starts, options, &mut observe)
+        } else {
+            best_fit(problem, problem.name(), starts, options, &mut observe)
+        }
+    };
     let mut polish = options.clone();
     if let Some(thinned) = problem.thinned() {
-        let search = problem.with_records(&thinned);
-        let found =
-            best_fit(&search, problem.name(), &starts, options, &mut |progress| observe(progress, search.len()))?;
+        let found = fit(&problem.with_records(&thinned), &starts, options)?;
         starts = vec![found.values().to_vec()];
         polish = polish.with_max_iterations(options.max_iterations().div_ceil(3));
     }
-    best_fit(problem, problem.name(), &starts, &polish, &mut |progress| observe(progress, problem.len()))
+    fit(problem, &starts, &polish)
 }
 
 /// Those of `starts` with the smallest sums of squares, at most `count`.
@@ -221,9 +233,7 @@ fn fit_roughly(
     if let Some(response) = Response::of(problem, simple.0, simple.1) {
         starts.extend(response.followed(&starts).into_iter().take(MOST_FOLLOWED));
     }
-    let starts = lowest(problem, starts, MOST_STARTS);
-    solve_best(problem, &starts, &rough(options), |progress| observer(progress))
-        .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
+    fit_of_best(problem, &lowest(problem, starts, MOST_STARTS), &rough(options), observer)
 }
 
 /// The `options` of a search that only has to decide where the lowest minimum is.
@@ -235,30 +245,37 @@ fn rough(options: &Options) -> Options {
 /// The best end of the fits from start values that the records show.
 fn fit_simple(problem: &Problem<'_>, options: &Options, observer: &mut Observer<'_>) -> Result<Fit, IdentifyError> {
     let mut starts = problem.starts();
-    if problem.decays().iter().any(|decay| decay.drive().is_some()) {
+    if problem.is_driven() {
         starts = lowest(problem, starts, MOST_DRIVEN_STARTS);
     }
     if problem.has_corners() {
         return fit_with_corners(problem, starts, options, observer);
     }
-    if let Some(swinging) = problem.up_to_last_peaks() {
-        let problem = problem.with_records(&swinging);
-        if let Ok(fit) = best_fit(&problem, problem.name(), &problem.starts(), options, observer) {
-            starts.push(fit.values().to_vec());
+    // Where the period depends on the amplitude, a fit creeps to the whole record unless it begins where one of the beginning has ended.
+    let is_bent = problem.machine().restoring() != Restoring::Linear || problem.has_spring();
+    let mut fit = |problem: &Problem<'_>, starts: &[Vec<f64>]| {
+        if is_bent {
+            fit_of_best(problem, starts, options, observer)
+        } else {
+            best_fit(problem, problem.name(), starts, options, observer)
         }
-    }
-    if problem.machine().restoring() != Restoring::Linear || problem.has_spring() {
-        let mut begun = problem.starts();
+    };
+    let mut begun = Vec::new();
+    if is_bent {
+        begun = problem.starts();
         for share in BEGINNINGS {
             let beginning = problem.beginnings(share);
-            let problem = problem.with_records(&beginning);
-            if let Ok(fit) = best_fit(&problem, problem.name(), &std::mem::take(&mut begun), options, observer) {
-                begun.push(fit.values().to_vec());
-            }
+            let found = fit(&problem.with_records(&beginning), &std::mem::take(&mut begun));
+            begun.extend(found.map(|fit| fit.values().to_vec()));
         }
-        starts.extend(begun);
     }
-    best_fit(problem, problem.name(), &starts, options, observer)
+    starts.extend(begun.iter().cloned());
+    if let Some(swinging) = problem.up_to_last_peaks() {
+        let problem = problem.with_records(&swinging);
+        begun.extend(problem.starts());
+        starts.extend(fit(&problem, &begun).map(|fit| fit.values().to_vec()));
+    }
+    fit(problem, &starts)
 }
 
 /// Where the fits from `starts` of a spring with corners go, near enough to begin the last one: all of them to few swings, the best of these
@@ -285,8 +302,7 @@ fn fit_with_corners(
             starts = ends.into_iter().map(|(_, values)| values).collect();
         }
     }
-    solve_best(problem, &starts, &coarse, |progress| observer(progress))
-        .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
+    fit_of_best(problem, &starts, &coarse, observer)
 }
 
 /// The best end of the fits from `starts`. No other end is better than one that leaves rounding only.
@@ -298,6 +314,17 @@ pub(crate) fn best_fit(
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
     best(law, starts.iter().map(|start| solve_observed(problem, start, options, |progress| observer(progress))))
+}
+
+/// The end of the fit from one of `starts`: the others are given up on the way.
+fn fit_of_best(
+    problem: &Problem<'_>,
+    starts: &[Vec<f64>],
+    options: &Options,
+    observer: &mut Observer<'_>,
+) -> Result<Fit, IdentifyError> {
+    solve_best(problem, starts, options, |progress| observer(progress))
+        .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
 }
 
 /// As [`best_fit`], with all fits at once.

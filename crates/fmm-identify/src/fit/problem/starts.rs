@@ -21,6 +21,11 @@ use crate::{Drive, Experiment, Identification, Sign};
 const FIRST_STATIC_EXCESS: f64 = 0.2;
 
 impl Problem<'_> {
+    /// Whether a measured force or motion drives one of the records.
+    pub(crate) fn is_driven(&self) -> bool {
+        self.decays.iter().any(|decay| decay.drive().is_some())
+    }
+
     /// Whether the law or the terms beside it have more to find than levels and a viscous part.
     pub(crate) fn is_elaborate(&self) -> bool {
         self.layout.law > self.layout.oscillator
@@ -42,7 +47,7 @@ impl Problem<'_> {
         };
         let mut starts: Vec<_> =
             hypotheses.iter().filter(expressible).map(|hypothesis| self.start(*hypothesis)).collect();
-        if self.decays.iter().any(|decay| decay.drive().is_some()) {
+        if self.is_driven() {
             let neutral: Vec<Experiment> = self.decays.iter().map(|decay| decay.clone().begun_neutral()).collect();
             let problem = self.with_records(&neutral);
             starts.extend(hypotheses.iter().filter(expressible).map(|hypothesis| problem.start(*hypothesis)));
