@@ -96,8 +96,8 @@
 //! | engine | a half swing | a sample | two derivatives beside the values |
 //! |---|---|---|---|
 //! | [`Exact`] | 0.09 µs | 0.5 ns | 1.6 to 1.9 times as long |
-//! | [`RungeKutta`] | 12 µs; to 1e-10 half of it | 1 to 6 ns | 1.6 to 1.8 times |
-//! | [`Bristle`] | 27 µs for Dahl, 90 µs for stiff LuGre | 30 ns | 1.6 to 2 times |
+//! | [`RungeKutta`] | 12 µs; to 1e-10 half of it | 1 to 6 ns | 1.6 to 2.2 times |
+//! | [`Bristle`], on an AMD EPYC | 23 µs for Dahl, 77 µs for stiff LuGre | 30 ns | 1.6 to 2 times |
 //! | [`Thesis`], [`Moreau`] | - | 18 ns, 28 ns | none |
 //!
 //! While a measured force acts, [`Exact`] goes from sample to sample of the force, 0.3 µs each.
