@@ -106,6 +106,14 @@ impl Forecast {
         Ok(bent)
     }
 
+    /// Standard deviations of the estimates over independent inputs of the standard deviations `spread`, to first order.
+    pub(super) fn deviations(&self, spread: &[f64]) -> Vec<f64> {
+        let variance = |estimate: usize| -> f64 {
+            spread.iter().enumerate().map(|(input, u)| (self.slope(estimate, input) * u).powi(2)).sum()
+        };
+        (0..self.centre.len()).map(|estimate| variance(estimate).sqrt()).collect()
+    }
+
     /// The estimates foreseen at `inputs`, one after the other.
     pub(super) fn at<'f>(&'f self, inputs: &'f [f64]) -> impl Iterator<Item = f64> + 'f {
         let count = self.inputs.len();

@@ -16,6 +16,12 @@ const NEGLIGIBLE: f64 = 1e-10;
 /// Gauss–Newton steps that have to get there; they do in two if the sensitivities foresee the new minimum.
 const STEPS: usize = 8;
 
+/// Share of the standard deviation of an estimate over the expected inputs that is nothing beside it.
+const NOTHING: f64 = 1e-6;
+
+/// By what steps may fall more slowly at other inputs than at those where it was seen.
+const SLOWER: f64 = 2.0;
+
 /// Where residuals have kinks, as those of a motion whose stop passes a sample do, steps may end in going to and fro; from
 /// within this share of the parameters' reach a search has the shorter way than from the forecast.
 const NEAR: f64 = 1e-3;
@@ -34,6 +40,7 @@ enum Arrival {
 /// Where the minimum goes is foreseen by the [`Sensitivity`] of the fit; Gauss–Newton steps take it there, until the next
 /// one, by their rate of convergence, would change nothing. Two evaluations are enough as a rule. A problem without
 /// derivatives, or a minimum that this does not reach within a few steps and the bounds, is handed to the [`Minimizer`].
+/// Where it is told what changes to expect, one evaluation is often enough: [`expecting`](Self::expecting).
 ///
 /// The estimates depend on the inputs alone: not on the order of the calls, nor on the thread.
 ///
@@ -79,6 +86,7 @@ pub struct Refit<'a, P: ?Sized> {
     inputs: Vec<usize>,
     free: Vec<usize>,
     forecast: Forecast,
+    convergence: Option<Convergence>,
     structure: Structure,
     is_direct: bool,
     options: Options,
@@ -94,6 +102,46 @@ struct Workspace {
     triangle: Triangle,
     scratch: Scratch,
     step: Vec<f64>,
+    /// The first two steps, and how many have led to the minimum: none if it was not reached so.
+    first: [Vec<f64>; 2],
+    taken: usize,
+}
+
+/// How fast Gauss–Newton steps fall at the expected inputs.
+#[derive(Debug)]
+struct Convergence {
+    /// Standard deviations of the estimates over the inputs, in which a step is measured: by the largest of its parts.
+    deviations: Vec<f64>,
+    /// Longest first step (1) of which the second is known.
+    longest: f64,
+    /// Largest ratio (1) of a second step to the first.
+    rate: f64,
+}
+
+impl Convergence {
+    /// As the first and second `steps` show it; none where there are no two of them, where they fall slowly, or where they
+    /// move an estimate that the inputs do not.
+    fn seen(deviations: Vec<f64>, steps: &[[Vec<f64>; 2]]) -> Option<Self> {
+        let mut convergence = Self { deviations, longest: 0.0, rate: 0.0 };
+        for [first, second] in steps {
+            let length = convergence.length(first);
+            convergence.longest = convergence.longest.max(length);
+            convergence.rate = convergence.rate.max(convergence.length(second) / length);
+        }
+        let is_known = 0.0 < convergence.longest && convergence.longest.is_finite();
+        (is_known && convergence.rate < 0.5 / SLOWER).then_some(convergence)
+    }
+
+    fn length(&self, step: &[f64]) -> f64 {
+        let parts = step.iter().zip(&self.deviations).filter(|(part, _)| **part != 0.0);
+        parts.map(|(part, deviation)| part.abs() / deviation).fold(0.0, f64::max)
+    }
+
+    /// Whether all that would come after this first step is nothing beside what the inputs do to the estimates.
+    fn ends_with(&self, first: &[f64]) -> bool {
+        let (length, rate) = (self.length(first), SLOWER * self.rate);
+        length <= self.longest && length * rate / (1.0 - rate) <= NOTHING
+    }
 }
 
 impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
@@ -123,6 +171,7 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
             inputs,
             free,
             forecast,
+            convergence: None,
             structure: Structure::of(problem)?,
             is_direct,
             options: Options::default(),
@@ -144,13 +193,16 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
             })?);
         }
         self.forecast = self.forecast.of_inputs(&places);
+        self.convergence = None;
         self.inputs = places.iter().map(|&place| self.inputs[place]).collect();
         Ok(self)
     }
 
     /// The same for inputs that change by about these amounts, such as their standard uncertainties: the estimates are
     /// foreseen by a polynomial through refits at one and two of them either way instead of by a straight line. Its
-    /// dozen fits for two inputs, two dozen for three, save most of one evaluation in every refit to come.
+    /// dozen fits for two inputs, two dozen for three, save an evaluation or more in every refit to come. They also show how
+    /// fast steps fall, so that a refit ends where the next step would move no estimate by more than a millionth of its
+    /// standard deviation over the inputs.
     ///
     /// An amount of zero is an input that does not change.
     ///
@@ -164,7 +216,19 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
         {
             return Err(RefitError::Spread { input: input.name().to_owned(), spread: *spread });
         }
-        self.forecast = self.forecast.through(spread, |inputs| self.estimates(inputs))?;
+        self.convergence = None;
+        let (mut workspace, mut steps, mut is_followed) = (Workspace::default(), Vec::new(), true);
+        self.forecast = self.forecast.through(spread, |inputs| {
+            let estimates = self.estimates_in(&mut workspace, inputs)?;
+            is_followed &= workspace.taken > 0;
+            if workspace.taken > 1 {
+                steps.push(workspace.first.clone());
+            }
+            Ok::<_, RefitError>(estimates)
+        })?;
+        if is_followed {
+            self.convergence = Convergence::seen(self.forecast.deviations(spread), &steps);
+        }
         Ok(self)
     }
 
@@ -229,12 +293,13 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
 
     /// Gauss–Newton steps to the minimum.
     fn follow(&self, workspace: &mut Workspace) -> Arrival {
-        let Workspace { values, residuals, jacobian, triangle, scratch, step, .. } = workspace;
+        let Workspace { values, residuals, jacobian, triangle, scratch, step, first, taken } = workspace;
+        *taken = 0;
         residuals.resize(self.problem.len(), 0.0);
         jacobian.resize(self.structure.len(), 0.0);
         step.resize(self.free.len(), 0.0);
         let mut previous = None;
-        for _ in 0..STEPS {
+        for count in 0..STEPS {
             if !matches!(self.problem.residuals_and_jacobian(values, residuals, jacobian), Ok(true)) {
                 return Arrival::Lost;
             }
@@ -243,6 +308,9 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
                 return Arrival::Lost;
             }
             triangle.solve(step);
+            if let Some(first) = first.get_mut(count) {
+                first.clone_from(step);
+            }
             for (&j, step) in self.free.iter().zip(step.iter()) {
                 values[j] += step;
                 if !self.problem.parameters()[j].bounds().contains(values[j]) {
@@ -255,6 +323,7 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
             let reach = self.free.iter().enumerate().map(reach).sum::<f64>();
             // Steps fall at a constant rate at worst, so that all to come are at most this far together.
             let to_come = match previous.map(|previous: f64| length / previous) {
+                None if self.convergence.as_ref().is_some_and(|convergence| convergence.ends_with(step)) => 0.0,
                 None => length,
                 Some(rate) if rate < 0.5 => length * rate / (1.0 - rate),
                 Some(_) if length <= NEGLIGIBLE * reach => 0.0,
@@ -262,6 +331,7 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
                 Some(_) => return Arrival::Lost,
             };
             if to_come <= NEGLIGIBLE * reach {
+                *taken = count + 1;
                 return Arrival::AtMinimum;
             }
             previous = Some(length);
@@ -284,5 +354,41 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
         }
         values.copy_from_slice(minimizer.values());
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seen(deviations: &[f64], steps: &[[[f64; 2]; 2]]) -> Option<Convergence> {
+        let steps: Vec<_> = steps.iter().map(|pair| pair.map(|step| step.to_vec())).collect();
+        Convergence::seen(deviations.to_vec(), &steps)
+    }
+
+    #[test]
+    fn a_first_step_ends_where_the_rate_leaves_nothing() {
+        // Lengths of 0.2 and 0.1 standard deviations, which fall to 0.0001 and 0.0002: by 0.002 at worst.
+        let steps = [[[0.02, 0.4], [1e-5, 0.0]], [[0.0, -0.2], [0.0, 4e-4]]];
+        let convergence = seen(&[0.1, 2.0], &steps).unwrap();
+        assert!((convergence.longest - 0.2).abs() < 1e-15 && (convergence.rate - 0.002).abs() < 1e-15);
+        // At twice that rate 2.4e-4 would be followed by 0.97e-6, 2.6e-4 by 1.04e-6.
+        assert!(convergence.ends_with(&[2.4e-5, 0.0]) && convergence.ends_with(&[0.0, -4.8e-4]));
+        assert!(!convergence.ends_with(&[2.6e-5, 0.0]));
+        assert!(convergence.ends_with(&[0.0, 0.0]));
+        // However fast they fell, a longer step than any is another matter.
+        let fast = seen(&[1.0, 1.0], &[[[1e-3, 0.0], [0.0, 0.0]]]).unwrap();
+        assert!(fast.ends_with(&[1e-3, 0.0]) && !fast.ends_with(&[1.1e-3, 0.0]));
+    }
+
+    #[test]
+    fn convergence_that_shows_nothing_ends_nothing() {
+        assert!(seen(&[1.0, 1.0], &[]).is_none());
+        assert!(seen(&[1.0, 1.0], &[[[0.0, 0.0], [0.0, 0.0]]]).is_none());
+        // Too slow to count on.
+        assert!(seen(&[1.0, 1.0], &[[[1.0, 0.0], [0.3, 0.0]]]).is_none());
+        // An estimate that does not depend on the inputs, but moves.
+        assert!(seen(&[0.0, 1.0], &[[[1e-3, 1e-3], [0.0, 1e-6]]]).is_none());
+        assert!(seen(&[0.0, 1.0], &[[[0.0, 1e-3], [0.0, 1e-6]]]).is_some());
     }
 }
