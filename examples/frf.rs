@@ -9,7 +9,7 @@ use fmm_frf::{AverageOptions, Estimator, ResponseForm, TrialAverage, resonances}
 use fmm_record::{Quantity, open};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // Three blows on a beam of steel, with force and acceleration as columns of a matrix.
+    // Three blows on a structure, with force and acceleration as columns of a matrix.
     let mut average = None;
     for blow in 1..=3 {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/data/hammer_{blow}.mat"));

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use crate::figure;
 use crate::input::{Choice, Given, Question};
-use crate::output::{Output, drawn, print};
+use crate::output::{Output, drawn, print, require_writable};
 use crate::pictures::Pictures;
 use crate::posterior::Posterior;
 use crate::report::{self, Found};
@@ -105,16 +105,17 @@ struct Document<'a> {
     posterior: &'a Option<Posterior>,
 }
 
-/// Reads, prepares and fits the record; by a search unless there are `candidates`.
-fn found(arguments: &Arguments, candidates: &[Candidate]) -> Result<Found, Box<dyn Error>> {
+/// Reads, prepares and fits the record, by a search unless there are `candidates`; with why there is no posterior, if one was asked for.
+fn found(arguments: &Arguments, candidates: &[Candidate]) -> Result<(Found, Option<Box<dyn Error>>), Box<dyn Error>> {
     let input = arguments.given.read_mode()?;
     input.warn();
     let preparation = arguments.given.preparation().gain_uncertainty(arguments.question.scale_u);
     let decay = experiment(arguments, &input.record, &preparation)?;
     let comparison = fitted(arguments, &decay, candidates)?;
     let preferred = comparison.preferred();
-    let posterior = arguments.posterior.then(|| Posterior::of(preferred, &decay)).transpose()?;
-    Ok(Found { origin: input.origin, decay, comparison, posterior })
+    let posterior = arguments.posterior.then(|| Posterior::of(preferred, &decay)).transpose();
+    let (posterior, failed) = posterior.map_or_else(|error| (None, Some(error)), |posterior| (posterior, None));
+    Ok((Found { origin: input.origin, decay, comparison, posterior }, failed))
 }
 
 /// Finds the law that explains a record, or the parameters of those that are named.
@@ -124,14 +125,19 @@ pub(crate) fn identify(arguments: &Arguments, command: &str) -> Result<(), Box<d
 
 /// Compares the laws that are named, or else viscous, dry and both.
 pub(crate) fn compare(arguments: &Arguments, command: &str) -> Result<(), Box<dyn Error>> {
-    let (candidates, standard) = (arguments.question.candidates()?, Candidate::standard());
-    give_out(arguments, if candidates.is_empty() { &standard } else { &candidates }, command)
+    give_out(arguments, &arguments.question.compared()?, command)
 }
 
 /// `command` is what was typed.
 fn give_out(arguments: &Arguments, candidates: &[Candidate], command: &str) -> Result<(), Box<dyn Error>> {
     let folder = arguments.output.folder()?;
-    let found = found(arguments, candidates)?;
+    if arguments.posterior {
+        Posterior::require()?;
+    }
+    if let Some(path) = &arguments.report {
+        require_writable(path)?;
+    }
+    let (found, failed) = found(arguments, candidates)?;
     if arguments.output.json {
         let document = Document { comparison: &found.comparison, posterior: &found.posterior };
         print(serde_json::to_string_pretty(&document)?)?;
@@ -150,5 +156,5 @@ fn give_out(arguments: &Arguments, candidates: &[Candidate], command: &str) -> R
         std::fs::write(path, page).map_err(|error| format!("cannot write {}: {error}", path.display()))?;
         eprintln!("report: {}", path.display());
     }
-    Ok(())
+    failed.map_or(Ok(()), Err)
 }

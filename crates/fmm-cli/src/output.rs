@@ -27,6 +27,19 @@ impl Output {
     }
 }
 
+/// Refuses a path at which no file can be, before work is done for it.
+pub(crate) fn require_writable(path: &Path) -> Result<(), String> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if path.is_dir() {
+        return Err(format!("cannot write {}: it is a folder; give the name of a file", path.display()));
+    }
+    if folder.is_dir() {
+        Ok(())
+    } else {
+        Err(format!("cannot write {}: there is no folder {}", path.display(), folder.display()))
+    }
+}
+
 /// Says which figures were written.
 pub(crate) fn drawn(folder: &Path, names: &str) {
     eprintln!("figures: {}", folder.join(names).display());

@@ -129,3 +129,39 @@ fn a_parameter_of_one_model_of_a_force_is_held() {
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(said.contains("by dahl, exponent = 1") && said.contains("Force along a motion by coulomb\n"), "{said}");
 }
+
+#[test]
+fn what_cannot_be_is_refused_in_words() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    for (arguments, reason) in [
+        ("identify RECORD --law coulomb --hold friction_per_mass=1 --hold friction_per_mass=2", "is held at 1 already"),
+        ("compare RECORD --hold friction_per_mass=1", "viscous has no parameter called \"friction_per_mass\""),
+        ("compare RECORD --time-limit 3", "is for the search"),
+        ("identify RECORD --law coulomb --report no/such/folder/page.html", "there is no folder no/such/folder"),
+        ("identify RECORD --law coulomb --report data", "it is a folder"),
+        ("identify RECORD --law coulomb --low-pass 2:0.001", "the low-pass filter of the sensor settles for"),
+        ("identify RECORD --law coulomb --pendulum 1e-9", "beyond two whole turns"),
+        ("identify RECORD --law coulomb --mass 1e300", "beyond the range of numbers"),
+        ("identify RECORD --law coulomb --mass 1e-300", "beyond the range of numbers"),
+    ] {
+        let arguments = arguments.replace("RECORD", "data/flexure/run_1.csv");
+        let output = Command::new(env!("CARGO_BIN_EXE_fmm"))
+            .args(arguments.split_whitespace())
+            .current_dir(&examples)
+            .output()
+            .unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            output.status.code() == Some(1) && output.stdout.is_empty() && told.contains(reason),
+            "{arguments}: {told}"
+        );
+    }
+}
+
+#[test]
+fn a_headline_says_what_was_not_measured() {
+    let record = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/data/flexure/run_1.csv");
+    let held = ["identify", record.to_str().unwrap(), "--law", "coulomb", "--hold", "friction_per_mass=0.2"];
+    let text = String::from_utf8(fmm(&held).stdout).unwrap();
+    assert!(text.contains("friction_per_mass = 0.2: friction_per_mass = 0.2 m/s² (held); "), "{text}");
+}

@@ -58,7 +58,7 @@
 //! # Cost
 //!
 //! A coefficient is a handful of operations: arithmetic alone for laws that are a level plus a slope, one exponential for
-//! [`Berger`], five functions for [`MakkarDixon`]. Only [`MaxwellSlip`] and [`Gms`] allocate, when they are made.
+//! [`Berger`], four functions for [`MakkarDixon`]. Only [`MaxwellSlip`] and [`Gms`] allocate, when they are made.
 //! [`Shifted`] searches its inflection once, when it is made, and so once for each evaluation of a fit.
 //!
 //! # Neighbours

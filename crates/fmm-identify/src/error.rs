@@ -4,6 +4,7 @@ use std::error::Error;
 
 use fmm_fit::{EvaluationError, FitError};
 use fmm_frf::{Channel, FrfError};
+use fmm_model::Parameter;
 use fmm_record::{Quantity, RecordError};
 
 /// Why a record could not be prepared or identified; each variant is something else that the caller can do about it.
@@ -139,6 +140,15 @@ impl IdentifyError {
         Self::TooFew { what, found: samples, needed }
     }
 
+    /// Too few samples after the first `time` (s), in which a sensor settles.
+    pub(crate) fn settling(samples: usize, needed: usize, time: f64) -> Self {
+        let what = format!(
+            "the low-pass filter of the sensor settles for {time:.3e} s, after which the record has {samples} samples; at least {needed} are \
+             needed: state a higher corner frequency, or give a longer record"
+        );
+        Self::TooFew { what, found: samples, needed }
+    }
+
     /// Too few `runs`, or different values of what was to be told from them.
     pub(crate) fn too_few_runs(runs: &str, found: usize, needed: usize) -> Self {
         Self::TooFew { what: format!("{found} {runs} are given; at least {needed} are needed"), found, needed }
@@ -188,6 +198,16 @@ impl IdentifyError {
     /// A number that describes an experiment and cannot be.
     pub(crate) fn not_allowed(subject: &str, value: f64, allowed: &str) -> Self {
         Self::OutOfRange { what: format!("{subject} must be {allowed}, not {value}"), value }
+    }
+
+    /// A finding of which value or variance lies beyond the range of numbers, as a mass of 1e300 kg makes it.
+    pub(crate) fn beyond_numbers(parameter: &Parameter, value: f64) -> Self {
+        let what = format!(
+            "{} is {value:.3e} {}, of which the variance lies beyond the range of numbers; check the units of mass, stiffness and load",
+            parameter.name(),
+            parameter.unit()
+        );
+        Self::OutOfRange { what, value }
     }
 
     /// A parameter that was to be held outside its bounds.

@@ -132,9 +132,25 @@ impl Question {
         Ok(candidates)
     }
 
+    /// The same where laws are compared and not searched: viscous, dry and both unless others are named.
+    pub(crate) fn compared(&self) -> Result<Vec<Candidate>, Box<dyn Error>> {
+        if let Some(seconds) = self.time_limit {
+            return Err(format!("--time-limit {seconds} is for the search of `fmm identify` without --law; a comparison fits all its laws").into());
+        }
+        let all = Self { law: vec!["all".to_owned()], ..self.clone() };
+        if self.law.is_empty() { all.candidates() } else { self.candidates() }
+    }
+
     fn held(&self) -> Result<Vec<Held>, Box<dyn Error>> {
-        let parse = |held: &String| held.parse().map_err(|error| format!("--hold {held}: {error}").into());
-        self.hold.iter().map(parse).collect()
+        let mut all: Vec<Held> = Vec::with_capacity(self.hold.len());
+        for text in &self.hold {
+            let held: Held = text.parse().map_err(|error| format!("--hold {text}: {error}"))?;
+            if let Some(other) = all.iter().find(|other| (&other.law, &other.name) == (&held.law, &held.name)) {
+                return Err(format!("--hold {text}: {} is held at {} already", held.name, other.value).into());
+            }
+            all.push(held);
+        }
+        Ok(all)
     }
 
     /// The one of the laws that are named, or that a search knows, which is called so.

@@ -11,10 +11,15 @@ pub(crate) enum Posterior {}
 
 impl Posterior {
     /// Refuses.
-    pub(crate) fn of(_: &Identification, _: &Experiment) -> Result<Self, Box<dyn Error>> {
+    pub(crate) fn require() -> Result<(), Box<dyn Error>> {
         Err("this program was built without the posterior, which takes a minute more to compile: run cargo with \
              `--features posterior`"
             .into())
+    }
+
+    /// Refuses.
+    pub(crate) fn of(_: &Identification, _: &Experiment) -> Result<Self, Box<dyn Error>> {
+        Err(Self::require().map_or_else(|error| error, |()| "there is no posterior".into()))
     }
 
     pub(crate) fn text(&self) -> String {

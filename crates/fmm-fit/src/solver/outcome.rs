@@ -71,7 +71,7 @@ impl fmt::Display for Outcome {
             Self::MaxIterations => "stopped at the limit on iterations: start from here again or raise the limit",
             Self::MaxEvaluations => "stopped at the limit on evaluations: start from here again or raise the limit",
             Self::TimedOut => "stopped at the time limit: start from here again or allow more time",
-            Self::Cancelled => "cancelled: the values are the best so far",
+            Self::Cancelled => "stopped by its observer: the values are the best so far",
         })
     }
 }

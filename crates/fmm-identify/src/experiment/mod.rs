@@ -102,7 +102,7 @@ impl Experiment {
         self.kept.retain(|range| !range.is_empty());
         self.summary.samples = self.kept.iter().map(Range::len).sum();
         if self.summary.samples < FEWEST_SAMPLES {
-            return Err(IdentifyError::too_short(self.summary.samples, FEWEST_SAMPLES));
+            return Err(IdentifyError::settling(self.summary.samples, FEWEST_SAMPLES, sensor.settling(frequency)));
         }
         self.sensor = sensor;
         Ok(self)

@@ -184,6 +184,9 @@ pub(crate) fn identify_by(
         }
         add_in_quadrature(&mut found, source, &ends[0], &ends[1]);
     }
+    if let Some(finding) = found.iter().find(|finding| !finding.is_representable()) {
+        return Err(IdentifyError::beyond_numbers(finding.parameter(), finding.value()));
+    }
 
     let mut motions = Vec::with_capacity(decays.len());
     for (record, decay) in decays.iter().enumerate() {

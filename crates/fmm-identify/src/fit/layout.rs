@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use fmm_fit::EvaluationError;
 use fmm_friction::Role;
-use fmm_model::{Bounds, Damping, Oscillator, Parameter, Scalar};
+use fmm_model::{Bounds, Damping, Oscillator, Parameter, Restoring, Scalar};
 
 use crate::experiment::reference;
 use crate::law::dimension::is_force;
@@ -14,6 +14,9 @@ use crate::law::{Law, Motion};
 use crate::machine::Scale;
 use crate::machine::terms::Term;
 use crate::{Experiment, IdentifyError, Machine, Terms};
+
+/// Amplitude (rad) beyond which a record is not one of a pendulum with that length: no crossing counts turns.
+const MOST_RADIANS: f64 = 4.0 * PI;
 
 /// Order of the parameters: oscillator, damping beside the law, law, then for each record its initial state and, unless it
 /// is fixed, its offset.
@@ -56,6 +59,16 @@ impl Layout {
             return Err(IdentifyError::contradiction(contradiction));
         }
         let reference = reference(decays);
+        if let Restoring::Sine { length } = machine.restoring() {
+            let angle = reference.scales().0 / length;
+            if angle > MOST_RADIANS {
+                return Err(IdentifyError::contradiction(format!(
+                    "a pendulum that moves by {length:e} {0} for each radian would swing by {angle:.3e} rad in this record, beyond two whole \
+                     turns; give the length in {0} that makes one radian",
+                    Units::of(reference.record()).position
+                )));
+            }
+        }
         let is_driven = decays.iter().any(|decay| decay.drive().is_some());
         let family = if is_driven { family.with_breakaway() } else { family };
         let units = Units::of(reference.record());

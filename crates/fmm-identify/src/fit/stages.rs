@@ -143,11 +143,16 @@ fn fit_near(
         starts = lowest(problem, all, near.tries);
     }
     let worse = near.simple.rms_residual().powi(2);
-    let mut is_given_up = false;
+    let (mut is_given_up, mut is_ended) = (false, false);
     let mut observe = |progress: &Progress<'_>, residuals: usize| {
         let is_worse = progress.sum_of_squares() > worse * residuals as f64;
         is_given_up |= !near.others.is_empty() && progress.iterations() > ENOUGH_TO_BE_BETTER && is_worse;
-        if is_given_up && is_worse { ControlFlow::Break(()) } else { observer(progress) }
+        if is_given_up && is_worse {
+            return ControlFlow::Break(());
+        }
+        let flow = observer(progress);
+        is_ended |= flow.is_break();
+        flow
     };
     let is_driven = problem.is_driven();
     if is_driven {
@@ -168,7 +173,12 @@ fn fit_near(
         starts = vec![found.values().to_vec()];
         polish = polish.with_max_iterations(options.max_iterations().div_ceil(3));
     }
-    fit(problem, &starts, &polish)
+    let found = fit(problem, &starts, &polish)?;
+    // One of several starts was given up, and a step of the better one looked like it.
+    if is_given_up && !is_ended && found.sum_of_squares() < worse * problem.len() as f64 {
+        return best_fit(problem, problem.name(), &[found.values().to_vec()], &polish, observer);
+    }
+    Ok(found)
 }
 
 /// Those of `starts` with the smallest sums of squares, at most `count`.

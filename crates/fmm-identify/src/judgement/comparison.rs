@@ -105,6 +105,10 @@ impl Comparison {
         let preferred = judgement.preferred;
         let others = unfinished(candidates, &identifications);
         judgement.is_decided &= others.is_empty();
+        // What the fit by the preferred law says of itself stands among its own warnings.
+        let own = format!("the fit {}", identifications[preferred].fit().outcome());
+        let is_said = |warning: &Warning| matches!(warning, Warning::OtherLaw { law, sentence } if *law == candidates[preferred].name() && *sentence == own);
+        let others: Vec<Warning> = others.into_iter().filter(|warning| !is_said(warning)).collect();
         // A filter in the sensor that explains the record as well is a rival, though it is no law.
         let sensor = filtering_sensor(decays, &identifications, preferred);
         judgement.is_decided &= sensor.is_none();

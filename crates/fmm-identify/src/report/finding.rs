@@ -68,6 +68,11 @@ impl Finding {
         }
     }
 
+    /// Whether what follows from the machine has a square, as its variance needs one.
+    pub(crate) fn is_representable(&self) -> bool {
+        self.origin != Origin::Derived || self.value == 0.0 || (self.value * self.value).is_normal()
+    }
+
     /// Name, symbol and unit.
     pub fn parameter(&self) -> &Parameter {
         &self.parameter

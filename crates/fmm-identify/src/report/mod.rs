@@ -31,10 +31,19 @@ impl fmt::Display for Finding {
         }
         match self.origin() {
             Origin::Derived => write!(f, "  (with what is known of the machine)"),
-            Origin::Fitted(EstimateStatus::Undetermined) => write!(f, "  (not determined)"),
-            Origin::Fitted(EstimateStatus::Fixed) => write!(f, "  (held)"),
-            Origin::Fitted(status) if status.is_at_bound() => write!(f, "  (at its bound)"),
-            Origin::Fitted(_) => Ok(()),
+            Origin::Fitted(_) => self.reservation().map_or(Ok(()), |reservation| write!(f, "  ({reservation})")),
+        }
+    }
+}
+
+impl Finding {
+    /// What keeps it from being a measured value, if something does.
+    fn reservation(&self) -> Option<&'static str> {
+        match self.origin() {
+            Origin::Fitted(EstimateStatus::Undetermined) => Some("not determined"),
+            Origin::Fitted(EstimateStatus::Fixed) => Some("held"),
+            Origin::Fitted(status) if status.is_at_bound() => Some("at its bound"),
+            _ => None,
         }
     }
 }
@@ -108,7 +117,8 @@ impl Comparison {
             .iter()
             .map(|finding| {
                 let interval = finding.interval_text().map_or(String::new(), |text| format!(", 95 % within {text}"));
-                format!("{} = {}{interval}", finding.parameter().name(), finding.quantity())
+                let reservation = finding.reservation().map_or(String::new(), |text| format!(" ({text})"));
+                format!("{} = {}{interval}{reservation}", finding.parameter().name(), finding.quantity())
             })
             .collect();
         let found =

@@ -113,10 +113,21 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         let amplitude = |wave: &crate::drive::Harmonic<D>| wave.amplitude.value().abs();
         let size = self.field.force_size(force, branch, begin) + piece.waves().iter().map(amplitude).sum::<f64>();
         let load = self.after[1].value() * mass;
-        // A swing on the bristles that the position has no digits for is none.
-        let unseen = begin[0].value().abs() * self.stiffness * mass;
-        if load.abs() > 4.0 * f64::EPSILON * (size + unseen) {
-            return Some(Direction::of(load));
+        let rounding = 4.0 * f64::EPSILON * size;
+        // A swing on the bristles that the position has no digits for is none, unless they are pulled by more than they can hold.
+        let unseen = 4.0 * f64::EPSILON * begin[0].value().abs() * self.stiffness * mass;
+        if load.abs() > rounding {
+            let mut is_beyond_bristles = || {
+                let mut held = begin.clone();
+                for (i, state) in held[2..].iter_mut().enumerate() {
+                    *state = self.field.law.bound(i) * load.signum();
+                }
+                self.field.rates(force, branch, &held, &mut self.after);
+                self.after[1].value() * load.signum() * mass > rounding
+            };
+            if load.abs() > rounding + unseen || is_beyond_bristles() {
+                return Some(Direction::of(load));
+            }
         }
         let oscillator = self.field.oscillator;
         let (slope, bend) = oscillator.restoring().slope(oscillator.stiffness(), begin[0]);

@@ -231,6 +231,25 @@ fn stiff_bristles_turn_where_coulomb_friction_does() {
     }
 }
 
+/// Deflections far below the last digit of the position.
+#[test]
+fn bristles_of_any_stiffness_hold_no_more_than_their_level() {
+    let machine = Oscillator::new(10.391, 1982.0).unwrap();
+    for stiffness in [1e12, 1e14, 1e16, 1e17, 1e18, 1e20] {
+        for damping in [36.0, 1e6] {
+            let law = LuGre::new(0.228, 0.489, 0.35, 1.0, stiffness, damping, 0.0).unwrap();
+            let scenario = Scenario::new(machine, law, 7.2).unwrap().starting_at(0.0, 0.101).unwrap();
+            let motion = Bristle::default().run(&scenario, &sampling()).unwrap();
+            let end = motion.position().values()[500];
+            let pull = 1982.0 * end.abs() / (7.2 * 0.489);
+            assert!(
+                pull < 1.0 + 1e-9,
+                "σ₀ = {stiffness:e}, σ₁ = {damping}: rests under {pull} of what the contact can hold"
+            );
+        }
+    }
+}
+
 /// With an exponent below 1 the bound is reached in finite time: a singularity, at which a series must not stand still.
 #[test]
 fn bristles_that_reach_their_bound_are_followed_beyond() {
