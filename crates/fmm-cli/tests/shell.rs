@@ -104,6 +104,7 @@ fn what_is_wrong_is_named_with_what_would_be_right() {
             "force damper_1Hz_36lb_1amplitude.csv --model coulomb --hold stribeck.exponent=2",
             "--hold stribeck.exponent: stribeck is the law of no model",
         ),
+        ("batch flexure --group operator", "--group operator: a manifest says which records belong together"),
     ] {
         let words = arguments.split_whitespace();
         let output = Command::new(env!("CARGO_BIN_EXE_fmm")).args(words).current_dir(&examples).output().unwrap();

@@ -76,7 +76,9 @@ impl Campaign {
         let is_option =
             |column: &str| command.get_arguments().any(|option| option.get_long() == Some(&column.replace('_', "-")));
         for column in manifest.columns.iter().filter(|column| *column != FILE && !is_option(column)) {
-            refuse_misspelt(column, &command).map_err(|error| format!("{}: {error}", path.display()))?;
+            refuse_drive(column)
+                .and_then(|()| refuse_misspelt(column, &command))
+                .map_err(|error| format!("{}: {error}", path.display()))?;
         }
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
         let entry = |cells: &Vec<String>| {
@@ -154,6 +156,16 @@ impl Campaign {
     }
 }
 
+/// Refuses a column that is meant for an option of `fmm identify` by which the machine is driven: its record would be fitted as a free
+/// vibration.
+fn refuse_drive(column: &str) -> Result<(), String> {
+    let Some(option) = ["force", "base"].into_iter().find(|option| is_meant(column, option)) else { return Ok(()) };
+    Err(format!(
+        "column `{column}` is meant for --{option}, but a campaign is of free vibrations; identify a driven record by \
+         `fmm identify FILE --{option} NAME`, or call the column otherwise if it only describes the records"
+    ))
+}
+
 /// Refuses a column that is meant for one of the options of `command`, or for the file, but not called like it.
 fn refuse_misspelt(column: &str, command: &clap::Command) -> Result<(), String> {
     let options = command.get_arguments().filter_map(|option| Some(option.get_long()?.replace('-', "_")));
@@ -198,6 +210,17 @@ fn is_one_slip(one: &[char], other: &[char]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_drive_is_refused() {
+        for (column, option) in [("force", "force"), ("Force [N]", "force"), ("forces", "force"), ("base", "base")] {
+            let refused = refuse_drive(column).unwrap_err();
+            assert!(refused.starts_with(&format!("column `{column}` is meant for --{option}, but")), "{refused}");
+        }
+        for column in ["normal_load", "pressing_force", "basis", "bath"] {
+            assert_eq!(refuse_drive(column), Ok(()), "{column}");
+        }
+    }
 
     #[test]
     fn a_misspelt_option_is_refused_and_a_description_is_not() {

@@ -127,7 +127,10 @@ fn over_load(rows: &[Row]) -> Option<Dependence> {
         against: LOAD.to_owned(),
         against_unit: "N".to_owned(),
         records: runs.len(),
-        statement: found.map_or_else(|error| error.to_string(), |found| found.to_string()),
+        statement: found.map_or_else(
+            |error| format!("{} against normal load: {error}", quantity.0.replace('_', " ")),
+            |found| found.to_string(),
+        ),
         line,
         points: runs.iter().map(|(load, force)| (load.value, force.value, force.uncertainty)).collect(),
     })

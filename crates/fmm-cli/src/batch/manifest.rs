@@ -27,11 +27,24 @@ impl Manifest {
     pub(super) fn read(path: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
         let read = if is_toml(path, &text) { Self::of_toml(&text) } else { Self::of_csv(&text) };
-        let manifest = read.map_err(|error| format!("{}: {error}", path.display()))?;
+        let manifest =
+            read.and_then(Self::with_columns_once).map_err(|error| format!("{}: {error}", path.display()))?;
         if manifest.records.is_empty() {
             return Err(format!("{}: the manifest has no records", path.display()));
         }
         Ok(manifest)
+    }
+
+    /// The same; refused if a column stands twice, written with hyphens or underscores, as one of the two would count in silence.
+    fn with_columns_once(self) -> Result<Self, String> {
+        let plain = |column: &String| column.replace('-', "_");
+        for (place, column) in self.columns.iter().enumerate().filter(|(_, column)| !column.is_empty()) {
+            if let Some(first) = self.columns[..place].iter().find(|first| plain(first) == plain(column)) {
+                let written = if first == column { String::new() } else { format!(", first as `{first}`") };
+                return Err(format!("the column `{column}` stands twice{written}; give it once"));
+            }
+        }
+        Ok(self)
     }
 
     fn of_csv(text: &str) -> Result<Self, String> {
@@ -141,6 +154,18 @@ mod tests {
             assert!(refused(text).contains(words), "{text:?}: {}", refused(text));
         }
         assert!(Manifest::of_csv("path,mass\na,1\n").unwrap_err().contains("no column `file`; there are path, mass"));
+    }
+
+    #[test]
+    fn a_column_that_stands_twice_is_refused() {
+        let read = |text: &str| Manifest::of_csv(text).and_then(Manifest::with_columns_once);
+        assert_eq!(read("file,mass,mass\na,1,2\n").unwrap_err(), "the column `mass` stands twice; give it once");
+        let refused = read("file,normal_load,day,normal-load\na,1,2,3\n").unwrap_err();
+        assert_eq!(refused, "the column `normal-load` stands twice, first as `normal_load`; give it once");
+        // A table program may end its lines with separators.
+        assert_eq!(read("file,mass,,\na,1,,\n").unwrap().columns.len(), 4);
+        let list = "[common]\nmass-u = 1\n[[record]]\nfile = \"a.csv\"\nmass_u = 2\n";
+        assert!(Manifest::of_toml(list).and_then(Manifest::with_columns_once).is_err());
     }
 
     #[test]

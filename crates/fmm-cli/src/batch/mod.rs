@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     records: Vec<PathBuf>,
     /// A table (CSV) or a list (TOML) of records, each with its `file`, relative to the manifest; columns called like an option of
     /// `fmm identify` (channel, unit, mass, normal_load, …) set it for their record, others (operator, specimen, …) describe it, but one that is
-    /// nearly called like an option is refused. In TOML, [[record]] begins a record, [common] holds what all share, `group` names a column for --group, and [sheet] holds the
+    /// nearly called like an option is refused, and so are `force` and `base`, as all records are of free vibrations. In TOML, [[record]] begins a record, [common] holds what all share, `group` names a column for --group, and [sheet] holds the
     /// fields of a record sheet
     #[arg(long, value_name = "FILE", conflicts_with = "records")]
     manifest: Option<PathBuf>,
@@ -55,7 +55,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "K/N", value_parser = shard, requires = "out")]
     shard: Option<(usize, usize)>,
     /// The column of the manifest that says which records belong together, for repeatability and reproducibility
-    #[arg(long, value_name = "COLUMN", requires = "manifest")]
+    #[arg(long, value_name = "COLUMN")]
     group: Option<String>,
     #[command(flatten)]
     asked: Asked,
@@ -138,9 +138,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if !arguments.search && !options.iter().any(|option| option == "--law" || option.starts_with("--law=")) {
         options.extend(["--law".to_owned(), LAW.to_owned()]);
     }
-    let campaign = match &arguments.manifest {
-        Some(manifest) => Campaign::of_manifest(manifest, options, arguments.group.clone())?,
-        None => Campaign::of_files(&arguments.records, options)?,
+    let campaign = match (&arguments.manifest, &arguments.group) {
+        (Some(manifest), group) => Campaign::of_manifest(manifest, options, group.clone())?,
+        (None, Some(group)) => {
+            let what = "a manifest says which records belong together, and none is given; list them in one, and give it by --manifest";
+            return Err(format!("--group {group}: {what}").into());
+        }
+        (None, None) => Campaign::of_files(&arguments.records, options)?,
     };
     arguments.asked.check(&campaign)?;
     // As many as there are processors, to rayon.

@@ -151,6 +151,14 @@ fn a_manifest_sets_options_and_groups() {
 
     let missing = Campaign::of_manifest(&manifest, law(), Some("lab".to_owned())).unwrap_err().to_string();
     assert!(missing.contains("there is no column `lab`") && missing.contains("operator"), "{missing}");
+    for (header, words) in [
+        ("file,mass,mass", "runs.csv: the column `mass` stands twice"),
+        ("file,force,day", "runs.csv: column `force` is meant for --force, but a campaign is of free vibrations"),
+    ] {
+        std::fs::write(&manifest, format!("{header}\nrun_00.csv,10,20\n")).unwrap();
+        let refused = Campaign::of_manifest(&manifest, law(), None).unwrap_err().to_string();
+        assert!(refused.contains(words), "{refused}");
+    }
 }
 
 /// Of four records one lies far off: without it the consensus moves most.
@@ -302,6 +310,9 @@ fn friction_stands_against_load_and_columns() {
     );
     assert!(summary.dependences[2].line.is_none() && summary.dependences[3].line.is_none());
     assert!(summary.dependences[3].statement.contains("fewer than two different values"));
+    let two = Summary::of(&campaign, &rows[1..3], &[], None);
+    let statement = "friction force against normal load: 2 runs are given; at least 3 are needed";
+    assert_eq!(two.dependences[0].statement, statement);
     let page = page::page(&campaign, &rows, &summary);
     assert!(page.contains("id=\"dependence-0\"") && page.contains("Friction against load"));
     let asked = Asked { joint: false, against: vec!["weather".to_owned()] };

@@ -7,14 +7,14 @@ mod source;
 
 use std::error::Error;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::figure::{self, Layer, Panel, Role, label};
 use crate::input::Held;
 use crate::output::{Output, drawn, print};
 use clap::Args;
 use fmm_identify::{
-    Estimated, ForceIdentification, ForceLoop, ForceModel, ForceRecord, Onset, SpeedBin, compare_force,
+    Estimated, ForceIdentification, ForceLoop, ForceModel, ForceRecord, Onset, SpeedBin, Validation, compare_force,
 };
 use serde_json::{Value, json};
 use source::Source;
@@ -105,7 +105,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     for found in found {
         writeln!(out, "\n{found}")?;
         for (file, record) in validated.iter().zip(&others) {
-            let said = found.validate_on(record)?;
+            let said = validation(found, file, record)?;
             let (rms, unit) = (said.rms, record.force_unit());
             let share = said.share().map_or_else(String::new, |share| format!(", {:.1} % of the force", 100.0 * share));
             writeln!(out, "  not fitted: {}: rms {rms:.4e} {unit}{share}", file.display())?;
@@ -190,6 +190,11 @@ fn onsets(record: &ForceRecord) -> Value {
     record.onsets().iter().map(onset).collect()
 }
 
+/// How well the model predicts the record of a `file` to which it was not fitted.
+fn validation(found: &ForceIdentification, file: &Path, record: &ForceRecord) -> Result<Validation, String> {
+    found.validate_on(record).map_err(|error| format!("{}: {error}", file.display()))
+}
+
 fn document(found: &ForceIdentification, files: &[PathBuf], others: &[ForceRecord]) -> Result<Value, Box<dyn Error>> {
     let findings: Vec<Value> = found
         .findings()
@@ -206,7 +211,7 @@ fn document(found: &ForceIdentification, files: &[PathBuf], others: &[ForceRecor
         .collect();
     let mut validated = Vec::new();
     for (file, record) in files.iter().zip(others) {
-        let said = found.validate_on(record)?;
+        let said = validation(found, file, record)?;
         validated.push(json!({ "file": file.display().to_string(), "rms": said.rms, "share_of_force": said.share() }));
     }
     Ok(json!({

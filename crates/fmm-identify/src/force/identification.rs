@@ -25,7 +25,8 @@ pub struct ForceIdentification {
     warnings: Vec<Warning>,
     structure: ResidualStructure,
     force: f64,
-    unit: String,
+    /// Units of position and of force.
+    units: [String; 2],
     counted: usize,
 }
 
@@ -133,13 +134,13 @@ pub fn identify_force(model: &ForceModel, records: &[ForceRecord]) -> Result<For
     });
     let mut findings: Vec<Finding> = findings.collect();
     findings.extend(levels_above(&problem, &fit, &covariance, spread));
-    let unit = records[0].force_unit().to_owned();
+    let units = [records[0].position_unit(), records[0].force_unit()].map(str::to_owned);
     let mut warnings = Vec::new();
     if structure.is_structured() {
         warnings.push(Warning::StructuredResiduals {
             residual: structure.residual,
             noise: structure.noise,
-            unit: unit.clone(),
+            unit: units[1].clone(),
             inflation: covariance.inflation(),
         });
     }
@@ -151,7 +152,7 @@ pub fn identify_force(model: &ForceModel, records: &[ForceRecord]) -> Result<For
             .held_breakaway()
             .map(|held| Warning::StaticLevelHeld { parameter: held.parameter().name().to_owned() }),
     );
-    Ok(ForceIdentification { model, fit, findings, warnings, structure, force: forces, unit, counted })
+    Ok(ForceIdentification { model, fit, findings, warnings, structure, force: forces, units, counted })
 }
 
 /// What is stated as an excess over the sliding level, as the level that it makes with it; variances are larger by `spread`.
@@ -258,8 +259,9 @@ impl ForceIdentification {
     /// asks for a motion before or after what was measured, and at a sample that [does not count](identify_force).
     ///
     /// # Errors
-    /// As for [`identify_force`].
+    /// As for [`identify_force`], of a record beside those that were fitted.
     pub fn predict(&self, record: &ForceRecord) -> Result<Vec<Option<f64>>, IdentifyError> {
+        record.require_units([&self.units[0], &self.units[1]])?;
         let mut model = self.model.clone();
         for finding in self.findings.iter().filter(|finding| !finding.is_of_record()) {
             if matches!(finding.origin(), Origin::Fitted(_)) {
@@ -313,7 +315,7 @@ impl fmt::Display for ForceIdentification {
             fit.rank(),
             fit.free_count(),
             self.rms_residual(),
-            self.unit,
+            self.units[1],
             self.share().map_or_else(String::new, |share| format!(", {:.1} % of the force", 100.0 * share))
         )?;
         let width = name_width(self.findings());

@@ -73,15 +73,7 @@ impl<'a> ForceProblem<'a> {
             .first()
             .ok_or_else(|| IdentifyError::missing("there is no record to identify; give at least one"))?;
         for record in records {
-            if (record.position_unit(), record.force_unit()) != (first.position_unit(), first.force_unit()) {
-                return Err(IdentifyError::wrong_record(format!(
-                    "the records are in different units: {} and {} beside {} and {}",
-                    first.position_unit(),
-                    first.force_unit(),
-                    record.position_unit(),
-                    record.force_unit()
-                )));
-            }
+            record.require_units([first.position_unit(), first.force_unit()])?;
             let names = |record: &ForceRecord| record.channels.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
             if model.has(Part::Channels) && names(record) != names(first) {
                 return Err(IdentifyError::contradiction(format!(

@@ -208,6 +208,18 @@ impl ForceRecord {
         &self.force_unit
     }
 
+    /// Refuses the record beside others whose positions and forces are in these `units`.
+    pub(crate) fn require_units(&self, units: [&str; 2]) -> Result<(), IdentifyError> {
+        let own = [self.position_unit(), self.force_unit()];
+        if own == units {
+            return Ok(());
+        }
+        let [[position, force], [own_position, own_force]] = [units, own];
+        Err(IdentifyError::wrong_record(format!(
+            "the records are in different units: {position} and {force} beside {own_position} and {own_force}"
+        )))
+    }
+
     /// Standard deviation of what differs between neighbouring samples of the force, in its unit: its noise, or a step of its converter.
     pub(crate) fn noise(&self) -> f64 {
         // Of white noise a second difference has √6 times the deviation; of a median the deviation is 1.4826 times.

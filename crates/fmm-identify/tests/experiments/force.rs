@@ -401,6 +401,10 @@ fn what_is_no_record_is_refused() {
         Err(IdentifyError::Missing { .. })
     ));
     let angles = record.clone().in_units("rad", "N m");
+    let found = identify("coulomb", std::slice::from_ref(&record)).unwrap();
+    assert!(
+        matches!(found.validate_on(&angles), Err(IdentifyError::WrongRecord { .. })) && found.predict(&record).is_ok()
+    );
     assert!(matches!(identify("coulomb", &[record.clone(), angles]), Err(IdentifyError::WrongRecord { .. })));
     assert!(matches!(identify("lugre + zero", &[record]), Err(IdentifyError::TooFew { .. })));
     assert!(matches!(ForceModel::named("coulomb + wind"), Err(IdentifyError::UnknownName { .. })));
