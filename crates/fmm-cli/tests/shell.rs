@@ -84,6 +84,22 @@ fn shells_and_man_know_every_command() {
     }
 }
 
+/// A margin that does not exist is left out, and what is wrong in a scenario is said with its file.
+#[test]
+fn a_machine_without_friction_has_no_margin() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let path = folder.join("no_friction.json");
+    let scenario = r#"{"oscillator": {"mass": 1, "stiffness": 100, "restoring": {"gap": {"gap": 0.001}}},
+        "initial": {"position": 0.02}, "duration": 1}"#;
+    std::fs::write(&path, scenario).unwrap();
+    let said = String::from_utf8(fmm(&["simulate", path.to_str().unwrap()]).stdout).unwrap();
+    let row = said.lines().find(|line| line.contains("zero_velocity")).unwrap();
+    assert!(row.ends_with(" -") && !said.contains("inf"), "{said}");
+    std::fs::write(&path, scenario.replace("\"mass\": 1", "\"mass\": -1")).unwrap();
+    let said = String::from_utf8(fmm(&["simulate", path.to_str().unwrap()]).stderr).unwrap();
+    assert!(said.contains("no_friction.json: mass must be positive"), "{said}");
+}
+
 /// Options that say something else than the file, or nothing that can be.
 #[test]
 fn what_is_wrong_is_named_with_what_would_be_right() {

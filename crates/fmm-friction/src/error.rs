@@ -1,8 +1,11 @@
 //! Errors of the parameters of a law.
 
+use alloc::format;
 use alloc::string::String;
 use core::error::Error;
 use core::fmt;
+
+use fmm_model::{Bounds, Rounded};
 
 /// Parameters that make no law.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,26 +83,34 @@ pub enum LawError {
 
 impl fmt::Display for LawError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digits = |value: &f64| Rounded::every_digit(*value);
         match self {
             Self::OutOfBounds { parameter, value, unit, lower, upper } => {
-                write!(f, "{parameter} must lie in [{lower}, {upper}] {unit}, but is {value}")
+                let bounds = Bounds::UNBOUNDED.at_least(*lower).at_most(*upper);
+                let unit = if unit == "1" { "" } else { &format!(" {unit}") };
+                // Of an infinite value, one bound that is a number does not say what is wrong.
+                let is_half = lower.is_finite() != upper.is_finite();
+                let finite = if is_half && !value.is_finite() { " and finite" } else { "" };
+                write!(f, "{parameter} must be {bounds}{unit}{finite}, but is {}", digits(value))
             }
             Self::StaticBelowSliding { breakaway, sliding } => {
+                let [breakaway, sliding] = [breakaway, sliding].map(digits);
                 write!(f, "the static coefficient {breakaway} must not be below the sliding coefficient {sliding}")
             }
             Self::NotOrdered { greater, greater_value, lesser, lesser_value } => {
-                let values = format_args!("{greater} = {greater_value} and {lesser} = {lesser_value}");
-                write!(f, "{greater} must be greater than {lesser}, but {values}")
+                let [most, least] = [greater_value, lesser_value].map(digits);
+                write!(f, "{greater} must be greater than {lesser}, but {greater} = {most} and {lesser} = {least}")
             }
             Self::Condition { law, condition } => write!(f, "the parameters of the law {law} must satisfy {condition}"),
             Self::NotDissipative { beta, gamma } => {
+                let [beta, gamma] = [beta, gamma].map(digits);
                 write!(f, "a Bouc-Wen loop needs −β < γ ≤ β, but β = {beta} and γ = {gamma}")
             }
             Self::ElementCount { got, most } => {
                 write!(f, "a law of elements has 1 to {most} of them, but {got} were given")
             }
             Self::SharesNotOne { sum } => {
-                write!(f, "the shares of the elements must sum to 1 within 1e-9, but sum to {sum}")
+                write!(f, "the shares of the elements must sum to 1 within 1e-9, but sum to {}", digits(sum))
             }
             Self::DependsOnAcceleration => f.write_str(
                 "a law that depends on the acceleration has two levels at one speed and cannot be smoothed in the speed",

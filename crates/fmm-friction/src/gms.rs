@@ -128,7 +128,7 @@ mod tests {
             refused(&[(1e4, 0.5), (1e4, 0.25)]),
             "the shares of the elements must sum to 1 within 1e-9, but sum to 0.75"
         );
-        assert!(refused(&[(1e4, 1.5), (1e4, -0.5)]).starts_with("share_2 must lie in"));
+        assert!(refused(&[(1e4, 1.5), (1e4, -0.5)]).starts_with("share_2 must be"));
         assert!(Gms::new(curve(0.0), 3.0, &[(1e4, 1.0)]).is_err(), "a curve that falls to zero");
         assert!(Gms::new(curve(0.1), 0.0, &[(1e4, 1.0)]).is_err());
     }

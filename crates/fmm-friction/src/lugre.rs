@@ -193,7 +193,7 @@ mod tests {
     fn contradictions_are_refused() {
         let refused = |values: [f64; 7]| LuGre::at(&values).unwrap_err().to_string();
         assert!(refused([1.5, 1.0, 1e-3, 2.0, 1e5, 0.0, 0.0]).starts_with("the static coefficient 1 must not"));
-        assert!(refused([0.0, 1.0, 1e-3, 2.0, 1e5, 0.0, 0.0]).starts_with("sliding_coefficient must lie in"));
-        assert!(refused([1.0, 1.5, 1e-3, 2.0, 1e5, -1.0, 0.0]).starts_with("bristle_damping must lie in"));
+        assert!(refused([0.0, 1.0, 1e-3, 2.0, 1e5, 0.0, 0.0]).starts_with("sliding_coefficient must be"));
+        assert!(refused([1.0, 1.5, 1e-3, 2.0, 1e5, -1.0, 0.0]).starts_with("bristle_damping must be"));
     }
 }

@@ -153,7 +153,7 @@ mod tests {
         let refused = |pairs: &[(f64, f64)]| MaxwellSlip::new(pairs).unwrap_err().to_string();
         assert_eq!(refused(&[]), "a law of elements has 1 to 64 of them, but 0 were given");
         assert_eq!(refused(&[(1.0, 1.0); 65]), "a law of elements has 1 to 64 of them, but 65 were given");
-        assert!(refused(&[(1.0, 1.0), (-1.0, 1.0)]).starts_with("stiffness_2 must lie in"));
-        assert!(refused(&[(1.0, 0.0)]).starts_with("level_1 must lie in"));
+        assert!(refused(&[(1.0, 1.0), (-1.0, 1.0)]).starts_with("stiffness_2 must be"));
+        assert!(refused(&[(1.0, 0.0)]).starts_with("level_1 must be"));
     }
 }

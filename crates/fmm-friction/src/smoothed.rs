@@ -101,6 +101,6 @@ mod tests {
         assert_eq!(Smoothed::new(steps, 1e-3), Err(LawError::DependsOnAcceleration));
         assert_eq!(Smoothed::new(pair, 1e-3), Err(LawError::DependsOnAcceleration));
         let flat = Smoothed::new(Coulomb::new(0.2).unwrap(), 0.0).unwrap_err();
-        assert!(flat.to_string().starts_with("smoothing_width must lie in"), "{flat}");
+        assert!(flat.to_string().starts_with("smoothing_width must be"), "{flat}");
     }
 }

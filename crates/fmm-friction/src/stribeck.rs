@@ -105,9 +105,12 @@ mod tests {
             refused([0.3, 0.2, 0.01, 1.0, 0.0]),
             "the static coefficient 0.2 must not be below the sliding coefficient 0.3"
         );
-        assert_eq!(refused([0.1, 0.2, 0.01, 2.5, 0.0]), "exponent must lie in [0.5, 2] 1, but is 2.5");
-        assert!(refused([0.1, 0.2, 0.0, 1.0, 0.0]).starts_with("stribeck_speed must lie in"));
-        assert!(refused([0.1, f64::INFINITY, 0.01, 1.0, 0.0]).starts_with("static_coefficient must lie in"));
-        assert!(refused([0.1, 0.2, 0.01, 1.0, f64::NAN]).starts_with("viscous must lie in"));
+        assert_eq!(refused([0.1, 0.2, 0.01, 2.5, 0.0]), "exponent must be in [0.5, 2], but is 2.5");
+        assert!(refused([0.1, 0.2, 0.0, 1.0, 0.0]).starts_with("stribeck_speed must be greater than 0 m/s, but is 0"));
+        assert_eq!(
+            refused([0.1, f64::INFINITY, 0.01, 1.0, 0.0]),
+            "static_coefficient must be at least 0 and finite, but is inf"
+        );
+        assert!(refused([0.1, 0.2, 0.01, 1.0, f64::NAN]).starts_with("viscous must be"));
     }
 }

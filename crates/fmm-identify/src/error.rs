@@ -4,7 +4,7 @@ use std::error::Error;
 
 use fmm_fit::{EvaluationError, FitError};
 use fmm_frf::{Channel, FrfError};
-use fmm_model::Parameter;
+use fmm_model::{Bounds, Parameter, Rounded};
 use fmm_record::{Quantity, RecordError};
 
 /// Why a record could not be prepared or identified; each variant is something else that the caller can do about it.
@@ -197,7 +197,7 @@ impl IdentifyError {
 
     /// A number that describes an experiment and cannot be.
     pub(crate) fn not_allowed(subject: &str, value: f64, allowed: &str) -> Self {
-        Self::OutOfRange { what: format!("{subject} must be {allowed}, not {value}"), value }
+        Self::OutOfRange { what: format!("{subject} must be {allowed}, not {}", Rounded::every_digit(value)), value }
     }
 
     /// A finding of which value or variance lies beyond the range of numbers, as a mass of 1e300 kg makes it.
@@ -213,7 +213,11 @@ impl IdentifyError {
     /// A parameter that was to be held outside its bounds.
     pub(crate) fn held_out_of_bounds(name: &str, value: f64, lower: f64, upper: f64) -> Self {
         Self::OutOfRange {
-            what: format!("{name} cannot be held at {value}: it must lie within {lower} and {upper}"),
+            what: format!(
+                "{name} cannot be held at {}: it must be {}",
+                Rounded::every_digit(value),
+                Bounds::UNBOUNDED.at_least(lower).at_most(upper)
+            ),
             value,
         }
     }

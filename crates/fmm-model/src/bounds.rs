@@ -1,6 +1,10 @@
 //! The closed interval in which a parameter may lie.
 
-use crate::ModelError;
+use alloc::borrow::Cow;
+use alloc::format;
+use core::fmt;
+
+use crate::{ModelError, Rounded};
 
 /// A closed interval `lower ≤ value ≤ upper`; either end may be infinite.
 ///
@@ -97,9 +101,51 @@ impl Bounds {
     }
 }
 
+/// What a value must be to lie in the interval: "greater than 0", "at least 0.5", "in (0, 1]", "finite".
+///
+/// A lower end that is the smallest normal number stands for an excluded zero, and is written so.
+///
+/// ```
+/// use fmm_model::Bounds;
+///
+/// assert_eq!(Bounds::POSITIVE.to_string(), "greater than 0");
+/// assert_eq!(Bounds::POSITIVE.at_most(1.0).to_string(), "in (0, 1]");
+/// assert_eq!(Bounds::new(-1.0, 1e300)?.to_string(), "in [-1, 1e300]");
+/// # Ok::<(), fmm_model::ModelError>(())
+/// ```
+impl fmt::Display for Bounds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [lower, upper] = [self.lower, self.upper].map(Rounded::every_digit);
+        let is_positive = self.lower == f64::MIN_POSITIVE;
+        let text: Cow<'_, str> = match (self.lower > f64::NEG_INFINITY, self.upper < f64::INFINITY) {
+            (false, false) => "finite".into(),
+            (false, true) => format!("at most {upper}").into(),
+            (true, false) if is_positive => "greater than 0".into(),
+            (true, false) => format!("at least {lower}").into(),
+            (true, true) if is_positive => format!("in (0, {upper}]").into(),
+            (true, true) => format!("in [{lower}, {upper}]").into(),
+        };
+        f.pad(&text)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_a_value_must_be_is_said_in_few_digits() {
+        for (bounds, text) in [
+            (Bounds::UNBOUNDED, "finite"),
+            (Bounds::NOT_NEGATIVE, "at least 0"),
+            (Bounds::POSITIVE, "greater than 0"),
+            (Bounds::POSITIVE.at_most(2.0), "in (0, 2]"),
+            (Bounds::UNBOUNDED.at_most(-1e-300), "at most -1e-300"),
+            (Bounds::NOT_NEGATIVE.at_least(0.5).at_most(2.0), "in [0.5, 2]"),
+        ] {
+            assert_eq!(bounds.to_string(), text);
+        }
+    }
 
     #[test]
     fn ends_that_exclude_each_other_leave_nothing() {

@@ -87,6 +87,8 @@ impl<D: Scalar> Damping<D> {
     /// # Errors
     /// [`ModelError::Negative`] if a coefficient is negative or not finite.
     pub fn from_peak_velocity_line(intercept: D, slope: D) -> Result<Self, ModelError> {
+        ModelError::require_not_negative("intercept of damping over peak velocity", intercept.value(), "N s/m")?;
+        ModelError::require_not_negative("slope of damping over peak velocity", slope.value(), "N s²/m²")?;
         Self::new(intercept, slope * (3.0 * PI / 8.0))
     }
 
@@ -251,6 +253,8 @@ mod tests {
         assert!(Damping::none().with_power(1.0, 0.0).is_err());
         assert!(Damping::<f64>::linear(-0.1).is_err());
         assert!(Damping::new(0.0, f64::NAN).is_err());
+        let line = Damping::from_peak_velocity_line(0.1, -1.0).unwrap_err().to_string();
+        assert_eq!(line, "slope of damping over peak velocity must be zero or positive and finite, but is -1 N s²/m²");
         assert!(Damping::new(f64::INFINITY, 0.0).is_err());
     }
 }

@@ -1,6 +1,6 @@
 //! Errors of a simulation.
 
-use fmm_model::{ModelError, Oscillator, Scalar};
+use fmm_model::{ModelError, Oscillator, Rounded, Scalar};
 
 /// A scenario that cannot be simulated; each variant is something else that the caller can do about it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -39,7 +39,8 @@ pub enum SimulationError {
     },
     /// A law with internal state that is not odd in velocity and state together, as such laws promise to be.
     #[error(
-        "the law is not odd: at {velocity} m/s it is not the mirror image of what it is at the opposite velocity and state; a contact cannot tell directions apart"
+        "the law is not odd: at {velocity} m/s it is not the mirror image of what it is at the opposite velocity and state; a contact cannot tell directions apart",
+        velocity = Rounded::every_digit(*.velocity)
     )]
     NotOdd {
         /// Velocity at which it was seen (m/s).
@@ -47,7 +48,9 @@ pub enum SimulationError {
     },
     /// The motion has come to where the spring no longer restores.
     #[error(
-        "at {time} s the position is {position} m, where the spring pushes away from the origin: its polynomial does not hold that far out"
+        "at {time} s the position is {position} m, where the spring pushes away from the origin: its polynomial does not hold that far out",
+        time = Rounded::every_digit(*.time),
+        position = Rounded::every_digit(*.position)
     )]
     NotRestoring {
         /// Time (s).
@@ -63,7 +66,10 @@ pub enum SimulationError {
         what: String,
     },
     /// The motion leaves the range of the number type.
-    #[error("the motion is not finite at {time} s; the inputs are too large or too small to be simulated together")]
+    #[error(
+        "the motion is not finite at {time} s; the inputs are too large or too small to be simulated together",
+        time = Rounded::every_digit(*.time)
+    )]
     NotFinite {
         /// Time of the failure (s).
         time: f64,
@@ -92,7 +98,8 @@ impl SimulationError {
     pub(crate) fn sampling(count: usize, interval: f64) -> Self {
         Self::OutOfRange {
             what: format!(
-                "the number of samples must lie between 1 and 2^53 and their last time be finite, but {count} samples were asked for at {interval} s"
+                "the number of samples must lie between 1 and 2^53 and their last time be finite, but {count} samples were asked for at {interval} s",
+                interval = Rounded::every_digit(interval)
             ),
             value: count as f64,
         }
@@ -102,7 +109,9 @@ impl SimulationError {
     pub(crate) fn times(index: usize, time: f64, before: f64) -> Self {
         Self::OutOfRange {
             what: format!(
-                "sample times must be finite and ascend from 0, but time {index} is {time} s after {before} s"
+                "sample times must be finite and ascend from 0, but time {index} is {time} s after {before} s",
+                time = Rounded::every_digit(time),
+                before = Rounded::every_digit(before)
             ),
             value: time,
         }
@@ -121,7 +130,8 @@ impl SimulationError {
     pub(crate) fn resonance(angular_frequency: f64) -> Self {
         Self::NoClosedForm {
             what: format!(
-                "a wave of {angular_frequency} rad/s is too near the resonance of a machine with hardly any damping for the closed form; take the Runge-Kutta engine"
+                "a wave of {angular_frequency} rad/s is too near the resonance of a machine with hardly any damping for the closed form; take the Runge-Kutta engine",
+                angular_frequency = Rounded::every_digit(angular_frequency)
             ),
         }
     }
@@ -130,7 +140,8 @@ impl SimulationError {
     pub(crate) fn weak_spring(stiffness: f64) -> Self {
         Self::NoClosedForm {
             what: format!(
-                "a spring of {stiffness} N/m is too weak for the closed form, which would be a small difference of large numbers; take an engine that integrates"
+                "a spring of {stiffness} N/m is too weak for the closed form, which would be a small difference of large numbers; take an engine that integrates",
+                stiffness = Rounded::every_digit(stiffness)
             ),
         }
     }
@@ -139,7 +150,9 @@ impl SimulationError {
     pub(crate) fn deflection(index: usize, deflection: f64, bound: f64) -> Self {
         Self::OutOfRange {
             what: format!(
-                "state {index} of the law must begin within ±{bound}, but is {deflection}; a bound of 0 may mean that there is no such state"
+                "state {index} of the law must begin within ±{bound}, but is {deflection}; a bound of 0 may mean that there is no such state",
+                deflection = Rounded::every_digit(deflection),
+                bound = Rounded::every_digit(bound)
             ),
             value: deflection,
         }
@@ -148,21 +161,29 @@ impl SimulationError {
     /// A tolerance that no method can keep.
     pub(crate) fn tolerance(tolerance: f64) -> Self {
         Self::OutOfRange {
-            what: format!("the relative tolerance must lie between 1e-15 and 1e-2, but is {tolerance}"),
+            what: format!(
+                "the relative tolerance must lie between 1e-15 and 1e-2, but is {tolerance}",
+                tolerance = Rounded::every_digit(tolerance)
+            ),
             value: tolerance,
         }
     }
 
     /// A θ for which the θ-method is not stable.
     pub(crate) fn theta(theta: f64) -> Self {
-        Self::OutOfRange { what: format!("theta must lie between 1/2 and 1, but is {theta}"), value: theta }
+        Self::OutOfRange {
+            what: format!("theta must lie between 1/2 and 1, but is {theta}", theta = Rounded::every_digit(theta)),
+            value: theta,
+        }
     }
 
     /// The steps that the tolerance asks for are smaller than the resolution of time.
     pub(crate) fn step_too_small(tolerance: f64, time: f64) -> Self {
         Self::Exhausted {
             what: format!(
-                "the motion cannot be integrated to a relative tolerance of {tolerance} at {time} s; ask for less"
+                "the motion cannot be integrated to a relative tolerance of {tolerance} at {time} s; ask for less",
+                tolerance = Rounded::every_digit(tolerance),
+                time = Rounded::every_digit(time)
             ),
         }
     }
@@ -171,7 +192,18 @@ impl SimulationError {
     pub(crate) fn step_budget(budget: usize, end: f64) -> Self {
         Self::Exhausted {
             what: format!(
-                "the motion takes more than {budget} steps before {end} s; shorten the sampled time or ask for less accuracy, neither of which helps where a contact creeps on a law that is steep at rest"
+                "the motion takes more than {budget} steps before {end} s; shorten the sampled time or ask for less accuracy, neither of which helps where a contact creeps on a law that is steep at rest",
+                end = Rounded::every_digit(end)
+            ),
+        }
+    }
+
+    /// The works of the motion have more pieces than are added up.
+    pub(crate) fn piece_budget(budget: usize, end: f64) -> Self {
+        Self::Exhausted {
+            what: format!(
+                "the works are added up over more than {budget} pieces before {end} s, one at least for each sample and several for each period of a fast wave; sample less often, shorten the sampled time, or take slower waves",
+                end = Rounded::every_digit(end)
             ),
         }
     }
@@ -179,7 +211,10 @@ impl SimulationError {
     /// The motion has more events in the sampled time than any record can show.
     pub(crate) fn event_budget(budget: usize, end: f64) -> Self {
         Self::Exhausted {
-            what: format!("the motion has more than {budget} events before {end} s; shorten the sampled time"),
+            what: format!(
+                "the motion has more than {budget} events before {end} s; shorten the sampled time",
+                end = Rounded::every_digit(end)
+            ),
         }
     }
 }

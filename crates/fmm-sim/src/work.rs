@@ -67,7 +67,8 @@ impl<D: Scalar> Work<D> {
             return Ok(());
         }
         let pieces = ((end - begin) / scale).ceil().max(1.0);
-        *budget = budget.checked_sub(pieces as usize).ok_or_else(|| SimulationError::step_budget(PIECE_BUDGET, end))?;
+        *budget =
+            budget.checked_sub(pieces as usize).ok_or_else(|| SimulationError::piece_budget(PIECE_BUDGET, end))?;
         let step = (end - begin) / pieces;
         for piece in 0..pieces as usize {
             let start = begin + piece as f64 * step;

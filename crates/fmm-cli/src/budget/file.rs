@@ -4,7 +4,8 @@ use std::error::Error;
 use std::path::Path;
 
 use fmm_uq::{Distribution, Formula, Input, Inputs, Observations, Scalar, UncertaintyError};
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// Inputs and what follows from them.
 #[derive(Debug)]
@@ -38,6 +39,7 @@ struct InputEntry {
     value: Option<f64>,
     u: Option<f64>,
     degrees_of_freedom: Option<f64>,
+    #[serde(default, deserialize_with = "two_numbers")]
     limits: Option<[f64; 2]>,
     distribution: Option<String>,
     observations: Option<Vec<f64>>,
@@ -47,6 +49,7 @@ struct InputEntry {
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Correlation {
+    #[serde(deserialize_with = "two_names")]
     pub(super) between: [String; 2],
     pub(super) coefficient: f64,
 }
@@ -57,6 +60,23 @@ struct ResultEntry {
     name: String,
     unit: String,
     formula: String,
+}
+
+fn two_numbers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 2]>, D::Error> {
+    two("limits are two numbers", deserializer).map(Some)
+}
+
+fn two_names<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[String; 2], D::Error> {
+    two("a correlation is between two names", deserializer)
+}
+
+/// A list of two values. As an array, TOML would leave out a third without a word.
+fn two<'de, T: Deserialize<'de>, D: Deserializer<'de>>(needed: &str, deserializer: D) -> Result<[T; 2], D::Error> {
+    let values = Vec::<T>::deserialize(deserializer)?;
+    values.try_into().map_err(|values: Vec<T>| {
+        let count = values.len();
+        D::Error::custom(format_args!("{needed}, but {count} {} given", if count == 1 { "is" } else { "are" }))
+    })
 }
 
 impl Measurement {

@@ -348,9 +348,20 @@ formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
             (format!("{input}value = 2\nu = 0.1\n"), "result"),
             (format!("{input}value = 2\nu = 0.1\n{result}{result}"), "two results are called F"),
             ("input = 3".to_owned(), "input"),
+            (format!("{input}limits = [1, 2, 3]\n{result}"), "limits are two numbers, but 3 are given"),
+            (format!("{input}limits = [1]\n{result}"), "limits are two numbers, but 1 is given"),
+            (
+                format!(
+                    "{input}value = 2\nu = 0.1\n[[correlation]]\nbetween = [\"m\", \"m\", \"n\"]\ncoefficient = 0\n{result}"
+                ),
+                "between two names, but 3 are given",
+            ),
         ] {
             let error = refused(&file);
             assert!(error.contains(part), "{file}\n{error}");
         }
+        let json = r#"{"input": [{"name": "m", "unit": "kg", "limits": [1, 2, 3]}], "result": []}"#;
+        let error = Measurement::of_json(json).unwrap_err().to_string();
+        assert!(error.contains("limits are two numbers, but 3 are given"), "{error}");
     }
 }

@@ -2,14 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::error::Error;
+use std::fmt;
 use std::path::Path;
 
 use fmm_identify::{Aim, Candidate, Guess, Known, Machine, PlannedSensor, PlannedTest};
-use fmm_model::Oscillator;
+use fmm_model::{ModelError, Oscillator, Rounded};
 use fmm_record::{Quantity, Record};
-use serde::Deserialize;
+use serde::de::{Error as _, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 
-use crate::scenario::laws;
+use crate::scenario::{ScenarioError, laws};
 
 /// What a file asks for.
 #[derive(Debug)]
@@ -45,6 +47,7 @@ struct OfMachine {
 #[serde(deny_unknown_fields)]
 struct Guessed {
     law: String,
+    #[serde(deserialize_with = "each_once")]
     values: BTreeMap<String, f64>,
     /// Relative standard uncertainty of the values.
     within: Option<f64>,
@@ -135,6 +138,32 @@ fn draws() -> usize {
 
 fn seed() -> u64 {
     1
+}
+
+/// Numbers by their names, each name once: a map would keep the last that JSON has.
+fn each_once<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<String, f64>, D::Error> {
+    struct EachOnce;
+
+    impl<'de> Visitor<'de> for EachOnce {
+        type Value = BTreeMap<String, f64>;
+
+        fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            f.write_str("numbers by their names")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+            let mut values = BTreeMap::new();
+            while let Some((key, value)) = map.next_entry::<String, f64>()? {
+                if values.contains_key(&key) {
+                    return Err(A::Error::custom(format_args!("duplicate field `{key}`")));
+                }
+                values.insert(key, value);
+            }
+            Ok(values)
+        }
+    }
+
+    deserializer.deserialize_map(EachOnce)
 }
 
 /// Tests in a file at most.
@@ -254,8 +283,12 @@ impl Guessed {
         let slots = entry.map(|entry| (entry.slots)()).ok_or_else(|| format!("{law} cannot be guessed in a file"))?;
         let mut values = Vec::with_capacity(slots.len());
         for slot in &slots {
-            let given = self.values.iter().filter(|(key, _)| slot.is(key)).map(|(_, value)| *value).next();
-            let value = given.or(slot.default);
+            let mut given = self.values.iter().filter(|(key, _)| slot.is(key));
+            let value = given.next().map(|(_, value)| *value).or(slot.default);
+            if let Some((key, _)) = given.next() {
+                let (parameter, key) = (slot.name.to_owned(), key.clone());
+                return Err(format!("[guess] values: {}", ScenarioError::GivenTwice { law, parameter, key }).into());
+            }
             values.push(value.ok_or_else(|| format!("[guess] values of {law} lack {}", slot.description()))?);
         }
         let beside: Vec<(&str, f64)> = self
@@ -267,6 +300,13 @@ impl Guessed {
         let (machine, frequency) = machine.machine()?;
         let guess = Guess::new(machine, &candidate, frequency, &values, &beside)?;
         let Some(within) = self.within else { return Ok(guess) };
+        if !(within > 0.0 && within.is_finite()) {
+            let given = Rounded::every_digit(within);
+            return Err(format!(
+                "[guess] within is a relative standard uncertainty, which must be positive and finite, not {given}"
+            )
+            .into());
+        }
         let known: Vec<(String, f64)> = guess
             .parameters()
             .iter()
@@ -362,6 +402,14 @@ impl Candidates {
         let seen_by = sensor.sensor(needed("noise", "sensor")?)?;
         let harmonic = |amplitude: f64, of: &str, quantity: Quantity, unit: &str| -> Result<Record, Box<dyn Error>> {
             let frequency = needed("frequency", of)?;
+            ModelError::require_positive("frequency of a sine", frequency, "Hz")?;
+            if !(frequency < 0.5 * rate) {
+                let [frequency, rate, half] = [frequency, rate, 0.5 * rate].map(Rounded::every_digit);
+                return Err(format!(
+                    "a {of} of {frequency} Hz cannot be seen at the rate of {rate} Hz: its frequency must be below half the rate, {half} Hz"
+                )
+                .into());
+            }
             let count = rate * duration;
             if !(16.0..=1e7).contains(&count) {
                 return Err(format!("a test has 16 to 10 million samples, not {count}").into());
@@ -370,8 +418,22 @@ impl Candidates {
             Ok(Record::sampled(rate, (0..=count.ceil() as usize).map(at).collect(), quantity, unit)?)
         };
         let kinds = ["release", "blow", "force", "base"].into_iter().filter_map(|kind| Some((kind, number(kind)?)));
+        let kinds: Vec<_> = kinds.collect();
+        if let [(kind, _)] = kinds[..] {
+            let stray = OF_KINDS.iter().find(|(field, takers)| point.contains_key(field) && !takers.contains(&kind));
+            if let Some((field, takers)) = stray {
+                let takers = takers.join(" and ");
+                return Err(format!("[[candidates]] with a {kind} takes no {field}, which belongs to {takers}").into());
+            }
+        }
+        if !self.contact && self.normal_load.is_some() {
+            return Err(
+                "[[candidates]] with contact = false takes no normal_load, which belongs to tests with the contact"
+                    .into(),
+            );
+        }
         let test =
-            match *kinds.collect::<Vec<_>>() {
+            match kinds[..] {
                 [("release", position)] => PlannedTest::release(position, seen_by, rate, duration)?,
                 [("blow", peak)] => PlannedTest::blow(peak, needed("pulse", "blow")?, seen_by, rate, duration)?,
                 [("force", amplitude)] => {
@@ -401,6 +463,9 @@ impl Candidates {
         Ok(if self.offset { test } else { test.without_offset() })
     }
 }
+
+/// Fields that only some kinds of test take, and these kinds.
+const OF_KINDS: [(&str, &[&str]); 2] = [("pulse", &["blow"]), ("frequency", &["force", "base"])];
 
 fn is_kind(name: &str) -> bool {
     matches!(name, "release" | "blow" | "force" | "base")

@@ -104,7 +104,8 @@ struct Answer {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let answer = answer(Wanted::read(&arguments.file)?)?;
+    let named = |error| format!("{}: {error}", arguments.file.display());
+    let answer = answer(Wanted::read(&arguments.file)?).map_err(named)?;
     if let Some(folder) = arguments.output.folder()? {
         figures::draw(folder, &answer)?;
         drawn(folder, "design.svg");
@@ -280,7 +281,28 @@ mod tests {
             ("cost = 5", "price = 5", "price"),
             ("aim = \"mu\"", "aim = \"my\"", "\"my\""),
             ("tests = 3", "", "tests, their number, or budget"),
-            ("tests = 3", "tests = 0", "pays for 0.0"),
+            (
+                "law = \"berger\"\nvalues = { ",
+                "law = \"berger + quadratic\"\nvalues = { quadratic_damping = 1, quadratic_damping_per_mass = 1, ",
+                "quadratic_damping_per_mass is given twice",
+            ),
+            ("tests = 3", "tests = 0", "1 to 1000 measurements, not 0"),
+            ("tests = 3", "tests = 1000000000", "1 to 1000 measurements, not 1000000000"),
+            (
+                "tests = 3",
+                "budget = nan",
+                "the budget must be 5 to 5000, which pays for 1 to 1000 of the cheapest measurement, not NaN",
+            ),
+            ("mu0 = 0.228", "mu0 = -1", "the guess of coefficient must be at least 0, not -1"),
+            ("mu0 = 0.228", "mu0 = 0.228, coefficient = 0.9", "its parameter coefficient twice, once as \"mu0\""),
+            ("[sensor]", "within = 0\n[sensor]", "must be positive and finite, not 0"),
+            ("noise = 1e-4", "noise = 1e-300", "must be 1e-100 or more, not 1e-300"),
+            ("release =", "pulse = 0.01\nrelease =", "with a release takes no pulse, which belongs to blow"),
+            ("release =", "frequency = 1\nrelease =", "takes no frequency, which belongs to force and base"),
+            ("release =", "frequency = 1\npulse = 0.01\nforce =", "with a force takes no pulse"),
+            ("release =", "contact = false\nrelease =", "takes no normal_load"),
+            ("release =", "frequency = 500\nforce =", "a force of 500 Hz cannot be seen at the rate of 1000 Hz"),
+            ("release =", "frequency = 0\nbase =", "frequency of a sine must be positive"),
             ("tests = 3", "tests = 3\nrobust = \"mean\"", "needs within"),
             ("tests = 3", "tests = 3\ndraws = 0", "draws must be 1 to 1000"),
         ] {

@@ -19,7 +19,12 @@ pub(crate) struct Entry {
     /// Its parameters.
     pub(crate) slots: fn() -> Vec<Slot>,
     make: fn(Given) -> Made,
+    /// Whether it is a law of the sliding speed alone, which can be smoothed in it.
+    is_of_speed: bool,
 }
+
+/// Laws of the sliding speed that have another level while the speed falls.
+const OF_ACCELERATION: [&str; 2] = ["acceleration_coulomb", "exponential_pair"];
 
 /// Makes entries of families.
 struct AllEntries;
@@ -29,11 +34,13 @@ impl FamilyVisitor for AllEntries {
     type Output = Option<Entry>;
 
     fn visit<F: LawFamily>(&mut self) -> Option<Entry> {
-        if F::kind() == LawKind::Elements {
-            return None;
-        }
+        let is_of_speed = match F::kind() {
+            LawKind::Elements => return None,
+            LawKind::Bristle => false,
+            LawKind::Sliding | LawKind::PiecewiseLinear => !OF_ACCELERATION.contains(&F::NAME),
+        };
         let make = |given: Given| made(&given, |values| F::at(values).map(Law::<F, _>::new));
-        Some(Entry { name: F::NAME, slots: || Slot::numbers(F::NAME, F::PARAMETERS), make })
+        Some(Entry { name: F::NAME, slots: || Slot::numbers(F::NAME, F::PARAMETERS), make, is_of_speed })
     }
 }
 
@@ -49,6 +56,7 @@ const MAXWELL_SLIP: Entry = Entry {
         let elements = given.pairs()?;
         made(&given, |_| MaxwellSlip::new(&elements).map(Law::<MaxwellSlipOf<1>, _>::new))
     },
+    is_of_speed: false,
 };
 
 const GMS: Entry = Entry {
@@ -67,6 +75,7 @@ const GMS: Entry = Entry {
             Gms::new(Stribeck::at(curve)?, attraction[0], &elements).map(Law::<OfGms, _>::new)
         })
     },
+    is_of_speed: false,
 };
 
 const SMOOTHED: Entry = Entry {
@@ -75,10 +84,11 @@ const SMOOTHED: Entry = Entry {
     make: |mut given| {
         let (inner, law) = contact(given.inner()?)?;
         let Some(smooth) = law.into_sliding() else {
-            return Err(ScenarioError::NotSliding { law: inner, known: known() });
+            return Err(ScenarioError::NotSliding { law: inner, known: named(|entry| entry.is_of_speed) });
         };
         made(&given, |values| Smoothed::new(AnySliding::new(smooth), values[0]).map(Law::<OfSmoothed, _>::new))
     },
+    is_of_speed: true,
 };
 
 fn made<C: Contact + 'static>(given: &Given, make: impl FnOnce(&[f64]) -> Result<C, LawError>) -> Made {
@@ -91,8 +101,13 @@ fn made<C: Contact + 'static>(given: &Given, make: impl FnOnce(&[f64]) -> Result
 
 /// The names of all laws, for a message.
 fn known() -> String {
-    let names: Vec<&str> = laws().iter().map(|entry| entry.name).collect();
-    format!("the laws are {}", names.join(", "))
+    format!("the laws are {}", named(|_| true))
+}
+
+/// The names of the laws of which this is true.
+fn named(is_meant: impl Fn(&Entry) -> bool) -> String {
+    let names: Vec<&str> = laws().iter().filter(|entry| is_meant(entry)).map(|entry| entry.name).collect();
+    names.join(", ")
 }
 
 /// The law of an object `{name: {parameter: value, …}}`, with its name.

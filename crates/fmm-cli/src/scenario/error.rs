@@ -88,11 +88,11 @@ pub(crate) enum ScenarioError {
         source: LawError,
     },
     /// A law that is not one of the sliding speed alone cannot be smoothed in it.
-    #[error("the law {law} has an internal state and cannot be smoothed in the speed; {known}")]
+    #[error("the law {law} has an internal state and cannot be smoothed in the speed; {known} can")]
     NotSliding {
         /// Name of the law.
         law: &'static str,
-        /// The laws that can.
+        /// The names of the laws that can.
         known: String,
     },
     /// Engine and law do not go together.
@@ -102,6 +102,14 @@ pub(crate) enum ScenarioError {
         engine: EngineName,
         /// Name of the law.
         law: &'static str,
+        /// The engines that can.
+        possible: String,
+    },
+    /// An engine of laws that a machine without one does not have.
+    #[error("the engine {engine} needs a law, and none was given; without one the engines are {possible}")]
+    EngineWithoutLaw {
+        /// The engine asked for.
+        engine: EngineName,
         /// The engines that can.
         possible: String,
     },

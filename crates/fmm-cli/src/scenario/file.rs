@@ -9,7 +9,7 @@ use super::{EngineName, ScenarioError};
 
 /// A scenario as it is written.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a scenario, which is an object")]
 pub(crate) struct File {
     #[serde(default)]
     pub(crate) title: String,
@@ -190,9 +190,13 @@ impl Drive {
     /// The excitation of these numbers.
     ///
     /// # Errors
-    /// [`SimulationError::Quantity`] for a number that cannot be.
+    /// [`SimulationError::Quantity`] for a number that cannot be, [`SimulationError::OutOfRange`] for a list without one.
     pub(crate) fn excitation(self) -> Result<Excitation, SimulationError> {
         match self {
+            Self::SampledForce { values, .. } if values.is_empty() => Err(SimulationError::OutOfRange {
+                what: "a sampled force needs one value or more, but has none".to_owned(),
+                value: 0.0,
+            }),
             Self::SampledForce { interval, values, delay } => {
                 Excitation::sampled_force(interval, values)?.delayed(delay)
             }

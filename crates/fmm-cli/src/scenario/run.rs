@@ -29,10 +29,16 @@ impl Simulation {
     /// [`ScenarioError`], which says what is wrong and what would be right.
     pub(crate) fn read(text: &str) -> Result<Self, ScenarioError> {
         let file: File = serde_json::from_str(text)?;
+        let has_law = file.law.is_some();
         let (law, contact) = contact(file.law.unwrap_or_else(frictionless))?;
         let choice = Choice { engine: file.engine, tolerance: file.tolerance };
         if !contact.engines().contains(&choice.engine) {
-            return Err(wrong_engine(law, contact.as_ref(), choice.engine));
+            return Err(match wrong_engine(law, contact.as_ref(), choice.engine) {
+                ScenarioError::Engine { engine, possible, .. } if !has_law => {
+                    ScenarioError::EngineWithoutLaw { engine, possible }
+                }
+                error => error,
+            });
         }
         let integrates = matches!(choice.engine, EngineName::RungeKutta | EngineName::Bristle);
         if choice.tolerance.is_some() && !integrates {

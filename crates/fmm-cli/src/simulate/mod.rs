@@ -28,8 +28,9 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let path = &arguments.scenario;
     let text = std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-    let scenario = Simulation::read(&text)?;
-    let motion = scenario.run()?;
+    let named = |error| format!("{}: {error}", path.display());
+    let scenario = Simulation::read(&text).map_err(named)?;
+    let motion = scenario.run().map_err(named)?;
     if let Some(folder) = arguments.output.folder()? {
         figures::draw(folder, &scenario, &motion)?;
         drawn(folder, "{motion,friction}.svg");

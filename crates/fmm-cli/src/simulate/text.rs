@@ -54,10 +54,11 @@ impl fmt::Display for Report<'_> {
         writeln!(f, "{:>16}  {:13} {:>15} {:>15}  {:10} {:>10}", "t / s", "event", head[0], head[1], "next", "margin")?;
         for event in motion.events.iter().take(MOST_EVENTS) {
             let next = event.phase.map_or_else(|| event.next.to_owned(), |phase| format!("{} {phase}", event.next));
-            // Only where the velocity is zero is anything decided, and bristles decide nothing.
+            // Only where the velocity is zero is anything decided, and neither bristles nor a contact without a level decide.
             let decided = motion.samples.z.is_empty()
                 && matches!(event.kind.as_str(), "zero_velocity" | "breakaway+" | "breakaway-");
-            let margin = if decided { format!("{:+.2e}", event.margin) } else { "-".to_owned() };
+            let margin =
+                if decided && event.margin.is_finite() { format!("{:+.2e}", event.margin) } else { "-".to_owned() };
             writeln!(
                 f,
                 "{:16.12}  {:13} {:+15.8e} {:+15.8e}  {next:10} {margin:>10}",

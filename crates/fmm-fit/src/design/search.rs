@@ -1,5 +1,6 @@
 //! Search for the set of candidates that tells most.
 
+use fmm_model::Rounded;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -98,6 +99,9 @@ impl DesignSearch {
     /// # Errors
     /// [`DesignError::OutOfRange`] for no measurement or more than 1000.
     pub fn best(&self, measurements: usize) -> Result<ChosenDesign, DesignError> {
+        if !(1..=MOST).contains(&measurements) {
+            return Err(DesignError::out_of_range(format!("a set has 1 to {MOST} measurements, not {measurements}")));
+        }
         self.best_within(&vec![1.0; self.candidates()], measurements as f64)
     }
 
@@ -115,11 +119,14 @@ impl DesignSearch {
         }
         let cheapest = costs.iter().copied().fold(f64::INFINITY, f64::min);
         // Costs that add up to the budget but for rounding.
+        let given = budget;
         let budget = budget * (1.0 + 1e-12);
         let most = budget / cheapest;
         if !(1.0..MOST as f64 + 1.0).contains(&most) {
+            let [given, least, greatest] =
+                [given, cheapest, cheapest * MOST as f64].map(|cost| Rounded::new(cost, None).to_string());
             return Err(DesignError::out_of_range(format!(
-                "the budget must pay for 1 to {MOST} measurements, but pays for {most:.1} of the cheapest"
+                "the budget must be {least} to {greatest}, which pays for 1 to {MOST} of the cheapest measurement, not {given}"
             )));
         }
         let purse = Purse { costs, budget };

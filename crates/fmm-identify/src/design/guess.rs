@@ -2,7 +2,7 @@
 
 use fmm_fit::Information;
 use fmm_friction::Role;
-use fmm_model::{ModelError, Parameter, Unit};
+use fmm_model::{ModelError, Parameter, Rounded, Unit};
 use fmm_record::{Quantity, Record};
 
 use crate::design::local;
@@ -83,6 +83,9 @@ impl Guess {
             let plain = name.strip_suffix("_per_mass");
             let exactly = terms.iter().find(|(given, _)| *given == name).map(|(_, value)| *value);
             let by_mass = terms.iter().find(|(given, _)| Some(*given) == plain);
+            if let (Some(plain), Some(_), Some(_)) = (plain, exactly, by_mass) {
+                return Err(IdentifyError::contradiction(format!("{name} is given twice, once as {plain}")));
+            }
             let held = || candidate.terms().held().find(|(held, _)| *held == name).map(|(_, value)| value);
             exactly.or_else(|| by_mass.map(|(_, value)| value / per_mass_of_unit)).or_else(held).ok_or_else(|| {
                 IdentifyError::missing(format!("{} has no value for {name}: give one", candidate.name()))
@@ -103,6 +106,18 @@ impl Guess {
             });
         }
         let level = family.level().map_or(0.0, |level| law[level]);
+        for (parameter, value) in family.parameters.iter().zip(law) {
+            // What follows from them would be refused by a name and with a number that nobody gave.
+            let (name, bounds) = (parameter.parameter().name(), parameter.parameter().bounds());
+            let subject = format!("the guess of {name}");
+            if !(value.is_finite() && bounds.contains(*value)) {
+                return Err(IdentifyError::not_allowed(&subject, *value, &bounds.to_string()));
+            }
+            if matches!(parameter.role(), Role::LevelAbove | Role::Breakaway) && *value < level {
+                let allowed = format!("at least {}, the level of sliding", Rounded::every_digit(level));
+                return Err(IdentifyError::not_allowed(&subject, *value, &allowed));
+            }
+        }
         values.extend(family.parameters.iter().zip(law).map(|(parameter, value)| match parameter.role() {
             Role::LevelAbove | Role::Breakaway => (value - level) * to_fitted,
             Role::Slope => value * to_fitted,
@@ -162,7 +177,7 @@ impl Guess {
                 return Err(IdentifyError::not_allowed(
                     &format!("the guess of {}", parameter.name()),
                     *value,
-                    &format!("between {} and {}", bounds.lower(), bounds.upper()),
+                    &bounds.to_string(),
                 ));
             }
         }

@@ -62,6 +62,8 @@ pub struct PlannedSensor {
     gain_uncertainty: f64,
 }
 
+/// Noise of a sensor at least, as what a test tells grows with the square of its inverse, and has to stay a number.
+const LEAST_NOISE: f64 = 1e-100;
 /// Samples of a test at most.
 const MOST_SAMPLES: f64 = 1e7;
 
@@ -70,13 +72,17 @@ impl PlannedSensor {
     /// of the [`Guess`](crate::Guess)).
     ///
     /// # Errors
-    /// [`IdentifyError::WrongRecord`] for another quantity, [`IdentifyError::InvalidInput`] for a noise that is not positive.
+    /// [`IdentifyError::WrongRecord`] for another quantity, [`IdentifyError::InvalidInput`] for a noise that is not positive,
+    /// [`IdentifyError::OutOfRange`] for one below 1e-100.
     pub fn new(quantity: Quantity, noise: f64) -> Result<Self, IdentifyError> {
         if !matches!(quantity, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration) {
             let needed = "displacement, velocity or acceleration";
             return Err(IdentifyError::wrong_quantity("the quantity of a planned sensor", needed, quantity));
         }
         let noise = ModelError::require_positive("noise of a planned sensor", noise, "(in the unit of its quantity)")?;
+        if noise < LEAST_NOISE {
+            return Err(IdentifyError::not_allowed("noise of a planned sensor", noise, "1e-100 or more"));
+        }
         Ok(Self { quantity, noise, gain_uncertainty: 0.0 })
     }
 
