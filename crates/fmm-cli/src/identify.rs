@@ -105,17 +105,14 @@ struct Document<'a> {
     posterior: &'a Option<Posterior>,
 }
 
-/// Reads, prepares and fits the record, by a search unless there are `candidates`; with why there is no posterior, if one was asked for.
-fn found(arguments: &Arguments, candidates: &[Candidate]) -> Result<(Found, Option<Box<dyn Error>>), Box<dyn Error>> {
+/// Reads, prepares and fits the record; by a search unless there are `candidates`.
+fn found(arguments: &Arguments, candidates: &[Candidate]) -> Result<Found, Box<dyn Error>> {
     let input = arguments.given.read_mode()?;
     input.warn();
     let preparation = arguments.given.preparation().gain_uncertainty(arguments.question.scale_u);
     let decay = experiment(arguments, &input.record, &preparation)?;
     let comparison = fitted(arguments, &decay, candidates)?;
-    let preferred = comparison.preferred();
-    let posterior = arguments.posterior.then(|| Posterior::of(preferred, &decay)).transpose();
-    let (posterior, failed) = posterior.map_or_else(|error| (None, Some(error)), |posterior| (posterior, None));
-    Ok((Found { origin: input.origin, decay, comparison, posterior }, failed))
+    Ok(Found { origin: input.origin, decay, comparison, posterior: None })
 }
 
 /// Finds the law that explains a record, or the parameters of those that are named.
@@ -137,7 +134,16 @@ fn give_out(arguments: &Arguments, candidates: &[Candidate], command: &str) -> R
     if let Some(path) = &arguments.report {
         require_writable(path)?;
     }
-    let (found, failed) = found(arguments, candidates)?;
+    let mut found = found(arguments, candidates)?;
+    let posterior = arguments.posterior.then(|| Posterior::of(found.comparison.preferred(), &found.decay)).transpose();
+    // What was found is given out without one as well.
+    let failed = match posterior {
+        Ok(posterior) => {
+            found.posterior = posterior;
+            None
+        }
+        Err(error) => Some(error),
+    };
     if arguments.output.json {
         let document = Document { comparison: &found.comparison, posterior: &found.posterior };
         print(serde_json::to_string_pretty(&document)?)?;

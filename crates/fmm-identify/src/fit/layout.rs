@@ -43,6 +43,20 @@ pub(crate) struct Layout {
     pub(crate) force_uncertainty: f64,
 }
 
+/// Refuses a pendulum that would turn over and over in the record.
+fn require_swing(machine: &Machine, record: &Experiment) -> Result<(), IdentifyError> {
+    let Restoring::Sine { length } = machine.restoring() else { return Ok(()) };
+    let angle = record.scales().0 / length;
+    if angle <= MOST_RADIANS {
+        return Ok(());
+    }
+    let unit = Units::of(record.record()).position;
+    Err(IdentifyError::contradiction(format!(
+        "a pendulum that moves by {length:e} {unit} for each radian would swing by {angle:.3e} rad in this record, beyond two whole turns; give \
+         the length in {unit} that makes one radian"
+    )))
+}
+
 impl Layout {
     /// Layout and parameters of `family` with `terms` for these records.
     pub(crate) fn of(
@@ -59,16 +73,7 @@ impl Layout {
             return Err(IdentifyError::contradiction(contradiction));
         }
         let reference = reference(decays);
-        if let Restoring::Sine { length } = machine.restoring() {
-            let angle = reference.scales().0 / length;
-            if angle > MOST_RADIANS {
-                return Err(IdentifyError::contradiction(format!(
-                    "a pendulum that moves by {length:e} {0} for each radian would swing by {angle:.3e} rad in this record, beyond two whole \
-                     turns; give the length in {0} that makes one radian",
-                    Units::of(reference.record()).position
-                )));
-            }
-        }
+        require_swing(machine, reference)?;
         let is_driven = decays.iter().any(|decay| decay.drive().is_some());
         let family = if is_driven { family.with_breakaway() } else { family };
         let units = Units::of(reference.record());
