@@ -348,6 +348,7 @@ formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
             (format!("{input}value = 2\nu = 0.1\n"), "result"),
             (format!("{input}value = 2\nu = 0.1\n{result}{result}"), "two results are called F"),
             ("input = 3".to_owned(), "input"),
+            (format!("{input}value = 2\nu = -1e300\n{result}"), "zero or positive and finite, but is -1e300 kg"),
             (format!("{input}limits = [1, 2, 3]\n{result}"), "limits are two numbers, but 3 are given"),
             (format!("{input}limits = [1]\n{result}"), "limits are two numbers, but 1 is given"),
             (

@@ -412,6 +412,7 @@ impl Candidates {
             }
             let count = rate * duration;
             if !(16.0..=1e7).contains(&count) {
+                let count = Rounded::every_digit(count);
                 return Err(format!("a test has 16 to 10 million samples, not {count}").into());
             }
             let at = |i: usize| amplitude * (std::f64::consts::TAU * frequency * i as f64 / rate).sin();

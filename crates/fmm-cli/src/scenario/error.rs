@@ -1,7 +1,7 @@
 //! Errors of a scenario file.
 
 use fmm_friction::LawError;
-use fmm_model::ModelError;
+use fmm_model::{ModelError, Rounded};
 use fmm_sim::SimulationError;
 
 use super::EngineName;
@@ -128,7 +128,10 @@ pub(crate) enum ScenarioError {
     #[error("the scenario needs a duration (s), or output times, the last of which is then the end")]
     NoEnd,
     /// More samples than this program gives out.
-    #[error("{count:.0} samples were asked for, and at most {most} are given; lower the rate or the duration")]
+    #[error(
+        "{count} samples were asked for, and at most {most} are given; lower the rate or the duration",
+        count = Rounded::every_digit(*.count)
+    )]
     TooManySamples {
         /// How many.
         count: f64,

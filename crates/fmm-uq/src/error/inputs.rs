@@ -1,12 +1,17 @@
 //! Errors of numbers and of lists of inputs.
 
+use fmm_model::Rounded;
+
 use crate::UncertaintyError;
 
 /// Numbers.
 impl UncertaintyError {
     /// A parameter of a distribution, or an option of a run, outside its range.
     pub(crate) fn out_of_range(parameter: &str, value: f64, must_be: &str) -> Self {
-        Self::OutOfRange { what: format!("the {parameter} must be {must_be}, but is {value}"), value }
+        Self::OutOfRange {
+            what: format!("the {parameter} must be {must_be}, but is {}", Rounded::every_digit(value)),
+            value,
+        }
     }
 
     /// Passes degrees of freedom through if they are at least 1; `of` says whose they are.
@@ -14,20 +19,27 @@ impl UncertaintyError {
         if value >= 1.0 {
             return Ok(value);
         }
-        let what = format!("the degrees of freedom of {of} must be at least 1 and may be infinite, but are {value}");
+        let what = format!(
+            "the degrees of freedom of {of} must be at least 1 and may be infinite, but are {}",
+            Rounded::every_digit(value)
+        );
         Err(Self::OutOfRange { what, value })
     }
 
     /// The estimate of an input is infinite or not a number.
     pub(crate) fn value_not_finite(input: &str, value: f64, unit: &str) -> Self {
-        Self::OutOfRange { what: format!("the value of {input} must be finite, but is {value} {unit}"), value }
+        Self::OutOfRange {
+            what: format!("the value of {input} must be finite, but is {} {unit}", Rounded::every_digit(value)),
+            value,
+        }
     }
 
     /// A standard uncertainty is negative or not finite.
     pub(crate) fn uncertainty_out_of_range(input: &str, value: f64, unit: &str) -> Self {
         Self::OutOfRange {
             what: format!(
-                "the standard uncertainty of {input} must be zero or positive and finite, but is {value} {unit}"
+                "the standard uncertainty of {input} must be zero or positive and finite, but is {} {unit}",
+                Rounded::every_digit(value)
             ),
             value,
         }
@@ -36,7 +48,10 @@ impl UncertaintyError {
     /// A correlation coefficient outside [−1, 1] or not a number.
     pub(crate) fn correlation_out_of_range(first: &str, second: &str, value: f64) -> Self {
         Self::OutOfRange {
-            what: format!("the correlation of `{first}` and `{second}` must lie in [-1, 1], but is {value}"),
+            what: format!(
+                "the correlation of `{first}` and `{second}` must lie in [-1, 1], but is {}",
+                Rounded::every_digit(value)
+            ),
             value,
         }
     }
@@ -44,7 +59,10 @@ impl UncertaintyError {
     /// A coverage probability that is not strictly between 0 and 1.
     pub(crate) fn level_out_of_range(level: f64) -> Self {
         Self::OutOfRange {
-            what: format!("the coverage probability must lie between 0 and 1, such as 0.95, but is {level}"),
+            what: format!(
+                "the coverage probability must lie between 0 and 1, such as 0.95, but is {}",
+                Rounded::every_digit(level)
+            ),
             value: level,
         }
     }
@@ -53,7 +71,9 @@ impl UncertaintyError {
     pub(crate) fn limits_out_of_order(lower: f64, upper: f64) -> Self {
         Self::OutOfRange {
             what: format!(
-                "the lower limit {lower} must lie below the upper limit {upper}, and their distance must be finite"
+                "the lower limit {} must lie below the upper limit {}, and their distance must be finite",
+                Rounded::every_digit(lower),
+                Rounded::every_digit(upper)
             ),
             value: lower,
         }
@@ -62,7 +82,10 @@ impl UncertaintyError {
     /// An observation that is infinite or no number, or whose square is.
     pub(crate) fn observation_not_finite(index: usize, value: f64) -> Self {
         Self::OutOfRange {
-            what: format!("observation {index} must be finite, and its square too, but is {value}"),
+            what: format!(
+                "observation {index} must be finite, and its square too, but is {}",
+                Rounded::every_digit(value)
+            ),
             value,
         }
     }
@@ -116,7 +139,12 @@ impl UncertaintyError {
 impl UncertaintyError {
     /// An input without a name cannot be told apart in a budget.
     pub(crate) fn unnamed(value: f64, unit: &str) -> Self {
-        Self::Inputs { what: format!("an input needs a name, but the one of value {value} {unit} has none") }
+        Self::Inputs {
+            what: format!(
+                "an input needs a name, but the one of value {} {unit} has none",
+                Rounded::every_digit(value)
+            ),
+        }
     }
 
     /// A model of no inputs has no uncertainty to propagate.

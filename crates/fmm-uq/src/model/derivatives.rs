@@ -1,5 +1,7 @@
 //! Source of the derivatives of a model.
 
+use fmm_model::Rounded;
+
 use crate::{Input, Inputs, UncertaintyError};
 
 /// Derivatives of one output along two directions, each taken over a whole step.
@@ -40,6 +42,6 @@ pub(crate) trait Derivatives {
 
 /// "V = 4.999 V, I = 0.019661 A": where the model was evaluated.
 pub(crate) fn place(inputs: &Inputs, at: impl Iterator<Item = f64>) -> String {
-    let value = |(input, x): (&Input, f64)| format!("{} = {x} {}", input.name(), input.unit());
+    let value = |(input, x): (&Input, f64)| format!("{} = {} {}", input.name(), Rounded::every_digit(x), input.unit());
     inputs.as_slice().iter().zip(at).map(value).collect::<Vec<_>>().join(", ")
 }

@@ -122,6 +122,8 @@ fn wrong_values_are_answered_with_what_would_be_right() {
         (with(r#""duration": 1, "output": {"rate": 0}"#), "rate of the output must be positive"),
         (with(r#""duration": 1, "output": {"rate": 1e8}"#), "100000001 samples were asked for"),
         (with(r#""duration": 1e300, "output": {"rate": 1e300}"#), "samples were asked for"),
+        (with(r#""duration": 1e300, "output": {"rate": 1}"#), "1e300 samples were asked for"),
+        (with(r#""duration": 1, "engine": "runge_kutta", "tolerance": 1e-30"#), "but is 1e-30"),
         (with(r#""duration": 1, "excitation": [{"half_sine": {"peak": 1, "duration": 0}}]"#), "pulse duration must be positive"),
         (with(r#""duration": 1, "excitation": [{"half_sine": {"peak": 1}}]"#), "missing field `duration`"),
         (with(r#""duration": 1, "engine": "exact", "tolerance": 1e-9"#), "runge_kutta and bristle"),
