@@ -278,7 +278,12 @@ fn what_cannot_be_is_refused_and_named() {
     assert!(refused(of("berger", &[0.2], &[])).contains("1 values of berger are given, but it has 3: coefficient"));
     assert!(refused(of("coulomb+linear", &[0.2], &[])).contains("no value for damping_per_mass"));
     assert!(refused(of("coulomb", &[0.2], &[("damping", 1.0)])).contains("no term with a value called \"damping\""));
-    assert!(refused(of("coulomb", &[-0.2], &[])).contains("the guess of friction_per_mass must be"));
+    assert!(refused(of("coulomb", &[-0.2], &[])).contains("the guess of coefficient must be at least 0, not -0.2"));
+    let below = refused(of("coulomb_static", &[0.3, 0.2], &[]));
+    assert!(below.contains("static_coefficient must be at least 0.3, the level of sliding, not 0.2"), "{below}");
+    let twice = [("quadratic_damping", 1.0), ("quadratic_damping_per_mass", 1.0)];
+    assert!(refused(of("coulomb + quadratic", &[0.2], &twice)).contains("given twice, once as quadratic_damping"));
+    assert!(PlannedSensor::new(Quantity::Velocity, 1e-300).is_err());
     assert!(refused(of("coulomb", &[0.2], &[]).unwrap().within(&[("mu", 0.1)])).contains("no parameter called"));
     assert!(PlannedTest::release(0.02, sensor(), 1000.0, 0.01).is_err());
     assert!(PlannedTest::release(0.02, sensor(), 1e300, 1e300).is_err());
