@@ -19,6 +19,8 @@ impl Span {
         let end = start + interval * (length - 1) as f64;
         let (from, to) = (self.from.unwrap_or(start), self.to.unwrap_or(end));
         let nothing = || {
+            let is_long = |time: f64| time != 0.0 && !(1e-5..1e16).contains(&time.abs());
+            let [from, to] = [from, to].map(|time| if is_long(time) { format!("{time:e}") } else { time.to_string() });
             RecordError::options(format!(
                 "no sample lies between {from} s and {to} s; the record spans {start} s to {end} s"
             ))
@@ -362,6 +364,8 @@ mod tests {
         assert_eq!(record.crop(f64::NEG_INFINITY, f64::INFINITY).unwrap(), record);
         let error = record.crop(20.0, 30.0).unwrap_err().to_string();
         assert!(error.starts_with("no sample lies between 20 s and 30 s; the record spans 0 s to 9.9"), "{error}");
+        let error = record.crop(1e300, f64::INFINITY).unwrap_err().to_string();
+        assert!(error.starts_with("no sample lies between 1e300 s and inf s"), "{error}");
         for (from, to) in [(0.5, 0.4), (0.11, 0.19), (f64::NAN, 1.0), (-2.0, -1.0)] {
             assert!(record.crop(from, to).is_err(), "{from} s to {to} s");
         }

@@ -77,7 +77,12 @@ impl From<Measured> for Quantity {
 fn form(trials: &[Trial]) -> Result<ResponseForm, Box<dyn Error>> {
     let quantity = trials.first().map_or(Quantity::Other, |trial| trial.response.quantity());
     if let Some(other) = trials.iter().find(|trial| trial.response.quantity() != quantity) {
-        return Err(format!("{}: a {}, where others are a {quantity}", other.name, other.response.quantity()).into());
+        return Err(format!(
+            "{}: its response is: {}, where that of others is: {quantity}",
+            other.name,
+            other.response.quantity()
+        )
+        .into());
     }
     match quantity {
         Quantity::Displacement => Ok(ResponseForm::Receptance),

@@ -175,7 +175,8 @@ fn fit_near(
     }
     let found = fit(problem, &starts, &polish)?;
     // One of several starts was given up, and a step of the better one looked like it.
-    if is_given_up && !is_ended && found.sum_of_squares() < worse * problem.len() as f64 {
+    let is_better = found.sum_of_squares() < worse * problem.len() as f64;
+    if found.outcome() == Outcome::Cancelled && !is_ended && is_better {
         return best_fit(problem, problem.name(), &[found.values().to_vec()], &polish, observer);
     }
     Ok(found)

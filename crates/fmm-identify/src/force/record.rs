@@ -91,10 +91,29 @@ impl ForceRecord {
     /// The same with measured `velocities` (m/s), as they are; accelerations are the slopes of their cubics.
     ///
     /// # Errors
-    /// As for [`of_positions`](Self::of_positions).
+    /// As for [`of_positions`](Self::of_positions), and [`IdentifyError::Contradiction`] for velocities that go with the slope of the
+    /// positions, but are more than three times or less than a third of it, or of the other sign.
     pub fn with_velocities(self, velocities: &[f64]) -> Result<Self, IdentifyError> {
         require_series(&self.motion.times, velocities, "velocity", "m/s")?;
+        self.require_slope(velocities)?;
         self.moving_at(velocities)
+    }
+
+    /// Refuses velocities that are another multiple of the slope of the positions than noise and drift can make of them.
+    fn require_slope(&self, velocities: &[f64]) -> Result<(), IdentifyError> {
+        /// Correlation of both from which on the multiple tells.
+        const ALIKE: f64 = 0.9;
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let slopes = &self.motion.velocities;
+        let (both, square) = (product(velocities, slopes), product(slopes, slopes));
+        let ratio = both / square;
+        let is_alike = both.abs() > ALIKE * (square * product(velocities, velocities)).sqrt();
+        if is_alike && !(1.0 / 3.0..=3.0).contains(&ratio) {
+            return Err(IdentifyError::contradiction(format!(
+                "the velocities are {ratio:.3} times the slope of the positions; state both in units and signs that belong together"
+            )));
+        }
+        Ok(())
     }
 
     /// The same with measured `accelerations` (m/s²).

@@ -457,3 +457,24 @@ fn what_was_measured_beside_the_force_has_a_share() {
     let refused = identify_force(&ForceModel::named("coulomb + channels").unwrap(), &[bare]);
     assert!(matches!(refused, Err(IdentifyError::Missing { .. })), "{refused:?}");
 }
+
+/// Velocities in mm/s beside positions in m, or of the other sign; those of a drifting or noisy sensor are taken.
+#[test]
+fn velocities_that_are_not_the_slope_of_the_positions_are_refused() {
+    let times: Vec<f64> = (0..2000).map(|i| 1e-3 * f64::from(i)).collect();
+    let angular = 2.0 * std::f64::consts::PI;
+    let positions: Vec<f64> = times.iter().map(|t| 0.01 * (angular * t).sin()).collect();
+    let slope = |t: &f64| 0.01 * angular * (angular * t).cos();
+    let forces: Vec<f64> = times.iter().map(|t| 3.0 * slope(t).signum()).collect();
+    let with = |scale: f64, drift: f64| {
+        let velocities: Vec<f64> = times.iter().map(|t| scale * slope(t) + drift * t).collect();
+        ForceRecord::of_positions(&times, &positions, &forces).unwrap().with_velocities(&velocities)
+    };
+    for (scale, drift) in [(1.0, 0.0), (0.8, 0.01), (1.0, 0.5)] {
+        assert!(with(scale, drift).is_ok(), "{scale} times, {drift} m/s²");
+    }
+    for scale in [1000.0, 5.0, 0.1, -1.0] {
+        let refused = with(scale, 0.0).unwrap_err().to_string();
+        assert!(refused.contains("times the slope of the positions"), "{refused}");
+    }
+}
