@@ -22,10 +22,12 @@ fn squares(x: &[Taylor]) -> Taylor {
 
 pub(crate) fn print_rows() {
     const TRIALS: u64 = 1_000_000;
-    print_row("a trial, all threads, normal inputs", Nanosecond, &[1, 2, 4, 8, 16], |count| {
+    print_row("a trial on one thread, normal inputs", Nanosecond, &[1, 2, 4, 8, 16], |count| {
         sum(count, TRIALS) / TRIALS as f64
     });
-    print_row("four inputs, trials", Millisecond, &[10_000, 100_000, 1_000_000, 10_000_000], |trials| sum(4, trials));
+    print_row("the same, four inputs, trials", Millisecond, &[10_000, 100_000, 1_000_000, 10_000_000], |trials| {
+        sum(4, trials)
+    });
     let sample = MonteCarlo::new(&normal(4), TRIALS).and_then(|run| run.run(|x: &[f64]| x.iter().sum::<f64>()));
     let sample = sample.expect("no trial fails");
     print_row("interval of 95 % of a million trials", Millisecond, &["symmetric", "shortest"], |kind| match kind {

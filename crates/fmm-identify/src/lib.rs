@@ -76,9 +76,10 @@
 //!
 //! # Cost
 //!
-//! In proportion to samples and records. Of 1500 samples, on a Xeon at 2.8 GHz: 1 ms to prepare, 0.2 ms for Coulomb's law,
-//! 0.7 ms with a viscous part, 15 ms for Berger's; laws of more parameters are fitted from many starts, Stribeck's with a
-//! free exponent in 0.3 s of 3000 samples on two threads (AMD EPYC). Hold what is known: it is quicker, and better determined.
+//! In proportion to samples and records. Of 1500 samples, on an AMD EPYC (`cargo bench --bench growth`): 2 ms to prepare, 3 ms for Coulomb's
+//! law alone or with a viscous part, half of it to see whether the noise grows with the motion, and 27 ms for Berger's; laws of more parameters are
+//! fitted from many starts, Stribeck's with a free exponent in 0.25 s of 3000 samples on two threads. Hold what is known: it is quicker, and better
+//! determined.
 //! [`compare`] costs the sum of its candidates.
 //! 25 000 samples of a force along a motion take 50 ms by Dahl's law with a viscous part and a zero.
 //! [`search`] takes 30 ms of 3000 samples where a simple law is right, and 1 s to 5 s on two threads where it is not.

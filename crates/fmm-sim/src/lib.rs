@@ -91,14 +91,14 @@
 //!
 //! # Cost
 //!
-//! On a Xeon at 2.8 GHz, by half swings and samples, least of several runs:
+//! On an AMD EPYC (Zen 4), by half swings and samples, least of many calls (`cargo bench --bench growth`):
 //!
 //! | engine | a half swing | a sample | two derivatives beside the values |
 //! |---|---|---|---|
-//! | [`Exact`] | 0.09 µs | 0.5 ns | 1.6 to 1.9 times as long |
-//! | [`RungeKutta`] | 12 µs; to 1e-10 half of it | 1 to 6 ns | 1.6 to 2.2 times |
-//! | [`Bristle`], on an AMD EPYC | 23 µs for Dahl, 77 µs for stiff LuGre | 30 ns | 1.6 to 2 times |
-//! | [`Thesis`], [`Moreau`] | - | 18 ns, 28 ns | none |
+//! | [`Exact`] | 0.03 µs | 0.3 ns | 1.6 to 2.2 times as long |
+//! | [`RungeKutta`] | 13 µs to 16 µs; to 1e-10 half of it | 1 to 18 ns | 1.6 to 2.2 times |
+//! | [`Bristle`] | 11 µs to 23 µs for Dahl, 45 µs to 54 µs for stiff LuGre | 30 ns | 1.6 to 2 times |
+//! | [`Thesis`], [`Moreau`] | - | 16 ns, 27 ns | none |
 //!
 //! While a measured force acts, [`Exact`] goes from sample to sample of the force, 0.3 µs each.
 //! [`run_into`](Engine::run_into) uses the memory of a [`Trajectory`] again; [`Sampling::keeping`] leaves out the channel
