@@ -77,7 +77,7 @@
 //! # Cost
 //!
 //! In proportion to samples and records. Of 1500 samples, on an AMD EPYC (`cargo bench --bench growth`): 2 ms to prepare, 3 ms for Coulomb's
-//! law alone or with a viscous part, half of it to see whether the noise grows with the motion, and 27 ms for Berger's; laws of more parameters are
+//! law alone or with a viscous part, and 27 ms for Berger's; laws of more parameters are
 //! fitted from many starts, Stribeck's with a free exponent in 0.25 s of 3000 samples on two threads. Hold what is known: it is quicker, and better
 //! determined.
 //! [`compare`] costs the sum of its candidates.
