@@ -76,8 +76,8 @@
 //!
 //! # Cost
 //!
-//! In proportion to samples and records. Of 1500 samples, on an AMD EPYC (`cargo bench --bench growth`): 2 ms to prepare, 3 ms for Coulomb's
-//! law alone or with a viscous part, and 27 ms for Berger's; laws of more parameters are
+//! In proportion to samples and records. Of 1500 samples, on an AMD EPYC (`cargo bench --bench growth`): 3 ms to prepare, 1 ms for Coulomb's
+//! law, 1.5 ms with a viscous part, and 22 ms for Berger's; laws of more parameters are
 //! fitted from many starts, Stribeck's with a free exponent in 0.25 s of 3000 samples on two threads. Hold what is known: it is quicker, and better
 //! determined.
 //! [`compare`] costs the sum of its candidates.
