@@ -128,8 +128,8 @@ pub(crate) fn compare(arguments: &Arguments, command: &str) -> Result<(), Box<dy
 /// `command` is what was typed.
 fn give_out(arguments: &Arguments, candidates: &[Candidate], command: &str) -> Result<(), Box<dyn Error>> {
     let folder = arguments.output.folder()?;
-    if arguments.posterior {
-        Posterior::require()?;
+    if let (true, Some(refusal)) = (arguments.posterior, Posterior::REFUSAL) {
+        return Err(refusal.into());
     }
     if let Some(path) = &arguments.report {
         require_writable(path)?;

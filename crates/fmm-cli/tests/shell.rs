@@ -7,6 +7,11 @@ fn fmm(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_fmm")).args(arguments).output().unwrap()
 }
 
+/// The words of `line` as arguments, typed in `folder`.
+fn fmm_in(folder: &Path, line: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fmm")).args(line.split_whitespace()).current_dir(folder).output().unwrap()
+}
+
 #[test]
 fn codes_tell_what_is_found_refused_and_wrong() {
     for (arguments, code) in [
@@ -48,11 +53,7 @@ fn every_command_prints_one_document() {
         ("design designs/berger.toml --json", "tests"),
         ("batch data/flexure --json -- --law coulomb_viscous", "records"),
     ] {
-        let output = Command::new(env!("CARGO_BIN_EXE_fmm"))
-            .args(arguments.split_whitespace())
-            .current_dir(&examples)
-            .output()
-            .unwrap();
+        let output = fmm_in(&examples, arguments);
         let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         assert!(output.status.success() && document.get(key).is_some(), "{arguments}: {document}");
     }
@@ -122,27 +123,19 @@ fn what_is_wrong_is_named_with_what_would_be_right() {
         ),
         ("batch flexure --group operator", "--group operator: a manifest says which records belong together"),
     ] {
-        let words = arguments.split_whitespace();
-        let output = Command::new(env!("CARGO_BIN_EXE_fmm")).args(words).current_dir(&examples).output().unwrap();
+        let output = fmm_in(&examples, arguments);
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(said.contains(sentence), "{arguments}: {said}");
     }
-    let stated = Command::new(env!("CARGO_BIN_EXE_fmm"))
-        .args(["identify", "flexure/run_1.csv", "--law", "coulomb", "--rate", "500"])
-        .current_dir(&examples)
-        .output()
-        .unwrap();
+    let stated = fmm_in(&examples, "identify flexure/run_1.csv --law coulomb --rate 500");
     assert!(!String::from_utf8(stated.stderr).unwrap().contains("--rate"), "the same rate is no contradiction");
 }
 
 /// A parameter of one model is held, and the others, which do not have it, are fitted beside it.
 #[test]
 fn a_parameter_of_one_model_of_a_force_is_held() {
-    let output = Command::new(env!("CARGO_BIN_EXE_fmm"))
-        .args("force damper_1Hz_36lb_1amplitude.csv --model coulomb,dahl --hold dahl.exponent=1".split_whitespace())
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/data"))
-        .output()
-        .unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/data");
+    let output = fmm_in(&data, "force damper_1Hz_36lb_1amplitude.csv --model coulomb,dahl --hold dahl.exponent=1");
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(said.contains("by dahl, exponent = 1") && said.contains("Force along a motion by coulomb\n"), "{said}");
 }
@@ -162,11 +155,7 @@ fn what_cannot_be_is_refused_in_words() {
         ("identify RECORD --law coulomb --mass 1e-300", "beyond the range of numbers"),
     ] {
         let arguments = arguments.replace("RECORD", "data/flexure/run_1.csv");
-        let output = Command::new(env!("CARGO_BIN_EXE_fmm"))
-            .args(arguments.split_whitespace())
-            .current_dir(&examples)
-            .output()
-            .unwrap();
+        let output = fmm_in(&examples, &arguments);
         let told = String::from_utf8(output.stderr).unwrap();
         assert!(
             output.status.code() == Some(1) && output.stdout.is_empty() && told.contains(reason),

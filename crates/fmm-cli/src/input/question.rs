@@ -137,8 +137,10 @@ impl Question {
         if let Some(seconds) = self.time_limit {
             return Err(format!("--time-limit {seconds} is for the search of `fmm identify` without --law; a comparison fits all its laws").into());
         }
-        let all = Self { law: vec!["all".to_owned()], ..self.clone() };
-        if self.law.is_empty() { all.candidates() } else { self.candidates() }
+        if self.law.is_empty() {
+            return Self { law: vec!["all".to_owned()], ..self.clone() }.candidates();
+        }
+        self.candidates()
     }
 
     fn held(&self) -> Result<Vec<Held>, Box<dyn Error>> {

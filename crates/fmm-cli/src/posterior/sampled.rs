@@ -18,11 +18,8 @@ const LEVEL: f64 = 0.95;
 pub(crate) struct Posterior(IdentificationPosterior);
 
 impl Posterior {
-    /// Whether there are posteriors: yes.
-    #[allow(clippy::unnecessary_wraps)]
-    pub(crate) fn require() -> Result<(), Box<dyn Error>> {
-        Ok(())
-    }
+    /// Why there is none: there is.
+    pub(crate) const REFUSAL: Option<&'static str> = None;
 
     /// Draws from the posterior of what `preferred` found in `decay`.
     pub(crate) fn of(preferred: &Identification, decay: &Experiment) -> Result<Self, Box<dyn Error>> {

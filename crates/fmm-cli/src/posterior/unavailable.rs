@@ -5,21 +5,19 @@ use std::error::Error;
 use fmm_identify::{Experiment, Identification};
 use serde::Serialize;
 
+const WHY: &str = "this program was built without the posterior, which takes a minute more to compile: run cargo with `--features posterior`";
+
 /// A posterior of which there is none.
 #[derive(Serialize)]
 pub(crate) enum Posterior {}
 
 impl Posterior {
-    /// Refuses.
-    pub(crate) fn require() -> Result<(), Box<dyn Error>> {
-        Err("this program was built without the posterior, which takes a minute more to compile: run cargo with \
-             `--features posterior`"
-            .into())
-    }
+    /// Why there is none, for whoever asks before the fit.
+    pub(crate) const REFUSAL: Option<&'static str> = Some(WHY);
 
     /// Refuses.
     pub(crate) fn of(_: &Identification, _: &Experiment) -> Result<Self, Box<dyn Error>> {
-        Err(Self::require().map_or_else(|error| error, |()| "there is no posterior".into()))
+        Err(WHY.into())
     }
 
     pub(crate) fn text(&self) -> String {

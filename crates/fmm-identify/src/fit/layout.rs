@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use fmm_fit::EvaluationError;
 use fmm_friction::Role;
-use fmm_model::{Bounds, Damping, Oscillator, Parameter, Restoring, Scalar};
+use fmm_model::{Bounds, Damping, Oscillator, Parameter, Restoring, Rounded, Scalar};
 
 use crate::experiment::reference;
 use crate::law::dimension::is_force;
@@ -52,8 +52,9 @@ fn require_swing(machine: &Machine, record: &Experiment) -> Result<(), IdentifyE
     }
     let unit = Units::of(record.record()).position;
     Err(IdentifyError::contradiction(format!(
-        "a pendulum that moves by {length:e} {unit} for each radian would swing by {angle:.3e} rad in this record, beyond two whole turns; give \
-         the length in {unit} that makes one radian"
+        "a pendulum that moves by {} {unit} for each radian would swing by {angle:.3e} rad in this record, beyond two whole turns; give \
+         the length in {unit} that makes one radian",
+        Rounded::every_digit(length)
     )))
 }
 
