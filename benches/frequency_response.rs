@@ -1,8 +1,9 @@
 //! H1, H2 and coherence of an impact test against the bare transforms of its channels, in one run.
 //!
-//! `cargo bench --bench frequency_response` prints criterion's estimates and then the ratios of their medians: 1.10 on two
-//! quiet cores of a Xeon at 2.8 GHz, 1.08 and 1.16 while others built there. What is beyond the transforms waits for
-//! memory, so that single runs scatter up to 1.4; H1, H2 and coherence themselves, after all trials, are 1 % of the time.
+//! `cargo bench --bench frequency_response` prints criterion's estimates and then the ratios of their medians: 1.10 on
+//! two quiet cores of a Xeon at 2.8 GHz, 1.08 and 1.16 while others built there. What is beyond the transforms waits
+//! for memory, so that single runs scatter up to 1.4; H1, H2 and coherence themselves, after all trials, are 1 % of the
+//! time.
 
 #[path = "common/ratio.rs"]
 mod ratio;
@@ -95,7 +96,8 @@ fn frequency_response(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Three modes in noise, 131 072 samples: the search for modes, and the backbone of the strongest, which begins with that search.
+/// Three modes in noise, 131 072 samples: the search for modes, and the backbone of the strongest, which begins with
+/// that search.
 fn decay(criterion: &mut Criterion) {
     const SAMPLES: usize = 131_072;
     const RATE: f64 = 12_800.0;

@@ -1,8 +1,8 @@
 //! The solver against the evaluations that it asks for, and a fit of the exact motion against one of the thesis' Euler
 //! motion, in one run.
 //!
-//! `cargo bench --bench least_squares` prints criterion's estimates and then the ratios of their medians. The package `peers`
-//! beside this file compares the factorisation with nalgebra and faer.
+//! `cargo bench --bench least_squares` prints criterion's estimates and then the ratios of their medians. The package
+//! `peers` beside this file compares the factorisation with nalgebra and faer.
 
 #[path = "common/ratio.rs"]
 mod ratio;

@@ -1,8 +1,8 @@
 //! A million trials of a Monte Carlo against a bare loop with the same generator, in one run.
 //!
-//! `cargo bench --bench monte_carlo` prints criterion's estimates and then the ratios of their medians. Estimate, standard
-//! uncertainty and the symmetric interval of 95 % are part of every figure but those of the bare loops, which only draw and
-//! keep their values.
+//! `cargo bench --bench monte_carlo` prints criterion's estimates and then the ratios of their medians. Estimate,
+//! standard uncertainty and the symmetric interval of 95 % are part of every figure but those of the bare loops, which
+//! only draw and keep their values.
 
 #[path = "common/ratio.rs"]
 mod ratio;

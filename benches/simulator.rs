@@ -1,7 +1,7 @@
 //! Each engine against the thesis' Euler loop on the same motion, and gradients against plain runs, in one run.
 //!
-//! `cargo bench --bench simulator` prints criterion's estimates and then the ratios of their medians. The package `peers` beside
-//! this file compares with a general solver.
+//! `cargo bench --bench simulator` prints criterion's estimates and then the ratios of their medians. The package
+//! `peers` beside this file compares with a general solver.
 
 #[path = "common/floor.rs"]
 mod floor;

@@ -1,4 +1,5 @@
-//! Chapter 7, laws of friction: `cargo run --release --example chapter_7_friction -- [--json] [--figures DIR] [--quick]`.
+//! Chapter 7, laws of friction:
+//! `cargo run --release --example chapter_7_friction -- [--json] [--figures DIR] [--quick]`.
 
 fn main() -> std::process::ExitCode {
     fmm_thesis::program(fmm_thesis::chapter_7_friction::chapter)

@@ -1,9 +1,9 @@
 //! How far the default judgement is to be trusted: `cargo run --release --example judgement`.
 //!
-//! Ring-downs of known truth are simulated, measured with what real measurements suffer from, and judged as the crates judge
-//! them when nothing is asked for. One row a cell says how often the stated intervals hold the truth, how often a miss comes
-//! without a warning, and how often a wrong law is decided for. Seeds are fixed for every cell and record: the numbers are the
-//! same on any number of threads; times alone are not. `--list` lists the cells.
+//! Ring-downs of known truth are simulated, measured with what real measurements suffer from, and judged as the crates
+//! judge them when nothing is asked for. One row a cell says how often the stated intervals hold the truth, how often a
+//! miss comes without a warning, and how often a wrong law is decided for. Seeds are fixed for every cell and record:
+//! the numbers are the same on any number of threads; times alone are not. `--list` lists the cells.
 
 #[path = "judgement/mod.rs"]
 mod judgement;

@@ -1,8 +1,10 @@
-//! The uncertainty of a coefficient of friction, after the thesis' Table 3: `cargo run --release --example monte_carlo`.
+//! The uncertainty of a coefficient of friction, after the thesis' Table 3:
+//! `cargo run --release --example monte_carlo`.
 //!
-//! A ring-down of known truth is fitted again and again, each time on another machine: mass, stiffness and damping drawn
-//! from what is known of them, one at a time and all together. The thesis' raw data are not published, so the record is
-//! simulated, with the thesis' machine, load and initial velocity. Printed figures of the thesis stand beside ours.
+//! A ring-down of known truth is fitted again and again, each time on another machine: mass, stiffness and damping
+//! drawn from what is known of them, one at a time and all together. The thesis' raw data are not published, so the
+//! record is simulated, with the thesis' machine, load and initial velocity. Printed figures of the thesis stand beside
+//! ours.
 
 use std::fmt::Write as _;
 use std::io::Write as _;

@@ -1,4 +1,5 @@
-//! What a posterior costs, and whether it is right: effective draws a second, and ranks of true values over simulated ring-downs.
+//! What a posterior costs, and whether it is right: effective draws a second, and ranks of true values over simulated
+//! ring-downs.
 //!
 //! `cargo run --release --example posterior -- [RECORDS]`; the times are of one thread.
 

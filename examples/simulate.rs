@@ -1,4 +1,5 @@
-//! A ring-down with stick and slip, exact through every event, in a few lines: `cargo run --release --example simulate`.
+//! A ring-down with stick and slip, exact through every event, in a few lines:
+//! `cargo run --release --example simulate`.
 //!
 //! The program `fmm simulate` does the same for a scenario in a file, and draws it.
 

@@ -1,9 +1,9 @@
 //! Measurement uncertainty for anyone: `cargo run --release --example uncertainty`.
 //!
-//! Two calibrations from JCGM 101:2008 in which the GUM falls short for different reasons: a weight, whose model is curved
-//! (9.3), and a gauge block, whose inputs are known from few observations and between limits that are themselves inexact
-//! (9.5; example H.1 of the GUM). Each is evaluated to first order, to second order and by a Monte Carlo that stops when
-//! it is stable, beside the published figures, and the Monte Carlo says which of the others may be used.
+//! Two calibrations from JCGM 101:2008 in which the GUM falls short for different reasons: a weight, whose model is
+//! curved (9.3), and a gauge block, whose inputs are known from few observations and between limits that are themselves
+//! inexact (9.5; example H.1 of the GUM). Each is evaluated to first order, to second order and by a Monte Carlo that
+//! stops when it is stable, beside the published figures, and the Monte Carlo says which of the others may be used.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -50,7 +50,8 @@ fn length<D: Scalar>(x: &[D]) -> D {
     *standard + *difference + *random + *systematic - *standard * warm - 50_000_000.0
 }
 
-/// The GUM takes limits as exact and counts in degrees of freedom how well they are known; a Monte Carlo draws the limits.
+/// The GUM takes limits as exact and counts in degrees of freedom how well they are known; a Monte Carlo draws the
+/// limits.
 fn length_inputs(inexact_limits: bool) -> Result<Inputs, UncertaintyError> {
     let observed = |name, value, u, nu| Input::new(name, value, u, "nm")?.with_degrees_of_freedom(nu);
     let limited = |name, half: f64, inexactness, unit, nu| {

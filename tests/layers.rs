@@ -184,7 +184,8 @@ fn the_readme_says_who_uses_whom() {
     }
 }
 
-/// Down the table, tests and examples of a crate included: so there is no cycle, and the last row can be published first.
+/// Down the table, tests and examples of a crate included: so there is no cycle, and the last row can be published
+/// first.
 #[test]
 fn every_crate_uses_crates_below_it_only() {
     let packages = packages();

@@ -1,7 +1,8 @@
-//! Plain loop of a ring-down under Coulomb friction by its closed form: the least that the exact engine's work can cost.
+//! Plain loop of a ring-down under Coulomb friction by its closed form: the least that the exact engine's work can
+//! cost.
 //!
-//! One machine, one law, one channel, uniform samples, no force, and no input that could be wrong. Reversals and the stop are kept with
-//! time and position, as the engine keeps them.
+//! One machine, one law, one channel, uniform samples, no force, and no input that could be wrong. Reversals and the
+//! stop are kept with time and position, as the engine keeps them.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,5 @@
-//! Ratios of criterion's medians with their goals: of one run, they are worth more than times on a machine that others use too.
+//! Ratios of criterion's medians with their goals: of one run, they are worth more than times on a machine that others
+//! use too.
 
 use std::ops::{Bound, RangeBounds};
 
@@ -11,7 +12,8 @@ pub(crate) fn median(benchmark: &str) -> Option<f64> {
     estimates["median"]["point_estimate"].as_f64()
 }
 
-/// Prints a number as a row of a Markdown table: what it is, its value, its goal (`..` for none), and whether that is missed.
+/// Prints a number as a row of a Markdown table: what it is, its value, its goal (`..` for none), and whether that is
+/// missed.
 pub(crate) fn print_row(what: &str, value: f64, goal: impl RangeBounds<f64>) {
     let wanted = match (goal.start_bound(), goal.end_bound()) {
         (Bound::Included(least), _) => format!("at least {least}"),

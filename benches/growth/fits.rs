@@ -65,8 +65,8 @@ fn linear_fit(samples: usize, count: usize) -> f64 {
     least(|| minimizer.minimize(&problem, &start).expect("linear").is_success())
 }
 
-/// The thesis' machine released from 20 mm under a law that falls with the speed (`excess` above 0) or does not, 2 s of velocity with 0.3 mm/s of
-/// white noise.
+/// The thesis' machine released from 20 mm under a law that falls with the speed (`excess` above 0) or does not, 2 s of
+/// velocity with 0.3 mm/s of white noise.
 fn record(samples: usize, excess: f64) -> Record {
     let damping = Damping::linear(0.275).expect("valid");
     let machine = Oscillator::new(10.391, 1982.0).expect("valid").with_damping(damping);

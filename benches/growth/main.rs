@@ -1,6 +1,8 @@
-//! What a call costs as samples, half swings, derivatives, parameters and inputs grow: the tables of docs/performance.md.
+//! What a call costs as samples, half swings, derivatives, parameters and inputs grow: the tables of
+//! docs/performance.md.
 //!
-//! `cargo bench --bench growth` prints rows of the least time of many calls; `cargo bench --bench growth -- uncertainty` those of one table.
+//! `cargo bench --bench growth` prints rows of the least time of many calls;
+//! `cargo bench --bench growth -- uncertainty` those of one table.
 
 mod fits;
 mod frequency_response;

@@ -98,7 +98,8 @@ fn filtered(setup: &Setup, random: &mut Random) -> Found<Case> {
     Case::new(setup, values, INTERVAL, Quantity::Velocity, largest(velocity))
 }
 
-/// A release of 12 mm, a rest, a hand that takes the machine to 20 mm within a second and holds it a little, and another release.
+/// A release of 12 mm, a rest, a hand that takes the machine to 20 mm within a second and holds it a little, and
+/// another release.
 fn two_releases(setup: &Setup, random: &mut Random) -> Found<Case> {
     const BY_HAND: usize = 1000;
     const HELD: usize = 200;

@@ -64,8 +64,8 @@ pub(crate) struct Drawn {
     signal_to_noise: f64,
 }
 
-/// Amplitude at the release by the deflection that friction holds, for a stop after `half_cycles`, with a share `left` (0 to 1) of
-/// that deflection, when damping takes the amplitude to a share `kept` each half swing.
+/// Amplitude at the release by the deflection that friction holds, for a stop after `half_cycles`, with a share `left`
+/// (0 to 1) of that deflection, when damping takes the amplitude to a share `kept` each half swing.
 ///
 /// ```text
 /// A(j + 1) = A(j) q − δ (1 + q),    A(n) = left · δ

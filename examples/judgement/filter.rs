@@ -2,8 +2,8 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-/// `values`, sampled `rate` times a second, behind a causal Butterworth filter of second order with its corner at `corner` (Hz), by
-/// the bilinear transform with the corner where it should be. The filter has been at rest before.
+/// `values`, sampled `rate` times a second, behind a causal Butterworth filter of second order with its corner at
+/// `corner` (Hz), by the bilinear transform with the corner where it should be. The filter has been at rest before.
 pub(crate) fn low_passed(values: &[f64], rate: f64, corner: f64) -> Vec<f64> {
     let w = (PI * corner / rate).tan();
     let norm = 1.0 / (1.0 + SQRT_2 * w + w * w);

@@ -13,7 +13,8 @@ fn default_judgement(machine: &Machine, decays: &[Experiment]) -> Result<Compari
     search(machine, decays, &Search::default().on_threads(1))
 }
 
-/// The name of a law without what is held of it, and without a linear damping beside it, which most laws do not have of their own.
+/// The name of a law without what is held of it, and without a linear damping beside it, which most laws do not have of
+/// their own.
 fn plain(name: &str) -> String {
     let name = name.split(',').next().unwrap_or(name).trim();
     match name.strip_suffix(" + linear") {
@@ -23,7 +24,8 @@ fn plain(name: &str) -> String {
     }
 }
 
-/// Names of the laws that the judgement leaves standing: the preferred one if it is decided, otherwise all that are not excluded.
+/// Names of the laws that the judgement leaves standing: the preferred one if it is decided, otherwise all that are not
+/// excluded.
 fn named(comparison: &Comparison) -> Vec<String> {
     if comparison.is_decided() {
         return vec![plain(comparison.preferred().law())];
@@ -31,8 +33,8 @@ fn named(comparison: &Comparison) -> Vec<String> {
     comparison.not_excluded().map(|found| plain(found.law())).collect()
 }
 
-/// Whether one of `warnings` says that the law is not right or not settled, or names what disturbs the record. New variants
-/// that say so belong here.
+/// Whether one of `warnings` says that the law is not right or not settled, or names what disturbs the record. New
+/// variants that say so belong here.
 fn is_loud(warnings: &[Warning]) -> bool {
     warnings.iter().any(|warning| {
         matches!(

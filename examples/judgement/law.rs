@@ -148,8 +148,8 @@ impl Law {
         slopes.map(|(_, value)| value).sum()
     }
 
-    /// Values for all parameters from those that a record is fitted by: static levels are the sliding level, and a level that may
-    /// not lie below another is that with what it is above it.
+    /// Values for all parameters from those that a record is fitted by: static levels are the sliding level, and a
+    /// level that may not lie below another is that with what it is above it.
     pub(crate) fn of_fitted(&self, fitted: &[f64]) -> Option<Vec<f64>> {
         let level = self.fitted().position(|parameter| parameter.role() == Role::Level);
         let level = level.and_then(|level| fitted.get(level)).copied().unwrap_or(0.0);

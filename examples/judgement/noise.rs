@@ -37,7 +37,8 @@ pub(crate) fn walk(values: &mut [f64], deviation: f64, random: &mut Random) {
     }
 }
 
-/// A slow drift by `reach` from its least to its greatest value: a parabola, or a piece of a sine of one to two record lengths.
+/// A slow drift by `reach` from its least to its greatest value: a parabola, or a piece of a sine of one to two record
+/// lengths.
 pub(crate) fn drift(values: &mut [f64], reach: f64, random: &mut Random) {
     let count = values.len() as f64;
     let curve: Vec<f64> = if random.coin() {

@@ -20,7 +20,8 @@ use super::{Found, Random, noise};
 
 /// Samples of a record.
 const SAMPLES: usize = 3000;
-/// By so much of itself (1) a sum of squares may lie above another and be the same: at a valley's end, steps are longer.
+/// By so much of itself (1) a sum of squares may lie above another and be the same: at a valley's end, steps are
+/// longer.
 const SAME: f64 = 1e-6;
 
 /// A law whose fits are timed.
@@ -159,8 +160,8 @@ impl Fits {
         Self { name, law, held, values, fit: fit::<F> }
     }
 
-    /// Whether record number `record` is of the law. Two in four are of a contact with Stribeck's curve and no presliding, which most laws
-    /// cannot describe.
+    /// Whether record number `record` is of the law. Two in four are of a contact with Stribeck's curve and no
+    /// presliding, which most laws cannot describe.
     pub(crate) fn is_own(&self, record: u64) -> bool {
         record % 4 < 2 || self.law == "stribeck"
     }

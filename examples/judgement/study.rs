@@ -26,7 +26,8 @@ fn outcome(cell: &Cell, record: u64) -> Outcome {
     Outcome { verdict: verdict.map(|verdict| (case.truth, verdict)).map_err(|error| error.to_string()), seconds }
 }
 
-/// The outcomes of `counts` records of `cells`, cell by cell in the order of their numbers; `done` is called after each.
+/// The outcomes of `counts` records of `cells`, cell by cell in the order of their numbers; `done` is called after
+/// each.
 pub(crate) fn study(cells: &[Cell], counts: &[u64], threads: usize, done: &(dyn Fn() + Sync)) -> Vec<Vec<Outcome>> {
     let numbers = counts.iter().enumerate().flat_map(|(cell, count)| (0..*count).map(move |record| (cell, record)));
     let jobs: Vec<(usize, u64)> = numbers.collect();

@@ -75,15 +75,16 @@ fn is_far(stated: f64, truth: f64, interval: Option<(f64, f64)>) -> bool {
     (stated - truth).abs() > (FAR * truth).max(reach)
 }
 
-/// Whether what the preferred law says of μ is far from the truth both at rest and at the peak speed. A law of one level says the
-/// same of both, and is right if it hits either.
+/// Whether what the preferred law says of μ is far from the truth both at rest and at the peak speed. A law of one
+/// level says the same of both, and is right if it hits either.
 fn is_wrong(truth: &Truth, verdict: &Verdict) -> bool {
     let interval = verdict.mu.and_then(|mu| mu.interval);
     let (stated, truth) = (verdict.levels, truth.levels);
     is_far(stated.rest, truth.rest, interval) && is_far(stated.peak, truth.peak, interval)
 }
 
-/// The levels that the stated μ may mean: at rest, at the peak speed and, if the preferred law is not of one level, beyond.
+/// The levels that the stated μ may mean: at rest, at the peak speed and, if the preferred law is not of one level,
+/// beyond.
 fn meant<'a>(truth: &'a Truth, verdict: &Verdict) -> impl Iterator<Item = f64> + Clone + use<'a> {
     let Levels { rest, peak, beyond } = truth.levels;
     [rest, peak].into_iter().chain((!verdict.levels.is_constant()).then_some(beyond))

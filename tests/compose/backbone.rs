@@ -70,7 +70,8 @@ fn points_lie_on_the_closed_forms() {
                 "quadratic" => 8.0 * 0.5 * velocity(&backbone, i) / (3.0 * PI),
                 _ => 0.4,
             };
-            // Below a tenth of the release Coulomb friction shifts the middle of each half swing by more than a percent of it.
+            // Below a tenth of the release Coulomb friction shifts the middle of each half swing by more than a percent
+            // of it.
             let off_frequency = largest_error(&backbone, |i| points[i].frequency.value, frequency);
             let large = |i: usize| name != "coulomb" || points[i].amplitude.value > 2e-3;
             let off =
@@ -120,7 +121,8 @@ fn steady_lines_are_told_from_modes() {
     assert!(backbone.points().iter().all(|point| (point.frequency.value - 20.0).abs() < 1e-3));
 }
 
-/// The damping that is listed is that of the mode: not of the noise that is left of it, nor of a mode too near to be told from it.
+/// The damping that is listed is that of the mode: not of the noise that is left of it, nor of a mode too near to be
+/// told from it.
 #[test]
 fn listed_damping_is_that_of_the_mode() {
     let mut random = ChaCha8Rng::seed_from_u64(8);
@@ -144,7 +146,8 @@ fn listed_damping_is_that_of_the_mode() {
     assert!(both.iter().all(|mode| mode.damping.is_none()), "{both:?}");
 }
 
-/// Uncertainties of amplitude, frequency and damping over draws of white noise, of a long record, of a short one and of half cycles.
+/// Uncertainties of amplitude, frequency and damping over draws of white noise, of a long record, of a short one and of
+/// half cycles.
 #[test]
 fn uncertainties_hold_what_they_say() {
     let clean = decay(machine(), [0.1, 0.2], 1e-2, Quantity::Displacement, 8000);
@@ -180,7 +183,8 @@ fn uncertainties_hold_what_they_say() {
     }
 }
 
-/// A second mode 5 % away, with a tenth of the amplitude: both are listed, and the backbone of each is that of its own decay.
+/// A second mode 5 % away, with a tenth of the amplitude: both are listed, and the backbone of each is that of its own
+/// decay.
 #[test]
 fn close_modes_are_told_apart() {
     let (rate, modes): (f64, [(f64, f64, f64); 2]) = (2000.0, [(20.0, 1.0, 0.12), (21.0, 0.1, 0.2)]);
@@ -240,7 +244,8 @@ fn suggestions_name_what_is_there() {
     }
 }
 
-/// Ends of decays and frequencies that change spread over the spectrum; neither makes a mode. After a stop there is no point.
+/// Ends of decays and frequencies that change spread over the spectrum; neither makes a mode. After a stop there is no
+/// point.
 #[test]
 fn one_mode_is_one() {
     let pendulum = machine().with_restoring(Restoring::sine(1.0).unwrap());
@@ -306,7 +311,8 @@ fn what_is_no_decay_has_no_backbone() {
     }
 }
 
-/// A mode with friction beside another one of a third of its amplitude: alone it gives its friction, together they do not.
+/// A mode with friction beside another one of a third of its amplitude: alone it gives its friction, together they do
+/// not.
 #[test]
 fn an_isolated_mode_gives_its_friction() {
     let main = decay(machine(), [0.1, 0.3], 1e-2, Quantity::Displacement, 6000);
@@ -328,15 +334,16 @@ fn an_isolated_mode_gives_its_friction() {
     assert!(off < 5e-3 && off_together > 10.0 * off, "{off} alone, {off_together} with the other mode");
 }
 
-/// The pendulum's record shows the sine, k₃ = −1/6 and k₅ = 1/120; what it and the fork suggest is what their fits prefer.
+/// The pendulum's record shows the sine, k₃ = −1/6 and k₅ = 1/120; what it and the fork suggest is what their fits
+/// prefer.
 #[test]
 fn real_records_show_their_springs_and_friction() {
     let pendulum = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/single_pendulum_55s_1khz.csv");
     let file = open(pendulum).unwrap();
     let rate = file.channel("omega_rad_per_s").unwrap().record.with_quantity(Quantity::Velocity).with_unit("rad/s");
     // Each multiple moves with the frequency, by a sixth, and is listed once.
-    // The frequency sweeps over a sixth, and the damping is still that between 0.053 and 0.057 1/s of the backbone's first half.
-    // The third multiple goes with the third power of the amplitude, and so loses three times as much.
+    // The frequency sweeps over a sixth, and the damping is still that between 0.053 and 0.057 1/s of the backbone's
+    // first half. The third multiple goes with the third power of the amplitude, and so loses three times as much.
     let modes = decay_modes(&rate);
     let [damping, of_third] = [0, 1].map(|place| modes[place].damping.unwrap());
     assert!((0.05..0.06).contains(&damping) && modes[1].multiple == Some(3), "{modes:?}");

@@ -16,8 +16,8 @@ fn record(name: &str) -> ForceRecord {
     channel(channel(record, "band_1"), "band_2")
 }
 
-/// By a law of the motion alone a sixth of the force is left; the bands leave a fourteenth, and say the brake under less tension, to
-/// which nothing is fitted, as well.
+/// By a law of the motion alone a sixth of the force is left; the bands leave a fourteenth, and say the brake under
+/// less tension, to which nothing is fitted, as well.
 #[test]
 fn one_law_says_both_tensions() {
     let (tight, slack) = (record("damper_1Hz_36lb_1amplitude.csv"), record("damper_1Hz_30lb_1amplitude.csv"));

@@ -12,7 +12,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// The default search on 3 s of a free vibration from 22 mm under 14 N with a contact of `values`, sampled at 1 kHz with `noise` (m/s).
+/// The default search on 3 s of a free vibration from 22 mm under 14 N with a contact of `values`, sampled at 1 kHz
+/// with `noise` (m/s).
 fn searched<F: LawFamily>(values: &[f64], noise: f64) -> Comparison {
     let oscillator = Oscillator::new(10.391, 1982.0).unwrap();
     let scenario = Scenario::new(oscillator, F::at(values).unwrap(), 14.0).unwrap().starting_at(0.022, 0.0).unwrap();
@@ -69,7 +70,8 @@ fn laws_with_a_state_are_named() {
     assert_named::<BoucWen>(&[250.0, 1.0, 600.0, 400.0, 1.0]);
 }
 
-/// A viscous part beside Coulomb friction is no rival where it would move nothing, and one where it may take a part of the friction.
+/// A viscous part beside Coulomb friction is no rival where it would move nothing, and one where it may take a part of
+/// the friction.
 #[test]
 fn damping_that_may_hide_leaves_the_record_undecided() {
     let told = searched::<Coulomb>(&[0.25], 1e-3);

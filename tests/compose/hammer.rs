@@ -75,7 +75,8 @@ fn resonances_and_coherence() {
     }
 }
 
-/// The uncertainty of two blows covers the third where it should: in about half of the lines within the median of F(2, 2).
+/// The uncertainty of two blows covers the third where it should: in about half of the lines within the median of F(2,
+/// 2).
 #[test]
 fn uncertainty_of_the_response() {
     let blows = blows();

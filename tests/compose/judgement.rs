@@ -216,7 +216,8 @@ fn a_law_that_follows_a_drift_is_not_decided_for() {
     }
 }
 
-/// The thesis' machine released at 22 mm: displacement, with a noise of 5 µm and a wave of 50 µm from end to end as drift.
+/// The thesis' machine released at 22 mm: displacement, with a noise of 5 µm and a wave of 50 µm from end to end as
+/// drift.
 fn drifting(seed: u64) -> Record {
     let oscillator = Oscillator::new(10.391, 1982.0).unwrap().with_damping(Damping::linear(0.275).unwrap());
     let scenario = Scenario::new(oscillator, Coulomb::new(0.25).unwrap(), 14.0).unwrap().starting_at(22e-3, 0.0);

@@ -88,7 +88,8 @@ impl<D: Scalar, const KNOWN: bool> SlidingLaw<D> for InMillimetres<D, KNOWN> {
     }
 }
 
-/// The unit of a parameter says where its fit begins and what it scales with: a thousandth of the decay in s/m, and all else the same.
+/// The unit of a parameter says where its fit begins and what it scales with: a thousandth of the decay in s/m, and all
+/// else the same.
 #[test]
 fn a_parameter_in_another_unit_is_the_same() {
     let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), Berger::new(0.2, 0.15, 10.0).unwrap(), 1.0);

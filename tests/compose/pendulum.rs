@@ -65,7 +65,8 @@ fn each_model_ends_where_independent_fits_do() {
     close(value("berger + quadratic", "quadratic_damping_per_mass"), 0.00467, "quadratic damping (1/rad)");
 }
 
-/// A fit that begins with the whole record creeps to the same values in a thousand steps: its period is off by a little at each amplitude.
+/// A fit that begins with the whole record creeps to the same values in a thousand steps: its period is off by a little
+/// at each amplitude.
 #[test]
 fn a_fit_grows_from_the_beginning_of_the_record() {
     let decay = Experiment::ring_down(&pendulum(), &Preparation::default()).unwrap();

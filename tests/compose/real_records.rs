@@ -55,8 +55,8 @@ fn bicycle_fork() {
     assert!(comparison.is_decided());
 
     // The residuals are correlated over hundreds of samples: their number is no number of witnesses, for the
-    // uncertainties no more than for the preference. They are largest at the frequency of the fork itself, where they look
-    // like damping.
+    // uncertainties no more than for the preference. They are largest at the frequency of the fork itself, where they
+    // look like damping.
     let damping = both.fit().estimate("damping_per_mass").unwrap().standard_uncertainty().unwrap();
     let widened = both.finding("damping_per_mass").unwrap().uncertainty().unwrap();
     assert!((5.0..25.0).contains(&(widened / damping)), "u(c/m) = {widened} 1/s, {damping} 1/s if independent");

@@ -19,8 +19,8 @@ fn roll() -> Experiment {
     Experiment::ring_down(&record, &Preparation::default().from(30.0).to(194.0)).unwrap()
 }
 
-/// Every law on a linear spring leaves 1.04e-3 rad and more of it. The stiffnesses per mass of a fit made elsewhere are −2.95 1/(rad² s²)
-/// and 581 1/(rad⁴ s²), with residuals of 2.85e-4 rad.
+/// Every law on a linear spring leaves 1.04e-3 rad and more of it. The stiffnesses per mass of a fit made elsewhere are
+/// −2.95 1/(rad² s²) and 581 1/(rad⁴ s²), with residuals of 2.85e-4 rad.
 #[test]
 fn the_spring_of_a_ship_softens_and_hardens() {
     let names = ["coulomb_viscous+quadratic", "coulomb_viscous+quadratic+cubic spring+quintic spring"];

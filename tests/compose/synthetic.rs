@@ -83,8 +83,8 @@ fn dry_friction_is_preferred_and_white_residuals_raise_no_alarm() {
     assert!(viscous.warnings().iter().any(structured), "{viscous}");
 }
 
-/// Displacements that stop off their centre, after two, four and six half swings: the offset, which is where the spring is
-/// free of force, is known from nowhere else, and a stop one swing off shows as a jump that no gradient leads over.
+/// Displacements that stop off their centre, after two, four and six half swings: the offset, which is where the spring
+/// is free of force, is known from nowhere else, and a stop one swing off shows as a jump that no gradient leads over.
 #[test]
 fn displacements_that_stop_off_centre() {
     let machine = machine().with_damping(Known::exact(DAMPING).unwrap()).unwrap();
@@ -105,8 +105,8 @@ fn displacements_that_stop_off_centre() {
     }
 }
 
-/// Cases found at random in which a fit of the whole displacement from its first guess ends with the wrong number of half
-/// swings: samples per period, periods, damping ratio, friction as a share of the stiffness force, phase.
+/// Cases found at random in which a fit of the whole displacement from its first guess ends with the wrong number of
+/// half swings: samples per period, periods, damping ratio, friction as a share of the stiffness force, phase.
 const TRAPS: [[f64; 5]; 5] = [
     [34.6, 12.5, 0.0549, 0.0412, 3.858],
     [195.9, 19.3, 0.00676, 0.0791, 1.700],

@@ -67,7 +67,8 @@ fn refits_have_the_uncertainties_of_the_reference() {
         let run = MonteCarlo::new(&inputs(row), trials).unwrap().with_seed(1);
         let sample = run.run(|x| refit.estimates(x)).unwrap();
         let u = sample.standard_uncertainty(0).unwrap();
-        // The standard error of a standard deviation is u/√(2 M); five of them, and half a percent for what is not linear.
+        // The standard error of a standard deviation is u/√(2 M); five of them, and half a percent for what is not
+        // linear.
         let tolerance = exact * (5.0 / (2.0 * trials as f64).sqrt() + 0.005);
         assert!((u - exact).abs() < tolerance, "row {row}: {u:e} instead of {exact:e}");
         assert!((sample.estimate(0).unwrap() - 0.15).abs() < 5.0 * exact / (trials as f64).sqrt() + 1e-6);
@@ -131,8 +132,8 @@ fn what_a_problem_cannot_have_is_said() {
     assert!(MachineProblem::<Coulomb>::new(&force, &complete).is_err());
 }
 
-/// Refits of the Berger law: foreseen or not they end at the same place, and a coarser motion moves them by far less than
-/// the machine's uncertainty does.
+/// Refits of the Berger law: foreseen or not they end at the same place, and a coarser motion moves them by far less
+/// than the machine's uncertainty does.
 #[test]
 fn berger_refits_are_the_same_foreseen_and_coarser() {
     let law = [("coefficient", 0.228), ("excess_coefficient", 0.261), ("decay", 2.852)];

@@ -16,8 +16,8 @@ fn identity(name: &str) -> Value {
     entries.iter().find(|entry| entry["name"] == name).unwrap_or_else(|| panic!("no {name}")).clone()
 }
 
-/// Energy (J) that friction takes from one cycle of a harmonic motion of velocity amplitude `peak` (m/s): Simpson's rule on
-/// a quarter of the cycle, within which the integrand is smooth.
+/// Energy (J) that friction takes from one cycle of a harmonic motion of velocity amplitude `peak` (m/s): Simpson's
+/// rule on a quarter of the cycle, within which the integrand is smooth.
 fn energy_per_cycle(law: &impl SlidingLaw<f64>, load: f64, peak: f64, angular: f64) -> f64 {
     const STEPS: usize = 4000;
     let power = |i: usize| {
@@ -89,8 +89,8 @@ fn a_ramp_starts_a_motion_gently() {
     for motion in [automatic, RungeKutta::default().run(&block, &sampling).unwrap()] {
         assert!((motion.events()[1].time - 0.1).abs() < 1e-15, "{}", motion.engine());
         let velocity = motion.velocity().values()[1];
-        // The time since breakaway is a difference of times near 0.1 s, rounded to 1e-17 s of 0.01 s, squared; and 1e-6 N/m
-        // of spring has its turn only after minutes.
+        // The time since breakaway is a difference of times near 0.1 s, rounded to 1e-17 s of 0.01 s, squared; and 1e-6
+        // N/m of spring has its turn only after minutes.
         assert!((velocity / number(&entry["value"]) - 1.0).abs() < 1e-9, "{}: {velocity} m/s", motion.engine());
     }
 }

@@ -129,7 +129,8 @@ fn derivative_in_the_exponent_is_continuous() {
     for speed in [0.0, 1e-4, 0.01, 0.02, 0.05, 0.3] {
         for exponent in [1.0, 2.0] {
             let (at, below) = (slope(exponent, speed), slope(exponent - 1e-7, speed));
-            // The second derivative is a few times the drop of 1.75; over 1e-7 it changes the slope by up to 1e-5 of it.
+            // The second derivative is a few times the drop of 1.75; over 1e-7 it changes the slope by up to 1e-5 of
+            // it.
             assert!((at - below).abs() < 1e-5, "{at} against {below} at {speed} m/s, δ = {exponent}");
         }
     }

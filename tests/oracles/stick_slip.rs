@@ -160,7 +160,8 @@ fn makkar_dixon_with_a_shift_sticks() {
 #[test]
 fn makkar_dixon_as_printed_creeps() {
     let mut case = Case::read("makkar_dixon_raw_free_decay");
-    // The file allows its last reversals, of motions below 1e-12 m, this much; the first are held to the others' 1e-11 s.
+    // The file allows its last reversals, of motions below 1e-12 m, this much; the first are held to the others' 1e-11
+    // s.
     case.tolerance[0] = number(&case.file["tolerance"]["last_events_abs_t_s"]);
     let scenario = case.scenario(makkar_dixon(&case), case.parameter("N"));
     case.check(&RungeKutta::default(), &scenario);
@@ -249,8 +250,8 @@ fn elements_that_yield() {
     case.check(&Exact, &scenario);
 }
 
-/// Every cell of the table for which a symmetric motion without stops exists: from its start, the first zero velocity comes
-/// half a period later at the mirror image.
+/// Every cell of the table for which a symmetric motion without stops exists: from its start, the first zero velocity
+/// comes half a period later at the mirror image.
 #[test]
 fn den_hartog() {
     let file = read("den_hartog_non_stop");

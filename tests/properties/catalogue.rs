@@ -1,4 +1,5 @@
-//! Every family of the catalogue, by parameters drawn from their units and roles: a law that is added is tested here as it is.
+//! Every family of the catalogue, by parameters drawn from their units and roles: a law that is added is tested here as
+//! it is.
 
 use fmm_friction::{FamilyVisitor, LawFamily, LawParameter, Role, catalogue};
 use fmm_model::{Dual, Oscillator, Scalar, Unit};
@@ -14,7 +15,8 @@ const MASS: f64 = 10.0;
 const STIFFNESS: f64 = 2000.0;
 const LOAD: f64 = 15.0;
 
-/// A value of the size that `parameter` typically has in the motion; coefficients that lie above others are drawn above.
+/// A value of the size that `parameter` typically has in the motion; coefficients that lie above others are drawn
+/// above.
 fn draw(parameter: &LawParameter, exponent: f64, random: &mut ChaCha8Rng) -> f64 {
     let unit = Unit::of(parameter.parameter().unit()).dimension(|_| Some(exponent)).expect("a unit that is known");
     let is_force = !matches!(parameter.role(), Role::Shape);

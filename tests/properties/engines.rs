@@ -6,7 +6,8 @@ use fmm_sim::{Engine, EventKind, Exact, Excitation, RungeKutta, Sampling, Scenar
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Inputs of a driven machine: m, k, c, μ_d, μ_s, x₀, v₀, a wave (amplitude, Ω, φ), a blow (peak, duration), a ramp and a belt.
+/// Inputs of a driven machine: m, k, c, μ_d, μ_s, x₀, v₀, a wave (amplitude, Ω, φ), a blow (peak, duration), a ramp and
+/// a belt.
 const INPUTS: usize = 14;
 const NAMES: [&str; INPUTS] =
     ["m", "k", "c", "mu_d", "mu_s", "x0", "v0", "amplitude", "angular", "phase", "peak", "duration", "rate", "belt"];
@@ -91,8 +92,8 @@ fn both_engines_find_the_same_motion() {
     assert!(events > 6000 && stops > 1000 && narrow < 20, "{events} events, {stops} stops, {narrow} narrow");
 }
 
-/// Derivatives in all fourteen inputs, event times included, against central differences of the same engine: where the events
-/// are the same on both sides, h² of the third derivative and 1e-13/h of rounding leave 1e-5 of the largest.
+/// Derivatives in all fourteen inputs, event times included, against central differences of the same engine: where the
+/// events are the same on both sides, h² of the third derivative and 1e-13/h of rounding leave 1e-5 of the largest.
 fn derivatives_agree<E>(engine: &E, seed: u64, count: usize)
 where
     E: Engine<f64, CoulombStatic<f64>> + Engine<Dual<INPUTS>, CoulombStatic<Dual<INPUTS>>>,
@@ -174,7 +175,8 @@ fn mirrored_forces_give_the_mirrored_motion() {
     }
 }
 
-/// Sampling four times as finely leaves what was sampled before as it was, within 1e-13 of metres and metres per second.
+/// Sampling four times as finely leaves what was sampled before as it was, within 1e-13 of metres and metres per
+/// second.
 #[test]
 fn more_samples_change_nothing() {
     let mut random = ChaCha8Rng::seed_from_u64(315);
@@ -195,8 +197,8 @@ fn more_samples_change_nothing() {
     }
 }
 
-/// A peak of the load 1e-9 N above the static level breaks the contact away, one 1e-9 N below does not, however short it is and
-/// wherever the samples lie.
+/// A peak of the load 1e-9 N above the static level breaks the contact away, one 1e-9 N below does not, however short
+/// it is and wherever the samples lie.
 #[test]
 fn no_peak_of_the_load_is_missed() {
     let machine = Oscillator::new(10.391, 1982.0).unwrap().with_damping(Damping::linear(0.275).unwrap());

@@ -62,8 +62,8 @@ fn liveliness(case: &Case) -> f64 {
     phase * (case.size() / first.min(case.size())) + critical
 }
 
-/// Differences take steps of 1/50 of the scale over the liveliness Q. With derivatives of the fifth order of size Q⁵ the
-/// stencils are then (1/50)⁴/5 Q off at worst.
+/// Differences take steps of 1/50 of the scale over the liveliness Q. With derivatives of the fifth order of size Q⁵
+/// the stencils are then (1/50)⁴/5 Q off at worst.
 const STEP: f64 = 0.02;
 
 /// Compares one input's column with differences; false if a difference would reach over a change of the number of
@@ -156,8 +156,8 @@ fn derivatives_are_those_of_the_motion() {
     assert!(checked.iter().sum::<usize>() >= 7 * 1000, "{checked:?}");
 }
 
-/// At rest outside the stick zone the derivative in the initial velocity is that of a push towards the centre: the limit
-/// from the side on which no reversal is added.
+/// At rest outside the stick zone the derivative in the initial velocity is that of a push towards the centre: the
+/// limit from the side on which no reversal is added.
 #[test]
 fn a_release_from_rest_has_the_derivative_of_a_slow_start() {
     let mut checked = 0;

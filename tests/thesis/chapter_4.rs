@@ -2,8 +2,8 @@
 
 use super::{assert_complete, chapter};
 
-/// Nothing in the chapter is random; the criteria are the digits that are printed or, for the two stresses and deflections
-/// that do not agree with each other, the disagreement.
+/// Nothing in the chapter is random; the criteria are the digits that are printed or, for the two stresses and
+/// deflections that do not agree with each other, the disagreement.
 #[test]
 fn all_targets_pass() {
     let ids = ["A1", "A2", "A3", "A4", "A5", "A6", "A7"];

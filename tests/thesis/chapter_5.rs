@@ -55,7 +55,8 @@ fn mass_stiffness_and_damping_are_not_separable() {
     near(modal(), "C5", "rank of the Jacobian in m, k, c, x₀", 3.0, 0.0);
     at_most(modal(), "C5", "smallest over largest singular value", 1e-7);
     at_most(modal(), "C5", "change of the residuals if m, k, c are halved or doubled", 0.0);
-    // With one of them known the others come back: to the tolerance of the search, and to the steps of the Euler motion.
+    // With one of them known the others come back: to the tolerance of the search, and to the steps of the Euler
+    // motion.
     at_most(modal(), "C4", "error of m with k held, exact motion", 1e-6);
     at_most(modal(), "C4", "error of c with k held, exact motion", 1e-6);
     at_most(modal(), "C4", "error of m with k held, thesis' Euler motion", 3e-5);

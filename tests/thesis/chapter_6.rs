@@ -13,7 +13,8 @@ fn targets() {
     assert!((force("positive") - 1.75).abs() < 1e-4, "{} N", force("positive"));
     assert!((force("negative") + 1.75).abs() < 1e-4, "{} N", force("negative"));
 
-    // 200 records of 1000 samples tell a standard deviation to well below 1 %; m σ/(√2 h) is 7.35 N, the reference 7.40 N.
+    // 200 records of 1000 samples tell a standard deviation to well below 1 %; m σ/(√2 h) is 7.35 N, the reference 7.40
+    // N.
     let raw = ours(chapter, "C12", "std of F of a sample, not smoothed, 1 mm/s");
     assert!((raw / 7.35 - 1.0).abs() < 0.02, "{raw} N");
 

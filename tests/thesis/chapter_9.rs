@@ -15,7 +15,8 @@ fn targets() {
     assert!((slope / 0.4366 - 1.0).abs() < 0.03, "{slope} N s²/m²");
     let drift = ours(chapter, "F3", "change of f₀ from rest to 22 mm, clamps that slip");
     assert!((drift + 0.109).abs() < 0.02, "{drift} %");
-    // More loads and larger displacements: at least the factor of √3 that tests of 22 mm under one load would give, and no wonder.
+    // More loads and larger displacements: at least the factor of √3 that tests of 22 mm under one load would give, and
+    // no wonder.
     let gain = ours(chapter, "F4", "u(μ₀) of the best six tests over that of Table 5's six");
     assert!((0.02..0.58).contains(&gain), "{gain}");
 }

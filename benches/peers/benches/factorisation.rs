@@ -1,7 +1,7 @@
 //! The factorisation of the least-squares solver against those of nalgebra and faer, in one run.
 //!
-//! `cargo bench --manifest-path benches/peers/Cargo.toml --bench factorisation` prints criterion's estimates and then the ratios
-//! of their medians.
+//! `cargo bench --manifest-path benches/peers/Cargo.toml --bench factorisation` prints criterion's estimates and then
+//! the ratios of their medians.
 
 #[path = "../../common/ratio.rs"]
 mod ratio;

@@ -1,7 +1,7 @@
 //! The Berger law's ring-down by the thesis' Euler loop, by the Runge-Kutta engine and by diffsol, in one run.
 //!
-//! `cargo bench --manifest-path benches/peers/Cargo.toml` prints criterion's estimates, then error and ratio of each. At matched
-//! accuracy means: of the tolerances tried, the fastest whose greatest error is at most 1e-10 m/s.
+//! `cargo bench --manifest-path benches/peers/Cargo.toml` prints criterion's estimates, then error and ratio of each.
+//! At matched accuracy means: of the tolerances tried, the fastest whose greatest error is at most 1e-10 m/s.
 
 #[path = "../../common/ratio.rs"]
 #[expect(dead_code, reason = "other benches print plain ratios")]

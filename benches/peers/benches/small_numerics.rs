@@ -1,7 +1,7 @@
 //! Small pieces of general numerics against the crates that offer the same, in one run.
 //!
-//! `cargo bench --manifest-path benches/peers/Cargo.toml --bench small_numerics` prints criterion's estimates and then the ratios of
-//! their medians: variates of rand_distr, decompositions of nalgebra.
+//! `cargo bench --manifest-path benches/peers/Cargo.toml --bench small_numerics` prints criterion's estimates and then
+//! the ratios of their medians: variates of rand_distr, decompositions of nalgebra.
 
 #[path = "../../common/ratio.rs"]
 mod ratio;

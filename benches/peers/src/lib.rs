@@ -5,8 +5,8 @@ use fmm_friction::Berger;
 use fmm_model::{Damping, Oscillator};
 use fmm_sim::{Channels, Sampling, Scenario};
 
-/// Mass (kg), stiffness (N/m), linear (N s/m) and quadratic damping (N s²/m²), normal load (N) and the three parameters of
-/// the Berger law of the thesis' Table 5, released from 16 mm.
+/// Mass (kg), stiffness (N/m), linear (N s/m) and quadratic damping (N s²/m²), normal load (N) and the three parameters
+/// of the Berger law of the thesis' Table 5, released from 16 mm.
 pub const BERGER: [f64; 8] = [10.391, 1982.0, 0.2005, 0.437, 14.0, 0.228, 0.261, 2.852];
 
 /// Where it is released (m).

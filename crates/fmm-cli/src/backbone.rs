@@ -1,7 +1,7 @@
 //! A first look at a decay: `fmm backbone FILE`.
 //!
-//! Lists the modes of a record, takes one of them, and gives out how its frequency and damping go with the amplitude, which terms of
-//! damping and spring would explain that, and the command that fits them.
+//! Lists the modes of a record, takes one of them, and gives out how its frequency and damping go with the amplitude,
+//! which terms of damping and spring would explain that, and the command that fits them.
 
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -158,7 +158,8 @@ fn document(decay: &Experiment, modes: &[DecayMode], backbone: &Backbone, sugges
     })
 }
 
-/// Spectrum, record with its envelope, spectrogram if there are several modes, frequency and damping against the amplitude with what is suggested.
+/// Spectrum, record with its envelope, spectrogram if there are several modes, frequency and damping against the
+/// amplitude with what is suggested.
 pub(crate) fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggestion) -> Vec<Panel> {
     let count = record.len();
     let spectrum = Spectrum::of(record.values(), &blackman_harris(count));

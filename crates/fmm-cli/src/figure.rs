@@ -221,7 +221,8 @@ pub fn drawn(panels: &[Panel]) -> String {
     renumbered(&SvgBackend.render_scene(&grid.render()))
 }
 
-/// Panels of a triangle, row below row with one more in each, as SVG; all as high as the first, and without room for a legend.
+/// Panels of a triangle, row below row with one more in each, as SVG; all as high as the first, and without room for a
+/// legend.
 pub fn drawn_corner(rows: &[Vec<Panel>]) -> String {
     let count = rows.len();
     let cells = || rows.iter().flat_map(|row| row.iter().map(Some).chain(std::iter::repeat_n(None, count - row.len())));
@@ -288,8 +289,8 @@ pub fn drawn_histogram(x_label: &str, name: &str, values: &[f64]) -> String {
     renumbered(&SvgBackend.render_scene(&grid.with_cell_size(0.7 * WIDTH, 380.0).render()))
 }
 
-/// The same picture with the names of its clip paths counted within it: `kuva` counts them through a process, so that the same picture
-/// would have other bytes each time.
+/// The same picture with the names of its clip paths counted within it: `kuva` counts them through a process, so that
+/// the same picture would have other bytes each time.
 fn renumbered(svg: &str) -> String {
     const NAME: &str = "kuva-clip-";
     let mut parts = svg.split(NAME);

@@ -1,8 +1,8 @@
 //! Friction out of the record of a vibration: `fmm identify FILE` and `fmm compare FILE`.
 //!
-//! Reads a record of displacement, velocity or acceleration, prepares it, fits it by one law or by several, and gives out what was found,
-//! how sure it is, and what the record could not tell. What a channel measured is told by its unit, or by a word in its name, or by
-//! options; what would be a guess is refused.
+//! Reads a record of displacement, velocity or acceleration, prepares it, fits it by one law or by several, and gives
+//! out what was found, how sure it is, and what the record could not tell. What a channel measured is told by its unit,
+//! or by a word in its name, or by options; what would be a guess is refused.
 
 use std::error::Error;
 use std::ops::ControlFlow;
@@ -29,20 +29,21 @@ pub(crate) struct Arguments {
     given: Given,
     #[command(flatten)]
     question: Question,
-    /// The channel with the measured force (N) that drives the machine; without it and --base, the machine vibrates freely. Without
-    /// mass and stiffness, both are found
+    /// The channel with the measured force (N) that drives the machine; without it and --base, the machine vibrates
+    /// freely. Without mass and stiffness, both are found
     #[arg(long, value_name = "NAME|INDEX", conflicts_with = "base")]
     force: Option<Column>,
     /// The channel with the measured motion of the base that drives the machine, best its acceleration
     #[arg(long, value_name = "NAME|INDEX")]
     base: Option<Column>,
-    /// Draw from the posterior of the preferred law: its intervals beside the others, and records that it predicts beside the measured one; in
-    /// builds with the feature `posterior`
+    /// Draw from the posterior of the preferred law: its intervals beside the others, and records that it predicts
+    /// beside the measured one; in builds with the feature `posterior`
     #[arg(long)]
     posterior: bool,
     #[command(flatten)]
     output: Output,
-    /// Write a page with everything into this file: record, fit, residuals, findings, laws, warnings, and how it was made
+    /// Write a page with everything into this file: record, fit, residuals, findings, laws, warnings, and how it was
+    /// made
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
 }

@@ -1,7 +1,7 @@
 //! The program `fmm`: friction out of records, from a terminal.
 //!
-//! A thin face of the other crates: it reads arguments and files, shows how far it is, and writes text, JSON, figures and pages; all
-//! mathematics is theirs. `fmm --help` lists the commands.
+//! A thin face of the other crates: it reads arguments and files, shows how far it is, and writes text, JSON, figures
+//! and pages; all mathematics is theirs. `fmm --help` lists the commands.
 //!
 //! [`run`] is the program as a function, and [`figure`] the one place that draws.
 //!

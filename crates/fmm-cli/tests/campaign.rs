@@ -1,6 +1,7 @@
 //! The program on a folder of ring-downs, killed and resumed, and campaigns whose truth is known.
 //!
-//! `FMM_CAMPAIGN_FILES=3000 cargo test --release -p fmm-cli --test campaign -- --nocapture` makes as many files and says how long they take.
+//! `FMM_CAMPAIGN_FILES=3000 cargo test --release -p fmm-cli --test campaign -- --nocapture` makes as many files and
+//! says how long they take.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
@@ -36,8 +37,8 @@ impl Draw {
     }
 }
 
-/// Velocity (m/s) of a release at 20 mm, natural frequency in Hz, friction per mass in m/s², damping per mass in 1/s: half swing by half
-/// swing a damped sine about the place that friction shifts.
+/// Velocity (m/s) of a release at 20 mm, natural frequency in Hz, friction per mass in m/s², damping per mass in 1/s:
+/// half swing by half swing a damped sine about the place that friction shifts.
 fn velocity(rate: f64, samples: usize, frequency: f64, friction: f64, damping: f64) -> Vec<f64> {
     let (natural, decay) = (TAU * frequency, 0.5 * damping);
     let damped = (natural * natural - decay * decay).sqrt();
@@ -57,7 +58,8 @@ fn velocity(rate: f64, samples: usize, frequency: f64, friction: f64, damping: f
     values
 }
 
-/// Ring-downs of several rates, units, separators and offsets, and among each fifty an empty file, one of words and one of any bytes.
+/// Ring-downs of several rates, units, separators and offsets, and among each fifty an empty file, one of words and one
+/// of any bytes.
 fn write_files(folder: &Path, count: usize) {
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(1));
     for index in 0..count {
@@ -133,8 +135,8 @@ fn killed_and_resumed() {
     assert_eq!((csv.lines().count(), found), (count + 1, count - broken));
 }
 
-/// A list in TOML with a record sheet: parts that are put together with a joint fit give the bytes of one run, and those of another sheet
-/// need no record again.
+/// A list in TOML with a record sheet: parts that are put together with a joint fit give the bytes of one run, and
+/// those of another sheet need no record again.
 #[test]
 fn a_list_is_split_and_joined() {
     let home = folder("list");
@@ -204,8 +206,9 @@ fn a_shell_is_told() {
     assert_eq!(code(&["merge", data]).0, Some(1));
 }
 
-/// Thirty repeats at three loads, with a coefficient that differs by 1 % from run to run: the interval of the campaign holds, that of the
-/// mean that takes the runs for alike does not, and friction is found in proportion to the load as often as it should be.
+/// Thirty repeats at three loads, with a coefficient that differs by 1 % from run to run: the interval of the campaign
+/// holds, that of the mean that takes the runs for alike does not, and friction is found in proportion to the load as
+/// often as it should be.
 #[test]
 fn intervals_of_campaigns_hold() {
     const CAMPAIGNS: u64 = 300;
@@ -248,7 +251,8 @@ fn intervals_of_campaigns_hold() {
     println!(
         "{held} of the intervals hold, {naive} of those of the weighted mean; {proportional} are in proportion to the load"
     );
-    // Of 300 draws with 95 %, three standard deviations are 4 %; the line takes no spread for less than the uncertainties say.
+    // Of 300 draws with 95 %, three standard deviations are 4 %; the line takes no spread for less than the
+    // uncertainties say.
     assert!((0.92..0.98).contains(&held) && naive < 0.8, "{held}, {naive}");
     assert!((0.91..0.99).contains(&proportional), "{proportional}");
 }

@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Path of a table in which each column with this name has its values divided by the size of its unit: time (s), position (m), velocity
-/// (m/s), and the force (N) of 3 N of friction and a spring of 200 N/m.
+/// Path of a table in which each column with this name has its values divided by the size of its unit: time (s),
+/// position (m), velocity (m/s), and the force (N) of 3 N of friction and a spring of 200 N/m.
 fn table(name: &str, columns: [(&str, f64); 4]) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("force");
     std::fs::create_dir_all(&folder).unwrap();

@@ -87,13 +87,14 @@
 //!
 //! # Start values, losses, bounds
 //!
-//! * **Start values** must lie within the bounds and have finite residuals. Where the sum of squares has several minima,
-//!   give [`MultiStart`] bounds or a [reach](MultiStart::with_reach) that mean something.
-//! * **Loss**: squares unless there are outliers. [`Loss::SoftL1`] and [`Loss::Huber`] keep problems with one minimum as
-//!   they are; [`Loss::Cauchy`], [`Loss::Arctan`] and [`Loss::Tukey`] forget outliers and make further minima. A model that
-//!   misses something has no outliers: find what it misses.
-//! * **Bounds** are for what cannot be, such as a negative friction, and not for what is unlikely. A value on its bound has
-//!   no uncertainty, and the others are those for the bound itself; [`Fit::relaxed_covariance`] has the larger ones.
+//! * **Start values** must lie within the bounds and have finite residuals. Where the sum of squares has several
+//!   minima, give [`MultiStart`] bounds or a [reach](MultiStart::with_reach) that mean something.
+//! * **Loss**: squares unless there are outliers. [`Loss::SoftL1`] and [`Loss::Huber`] keep problems with one minimum
+//!   as they are; [`Loss::Cauchy`], [`Loss::Arctan`] and [`Loss::Tukey`] forget outliers and make further minima. A
+//!   model that misses something has no outliers: find what it misses.
+//! * **Bounds** are for what cannot be, such as a negative friction, and not for what is unlikely. A value on its bound
+//!   has no uncertainty, and the others are those for the bound itself; [`Fit::relaxed_covariance`] has the larger
+//!   ones.
 //!
 //! # Units and conventions
 //!
@@ -105,20 +106,20 @@
 //! * Bounds are never crossed, in differences neither, and active ones are met exactly.
 //! * A difference whose step crosses a jump of the model is taken to the other side, and a step that rounding hides is
 //!   lengthened.
-//! * How a fit ends is an [`Outcome`] with the best point, errors are for what does not let it begin. A small step where
-//!   the gradient does not vanish is [`Outcome::Stalled`] and no success.
+//! * How a fit ends is an [`Outcome`] with the best point, errors are for what does not let it begin. A small step
+//!   where the gradient does not vanish is [`Outcome::Stalled`] and no success.
 //! * A trial point without finite residuals is no error: the search goes less far, and [`Fit::non_finite`] says what it
 //!   was.
 //! * What is not determined has no uncertainty, but a direction in words.
-//! * The same problem, start and options give the same bits, a time limit aside, a [`MultiStart`] and [`solve_best`] on any
-//!   number of threads as well.
+//! * The same problem, start and options give the same bits, a time limit aside, a [`MultiStart`] and [`solve_best`] on
+//!   any number of threads as well.
 //!
 //! # Cost
 //!
 //! Mostly the evaluations of the problem: some five to ten from a good start, with derivatives. The solver adds a
-//! factorisation each, n (p + 1)(p + 2)/2 products for columns at wide angles and 2 n p² operations for others: 2 µs for
-//! 1500 residuals and three parameters, 55 µs for twelve, on a Xeon at 2.8 GHz. Differences cost p evaluations more each time. A joint fit
-//! costs the sum of its records. [`Minimizer`] and [`Refit`] use their memory again.
+//! factorisation each, n (p + 1)(p + 2)/2 products for columns at wide angles and 2 n p² operations for others: 2 µs
+//! for 1500 residuals and three parameters, 55 µs for twelve, on a Xeon at 2.8 GHz. Differences cost p evaluations more
+//! each time. A joint fit costs the sum of its records. [`Minimizer`] and [`Refit`] use their memory again.
 //!
 //! # Features
 //!
@@ -126,8 +127,8 @@
 //!
 //! * `rayon`: [`MultiStart`] and [`solve_best`] on all threads of the current pool, with the same result.
 //! * `sampler`: the posterior of the parameters by the no-U-turn sampler of the crate nuts-rs, which brings faer along.
-//! * `serde`: [`Minimizer`] and [`BoundedLevenbergMarquardt`] can be stored between two steps, argmin's checkpoints among
-//!   them, and taken up again by `Minimizer::resume`.
+//! * `serde`: [`Minimizer`] and [`BoundedLevenbergMarquardt`] can be stored between two steps, argmin's checkpoints
+//!   among them, and taken up again by `Minimizer::resume`.
 //!
 //! # Neighbours
 //!

@@ -16,8 +16,8 @@ pub enum Channel {
 }
 
 impl Channel {
-    /// Refuses a `record` of another `quantity`, or whose rate differs by more than 1e-6 from `rate` (Hz): rates are often read from
-    /// time stamps of six digits.
+    /// Refuses a `record` of another `quantity`, or whose rate differs by more than 1e-6 from `rate` (Hz): rates are
+    /// often read from time stamps of six digits.
     ///
     /// # Errors
     /// [`FrfError::Mismatch`] in both cases.
@@ -35,8 +35,8 @@ impl Channel {
         Ok(())
     }
 
-    /// Refuses a `force` and a `response` of different numbers of samples, or that do not begin within 1e-3 of an interval of each
-    /// other.
+    /// Refuses a `force` and a `response` of different numbers of samples, or that do not begin within 1e-3 of an
+    /// interval of each other.
     ///
     /// # Errors
     /// [`FrfError::Mismatch`] in both cases.

@@ -17,7 +17,8 @@ pub enum FrfError {
         /// The values, and their fault.
         what: String,
     },
-    /// Channels, records or responses that do not go together: bring them to the same length, rate, start, quantity or form.
+    /// Channels, records or responses that do not go together: bring them to the same length, rate, start, quantity or
+    /// form.
     #[error("{what}")]
     Mismatch {
         /// The two things that do not agree.

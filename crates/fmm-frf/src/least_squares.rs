@@ -60,10 +60,11 @@ fn matrix<const P: usize>(element: impl Fn(usize, usize) -> Option<f64>) -> Opti
     Some(matrix)
 }
 
-/// Minimises the sum of squares of `count` residuals from `start` on; `None` if that does not settle or leaves unknowns undetermined.
+/// Minimises the sum of squares of `count` residuals from `start` on; `None` if that does not settle or leaves unknowns
+/// undetermined.
 ///
-/// `linearise` gives, for unknowns that it finds possible, the rows J of derivatives of a model with data minus model as right
-/// sides, so that their solution is the step of Gauss and Newton.
+/// `linearise` gives, for unknowns that it finds possible, the rows J of derivatives of a model with data minus model
+/// as right sides, so that their solution is the step of Gauss and Newton.
 pub(crate) fn minimise<const P: usize>(
     start: [f64; P],
     count: usize,

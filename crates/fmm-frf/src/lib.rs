@@ -30,15 +30,15 @@
 //!
 //! # Which estimator, which fit
 //!
-//! * **[`Estimator::H1`]** unless there is a reason: after a [`ForceWindow`] the noise is that of the response, which it
-//!   averages out. [`Estimator::H2`] where the force is the noisy channel, such as at resonances of a shaker;
-//!   [`Estimator::Hv`] where both are; [`Estimator::MeanOfRatios`] to repeat the thesis, in a band where every trial has
-//!   force.
+//! * **[`Estimator::H1`]** unless there is a reason: after a [`ForceWindow`] the noise is that of the response, which
+//!   it averages out. [`Estimator::H2`] where the force is the noisy channel, such as at resonances of a shaker;
+//!   [`Estimator::Hv`] where both are; [`Estimator::MeanOfRatios`] to repeat the thesis, in a band where every trial
+//!   has force.
 //! * **[`RationalFit`]** unless there is a reason: complex values, other modes as a background. [`CircleFit`] shows
-//!   whether the mobility is a circle; [`PeakFit`] needs no phases, for an unknown delay. All fit *linear* modes: the damping that
-//!   they find in a response with friction depends on the blow.
-//! * **Windows**: `None` for a motion that stops within the record, as it does with friction. An [`ExponentialWindow`] is for
-//!   linear machines that ring longer: the added damping is subtracted.
+//!   whether the mobility is a circle; [`PeakFit`] needs no phases, for an unknown delay. All fit *linear* modes: the
+//!   damping that they find in a response with friction depends on the blow.
+//! * **Windows**: `None` for a motion that stops within the record, as it does with friction. An [`ExponentialWindow`]
+//!   is for linear machines that ring longer: the added damping is subtracted.
 //! * **Do not average blows of different strength** on a machine with friction: it is another machine each time.
 //!
 //! # Units and conventions
@@ -63,9 +63,9 @@
 //!
 //! # Neighbours
 //!
-//! [`fmm-record`](https://docs.rs/fmm-record) reads the two channels; [`fmm-identify`](https://docs.rs/fmm-identify) fits
-//! friction to the blows themselves, by the complex mobility or in time. The closed forms here are good to about half a
-//! percent and give its start values. There are no features.
+//! [`fmm-record`](https://docs.rs/fmm-record) reads the two channels; [`fmm-identify`](https://docs.rs/fmm-identify)
+//! fits friction to the blows themselves, by the complex mobility or in time. The closed forms here are good to about
+//! half a percent and give its start values. There are no features.
 
 mod average;
 mod channel;

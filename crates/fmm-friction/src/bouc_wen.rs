@@ -25,16 +25,16 @@ law_family! {
     /// | γ | `gamma` | 1/mⁿ | shape of the loop, −β < γ ≤ β |
     /// | n | `exponent` | 1 | sharpness of the bend, ≥ 1 |
     ///
-    /// The state z (m) stays within |z| ≤ (A/(β + γ))^(1/n); sliding, the coefficient tends to κ times that. Scaling A, β
-    /// and γ against κ leaves the force as it is, so a fit holds A = 1. With n = 1, γ = 0 this is
+    /// The state z (m) stays within |z| ≤ (A/(β + γ))^(1/n); sliding, the coefficient tends to κ times that. Scaling A,
+    /// β and γ against κ leaves the force as it is, so a fit holds A = 1. With n = 1, γ = 0 this is
     /// [`Dahl`](crate::Dahl) with i = 1, σ = κ A and μ = κ A/β; for n → ∞ it becomes one element of
     /// [`MaxwellSlip`](crate::MaxwellSlip).
     ///
     /// At z = 0 the rate has, for γ ≠ 0, only n − 1 continuous derivatives over z.
     ///
     /// # References
-    /// Y. K. Wen, "Method for random vibration of hysteretic systems", J. Engineering Mechanics Division ASCE 102 (1976)
-    /// 249.
+    /// Y. K. Wen, "Method for random vibration of hysteretic systems", J. Engineering Mechanics Division ASCE 102
+    /// (1976) 249.
     ///
     /// M. Ismail, F. Ikhouane, J. Rodellar, "The hysteresis Bouc-Wen model, a survey", Arch. Computational Methods in
     /// Engineering 16 (2009) 161, doi 10.1007/s11831-009-9031-8.

@@ -19,8 +19,9 @@ use crate::{BoucWen, LawError, LawFamily, LawParameter, LawVisitor, Role};
 /// | u | `unloading` | 1 | how the loop unloads: on a straight line for 0, with the bend of loading mirrored for 1 (γ = 0) |
 /// | n | `exponent` | 1 | sharpness of the bend, ≥ 1 |
 ///
-/// β and γ change by powers of ten with n where the loop stays as it is, and −β < γ ≤ β is no simple bound: fits by them creep. These
-/// parameters have simple bounds, and a fit by them takes a few steps. Those of u and n, 100 and 20, bound a search; [`BoucWen`] takes any.
+/// β and γ change by powers of ten with n where the loop stays as it is, and −β < γ ≤ β is no simple bound: fits by
+/// them creep. These parameters have simple bounds, and a fit by them takes a few steps. Those of u and n, 100 and 20,
+/// bound a search; [`BoucWen`] takes any.
 ///
 /// ```
 /// use fmm_friction::{BoucWenByLevel, LawFamily};
@@ -31,7 +32,8 @@ use crate::{BoucWen, LawError, LawFamily, LawParameter, LawVisitor, Role};
 /// ```
 ///
 /// # References
-/// The normalised form in M. Ismail, F. Ikhouane, J. Rodellar, doi 10.1007/s11831-009-9031-8, whose σ = β/(β + γ) is (1 + u)/2.
+/// The normalised form in M. Ismail, F. Ikhouane, J. Rodellar, doi 10.1007/s11831-009-9031-8, whose σ = β/(β + γ) is (1
+/// + u)/2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BoucWenByLevel;
 

@@ -67,7 +67,8 @@ impl<D: Scalar> BristleLaw<D> for Dahl<D> {
         Some(self.coefficient)
     }
 
-    /// With r = 1 − sgn(v) σ z/μ the law is dr/ds = −(σ/μ) |r|ⁱ sgn r along the path s, so that |r|¹⁻ⁱ falls in proportion to s.
+    /// With r = 1 − sgn(v) σ z/μ the law is dr/ds = −(σ/μ) |r|ⁱ sgn r along the path s, so that |r|¹⁻ⁱ falls in
+    /// proportion to s.
     fn carry(&self, velocity: D, duration: D, state: &mut [D]) -> bool {
         let one = D::from(1.0);
         let sign = direction(velocity);
@@ -142,8 +143,8 @@ mod tests {
         }
     }
 
-    /// A path in two parts is the whole path, the state follows its rate, and derivatives are those of differences, next to an exponent of
-    /// one as well.
+    /// A path in two parts is the whole path, the state follows its rate, and derivatives are those of differences,
+    /// next to an exponent of one as well.
     #[test]
     fn is_carried_in_closed_form() {
         let end = |values: [f64; 4], duration: f64| {

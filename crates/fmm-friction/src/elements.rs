@@ -6,8 +6,8 @@ use fmm_model::{Bounds, Parameter, Scalar};
 
 use crate::{LawError, LawParameter, Regime, Role};
 
-/// Checks pairs of a stiffness κᵢ (1/m) and a second number, called `name` and `symbol`: all positive and finite, and no
-/// more pairs than a regime can tell apart.
+/// Checks pairs of a stiffness κᵢ (1/m) and a second number, called `name` and `symbol`: all positive and finite, and
+/// no more pairs than a regime can tell apart.
 pub(crate) fn check<D: Scalar>(elements: &[(D, D)], name: &str, symbol: &str) -> Result<(), LawError> {
     if elements.is_empty() || elements.len() > Regime::CAPACITY {
         return Err(LawError::ElementCount { got: elements.len(), most: Regime::CAPACITY });

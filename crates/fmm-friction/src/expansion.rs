@@ -9,8 +9,8 @@ pub(crate) type Terms<D> = [D; Expansion::<f64>::TERMS];
 
 /// Taylor coefficients, in any unit of time, of a [`BristleLaw`](crate::BristleLaw) of one state along a motion.
 ///
-/// [`BristleLaw::expand`](crate::BristleLaw::expand) works out those of one order after the other, as the coefficients of the motion of one
-/// order need those of the law of the order before.
+/// [`BristleLaw::expand`](crate::BristleLaw::expand) works out those of one order after the other, as the coefficients
+/// of the motion of one order need those of the law of the order before.
 ///
 /// ```text
 /// (a b)ₖ = Σⱼ aⱼ bₖ₋ⱼ,     k a₀ (aᵉ)ₖ = Σⱼ (e (k − j) − j) aₖ₋ⱼ (aᵉ)ⱼ (j < k),     k (eᵃ)ₖ = Σⱼ j aⱼ (eᵃ)ₖ₋ⱼ
@@ -74,8 +74,8 @@ pub(crate) fn convolve<D: Scalar>(a: &[D], b: &[D]) -> D {
     (sums[0] + sums[2]) + (sums[1] + sums[3])
 }
 
-/// Whether an exponent is 1 or 2 and a parameter with derivatives all the same: at a base of zero, the coefficients of these exist and
-/// those of their derivatives do not.
+/// Whether an exponent is 1 or 2 and a parameter with derivatives all the same: at a base of zero, the coefficients of
+/// these exist and those of their derivatives do not.
 pub(crate) fn is_whole_with_derivatives<D: Scalar>(exponent: D) -> bool {
     is_whole(exponent) && (0..D::DIRECTIONS).any(|direction| exponent.partial(direction) != 0.0)
 }
@@ -141,8 +141,8 @@ mod tests {
 
     type Number = Dual<2>;
 
-    /// On a motion of which the velocity is a polynomial, the series of the rate is what the law says of velocity and state later on, with
-    /// its derivatives in a level and in an exponent.
+    /// On a motion of which the velocity is a polynomial, the series of the rate is what the law says of velocity and
+    /// state later on, with its derivatives in a level and in an exponent.
     fn check<L: BristleLaw<Number>>(name: &str, law: &L, velocity: [f64; 3], state: f64, time: f64) {
         let mut series = Expansion::new();
         for (term, velocity) in series.velocity.iter_mut().zip(velocity) {

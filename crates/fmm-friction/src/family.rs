@@ -18,8 +18,8 @@ pub enum Role {
     Level,
     /// A coefficient that the law adds to its first [`Level`](Self::Level) at rest, and which vanishes with speed.
     Excess,
-    /// A coefficient that may not lie below the first [`Level`](Self::Level) of the law. A fit takes their difference, which has a
-    /// simple bound.
+    /// A coefficient that may not lie below the first [`Level`](Self::Level) of the law. A fit takes their difference,
+    /// which has a simple bound.
     LevelAbove,
     /// A coefficient per speed: proportional to the load, and inseparable from linear damping of the machine.
     Slope,
@@ -44,9 +44,10 @@ impl LawParameter {
         Self { parameter, role, typical: 1.0 }
     }
 
-    /// The same parameter with a start value for fits, relative to the scales of the motion (1). The scale of a coefficient
-    /// (or of its excess over another) is the Coulomb coefficient with the same losses, that of a speed the largest speed, that of a length the
-    /// amplitude, and that of a pure number 1. The start value is 1 unless it is set.
+    /// The same parameter with a start value for fits, relative to the scales of the motion (1). The scale of a
+    /// coefficient (or of its excess over another) is the Coulomb coefficient with the same losses, that of a speed the
+    /// largest speed, that of a length the amplitude, and that of a pure number 1. The start value is 1 unless it is
+    /// set.
     #[must_use]
     pub const fn typically(mut self, relative: f64) -> Self {
         self.typical = relative;
@@ -131,13 +132,14 @@ pub struct SpecialCase {
 }
 
 impl SpecialCase {
-    /// The law called `law`, whatever values the other parameters have; limits, such as a stiffness without bound, count too.
+    /// The law called `law`, whatever values the other parameters have; limits, such as a stiffness without bound,
+    /// count too.
     pub const fn of(law: &'static str) -> Self {
         Self { law, needed: &[], restricted: &[] }
     }
 
-    /// The law called `law`, where the parameters named in `needed` have these values. A parameter that can take the value always is
-    /// not listed.
+    /// The law called `law`, where the parameters named in `needed` have these values. A parameter that can take the
+    /// value always is not listed.
     pub const fn at(law: &'static str, needed: &'static [(&'static str, f64)]) -> Self {
         Self { law, needed, restricted: &[] }
     }
@@ -174,8 +176,8 @@ pub trait LawFamily: 'static {
     /// The law's parameters, in the order in which [`at`](Self::at) takes their values.
     const PARAMETERS: &'static [LawParameter];
 
-    /// The laws that this one becomes at some values of its parameters, not counting its viscous part, and not counting what those
-    /// laws become in turn. A comparison of laws reads off it which of two is the more general.
+    /// The laws that this one becomes at some values of its parameters, not counting its viscous part, and not counting
+    /// what those laws become in turn. A comparison of laws reads off it which of two is the more general.
     const SPECIAL_CASES: &'static [SpecialCase] = &[];
 
     /// The law at number type `D`.
@@ -188,8 +190,8 @@ pub trait LawFamily: 'static {
     /// not finite, out of bounds, or contradicts another ([`LawError::Condition`] unless another variant fits).
     fn at<D: Scalar>(values: &[D]) -> Result<Self::At<D>, LawError>;
 
-    /// Result of `visitor` for laws of this family's kind. An implementor calls the one method of [`LawVisitor`] that matches
-    /// its laws.
+    /// Result of `visitor` for laws of this family's kind. An implementor calls the one method of [`LawVisitor`] that
+    /// matches its laws.
     fn visit<D: Scalar, V: LawVisitor<D, Self::At<D>>>(visitor: V) -> V::Output;
 
     /// Kind of the family's laws.
@@ -197,14 +199,15 @@ pub trait LawFamily: 'static {
         Self::visit::<f64, _>(KindOf)
     }
 
-    /// Friction coefficient (1) of steady sliding by `law` at `speed` ≥ 0 (m/s), in the limit of a speed that grows slowly or, if it
-    /// is `losing`, falls; `None` for laws with internal state that do not say it.
+    /// Friction coefficient (1) of steady sliding by `law` at `speed` ≥ 0 (m/s), in the limit of a speed that grows
+    /// slowly or, if it is `losing`, falls; `None` for laws with internal state that do not say it.
     fn steady_coefficient<D: Scalar>(law: &Self::At<D>, speed: D, losing: bool) -> Option<D> {
         Self::visit(SteadyCoefficient { law, speed, losing })
     }
 
-    /// A family of the same laws by parameters that a fit finds in fewer steps; `None`, the default, for one that is fitted by its own. No
-    /// parameter of either may be a [`LevelAbove`](Role::LevelAbove) or a [`Breakaway`](Role::Breakaway).
+    /// A family of the same laws by parameters that a fit finds in fewer steps; `None`, the default, for one that is
+    /// fitted by its own. No parameter of either may be a [`LevelAbove`](Role::LevelAbove) or a
+    /// [`Breakaway`](Role::Breakaway).
     fn recast<V: FamilyVisitor>(visitor: &mut V) -> Option<Recast<V::Output>> {
         let _ = visitor;
         None
@@ -313,9 +316,9 @@ pub(crate) fn static_not_below<D: Scalar>(sliding: D, breakaway: D) -> Result<()
 
 /// A law that is a fixed list of numbers: its struct, its validating constructor and its [`LawFamily`].
 ///
-/// After the name stands its kind, the method of [`LawVisitor`](crate::LawVisitor) that takes it. Each field stands beside the parameter that it is. The braces after the constructor hold what must be true of
-/// several parameters together. `Scalar`, `LawError`, `LawFamily` and `LawParameter` must be in scope, as the documents
-/// refer to them.
+/// After the name stands its kind, the method of [`LawVisitor`](crate::LawVisitor) that takes it. Each field stands
+/// beside the parameter that it is. The braces after the constructor hold what must be true of several parameters
+/// together. `Scalar`, `LawError`, `LawFamily` and `LawParameter` must be in scope, as the documents refer to them.
 macro_rules! law_family {
     (
         $(#[$law_doc:meta])*

@@ -28,12 +28,12 @@ const LEAST: LawParameter = LawParameter::positive("sliding_coefficient", "μ_c"
 ///
 /// The state is fᵢ (1), the part of the coefficient that element i carries; |fᵢ| ≤ αᵢ μ_s is invariant if
 /// [`Regime`] follows the rules above. An element slides at its own *share* αᵢ s(v), not at s(v). Steady
-/// sliding gives s(v) + β v; a sliding element approaches its share with the time constant s(v)/C. For C → ∞ and constant
-/// s this is [`MaxwellSlip`](crate::MaxwellSlip) with levels αᵢ s.
+/// sliding gives s(v) + β v; a sliding element approaches its share with the time constant s(v)/C. For C → ∞ and
+/// constant s this is [`MaxwellSlip`](crate::MaxwellSlip) with levels αᵢ s.
 ///
 /// # References
-/// F. Al-Bender, V. Lampaert, J. Swevers, "The generalized Maxwell-slip model: a novel model for friction simulation and
-/// compensation", IEEE Trans. Automatic Control 50 (2005) 1883, doi 10.1109/TAC.2005.858676.
+/// F. Al-Bender, V. Lampaert, J. Swevers, "The generalized Maxwell-slip model: a novel model for friction simulation
+/// and compensation", IEEE Trans. Automatic Control 50 (2005) 1883, doi 10.1109/TAC.2005.858676.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gms<D = f64> {
     curve: Stribeck<D>,

@@ -13,8 +13,8 @@ use crate::{Gms, LawError, LawFamily, LawParameter, LawVisitor, Role, SpecialCas
 /// α₁ = 1/(1 + Σ aⱼ),   αᵢ = aᵢ/(1 + Σ aⱼ),   j, i = 2 … N
 /// ```
 ///
-/// Shares are given by their ratios aᵢ to that of the first element, so that any positive values make a law. Elements of one law can
-/// change places; the first is meant to be the stiffest.
+/// Shares are given by their ratios aᵢ to that of the first element, so that any positive values make a law. Elements
+/// of one law can change places; the first is meant to be the stiffest.
 ///
 /// ```
 /// use fmm_friction::{Gms, GmsOf, LawFamily, Stribeck};

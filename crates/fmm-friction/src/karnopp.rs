@@ -20,9 +20,9 @@ law_family! {
     /// | μ_s | `breakaway` | 1 | the most that the contact holds within the dead zone, ≥ μ_d |
     /// | v_d | `dead_zone` | m/s | speed at and below which the contact can be at rest |
     ///
-    /// The dead zone spares a simulator the search for v = 0, at the price of an error that grows with it. It is here for
-    /// comparison with such simulators: for v_d → 0 the law becomes [`CoulombStatic`](crate::CoulombStatic), which needs
-    /// no dead zone.
+    /// The dead zone spares a simulator the search for v = 0, at the price of an error that grows with it. It is here
+    /// for comparison with such simulators: for v_d → 0 the law becomes [`CoulombStatic`](crate::CoulombStatic), which
+    /// needs no dead zone.
     ///
     /// # References
     /// D. Karnopp, "Computer simulation of stick-slip friction in mechanical dynamic systems", Journal of Dynamic

@@ -7,8 +7,8 @@ use crate::{BristleLaw, PiecewiseLinearLaw, SlidingLaw};
 /// Action on a law `L` of number type `D` according to its kind. It has one method for each kind;
 /// [`LawFamily::visit`](crate::LawFamily::visit) calls the one of the family.
 ///
-/// Within a method the law has the trait of its kind. So whoever must treat kinds differently (an engine, a plot, a report) writes
-/// each case once, for all families and all number types, laws of one's own among them.
+/// Within a method the law has the trait of its kind. So whoever must treat kinds differently (an engine, a plot, a
+/// report) writes each case once, for all families and all number types, laws of one's own among them.
 ///
 /// ```
 /// use fmm_friction::{BristleLaw, LawFamily, LawVisitor, LuGre, SlidingLaw, Stribeck};
@@ -58,8 +58,8 @@ pub trait LawVisitor<D: Scalar, L>: Sized {
     where
         L: BristleLaw<D>;
 
-    /// For a law whose internal state is that of elements which hold or slide; like any law with internal state unless said
-    /// otherwise.
+    /// For a law whose internal state is that of elements which hold or slide; like any law with internal state unless
+    /// said otherwise.
     fn elements(self) -> Self::Output
     where
         L: PiecewiseLinearLaw<D> + BristleLaw<D>,
@@ -77,7 +77,8 @@ pub enum LawKind {
     PiecewiseLinear,
     /// A law with internal state ([`BristleLaw`]).
     Bristle,
-    /// A law with internal state that consists of elements which hold or slide ([`PiecewiseLinearLaw`] and [`BristleLaw`]).
+    /// A law with internal state that consists of elements which hold or slide ([`PiecewiseLinearLaw`] and
+    /// [`BristleLaw`]).
     Elements,
 }
 

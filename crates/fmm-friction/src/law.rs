@@ -12,9 +12,10 @@ use crate::Expansion;
 /// 2. for every speed ≥ 0 the coefficient is finite and not negative, so that friction never pushes;
 /// 3. the coefficient in the limit of zero speed does not exceed `breakaway`.
 ///
-/// The engine sets the *sign*. A law sees only a speed and no direction, so that it cannot return a force along the motion, and no law
-/// needs a dead zone or a smoothed signum. For this reason there is no single method that takes a velocity. There is none
-/// that takes the load either: a law would then have to decide between stick and slip, which depends on the machine.
+/// The engine sets the *sign*. A law sees only a speed and no direction, so that it cannot return a force along the
+/// motion, and no law needs a dead zone or a smoothed signum. For this reason there is no single method that takes a
+/// velocity. There is none that takes the load either: a law would then have to decide between stick and slip, which
+/// depends on the machine.
 ///
 /// ```
 /// use fmm_friction::SlidingLaw;
@@ -116,15 +117,15 @@ pub trait BristleLaw<D: Scalar> {
     /// Half width of the invariant interval of state `index`.
     fn bound(&self, index: usize) -> D;
 
-    /// Friction coefficient (1) of steady sliding at `speed` ≥ 0 (m/s); `None` for laws that have no closed form for it, or state
-    /// none.
+    /// Friction coefficient (1) of steady sliding at `speed` ≥ 0 (m/s); `None` for laws that have no closed form for
+    /// it, or state none.
     fn steady_coefficient(&self, speed: D) -> Option<D> {
         let _ = speed;
         None
     }
 
-    /// Carries the state along a motion of constant `velocity` (m/s, not zero) that lasts `duration` (s), in closed form; whether there is
-    /// one. Without, the state stays as it is.
+    /// Carries the state along a motion of constant `velocity` (m/s, not zero) that lasts `duration` (s), in closed
+    /// form; whether there is one. Without, the state stays as it is.
     ///
     /// Elements that switch are taken to hold at the beginning, unless they are at their bound.
     ///
@@ -142,9 +143,9 @@ pub trait BristleLaw<D: Scalar> {
         false
     }
 
-    /// Works out the coefficients of this `order` of rate and friction coefficient, those of the velocity and the state up to this order
-    /// and those of lower orders being known; whether the law of one state has such series there. An engine then takes long steps of
-    /// high order.
+    /// Works out the coefficients of this `order` of rate and friction coefficient, those of the velocity and the state
+    /// up to this order and those of lower orders being known; whether the law of one state has such series there. An
+    /// engine then takes long steps of high order.
     ///
     /// ```
     /// use fmm_friction::{BristleLaw, Dahl, Expansion};

@@ -35,36 +35,36 @@
 //!
 //! [`SlidingLaw`] is for laws of the sliding speed alone, which need a stick phase, and [`BristleLaw`] for laws with an
 //! internal state, which do not; their pages state the contract of an implementor and its reasons.
-//! [`PiecewiseLinearLaw`] marks the laws that move a linear machine in closed form. [`LawFamily`] names the parameters and
-//! builds a law at any number type, for fits, budgets and reports. [`MaxwellSlip`] and [`Gms`] are lists of elements; their families for a
-//! given number of elements are [`MaxwellSlipOf`] and [`GmsOf`]. A law of one's own that
-//! implements it is simulated and fitted like these. A family also states its kind: a [`LawVisitor`] has one method for each kind of
-//! law, and [`catalogue()`] leads a [`FamilyVisitor`] through all families by name.
+//! [`PiecewiseLinearLaw`] marks the laws that move a linear machine in closed form. [`LawFamily`] names the parameters
+//! and builds a law at any number type, for fits, budgets and reports. [`MaxwellSlip`] and [`Gms`] are lists of
+//! elements; their families for a given number of elements are [`MaxwellSlipOf`] and [`GmsOf`]. A law of one's own that
+//! implements it is simulated and fitted like these. A family also states its kind: a [`LawVisitor`] has one method for
+//! each kind of law, and [`catalogue()`] leads a [`FamilyVisitor`] through all families by name.
 //!
 //! # Units and conventions
 //!
-//! All laws give a *coefficient*, the friction force divided by the normal load. With a normal load of 1 the coefficient is
-//! the force itself (N); per unit mass it is F/m (m/s²). Speeds are in m/s and never negative: the simulation sets the sign of the
-//! force, so that a law cannot push.
+//! All laws give a *coefficient*, the friction force divided by the normal load. With a normal load of 1 the
+//! coefficient is the force itself (N); per unit mass it is F/m (m/s²). Speeds are in m/s and never negative: the
+//! simulation sets the sign of the force, so that a law cannot push.
 //!
 //! # Guarantees
 //!
-//! * Constructors refuse parameters out of bounds and those that contradict each other: a static level below the sliding
-//!   one, a loop that makes energy. The error names parameter, value, unit and bounds.
+//! * Constructors refuse parameters out of bounds and those that contradict each other: a static level below the
+//!   sliding one, a loop that makes energy. The error names parameter, value, unit and bounds.
 //! * The coefficient of a law is nowhere negative, and its limit at rest is not above the static level; states
 //!   of bristle laws stay within their [`bound`](BristleLaw::bound).
 //! * Special cases agree: [`Berger`] without excess is [`Coulomb`], bit for bit.
 //!
 //! # Cost
 //!
-//! A coefficient is a handful of operations: arithmetic alone for laws that are a level plus a slope, one exponential for
-//! [`Berger`], four functions for [`MakkarDixon`]. Only [`MaxwellSlip`] and [`Gms`] allocate, when they are made.
+//! A coefficient is a handful of operations: arithmetic alone for laws that are a level plus a slope, one exponential
+//! for [`Berger`], four functions for [`MakkarDixon`]. Only [`MaxwellSlip`] and [`Gms`] allocate, when they are made.
 //! [`Shifted`] searches its inflection once, when it is made, and so once for each evaluation of a fit.
 //!
 //! # Neighbours
 //!
-//! [`fmm-sim`](https://docs.rs/fmm-sim) moves a machine under a law, [`fmm-identify`](https://docs.rs/fmm-identify) finds
-//! its parameters in a record, and [`fmm-model`](https://docs.rs/fmm-model) has the number types.
+//! [`fmm-sim`](https://docs.rs/fmm-sim) moves a machine under a law, [`fmm-identify`](https://docs.rs/fmm-identify)
+//! finds its parameters in a record, and [`fmm-model`](https://docs.rs/fmm-model) has the number types.
 //!
 //! # Features
 //!

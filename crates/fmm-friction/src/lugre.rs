@@ -8,7 +8,8 @@ use crate::family::{law_family, static_not_below};
 use crate::stribeck::EXPONENT;
 use crate::{BristleLaw, LawError, LawFamily, LawParameter, Regime, Role, SlidingLaw, Stribeck};
 
-/// Speed, in units of the Stribeck speed, below which the series of a power that is not whole is no good, and above which nothing falls.
+/// Speed, in units of the Stribeck speed, below which the series of a power that is not whole is no good, and above
+/// which nothing falls.
 const SLOW: f64 = 0.2;
 const FAST: f64 = 1e6;
 
@@ -29,8 +30,8 @@ law_family! {
     /// | σ₁ | `bristle_damping` | s/m | damping of the deflection |
     /// | σ₂ | `viscous` | s/m | increase of the coefficient with speed |
     ///
-    /// The state z (m) is the mean bristle deflection; |z| ≤ μ_s/σ₀ is invariant. The contact shows presliding, frictional
-    /// lag and a breakaway level that falls as the load grows faster. With μ_s = μ_c and σ₁ = σ₂ = 0 this is
+    /// The state z (m) is the mean bristle deflection; |z| ≤ μ_s/σ₀ is invariant. The contact shows presliding,
+    /// frictional lag and a breakaway level that falls as the load grows faster. With μ_s = μ_c and σ₁ = σ₂ = 0 this is
     /// [`Dahl`](crate::Dahl) with i = 1; for σ₀ → ∞ it becomes [`Stribeck`].
     ///
     /// # References

@@ -7,8 +7,8 @@ use crate::shifted::Inflected;
 use crate::{LawError, LawFamily, LawParameter, Role, SlidingLaw};
 
 law_family! {
-    /// Makkar and Dixon's law: a difference of two hyperbolic tangents for the Stribeck peak, a third for the level and a
-    /// viscous part.
+    /// Makkar and Dixon's law: a difference of two hyperbolic tangents for the Stribeck peak, a third for the level and
+    /// a viscous part.
     ///
     /// ```text
     /// F = N (γ₁ (tanh γ₂ v − tanh γ₃ v) + γ₄ tanh γ₅ v + γ₆ v)       (thesis Eq. 7.5, with the sign of γ₄ corrected)
@@ -24,8 +24,8 @@ law_family! {
     /// | γ₆ | `viscous` | s/m | increase of the coefficient with speed |
     ///
     /// The coefficient is zero at zero speed, so this contact never sticks, it creeps; [`Shifted`](crate::Shifted)
-    /// gives it a static level. The thesis prints −γ₄ but computes with +γ₄, as Makkar does, and so does this law. Nor is
-    /// γ₁ + γ₄ the height of the peak, unless γ₂ and γ₅ are infinite and γ₃ zero: [`peak`](Self::peak) tells it.
+    /// gives it a static level. The thesis prints −γ₄ but computes with +γ₄, as Makkar does, and so does this law. Nor
+    /// is γ₁ + γ₄ the height of the peak, unless γ₂ and γ₅ are infinite and γ₃ zero: [`peak`](Self::peak) tells it.
     ///
     /// With γ₁ = γ₆ = 0 this is [`Coulomb`](crate::Coulomb) [`Smoothed`](crate::Smoothed) over 1/γ₅.
     ///
@@ -130,8 +130,8 @@ impl MakkarDixon {
         0.01 / self.rise.max(self.level_rise)
     }
 
-    /// Brackets the least speed from `start` on at which `holds` is true of the slopes, on a grid that is far finer than
-    /// the hyperbolic tangents.
+    /// Brackets the least speed from `start` on at which `holds` is true of the slopes, on a grid that is far finer
+    /// than the hyperbolic tangents.
     fn first(&self, start: f64, holds: impl Fn([f64; 3]) -> bool) -> Option<(f64, f64)> {
         let (mut before, mut speed) = (start, start);
         while speed < 20.0 / self.fall {
@@ -182,8 +182,8 @@ impl<D: Scalar> Inflected for MakkarDixon<D> {
     }
 }
 
-/// tanh a − tanh b for a ≥ b ≥ 0, as a product of what is positive: the difference itself loses its digits where both are
-/// close to 1.
+/// tanh a − tanh b for a ≥ b ≥ 0, as a product of what is positive: the difference itself loses its digits where both
+/// are close to 1.
 fn tanh_difference<D: Scalar>(a: D, b: D) -> D {
     let (small, large) = ((a * -2.0).exp(), (b * -2.0).exp());
     (a - b).tanh() * (small + large) * 2.0 / ((small + 1.0) * (large + 1.0))

@@ -19,9 +19,9 @@ use crate::{Affine, BristleLaw, Element, LawError, PiecewiseLinearLaw, Regime};
 /// | wᵢ | coefficient at which it slides | 1 |
 ///
 /// The state zᵢ (m) is the deflection of element i; |zᵢ| ≤ wᵢ/κᵢ is invariant if the element slides, as
-/// [`Regime`] says, from the time at which its [`reserve`](BristleLaw::reserve) is used up until the velocity passes zero.
-/// Sliding, the coefficient is Σ wᵢ; at rest without deflection its slope over the displacement is Σ κᵢ. The force depends
-/// on the path alone, not on the speed, and its loops obey Masing's rules. One element with κ → ∞ is
+/// [`Regime`] says, from the time at which its [`reserve`](BristleLaw::reserve) is used up until the velocity passes
+/// zero. Sliding, the coefficient is Σ wᵢ; at rest without deflection its slope over the displacement is Σ κᵢ. The
+/// force depends on the path alone, not on the speed, and its loops obey Masing's rules. One element with κ → ∞ is
 /// [`Coulomb`](crate::Coulomb).
 ///
 /// ```
@@ -59,8 +59,8 @@ impl<D: Scalar> MaxwellSlip<D> {
         })
     }
 
-    /// Moves the contact by `displacement` (m) in one direction: the exact change of the deflections `state` (m), whatever
-    /// the speed.
+    /// Moves the contact by `displacement` (m) in one direction: the exact change of the deflections `state` (m),
+    /// whatever the speed.
     pub fn deflect(&self, state: &mut [D], displacement: D) {
         for (element, deflection) in self.elements.iter().zip(state) {
             let bound = element.level / element.stiffness;

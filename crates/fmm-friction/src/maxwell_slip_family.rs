@@ -6,10 +6,11 @@ use fmm_model::Scalar;
 
 use crate::{LawError, LawFamily, LawParameter, LawVisitor, MaxwellSlip, Role, SpecialCase};
 
-/// The family of [`MaxwellSlip`] laws of `N` elements, from 1 to 8: what makes their levels and stiffnesses parameters that can be
-/// fitted.
+/// The family of [`MaxwellSlip`] laws of `N` elements, from 1 to 8: what makes their levels and stiffnesses parameters
+/// that can be fitted.
 ///
-/// Elements of one law can change places; those listed first are meant to be the stiff ones that slide at most of the force.
+/// Elements of one law can change places; those listed first are meant to be the stiff ones that slide at most of the
+/// force.
 ///
 /// ```
 /// use fmm_friction::{LawFamily, MaxwellSlip, MaxwellSlipOf};

@@ -16,8 +16,8 @@ use crate::{LawError, LawParameter, Role, SlidingLaw};
 /// | ε | `width` | m/s | speed below which it is smoothed |
 ///
 /// It is for optimisers, other solvers and harmonic balance that need a smooth right-hand side. It is no default:
-/// the contact creeps under any load instead of resting, equations become stiff as ε shrinks, and the motion is wrong in
-/// proportion to ε. In a free decay of the thesis' Monte Carlo case the velocity is off by
+/// the contact creeps under any load instead of resting, equations become stiff as ε shrinks, and the motion is wrong
+/// in proportion to ε. In a free decay of the thesis' Monte Carlo case the velocity is off by
 ///
 /// | ε (m/s) | 1e-2 | 1e-3 | 1e-4 | 1e-5 | 1e-6 |
 /// |---|---|---|---|---|---|

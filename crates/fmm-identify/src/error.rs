@@ -188,7 +188,8 @@ impl IdentifyError {
         Self::not_seen(format!("the record is constant at {value} {unit}: nothing moves"))
     }
 
-    /// Turning points that do not lie to either side of the centre by turns: at `time` (s) the `amplitude` is not positive.
+    /// Turning points that do not lie to either side of the centre by turns: at `time` (s) the `amplitude` is not
+    /// positive.
     pub(crate) fn amplitude(time: f64, amplitude: f64, unit: &str) -> Self {
         Self::not_seen(format!(
             "amplitudes must be positive, but one is {amplitude} {unit} at {time} s; end the record before it"

@@ -1,9 +1,10 @@
-//! Friction parameters out of measured ring-downs, driven motions, hammer blows and forces along motions, with their uncertainty and what
-//! the record could not tell.
+//! Friction parameters out of measured ring-downs, driven motions, hammer blows and forces along motions, with their
+//! uncertainty and what the record could not tell.
 //!
-//! A [`Record`](fmm_record::Record) of a machine that vibrates freely or is driven is prepared ([`Experiment`]), what is known of the machine
-//! is stated ([`Machine`]), and as many laws as the record asks for ([`search`]), several ([`compare`]) or one ([`identify`]) are fitted to it
-//! by simulating the motion exactly, through every reversal and stop.
+//! A [`Record`](fmm_record::Record) of a machine that vibrates freely or is driven is prepared ([`Experiment`]), what
+//! is known of the machine is stated ([`Machine`]), and as many laws as the record asks for ([`search`]), several
+//! ([`compare`]) or one ([`identify`]) are fitted to it by simulating the motion exactly, through every reversal and
+//! stop.
 //!
 //! ```
 //! use fmm_friction::CoulombViscous;
@@ -61,25 +62,25 @@
 //!
 //! # Units and conventions
 //!
-//! Findings are in the units that follow from the record's: of a velocity in m/s, friction per mass in m/s²; of one in V,
-//! in V/s. A gyroscope whose gain is not known gives a friction all the same, in its own unit. A load makes coefficients of
-//! forces, and nothing else does. Times are on the time axis of the record.
+//! Findings are in the units that follow from the record's: of a velocity in m/s, friction per mass in m/s²; of one in
+//! V, in V/s. A gyroscope whose gain is not known gives a friction all the same, in its own unit. A load makes
+//! coefficients of forces, and nothing else does. Times are on the time axis of the record.
 //!
 //! # Guarantees
 //!
-//! * Nothing is smoothed, and what was left out (rest before the release, spikes) is in the [summary](Experiment::summary)
-//!   and in the warnings.
-//! * Parameters that the record does not tell apart have no uncertainty, but a warning that names them. A static level of
-//!   its own is held, and a warning says so.
+//! * Nothing is smoothed, and what was left out (rest before the release, spikes) is in the
+//!   [summary](Experiment::summary) and in the warnings.
+//! * Parameters that the record does not tell apart have no uncertainty, but a warning that names them. A static level
+//!   of its own is held, and a warning says so.
 //! * How a fit ends is in the result. Errors are for what does not let it begin.
 //! * The same records and options give the same bits, on any number of threads.
 //!
 //! # Cost
 //!
-//! In proportion to samples and records. Of 1500 samples, on an AMD EPYC (`cargo bench --bench growth`): 3 ms to prepare, 1 ms for Coulomb's
-//! law, 1.5 ms with a viscous part, and 22 ms for Berger's; laws of more parameters are
-//! fitted from many starts, Stribeck's with a free exponent in 0.25 s of 3000 samples on two threads. Hold what is known: it is quicker, and better
-//! determined.
+//! In proportion to samples and records. Of 1500 samples, on an AMD EPYC (`cargo bench --bench growth`): 3 ms to
+//! prepare, 1 ms for Coulomb's law, 1.5 ms with a viscous part, and 22 ms for Berger's; laws of more parameters are
+//! fitted from many starts, Stribeck's with a free exponent in 0.25 s of 3000 samples on two threads. Hold what is
+//! known: it is quicker, and better determined.
 //! [`compare`] costs the sum of its candidates.
 //! 25 000 samples of a force along a motion take 50 ms by Dahl's law with a viscous part and a zero.
 //! [`search`] takes 30 ms of 3000 samples where a simple law is right, and 1 s to 5 s on two threads where it is not.
@@ -88,8 +89,8 @@
 //!
 //! `rayon` is on by default, the others are off.
 //!
-//! * `rayon`: the starts and derivatives of a fit by a law without a closed form, and the laws of a search, on all threads of the
-//!   current pool, with the same result.
+//! * `rayon`: the starts and derivatives of a fit by a law without a closed form, and the laws of a search, on all
+//!   threads of the current pool, with the same result.
 //! * `sampler`: the posterior of an identification, its intervals beside the others, and predictive checks.
 //! * `serde`: findings, comparisons and reports serialise.
 //!

@@ -79,8 +79,8 @@ impl Bounds {
         self.upper
     }
 
-    /// Whether no finite value lies in the interval, because its ends exclude each other; a fit refuses such bounds by the
-    /// name of their parameter.
+    /// Whether no finite value lies in the interval, because its ends exclude each other; a fit refuses such bounds by
+    /// the name of their parameter.
     pub const fn is_empty(&self) -> bool {
         !(self.lower <= self.upper && self.lower < f64::INFINITY && self.upper > f64::NEG_INFINITY)
     }

@@ -54,8 +54,9 @@ impl<D: Scalar> Damping<D> {
         Ok(Self { linear, quadratic, ..Self::none() })
     }
 
-    /// Linear damping `c₁` (N s/m) and quadratic damping `c₂` (N s²/m²) of any sign, for fits that ask what a record says when
-    /// nothing forbids it. Negative damping feeds the motion; in a fit it stands for friction that falls with speed.
+    /// Linear damping `c₁` (N s/m) and quadratic damping `c₂` (N s²/m²) of any sign, for fits that ask what a record
+    /// says when nothing forbids it. Negative damping feeds the motion; in a fit it stands for friction that falls with
+    /// speed.
     ///
     /// # Errors
     /// [`ModelError::NotFinite`] if a coefficient is not finite.
@@ -230,7 +231,8 @@ mod tests {
         assert!((damping.cycle_equivalent(1.0) - 0.2005 - 0.437).abs() < 5e-5);
     }
 
-    /// Γ-function values: mean of |sin|ᵖ is 1/2, 4/(3π), 3/8 for p = 2, 3, 4 and Γ(5/4)/(√π Γ(7/4)) = 0.556417… for 3/2.
+    /// Γ-function values: mean of |sin|ᵖ is 1/2, 4/(3π), 3/8 for p = 2, 3, 4 and Γ(5/4)/(√π Γ(7/4)) = 0.556417… for
+    /// 3/2.
     #[test]
     fn powers_have_the_equivalent_of_their_closed_form() {
         for (power, mean) in [(2.0, 0.5), (3.0, 4.0 / (3.0 * PI)), (4.0, 0.375), (1.5, 0.556_417_894_449_382_2)] {

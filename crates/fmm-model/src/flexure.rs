@@ -2,8 +2,8 @@
 
 use crate::{LeafSpring, ModelError, Scalar};
 
-/// A parallelogram flexure: a platform that several equal leaf springs carry side by side, so that it moves along x without
-/// turning, and a little along the leaves, y.
+/// A parallelogram flexure: a platform that several equal leaf springs carry side by side, so that it moves along x
+/// without turning, and a little along the leaves, y.
 ///
 /// ```text
 /// k = n E b t³/L³                                                  (n leaves in parallel)
@@ -78,11 +78,12 @@ impl<D: Scalar> Flexure<D> {
         self.leaf.length() / (deflection.abs() * 0.6)
     }
 
-    /// The length of leaf springs (m) with which the parasitic motion is `ratio` times smaller than `deflection` (m), the
-    /// inverse of [`motion_ratio`](Self::motion_ratio).
+    /// The length of leaf springs (m) with which the parasitic motion is `ratio` times smaller than `deflection` (m),
+    /// the inverse of [`motion_ratio`](Self::motion_ratio).
     ///
     /// # Errors
-    /// [`ModelError::NotPositive`] if the magnitude of the deflection or the ratio is zero or not finite, or the ratio negative.
+    /// [`ModelError::NotPositive`] if the magnitude of the deflection or the ratio is zero or not finite, or the ratio
+    /// negative.
     pub fn length_for_motion_ratio(deflection: D, ratio: D) -> Result<D, ModelError> {
         ModelError::require_positive("magnitude of a deflection", deflection.value().abs(), "m")?;
         ModelError::require_positive("ratio of deflection to parasitic motion", ratio.value(), "(dimensionless)")?;

@@ -88,8 +88,8 @@ impl<D: Scalar> LeafSpring<D> {
         deflection.abs() * self.stress_per_deflection()
     }
 
-    /// δ_σ, the deflection (m) at which the largest bending stress is `stress` σ (Pa): with the yield strength, the largest
-    /// deflection from which the leaf returns; with a part of it, the largest one allowed.
+    /// δ_σ, the deflection (m) at which the largest bending stress is `stress` σ (Pa): with the yield strength, the
+    /// largest deflection from which the leaf returns; with a part of it, the largest one allowed.
     pub fn deflection_at(&self, stress: D) -> D {
         stress.abs() / self.stress_per_deflection()
     }
@@ -99,7 +99,8 @@ impl<D: Scalar> LeafSpring<D> {
         deflection * deflection * 0.6 / self.length
     }
 
-    /// dλ/dδ, the change of the [shortening](Self::shortening) with `deflection` δ (m), of the sign of the deflection (1).
+    /// dλ/dδ, the change of the [shortening](Self::shortening) with `deflection` δ (m), of the sign of the deflection
+    /// (1).
     pub fn shortening_slope(&self, deflection: D) -> D {
         deflection * 1.2 / self.length
     }
@@ -118,7 +119,8 @@ mod tests {
         LeafSpring::new(0.552, 0.1016, 0.001_587_5, 205e9).unwrap()
     }
 
-    /// Length of the deflected curve by Simpson's rule, and the curvature at the clamp: the shape itself is the reference.
+    /// Length of the deflected curve by Simpson's rule, and the curvature at the clamp: the shape itself is the
+    /// reference.
     #[test]
     fn formulas_are_those_of_the_deflected_shape() {
         let (leaf, deflection, panels) = (leaf(), 0.022, 1000);

@@ -1,6 +1,6 @@
-//! Machine model for friction measurement: a single-degree-of-freedom oscillator with its damping and its spring, and the types
-//! that all FMM crates share, such as [`Parameter`] (name, symbol, unit, bounds) and [`Scalar`] (the number type that a
-//! formula is generic in).
+//! Machine model for friction measurement: a single-degree-of-freedom oscillator with its damping and its spring, and
+//! the types that all FMM crates share, such as [`Parameter`] (name, symbol, unit, bounds) and [`Scalar`] (the number
+//! type that a formula is generic in).
 //!
 //! ```
 //! use fmm_model::{Damping, Dual, Oscillator, Scalar};
@@ -36,26 +36,27 @@
 //!
 //! # Units and conventions
 //!
-//! Everything is in SI units. A machine whose mass is not known is described *per unit mass*: stiffness in 1/s², damping in
-//! 1/s, force in m/s²; all formulas hold unchanged. Types of a number type `D` are those of `f64` unless another is named.
+//! Everything is in SI units. A machine whose mass is not known is described *per unit mass*: stiffness in 1/s²,
+//! damping in 1/s, force in m/s²; all formulas hold unchanged. Types of a number type `D` are those of `f64` unless
+//! another is named.
 //!
 //! # Guarantees
 //!
-//! * Constructors check their arguments; a value that exists is valid, and its methods cannot fail. A result that does not
-//!   exist, such as the damped frequency of an overdamped machine, is `None`.
+//! * Constructors check their arguments; a value that exists is valid, and its methods cannot fail. A result that does
+//!   not exist, such as the damped frequency of an overdamped machine, is `None`.
 //! * [`Dual`] gives the bits of `f64` as its value, so that branches do not depend on the number type.
 //!
 //! # Cost
 //!
 //! Only the texts of a [`Parameter`] made at run time allocate. A [`Dual`] of N directions costs one `f64`
-//! operation and up to two products for each of the N. [`Damping::cycle_equivalent`] of a free power is a sum over a cycle;
-//! all other functions take a few operations.
+//! operation and up to two products for each of the N. [`Damping::cycle_equivalent`] of a free power is a sum over a
+//! cycle; all other functions take a few operations.
 //!
 //! # Neighbours
 //!
-//! [`fmm-friction`](https://docs.rs/fmm-friction) has the laws of the contact, [`fmm-sim`](https://docs.rs/fmm-sim) moves
-//! the machine, [`fmm-fit`](https://docs.rs/fmm-fit) finds parameters, [`fmm-identify`](https://docs.rs/fmm-identify) finds
-//! them in measured records.
+//! [`fmm-friction`](https://docs.rs/fmm-friction) has the laws of the contact, [`fmm-sim`](https://docs.rs/fmm-sim)
+//! moves the machine, [`fmm-fit`](https://docs.rs/fmm-fit) finds parameters,
+//! [`fmm-identify`](https://docs.rs/fmm-identify) finds them in measured records.
 //!
 //! # Features
 //!

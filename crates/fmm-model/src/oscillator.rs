@@ -30,8 +30,8 @@ impl<D: Scalar> Oscillator<D> {
     /// An undamped oscillator of `mass` (kg) and `stiffness` (N/m); a stiffness of zero is a mass without a spring.
     ///
     /// # Errors
-    /// [`ModelError::NotPositive`] if the mass is zero, negative or not finite, [`ModelError::Negative`] if the stiffness is
-    /// negative or not finite.
+    /// [`ModelError::NotPositive`] if the mass is zero, negative or not finite, [`ModelError::Negative`] if the
+    /// stiffness is negative or not finite.
     pub fn new(mass: D, stiffness: D) -> Result<Self, ModelError> {
         ModelError::require_positive("mass", mass.value(), "kg")?;
         ModelError::require_not_negative("stiffness", stiffness.value(), "N/m")?;
@@ -112,8 +112,8 @@ impl<D: Scalar> Oscillator<D> {
         self.natural_angular_frequency() / (2.0 * PI)
     }
 
-    /// ζ = c₁/(2√(k m)), ratio of the linear damping to critical damping (1); without a spring infinite, and zero without
-    /// damping.
+    /// ζ = c₁/(2√(k m)), ratio of the linear damping to critical damping (1); without a spring infinite, and zero
+    /// without damping.
     pub fn damping_ratio(&self) -> D {
         if self.stiffness.value() == 0.0 && self.damping.linear_coefficient().value() == 0.0 {
             return D::from(0.0);

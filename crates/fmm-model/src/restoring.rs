@@ -44,8 +44,8 @@ impl<D: Scalar> Restoring<D> {
         Ok(Self::Sine { length })
     }
 
-    /// A spring that hardens or softens, F = k (x + k₃ x³ + k₅ x⁵), of k₃ `cubic` (1/m²) and k₅ `quintic` (1/m⁴). Where the bracket has
-    /// another sign than x it restores nothing; engines refuse a motion that gets there.
+    /// A spring that hardens or softens, F = k (x + k₃ x³ + k₅ x⁵), of k₃ `cubic` (1/m²) and k₅ `quintic` (1/m⁴). Where
+    /// the bracket has another sign than x it restores nothing; engines refuse a motion that gets there.
     ///
     /// # Errors
     /// [`ModelError::NotFinite`] for either term.
@@ -55,8 +55,8 @@ impl<D: Scalar> Restoring<D> {
         Ok(Self::Polynomial { cubic, quintic })
     }
 
-    /// A spring of the stiffness k up to the `distance` g (m) from the origin on both sides, and of `ratio` b times k (1) beyond:
-    /// a flexure that meets a stop (b > 1), or a preloaded joint that opens (b < 1).
+    /// A spring of the stiffness k up to the `distance` g (m) from the origin on both sides, and of `ratio` b times k
+    /// (1) beyond: a flexure that meets a stop (b > 1), or a preloaded joint that opens (b < 1).
     ///
     /// ```text
     /// F = k x for |x| ≤ g,   F = k (g + b (|x| − g)) sgn x beyond
@@ -80,8 +80,8 @@ impl<D: Scalar> Restoring<D> {
         Ok(Self::Bilinear { corner: distance, inner: D::from(1.0), outer: ratio })
     }
 
-    /// A spring with backlash, F = k (|x| − g)₊ sgn x: no force within the `gap` g (m) on either side of the origin. The stiffness k
-    /// and the natural frequency of the [oscillator](crate::Oscillator) are those beyond the gap.
+    /// A spring with backlash, F = k (|x| − g)₊ sgn x: no force within the `gap` g (m) on either side of the origin.
+    /// The stiffness k and the natural frequency of the [oscillator](crate::Oscillator) are those beyond the gap.
     ///
     /// # Errors
     /// [`ModelError::Negative`] unless the gap is zero or positive.
@@ -112,7 +112,8 @@ impl<D: Scalar> Restoring<D> {
         }
     }
 
-    /// Whether the force at `position` (m) points back to the origin. A pendulum that goes over the top turns on; a spring does not.
+    /// Whether the force at `position` (m) points back to the origin. A pendulum that goes over the top turns on; a
+    /// spring does not.
     pub fn restores(&self, position: D) -> bool {
         match self {
             Self::Linear | Self::Sine { .. } | Self::Bilinear { .. } => true,

@@ -7,15 +7,16 @@ use crate::math;
 
 /// Number type of a formula of FMM.
 ///
-/// A law or an engine written over `Scalar` gives its value at `f64` and its exact gradient at [`Dual`](crate::Dual), from
-/// the same lines. The trait is deliberately small: the arithmetic, comparisons of values, and the functions that formulas
-/// of mechanics and of budgets use. A general trait such as num-dual's `DualNum` would put its forty methods and its
-/// version number into every signature of a user's own law, and its division, x·(1/y), does not keep the promise below.
+/// A law or an engine written over `Scalar` gives its value at `f64` and its exact gradient at [`Dual`](crate::Dual),
+/// from the same lines. The trait is deliberately small: the arithmetic, comparisons of values, and the functions that
+/// formulas of mechanics and of budgets use. A general trait such as num-dual's `DualNum` would put its forty methods
+/// and its version number into every signature of a user's own law, and its division, x·(1/y), does not keep the
+/// promise below.
 ///
 /// Arithmetic takes a plain number on either side: `x * 2.0` everywhere, `2.0 * x` where the type is named, as in a
 /// closure over `Dual<2>`. In a function generic in `D: Scalar` the language knows `2.0 * x` only if it is told so,
-/// `where f64: Mul<D, Output = D>`; a bound of the trait itself would make it take every product of two plain numbers in
-/// such a function for one of these.
+/// `where f64: Mul<D, Output = D>`; a bound of the trait itself would make it take every product of two plain numbers
+/// in such a function for one of these.
 ///
 /// An implementor promises that `value` of each operation is, to the last bit, the `f64` operation on the `value`s, so
 /// that branches taken on values, exact ties among them, are the same for every number type.

@@ -23,12 +23,12 @@ pub struct Tilt<D = f64> {
 }
 
 impl<D: Scalar> Tilt<D> {
-    /// The tilt at which two sensors, `spacing` s (m) apart along the shaft, show the displacements `first` x₁ and `second` x₂
-    /// (m).
+    /// The tilt at which two sensors, `spacing` s (m) apart along the shaft, show the displacements `first` x₁ and
+    /// `second` x₂ (m).
     ///
     /// # Errors
-    /// [`ModelError::NotPositive`] if the spacing is zero, negative or not finite, [`ModelError::NotFinite`] if the difference
-    /// of the displacements is not finite.
+    /// [`ModelError::NotPositive`] if the spacing is zero, negative or not finite, [`ModelError::NotFinite`] if the
+    /// difference of the displacements is not finite.
     pub fn from_displacements(first: D, second: D, spacing: D) -> Result<Self, ModelError> {
         ModelError::require_positive("spacing of two sensors", spacing.value(), "m")?;
         let difference = first - second;

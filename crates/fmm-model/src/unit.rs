@@ -8,7 +8,8 @@ use core::fmt::{self, Display, Formatter};
 use crate::Dimension;
 use crate::dimension::{of_symbol, superscript};
 
-/// A unit: symbols with powers, in the order in which it was written. Symbols are whatever a record states: `m`, `mm`, `V`, `counts`.
+/// A unit: symbols with powers, in the order in which it was written. Symbols are whatever a record states: `m`, `mm`,
+/// `V`, `counts`.
 ///
 /// ```
 /// use fmm_model::Unit;
@@ -37,8 +38,9 @@ struct Factor {
 }
 
 impl Unit {
-    /// The unit that `text` says: symbols with powers (`s²`, `s^2`, `s^n`), beside each other or with a `*`, each divided by that has
-    /// a `/` before it, and parentheses with a power. A text that is not built like that is one symbol.
+    /// The unit that `text` says: symbols with powers (`s²`, `s^2`, `s^n`), beside each other or with a `*`, each
+    /// divided by that has a `/` before it, and parentheses with a power. A text that is not built like that is one
+    /// symbol.
     pub fn of(text: &str) -> Self {
         let mut rest = text.trim();
         let whole = || Self { factors: [Factor::of(text.trim())].into() };
@@ -83,8 +85,8 @@ impl Unit {
         result
     }
 
-    /// Its powers of length, time, mass and angle; `exponent` gives the value of a power that is a parameter. `None` for a symbol or a
-    /// power that is not known.
+    /// Its powers of length, time, mass and angle; `exponent` gives the value of a power that is a parameter. `None`
+    /// for a symbol or a power that is not known.
     pub fn dimension(&self, exponent: impl Fn(&str) -> Option<f64>) -> Option<Dimension> {
         self.factors.iter().try_fold(Dimension::NONE, |dimension, factor| {
             let power = match &factor.exponent {

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use crate::MeaningError;
 
-/// A file that is not read, a record that cannot be, or an operation that it does not allow; each variant is something else
-/// that the caller can do about it.
+/// A file that is not read, a record that cannot be, or an operation that it does not allow; each variant is something
+/// else that the caller can do about it.
 ///
 /// Lines and byte positions count as in an editor: lines from 1, bytes from 0.
 #[derive(Debug, Clone, thiserror::Error)]

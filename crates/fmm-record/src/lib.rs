@@ -40,33 +40,34 @@
 //! # Units and conventions
 //!
 //! Times are in s, rates in Hz, values in the unit that the record states: a unit is a label, only [`Record::scaled`]
-//! changes the numbers with it. A reader leaves the numbers as they are and says [`Quantity::Other`] unless the format has a
-//! place for the quantity; [`Request::meaning`] reads `v [mm/s]` and the like, and refuses what would be a guess.
+//! changes the numbers with it. A reader leaves the numbers as they are and says [`Quantity::Other`] unless the format
+//! has a place for the quantity; [`Request::meaning`] reads `v [mm/s]` and the like, and refuses what would be a guess.
 //!
 //! # Guarantees
 //!
-//! * A record has at least one sample, all finite, at equal intervals. Time stamps that are not uniform are an error that
-//!   says where.
+//! * A record has at least one sample, all finite, at equal intervals. Time stamps that are not uniform are an error
+//!   that says where.
 //! * Nothing is repaired in silence: faults are reported, not removed. A file that contradicts itself
 //!   is an error or, where its points are still readable, a warning.
-//! * No reader allocates by a length that a header states, none panics on damaged bytes, and compressed data expand to 256 MB at
-//!   most.
+//! * No reader allocates by a length that a header states, none panics on damaged bytes, and compressed data expand to
+//!   256 MB at most.
 //!
 //! # Cost
 //!
-//! In proportion to the samples, whatever the span of a moving average; quantisation sorts at most 131 072 values. The CSV
-//! reader keeps the columns in use only, the others read a file whole.
+//! In proportion to the samples, whatever the span of a moving average; quantisation sorts at most 131 072 values. The
+//! CSV reader keeps the columns in use only, the others read a file whole.
 //!
 //! # Features
 //!
-//! `csv`, `mat` and `uff`, all on by default, read text, MATLAB files of versions 5 to 7, and Universal Files, which are also written.
-//! `hdf5` adds version 7.3 to `mat`, and `npy` reads files of NumPy. A file whose reader is not compiled is refused with the name of
-//! the feature. Without `mat`, `hdf5` and `npy` the crate depends on `realfft` and `thiserror` only.
+//! `csv`, `mat` and `uff`, all on by default, read text, MATLAB files of versions 5 to 7, and Universal Files, which
+//! are also written. `hdf5` adds version 7.3 to `mat`, and `npy` reads files of NumPy. A file whose reader is not
+//! compiled is refused with the name of the feature. Without `mat`, `hdf5` and `npy` the crate depends on `realfft` and
+//! `thiserror` only.
 //!
 //! # Neighbours
 //!
-//! [`fmm-identify`](https://docs.rs/fmm-identify) identifies friction from a record, [`fmm-frf`](https://docs.rs/fmm-frf) a
-//! frequency response from two.
+//! [`fmm-identify`](https://docs.rs/fmm-identify) identifies friction from a record,
+//! [`fmm-frf`](https://docs.rs/fmm-frf) a frequency response from two.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

@@ -122,8 +122,8 @@ impl Record {
     /// A record whose first sample is at `start` (s) and whose samples follow each other every `interval` (s).
     ///
     /// # Errors
-    /// [`RecordError::Values`] if there are none or some are not finite, [`RecordError::Options`] if the interval is not
-    /// positive and finite, or if `start` is not finite or so large that neighbouring samples would have
+    /// [`RecordError::Values`] if there are none or some are not finite, [`RecordError::Options`] if the interval is
+    /// not positive and finite, or if `start` is not finite or so large that neighbouring samples would have
     /// equal times.
     pub fn new(
         start: f64,
@@ -151,7 +151,8 @@ impl Record {
     /// A record of `values` at `times` (s), which must be uniform as [`UniformTimes`] defines it.
     ///
     /// # Errors
-    /// [`RecordError::TimeAxis`] if there are not as many times as values, and as [`UniformTimes::of`] and [`Record::new`].
+    /// [`RecordError::TimeAxis`] if there are not as many times as values, and as [`UniformTimes::of`] and
+    /// [`Record::new`].
     pub fn from_times(
         times: &[f64],
         values: Vec<f64>,

@@ -40,8 +40,8 @@ impl UniformTimes {
     /// The grid on which `times` (s) lie.
     ///
     /// # Errors
-    /// [`RecordError::TimeAxis`] if there are fewer than two times, or one is not finite, repeated, decreasing or off the grid;
-    /// [`RecordError::Options`] if they span more than a number can hold.
+    /// [`RecordError::TimeAxis`] if there are fewer than two times, or one is not finite, repeated, decreasing or off
+    /// the grid; [`RecordError::Options`] if they span more than a number can hold.
     pub fn of(times: &[f64]) -> Result<Self, RecordError> {
         let (Some(&start), Some(&end), count @ 2..) = (times.first(), times.last(), times.len()) else {
             return Err(RecordError::too_few_times(times.len()));
@@ -83,8 +83,8 @@ impl UniformTimes {
     }
 }
 
-/// The error of the first stamp that comes early or late after the one before it, by more than `tolerance` (s) and by more
-/// than half of the worst one; `None` if all steps are alike. The right step is the mean of all other steps.
+/// The error of the first stamp that comes early or late after the one before it, by more than `tolerance` (s) and by
+/// more than half of the worst one; `None` if all steps are alike. The right step is the mean of all other steps.
 fn odd_stamp(times: &[f64], tolerance: f64) -> Option<RecordError> {
     let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let mut sorted = steps.clone();

@@ -169,8 +169,8 @@ pub(crate) struct Recorded {
 }
 
 impl Recorded {
-    /// Of 3 to 30 half swings in velocity or displacement, with or without rest at both ends, noise of 0.1 % to 3 % and,
-    /// sometimes, a converter of few bits.
+    /// Of 3 to 30 half swings in velocity or displacement, with or without rest at both ends, noise of 0.1 % to 3 %
+    /// and, sometimes, a converter of few bits.
     pub(crate) fn random(seed: u64) -> Self {
         let random = &mut Noise::new(seed);
         let half_swings = 3.0 + 27.0 * random.uniform().powi(2);

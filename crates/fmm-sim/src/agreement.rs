@@ -7,8 +7,8 @@ use crate::{
     Direction, Engine, EventKind, Exact, Excitation, Mode, RungeKutta, Sampling, Scenario, SimulationError, Trajectory,
 };
 
-/// Both motions of a machine of 1 kg on 1 N/m let go at `start` (m), damped by `damping` (N s/m), under 1 N on a contact of
-/// these two levels and a `force`.
+/// Both motions of a machine of 1 kg on 1 N/m let go at `start` (m), damped by `damping` (N s/m), under 1 N on a
+/// contact of these two levels and a `force`.
 fn both(
     damping: f64,
     levels: [f64; 2],
@@ -52,8 +52,8 @@ fn against_its_mode(motion: &Trajectory, sampling: &Sampling) -> f64 {
     worst
 }
 
-/// Slow ramps lead a contact of two levels to ever shorter swings, until rounding decides whether it holds; and once it does,
-/// it does until the load has crossed the whole zone.
+/// Slow ramps lead a contact of two levels to ever shorter swings, until rounding decides whether it holds; and once it
+/// does, it does until the load has crossed the whole zone.
 #[test]
 fn a_contact_moves_as_its_mode_says() {
     let sampling = Sampling::uniform(0.05, 801).unwrap();
@@ -107,8 +107,8 @@ fn no_level_moves_a_jump() {
     }
 }
 
-/// A counterface accelerates from rest and takes the machine along until inertia, damping and spring exceed the level: seen
-/// from the counterface, m a + c a t + k a t²/2 = F_s.
+/// A counterface accelerates from rest and takes the machine along until inertia, damping and spring exceed the level:
+/// seen from the counterface, m a + c a t + k a t²/2 = F_s.
 #[test]
 fn an_accelerating_counterface_loses_the_machine_at_a_known_time() {
     let [mass, damping, stiffness, acceleration, level] = [2.0, 1.5, 50.0, 0.7, 9.0];

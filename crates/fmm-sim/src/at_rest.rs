@@ -7,8 +7,8 @@ use crate::curve::Wave;
 use crate::drive::{Drive, Piece};
 use crate::load::{load, rounding};
 
-/// Whether a contact that holds in `state` at `time`, in the piece of this `index`, is at rest and no force to come exceeds what its
-/// `breakaway` coefficient holds.
+/// Whether a contact that holds in `state` at `time`, in the piece of this `index`, is at rest and no force to come
+/// exceeds what its `breakaway` coefficient holds.
 pub(crate) fn holds_for_good<D: Scalar>(
     oscillator: &Oscillator<D>,
     drive: &Drive<D>,

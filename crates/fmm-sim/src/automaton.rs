@@ -160,8 +160,8 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         (if slips { self.sliding(direction) } else { Mode::Stick }, load)
     }
 
-    /// Whether the position in which friction balances the `load` (N) lies ahead. Beyond the static level it does, as the
-    /// sliding level is not higher; where rounding says otherwise, nothing moves.
+    /// Whether the position in which friction balances the `load` (N) lies ahead. Beyond the static level it does, as
+    /// the sliding level is not higher; where rounding says otherwise, nothing moves.
     fn is_ahead(&self, load: f64, normal_load: D, state: State<D>, direction: Direction) -> bool {
         let sliding = (self.levels.gaining(D::from(0.0)) * normal_load).value();
         match self.oscillator.restoring() {
@@ -285,8 +285,8 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         }
     }
 
-    /// Gives a body that slides what a force has given it that jumps, at the beginning of the piece of this `index`, at a time with
-    /// derivatives.
+    /// Gives a body that slides what a force has given it that jumps, at the beginning of the piece of this `index`, at
+    /// a time with derivatives.
     fn push(&self, mode: Mode, drive: &Drive<D>, index: usize, state: &mut State<D>) {
         if matches!(mode, Mode::Slip(_) | Mode::Gaining(_) | Mode::Losing(_)) {
             state.velocity += drive.impulse_of_jumps(index) / self.oscillator.mass();
@@ -383,8 +383,8 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         for (level, sign) in [(above, 1.0), (below, -1.0)] {
             let (bound, bound_slope) = (normal_load * level, load_slope * level);
             let excess = sign * now - bound.value();
-            // A contact that has been found to hold does so although rounding may put the load beyond the level; a steady
-            // phase begins on a bound, as exactly as the engine has found it.
+            // A contact that has been found to hold does so although rounding may put the load beyond the level; a
+            // steady phase begins on a bound, as exactly as the engine has found it.
             let slack = excess > 0.0 && (steady.is_none() || excess <= ON_BOUND * bound.value().abs());
             let bound = if slack { bound + excess } else { bound };
             if is_bent {
@@ -462,7 +462,8 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     }
 }
 
-/// Time at which `reserve`, positive at first, falls to zero within `span`; searched in steps of about a quarter of the `usual` time.
+/// Time at which `reserve`, positive at first, falls to zero within `span`; searched in steps of about a quarter of the
+/// `usual` time.
 fn fallen(reserve: impl Fn(f64) -> f64, usual: f64, span: f64) -> Option<f64> {
     const STEPS: (f64, f64) = (64.0, 4096.0);
     let step = (0.25 * usual).clamp(span / STEPS.1, span / STEPS.0);

@@ -14,9 +14,9 @@ use crate::{Bristle, Engine, Exact, RungeKutta, Sampling, Scenario, SimulationEr
 /// | any other of the sliding speed | any | [`RungeKutta`](crate::RungeKutta) |
 /// | with internal state, elements on a machine that is not linear among them | any | [`Bristle`](crate::Bristle) |
 ///
-/// [`Trajectory::engine`] says which was taken. A law of one's own needs [`LawFamily`] and [`FamilyMember`] beside its formula, which tell
-/// what kind of law it is; one that is a [`SlidingLaw`] or a [`BristleLaw`] and no more is moved by [`RungeKutta`](crate::RungeKutta) or
-/// [`Bristle`](crate::Bristle) directly.
+/// [`Trajectory::engine`] says which was taken. A law of one's own needs [`LawFamily`] and [`FamilyMember`] beside its
+/// formula, which tell what kind of law it is; one that is a [`SlidingLaw`] or a [`BristleLaw`] and no more is moved by
+/// [`RungeKutta`](crate::RungeKutta) or [`Bristle`](crate::Bristle) directly.
 ///
 /// ```
 /// use fmm_friction::Stribeck;
@@ -48,12 +48,13 @@ where
     Ok(trajectory)
 }
 
-/// Simulates `scenario` with the engine that suits the laws of family `F`, as [`simulate`] does, into `trajectory`. A relative
-/// `tolerance` (1) replaces that of the engine, if the engine has one: a Runge-Kutta run to 1e-10 takes half as long.
+/// Simulates `scenario` with the engine that suits the laws of family `F`, as [`simulate`] does, into `trajectory`. A
+/// relative `tolerance` (1) replaces that of the engine, if the engine has one: a Runge-Kutta run to 1e-10 takes half
+/// as long.
 ///
 /// # Errors
-/// As [`Engine::run_into`], and [`SimulationError::OutOfRange`] for a tolerance outside 1e-15 to 1e-2, whether the engine has one or
-/// not.
+/// As [`Engine::run_into`], and [`SimulationError::OutOfRange`] for a tolerance outside 1e-15 to 1e-2, whether the
+/// engine has one or not.
 pub fn simulate_into<F: LawFamily, D: Scalar>(
     scenario: &Scenario<D, F::At<D>>,
     sampling: &Sampling,
@@ -82,8 +83,8 @@ const fn has_no_closed_form(error: &SimulationError) -> bool {
     matches!(error, SimulationError::NoClosedForm { .. })
 }
 
-/// All laws share one copy of an engine that integrates: a copy for each was a third of what a program of all laws takes to compile,
-/// and a run by a pointer to the law takes 1 to 5 % longer.
+/// All laws share one copy of an engine that integrates: a copy for each was a third of what a program of all laws
+/// takes to compile, and a run by a pointer to the law takes 1 to 5 % longer.
 impl<D: Scalar, L> LawVisitor<D, L> for Simulation<'_, D, L> {
     type Output = Result<(), SimulationError>;
 
@@ -100,8 +101,8 @@ impl<D: Scalar, L> LawVisitor<D, L> for Simulation<'_, D, L> {
     where
         L: PiecewiseLinearLaw<D> + SlidingLaw<D>,
     {
-        // On a spring that does not turn the motion round within the sampled time, the closed form is a small difference of
-        // large numbers.
+        // On a spring that does not turn the motion round within the sampled time, the closed form is a small
+        // difference of large numbers.
         let turns = self.scenario.oscillator().natural_angular_frequency().value() * self.sampling.end();
         if turns < WEAK_SPRING {
             return self.sliding();
@@ -147,7 +148,8 @@ mod tests {
         Ok(trajectory.velocity().values().to_vec())
     }
 
-    /// Elements move a linear machine in closed form. With other damping they are integrated; they do not take a load that varies.
+    /// Elements move a linear machine in closed form. With other damping they are integrated; they do not take a load
+    /// that varies.
     #[test]
     fn elements_go_to_the_engine_that_takes_them() {
         let law = || MaxwellSlipOf::<2>::at(&[0.1, 4e3, 0.1, 1e3]).unwrap();

@@ -189,7 +189,8 @@ impl<'a, D: Scalar> Curve<'a, D> {
 
 impl Curve<'_, f64> {
     /// The same curve, known to begin at zero and not to fall. Its free part gives up what rounding has left of the
-    /// value, and of a slope that does not exceed `noise`: at the rate of a fast decay, that would outlive what is to come.
+    /// value, and of a slope that does not exceed `noise`: at the rate of a fast decay, that would outlive what is to
+    /// come.
     pub(crate) fn risen_from_zero(mut self, noise: f64) -> Self {
         let forced = self.forced_state(0.0);
         if let Some((decay, free)) = &mut self.decay {

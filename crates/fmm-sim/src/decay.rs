@@ -198,16 +198,16 @@ impl<D: Scalar> Decay<D> {
     }
 }
 
-/// A free decay ahead of some time: its value and first two derivatives there, and what it and its derivatives up to the
-/// third do not exceed in magnitude from there on.
+/// A free decay ahead of some time: its value and first two derivatives there, and what it and its derivatives up to
+/// the third do not exceed in magnitude from there on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ahead {
     pub(crate) derivatives: [f64; 3],
     pub(crate) most: [f64; 4],
 }
 
-/// From this ratio of σ to a on, the two exponentials of a motion without oscillation are far enough apart to be written
-/// as a sum.
+/// From this ratio of σ to a on, the two exponentials of a motion without oscillation are far enough apart to be
+/// written as a sum.
 const APART: f64 = 0.1;
 
 impl Decay<f64> {
@@ -226,8 +226,8 @@ impl Decay<f64> {
             let derivatives = [first.position, first.velocity, second.velocity];
             return Ahead { derivatives, most: [first, second, third, self.derivative(third)].map(|s| self.most(s)) };
         }
-        // A e^(−st) + B e^(−ft): the derivatives of the slow part would drown in the rounding of a fast one that is long
-        // gone, each of them f/s times deeper.
+        // A e^(−st) + B e^(−ft): the derivatives of the slow part would drown in the rounding of a fast one that is
+        // long gone, each of them f/s times deeper.
         let fast = self.rate + sigma;
         let slow = self.square / fast;
         let mut slow_part = (free.velocity + fast * free.position) / (2.0 * sigma) * (-slow * elapsed).exp();
@@ -283,8 +283,8 @@ mod tests {
         assert!((quotient / slope - 1.0).abs() < 1e-5, "{quotient} instead of {slope} s²/m");
     }
 
-    /// A sum of exponentials and the recurrence of the equation of motion are two ways to the same derivatives; the first
-    /// keeps those of a slow motion whose fast part, a million times faster, is gone.
+    /// A sum of exponentials and the recurrence of the equation of motion are two ways to the same derivatives; the
+    /// first keeps those of a slow motion whose fast part, a million times faster, is gone.
     #[test]
     fn derivatives_ahead_belong_to_the_motion() {
         for ratio in [0.3, 1.0, 1.004, 1.006, 3.0] {

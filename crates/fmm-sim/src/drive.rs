@@ -61,8 +61,8 @@ impl<D: Scalar> Piece<D> {
         &self.waves
     }
 
-    /// Angular frequencies (rad/s) of the waves that there are, those that exist in derivatives only left out: steps must not
-    /// depend on them.
+    /// Angular frequencies (rad/s) of the waves that there are, those that exist in derivatives only left out: steps
+    /// must not depend on them.
     pub(crate) fn frequencies(&self) -> impl Iterator<Item = f64> {
         self.waves.iter().filter(|wave| wave.amplitude.value() != 0.0).map(|wave| wave.angular.value())
     }
@@ -183,8 +183,8 @@ impl<'a, D: Scalar> Drive<'a, D> {
         })
     }
 
-    /// The forces (N) that jump at the beginning of the piece of this `index`, each with the derivatives of its time (s), whose
-    /// value is zero.
+    /// The forces (N) that jump at the beginning of the piece of this `index`, each with the derivatives of its time
+    /// (s), whose value is zero.
     fn jumps(&self, index: usize) -> impl Iterator<Item = (D, D)> {
         let time = self.knots[index];
         let of = move |Excitation { source, delay }: &Excitation<D>| {
@@ -205,8 +205,8 @@ impl<'a, D: Scalar> Drive<'a, D> {
         self.excitations.iter().flat_map(of).flatten()
     }
 
-    /// The impulse (N s), zero but for its derivatives, that a moving body has gained by the beginning of the piece of this `index`
-    /// because a force has jumped at a time which has derivatives.
+    /// The impulse (N s), zero but for its derivatives, that a moving body has gained by the beginning of the piece of
+    /// this `index` because a force has jumped at a time which has derivatives.
     pub(crate) fn impulse_of_jumps(&self, index: usize) -> D {
         let zero = D::from(0.0);
         if D::DIRECTIONS == 0 {
@@ -215,8 +215,8 @@ impl<'a, D: Scalar> Drive<'a, D> {
         self.jumps(index).fold(zero, |sum, (force, late)| sum - late * force.value())
     }
 
-    /// The derivatives of the time at which the force jumps at the beginning of the piece of this `index`, their value being zero;
-    /// `None` if it does not jump.
+    /// The derivatives of the time at which the force jumps at the beginning of the piece of this `index`, their value
+    /// being zero; `None` if it does not jump.
     pub(crate) fn time_of_jump(&self, index: usize) -> Option<D> {
         self.jumps(index).max_by(|a, b| a.0.value().abs().total_cmp(&b.0.value().abs())).map(|(_, late)| late)
     }

@@ -58,8 +58,8 @@ pub enum SimulationError {
         /// Position (m).
         position: f64,
     },
-    /// More events or steps than any record needs, or steps below the resolution of time: shorten the sampled time, or ask for less
-    /// accuracy.
+    /// More events or steps than any record needs, or steps below the resolution of time: shorten the sampled time, or
+    /// ask for less accuracy.
     #[error("{what}")]
     Exhausted {
         /// Of what there are too many, and until when.
@@ -136,7 +136,8 @@ impl SimulationError {
         }
     }
 
-    /// The spring is too weak, beside the forces that act and the time that passes, for the closed form to keep nine digits.
+    /// The spring is too weak, beside the forces that act and the time that passes, for the closed form to keep nine
+    /// digits.
     pub(crate) fn weak_spring(stiffness: f64) -> Self {
         Self::NoClosedForm {
             what: format!(

@@ -34,7 +34,8 @@ pub enum Mode {
     Slip(Direction),
     /// It slides and gains speed, under a law that depends on the acceleration.
     Gaining(Direction),
-    /// It slides at constant speed, its friction being between the two levels of a law that depends on the acceleration.
+    /// It slides at constant speed, its friction being between the two levels of a law that depends on the
+    /// acceleration.
     Steady(Direction),
     /// It slides and loses speed, under a law that depends on the acceleration.
     Losing(Direction),
@@ -89,7 +90,8 @@ pub struct Event<D = f64> {
     pub load: f64,
     /// F_s, the static level that the load is compared with (N).
     pub static_level: f64,
-    /// Whether the event was only grazed, so that its time has no derivative; derivatives after it leave its change out.
+    /// Whether the event was only grazed, so that its time has no derivative; derivatives after it leave its change
+    /// out.
     pub grazing: bool,
 }
 

@@ -52,7 +52,8 @@ impl<D: Scalar> Excitation<D> {
         Ok(Self::of(Source::SampledForce { interval, values }))
     }
 
-    /// A hammer blow, `peak` · sin(π t/`duration`) (N) for 0 ≤ t ≤ `duration` (s); its impulse is 2/π · peak · duration.
+    /// A hammer blow, `peak` · sin(π t/`duration`) (N) for 0 ≤ t ≤ `duration` (s); its impulse is 2/π · peak ·
+    /// duration.
     ///
     /// # Errors
     /// [`SimulationError::Quantity`] if the peak is not finite or the duration not positive.
@@ -71,8 +72,9 @@ impl<D: Scalar> Excitation<D> {
         Ok(Self::of(Source::Ramp { force, rate: D::from(0.0) }))
     }
 
-    /// A force as a function of time. `force` gives it (N) at t = 0, `interval`, 2 `interval`, … up to `duration` (s). Between these times
-    /// it is a straight line, with an error of up to `interval`²/8 times the curvature of the force; after the last there is no force.
+    /// A force as a function of time. `force` gives it (N) at t = 0, `interval`, 2 `interval`, … up to `duration` (s).
+    /// Between these times it is a straight line, with an error of up to `interval`²/8 times the curvature of the
+    /// force; after the last there is no force.
     ///
     /// ```
     /// use fmm_friction::Coulomb;
@@ -88,8 +90,8 @@ impl<D: Scalar> Excitation<D> {
     /// ```
     ///
     /// # Errors
-    /// As [`sampled_force`](Self::sampled_force), and [`SimulationError::OutOfRange`] if there are more times than there is memory
-    /// for.
+    /// As [`sampled_force`](Self::sampled_force), and [`SimulationError::OutOfRange`] if there are more times than
+    /// there is memory for.
     pub fn function(interval: f64, duration: f64, force: impl FnMut(f64) -> D) -> Result<Self, SimulationError> {
         ModelError::require_positive("interval of the force", interval, "s")?;
         ModelError::require_positive("duration of the force", duration, "s")?;
@@ -145,8 +147,8 @@ impl<D: Scalar> Excitation<D> {
         Ok(Self::of(Source::Belt { velocity }))
     }
 
-    /// The same sampled or constant force, function, half sine or ramp, begun `delay` (s) later, with the derivatives of the delay. Harmonic motion and a
-    /// belt have no beginning and stay as they are.
+    /// The same sampled or constant force, function, half sine or ramp, begun `delay` (s) later, with the derivatives
+    /// of the delay. Harmonic motion and a belt have no beginning and stay as they are.
     ///
     /// # Errors
     /// [`SimulationError::Quantity`] if the delay is negative or not finite.

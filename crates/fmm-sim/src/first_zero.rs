@@ -10,15 +10,15 @@ pub(crate) const SEARCH_BUDGET: usize = 5_000_000;
 /// Rounding of a value, in units of the sum of the magnitudes of its terms.
 pub(crate) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Largest distance below zero, in the same units, at which a curve may begin that is known to begin at zero and rises: its terms are
-/// rounded sums.
+/// Largest distance below zero, in the same units, at which a curve may begin that is known to begin at zero and rises:
+/// its terms are rounded sums.
 const AT_ZERO: f64 = 1e-12;
 
 /// The first time in (0, `limit`] at which `curve`, positive until then, reaches zero.
 ///
 /// From each point the curve lies above its tangent less the parabola of its greatest curvature ahead. The search goes
-/// to where that lower bound reaches zero, which the curve cannot do before, so that no zero is missed however close two
-/// of them are. Near a simple zero this is Newton's method from the near side, and converges as fast.
+/// to where that lower bound reaches zero, which the curve cannot do before, so that no zero is missed however close
+/// two of them are. Near a simple zero this is Newton's method from the near side, and converges as fast.
 ///
 /// A zero at the start is left behind if the curve rises from it. Where it neither rises nor is positive, the start
 /// itself is the zero.

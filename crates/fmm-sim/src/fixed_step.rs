@@ -42,7 +42,8 @@ impl<'a> PieceAt<'a> {
         Self { drive, piece: drive.piece(0), index: 0 }
     }
 
-    /// Whether a contact of `oscillator` that holds in `state` at `time` with this `breakaway` coefficient does so for good.
+    /// Whether a contact of `oscillator` that holds in `state` at `time` with this `breakaway` coefficient does so for
+    /// good.
     pub(crate) fn holds_for_good(&self, oscillator: &Oscillator, time: f64, state: State, breakaway: f64) -> bool {
         holds_for_good(oscillator, self.drive, self.index, time, state, breakaway)
     }

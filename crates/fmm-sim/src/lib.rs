@@ -19,9 +19,9 @@
 //!
 //! # Which engine
 //!
-//! Stick and slip form a hybrid automaton. While the contact slips in one direction the equation of motion is smooth; when
-//! the relative velocity reaches zero the load on the contact decides whether it sticks or slips back. There is no velocity
-//! dead zone and no smoothed signum; the set of loads that stick is closed,
+//! Stick and slip form a hybrid automaton. While the contact slips in one direction the equation of motion is smooth;
+//! when the relative velocity reaches zero the load on the contact decides whether it sticks or slips back. There is no
+//! velocity dead zone and no smoothed signum; the set of loads that stick is closed,
 //! |load| ≤ static level. The automaton is the same for all laws of the sliding speed; engines differ in the method for
 //! one phase of sliding.
 //!
@@ -33,10 +33,11 @@
 //! | [`Moreau`] | cross-check | time stepping of the set-valued law, of first order | fits: no derivatives |
 //! | [`Thesis`] | reproduction of the thesis only | the appendix' semi-implicit Euler, branch for branch | fits: its sum of squares jumps |
 //!
-//! The first three give gradients in every input, through every event: [`Exact`] to rounding, the others to the accuracy that their
-//! pages state. [`simulate`] takes the engine that suits the law; [`Trajectory::engine`] names it. External actions are
-//! [`Excitation`]s, which add up; a release or a push is an initial state. The [`Work`] done by friction, damping
-//! and excitation comes along on request. A contact whose motion is given needs no engine: [`friction_along`].
+//! The first three give gradients in every input, through every event: [`Exact`] to rounding, the others to the
+//! accuracy that their pages state. [`simulate`] takes the engine that suits the law; [`Trajectory::engine`] names it.
+//! External actions are [`Excitation`]s, which add up; a release or a push is an initial state. The [`Work`] done by
+//! friction, damping and excitation comes along on request. A contact whose motion is given needs no engine:
+//! [`friction_along`].
 //!
 //! # Scenarios of common machines
 //!
@@ -75,14 +76,14 @@
 //! # Units and conventions
 //!
 //! SI units; x = 0 is where the spring is free of force, t = 0 the initial state. Per unit mass, stiffness, damping and
-//! force are those by the mass. A sample at the time of an event holds the state after it, its acceleration included, which jumps
-//! there: at a reversal by twice the friction force over the mass.
+//! force are those by the mass. A sample at the time of an event holds the state after it, its acceleration included,
+//! which jumps there: at a reversal by twice the friction force over the mass.
 //!
 //! # Guarantees
 //!
-//! * *Events* are in order and carry their [`margin`](Event::margin), the distance of the load from the static level. [`Exact`] misses none
-//!   and decides ties by comparing the numbers as they are; [`RungeKutta`] and [`Bristle`] land on each zero of their
-//!   polynomials, which Bernstein coefficients prove to be all.
+//! * *Events* are in order and carry their [`margin`](Event::margin), the distance of the load from the static level.
+//!   [`Exact`] misses none and decides ties by comparing the numbers as they are; [`RungeKutta`] and [`Bristle`] land
+//!   on each zero of their polynomials, which Bernstein coefficients prove to be all.
 //! * *Derivatives* include those of the event times. They do not see that the number of half swings may change; a
 //!   margin near zero warns of it.
 //! * *Errors* are typed: a motion with too many events or steps for any record, or one that leaves the range of
@@ -101,9 +102,9 @@
 //! | [`Thesis`], [`Moreau`] | - | 16 ns, 27 ns | none |
 //!
 //! While a measured force acts, [`Exact`] goes from sample to sample of the force, 0.3 µs each.
-//! [`run_into`](Engine::run_into) uses the memory of a [`Trajectory`] again; [`Sampling::keeping`] leaves out the channel
-//! that is not wanted, or adds the acceleration ([`Channels::All`]): 0.6 ns a sample of a free motion with [`Exact`], elsewhere one
-//! evaluation of the force and the law, 15 to 55 ns.
+//! [`run_into`](Engine::run_into) uses the memory of a [`Trajectory`] again; [`Sampling::keeping`] leaves out the
+//! channel that is not wanted, or adds the acceleration ([`Channels::All`]): 0.6 ns a sample of a free motion with
+//! [`Exact`], elsewhere one evaluation of the force and the law, 15 to 55 ns.
 //!
 //! # Neighbours
 //!

@@ -7,20 +7,21 @@ use crate::error::NOT_UNIFORM;
 use crate::fixed_step::{GridEvents, PieceAt};
 use crate::{Direction, Engine, Event, EventKind, Mode, Sampling, Scenario, SimulationError, State, Trajectory};
 
-/// The Moreau-Jean θ-method: friction is an impulse in each step, as large as its level allows and as small as it must be for
-/// the contact to hold.
+/// The Moreau-Jean θ-method: friction is an impulse in each step, as large as its level allows and as small as it must
+/// be for the contact to hold.
 ///
 /// ```text
 /// M (u⁺ − u_free) ∈ −h F Sgn(u⁺),   M = m + h θ c₁ + h² θ² k,   u = x′ − v_b
 /// u⁺ = 0 if M |u_free| ≤ h F,   else u_free − h F/M sgn(u_free)
 /// ```
 ///
-/// with u_free the velocity after a step without friction. Where the static level is above the sliding one, F is the static
-/// level in stick, and a contact whose u would change sign in a step stops if the load does not exceed it. It needs no event
-/// location, and it is the method of contact mechanics with many contacts; but it is of first order wherever the motion turns or stops, and its events
-/// lie on the sampling grid. One step is one sampling interval. Accelerations are those that the state at a sample has, not those
-/// of the impulses. The level of a law is that at the speed before the step;
-/// nonlinear parts of the machine are taken at the beginning of the step. It offers no derivatives.
+/// with u_free the velocity after a step without friction. Where the static level is above the sliding one, F is the
+/// static level in stick, and a contact whose u would change sign in a step stops if the load does not exceed it. It
+/// needs no event location, and it is the method of contact mechanics with many contacts; but it is of first order
+/// wherever the motion turns or stops, and its events lie on the sampling grid. One step is one sampling interval.
+/// Accelerations are those that the state at a sample has, not those of the impulses. The level of a law is that at the
+/// speed before the step; nonlinear parts of the machine are taken at the beginning of the step. It offers no
+/// derivatives.
 ///
 /// # References
 /// J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", in *Nonsmooth Mechanics and
@@ -195,8 +196,8 @@ mod tests {
         }
     }
 
-    /// A contact that comes to relative rest between the sliding and the static level holds, whatever the step: at 4.9 mm the
-    /// spring pulls with 0.49 N against 0.3 N while it slides and 0.5 N at rest.
+    /// A contact that comes to relative rest between the sliding and the static level holds, whatever the step: at 4.9
+    /// mm the spring pulls with 0.49 N against 0.3 N while it slides and 0.5 N at rest.
     #[test]
     fn stops_between_the_levels_are_found() {
         let machine = Oscillator::new(1.0, 100.0).unwrap().with_damping(Damping::linear(0.1).unwrap());

@@ -36,8 +36,8 @@ pub(crate) struct Leg<D> {
 }
 
 impl<D: Scalar> PrescribedMotion<D> {
-    /// Straight lines from each of `positions` (m) to the next at constant `speed` (m/s); the velocity jumps where the direction
-    /// changes.
+    /// Straight lines from each of `positions` (m) to the next at constant `speed` (m/s); the velocity jumps where the
+    /// direction changes.
     ///
     /// # Errors
     /// [`SimulationError::Quantity`] if the speed is not positive or a number not finite.
@@ -63,8 +63,8 @@ impl<D: Scalar> PrescribedMotion<D> {
         Ok(Self { first: positions.first().copied(), legs: positions.windows(2).map(leg).collect() })
     }
 
-    /// Straight lines through `positions` (m) at `times` (s), at constant velocity between each two of them: a motion of which nothing but
-    /// positions was measured.
+    /// Straight lines through `positions` (m) at `times` (s), at constant velocity between each two of them: a motion
+    /// of which nothing but positions was measured.
     ///
     /// ```
     /// use fmm_friction::Dahl;
@@ -79,8 +79,8 @@ impl<D: Scalar> PrescribedMotion<D> {
     /// ```
     ///
     /// # Errors
-    /// [`SimulationError::OutOfRange`] if the times do not ascend from 0, two are equal, or there are not as many as positions,
-    /// [`SimulationError::Quantity`] if a number is not finite.
+    /// [`SimulationError::OutOfRange`] if the times do not ascend from 0, two are equal, or there are not as many as
+    /// positions, [`SimulationError::Quantity`] if a number is not finite.
     pub fn lines(times: &[D], positions: &[D]) -> Result<Self, SimulationError> {
         require_times(times, positions.len())?;
         for position in positions {
@@ -100,9 +100,9 @@ impl<D: Scalar> PrescribedMotion<D> {
         Ok(Self { first: positions.first().copied(), legs })
     }
 
-    /// A motion through `states` (m, m/s) at `times` (s): the cubic between each two of them that has their positions and
-    /// velocities. Between samples h (s) apart of a smooth motion it is off by up to h⁴/384 times the fourth derivative. Two states
-    /// at the same time make the velocity jump.
+    /// A motion through `states` (m, m/s) at `times` (s): the cubic between each two of them that has their positions
+    /// and velocities. Between samples h (s) apart of a smooth motion it is off by up to h⁴/384 times the fourth
+    /// derivative. Two states at the same time make the velocity jump.
     ///
     /// ```
     /// use fmm_friction::LuGre;
@@ -167,14 +167,14 @@ fn require_times<D: Scalar>(times: &[D], points: usize) -> Result<(), Simulation
     Ok(())
 }
 
-/// Friction of a `law` with internal state under `normal_load` (N) along a `motion`: one entry for each of its points. Bristles are
-/// not deflected at the first.
+/// Friction of a `law` with internal state under `normal_load` (N) along a `motion`: one entry for each of its points.
+/// Bristles are not deflected at the first.
 ///
 /// Laws such as [`Dahl`](fmm_friction::Dahl), [`BoucWen`](fmm_friction::BoucWen) and
-/// [`MaxwellSlip`](fmm_friction::MaxwellSlip) depend on the positions only, so that any speed gives the quasi-static loop. At constant velocity the
-/// laws that can ([`BristleLaw::carry`]) are followed in closed form. Forces
-/// and states are good to about 1e-12; at a dual number they have their derivatives, those in positions, velocities and times
-/// included.
+/// [`MaxwellSlip`](fmm_friction::MaxwellSlip) depend on the positions only, so that any speed gives the quasi-static
+/// loop. At constant velocity the laws that can ([`BristleLaw::carry`]) are followed in closed form. Forces
+/// and states are good to about 1e-12; at a dual number they have their derivatives, those in positions, velocities and
+/// times included.
 ///
 /// ```
 /// use fmm_friction::Dahl;
@@ -212,8 +212,8 @@ mod tests {
 
     use super::*;
 
-    /// Elements that slide steadily show nothing of how fast they follow the curve, but their derivatives do: these decay within
-    /// milliseconds here, and steps of a second would let them grow instead.
+    /// Elements that slide steadily show nothing of how fast they follow the curve, but their derivatives do: these
+    /// decay within milliseconds here, and steps of a second would let them grow instead.
     #[test]
     fn derivatives_of_a_steady_slide_stay_what_they_are() {
         let values = [0.2, 0.3, 0.02, 2.0, 0.1, 20.0, 6000.0, 800.0, 0.5];

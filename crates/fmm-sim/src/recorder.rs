@@ -38,7 +38,8 @@ impl<'a, D: Scalar> Recorder<'a, D> {
 
     /// Adds an event.
     ///
-    /// Inline, as a free swing of the exact engine is: to copy what had just been written took 4 % of a ring-down in either place.
+    /// Inline, as a free swing of the exact engine is: to copy what had just been written took 4 % of a ring-down in
+    /// either place.
     #[inline]
     pub(crate) fn push(&mut self, event: Event<D>) -> Result<(), SimulationError> {
         let finite = event.time.value().is_finite()
@@ -85,8 +86,8 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         Ok(())
     }
 
-    /// Writes the accelerations of the samples from `first` to the last that is written, `of` giving that at a sample's time
-    /// and state.
+    /// Writes the accelerations of the samples from `first` to the last that is written, `of` giving that at a sample's
+    /// time and state.
     pub(crate) fn accelerations(
         &mut self,
         first: usize,
@@ -136,7 +137,8 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         self.at_constant_speed(first);
     }
 
-    /// Writes the samples before `end` of a motion at this `velocity`, `position` giving where it is at a sample's time.
+    /// Writes the samples before `end` of a motion at this `velocity`, `position` giving where it is at a sample's
+    /// time.
     pub(crate) fn constant_velocity(
         &mut self,
         end: f64,
@@ -176,8 +178,8 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         self.polynomials(end, begin, length, |component| if component == 0 { position } else { velocity })
     }
 
-    /// Writes the derivatives anew of the samples from `first` to the last that is written, `state` giving the state at a
-    /// sample's time.
+    /// Writes the derivatives anew of the samples from `first` to the last that is written, `state` giving the state at
+    /// a sample's time.
     pub(crate) fn partials(&mut self, first: usize, mut state: impl FnMut(f64) -> State<D>) {
         let channels = self.sampling.channels();
         for index in first..self.written {

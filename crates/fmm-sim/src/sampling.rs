@@ -77,7 +77,8 @@ impl Sampling {
     /// Samples at the given `times` (s), which must ascend from 0 on; position and velocity.
     ///
     /// # Errors
-    /// [`SimulationError::OutOfRange`] if there is no time, or one that is negative, not finite or before its predecessor.
+    /// [`SimulationError::OutOfRange`] if there is no time, or one that is negative, not finite or before its
+    /// predecessor.
     pub fn at(times: impl Into<Arc<[f64]>>) -> Result<Self, SimulationError> {
         let times = times.into();
         let mut before = 0.0;
@@ -165,8 +166,8 @@ impl Sampling {
     pub(crate) fn index_at_or_after(&self, time: f64) -> usize {
         match &self.grid {
             Grid::Uniform { interval } => {
-                // The quotient is cut and may be off by one ulp; comparisons with the sample times themselves decide, without
-                // a branch, as which way they go is as good as random.
+                // The quotient is cut and may be off by one ulp; comparisons with the sample times themselves decide,
+                // without a branch, as which way they go is as good as random.
                 let (first, end) = (self.first as i64, (self.first + self.count) as i64);
                 let guess = ((time / interval) as i64).clamp(first, end);
                 let (near, is_before) = (guess as f64, |index: f64| i64::from(index * interval < time));

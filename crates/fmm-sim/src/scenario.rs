@@ -89,11 +89,12 @@ impl<D: Scalar, L> Scenario<D, L> {
         self
     }
 
-    /// The same machine under a normal load that varies in time: `values` (N), one every `interval` (s) from t = 0 on, straight lines
-    /// between them, and the last from its time on.
+    /// The same machine under a normal load that varies in time: `values` (N), one every `interval` (s) from t = 0 on,
+    /// straight lines between them, and the last from its time on.
     ///
-    /// [`RungeKutta`](crate::RungeKutta) takes such a load with any law of the sliding speed, and [`simulate`](crate::simulate) takes
-    /// that engine; laws with internal state cannot have one. Values that are dual numbers carry their derivatives into the motion.
+    /// [`RungeKutta`](crate::RungeKutta) takes such a load with any law of the sliding speed, and
+    /// [`simulate`](crate::simulate) takes that engine; laws with internal state cannot have one. Values that are dual
+    /// numbers carry their derivatives into the motion.
     ///
     /// ```
     /// use fmm_friction::Coulomb;
@@ -177,11 +178,11 @@ impl<D: Scalar, L: ?Sized> Scenario<D, L> {
 }
 
 impl<D: Scalar, L: BristleLaw<D>> Scenario<D, L> {
-    /// The same machine, let go with the state of this `index` of its law at `deflection`, in the law's unit (m for bristles and
-    /// elements), as an earlier motion has left it.
+    /// The same machine, let go with the state of this `index` of its law at `deflection`, in the law's unit (m for
+    /// bristles and elements), as an earlier motion has left it.
     ///
-    /// [`Bristle`](crate::Bristle) takes a state that begins at the bound to which the motion takes it for the bound, with the
-    /// derivatives of that.
+    /// [`Bristle`](crate::Bristle) takes a state that begins at the bound to which the motion takes it for the bound,
+    /// with the derivatives of that.
     ///
     /// ```
     /// use fmm_friction::Dahl;

@@ -6,8 +6,8 @@ use crate::State;
 
 /// The spring of an oscillator in the range of positions in which the machine is.
 ///
-/// Stages of a step may lie beyond a corner although its end does not: each step takes the force of one range, however far
-/// they reach.
+/// Stages of a step may lie beyond a corner although its end does not: each step takes the force of one range, however
+/// far they reach.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Spring<'a, D> {
     oscillator: &'a Oscillator<D>,

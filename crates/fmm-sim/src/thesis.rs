@@ -14,15 +14,17 @@ use crate::{Direction, Engine, EventKind, Mode, Sampling, Scenario, SimulationEr
 /// ```
 ///
 /// While the velocity keeps its sign, s is that sign. In the step after a change of sign the velocity is set to
-/// zero if the load is below the static level, and otherwise s is the sign of the load. One step is one sampling interval;
-/// a force is held over it. For a law that depends on the acceleration, that of the step before decides (thesis Eq. 7.3).
+/// zero if the load is below the static level, and otherwise s is the sign of the load. One step is one sampling
+/// interval; a force is held over it. For a law that depends on the acceleration, that of the step before decides
+/// (thesis Eq. 7.3).
 ///
 /// The method is of first order, its stops and reversals snap to the sampling grid, and a least-squares
 /// objective built on it jumps whenever one of them moves by a sample. It therefore offers no derivatives, and
 /// no accelerations, as it puts the velocity to zero without any;
 /// [`Exact`](crate::Exact) is both faster and free of these errors.
 ///
-/// The load is f − F_k(x). The thesis' Eq. 8.1 takes F_k(x) alone, which would never let a hammer move a machine at rest.
+/// The load is f − F_k(x). The thesis' Eq. 8.1 takes F_k(x) alone, which would never let a hammer move a machine at
+/// rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Thesis {
     level: StaticLevel,
@@ -40,8 +42,8 @@ impl Thesis {
     /// As in A3, A4 and A5: the machine stops if |x| < μ_s N/k.
     pub const A3: Self = Self { level: StaticLevel::Breakaway };
 
-    /// As in A6: the machine stops if k |x| < μ(|x′|) N, at the speed with which it has overshot. With a law that vanishes
-    /// at zero speed it hardly ever does.
+    /// As in A6: the machine stops if k |x| < μ(|x′|) N, at the speed with which it has overshot. With a law that
+    /// vanishes at zero speed it hardly ever does.
     pub const A6: Self = Self { level: StaticLevel::AtSpeed };
 }
 

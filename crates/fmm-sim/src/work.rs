@@ -50,8 +50,8 @@ impl<D: Scalar> Work<D> {
         Self { friction: zero, viscous: zero, external: zero }
     }
 
-    /// Adds the integral of `power` from `begin` to `end` (s), in pieces no longer than `scale`, of which `budget` is what
-    /// is left.
+    /// Adds the integral of `power` from `begin` to `end` (s), in pieces no longer than `scale`, of which `budget` is
+    /// what is left.
     ///
     /// # Errors
     /// [`SimulationError::Exhausted`] if there are more pieces.

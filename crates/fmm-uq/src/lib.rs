@@ -1,5 +1,5 @@
-//! Measurement uncertainty after the *Guide to the expression of uncertainty in measurement* (GUM, JCGM 100:2008) and its
-//! supplements (JCGM 101:2008, JCGM 102:2011). A measurement is a set of [`Inputs`] and a function of them.
+//! Measurement uncertainty after the *Guide to the expression of uncertainty in measurement* (GUM, JCGM 100:2008) and
+//! its supplements (JCGM 101:2008, JCGM 102:2011). A measurement is a set of [`Inputs`] and a function of them.
 //!
 //! ```
 //! use fmm_uq::{Input, Inputs, MonteCarlo, Scalar, propagate};
@@ -44,23 +44,23 @@
 //! | which value do several results agree on? | [`Consensus`], [with what they share](Consensus::with_shared) | shared errors that nobody stated |
 //! | several results together? | [`Propagation`] with its regions, [`OutputSample::ellipsoid`], [`OutputSample::rectangle`] | |
 //!
-//! Write a model once, generic in its number: `f64` for trials, [`Taylor`] for exact derivatives. A closure has one number
-//! type: write it over [`Taylor`], and give trials [`at_values`] of it.
+//! Write a model once, generic in its number: `f64` for trials, [`Taylor`] for exact derivatives. A closure has one
+//! number type: write it over [`Taylor`], and give trials [`at_values`] of it.
 //!
 //! # Units and conventions
 //!
-//! The unit of an input is a label and is not converted: all must belong to one coherent system. Uncertainties are standard
-//! ones. A number of degrees of freedom makes Student's t of a normal input. Levels are probabilities (0.95), outputs are
-//! counted from 0.
+//! The unit of an input is a label and is not converted: all must belong to one coherent system. Uncertainties are
+//! standard ones. A number of degrees of freedom makes Student's t of a normal input. Levels are probabilities (0.95),
+//! outputs are counted from 0.
 //!
 //! # Guarantees
 //!
-//! * The bits of a run depend on seed, inputs, model and number of trials: not on the number of threads, nor on how blocks
-//!   are spread over machines of one kind.
+//! * The bits of a run depend on seed, inputs, model and number of trials: not on the number of threads, nor on how
+//!   blocks are spread over machines of one kind.
 //! * Invalid results are errors or flagged: impossible correlations, results that are not finite, degrees of
 //!   freedom outside the Welch–Satterthwaite formula, a first-order uncertainty of zero, and failed trials.
-//! * One failed trial is an error, unless [a share](MonteCarlo::with_allowed_failures) is allowed; then all failures are
-//!   counted.
+//! * One failed trial is an error, unless [a share](MonteCarlo::with_allowed_failures) is allowed; then all failures
+//!   are counted.
 //!
 //! # Cost
 //!
@@ -81,8 +81,8 @@
 //!
 //! # Neighbours
 //!
-//! [`fmm-fit`](https://docs.rs/fmm-fit) repeats a fit with other values of what it held (`Refit`), which is the model of a
-//! Monte Carlo over a fit; [`fmm-model`](https://docs.rs/fmm-model) has the number types.
+//! [`fmm-fit`](https://docs.rs/fmm-fit) repeats a fit with other values of what it held (`Refit`), which is the model
+//! of a Monte Carlo over a fit; [`fmm-model`](https://docs.rs/fmm-model) has the number types.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

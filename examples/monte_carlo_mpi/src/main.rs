@@ -1,5 +1,5 @@
-//! The thesis' Monte Carlo, refits of a coefficient of friction, over the ranks of MPI or over files, with the bits of a
-//! single process.
+//! The thesis' Monte Carlo, refits of a coefficient of friction, over the ranks of MPI or over files, with the bits of
+//! a single process.
 //!
 //! ```text
 //! cargo build --release

@@ -81,7 +81,8 @@ pub const TABLE_4: [(f64, [f64; 2], [f64; 2]); 15] = [
     (22.0, [0.267, 0.280], [0.267, 0.280]),
 ];
 
-/// Table 5: initial displacement (mm), highest velocity (m/s), μ0, μ1, α (s/m). The announced row of 13 mm is missing (E28).
+/// Table 5: initial displacement (mm), highest velocity (m/s), μ0, μ1, α (s/m). The announced row of 13 mm is missing
+/// (E28).
 pub const TABLE_5: [[f64; 5]; 6] = [
     [10.0, 0.114, 0.210, 0.238, 5.605],
     [11.0, 0.127, 0.216, 0.244, 5.140],
@@ -93,7 +94,8 @@ pub const TABLE_5: [[f64; 5]; 6] = [
 
 /// Damping against velocity, c = slope v + intercept (Eq. 5.5; N s²/m² and N s/m), and its R².
 pub const EQUATION_5_5: [f64; 3] = [0.437, 0.2005, 0.997];
-/// The instantaneous quadratic damping (N s²/m²) whose equivalent over a cycle is the slope of Eq. 5.5: 3π/8 of it (E23).
+/// The instantaneous quadratic damping (N s²/m²) whose equivalent over a cycle is the slope of Eq. 5.5: 3π/8 of it
+/// (E23).
 pub const INSTANTANEOUS_SLOPE: f64 = EQUATION_5_5[0] * 3.0 * std::f64::consts::PI / 8.0;
 /// μ = a vᵇ + c (Eq. 7.2, v in m/s): a, b, c.
 pub const EQUATION_7_2: [f64; 3] = [0.311, 0.2116, 0.03148];

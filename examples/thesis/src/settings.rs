@@ -14,7 +14,8 @@ impl Settings<'_> {
         Self { quick: false, seed: 1, progress: &|_| () }
     }
 
-    /// Fewer repetitions where they only make an average sharper; targets that need them get wider criteria, which say so.
+    /// Fewer repetitions where they only make an average sharper; targets that need them get wider criteria, which say
+    /// so.
     #[must_use]
     pub fn quick(self, quick: bool) -> Self {
         Self { quick, ..self }

@@ -90,8 +90,8 @@ pub struct Target {
 }
 
 impl Target {
-    /// The target `id`, A1 to C16, whose letter says its [`Kind`], or F1 to F3 of section 9.2, which are simulated; `ours` and the
-    /// criterion are in `unit`.
+    /// The target `id`, A1 to C16, whose letter says its [`Kind`], or F1 to F3 of section 9.2, which are simulated;
+    /// `ours` and the criterion are in `unit`.
     pub fn new(
         id: &'static str,
         quantity: impl Into<String>,

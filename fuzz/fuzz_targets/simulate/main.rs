@@ -1,5 +1,5 @@
-//! Any finite scenario, under any law, force and engine, ends in a finite motion or in a typed error: no panic, no NaN, no
-//! hang, events in order and within the sampled time.
+//! Any finite scenario, under any law, force and engine, ends in a finite motion or in a typed error: no panic, no NaN,
+//! no hang, events in order and within the sampled time.
 
 #![no_main]
 

@@ -1,4 +1,5 @@
-//! Engines that know nothing of each other find the same motion: every event in kind and order, times, positions, samples.
+//! Engines that know nothing of each other find the same motion: every event in kind and order, times, positions,
+//! samples.
 
 use fmm_model::Scalar;
 use fmm_sim::{Engine, Event, EventKind, Moreau, RungeKutta, Samples, Trajectory};
@@ -6,8 +7,8 @@ use fmm_sim::{Engine, Event, EventKind, Moreau, RungeKutta, Samples, Trajectory}
 use super::contact::Family;
 use super::setup::{Gradient, Setup, Solver, draws, setups};
 
-/// How far a small error anywhere carries: the sum over all numbers of a setup of how much a quantity changes when one of
-/// them changes by all of itself. An engine with a relative error δ in each step is off by about δ times this.
+/// How far a small error anywhere carries: the sum over all numbers of a setup of how much a quantity changes when one
+/// of them changes by all of itself. An engine with a relative error δ in each step is off by about δ times this.
 pub(crate) struct Reach(Vec<f64>);
 
 impl Reach {
@@ -35,12 +36,12 @@ impl Reach {
     }
 }
 
-/// Whether rounding may decide an event: a load within 1e-9 of the level, a zero that is only grazed, two events at nearly
-/// the same time.
+/// Whether rounding may decide an event: a load within 1e-9 of the level, a zero that is only grazed, two events at
+/// nearly the same time.
 ///
-/// A load that is a level of zero is exactly so. One that meets a level exactly has come there by symmetry: an undamped contact
-/// that a steady ramp breaks away comes to rest again at the load at which it has broken away, whatever its level of losing speed
-/// is. Another engine is off by the error of its steps.
+/// A load that is a level of zero is exactly so. One that meets a level exactly has come there by symmetry: an undamped
+/// contact that a steady ramp breaks away comes to rest again at the load at which it has broken away, whatever its
+/// level of losing speed is. Another engine is off by the error of its steps.
 pub(crate) fn is_ambiguous<D: Scalar>(setup: &Setup, motion: &Trajectory<D>) -> bool {
     let near = |event: &Event<D>| {
         let decides = matches!(event.kind, EventKind::Start | EventKind::Reversal | EventKind::Stop);
@@ -81,7 +82,8 @@ pub(crate) fn difference(setup: &Setup, exact: &Trajectory<Gradient>, other: &Tr
 /// A run takes some hundred steps, each off by up to the tolerance of 3e-14 and by rounding.
 pub(crate) const AGREEMENT: f64 = 1e-10;
 
-/// The greatest share of ambiguous setups, which is that of the viscous law: motions that die away turn at any small load.
+/// The greatest share of ambiguous setups, which is that of the viscous law: motions that die away turn at any small
+/// load.
 const AMBIGUOUS: f64 = 0.033;
 
 #[test]
@@ -117,8 +119,8 @@ fn distance(one: &Trajectory, other: &Trajectory, stride: usize) -> f64 {
     (square / one.position().values().len() as f64).sqrt() / size
 }
 
-/// The time stepping has order 1, with single errors that scatter as events snap to the grid: over four halvings of the step
-/// the geometric mean of many setups is far from 0 and not above the order 2 that the rule has without events.
+/// The time stepping has order 1, with single errors that scatter as events snap to the grid: over four halvings of the
+/// step the geometric mean of many setups is far from 0 and not above the order 2 that the rule has without events.
 #[test]
 fn time_stepping_converges_to_the_exact_motion() {
     for family in [Family::Coulomb, Family::CoulombStatic, Family::CoulombViscous] {
@@ -145,8 +147,8 @@ fn time_stepping_converges_to_the_exact_motion() {
     }
 }
 
-/// The error falls as the tolerance does, to the 8/9th power at worst: each step ends with an error of the ninth order where
-/// its estimate is of the eighth.
+/// The error falls as the tolerance does, to the 8/9th power at worst: each step ends with an error of the ninth order
+/// where its estimate is of the eighth.
 #[test]
 fn the_error_follows_the_tolerance() {
     let (loose, tight) = (1e-8, 1e-12);

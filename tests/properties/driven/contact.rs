@@ -105,9 +105,9 @@ impl<D: Scalar> PiecewiseLinearLaw<D> for AnyLaw<D> {
 }
 
 impl Family {
-    /// Parameters that matter to a motion in which a force of the contact's size is a coefficient of `level` and speeds are
-    /// about `speed` (m/s), on a machine that a viscous coefficient of `critical` (s/m) damps critically and whose spring is a
-    /// coefficient of `spring` per displacement (1/m).
+    /// Parameters that matter to a motion in which a force of the contact's size is a coefficient of `level` and speeds
+    /// are about `speed` (m/s), on a machine that a viscous coefficient of `critical` (s/m) damps critically and whose
+    /// spring is a coefficient of `spring` per displacement (1/m).
     pub(crate) fn draw(self, random: &mut ChaCha8Rng, level: f64, speed: f64, critical: f64, spring: f64) -> Vec<f64> {
         let breakaway = level * if random.random_bool(0.3) { 1.0 } else { random.random_range(1.0..2.5) };
         let viscous = if random.random_bool(0.3) { 0.0 } else { critical * log_uniform(random, -3.0, -0.5) };

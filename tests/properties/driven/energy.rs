@@ -58,13 +58,14 @@ fn energy_balances_in_closed_form() {
     }
 }
 
-/// Work is integrated along the polynomial within a step, whose error is of one order less than that of the step: the 8/9th
-/// power of the tolerance, and 500 for its constant and the number of steps.
+/// Work is integrated along the polynomial within a step, whose error is of one order less than that of the step: the
+/// 8/9th power of the tolerance, and 500 for its constant and the number of steps.
 #[test]
 fn energy_balances_step_by_step() {
     for tolerance in [3e-14, 1e-10, 1e-6f64] {
         let solver = Solver::RungeKutta(RungeKutta::new(tolerance).unwrap());
-        // A contact that is caught at the speed of its dead zone loses what it has by then: Karnopp's law does not balance.
+        // A contact that is caught at the speed of its dead zone loses what it has by then: Karnopp's law does not
+        // balance.
         for &family in Family::SLIDING.iter().filter(|family| **family != Family::Karnopp) {
             let (error, setup) = worst(2, family, false, solver);
             let allowed = 500.0 * tolerance.powf(8.0 / 9.0);

@@ -7,16 +7,17 @@ use super::agreement::{Reach, is_ambiguous};
 use super::contact::Family;
 use super::setup::{Gradient, Setup, Solver, setups};
 
-/// Part of a number by which it is changed for a difference in a motion that changes as much as its numbers. The time of an
-/// event near a turning point goes with the root of a number, so that the range of a motion that changes Q times as much is
-/// 1/Q² of that.
+/// Part of a number by which it is changed for a difference in a motion that changes as much as its numbers. The time
+/// of an event near a turning point goes with the root of a number, so that the range of a motion that changes Q times
+/// as much is 1/Q² of that.
 const STEP: f64 = 1e-2;
 
 /// Motions that change more than this often as much as their numbers are left to the agreement of the engines.
 const LIVELIEST: f64 = 30.0;
 
-/// Laws that are steep without a corner, so that a contact hardly moves at last: its speed is no measure of time, and the steps
-/// keep the error of the motion, but not that of derivatives, which vary faster. Their relative error was 1.3e-2 at worst.
+/// Laws that are steep without a corner, so that a contact hardly moves at last: its speed is no measure of time, and
+/// the steps keep the error of the motion, but not that of derivatives, which vary faster. Their relative error was
+/// 1.3e-2 at worst.
 const STEEP: f64 = 5e-2;
 
 /// The motion with derivatives, and what is needed to judge them.

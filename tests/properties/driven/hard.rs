@@ -1,5 +1,5 @@
-//! Motions that are decided by what is almost nothing: starts from rest without friction, jumps of the force, branches that
-//! begin at constant speed, motions without inertia.
+//! Motions that are decided by what is almost nothing: starts from rest without friction, jumps of the force, branches
+//! that begin at constant speed, motions without inertia.
 
 use fmm_friction::{AccelerationCoulomb, Coulomb, ExponentialPair, MakkarDixon, MaxwellSlip, SlidingLaw};
 use fmm_model::{Damping, Oscillator};
@@ -17,8 +17,8 @@ fn friction_takes(motion: &Trajectory, count: usize) {
     }
 }
 
-/// Where nothing holds and nothing acts, the first force moves: x = r/k (τ − sin ωτ/ω) under a ramp of rate r, and the sum of
-/// two waves under a pulse.
+/// Where nothing holds and nothing acts, the first force moves: x = r/k (τ − sin ωτ/ω) under a ramp of rate r, and the
+/// sum of two waves under a pulse.
 #[test]
 fn a_motion_begins_from_nothing() {
     let (delay, rate, stiffness, angular) = (0.37, 5.0, 4.0, 2.0f64);
@@ -57,8 +57,8 @@ fn a_motion_begins_from_nothing() {
     assert_eq!(angular * angular, stiffness);
 }
 
-/// A record of a force that ends in the middle of a slip: the branch of the law changes with the jump, on either engine, and
-/// whether the lower or the higher level belongs to growing speed.
+/// A record of a force that ends in the middle of a slip: the branch of the law changes with the jump, on either
+/// engine, and whether the lower or the higher level belongs to growing speed.
 #[test]
 fn the_force_may_jump_while_a_branch_lasts() {
     for (gaining, losing) in [(1.1, 1.6), (1.6, 1.1), (1.1, 1.1)] {
@@ -102,7 +102,8 @@ fn a_branch_that_begins_at_constant_speed_ends() {
     friction_takes(&exact, sampling.count());
 }
 
-/// The branches of an exponential pair meet at large speed, where the phase of constant speed between them lasts no time.
+/// The branches of an exponential pair meet at large speed, where the phase of constant speed between them lasts no
+/// time.
 #[test]
 fn branches_that_meet_leave_no_speed_to_keep() {
     let machine = Oscillator::new(0.0056, 4.6).unwrap();
@@ -116,8 +117,8 @@ fn branches_that_meet_leave_no_speed_to_keep() {
     friction_takes(&RungeKutta::default().run(&scenario, &sampling).unwrap(), sampling.count());
 }
 
-/// A contact that creeps, its friction being that of a stiff damper, comes to no stop and turns round nowhere: the first step
-/// of a machine a hundred times slower must not see one.
+/// A contact that creeps, its friction being that of a stiff damper, comes to no stop and turns round nowhere: the
+/// first step of a machine a hundred times slower must not see one.
 #[test]
 fn a_creeping_contact_has_no_events() {
     let machine = Oscillator::new(0.094, 0.116).unwrap();

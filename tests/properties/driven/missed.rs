@@ -14,8 +14,8 @@ use crate::case::log_uniform;
 /// Distance of a peak from the static level (N), of levels of 1 N or so.
 const HAIR: f64 = 1e-9;
 
-/// Causes whose load, with one another and on a machine at rest at zero, peaks at `peak` (N) and `time` (s); no other peak is
-/// within 10 ppm of it. `frequency` (Hz) is about that of the slowest.
+/// Causes whose load, with one another and on a machine at rest at zero, peaks at `peak` (N) and `time` (s); no other
+/// peak is within 10 ppm of it. `frequency` (Hz) is about that of the slowest.
 fn causes(random: &mut ChaCha8Rng, peak: f64, time: f64, frequency: f64) -> Vec<Excitation> {
     let angular = std::f64::consts::TAU * frequency;
     match random.random_range(0..4) {
@@ -39,8 +39,8 @@ fn causes(random: &mut ChaCha8Rng, peak: f64, time: f64, frequency: f64) -> Vec<
     }
 }
 
-/// Whether the contact breaks away on either engine before `end`, seen by no sample in between; none where an engine says that
-/// the spring is too weak for it.
+/// Whether the contact breaks away on either engine before `end`, seen by no sample in between; none where an engine
+/// says that the spring is too weak for it.
 fn breaks_away(level: f64, causes: &[Excitation], machine: Oscillator, end: f64) -> [Option<bool>; 2] {
     let law = CoulombStatic::new(0.5 * level, level).unwrap();
     let start = Scenario::new(machine, law, 1.0).unwrap();

@@ -59,7 +59,8 @@ fn equal_intervals_are_times_like_others() {
     }
 }
 
-/// The force of `setup` with `parts` samples in the place of one, on the same lines; values on a grid of 2⁻²⁰ of their size.
+/// The force of `setup` with `parts` samples in the place of one, on the same lines; values on a grid of 2⁻²⁰ of their
+/// size.
 fn resampled(setup: &Setup, parts: usize) -> Setup {
     let mut setup = setup.clone();
     for cause in &mut setup.causes {

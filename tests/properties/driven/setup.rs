@@ -109,8 +109,8 @@ impl Setup {
         }
     }
 
-    /// The scenario, with each of its numbers passed through `number`, which gets its name too; none if the law is none at
-    /// these numbers.
+    /// The scenario, with each of its numbers passed through `number`, which gets its name too; none if the law is none
+    /// at these numbers.
     pub(crate) fn scenario<D: Scalar>(
         &self,
         mut number: impl FnMut(&'static str, f64) -> D,

@@ -9,8 +9,8 @@ use fmm_model::Oscillator;
 use fmm_sim::{Engine, Exact, Sampling, Scenario};
 use fmm_uq::Distribution;
 
-/// Writes the velocity of 10.391 kg on 1982 N/m after a release at 15 mm, with μ = 0.25 and β = 0.02 s/m under 14 N, as a
-/// vibrometer with 0.2 mm/s of noise gives it at 1 kHz.
+/// Writes the velocity of 10.391 kg on 1982 N/m after a release at 15 mm, with μ = 0.25 and β = 0.02 s/m under 14 N, as
+/// a vibrometer with 0.2 mm/s of noise gives it at 1 kHz.
 pub fn write(path: &Path) -> Result<(), Box<dyn Error>> {
     let law = CoulombViscous::new(0.25, 0.02)?;
     let scenario = Scenario::new(Oscillator::new(10.391, 1982.0)?, law, 14.0)?.starting_at(0.015, 0.0)?;

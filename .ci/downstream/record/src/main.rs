@@ -7,7 +7,8 @@ use fmm_record::{Quantity, Record, Swings};
 #[cfg(feature = "mat")]
 mod matlab;
 
-/// Velocity (m/s) at 1 kHz of a swing of 5 Hz that loses 4 % of its first height with every half swing, as by dry friction.
+/// Velocity (m/s) at 1 kHz of a swing of 5 Hz that loses 4 % of its first height with every half swing, as by dry
+/// friction.
 fn decay() -> Result<Record, Box<dyn Error>> {
     let velocity = |t: f64| (1.0 - 0.4 * t) * (10.0 * std::f64::consts::PI * t).sin();
     let values = (0..2000).map(|i| velocity(f64::from(i) * 1e-3)).collect();

@@ -156,8 +156,8 @@ impl Campaign {
     }
 }
 
-/// Refuses a column that is meant for an option of `fmm identify` by which the machine is driven: its record would be fitted as a free
-/// vibration.
+/// Refuses a column that is meant for an option of `fmm identify` by which the machine is driven: its record would be
+/// fitted as a free vibration.
 fn refuse_drive(column: &str) -> Result<(), String> {
     let Some(option) = ["force", "base"].into_iter().find(|option| is_meant(column, option)) else { return Ok(()) };
     Err(format!(
@@ -178,8 +178,9 @@ fn refuse_misspelt(column: &str, command: &clap::Command) -> Result<(), String> 
     ))
 }
 
-/// Whether a column is called like an option but for case, spaces, a unit in brackets, or a slip: a letter too many, too few, wrong or
-/// exchanged with the next. Of four letters or fewer only a repeated letter is a slip, as a date is no rate.
+/// Whether a column is called like an option but for case, spaces, a unit in brackets, or a slip: a letter too many,
+/// too few, wrong or exchanged with the next. Of four letters or fewer only a repeated letter is a slip, as a date is
+/// no rate.
 fn is_meant(column: &str, option: &str) -> bool {
     let bare = column.split(['[', '(']).next().unwrap_or_default();
     let written: Vec<char> = bare.trim().to_lowercase().replace(['-', ' '], "_").chars().collect();

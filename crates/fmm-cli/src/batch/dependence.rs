@@ -48,9 +48,11 @@ pub(crate) struct Line {
     pub(crate) slope: f64,
     pub(crate) slope_u: f64,
     pub(crate) slope_interval_95: Option<(f64, f64)>,
-    /// Standard deviation between records beyond their uncertainties: of the slope where the line is over the load, else of the quantity.
+    /// Standard deviation between records beyond their uncertainties: of the slope where the line is over the load,
+    /// else of the quantity.
     pub(crate) between: f64,
-    /// p, probability of an intercept as far from zero if there were none, where the line is over the load; else of a slope.
+    /// p, probability of an intercept as far from zero if there were none, where the line is over the load; else of a
+    /// slope.
     pub(crate) p: f64,
     /// Places with the value of the line and the ends of its interval, for the eye.
     #[serde(skip)]

@@ -1,4 +1,5 @@
-//! All records of a campaign fitted together as one problem: one law, one machine, an initial state and an offset for each record.
+//! All records of a campaign fitted together as one problem: one law, one machine, an initial state and an offset for
+//! each record.
 
 use std::error::Error;
 use std::ops::ControlFlow;

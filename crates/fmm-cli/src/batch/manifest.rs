@@ -35,7 +35,8 @@ impl Manifest {
         Ok(manifest)
     }
 
-    /// The same; refused if a column stands twice, written with hyphens or underscores, as one of the two would count in silence.
+    /// The same; refused if a column stands twice, written with hyphens or underscores, as one of the two would count
+    /// in silence.
     fn with_columns_once(self) -> Result<Self, String> {
         let plain = |column: &String| column.replace('-', "_");
         for (place, column) in self.columns.iter().enumerate().filter(|(_, column)| !column.is_empty()) {

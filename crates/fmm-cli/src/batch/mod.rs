@@ -1,8 +1,8 @@
 //! Campaign of many records: `fmm batch` and `fmm merge`.
 //!
-//! Each record is identified by itself, in parallel; one that is refused is a row with its reason. Into a folder, each row is a file of its
-//! own, written at once or not at all, so that a campaign can be cut into shards, killed and resumed at any time. Copies of a record
-//! are found when all rows are there.
+//! Each record is identified by itself, in parallel; one that is refused is a row with its reason. Into a folder, each
+//! row is a file of its own, written at once or not at all, so that a campaign can be cut into shards, killed and
+//! resumed at any time. Copies of a record are found when all rows are there.
 
 mod campaign;
 mod cells;
@@ -41,14 +41,15 @@ pub(crate) struct Arguments {
     /// The records, or folders of records
     #[arg(required_unless_present = "manifest")]
     records: Vec<PathBuf>,
-    /// A table (CSV) or a list (TOML) of records, each with its `file`, relative to the manifest; columns called like an option of
-    /// `fmm identify` (channel, unit, mass, normal_load, …) set it for their record, others (operator, specimen, …) describe it, but one that is
-    /// nearly called like an option is refused, and so are `force` and `base`, as all records are of free vibrations. In TOML, [[record]] begins a record, [common] holds what all share, `group` names a column for --group, and [sheet] holds the
-    /// fields of a record sheet
+    /// A table (CSV) or a list (TOML) of records, each with its `file`, relative to the manifest; columns called like
+    /// an option of `fmm identify` (channel, unit, mass, normal_load, …) set it for their record, others (operator,
+    /// specimen, …) describe it, but one that is nearly called like an option is refused, and so are `force` and
+    /// `base`, as all records are of free vibrations. In TOML, [[record]] begins a record, [common] holds what all
+    /// share, `group` names a column for --group, and [sheet] holds the fields of a record sheet
     #[arg(long, value_name = "FILE", conflicts_with = "records")]
     manifest: Option<PathBuf>,
-    /// Write one file for each record into this folder, and with all of them campaign.csv, campaign.json and campaign.html; records that
-    /// are there already are not done again
+    /// Write one file for each record into this folder, and with all of them campaign.csv, campaign.json and
+    /// campaign.html; records that are there already are not done again
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Do this part of the records only, as in 2/10; `fmm merge` puts the parts together
@@ -88,8 +89,8 @@ pub(crate) struct Merge {
 /// What is asked of all records together, on which no row depends.
 #[derive(Debug, Args)]
 struct Asked {
-    /// Fit all identified records together as one machine with one law, too; its time grows nearly as the cube of their number (thirty
-    /// of 800 samples take 7 s)
+    /// Fit all identified records together as one machine with one law, too; its time grows nearly as the cube of their
+    /// number (thirty of 800 samples take 7 s)
     #[arg(long)]
     joint: bool,
     /// A column of numbers of the manifest against which friction is set, beside load and amplitude; may be given again

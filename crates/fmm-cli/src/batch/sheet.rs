@@ -1,6 +1,7 @@
 //! The record sheet of a campaign: what a friction coefficient must be handed on with, so that others can use it.
 //!
-//! Its fields are those that ASTM G115 (guide for measuring and reporting friction coefficients) asks for, as far as is public.
+//! Its fields are those that ASTM G115 (guide for measuring and reporting friction coefficients) asks for, as far as is
+//! public.
 
 use std::collections::BTreeMap;
 

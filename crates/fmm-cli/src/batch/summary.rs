@@ -46,7 +46,8 @@ pub(crate) struct Quantity {
     pub(crate) records: usize,
     /// Records that show it without one, such as on a bound; they are left out.
     pub(crate) left_out: usize,
-    /// Consensus with random effects after Mandel and Paule, its standard uncertainty, and the interval after Hartung and Knapp.
+    /// Consensus with random effects after Mandel and Paule, its standard uncertainty, and the interval after Hartung
+    /// and Knapp.
     pub(crate) mean: f64,
     pub(crate) u: f64,
     pub(crate) interval_95: [f64; 2],
@@ -60,7 +61,8 @@ pub(crate) struct Quantity {
     /// p, probability of differences as large if the records differed by their uncertainties only.
     pub(crate) p: f64,
     pub(crate) i_squared: f64,
-    /// The mean weighted by the uncertainties alone, as if the records did not differ, with the standard uncertainty that it claims.
+    /// The mean weighted by the uncertainties alone, as if the records did not differ, with the standard uncertainty
+    /// that it claims.
     pub(crate) weighted_mean: [f64; 2],
     /// The record whose absence moves the consensus most, and by how many standard uncertainties.
     pub(crate) most_influential: Option<(String, f64)>,

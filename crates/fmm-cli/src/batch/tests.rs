@@ -59,7 +59,8 @@ fn parts_are_read_as_they_are_meant() {
     }
 }
 
-/// Broken files are rows with their reason, and any split into parts, in any order, with parts done twice, gives the same bytes.
+/// Broken files are rows with their reason, and any split into parts, in any order, with parts done twice, gives the
+/// same bytes.
 #[test]
 fn any_split_gives_the_same_bytes() {
     let home = folder("split");
@@ -202,8 +203,8 @@ fn the_most_influential_record_is_named() {
     assert!(text.contains(named) && text.matches("doubted").count() == 1 && page.contains(named), "{text}");
 }
 
-/// Six runs under one load that is known to 0.5 %: the consensus does not know μ better than that. Two loads that are weighed apart average
-/// out between them, and an input of one record alone is its own.
+/// Six runs under one load that is known to 0.5 %: the consensus does not know μ better than that. Two loads that are
+/// weighed apart average out between them, and an input of one record alone is its own.
 #[test]
 fn what_records_share_does_not_average_out() {
     let home = folder("shared");
@@ -286,7 +287,8 @@ fn both_kinds_of_manifest_say_the_same() {
     assert!(other.keep(&out).is_err());
 }
 
-/// Friction in proportion to the load is seen, what is beside it as well, and a column that cannot be set against says why.
+/// Friction in proportion to the load is seen, what is beside it as well, and a column that cannot be set against says
+/// why.
 #[test]
 fn friction_stands_against_load_and_columns() {
     let home = folder("against");
@@ -350,7 +352,8 @@ fn the_record_sheet_says_what_is_missing() {
     assert!(page::page(&campaign, &rows, &summary).contains("not given"));
 }
 
-/// All records as one problem: the coefficient between those of the records, and known better than it deserves where they differ.
+/// All records as one problem: the coefficient between those of the records, and known better than it deserves where
+/// they differ.
 #[test]
 fn a_joint_fit_says_what_it_takes_for_granted() {
     let home = folder("joint");

@@ -1,6 +1,7 @@
 //! The uncertainty of a result that follows from others by a formula: `fmm budget FILE.toml`.
 //!
-//! Reads inputs and formulas, propagates to first and second order, repeats it by trials, and says whether the simpler answer holds.
+//! Reads inputs and formulas, propagates to first and second order, repeats it by trials, and says whether the simpler
+//! answer holds.
 
 mod file;
 
@@ -287,7 +288,8 @@ formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
         assert_eq!(answers.correlations[0].coefficient, 0.0);
     }
 
-    /// Half widths of 3 over √3, √6 and √2 (JCGM 100:2008, 4.3.7 and 4.3.9; JCGM 101:2008, 6.4.6), from files of both kinds.
+    /// Half widths of 3 over √3, √6 and √2 (JCGM 100:2008, 4.3.7 and 4.3.9; JCGM 101:2008, 6.4.6), from files of both
+    /// kinds.
     #[test]
     fn limits_are_those_of_their_distribution() {
         let folder = std::env::temp_dir();

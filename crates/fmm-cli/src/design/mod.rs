@@ -1,7 +1,7 @@
 //! Choice of the next tests: `fmm design FILE.toml`.
 //!
-//! Reads a machine, a guess of its friction and the tests that may be made, and says what each would tell, which set of them tells most,
-//! and what each of that set tells that the others do not.
+//! Reads a machine, a guess of its friction and the tests that may be made, and says what each would tell, which set of
+//! them tells most, and what each of that set tells that the others do not.
 
 mod figures;
 mod file;

@@ -1,7 +1,8 @@
 //! Friction out of a measured force along a measured motion: `fmm force FILES...`.
 //!
-//! Reads time, position or velocity, and force (or torque) of a joint, a tribometer or a damper, at equal or unequal steps; fits each
-//! model and gives out what was found. `--validate` tells how well a model predicts a record to which it was not fitted.
+//! Reads time, position or velocity, and force (or torque) of a joint, a tribometer or a damper, at equal or unequal
+//! steps; fits each model and gives out what was found. `--validate` tells how well a model predicts a record to which
+//! it was not fitted.
 
 mod source;
 
@@ -27,12 +28,13 @@ pub(crate) struct Arguments {
     files: Vec<PathBuf>,
     #[command(flatten)]
     source: Source,
-    /// Models to fit, separated by commas: a law, then after plus signs damping (linear, quadratic, cubic, any sign) and what else acts
-    /// or is measured (zero, inertia, stiffness, gravity, asymmetry, load offset, channels, delay); unless given, coulomb and dahl, each
-    /// with linear and asymmetry
+    /// Models to fit, separated by commas: a law, then after plus signs damping (linear, quadratic, cubic, any sign)
+    /// and what else acts or is measured (zero, inertia, stiffness, gravity, asymmetry, load offset, channels, delay);
+    /// unless given, coulomb and dahl, each with linear and asymmetry
     #[arg(long, value_delimiter = ',')]
     model: Vec<String>,
-    /// Hold a parameter at a value, in the unit in which it is fitted, as in exponent=2; of one law alone as in stribeck.exponent=2
+    /// Hold a parameter at a value, in the unit in which it is fitted, as in exponent=2; of one law alone as in
+    /// stribeck.exponent=2
     #[arg(long, value_name = "[LAW.]NAME=VALUE")]
     hold: Vec<Held>,
     /// The longest delay between motion and force that is looked for, in s; twenty samples unless given
@@ -229,8 +231,8 @@ const BINS: usize = 24;
 /// Groups of the normal load, where it was measured.
 const LOADS: usize = 3;
 
-/// Force over position and over velocity with the fit in, friction over the speed without a law, and what is left over time and over
-/// the phase of the motion.
+/// Force over position and over velocity with the fit in, friction over the speed without a law, and what is left over
+/// time and over the phase of the motion.
 fn panels(record: &ForceRecord, found: &ForceIdentification) -> Result<Vec<Panel>, Box<dyn Error>> {
     let said = found.predict(record)?;
     let velocity = format!("{}/s", record.position_unit());
@@ -277,7 +279,8 @@ fn panels(record: &ForceRecord, found: &ForceIdentification) -> Result<Vec<Panel
     ])
 }
 
-/// The phase of the motion at each sample (°), from 0 to 360: the angle of velocity and position, each as a share of its half range.
+/// The phase of the motion at each sample (°), from 0 to 360: the angle of velocity and position, each as a share of
+/// its half range.
 fn phases(record: &ForceRecord) -> Vec<f64> {
     let ends =
         |values: &[f64]| values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(*x), b.max(*x)]);

@@ -31,14 +31,15 @@ pub(crate) struct Source {
     /// Time over which hum and noise of these columns are averaged, in s
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
     average: f64,
-    /// Unit of position that the numbers are in, if the table does not say it; m unless given. Velocities whose unit it does not say
-    /// either are in this unit per second
+    /// Unit of position that the numbers are in, if the table does not say it; m unless given. Velocities whose unit it
+    /// does not say either are in this unit per second
     #[arg(long, value_name = "UNIT")]
     position_unit: Option<WrittenUnit>,
     /// Unit of force or torque that the numbers are in, if the table does not say it; N unless given
     #[arg(long, value_name = "UNIT")]
     force_unit: Option<WrittenUnit>,
-    /// Speed up to which the contact counts as at rest, in m/s or rad/s; unless given, a thousandth of the largest speed
+    /// Speed up to which the contact counts as at rest, in m/s or rad/s; unless given, a thousandth of the largest
+    /// speed
     #[arg(long, value_name = "SPEED")]
     rest_speed: Option<f64>,
 }
@@ -115,13 +116,15 @@ impl Series {
 impl Source {
     /// The record in the table at `path`.
     pub(crate) fn read(&self, path: &Path) -> Result<ForceRecord, Box<dyn Error>> {
-        // Numbered samples stand for the clock, so that the times are a column like any other and their steps may differ.
+        // Numbered samples stand for the clock, so that the times are a column like any other and their steps may
+        // differ.
         let reader = Reader::default().rate(1.0);
         let (file, head) = (reader.open(path)?, reader.to(0.0).open(path)?);
         self.record(&file, &head).map_err(|error| format!("{}: {error}", path.display()).into())
     }
 
-    /// The record of a `file`, of which the first sample alone, the `head`, tells the columns: gaps further on matter where they are used.
+    /// The record of a `file`, of which the first sample alone, the `head`, tells the columns: gaps further on matter
+    /// where they are used.
     fn record(&self, file: &DataFile, head: &DataFile) -> Result<ForceRecord, Box<dyn Error>> {
         let mut readings = head.channels()?.into_iter().map(|channel| head.channel(channel.position));
         let is_empty = |reading: &Result<_, RecordError>| matches!(reading, Err(RecordError::Values { .. }));

@@ -63,7 +63,8 @@ pub(crate) struct Analysis {
 }
 
 impl Analysis {
-    /// Analyses `trials` of one rate and length with a `window`; an exponential falls to `end` at the end of the record.
+    /// Analyses `trials` of one rate and length with a `window`; an exponential falls to `end` at the end of the
+    /// record.
     pub(crate) fn of(trials: &[Trial], form: ResponseForm, window: Window, end: f64) -> Result<Self, Box<dyn Error>> {
         let first = trials.first().ok_or("there is no trial")?;
         let (rate, length) = (first.force.rate(), first.force.len());
@@ -102,8 +103,8 @@ impl Analysis {
     }
 }
 
-/// The pulse of a force and its impulse (N s), over a few samples more than the pulse; the baseline is the mean of the fifth
-/// of the record that is farthest from it.
+/// The pulse of a force and its impulse (N s), over a few samples more than the pulse; the baseline is the mean of the
+/// fifth of the record that is farthest from it.
 fn blow(force: &Record) -> Result<(Pulse, f64), Box<dyn Error>> {
     let (values, interval) = (force.values(), force.interval());
     let length = values.len();

@@ -1,7 +1,7 @@
 //! The frequency response of an impact test: `fmm frf FILES...`.
 //!
-//! Each file is one trial with a channel of force and one of the response. Gives out the impulses, the resonances with frequency, damping
-//! and coherence, and what is doubtful, or all lines of H1, H2 and coherence.
+//! Each file is one trial with a channel of force and one of the response. Gives out the impulses, the resonances with
+//! frequency, damping and coherence, and what is doubtful, or all lines of H1, H2 and coherence.
 
 mod analysis;
 mod figures;

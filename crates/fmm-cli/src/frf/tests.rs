@@ -110,9 +110,9 @@ fn the_same_blows_from_every_format() {
         });
         let trials: Vec<Trial> = from_files.collect();
         let found = Analysis::of(&trials, ResponseForm::Accelerance, Window::None, 0.01).unwrap();
-        // Text has 13 digits, half a unit of which is 5e-13 of every sample; summed over a pulse and its noise they stay
-        // below 1e-11 of the best lines of the force, and at the last usable line it is a tenth of that. Time stamps give
-        // the rate to 1e-11 or so.
+        // Text has 13 digits, half a unit of which is 5e-13 of every sample; summed over a pulse and its noise they
+        // stay below 1e-11 of the best lines of the force, and at the last usable line it is a tenth of that. Time
+        // stamps give the rate to 1e-11 or so.
         let relative = 1e-9;
         for (found, expected) in found.impulses.iter().zip(&expected.impulses) {
             assert!((found / expected - 1.0).abs() < relative, "{name}: {found} N s, not {expected} N s");
@@ -134,7 +134,8 @@ fn the_same_blows_from_every_format() {
     }
 }
 
-/// Two programs wrote one measurement: as whole numbers of 1e-4 N and 1e-8 m/s, and its second trial in Universal Files.
+/// Two programs wrote one measurement: as whole numbers of 1e-4 N and 1e-8 m/s, and its second trial in Universal
+/// Files.
 #[test]
 fn a_measurement_in_universal_files() {
     let measured = fmm_record::open(workspace("crates/fmm-frf/tests/data/impact4.mat")).unwrap();

@@ -51,8 +51,9 @@ impl Choice<'_> {
 
     /// The two channels, and what the response measured.
     ///
-    /// A channel is as given by name or number, else the first that is said to measure it, else the first that is called so,
-    /// else the first free one of which it is not known; but a response of which nothing is known is refused.
+    /// A channel is as given by name or number, else the first that is said to measure it, else the first that is
+    /// called so, else the first free one of which it is not known; but a response of which nothing is known is
+    /// refused.
     fn channels(&self, offers: &[Channel]) -> Result<(Column, Column, Quantity), Box<dyn Error>> {
         let all = || offers.iter().map(|offer| offer.label.name()).collect::<Vec<_>>().join(", ");
         // A spectrum, or a record with faults, is not to be taken unless it is asked for.

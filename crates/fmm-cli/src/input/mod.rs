@@ -23,9 +23,9 @@ pub(crate) use source::{Choice, Input};
 pub(crate) struct Given {
     /// The record, in a format that `fmm formats` lists; without it, the bundled record of a bicycle fork
     pub(crate) file: Option<PathBuf>,
-    /// The channel with the motion, by name, with or without its unit, or by number counted from 0. Without it: the only
-    /// channel, or the one that fits --quantity and --unit, or the one whose unit is that of a velocity or else of a
-    /// displacement
+    /// The channel with the motion, by name, with or without its unit, or by number counted from 0. Without it: the
+    /// only channel, or the one that fits --quantity and --unit, or the one whose unit is that of a velocity or else of
+    /// a displacement
     #[arg(long, value_name = "NAME|INDEX")]
     pub(crate) channel: Option<Column>,
     /// The channel with the time (s)
@@ -37,12 +37,12 @@ pub(crate) struct Given {
     /// What the channel measures; found by its unit, as in "v [mm/s]" or "theta_rad", or by a word in its name
     #[arg(long, value_enum)]
     pub(crate) quantity: Option<Measured>,
-    /// Factor that turns the numbers of the channel into --unit; both count instead of a unit in the file. A unit in the name, as in
-    /// "v [mm/s]", needs no factor
+    /// Factor that turns the numbers of the channel into --unit; both count instead of a unit in the file. A unit in
+    /// the name, as in "v [mm/s]", needs no factor
     #[arg(long, value_name = "FACTOR")]
     pub(crate) scale: Option<f64>,
-    /// Unit of the channel, such as mm/s, rad or V, after scaling by --scale; needed if the file tells none. With --quantity
-    /// but no unit anywhere, SI units are taken
+    /// Unit of the channel, such as mm/s, rad or V, after scaling by --scale; needed if the file tells none. With
+    /// --quantity but no unit anywhere, SI units are taken
     #[arg(long)]
     pub(crate) unit: Option<WrittenUnit>,
     /// Use the record from this time on
@@ -51,8 +51,8 @@ pub(crate) struct Given {
     /// Use the record up to this time
     #[arg(long, value_name = "S")]
     to: Option<f64>,
-    /// The mode that is meant, if the record shows several: 1 is the strongest, 2 the next, and 150Hz the one nearest to that
-    /// frequency. Where a law is fitted, the others are filtered out
+    /// The mode that is meant, if the record shows several: 1 is the strongest, 2 the next, and 150Hz the one nearest
+    /// to that frequency. Where a law is fitted, the others are filtered out
     #[arg(long, value_name = "N|F Hz", value_parser = mode_wanted)]
     pub(crate) mode: Option<ModeWanted>,
 }

@@ -19,9 +19,9 @@ pub(crate) struct Question {
     /// Relative standard uncertainty of that factor, or of the gain of the instrument
     #[arg(long, value_name = "RELATIVE", default_value_t = 0.0)]
     pub(crate) scale_u: f64,
-    /// The laws to compare, such as coulomb,berger+quadratic: names with terms of the machine beside them (linear, quadratic,
-    /// cubic, power, any sign; cubic spring, quintic spring, stop, gap), or all (viscous, coulomb and both); without it, as many as the record asks for. An unknown name is
-    /// answered with the list of laws
+    /// The laws to compare, such as coulomb,berger+quadratic: names with terms of the machine beside them (linear,
+    /// quadratic, cubic, power, any sign; cubic spring, quintic spring, stop, gap), or all (viscous, coulomb and both);
+    /// without it, as many as the record asks for. An unknown name is answered with the list of laws
     #[arg(long, value_name = "NAME,..|all", value_delimiter = ',')]
     pub(crate) law: Vec<String>,
     /// Begin no further law after so many seconds
@@ -30,7 +30,8 @@ pub(crate) struct Question {
     /// Hold a fitted parameter of the laws at a value, as in exponent=2; of one law alone as in stribeck.exponent=2
     #[arg(long, value_name = "[LAW.]NAME=VALUE")]
     hold: Vec<String>,
-    /// The machine is a pendulum; for a record that is no angle in radians, with the length of the arc that makes one radian
+    /// The machine is a pendulum; for a record that is no angle in radians, with the length of the arc that makes one
+    /// radian
     #[arg(long, value_name = "LENGTH", num_args = 0..=1, default_missing_value = "1")]
     pendulum: Option<f64>,
     /// The moving mass
@@ -57,8 +58,8 @@ pub(crate) struct Question {
     /// Standard uncertainty of the normal load
     #[arg(long, value_name = "N", requires = "normal_load", default_value_t = 0.0)]
     normal_load_u: f64,
-    /// The sensor filters by a Butterworth low-pass filter of this order, with its corner frequency or, without it, one that is
-    /// fitted
+    /// The sensor filters by a Butterworth low-pass filter of this order, with its corner frequency or, without it, one
+    /// that is fitted
     #[arg(long, value_name = "ORDER[:HZ]", value_parser = low_pass)]
     low_pass: Option<(usize, Option<f64>)>,
     /// The sensor is late by this time
@@ -169,7 +170,8 @@ impl Question {
         self.normal_load
     }
 
-    /// What is stated of the machine with an uncertainty: source of uncertainty, value and standard uncertainty in their units.
+    /// What is stated of the machine with an uncertainty: source of uncertainty, value and standard uncertainty in
+    /// their units.
     pub(crate) fn stated(&self) -> impl Iterator<Item = (Source, f64, f64)> {
         let stated = [
             (Source::Mass, self.mass, self.mass_u),
@@ -180,8 +182,8 @@ impl Question {
         stated.into_iter().filter_map(|(source, value, u)| Some((source, value?, u))).filter(|(_, _, u)| *u > 0.0)
     }
 
-    /// What is asked of several records that are one problem, each with its name: the question of the first, and the normal load of
-    /// each over that of the first. Refused where they state more than one machine, which no fit has.
+    /// What is asked of several records that are one problem, each with its name: the question of the first, and the
+    /// normal load of each over that of the first. Refused where they state more than one machine, which no fit has.
     pub(crate) fn together(questions: &[(Self, String)]) -> Result<(Self, Vec<f64>), String> {
         let (first, name) = questions.first().ok_or("there is no record")?;
         let mut factors = Vec::with_capacity(questions.len());
@@ -228,8 +230,8 @@ impl Question {
         Ok((Self { normal_load_u, ..first.clone() }, factors))
     }
 
-    /// What one record or several of one machine say to the `candidates`, or to a search if there are none, while `show` sees each trial
-    /// step.
+    /// What one record or several of one machine say to the `candidates`, or to a search if there are none, while
+    /// `show` sees each trial step.
     pub(crate) fn answer(
         &self,
         decays: &[Experiment],

@@ -1,7 +1,8 @@
 //! Pictures inside a page.
 
-/// The drawing for use inside HTML: without a prolog, scaling with the page, labelled by the element with the id `label`, and
-/// with its ids and the references to them prefixed by `prefix`, so that several pictures can share a page.
+/// The drawing for use inside HTML: without a prolog, scaling with the page, labelled by the element with the id
+/// `label`, and with its ids and the references to them prefixed by `prefix`, so that several pictures can share a
+/// page.
 ///
 /// Ids occur as `id="…"`, and are referred to as `url(#…)` or `href="#…"`.
 pub(super) fn inline(svg: &str, prefix: &str, label: &str) -> String {

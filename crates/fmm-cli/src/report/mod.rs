@@ -195,7 +195,8 @@ mod tests {
 
     use super::*;
 
-    /// The page has the findings, holds its own result, needs no network, is the same each time, and lets no text in as HTML.
+    /// The page has the findings, holds its own result, needs no network, is the same each time, and lets no text in as
+    /// HTML.
     #[test]
     fn a_page_is_whole() {
         let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), Viscous::new(0.3).unwrap(), 1.0).unwrap();

@@ -49,8 +49,8 @@ pub(crate) trait Contact {
         sampling: &Sampling,
     ) -> Result<Option<Trajectory>, SimulationError>;
 
-    /// Friction coefficient (1), with its sign, at a `velocity` (m/s) relative to the counterface and internal `states`;
-    /// `losing` tells that the speed falls.
+    /// Friction coefficient (1), with its sign, at a `velocity` (m/s) relative to the counterface and internal
+    /// `states`; `losing` tells that the speed falls.
     fn coefficient(&self, velocity: f64, states: &[f64], losing: bool) -> f64;
 
     /// The law as one of the sliding speed alone, if it is one.

@@ -190,7 +190,8 @@ impl Drive {
     /// The excitation of these numbers.
     ///
     /// # Errors
-    /// [`SimulationError::Quantity`] for a number that cannot be, [`SimulationError::OutOfRange`] for a list without one.
+    /// [`SimulationError::Quantity`] for a number that cannot be, [`SimulationError::OutOfRange`] for a list without
+    /// one.
     pub(crate) fn excitation(self) -> Result<Excitation, SimulationError> {
         match self {
             Self::SampledForce { values, .. } if values.is_empty() => Err(SimulationError::OutOfRange {

@@ -84,8 +84,8 @@ impl Slot {
         Self { name, symbol, unit, shape, default: None }
     }
 
-    /// Every key that means this parameter, in lower case: its name, its symbol in ASCII with and without underscore, and
-    /// its aliases.
+    /// Every key that means this parameter, in lower case: its name, its symbol in ASCII with and without underscore,
+    /// and its aliases.
     pub(crate) fn keys(&self) -> Vec<String> {
         let symbol = ascii(self.symbol);
         let aliases = ALIASES.iter().filter(|alias| alias.0 == self.name && alias.1 == self.symbol);

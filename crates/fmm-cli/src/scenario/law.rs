@@ -15,8 +15,8 @@ impl Given {
     /// Sorts `entries` into `slots`.
     ///
     /// # Errors
-    /// [`ScenarioError::UnknownParameter`] for a key that none of them has, [`ScenarioError::GivenTwice`] for two keys of
-    /// one, [`ScenarioError::MissingParameter`] for one that has neither a value nor a default.
+    /// [`ScenarioError::UnknownParameter`] for a key that none of them has, [`ScenarioError::GivenTwice`] for two keys
+    /// of one, [`ScenarioError::MissingParameter`] for one that has neither a value nor a default.
     pub(crate) fn sort(law: &'static str, slots: Vec<Slot>, entries: Entries) -> Result<Self, ScenarioError> {
         let known = || {
             let texts: Vec<String> = slots.iter().map(Slot::description).collect();

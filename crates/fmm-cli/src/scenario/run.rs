@@ -94,8 +94,8 @@ impl Simulation {
         self.law
     }
 
-    /// Friction force (N) at a `velocity` (m/s) relative to the counterface and internal `states`; `losing` tells that the
-    /// speed falls.
+    /// Friction force (N) at a `velocity` (m/s) relative to the counterface and internal `states`; `losing` tells that
+    /// the speed falls.
     pub(crate) fn friction(&self, velocity: f64, states: &[f64], losing: bool) -> f64 {
         self.contact.coefficient(velocity, states, losing) * self.setting.normal_load
     }

@@ -86,8 +86,8 @@ fn friction_panels(scenario: &Simulation, motion: &Motion) -> Vec<Panel> {
     vec![force, balance.with(kept)]
 }
 
-/// Friction force (N) against the relative velocity (m/s), in the order in which the motion passes through it. A contact
-/// that holds is left out, but for the level at which it lets go.
+/// Friction force (N) against the relative velocity (m/s), in the order in which the motion passes through it. A
+/// contact that holds is left out, but for the level at which it lets go.
 fn friction(scenario: &Simulation, motion: &Motion) -> Vec<(f64, f64)> {
     let samples = &motion.samples;
     let sign = |next: &str| if next == "slip-" { -1.0 } else { 1.0 };

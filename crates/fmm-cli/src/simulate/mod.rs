@@ -1,7 +1,7 @@
 //! Motion of a machine under a law: `fmm simulate SCENARIO.json`.
 //!
-//! Reads a scenario (machine, damping, law of friction, forces, initial state, sampling; all SI), simulates it, and gives out its events
-//! and energies, or everything.
+//! Reads a scenario (machine, damping, law of friction, forces, initial state, sampling; all SI), simulates it, and
+//! gives out its events and energies, or everything.
 
 mod figures;
 mod text;

@@ -54,7 +54,8 @@ impl fmt::Display for Report<'_> {
         writeln!(f, "{:>16}  {:13} {:>15} {:>15}  {:10} {:>10}", "t / s", "event", head[0], head[1], "next", "margin")?;
         for event in motion.events.iter().take(MOST_EVENTS) {
             let next = event.phase.map_or_else(|| event.next.to_owned(), |phase| format!("{} {phase}", event.next));
-            // Only where the velocity is zero is anything decided, and neither bristles nor a contact without a level decide.
+            // Only where the velocity is zero is anything decided, and neither bristles nor a contact without a level
+            // decide.
             let decided = motion.samples.z.is_empty()
                 && matches!(event.kind.as_str(), "zero_velocity" | "breakaway+" | "breakaway-");
             let margin =

@@ -98,8 +98,8 @@ pub fn f_test(restricted: &Fit, full: &Fit) -> Result<FTest, ComparisonError> {
     Ok(FTest { f, p_value, degrees_of_freedom: (added, freedom) })
 }
 
-/// Probability that a ratio F of two variances with `added` and `freedom` degrees of freedom is at least `f` by chance (1); none
-/// for degrees of freedom that are not positive, or an `f` that is not a number.
+/// Probability that a ratio F of two variances with `added` and `freedom` degrees of freedom is at least `f` by chance
+/// (1); none for degrees of freedom that are not positive, or an `f` that is not a number.
 ///
 /// ```
 /// // The square of Student's t of 2.228 with ten degrees of freedom, which 5 % exceed.

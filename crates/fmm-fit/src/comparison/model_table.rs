@@ -53,8 +53,8 @@ pub struct NestedComparison {
 /// F    = ((S_r − S_f)/(rank_f − rank_r))/(S_f/(m − rank_f))
 /// ```
 ///
-/// n is the number of residuals and m the number of those that count, see [`ResidualCount`]: neighbouring residuals of an
-/// oversampled record are correlated, so that m is less. An m too small for the correction is taken as k + 2.
+/// n is the number of residuals and m the number of those that count, see [`ResidualCount`]: neighbouring residuals of
+/// an oversampled record are correlated, so that m is less. An m too small for the correction is taken as k + 2.
 ///
 /// Models within the margin of the best are too close to call; the one with the fewest parameters is preferred. A model
 /// declared to contain another, whose further parameters ended without effect, is the other over again and no rival.

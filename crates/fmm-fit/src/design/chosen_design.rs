@@ -20,7 +20,8 @@ impl ChosenDesign {
         groups.map(|group| (group[0], group.len())).collect()
     }
 
-    /// The logarithm of the standard uncertainty that was made small, see [`DesignSearch::score`](crate::DesignSearch::score).
+    /// The logarithm of the standard uncertainty that was made small, see
+    /// [`DesignSearch::score`](crate::DesignSearch::score).
     pub fn score(&self) -> f64 {
         self.score
     }

@@ -8,14 +8,15 @@ use crate::uncertainty::definite::{factor, solve};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DesignCriterion {
-    /// D: the generalised variance of the combinations that are asked for, det(G M⁻¹ Gᵀ). It does not depend on their units.
+    /// D: the generalised variance of the combinations that are asked for, det(G M⁻¹ Gᵀ). It does not depend on their
+    /// units.
     Determinant,
     /// A: the mean of their variances, tr(G M⁻¹ Gᵀ)/q. Of one combination it is its variance, the criterion called c.
     MeanVariance,
 }
 
-/// What is known, what each candidate would tell, and which combinations of the parameters are asked for, all at one guess of the
-/// parameters. Of a linear model there is one case; of others, several stand for what is not known yet.
+/// What is known, what each candidate would tell, and which combinations of the parameters are asked for, all at one
+/// guess of the parameters. Of a linear model there is one case; of others, several stand for what is not known yet.
 #[derive(Debug, Clone)]
 pub struct DesignCase {
     pub(crate) known: Information,
@@ -29,10 +30,12 @@ pub struct DesignCase {
 const RIDGE: f64 = 1e-10;
 
 impl DesignCase {
-    /// The information that is `known` before, that of each of the `candidates`, and the `combinations` gᵀθ that are asked for.
+    /// The information that is `known` before, that of each of the `candidates`, and the `combinations` gᵀθ that are
+    /// asked for.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] if they are not of the same number of parameters, or without candidates or combinations.
+    /// [`DesignError::Mismatch`] if they are not of the same number of parameters, or without candidates or
+    /// combinations.
     pub fn new(
         known: Information,
         candidates: Vec<Information>,

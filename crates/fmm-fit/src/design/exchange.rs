@@ -56,7 +56,8 @@ impl<'a> Exchange<'a> {
         best.map(|(measurements, score)| ChosenDesign { measurements, score, is_exhaustive: true })
     }
 
-    /// Looks at the sets that begin with `chosen` and go on with candidates from `first` on; `None` if that takes too long.
+    /// Looks at the sets that begin with `chosen` and go on with candidates from `first` on; `None` if that takes too
+    /// long.
     fn below(
         &mut self,
         chosen: &mut Vec<usize>,
@@ -90,7 +91,8 @@ impl<'a> Exchange<'a> {
         Some(())
     }
 
-    /// The set that exchanges make of `measurements`: what is left of the budget is spent first on what helps most for its cost.
+    /// The set that exchanges make of `measurements`: what is left of the budget is spent first on what helps most for
+    /// its cost.
     pub(crate) fn improved(&mut self, mut measurements: Vec<usize>) -> ChosenDesign {
         let mut sums = self.search.sums(&measurements);
         let mut score = self.fill(&mut measurements, &mut sums);

@@ -22,8 +22,8 @@ use crate::{NullDirection, Residuals};
 /// ```
 ///
 /// Independent measurements [add](Self::add) up, and what is known beforehand is information as well
-/// ([`with_known`](Self::with_known)). Parameters of one measurement alone, such as its offset, are eliminated before by the Schur
-/// complement ([`of_problem`](Self::of_problem)): what is left adds up.
+/// ([`with_known`](Self::with_known)). Parameters of one measurement alone, such as its offset, are eliminated before
+/// by the Schur complement ([`of_problem`](Self::of_problem)): what is left adds up.
 ///
 /// ```
 /// use fmm_fit::Information;
@@ -41,8 +41,8 @@ use crate::{NullDirection, Residuals};
 /// ```
 ///
 /// # References
-/// V. V. Fedorov, "Theory of Optimal Experiments", Academic Press 1972; A. C. Atkinson, A. N. Donev, R. D. Tobias, "Optimum
-/// Experimental Designs, with SAS", Oxford University Press 2007, sections 9.1 and 17.2.
+/// V. V. Fedorov, "Theory of Optimal Experiments", Academic Press 1972; A. C. Atkinson, A. N. Donev, R. D. Tobias,
+/// "Optimum Experimental Designs, with SAS", Oxford University Press 2007, sections 9.1 and 17.2.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Information {
     order: usize,
@@ -61,10 +61,12 @@ impl Information {
         Self { order, elements: vec![0.0; order * order] }
     }
 
-    /// That of measurements of unit variance whose derivatives by the `order` parameters are `rows`, one after the other.
+    /// That of measurements of unit variance whose derivatives by the `order` parameters are `rows`, one after the
+    /// other.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] if the rows are not whole, [`DesignError::OutOfRange`] for a derivative that is not finite.
+    /// [`DesignError::Mismatch`] if the rows are not whole, [`DesignError::OutOfRange`] for a derivative that is not
+    /// finite.
     pub fn of_rows(order: usize, rows: &[f64]) -> Result<Self, DesignError> {
         if order == 0 || !rows.len().is_multiple_of(order) {
             return Err(DesignError::mismatch("derivatives in whole rows", rows.len(), order));
@@ -75,8 +77,8 @@ impl Information {
         Ok(information)
     }
 
-    /// What the residuals of `problem`, each of unit variance, tell at `values` about its first `shared` parameters, while all others
-    /// are found beside them. Parameters that are held fixed are known.
+    /// What the residuals of `problem`, each of unit variance, tell at `values` about its first `shared` parameters,
+    /// while all others are found beside them. Parameters that are held fixed are known.
     ///
     /// ```text
     /// M = J_sᵀ (1 − J_o (J_oᵀ J_o)⁻¹ J_oᵀ) J_s
@@ -98,7 +100,8 @@ impl Information {
         let free: Vec<usize> = (0..count).filter(is_free).collect();
         let (mut whole, mut scratch) = (Triangle::default(), Scratch::default());
         linearised.structure.factor(&linearised.jacobian, &free, &linearised.residuals, &mut whole, &mut scratch);
-        // With its own parameters first, the triangle left of the others has lost them. One without influence takes nothing.
+        // With its own parameters first, the triangle left of the others has lost them. One without influence takes
+        // nothing.
         let kept = free.iter().filter(|j| **j < shared).count();
         let own = (kept..free.len()).filter(|column| whole.column_norm(*column) > 0.0);
         let order: Vec<usize> = own.chain(0..kept).collect();
@@ -160,7 +163,8 @@ impl Information {
     /// The same with a parameter that is known with standard `uncertainty` beside the measurements.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] if there is no such parameter, [`DesignError::OutOfRange`] unless the uncertainty is positive.
+    /// [`DesignError::Mismatch`] if there is no such parameter, [`DesignError::OutOfRange`] unless the uncertainty is
+    /// positive.
     pub fn with_known(mut self, parameter: usize, uncertainty: f64) -> Result<Self, DesignError> {
         if parameter >= self.order {
             return Err(DesignError::mismatch("place of a known parameter", parameter, self.order));
@@ -175,11 +179,12 @@ impl Information {
         Ok(self)
     }
 
-    /// What the same measurements tell about parameters φ on which these depend: TᵀMT with T = ∂θ/∂φ, given row by row, one row for
-    /// each of these parameters.
+    /// What the same measurements tell about parameters φ on which these depend: TᵀMT with T = ∂θ/∂φ, given row by row,
+    /// one row for each of these parameters.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] if the rows are not whole, [`DesignError::OutOfRange`] for a derivative that is not finite.
+    /// [`DesignError::Mismatch`] if the rows are not whole, [`DesignError::OutOfRange`] for a derivative that is not
+    /// finite.
     pub fn transformed(&self, derivatives: &[f64]) -> Result<Self, DesignError> {
         if derivatives.is_empty() || !derivatives.len().is_multiple_of(self.order.max(1)) {
             return Err(DesignError::mismatch("derivatives in whole rows", derivatives.len(), self.order));
@@ -246,8 +251,8 @@ impl Information {
         Ok(null_directions(null, &columns, &spectrum.scales, values, &names, ROUNDING.sqrt()))
     }
 
-    /// As many draws of the parameters about these `values`, normal with the covariance that the information leaves; along directions
-    /// about which nothing is known they do not move. The same `seed` gives the same draws.
+    /// As many draws of the parameters about these `values`, normal with the covariance that the information leaves;
+    /// along directions about which nothing is known they do not move. The same `seed` gives the same draws.
     ///
     /// # Errors
     /// [`DesignError::Mismatch`] for another number of values than parameters.
@@ -355,7 +360,8 @@ mod tests {
     use super::*;
     use crate::{Dual, Options, Scalar, solve};
 
-    /// What is left of a joint problem when its own parameters are eliminated is the inverse of their part of the covariance.
+    /// What is left of a joint problem when its own parameters are eliminated is the inverse of their part of the
+    /// covariance.
     #[test]
     fn eliminated_parameters_cost_what_the_covariance_says() {
         let (t, y) = ([0.0, 1.0, 2.0, 3.0, 4.0, 5.0], [2.01, 1.2, 0.75, 0.44, 0.28, 0.15]);

@@ -9,10 +9,10 @@ use crate::{ChosenDesign, DesignCase, DesignCriterion, DesignError};
 
 /// Search for the measurements, out of a list of candidates, that make what is asked for least uncertain.
 ///
-/// Every set is looked at where there are few; otherwise measurements are exchanged for others one at a time, begun with the
-/// candidates that help most one after the other and with random sets, until no exchange helps (Fedorov; Cook and Nachtsheim). With
-/// several [cases](DesignCase) it is the mean of the logarithm of the uncertainty over them that is made small, or the
-/// [worst](Self::for_worst_case).
+/// Every set is looked at where there are few; otherwise measurements are exchanged for others one at a time, begun
+/// with the candidates that help most one after the other and with random sets, until no exchange helps (Fedorov; Cook
+/// and Nachtsheim). With several [cases](DesignCase) it is the mean of the logarithm of the uncertainty over them that
+/// is made small, or the [worst](Self::for_worst_case).
 ///
 /// ```
 /// use fmm_fit::{DesignCase, DesignCriterion, DesignSearch, Information};
@@ -26,10 +26,11 @@ use crate::{ChosenDesign, DesignCase, DesignCriterion, DesignError};
 /// ```
 ///
 /// # References
-/// V. V. Fedorov, "Theory of Optimal Experiments", Academic Press 1972, section 3.2; R. D. Cook, C. J. Nachtsheim, "A comparison of
-/// algorithms for constructing exact D-optimal designs", Technometrics 22 (1980) 315,
-/// <https://doi.org/10.1080/00401706.1980.10486162>; A. C. Atkinson, A. N. Donev, R. D. Tobias, "Optimum Experimental Designs, with
-/// SAS", Oxford University Press 2007, chapters 10 to 12 (criteria, algorithms) and 18 (designs over a prior).
+/// V. V. Fedorov, "Theory of Optimal Experiments", Academic Press 1972, section 3.2; R. D. Cook, C. J. Nachtsheim, "A
+/// comparison of algorithms for constructing exact D-optimal designs", Technometrics 22 (1980) 315,
+/// <https://doi.org/10.1080/00401706.1980.10486162>; A. C. Atkinson, A. N. Donev, R. D. Tobias, "Optimum Experimental
+/// Designs, with SAS", Oxford University Press 2007, chapters 10 to 12 (criteria, algorithms) and 18 (designs over a
+/// prior).
 #[derive(Debug, Clone)]
 pub struct DesignSearch {
     cases: Vec<DesignCase>,
@@ -81,9 +82,9 @@ impl DesignSearch {
         self.cases[0].candidates.len()
     }
 
-    /// ln u of the combinations that are asked for, after the measurements at these places among the candidates: the mean over the
-    /// cases, or the worst. u is det(G M⁻¹ Gᵀ)^(1/2q) or √(tr(G M⁻¹ Gᵀ)/q) of the q combinations G; where they are not determined
-    /// it is that with 10⁻¹⁰ of the information of a mean candidate beside, which is large.
+    /// ln u of the combinations that are asked for, after the measurements at these places among the candidates: the
+    /// mean over the cases, or the worst. u is det(G M⁻¹ Gᵀ)^(1/2q) or √(tr(G M⁻¹ Gᵀ)/q) of the q combinations G; where
+    /// they are not determined it is that with 10⁻¹⁰ of the information of a mean candidate beside, which is large.
     ///
     /// # Errors
     /// [`DesignError::Mismatch`] for a place beyond the candidates.
@@ -108,8 +109,8 @@ impl DesignSearch {
     /// The best set whose costs, one for each candidate, add up to no more than `budget`.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] for another number of costs than candidates, [`DesignError::OutOfRange`] for a cost that is not
-    /// positive, and for a budget that allows no measurement or more than 1000.
+    /// [`DesignError::Mismatch`] for another number of costs than candidates, [`DesignError::OutOfRange`] for a cost
+    /// that is not positive, and for a budget that allows no measurement or more than 1000.
     pub fn best_within(&self, costs: &[f64], budget: f64) -> Result<ChosenDesign, DesignError> {
         if costs.len() != self.candidates() {
             return Err(DesignError::mismatch("costs of the candidates", costs.len(), self.candidates()));

@@ -15,8 +15,8 @@ pub struct NormalityTest {
     pub p_value: f64,
 }
 
-/// Tests whether residuals are normal, with mean and variance taken from them. `None` for fewer than eight residuals, if
-/// they are all equal, or not finite.
+/// Tests whether residuals are normal, with mean and variance taken from them. `None` for fewer than eight residuals,
+/// if they are all equal, or not finite.
 ///
 /// ```text
 /// A² = −n − 1/n Σᵢ (2 i − 1) (ln Φ(z₍ᵢ₎) + ln(1 − Φ(z₍ₙ₊₁₋ᵢ₎))),     A*² = A² (1 + 0.75/n + 2.25/n²)

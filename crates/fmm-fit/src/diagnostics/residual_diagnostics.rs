@@ -23,8 +23,8 @@ pub fn durbin_watson(residuals: &[f64]) -> Option<f64> {
     (residuals.len() > 1 && squares > 0.0 && changes.is_finite() && squares.is_finite()).then(|| changes / squares)
 }
 
-/// ρ_k, the autocorrelation of the residuals at this `lag` (samples), about zero; of white noise within ±1.96/√n in 95 of 100 cases.
-/// `None` for a lag that leaves no pair, or if the residuals are all zero or not finite.
+/// ρ_k, the autocorrelation of the residuals at this `lag` (samples), about zero; of white noise within ±1.96/√n in 95
+/// of 100 cases. `None` for a lag that leaves no pair, or if the residuals are all zero or not finite.
 ///
 /// ```text
 /// ρ_k = Σ rᵢ rᵢ₊ₖ / Σ rᵢ²

@@ -21,8 +21,9 @@ const FEWEST_RECORDS: usize = 5 * BINS;
 /// θ ~ prior,   record ~ p(y | θ),   θ₁ … θ_L ~ p(θ | y):     the number of θᵢ below θ is uniform on 0 … L
 /// ```
 ///
-/// Anything else says that sampler, derivatives or noise are not those of the simulation: ranks at both ends that the posterior is too
-/// narrow, in the middle that it is too wide, at one end that it is biased. The test is χ² with 19 degrees of freedom.
+/// Anything else says that sampler, derivatives or noise are not those of the simulation: ranks at both ends that the
+/// posterior is too narrow, in the middle that it is too wide, at one end that it is biased. The test is χ² with 19
+/// degrees of freedom.
 ///
 /// It is a tool for a law of one's own: simulate records with it, and see whether its posterior is right.
 ///
@@ -74,8 +75,8 @@ const FEWEST_RECORDS: usize = 5 * BINS;
 /// ```
 ///
 /// # References
-/// S. Talts, M. Betancourt, D. Simpson, A. Vehtari, A. Gelman, "Validating Bayesian inference algorithms with simulation-based
-/// calibration", <https://arxiv.org/abs/1804.06788>.
+/// S. Talts, M. Betancourt, D. Simpson, A. Vehtari, A. Gelman, "Validating Bayesian inference algorithms with
+/// simulation-based calibration", <https://arxiv.org/abs/1804.06788>.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
     parameters: Vec<Parameter>,
@@ -85,15 +86,15 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Calibrates the posterior by `sampler` of as many `records` as `simulate` makes of true values of the `parameters` and a seed: a
-    /// problem with those parameters whose residuals have the standard deviation 1.
+    /// Calibrates the posterior by `sampler` of as many `records` as `simulate` makes of true values of the
+    /// `parameters` and a seed: a problem with those parameters whose residuals have the standard deviation 1.
     ///
     /// True values are drawn from the priors of the sampler. The result is a function of its seed.
     ///
     /// # Errors
-    /// [`PosteriorError::TooFew`] below a hundred records, [`PosteriorError::Prior`] for a parameter whose prior is flat without two
-    /// bounds, or a sampler that does not take the variance of the residuals as 1. Records without a posterior are counted as
-    /// [failures](Self::failures).
+    /// [`PosteriorError::TooFew`] below a hundred records, [`PosteriorError::Prior`] for a parameter whose prior is
+    /// flat without two bounds, or a sampler that does not take the variance of the residuals as 1. Records without a
+    /// posterior are counted as [failures](Self::failures).
     pub fn of<P: Residuals>(
         sampler: &Sampler,
         parameters: &[Parameter],
@@ -142,16 +143,16 @@ impl Calibration {
         Some(&self.ranks[place])
     }
 
-    /// The number of records whose true value of the parameter of this name has a rank in each of twenty equal bins; `None` for the name
-    /// of none.
+    /// The number of records whose true value of the parameter of this name has a rank in each of twenty equal bins;
+    /// `None` for the name of none.
     pub fn histogram(&self, name: &str) -> Option<Vec<usize>> {
         let mut counts = vec![0; BINS];
         self.ranks_of(name)?.iter().for_each(|rank| counts[rank * BINS / (DRAWS + 1)] += 1);
         Some(counts)
     }
 
-    /// Probability that uniform ranks are as uneven as those of the parameter of this name (1), by the χ² test; `None` for the name of
-    /// none, or without a record.
+    /// Probability that uniform ranks are as uneven as those of the parameter of this name (1), by the χ² test; `None`
+    /// for the name of none, or without a record.
     pub fn p_value(&self, name: &str) -> Option<f64> {
         let counts = self.histogram(name)?;
         let expected = counts.iter().sum::<usize>() as f64 / BINS as f64;

@@ -14,12 +14,12 @@ const DISAGREEMENT: f64 = 4.0;
 
 /// The agreement of a posterior with random-walk Metropolis chains of the same density.
 ///
-/// Kinks and jumps of the residuals, as at the stop of a motion, are nothing to a method that only compares densities. The two
-/// must agree in means and standard deviations within their Monte Carlo errors.
+/// Kinks and jumps of the residuals, as at the stop of a motion, are nothing to a method that only compares densities.
+/// The two must agree in means and standard deviations within their Monte Carlo errors.
 ///
 /// # References
-/// N. Metropolis et al., J. Chem. Phys. 21 (1953) 1087, <https://doi.org/10.1063/1.1699114>; A. Gelman, G. O. Roberts, W. R. Gilks,
-/// "Efficient Metropolis jumping rules", Bayesian Statistics 5 (1996) 599 (steps of 2.38/√p).
+/// N. Metropolis et al., J. Chem. Phys. 21 (1953) 1087, <https://doi.org/10.1063/1.1699114>; A. Gelman, G. O. Roberts,
+/// W. R. Gilks, "Efficient Metropolis jumping rules", Bayesian Statistics 5 (1996) 599 (steps of 2.38/√p).
 #[derive(Debug, Clone, PartialEq)]
 pub struct GradientFreeCheck {
     acceptance: f64,

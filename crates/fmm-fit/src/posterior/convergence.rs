@@ -1,12 +1,14 @@
 //! Convergence of chains: rank-normalised R̂ and effective sample sizes.
 //!
 //! # References
-//! A. Vehtari, A. Gelman, D. Simpson, B. Carpenter, P.-C. Bürkner, "Rank-normalization, folding, and localization: an improved
-//! R̂ for assessing convergence of MCMC", Bayesian Analysis 16 (2021) 667, <https://doi.org/10.1214/20-BA1221>.
+//! A. Vehtari, A. Gelman, D. Simpson, B. Carpenter, P.-C. Bürkner, "Rank-normalization, folding, and localization: an
+//! improved R̂ for assessing convergence of MCMC", Bayesian Analysis 16 (2021) 667,
+//! <https://doi.org/10.1214/20-BA1221>.
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Chains of equal length, each one cut in two halves, so that a drift within a chain shows as a difference between halves.
+/// Chains of equal length, each one cut in two halves, so that a drift within a chain shows as a difference between
+/// halves.
 #[derive(Debug, Clone)]
 struct Halves {
     values: Vec<f64>,
@@ -170,7 +172,8 @@ pub(super) fn quantile(sorted: &[f64], level: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Four chains of 250 autocorrelated values, the last one shifted, by a congruential generator whose numbers are exact.
+    /// Four chains of 250 autocorrelated values, the last one shifted, by a congruential generator whose numbers are
+    /// exact.
     fn chains(step: Option<f64>) -> Vec<f64> {
         let mut state = 12_345_u64;
         let mut values = Vec::new();
@@ -186,7 +189,8 @@ mod tests {
         values
     }
 
-    /// ArviZ 0.23.4: rhat(method="rank"), ess(method="bulk" and "tail"), mcse(method="mean" and "sd"), of the same numbers.
+    /// ArviZ 0.23.4: rhat(method="rank"), ess(method="bulk" and "tail"), mcse(method="mean" and "sd"), of the same
+    /// numbers.
     #[test]
     fn the_figures_are_those_of_arviz() {
         let cases = [

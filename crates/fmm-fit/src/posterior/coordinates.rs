@@ -1,4 +1,5 @@
-//! Coordinates of a posterior: one per free parameter, without bounds, in which the posterior is nearly standard normal.
+//! Coordinates of a posterior: one per free parameter, without bounds, in which the posterior is nearly standard
+//! normal.
 
 use crate::posterior::transform::Transform;
 use crate::uncertainty::definite;
@@ -11,9 +12,10 @@ use crate::uncertainty::definite;
 /// eⱼ = (wⱼ − bⱼ)/Aⱼⱼ,     wⱼ = (θⱼ − θ̂ⱼ)/(dθ/dψ)ⱼ         for one that a bound cuts
 /// ```
 ///
-/// Parameters that a bound cuts come first, the nearest one before the others. Where the residuals are linear in the parameters, those
-/// with far bounds are normal for each value of these, about means that are linear in θ and not in its logarithm: in z the two are
-/// then independent. The determinant of dψ/dz is a constant, and a sampler needs few steps whatever the units and correlations.
+/// Parameters that a bound cuts come first, the nearest one before the others. Where the residuals are linear in the
+/// parameters, those with far bounds are normal for each value of these, about means that are linear in θ and not in
+/// its logarithm: in z the two are then independent. The determinant of dψ/dz is a constant, and a sampler needs few
+/// steps whatever the units and correlations.
 #[derive(Debug, Clone)]
 pub(super) struct Whitening {
     centre: Vec<f64>,
@@ -38,8 +40,8 @@ struct Cut {
 const NEAR: f64 = 6.0;
 
 impl Whitening {
-    /// About `centre`, for information matrices by rows: `straight` over θ, each in units of its dθ/dψ, and `bent` over ψ.
-    /// `None` unless the first is positive definite by more than rounding.
+    /// About `centre`, for information matrices by rows: `straight` over θ, each in units of its dθ/dψ, and `bent` over
+    /// ψ. `None` unless the first is positive definite by more than rounding.
     pub(super) fn new(centre: Vec<f64>, transforms: &[Transform], straight: &[f64], bent: &[f64]) -> Option<Self> {
         let order = centre.len();
         let covariance = inverse(straight, order)?;

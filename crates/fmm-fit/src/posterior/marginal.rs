@@ -77,20 +77,21 @@ impl Marginal {
         self.deviation
     }
 
-    /// The value below which the share `level` of the draws lies, in the unit of the parameter; `None` for a level outside (0, 1).
+    /// The value below which the share `level` of the draws lies, in the unit of the parameter; `None` for a level
+    /// outside (0, 1).
     pub fn quantile(&self, level: f64) -> Option<f64> {
         is_probability(level).then(|| quantile(&self.sorted, level))
     }
 
-    /// The interval that holds the quantity with probability `level`, with (1 − `level`)/2 beyond either end, in the unit of the
-    /// parameter; `None` for a level outside (0, 1).
+    /// The interval that holds the quantity with probability `level`, with (1 − `level`)/2 beyond either end, in the
+    /// unit of the parameter; `None` for a level outside (0, 1).
     pub fn interval(&self, level: f64) -> Option<(f64, f64)> {
         let tail = 0.5 * (1.0 - level);
         Some((self.quantile(tail)?, self.quantile(1.0 - tail)?))
     }
 
-    /// The shortest interval that holds the share `level` of the draws, in the unit of the parameter: that of highest density if
-    /// there is one peak. `None` for a level outside (0, 1).
+    /// The shortest interval that holds the share `level` of the draws, in the unit of the parameter: that of highest
+    /// density if there is one peak. `None` for a level outside (0, 1).
     pub fn shortest_interval(&self, level: f64) -> Option<(f64, f64)> {
         is_probability(level).then(|| {
             let last = self.sorted.len() - 1;

@@ -14,8 +14,8 @@ use crate::posterior::coordinates::Whitening;
 use crate::posterior::target::Target;
 use crate::{PosteriorError, Residuals};
 
-/// Share of points accepted at which steps are aimed where a bound cuts: towards it the density of a logarithm falls off ever more
-/// steeply, and long steps diverge there.
+/// Share of points accepted at which steps are aimed where a bound cuts: towards it the density of a logarithm falls
+/// off ever more steeply, and long steps diverge there.
 const CAUTIOUS: f64 = 0.92;
 
 /// What one chain found.

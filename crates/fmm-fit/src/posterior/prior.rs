@@ -19,8 +19,8 @@ const TRIES: usize = 10_000;
 /// | [`log_normal`](Self::log_normal) | exp(−(ln θ/m)²/2s²)/θ | a positive value known to a factor exp s |
 /// | [`uniform`](Self::uniform) | 1 between two values | limits, such as those of a tolerance |
 ///
-/// The bounds of the parameter cut every prior. A flat prior over a parameter without bounds has no integral; the posterior has
-/// one if the data determine the parameter.
+/// The bounds of the parameter cut every prior. A flat prior over a parameter without bounds has no integral; the
+/// posterior has one if the data determine the parameter.
 ///
 /// ```
 /// use fmm_fit::Prior;
@@ -63,8 +63,8 @@ impl Prior {
         Ok(Self(Kind::Normal { mean, deviation: positive("standard uncertainty", standard_uncertainty)? }))
     }
 
-    /// A positive value: its logarithm is normal about that of `median` (unit of the parameter), with the standard deviation
-    /// `log_deviation` (1), which for a small one is the relative standard uncertainty.
+    /// A positive value: its logarithm is normal about that of `median` (unit of the parameter), with the standard
+    /// deviation `log_deviation` (1), which for a small one is the relative standard uncertainty.
     ///
     /// # Errors
     /// [`PosteriorError::Prior`] unless both are finite and positive.

@@ -5,8 +5,8 @@ use fmm_model::{Bounds, Parameter};
 use crate::posterior::sampler::Chain;
 use crate::{GradientFreeCheck, Marginal, PosteriorError, PosteriorWarning, ResidualVariance};
 
-/// R̂ above this says that the chains do not agree, and fewer effective draws than that make an interval uncertain (Vehtari et al.
-/// 2021, section 4).
+/// R̂ above this says that the chains do not agree, and fewer effective draws than that make an interval uncertain
+/// (Vehtari et al. 2021, section 4).
 const LARGEST_R_HAT: f64 = 1.01;
 const FEWEST_EFFECTIVE: f64 = 400.0;
 /// Share of diverging trajectories that kinks of a residual and far starts make without harm.
@@ -21,8 +21,8 @@ const HARMLESS_DIVERGENCES: f64 = 1e-3;
 /// | [`draws`](Self::draws), [`noise`](Self::noise) | the draws themselves |
 /// | [`warnings`](Self::warnings) | reasons to distrust it |
 ///
-/// The noise has two marginals beside those of the free parameters: `residual_standard_deviation`, in the unit of the residuals,
-/// unless it was stated, and `residual_correlation` of neighbours, if that was asked for.
+/// The noise has two marginals beside those of the free parameters: `residual_standard_deviation`, in the unit of the
+/// residuals, unless it was stated, and `residual_correlation` of neighbours, if that was asked for.
 ///
 /// `Display` gives the report.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,7 +113,8 @@ impl Posterior {
         self.values.chunks_exact(self.parameters.len().max(1))
     }
 
-    /// Of each draw the standard deviation of a residual (unit of the residuals), and its correlation with its neighbour (1).
+    /// Of each draw the standard deviation of a residual (unit of the residuals), and its correlation with its
+    /// neighbour (1).
     pub fn noise(&self) -> &[(f64, f64)] {
         &self.noise
     }
@@ -123,12 +124,14 @@ impl Posterior {
         &self.marginals
     }
 
-    /// The marginal posterior of the parameter of this name; `None` for a name that is none, or that of a fixed parameter.
+    /// The marginal posterior of the parameter of this name; `None` for a name that is none, or that of a fixed
+    /// parameter.
     pub fn marginal(&self, name: &str) -> Option<&Marginal> {
         self.marginals.iter().find(|marginal| marginal.parameter().name() == name)
     }
 
-    /// The posterior of a quantity that follows from the values of all parameters; `None` if it is not finite for some draw.
+    /// The posterior of a quantity that follows from the values of all parameters; `None` if it is not finite for some
+    /// draw.
     ///
     /// ```
     /// use fmm_fit::{Options, Parameter, Sampler, curve, solve};

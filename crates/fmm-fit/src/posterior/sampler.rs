@@ -24,15 +24,16 @@ const TRIES: usize = 100;
 /// p(θ, σ, ρ | y) ∝ p(θ) p(ρ)/σ · σ⁻ⁿ exp(−Q/2σ²),      Q = Σ rᵢ²(θ) for independent residuals
 /// ```
 ///
-/// * **Noise**: residuals are normal with one standard deviation σ, of which nothing is known (Jeffreys' prior), and which
-///   is integrated out; or of standard deviation 1, see [`with_variance`](Self::with_variance). Neighbours are independent, or
-///   [correlated](Self::with_correlated_residuals).
+/// * **Noise**: residuals are normal with one standard deviation σ, of which nothing is known (Jeffreys' prior), and
+///   which is integrated out; or of standard deviation 1, see [`with_variance`](Self::with_variance). Neighbours are
+///   independent, or [correlated](Self::with_correlated_residuals).
 /// * **Priors** are flat within the bounds of the parameters, unless [given](Self::with_prior).
-/// * **Bounds** are met by coordinates without any: the logarithm of the distance from one bound, the logit between two.
-/// * **Chains** of the no-U-turn sampler begin about the fit, overdispersed, in coordinates in which the posterior is nearly
-///   standard normal by the curvature at its mode. Gradients come from the Jacobian of the problem.
-/// * **A check** by random-walk steps, which need no gradient, is compared with them: where a motion sticks or turns back the
-///   residuals have kinks, at which a gradient says nothing.
+/// * **Bounds** are met by coordinates without any: the logarithm of the distance from one bound, the logit between
+///   two.
+/// * **Chains** of the no-U-turn sampler begin about the fit, overdispersed, in coordinates in which the posterior is
+///   nearly standard normal by the curvature at its mode. Gradients come from the Jacobian of the problem.
+/// * **A check** by random-walk steps, which need no gradient, is compared with them: where a motion sticks or turns
+///   back the residuals have kinks, at which a gradient says nothing.
 ///
 /// The result is a function of problem, fit and seed, whatever the number of threads.
 ///
@@ -54,8 +55,8 @@ const TRIES: usize = 100;
 /// ```
 ///
 /// # References
-/// A. Gelman et al., "Bayesian Data Analysis", 3rd ed., CRC (2013), ch. 12 and 14; H. Jeffreys, Proc. R. Soc. A 186 (1946) 453,
-/// <https://doi.org/10.1098/rspa.1946.0056>.
+/// A. Gelman et al., "Bayesian Data Analysis", 3rd ed., CRC (2013), ch. 12 and 14; H. Jeffreys, Proc. R. Soc. A 186
+/// (1946) 453, <https://doi.org/10.1098/rspa.1946.0056>.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Sampler {
@@ -125,14 +126,16 @@ impl Sampler {
         self
     }
 
-    /// What is known of the variance of the residuals: nothing, or that it is 1 or another number, which then counts as exact.
+    /// What is known of the variance of the residuals: nothing, or that it is 1 or another number, which then counts as
+    /// exact.
     #[must_use]
     pub fn with_variance(mut self, variance: ResidualVariance) -> Self {
         self.variance = variance;
         self
     }
 
-    /// Let residuals be correlated with their neighbours of the same block, rᵢ = ρ rᵢ₋₁ + noise, with any ρ in (−1, 1) as likely.
+    /// Let residuals be correlated with their neighbours of the same block, rᵢ = ρ rᵢ₋₁ + noise, with any ρ in (−1, 1)
+    /// as likely.
     #[must_use]
     pub fn with_correlated_residuals(mut self) -> Self {
         self.is_correlated = true;
@@ -164,8 +167,8 @@ impl Sampler {
     /// Draws from the posterior of `problem` about its `fit`, one chain after the other.
     ///
     /// # Errors
-    /// [`PosteriorError`] if the fit is that of another problem, if a prior names no free parameter, if there are too few chains
-    /// or draws, or if there is no posterior: nothing determines a direction, or no residual is left.
+    /// [`PosteriorError`] if the fit is that of another problem, if a prior names no free parameter, if there are too
+    /// few chains or draws, or if there is no posterior: nothing determines a direction, or no residual is left.
     pub fn sample<P: Residuals + ?Sized>(&self, problem: &P, fit: &Fit) -> Result<Posterior, PosteriorError> {
         let plan = self.plan(problem, fit)?;
         let chains = (0..self.chains).map(|chain| self.chain(&plan, chain)).collect::<Result<Vec<_>, _>>()?;

@@ -11,8 +11,8 @@ use crate::solver::evaluation::{Evaluator, Point};
 use crate::solver::sums::dot;
 use crate::{FitError, ResidualVariance, Residuals};
 
-/// The density of the parameters and of the correlation of neighbouring residuals, given the data, over coordinates without
-/// bounds.
+/// The density of the parameters and of the correlation of neighbouring residuals, given the data, over coordinates
+/// without bounds.
 ///
 /// ```text
 /// ln p = −n/2 ln Q + b/2 ln(1 − ρ²) + Σ ln prior(θⱼ) + Σ ln|dθⱼ/dψⱼ|,     Q = rᵀ Λ r            σ integrated out
@@ -216,8 +216,8 @@ impl<'a, P: Residuals + ?Sized> Target<'a, P> {
         (self.square(correlation), correlation.map_or(0.0, |rho| rho.value))
     }
 
-    /// The curvature of −ln p over the parameters, each in units of its dθ/dψ, and over the coordinates, with the bends of the
-    /// model left out as Gauss and Newton do, after an evaluation with the gradient. Both by rows.
+    /// The curvature of −ln p over the parameters, each in units of its dθ/dψ, and over the coordinates, with the bends
+    /// of the model left out as Gauss and Newton do, after an evaluation with the gradient. Both by rows.
     pub(super) fn information(&self, psi: &[f64]) -> [Vec<f64>; 2] {
         let (order, count) = (self.dimension(), self.parts.len());
         let correlation = self.series.as_ref().map(|_| CORRELATION.at(psi[psi.len() - 1]));

@@ -90,7 +90,8 @@ impl Transform {
         }
     }
 
-    /// The value nearest to `value` that keeps at least `distance` from the ends, or a quarter of the interval if that is less.
+    /// The value nearest to `value` that keeps at least `distance` from the ends, or a quarter of the interval if that
+    /// is less.
     pub(super) fn inside(self, value: f64, distance: f64) -> f64 {
         match self {
             Self::Identity => value,

@@ -17,8 +17,8 @@ pub struct ClosureProblem<F, const N: usize> {
 }
 
 impl<F: Fn([Dual<N>; N], &mut [Dual<N>]), const N: usize> ClosureProblem<F, N> {
-    /// The problem of these parameters (a name alone makes an unbounded pure number) and `count` residuals, all of which
-    /// the closure fills, model minus data.
+    /// The problem of these parameters (a name alone makes an unbounded pure number) and `count` residuals, all of
+    /// which the closure fills, model minus data.
     pub fn new(parameters: [impl Into<Parameter>; N], count: usize, residuals: F) -> Self {
         Self { parameters: parameters.map(Into::into), count, residuals }
     }
@@ -103,8 +103,8 @@ pub fn curve<'a, X: Copy, const N: usize>(
 
 /// Fits a curve y = f(x, θ) to data, with exact derivatives, from a start value for each parameter.
 ///
-/// The abscissa may be of any type that can be copied, such as `[f64; 2]` for two predictors. A parameter is a name, or a
-/// [`Parameter`] with symbol, unit and bounds.
+/// The abscissa may be of any type that can be copied, such as `[f64; 2]` for two predictors. A parameter is a name, or
+/// a [`Parameter`] with symbol, unit and bounds.
 ///
 /// ```
 /// use fmm_fit::{Scalar, curve_fit};

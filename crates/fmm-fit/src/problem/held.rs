@@ -38,7 +38,8 @@ pub struct Held<'a, P: ?Sized> {
 }
 
 impl<'a, P: Residuals + ?Sized> Held<'a, P> {
-    /// `problem` with the parameter at each index held at the value beside it; an index that it does not have is ignored.
+    /// `problem` with the parameter at each index held at the value beside it; an index that it does not have is
+    /// ignored.
     ///
     /// # Errors
     /// [`ModelError`] for a value that is not finite.

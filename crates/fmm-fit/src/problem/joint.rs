@@ -13,11 +13,12 @@ use crate::{Block, EvaluationError, Fit, JointError, Residuals};
 /// All others become each problem's own, with its number in the name: `x0` of the second problem is `x0[2]`. Shared
 /// ones come first, in the order of the names given, then those of the first problem, the second, and so on.
 ///
-/// A shared parameter may lie where *all* problems that have it allow it: its bounds are the intersection of theirs, and a
-/// problem that holds it fixed holds it fixed for all.
+/// A shared parameter may lie where *all* problems that have it allow it: its bounds are the intersection of theirs,
+/// and a problem that holds it fixed holds it fixed for all.
 ///
 /// The residuals are those of the problems, one after the other; each problem is a [`Block`] or brings its own, so that
-/// memory and work grow with the number of records, not with its square. Derivatives are exact if all problems give them.
+/// memory and work grow with the number of records, not with its square. Derivatives are exact if all problems give
+/// them.
 ///
 /// Problems of different types are joined as `Joint<&dyn Residuals>`.
 ///
@@ -86,8 +87,8 @@ impl<P: Residuals> Joint<P> {
     /// Joins `problems`; parameters of the names `shared` are the same in all of them.
     ///
     /// # Errors
-    /// [`JointError`] without a problem, for a name that no problem has or that stands twice, and for a shared parameter
-    /// whose units differ or whose bounds have no value in common.
+    /// [`JointError`] without a problem, for a name that no problem has or that stands twice, and for a shared
+    /// parameter whose units differ or whose bounds have no value in common.
     pub fn new(problems: Vec<P>, shared: &[&str]) -> Result<Self, JointError> {
         if problems.is_empty() {
             return Err(JointError::NoProblem);

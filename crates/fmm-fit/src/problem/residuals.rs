@@ -22,7 +22,8 @@ use crate::problem::forward::{forward_shape, forward_values};
 ///    of [`blocks`](Self::blocks) gets those of each block instead, block after block.
 /// 2. **A pure function.** Equal `p` give equal bits, whatever was asked before.
 /// 3. **Signed residuals**, model minus data or the reverse, divided by their standard uncertainty where this
-///    differs, for which there is [`Weighted`](crate::Weighted). Absolute values have a kink where the fit is best and spoil every derivative.
+///    differs, for which there is [`Weighted`](crate::Weighted). Absolute values have a kink where the fit is best and
+///    spoil every derivative.
 /// 4. **Non-finite values mean "no value here".** At a trial point the solver then goes less far; only at the
 ///    start are they an error. The same holds for an `Err`, whose message is kept.
 /// 5. **One answer about the Jacobian**: always `Ok(true)` with all columns filled, or always `Ok(false)`. The

@@ -209,8 +209,8 @@ impl LinearRegression {
         &self.null_directions
     }
 
-    /// The prediction where the columns have the values `row`; `None` if the row has not one value per column, if it has
-    /// a part that the data do not determine, or without a degree of freedom to tell s.
+    /// The prediction where the columns have the values `row`; `None` if the row has not one value per column, if it
+    /// has a part that the data do not determine, or without a degree of freedom to tell s.
     pub fn predict(&self, row: &[f64]) -> Option<Prediction> {
         if row.len() != self.coefficients.len() {
             return None;

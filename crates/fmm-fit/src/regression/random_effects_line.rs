@@ -13,9 +13,9 @@ use crate::{RegressionError, UncertainPoint, YorkLine, coverage_factor};
 /// u² = max(1, S(τ²)/(n − 2)) u²_York(τ²),   a ± t(n − 2) u(a),   b ± t(n − 2) u(b)
 /// ```
 ///
-/// S and u_York are those of [`YorkLine`] with u²(y) + τ² in place of u²(y), so that the x may be uncertain too. The estimate of τ² is
-/// that of Mandel and Paule with a covariate (DerSimonian and Kacker 2007), the intervals are those of Knapp and Hartung (2003). For
-/// a mean in place of a line there is `Consensus` of fmm-uq.
+/// S and u_York are those of [`YorkLine`] with u²(y) + τ² in place of u²(y), so that the x may be uncertain too. The
+/// estimate of τ² is that of Mandel and Paule with a covariate (DerSimonian and Kacker 2007), the intervals are those
+/// of Knapp and Hartung (2003). For a mean in place of a line there is `Consensus` of fmm-uq.
 ///
 /// ```
 /// use fmm_fit::{RandomEffectsLine, UncertainPoint, YorkLine};
@@ -32,7 +32,8 @@ use crate::{RegressionError, UncertainPoint, YorkLine, coverage_factor};
 ///
 /// # References
 /// - G. Knapp, J. Hartung, Statistics in Medicine 22 (2003) 2693, <https://doi.org/10.1002/sim.1482>.
-/// - R. DerSimonian, R. Kacker, Contemporary Clinical Trials 28 (2007) 105, <https://doi.org/10.1016/j.cct.2006.04.004>.
+/// - R. DerSimonian, R. Kacker, Contemporary Clinical Trials 28 (2007) 105,
+///   <https://doi.org/10.1016/j.cct.2006.04.004>.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RandomEffectsLine {
     line: YorkLine,
@@ -115,7 +116,8 @@ impl RandomEffectsLine {
         self.line.degrees_of_freedom()
     }
 
-    /// Probability of a scatter about the line as large if the results differed from it by their uncertainties only (1).
+    /// Probability of a scatter about the line as large if the results differed from it by their uncertainties only
+    /// (1).
     pub fn homogeneity_p_value(&self) -> f64 {
         self.homogeneity
     }
@@ -181,8 +183,8 @@ mod tests {
         X.iter().zip(Y).map(|(x, y)| UncertainPoint::new(*x, y, 0.0, u)).collect()
     }
 
-    /// Equal uncertainties: τ² and u² are together the variance that ordinary least squares finds, of which statsmodels holds the
-    /// neighbouring file's line.
+    /// Equal uncertainties: τ² and u² are together the variance that ordinary least squares finds, of which statsmodels
+    /// holds the neighbouring file's line.
     #[test]
     fn with_equal_uncertainties_it_is_ordinary_least_squares() {
         let ordinary = StraightLine::fit(&X, &Y, Weighting::Equal).unwrap();
@@ -213,7 +215,8 @@ mod tests {
         assert_eq!(line.homogeneity_p_value(), york.p_value().unwrap());
     }
 
-    /// The intervals hold for runs of unequal uncertainties and a spread between them, those of a line without effects do not.
+    /// The intervals hold for runs of unequal uncertainties and a spread between them, those of a line without effects
+    /// do not.
     #[test]
     fn intervals_hold_where_the_runs_differ() {
         use rand_chacha::ChaCha8Rng;
@@ -235,7 +238,8 @@ mod tests {
             held += usize::from((low..high).contains(&0.5));
             plain += usize::from((york.intercept() - 0.5).abs() < 1.96 * york.intercept_uncertainty());
         }
-        // Three standard deviations of a share of 0.95 among as many trials are 0.015; max(1, q) makes the intervals wider at most.
+        // Three standard deviations of a share of 0.95 among as many trials are 0.015; max(1, q) makes the intervals
+        // wider at most.
         let [held, plain] = [held, plain].map(|count| count as f64 / TRIALS as f64);
         assert!((0.935..0.975).contains(&held) && plain < 0.7, "{held}, {plain}");
     }

@@ -5,7 +5,8 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// A number as the unevaluated sum of two floating-point numbers, good to about 31 digits.
 ///
 /// # Why not a library
-/// Sums and products are all that is needed of it; a crate for such numbers (twofloat) comes with their elementary functions.
+/// Sums and products are all that is needed of it; a crate for such numbers (twofloat) comes with their elementary
+/// functions.
 ///
 /// # References
 /// T. J. Dekker, "A floating-point technique for extending the available precision", Numer. Math. 18 (1971) 224,

@@ -270,8 +270,8 @@ impl Fit {
         self.model_error.as_deref()
     }
 
-    /// What had no finite value at the last trial point that was given up for this; `None` if all had one. In a fit that
-    /// ended as [`Outcome::NonFinite`] it is what stood in the way.
+    /// What had no finite value at the last trial point that was given up for this; `None` if all had one. In a fit
+    /// that ended as [`Outcome::NonFinite`] it is what stood in the way.
     pub fn non_finite(&self) -> Option<&NonFinite> {
         self.non_finite.as_ref()
     }

@@ -8,10 +8,10 @@ use std::fmt;
 /// Σⱼ (∂r/∂θⱼ) sⱼ cⱼ = 0,     dθⱼ = sⱼ cⱼ,     max |cⱼ| = 1
 /// ```
 ///
-/// The scale sⱼ is |θⱼ|, so that the components are relative changes d ln|θⱼ|. For a value of zero, or zero to rounding, which has no
-/// relative change, it is the change that would move the residuals as much as the most influential parameter
-/// does when it changes by its own value. Several directions are given in reduced form: each has a component of 1
-/// that is 0 in all others.
+/// The scale sⱼ is |θⱼ|, so that the components are relative changes d ln|θⱼ|. For a value of zero, or zero to
+/// rounding, which has no relative change, it is the change that would move the residuals as much as the most
+/// influential parameter does when it changes by its own value. Several directions are given in reduced form: each has
+/// a component of 1 that is 0 in all others.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NullDirection {
     names: Vec<String>,

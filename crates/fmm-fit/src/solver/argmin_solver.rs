@@ -15,7 +15,8 @@ const JACOBIANS: &str = "jacobian_count";
 /// The cost that argmin sees is the sum of squares, its counts `residuals_count` and `jacobian_count` are those of the
 /// [`Fit`]. What argmin cannot express stays here:
 /// [`outcome`](Self::outcome) and, with uncertainties and rank, [`fit`](Self::fit). A model that fails at a trial
-/// point is not an error, and a cancelled run keeps its best point. With the feature `serde` argmin's checkpoints store it.
+/// point is not an error, and a cancelled run keeps its best point. With the feature `serde` argmin's checkpoints store
+/// it.
 ///
 /// ```
 /// # use fmm_fit::EvaluationError;

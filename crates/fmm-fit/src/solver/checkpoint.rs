@@ -66,8 +66,8 @@ impl From<Checkpoint> for Minimizer {
 }
 
 impl Minimizer {
-    /// Takes up a stored fit of `problem` where it was and brings it to its end, as if it had not been interrupted; one of
-    /// another problem is not found out. A time limit begins again. (Feature `serde`.)
+    /// Takes up a stored fit of `problem` where it was and brings it to its end, as if it had not been interrupted; one
+    /// of another problem is not found out. A time limit begins again. (Feature `serde`.)
     ///
     /// # Errors
     /// [`FitError`] if the problem does not allow it; [`FitError::NotStarted`] if nothing was stored.

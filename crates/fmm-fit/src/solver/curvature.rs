@@ -4,8 +4,8 @@
 //! ½ ∇∇S = Jᵀ J + Σᵢ rᵢ ∇∇rᵢ
 //! ```
 //!
-//! The second part is left out by the search. Where the residuals are large and J has a weak direction, that part decides:
-//! whether a point where the gradient vanishes is a minimum or a saddle, and where exactly the minimum is.
+//! The second part is left out by the search. Where the residuals are large and J has a weak direction, that part
+//! decides: whether a point where the gradient vanishes is a minimum or a saddle, and where exactly the minimum is.
 
 use crate::Residuals;
 use crate::solver::minimizer::{Attempt, Minimizer, Phase};
@@ -31,8 +31,8 @@ const LOWER: f64 = 0.1;
 const NEWTON_STEPS: usize = 6;
 
 impl Minimizer {
-    /// Leaves a point that is no minimum although the gradient vanishes, by way of a direction that the residuals hardly
-    /// see to first order; whether there is one. It is tried once in a fit.
+    /// Leaves a point that is no minimum although the gradient vanishes, by way of a direction that the residuals
+    /// hardly see to first order; whether there is one. It is tried once in a fit.
     pub(crate) fn leave_saddle<P: Residuals + ?Sized>(&mut self, problem: &P, reason: Outcome) -> bool {
         // Forward differences are refined where a direction is weak.
         let is_rough = self.evaluator.scheme == Scheme::Forward;
@@ -73,7 +73,8 @@ impl Minimizer {
         }
     }
 
-    /// A direction with next to no influence to first order along which S falls; its longest component is as long as its value.
+    /// A direction with next to no influence to first order along which S falls; its longest component is as long as
+    /// its value.
     fn negative_direction<P: Residuals + ?Sized>(&mut self, problem: &P) -> Option<Vec<f64>> {
         let spectrum = Spectrum::of(&self.current.triangle);
         let rank = spectrum.rank(WEAK);

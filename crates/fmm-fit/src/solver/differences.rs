@@ -2,8 +2,8 @@
 //!
 //! A step may go wrong in two ways that the difference alone does not show. It may cross a place where the model jumps,
 //! and then the "derivative" is the jump over the step, larger than all others. Or it may be too short for the
-//! residuals to tell it from none, and then the derivative is rounding over the step. Both are looked for where the change
-//! of the residuals is out of proportion to them.
+//! residuals to tell it from none, and then the derivative is rounding over the step. Both are looked for where the
+//! change of the residuals is out of proportion to them.
 
 use crate::solver::evaluation::{Evaluator, Point, Scheme};
 use crate::solver::sums::sum_of_squares;
@@ -198,8 +198,8 @@ impl Evaluator {
     }
 
     /// The derivative at `point` of the parabola through the residuals there and at two other values of parameter
-    /// `j`; of the line through two points if one of the values is that of `point`. `None` if the residuals are not finite
-    /// at the two values.
+    /// `j`; of the line through two points if one of the values is that of `point`. `None` if the residuals are not
+    /// finite at the two values.
     fn slope<P: Residuals + ?Sized>(&mut self, problem: &P, point: &Point, j: usize, at: [f64; 2]) -> Option<Slope> {
         let [first, second] = at.map(|target| target.max(self.lower[j]).min(self.upper[j]));
         let value = point.values[j];

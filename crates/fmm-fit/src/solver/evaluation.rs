@@ -163,8 +163,8 @@ impl Evaluator {
         is_finite
     }
 
-    /// Evaluates residuals and derivatives at `point.values`, in one pass if the problem has its own; false if the model has no
-    /// finite value there.
+    /// Evaluates residuals and derivatives at `point.values`, in one pass if the problem has its own; false if the
+    /// model has no finite value there.
     #[cfg(feature = "sampler")]
     pub(crate) fn residuals_and_derivatives<P: Residuals + ?Sized>(&mut self, problem: &P, point: &mut Point) -> bool {
         if self.scheme != Scheme::Exact || self.free.is_empty() {
@@ -240,8 +240,8 @@ impl Evaluator {
         self.model_error = Some(error);
     }
 
-    /// Residuals and derivatives of `problem` at `values`, by central differences if it has none of its own; `None` if they
-    /// are not finite. The columns of fixed parameters are meaningless.
+    /// Residuals and derivatives of `problem` at `values`, by central differences if it has none of its own; `None` if
+    /// they are not finite. The columns of fixed parameters are meaningless.
     pub(crate) fn linearise<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Option<Linearised> {
         let mut evaluator = Self::default();
         let bounds =

@@ -10,8 +10,8 @@ use crate::{FitError, Residuals};
 
 /// The relative difference between a column of derivatives and differences that is no error of the latter.
 const DIFFERENT: f64 = 1e-3;
-/// Differences over steps a thousandfold apart that disagree by more, in units of the mismatch, are no evidence: the model
-/// is not smooth there.
+/// Differences over steps a thousandfold apart that disagree by more, in units of the mismatch, are no evidence: the
+/// model is not smooth there.
 const SMOOTH: f64 = 0.1;
 /// Rounding of a residual, in its last digits.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -43,12 +43,12 @@ impl fmt::Display for JacobianMismatch {
     }
 }
 
-/// Compares the derivatives that `problem` gives with differences at `values`, one per parameter within its bounds; what
-/// disagrees, at most once for each free parameter.
+/// Compares the derivatives that `problem` gives with differences at `values`, one per parameter within its bounds;
+/// what disagrees, at most once for each free parameter.
 ///
-/// Where the model has a kink or a jump, so that differences over two steps do not agree with each other, nothing is said.
-/// It costs two evaluations of the residuals for each free parameter, and three for each in doubt. A problem without
-/// derivatives has none to doubt.
+/// Where the model has a kink or a jump, so that differences over two steps do not agree with each other, nothing is
+/// said. It costs two evaluations of the residuals for each free parameter, and three for each in doubt. A problem
+/// without derivatives has none to doubt.
 ///
 /// ```
 /// use fmm_fit::{EvaluationError, Residuals, check_jacobian};

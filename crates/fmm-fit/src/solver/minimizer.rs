@@ -21,9 +21,9 @@ const SMALLEST_RESIDUAL: f64 = 1e-138;
 /// A Levenberg–Marquardt method in a box. Each step minimises the linear model of the residuals within the trust
 /// region *and* the bounds, so that active bounds are met exactly; a search that ends where the gradient does not
 /// vanish begins again with another radius; a search that ends well is followed by Gauss–Newton steps that are
-/// accepted for lowering the gradient, as the sum of squares can no longer tell them apart, and, if these do not end, by
-/// Newton steps with differences of exact derivatives. Where the residuals do not determine all directions, the fit looks
-/// once for one in which the sum of squares falls, as from a saddle, which symmetric starts lead to.
+/// accepted for lowering the gradient, as the sum of squares can no longer tell them apart, and, if these do not end,
+/// by Newton steps with differences of exact derivatives. Where the residuals do not determine all directions, the fit
+/// looks once for one in which the sum of squares falls, as from a saddle, which symmetric starts lead to.
 ///
 /// ```
 /// use fmm_fit::{EvaluationError, Minimizer, Options, Residuals};

@@ -131,7 +131,8 @@ impl Options {
 
     /// Whether [`solve`](crate::solve) compares the derivatives that a problem gives with differences at the start, as
     /// [`check_jacobian`](crate::check_jacobian) does (in debug builds yes, in release builds no). What it finds is in
-    /// [`Fit::jacobian_mismatches`](crate::Fit::jacobian_mismatches) and changes nothing else; its evaluations are not counted.
+    /// [`Fit::jacobian_mismatches`](crate::Fit::jacobian_mismatches) and changes nothing else; its evaluations are not
+    /// counted.
     #[must_use]
     pub fn with_jacobian_check(mut self, check: bool) -> Self {
         self.jacobian_check = check;

@@ -3,17 +3,17 @@
 use crate::solver::sums::{dot, sum_of_squares};
 use crate::solver::triangle::Triangle;
 
-/// Weight of the wish not to move along a direction that the residuals do not see, as a share of what a parameter moves them by (1): less
-/// than what they see of any direction that matters, and more than rounding.
+/// Weight of the wish not to move along a direction that the residuals do not see, as a share of what a parameter moves
+/// them by (1): less than what they see of any direction that matters, and more than rounding.
 const WISH: f64 = 1e-6;
 
 /// Singular value decomposition `R S⁻¹ = U Σ Vᵀ` with `S` the column norms of `R`, by one-sided Jacobi rotations,
 /// which find small singular values to high relative accuracy.
 ///
 /// # Why not a library
-/// nalgebra's decomposition by bidiagonal form is the quicker one, 0.7 µs against 0.8 at 3 columns, 9 against 26 at 12. A fit
-/// decomposes once, at its end, where a single evaluation takes longer; what counts there is that the smallest value, which says what
-/// the data cannot tell, keeps its digits. `benches/peers` of the workspace measures it.
+/// nalgebra's decomposition by bidiagonal form is the quicker one, 0.7 µs against 0.8 at 3 columns, 9 against 26 at 12.
+/// A fit decomposes once, at its end, where a single evaluation takes longer; what counts there is that the smallest
+/// value, which says what the data cannot tell, keeps its digits. `benches/peers` of the workspace measures it.
 ///
 /// # References
 /// J. Demmel, K. Veselić, "Jacobi's method is more accurate than QR", SIAM J. Matrix Anal. Appl. 13 (1992) 1204,
@@ -72,8 +72,8 @@ impl Spectrum {
 
     /// The triangle in which the directions beyond `rank` are replaced by the wish not to move along them.
     ///
-    /// Where a bound holds one of two parameters that do the same, the other one only moves with a part along such a direction: the wish
-    /// has to be weaker than what the residuals say of any other.
+    /// Where a bound holds one of two parameters that do the same, the other one only moves with a part along such a
+    /// direction: the wish has to be weaker than what the residuals say of any other.
     pub(crate) fn anchor(&self, rank: usize, anchored: &mut Triangle, block: &mut Vec<f64>) {
         let order = self.scales.len();
         block.clear();

@@ -13,8 +13,8 @@ const BLOCK: usize = 1536;
 /// Accumulators side by side: eight, which are two vectors of four numbers.
 const LANES: usize = 8;
 
-/// The least square of the sine between a column and those before it for which scalar products are exact enough: what is
-/// left of a column after they are taken off has lost two digits at most.
+/// The least square of the sine between a column and those before it for which scalar products are exact enough: what
+/// is left of a column after they are taken off has lost two digits at most.
 const WELL_CONDITIONED: f64 = 1e-2;
 
 /// Squares below have lost digits to underflow.
@@ -24,8 +24,8 @@ const UNDERFLOW: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 ///
 /// Columns at wide angles to each other, as those of most fits of a few parameters, are factored by way of their scalar
 /// products (Cholesky), which is several times as fast and then as good: with sines of 0.1 or more it costs two digits
-/// of sixteen. The rows of all others are folded in by Householder reflections of the stack of triangle and block, so `J`
-/// is read once, never copied whole and need not be there at once. The order of operations is fixed: results are
+/// of sixteen. The rows of all others are folded in by Householder reflections of the stack of triangle and block, so
+/// `J` is read once, never copied whole and need not be there at once. The order of operations is fixed: results are
 /// reproducible.
 ///
 /// ```text
@@ -37,8 +37,8 @@ const UNDERFLOW: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 /// Built for any x86-64, from 1500 × 3 to 45 000 × 6 this takes a third to two thirds of the time of nalgebra's
 /// factorisation and less than a fifth of that of faer's, which is sequential here and meant for larger matrices; at
 /// 225 000 × 12 about a fifth of either. It needs two blocks of memory beside the Jacobian where they need a copy of
-/// it, and the blocks of a joint fit are reduced without their zeros, five records of 45 000 × 4 six times faster than as
-/// one matrix. `benches/peers` of the workspace measures it.
+/// it, and the blocks of a joint fit are reduced without their zeros, five records of 45 000 × 4 six times faster than
+/// as one matrix. `benches/peers` of the workspace measures it.
 ///
 /// # References
 /// J. Demmel, L. Grigori, M. Hoemmen, J. Langou, "Communication-optimal parallel and sequential QR and LU
@@ -226,8 +226,8 @@ impl Triangle {
 
     /// Folds in `rows` more rows of `[J r]`, whose columns are given by their number.
     ///
-    /// One sweep through the rows reflects several columns and finds their products with the next pivot, from one copy of
-    /// the block to another; what costs time is reading and writing, and the wait for each sum.
+    /// One sweep through the rows reflects several columns and finds their products with the next pivot, from one copy
+    /// of the block to another; what costs time is reading and writing, and the wait for each sum.
     #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
     #[inline(always)]
     fn fold_columns<'a>(&mut self, given: impl Fn(usize) -> &'a [f64], rows: usize, scratch: &mut [f64]) {
@@ -386,7 +386,8 @@ mod tests {
         (jacobian, residuals)
     }
 
-    /// The derivative by what the beginning of a record was has died away: 1, 1e-80, 1e-160, … and 1e-160 where nothing was before.
+    /// The derivative by what the beginning of a record was has died away: 1, 1e-80, 1e-160, … and 1e-160 where nothing
+    /// was before.
     #[test]
     fn derivatives_that_have_died_away_are_none() {
         let n = 2500;

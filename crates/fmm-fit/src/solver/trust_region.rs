@@ -34,8 +34,8 @@ pub(crate) struct TrustRegion {
 }
 
 impl TrustRegion {
-    /// Forgets everything; the radius becomes `factor · ‖D x‖` at the point `x`, and of a zero point `factor` times the norm
-    /// of the residual.
+    /// Forgets everything; the radius becomes `factor · ‖D x‖` at the point `x`, and of a zero point `factor` times the
+    /// norm of the residual.
     ///
     /// That is also the radius of a point that is as good as zero, since its own would be lost in rounding. There the
     /// columns say little of how far their parameters may go, so that each goes no further than its own size or one.
@@ -187,8 +187,8 @@ mod tests {
         }
     }
 
-    /// The second and third parameter do the same, and a bound holds the third. The second then moves with a part along the direction that
-    /// the residuals do not see, and here across one that they hardly see.
+    /// The second and third parameter do the same, and a bound holds the third. The second then moves with a part along
+    /// the direction that the residuals do not see, and here across one that they hardly see.
     #[test]
     fn a_step_along_a_bound_gains_what_it_would_without_the_parameter_that_is_held() {
         let measured: Vec<f64> = (0..6).map(|i| -(1.0 + 7.0 * f64::from(i)).sin()).collect();

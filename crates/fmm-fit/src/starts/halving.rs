@@ -15,9 +15,10 @@ const SAME: f64 = 0.1;
 
 /// The best end of the fits from `starts`, of which most are given up early.
 ///
-/// All fits go a few steps; half of them, the better ones, go twice as many, and so on until one is left, which is finished. Of fits that
-/// have come to the same place one goes on, and the next best takes the room of the others. The lowest minimum is missed if its fit is
-/// among the worse half at first; where that may be, give fewer starts, or [`solve`](crate::solve) each.
+/// All fits go a few steps; half of them, the better ones, go twice as many, and so on until one is left, which is
+/// finished. Of fits that have come to the same place one goes on, and the next best takes the room of the others. The
+/// lowest minimum is missed if its fit is among the worse half at first; where that may be, give fewer starts, or
+/// [`solve`](crate::solve) each.
 ///
 /// ```
 /// # use fmm_fit::EvaluationError;
@@ -50,16 +51,17 @@ const SAME: f64 = 0.1;
 /// # Ok::<(), fmm_fit::FitError>(())
 /// ```
 ///
-/// `observer` is told of every trial step of every fit, and may end them all. Limits on iterations and evaluations hold for each fit,
-/// that on time for all together. With the feature `rayon` the fits go on all threads of the current pool, with the same result; their
-/// steps are then told in any order. An observer that itself waits for work of that pool may wait for ever.
+/// `observer` is told of every trial step of every fit, and may end them all. Limits on iterations and evaluations hold
+/// for each fit, that on time for all together. With the feature `rayon` the fits go on all threads of the current
+/// pool, with the same result; their steps are then told in any order. An observer that itself waits for work of that
+/// pool may wait for ever.
 ///
 /// # Errors
 /// [`FitError`] of the last start if no fit can begin; [`FitError::NotStarted`] without starts.
 ///
 /// # References
-/// K. Jamieson, A. Talwalkar, "Non-stochastic best arm identification and hyperparameter optimization", Proc. 19th Int. Conf. Artificial
-/// Intelligence and Statistics (2016) 240, <https://doi.org/10.48550/arXiv.1502.07943>.
+/// K. Jamieson, A. Talwalkar, "Non-stochastic best arm identification and hyperparameter optimization", Proc. 19th Int.
+/// Conf. Artificial Intelligence and Statistics (2016) 240, <https://doi.org/10.48550/arXiv.1502.07943>.
 pub fn solve_best<P: Residuals + Sync + ?Sized>(
     problem: &P,
     starts: &[Vec<f64>],

@@ -12,11 +12,12 @@ use crate::{EvaluationError, Fit, Residuals};
 /// V = n/(b W) Σ_w m_w m_wᵀ,     m_w = (JᵀJ − Σ_{i ∈ w} Jᵢ Jᵢᵀ)⁻¹ Σ_{i ∈ w} Jᵢ rᵢ     for W windows w of b of the n residuals
 /// ```
 ///
-/// m_w is how far the estimates move when the window is left out: the jackknife of overlapping windows. With the inverse of
-/// the whole JᵀJ it would be the long-run covariance of the scores Jᵢ rᵢ with the triangular weights of Newey and West, which
-/// is too small, as the parameters have followed the noise where it is slowest. It needs no model of the correlation and
-/// holds where the law misses something, as it takes the residuals as they are. It is too small if correlations last longer
-/// than a window, and uncertain by about √(b/n), so windows should be a few correlation times long and many.
+/// m_w is how far the estimates move when the window is left out: the jackknife of overlapping windows. With the
+/// inverse of the whole JᵀJ it would be the long-run covariance of the scores Jᵢ rᵢ with the triangular weights of
+/// Newey and West, which is too small, as the parameters have followed the noise where it is slowest. It needs no model
+/// of the correlation and holds where the law misses something, as it takes the residuals as they are. It is too small
+/// if correlations last longer than a window, and uncertain by about √(b/n), so windows should be a few correlation
+/// times long and many.
 ///
 /// # References
 /// H. R. Künsch, Ann. Stat. 17 (1989) 1217, <https://doi.org/10.1214/aos/1176347265>;
@@ -80,8 +81,8 @@ impl Whole {
         Self { unit, information, factored: Vec::new(), moved: Vec::new() }
     }
 
-    /// (A⁻¹ − M)⁻¹ Σ Jᵢ rᵢ, by which the estimates move if the window is left out; A Σ Jᵢ rᵢ for one without which not all of
-    /// them were determined.
+    /// (A⁻¹ − M)⁻¹ Σ Jᵢ rᵢ, by which the estimates move if the window is left out; A Σ Jᵢ rᵢ for one without which not
+    /// all of them were determined.
     fn moved_without(&mut self, window: &Window) -> &[f64] {
         let order = window.score.len();
         self.moved.clone_from(&window.score);
@@ -180,8 +181,9 @@ impl CorrelatedCovariance {
         if i < self.count && j < self.count { self.elements[i * self.count + j] } else { None }
     }
 
-    /// ν, by which the covariance is known (1): that of the variance of a mean from overlapping windows of b of n residuals,
-    /// about 3/2 (n/b - p) after a fit of p parameters (Meketon and Schmeiser have n/b - 1 for a mean), at least 3/2.
+    /// ν, by which the covariance is known (1): that of the variance of a mean from overlapping windows of b of n
+    /// residuals, about 3/2 (n/b - p) after a fit of p parameters (Meketon and Schmeiser have n/b - 1 for a mean), at
+    /// least 3/2.
     pub fn degrees_of_freedom(&self) -> f64 {
         self.degrees_of_freedom
     }

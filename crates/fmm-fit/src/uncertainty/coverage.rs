@@ -2,13 +2,13 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
-/// Above these many degrees of freedom the expansions about the normal and the χ² distribution are the more accurate; from
-/// 10⁷ on the inverses of statrs are wrong in the first digits, and from 10⁸ on they do not end.
+/// Above these many degrees of freedom the expansions about the normal and the χ² distribution are the more accurate;
+/// from 10⁷ on the inverses of statrs are wrong in the first digits, and from 10⁸ on they do not end.
 const MANY_FOR_STUDENT: f64 = 1e3;
 const MANY_FOR_FISHER: f64 = 1e4;
 
-/// The coverage factor k (1): an estimate with standard uncertainty u and `degrees_of_freedom` ν > 0 lies within ± k u with
-/// probability `level`, by Student's t (JCGM 100:2008, G.3.2); by the normal distribution if ν is infinite.
+/// The coverage factor k (1): an estimate with standard uncertainty u and `degrees_of_freedom` ν > 0 lies within ± k u
+/// with probability `level`, by Student's t (JCGM 100:2008, G.3.2); by the normal distribution if ν is infinite.
 ///
 /// `None` for a level outside (0, 1), or degrees of freedom that are not positive.
 ///
@@ -63,7 +63,8 @@ pub(crate) fn is_probability(level: f64) -> bool {
 mod tests {
     use super::*;
 
-    /// One estimate at once is one estimate: F of (1, ν) is the square of t of ν. Tables: t and χ² of Abramowitz and Stegun.
+    /// One estimate at once is one estimate: F of (1, ν) is the square of t of ν. Tables: t and χ² of Abramowitz and
+    /// Stegun.
     #[test]
     fn factors_are_continuous_to_infinitely_many_degrees_of_freedom() {
         for (freedom, expected) in

@@ -1,8 +1,8 @@
 //! Small symmetric matrices, by rows, and Cholesky's factors of those that are positive definite.
 //!
 //! # Why not a library
-//! nalgebra takes 1.3, 1.5 and 0.85 times as long at 3, 6 and 12 rows, and would be a dependency of the crate for this alone; pivots are
-//! compared with a limit of their own here. `benches/peers` of the workspace measures it.
+//! nalgebra takes 1.3, 1.5 and 0.85 times as long at 3, 6 and 12 rows, and would be a dependency of the crate for this
+//! alone; pivots are compared with a limit of their own here. `benches/peers` of the workspace measures it.
 
 /// Adds `weight · row rowᵀ`.
 pub(crate) fn add_square(matrix: &mut [f64], row: &[f64], weight: f64) {
@@ -19,8 +19,8 @@ pub(crate) fn quadratic_form(matrix: &[f64], left: &[f64], right: &[f64]) -> f64
     lines.zip(left).map(|(line, a)| a * line.iter().zip(right).map(|(m, b)| m * b).sum::<f64>()).sum()
 }
 
-/// Overwrites the lower half of a matrix of `order` rows by its factor; false if the square of diagonal element j of the
-/// factor does not exceed `least(j)`.
+/// Overwrites the lower half of a matrix of `order` rows by its factor; false if the square of diagonal element j of
+/// the factor does not exceed `least(j)`.
 pub(crate) fn factor(matrix: &mut [f64], order: usize, least: impl Fn(usize) -> f64) -> bool {
     for i in 0..order {
         for j in 0..=i {

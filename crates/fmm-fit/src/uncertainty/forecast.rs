@@ -41,8 +41,8 @@ impl Forecast {
         self.axes[estimate * self.inputs.len() + input][0] / self.spread[input]
     }
 
-    /// Through the estimates that `fit` finds at one and two of `spread` either way of each input, and one of each pair; straight
-    /// for an input whose spread is zero.
+    /// Through the estimates that `fit` finds at one and two of `spread` either way of each input, and one of each
+    /// pair; straight for an input whose spread is zero.
     pub(super) fn through<E>(
         &self,
         spread: &[f64],
@@ -106,7 +106,8 @@ impl Forecast {
         Ok(bent)
     }
 
-    /// Standard deviations of the estimates over independent inputs of the standard deviations `spread`, to first order.
+    /// Standard deviations of the estimates over independent inputs of the standard deviations `spread`, to first
+    /// order.
     pub(super) fn deviations(&self, spread: &[f64]) -> Vec<f64> {
         let variance = |estimate: usize| -> f64 {
             spread.iter().enumerate().map(|(input, u)| (self.slope(estimate, input) * u).powi(2)).sum()

@@ -108,11 +108,13 @@ fn require_same<P: Residuals + ?Sized>(problem: &P, fit: &Fit) -> Result<(), Pro
 const BEYOND: f64 = 0.15;
 
 impl ProfileInterval {
-    /// The profile as a curve to be drawn: values of the parameter, ascending, and (S_k − S_min)/s² there, at up to `count` even steps
-    /// on either side of the estimate, as far as a little beyond the end, or up to a bound or edge that ends it.
+    /// The profile as a curve to be drawn: values of the parameter, ascending, and (S_k − S_min)/s² there, at up to
+    /// `count` even steps on either side of the estimate, as far as a little beyond the end, or up to a bound or edge
+    /// that ends it.
     ///
-    /// Beside it belongs the parabola (θ − θ̂)²/(s² C), with C the [unit covariance](Fit::unit_covariance), to which the curve is equal
-    /// for a linear model. An open side is drawn as far as the other, or as far as the parabola would need.
+    /// Beside it belongs the parabola (θ − θ̂)²/(s² C), with C the [unit covariance](Fit::unit_covariance), to which
+    /// the curve is equal for a linear model. An open side is drawn as far as the other, or as far as the parabola
+    /// would need.
     ///
     /// `problem`, `fit` and `options` are those of the interval.
     ///

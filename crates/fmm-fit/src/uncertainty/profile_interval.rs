@@ -13,8 +13,8 @@ pub enum ResidualVariance {
     Unit,
     /// It was estimated otherwise, with these degrees of freedom, of which the quantile is Student's.
     ///
-    /// Where residuals are correlated, V/C of the parameter makes the profile as wide as its variance V says, C being the
-    /// [unit covariance](crate::Fit::unit_covariance) (Chandler and Bate, <https://doi.org/10.1093/biomet/asm015>).
+    /// Where residuals are correlated, V/C of the parameter makes the profile as wide as its variance V says, C being
+    /// the [unit covariance](crate::Fit::unit_covariance) (Chandler and Bate, <https://doi.org/10.1093/biomet/asm015>).
     Effective {
         /// s², in the unit of the residuals squared.
         variance: f64,

@@ -16,8 +16,8 @@ impl PropagatedCovariance {
         Self { count, elements }
     }
 
-    /// Covariance of the estimates of parameters `i` and `j`, in the product of their units; `None` if either is fixed or
-    /// not determined.
+    /// Covariance of the estimates of parameters `i` and `j`, in the product of their units; `None` if either is fixed
+    /// or not determined.
     pub fn covariance(&self, i: usize, j: usize) -> Option<f64> {
         if i < self.count && j < self.count { self.elements[i * self.count + j] } else { None }
     }

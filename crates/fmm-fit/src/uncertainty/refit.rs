@@ -22,8 +22,8 @@ const NOTHING: f64 = 1e-6;
 /// By what steps may fall more slowly at other inputs than at those where it was seen.
 const SLOWER: f64 = 2.0;
 
-/// Where residuals have kinks, as those of a motion whose stop passes a sample do, steps may end in going to and fro; from
-/// within this share of the parameters' reach a search has the shorter way than from the forecast.
+/// Where residuals have kinks, as those of a motion whose stop passes a sample do, steps may end in going to and fro;
+/// from within this share of the parameters' reach a search has the shorter way than from the forecast.
 const NEAR: f64 = 1e-3;
 
 /// Where Gauss–Newton steps have ended.
@@ -34,13 +34,14 @@ enum Arrival {
     Lost,
 }
 
-/// A fit prepared to be repeated with other values of the parameters that it held fixed, its inputs: the model of a Monte
-/// Carlo calculation.
+/// A fit prepared to be repeated with other values of the parameters that it held fixed, its inputs: the model of a
+/// Monte Carlo calculation.
 ///
-/// Where the minimum goes is foreseen by the [`Sensitivity`] of the fit; Gauss–Newton steps take it there, until the next
-/// one, by their rate of convergence, would change nothing. Two evaluations are enough as a rule. A problem without
-/// derivatives, or a minimum that this does not reach within a few steps and the bounds, is handed to the [`Minimizer`].
-/// Where it is told what changes to expect, one evaluation is often enough: [`expecting`](Self::expecting).
+/// Where the minimum goes is foreseen by the [`Sensitivity`] of the fit; Gauss–Newton steps take it there, until the
+/// next one, by their rate of convergence, would change nothing. Two evaluations are enough as a rule. A problem
+/// without derivatives, or a minimum that this does not reach within a few steps and the bounds, is handed to the
+/// [`Minimizer`]. Where it is told what changes to expect, one evaluation is often enough:
+/// [`expecting`](Self::expecting).
 ///
 /// The estimates depend on the inputs alone: not on the order of the calls, nor on the thread.
 ///
@@ -119,8 +120,8 @@ struct Convergence {
 }
 
 impl Convergence {
-    /// As the first and second `steps` show it; none where there are no two of them, where they fall slowly, or where they
-    /// move an estimate that the inputs do not.
+    /// As the first and second `steps` show it; none where there are no two of them, where they fall slowly, or where
+    /// they move an estimate that the inputs do not.
     fn seen(deviations: Vec<f64>, steps: &[[Vec<f64>; 2]]) -> Option<Self> {
         let mut convergence = Self { deviations, longest: 0.0, rate: 0.0 };
         for [first, second] in steps {
@@ -179,7 +180,8 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
         })
     }
 
-    /// The same with these inputs only, in this order and each once; the others keep the values that they had in the fit.
+    /// The same with these inputs only, in this order and each once; the others keep the values that they had in the
+    /// fit.
     ///
     /// # Errors
     /// [`RefitError::NoInput`] for a name that was not held in the fit.
@@ -200,15 +202,15 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
 
     /// The same for inputs that change by about these amounts, such as their standard uncertainties: the estimates are
     /// foreseen by a polynomial through refits at one and two of them either way instead of by a straight line. Its
-    /// dozen fits for two inputs, two dozen for three, save an evaluation or more in every refit to come. They also show how
-    /// fast steps fall, so that a refit ends where the next step would move no estimate by more than a millionth of its
-    /// standard deviation over the inputs.
+    /// dozen fits for two inputs, two dozen for three, save an evaluation or more in every refit to come. They also
+    /// show how fast steps fall, so that a refit ends where the next step would move no estimate by more than a
+    /// millionth of its standard deviation over the inputs.
     ///
     /// An amount of zero is an input that does not change.
     ///
     /// # Errors
-    /// [`RefitError::InputCount`], [`RefitError::Spread`] for an amount that is not a finite number of at least zero, and
-    /// as for [`estimates`](Self::estimates).
+    /// [`RefitError::InputCount`], [`RefitError::Spread`] for an amount that is not a finite number of at least zero,
+    /// and as for [`estimates`](Self::estimates).
     pub fn expecting(mut self, spread: &[f64]) -> Result<Self, RefitError> {
         self.require_count(spread.len())?;
         if let Some((input, spread)) =

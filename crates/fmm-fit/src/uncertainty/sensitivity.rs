@@ -22,8 +22,8 @@ use crate::{Fit, PropagatedCovariance, Residuals, SensitivityError};
 /// | first order | [`first_order`](Self::first_order) | left out: right if the residuals are zero | one |
 ///
 /// These are the sensitivity coefficients of JCGM 100:2008, 5.1.3; [`propagate`](Self::propagate) applies them.
-/// Estimates at a bound stay there: their derivatives are zero, and the others are those at the bound. Estimates that the
-/// residuals do not determine have none.
+/// Estimates at a bound stay there: their derivatives are zero, and the others are those at the bound. Estimates that
+/// the residuals do not determine have none.
 ///
 /// The fixed values are moved a little, out of their bounds, so the problem has to have values beside them.
 ///

@@ -342,7 +342,8 @@ fn limits_of_one_fit_hold_for_all_of_a_search() {
     assert!(found.starts() < 64 && found.starts() >= 1);
 }
 
-/// The lower of two minima is found, and with far fewer steps than all fits take: those that lead to the higher one are given up.
+/// The lower of two minima is found, and with far fewer steps than all fits take: those that lead to the higher one are
+/// given up.
 #[test]
 fn of_several_starts_the_best_is_finished() {
     let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
@@ -369,7 +370,8 @@ fn of_several_starts_the_best_is_finished() {
     ));
 }
 
-/// At first the fit that leads to the lower minimum is far behind the one that is at the other: half of the fits are given up, no more.
+/// At first the fit that leads to the lower minimum is far behind the one that is at the other: half of the fits are
+/// given up, no more.
 #[test]
 fn a_fit_of_the_better_half_may_overtake_the_best() {
     let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
@@ -400,7 +402,8 @@ fn fits_that_meet_go_on_as_one() {
     assert_eq!(steps_from(&vec![start; 4]), alone + 3 * 6);
 }
 
-/// Three fits of five are at the higher minimum at first. One of them goes on, and so does the last, which leads to the lower one.
+/// Three fits of five are at the higher minimum at first. One of them goes on, and so does the last, which leads to the
+/// lower one.
 #[test]
 fn the_room_of_fits_that_meet_goes_to_others() {
     let problem = problem(&[FREE, FREE], 2, freudenstein_roth);

@@ -1,9 +1,10 @@
 //! Optimal designs whose places and shares are known in closed form.
 //!
-//! Sources: A. C. Atkinson, A. N. Donev, R. D. Tobias, "Optimum Experimental Designs, with SAS", Oxford University Press 2007, sections
-//! 6.5, 9.4, 10 and 11.3 (polynomials: D-optimal places are the ends and the zeros of the derivative of a Legendre polynomial, with
-//! equal shares); P. G. Hoel, A. Levine, Ann. Math. Stat. 35 (1964) 1553, <https://doi.org/10.1214/aoms/1177700379> (extrapolation);
-//! G. E. P. Box, H. L. Lucas, Biometrika 46 (1959) 77, <https://doi.org/10.1093/biomet/46.1-2.77> (exponential decay).
+//! Sources: A. C. Atkinson, A. N. Donev, R. D. Tobias, "Optimum Experimental Designs, with SAS", Oxford University
+//! Press 2007, sections 6.5, 9.4, 10 and 11.3 (polynomials: D-optimal places are the ends and the zeros of the
+//! derivative of a Legendre polynomial, with equal shares); P. G. Hoel, A. Levine, Ann. Math. Stat. 35 (1964) 1553,
+//! <https://doi.org/10.1214/aoms/1177700379> (extrapolation); G. E. P. Box, H. L. Lucas, Biometrika 46 (1959) 77,
+//! <https://doi.org/10.1093/biomet/46.1-2.77> (exponential decay).
 
 use fmm_fit::{DesignCase, DesignCriterion, DesignSearch, Information};
 
@@ -94,8 +95,8 @@ fn locally_optimal_exponential_decay() {
     assert_eq!(chosen(&search, &times, 3), [(2.0, 3)]);
 }
 
-/// exp(−b t), where b may be 1 or 3. After one measurement ln u(b) = −ln t + b t: the mean over both is least at 1/2, and the larger, which
-/// is that of 3, at 1/3.
+/// exp(−b t), where b may be 1 or 3. After one measurement ln u(b) = −ln t + b t: the mean over both is least at 1/2,
+/// and the larger, which is that of 3, at 1/3.
 #[test]
 fn robust_designs_of_an_exponential_decay() {
     let times = grid(1, 200, 100.0);

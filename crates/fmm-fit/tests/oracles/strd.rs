@@ -77,8 +77,8 @@ fn all(is_exact: bool) -> Vec<Run> {
     runs
 }
 
-/// SciPy's `trf` with exact derivatives and tolerances of 1e-15 needs 3540 residuals and 2726 Jacobians in all, and reaches
-/// ten digits from 24 of the 54 starts.
+/// SciPy's `trf` with exact derivatives and tolerances of 1e-15 needs 3540 residuals and 2726 Jacobians in all, and
+/// reaches ten digits from 24 of the 54 starts.
 #[test]
 fn exact_derivatives_give_ten_digits_everywhere() {
     let runs = all(true);

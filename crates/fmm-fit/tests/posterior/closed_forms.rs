@@ -4,8 +4,9 @@ use fmm_fit::{Prior, ResidualVariance, Sampler, coverage_factor};
 
 use crate::problems::{assert_moments, fitted, line};
 
-/// With a flat prior and Jeffreys' for σ the marginal of each coefficient is Student's t with n − p degrees of freedom about the
-/// estimate with its standard uncertainty, and ν s²/σ² is χ² with ν (Gelman et al., "Bayesian Data Analysis", section 14.2).
+/// With a flat prior and Jeffreys' for σ the marginal of each coefficient is Student's t with n − p degrees of freedom
+/// about the estimate with its standard uncertainty, and ν s²/σ² is χ² with ν (Gelman et al., "Bayesian Data Analysis",
+/// section 14.2).
 #[test]
 fn a_straight_line_has_students_t() {
     let problem = line();
@@ -34,7 +35,8 @@ fn a_straight_line_has_students_t() {
     assert!((precision - 1.0).abs() < 4.0 * error, "{precision} ± {error}");
 }
 
-/// Residuals of standard deviation 1 and a normal prior of the slope: the posterior is normal, its precision the sum of both.
+/// Residuals of standard deviation 1 and a normal prior of the slope: the posterior is normal, its precision the sum of
+/// both.
 #[test]
 fn a_normal_prior_adds_its_precision() {
     let problem = line();

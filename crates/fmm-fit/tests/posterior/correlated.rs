@@ -31,7 +31,8 @@ impl Residuals for Level {
     }
 }
 
-/// ln p(μ, ρ) = −n/2 ln Q + b/2 ln(1 − ρ²), with the determinant and the form of an autoregressive covariance written out.
+/// ln p(μ, ρ) = −n/2 ln Q + b/2 ln(1 − ρ²), with the determinant and the form of an autoregressive covariance written
+/// out.
 #[test]
 fn level_and_correlation_are_those_of_quadrature() {
     let lengths = [40, 25];

@@ -45,8 +45,9 @@ pub(crate) fn fitted<P: Residuals>(problem: &P, start: &[f64]) -> Fit {
     fit
 }
 
-/// Means and standard deviations of two variables whose log density is given, by the midpoint rule on a grid over the box
-/// `ranges`; a density that is smooth inside, and zero or cut at the edges, is integrated to far more digits than a sampler has.
+/// Means and standard deviations of two variables whose log density is given, by the midpoint rule on a grid over the
+/// box `ranges`; a density that is smooth inside, and zero or cut at the edges, is integrated to far more digits than a
+/// sampler has.
 pub(crate) fn moments_by_quadrature(ranges: [(f64, f64); 2], log_density: impl Fn([f64; 2]) -> f64) -> [(f64, f64); 2] {
     const POINTS: usize = 400;
     let at = |(low, high): (f64, f64), i: usize| low + (high - low) * (i as f64 + 0.5) / POINTS as f64;
@@ -72,7 +73,8 @@ pub(crate) fn moments_by_quadrature(ranges: [(f64, f64); 2], log_density: impl F
     [moments(sums[1], sums[3]), moments(sums[2], sums[4])]
 }
 
-/// Fails unless mean and standard deviation are within four Monte Carlo standard errors, which one right result in 16 000 exceeds.
+/// Fails unless mean and standard deviation are within four Monte Carlo standard errors, which one right result in 16
+/// 000 exceeds.
 pub(crate) fn assert_moments(marginal: &Marginal, (mean, deviation): (f64, f64)) {
     let name = marginal.parameter().name();
     let (by_draws, error) = (marginal.mean(), marginal.error_of_mean());

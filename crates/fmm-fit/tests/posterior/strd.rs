@@ -5,7 +5,8 @@ use fmm_fit::{Bounds, Parameter, Sampler, Scalar, curve};
 use crate::problems::{assert_moments, fitted, moments_by_quadrature};
 
 /// BoxBOD: six points, two parameters and a valley that bends, so that a plane approximation is far off
-/// (<https://www.itl.nist.gov/div898/strd/nls/data/boxbod.shtml>). Towards a large rate the density does not vanish: the bound cuts it.
+/// (<https://www.itl.nist.gov/div898/strd/nls/data/boxbod.shtml>). Towards a large rate the density does not vanish:
+/// the bound cuts it.
 #[test]
 fn box_bod_is_that_of_quadrature() {
     let (x, y) = ([1.0, 2.0, 3.0, 5.0, 7.0, 10.0], [109.0, 149.0, 149.0, 191.0, 213.0, 224.0]);

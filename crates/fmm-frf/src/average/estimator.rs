@@ -13,9 +13,9 @@ use crate::FrfError;
 /// | Hv | (S_fv/∣S_fv∣) √(S_vv/S_ff) | half of H1's bias | half of H2's bias |
 /// | mean of ratios | ⟨V/F⟩ | wild where a trial has little force | averages out |
 ///
-/// All have the phase of S_fv but the mean of ratios, and |H1| ≤ |Hv| ≤ |H2| with |H1| = γ² |H2|. The geometric Hv is the
-/// one that does not depend on the units of the channels; a total least squares in mixed units is H1 or H2 in disguise.
-/// The mean of ratios is that of the thesis' chapter 8.
+/// All have the phase of S_fv but the mean of ratios, and |H1| ≤ |Hv| ≤ |H2| with |H1| = γ² |H2|. The geometric Hv is
+/// the one that does not depend on the units of the channels; a total least squares in mixed units is H1 or H2 in
+/// disguise. The mean of ratios is that of the thesis' chapter 8.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Estimator {

@@ -30,10 +30,10 @@ use crate::{Channel, FrequencyResponse, FrfError, ModelError, ResponseForm};
 /// S_ff = ⟨F* F⟩,   S_vv = ⟨V* V⟩,   S_fv = ⟨F* V⟩                                                     (1)
 /// ```
 ///
-/// F and V are the discrete transforms, with e^{−iωt}, of force and response. A trial can be added at any time, also after
-/// estimates have been read; it is either added as a whole or, with an error, not at all. After the construction nothing
-/// is allocated by adding; [`TrialAverage::clear`] begins a new test in the same memory, and a clone shares the plan of the
-/// transform.
+/// F and V are the discrete transforms, with e^{−iωt}, of force and response. A trial can be added at any time, also
+/// after estimates have been read; it is either added as a whole or, with an error, not at all. After the construction
+/// nothing is allocated by adding; [`TrialAverage::clear`] begins a new test in the same memory, and a clone shares the
+/// plan of the transform.
 ///
 /// ```
 /// use fmm_frf::{AverageOptions, Estimator, ResponseForm, TrialAverage};
@@ -78,8 +78,8 @@ impl TrialAverage {
     /// Any length will do, as the transforms are for all lengths; those with small prime factors are fastest.
     ///
     /// # Errors
-    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the rate, [`FrfError::TooFew`] for a length below 2,
-    /// [`FrfError::Outside`] if no line lies in the band of the options, and for a force
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the rate, [`FrfError::TooFew`] for a length
+    /// below 2, [`FrfError::Outside`] if no line lies in the band of the options, and for a force
     /// window that covers no sample.
     pub fn new(form: ResponseForm, rate: f64, length: usize, options: &AverageOptions) -> Result<Self, FrfError> {
         ModelError::require_positive("the sampling rate", rate, "Hz")?;
@@ -125,9 +125,10 @@ impl TrialAverage {
     /// Adds a trial: its `force` (N) and its `response` (SI unit), sample by sample at the same times.
     ///
     /// # Errors
-    /// [`FrfError::Mismatch`] for channels of another length, [`FrfError::Values`] for samples that are not finite, [`FrfError::NoForce`] for a
-    /// force that is zero throughout, [`FrfError::Outside`] for a baseline or window outside the record, and [`FrfError::NotDefined`] if ratios are
-    /// kept and the force is zero at a line. The average is then unchanged.
+    /// [`FrfError::Mismatch`] for channels of another length, [`FrfError::Values`] for samples that are not finite,
+    /// [`FrfError::NoForce`] for a force that is zero throughout, [`FrfError::Outside`] for a baseline or window
+    /// outside the record, and [`FrfError::NotDefined`] if ratios are kept and the force is zero at a line. The average
+    /// is then unchanged.
     pub fn add(&mut self, force: &[f64], response: &[f64]) -> Result<(), FrfError> {
         let slot = self.waiting;
         self.transform.run(slot, force, response)?;
@@ -151,12 +152,12 @@ impl TrialAverage {
         Ok(())
     }
 
-    /// Adds a trial of two records, whose quantities, rates and beginnings must fit. Units are not converted: the force must be
-    /// in N and the response in its SI unit.
+    /// Adds a trial of two records, whose quantities, rates and beginnings must fit. Units are not converted: the force
+    /// must be in N and the response in its SI unit.
     ///
     /// # Errors
-    /// As [`TrialAverage::add`], and [`FrfError::Mismatch`] for other quantities, rates that differ by more than 1e-6 of theirs, or
-    /// records that do not begin within 1e-3 of an interval of each other.
+    /// As [`TrialAverage::add`], and [`FrfError::Mismatch`] for other quantities, rates that differ by more than 1e-6
+    /// of theirs, or records that do not begin within 1e-3 of an interval of each other.
     pub fn add_records(&mut self, force: &Record, response: &Record) -> Result<(), FrfError> {
         Channel::Force.require(force, Quantity::Force, self.rate)?;
         Channel::Response.require(response, self.form.quantity(), self.rate)?;
@@ -165,8 +166,8 @@ impl TrialAverage {
     }
 
     /// Adds a long record in segments that `overlap` by so many samples, each as one trial (Welch's method), and gives
-    /// their number. What is left over at the end is not used. Trials that overlap are not independent: uncertainties and
-    /// the number of averages count them as if they were.
+    /// their number. What is left over at the end is not used. Trials that overlap are not independent: uncertainties
+    /// and the number of averages count them as if they were.
     ///
     /// # Errors
     /// As [`TrialAverage::add`] at the first segment that it refuses, with the segments before it added;
@@ -208,8 +209,8 @@ impl TrialAverage {
         self.trials
     }
 
-    /// (Σw)²/Σw², how many trials of equal weight the average is worth: their number if the averaging is linear, 0 without
-    /// trials.
+    /// (Σw)²/Σw², how many trials of equal weight the average is worth: their number if the averaging is linear, 0
+    /// without trials.
     pub fn averages(&self) -> f64 {
         if self.trials == 0 { 0.0 } else { self.weights.0 * self.weights.0 / self.weights.1 }
     }
@@ -219,7 +220,8 @@ impl TrialAverage {
         self.form
     }
 
-    /// Frequencies (Hz) of the lines: whole multiples of rate/length up to half the rate, as far as they lie in the band.
+    /// Frequencies (Hz) of the lines: whole multiples of rate/length up to half the rate, as far as they lie in the
+    /// band.
     pub fn frequencies(&self) -> &[f64] {
         &self.frequencies
     }
@@ -227,8 +229,8 @@ impl TrialAverage {
     /// The response by `estimator`.
     ///
     /// # Errors
-    /// [`FrfError::TooFew`] without a trial; [`FrfError::NotDefined`] at a line where the estimator would divide by zero;
-    /// [`FrfError::RatiosNotKept`] for the mean of ratios; [`FrfError::Values`] if it overflows.
+    /// [`FrfError::TooFew`] without a trial; [`FrfError::NotDefined`] at a line where the estimator would divide by
+    /// zero; [`FrfError::RatiosNotKept`] for the mean of ratios; [`FrfError::Values`] if it overflows.
     pub fn estimate(&self, estimator: Estimator) -> Result<FrequencyResponse, FrfError> {
         if self.trials == 0 {
             return Err(FrfError::no_trials());
@@ -252,10 +254,11 @@ impl TrialAverage {
     /// mean of ratios:  u² = (⟨|V/F|²⟩ − |⟨V/F⟩|²)/(2(n − 1))                                            (3)
     /// ```
     ///
-    /// n is [`TrialAverage::averages`]. For H1, (2) is the residual scatter of the regression of V on F through the origin;
-    /// for H2 that of F on V, which is relatively the same. It contains what differs between trials and nothing that they
-    /// share: gains, delays, leakage, or the bias of H1 by noise of the force. With friction, trials of different impulse
-    /// differ because the machine does. The phase has u/|H| (rad). With two or three trials, u itself is hardly known.
+    /// n is [`TrialAverage::averages`]. For H1, (2) is the residual scatter of the regression of V on F through the
+    /// origin; for H2 that of F on V, which is relatively the same. It contains what differs between trials and nothing
+    /// that they share: gains, delays, leakage, or the bias of H1 by noise of the force. With friction, trials of
+    /// different impulse differ because the machine does. The phase has u/|H| (rad). With two or three trials, u itself
+    /// is hardly known.
     ///
     /// # Errors
     /// As [`TrialAverage::estimate`], and [`FrfError::TooFew`] for less than two averages.
@@ -282,7 +285,8 @@ impl TrialAverage {
     /// γ² = |S_fv|²/(S_ff S_vv), the share of the response that is a multiple of the force.
     ///
     /// # Errors
-    /// [`FrfError::TooFew`] without a trial, and [`FrfError::NotDefined`] at a line where one channel is zero in all trials.
+    /// [`FrfError::TooFew`] without a trial, and [`FrfError::NotDefined`] at a line where one channel is zero in all
+    /// trials.
     pub fn coherence(&self) -> Result<Coherence, FrfError> {
         if self.trials == 0 {
             return Err(FrfError::no_trials());
@@ -297,7 +301,8 @@ impl TrialAverage {
         Ok(Coherence::new(Arc::clone(&self.frequencies), values, self.averages()))
     }
 
-    /// One-sided power spectral density of the force (N²/Hz) at each line; it integrates to the mean square of the force.
+    /// One-sided power spectral density of the force (N²/Hz) at each line; it integrates to the mean square of the
+    /// force.
     ///
     /// # Errors
     /// [`FrfError::TooFew`] without a trial.

@@ -10,9 +10,9 @@ pub enum Averaging {
     /// All trials alike.
     #[default]
     Linear,
-    /// The newest with the weight α and all before it together with 1 − α, so that the average forgets: a trial k trials
-    /// ago counts α(1 − α)ᵏ. The first trial counts as if it had always been there. In the long run the average is worth
-    /// 2/α − 1 trials.
+    /// The newest with the weight α and all before it together with 1 − α, so that the average forgets: a trial k
+    /// trials ago counts α(1 − α)ᵏ. The first trial counts as if it had always been there. In the long run the average
+    /// is worth 2/α − 1 trials.
     Exponential {
         /// α, weight of the newest trial, more than 0 and less than 1.
         newest: f64,
@@ -94,8 +94,8 @@ impl AverageOptions {
     /// Sets the weight of each trial.
     ///
     /// # Errors
-    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for an exponential weight outside 0 to 1, both ends excluded; the error is about the
-    /// weight or what it leaves.
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for an exponential weight outside 0 to 1, both ends
+    /// excluded; the error is about the weight or what it leaves.
     pub fn averaging(mut self, averaging: Averaging) -> Result<Self, FrfError> {
         if let Averaging::Exponential { newest } = averaging {
             ModelError::require_positive("the weight of the newest trial", newest, "(dimensionless)")?;
@@ -105,8 +105,8 @@ impl AverageOptions {
         Ok(self)
     }
 
-    /// Keeps the ratio of the spectra of each trial, for [`Estimator::MeanOfRatios`](crate::Estimator::MeanOfRatios); it
-    /// costs memory and time that the other estimators do not need.
+    /// Keeps the ratio of the spectra of each trial, for [`Estimator::MeanOfRatios`](crate::Estimator::MeanOfRatios);
+    /// it costs memory and time that the other estimators do not need.
     #[must_use]
     pub fn keeping_ratios(mut self) -> Self {
         self.keeps_ratios = true;

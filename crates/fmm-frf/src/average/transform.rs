@@ -8,7 +8,8 @@ use pulp::Arch;
 use crate::average::window::Windows;
 use crate::{Baseline, Channel, FrfError, RealTransform};
 
-/// Number of trials whose spectra are kept. Adding up two at a time saves a third of the time, which goes into memory transfers.
+/// Number of trials whose spectra are kept. Adding up two at a time saves a third of the time, which goes into memory
+/// transfers.
 pub(crate) const SLOTS: usize = 2;
 
 /// Preparation of one channel before its transform, and the transform.
@@ -83,8 +84,8 @@ impl TrialTransform {
         if force_energy > 0.0 { Ok(()) } else { Err(FrfError::NoForce) }
     }
 
-    /// Spectra of force and response at some `lines` of those from zero frequency to half the rate; their unit is that of a sum
-    /// of samples.
+    /// Spectra of force and response at some `lines` of those from zero frequency to half the rate; their unit is that
+    /// of a sum of samples.
     pub(crate) fn spectra(&self, slot: usize, lines: &Range<usize>) -> (&[Complex64], &[Complex64]) {
         (&self.force.spectra[slot][lines.clone()], &self.response.spectra[slot][lines.clone()])
     }

@@ -35,8 +35,9 @@ impl Taper {
 /// Weights on the force alone: one during the pulse and zero elsewhere.
 ///
 /// Between pulses the force channel has nothing but noise, and all of it goes into the spectrum: 0.5 N rms over
-/// 330 000 samples at 10 kHz make 2 % of a blow of 1.42 N s, at every line; 10 ms of it make 0.035 %. Take the offset out
-/// first, with [`AverageOptions::force_baseline`](crate::AverageOptions::force_baseline): the window turns it into a pulse.
+/// 330 000 samples at 10 kHz make 2 % of a blow of 1.42 N s, at every line; 10 ms of it make 0.035 %. Take the offset
+/// out first, with [`AverageOptions::force_baseline`](crate::AverageOptions::force_baseline): the window turns it into
+/// a pulse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceWindow {
     from: f64,
@@ -48,7 +49,8 @@ impl ForceWindow {
     /// A window that keeps the force from `from` (s) until before `to` (s), counted from the first sample.
     ///
     /// # Errors
-    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for `from`, and [`ModelError::NotPositive`](crate::ModelError::NotPositive) for a duration that is not positive and finite.
+    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for `from`, and
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for a duration that is not positive and finite.
     pub fn new(from: f64, to: f64) -> Result<Self, FrfError> {
         ModelError::require_finite("the start of the force window", from, "s")?;
         ModelError::require_positive("the duration of the force window", to - from, "s")?;
@@ -94,9 +96,9 @@ impl ForceWindow {
 /// w(t) = e^{−σt}:   H(iω) becomes H(σ + iω)                                                          (1)
 /// ```
 ///
-/// It does to a transform what damping 2mσ and stiffness cσ + mσ² more would do to the machine. The shift is exact, so it is
-/// taken out again exactly: a [`FrequencyResponse`](crate::FrequencyResponse) remembers σ, conversions between forms
-/// multiply by σ + iω, and the modal estimates give the poles of the machine without window.
+/// It does to a transform what damping 2mσ and stiffness cσ + mσ² more would do to the machine. The shift is exact, so
+/// it is taken out again exactly: a [`FrequencyResponse`](crate::FrequencyResponse) remembers σ, conversions between
+/// forms multiply by σ + iω, and the modal estimates give the poles of the machine without window.
 ///
 /// No factor is applied to the ratio of two windowed channels: a factor N/Σw as for one spectrum would be wrong.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -29,7 +29,8 @@ pub struct BackboneOptions {
 }
 
 impl BackboneOptions {
-    /// Takes the mode nearest to `frequency` (Hz), within a fifth of it. Without it, the strongest mode that decays is taken.
+    /// Takes the mode nearest to `frequency` (Hz), within a fifth of it. Without it, the strongest mode that decays is
+    /// taken.
     ///
     /// # Errors
     /// [`FrfError::OutOfRange`] if it is not positive.
@@ -38,8 +39,8 @@ impl BackboneOptions {
         Ok(self)
     }
 
-    /// Sets windows of so many `cycles`, two at least. Without it, a window is a sixteenth of the record, between 3 and 8 cycles;
-    /// it is shorter in a record of few cycles, and longer where another mode is near.
+    /// Sets windows of so many `cycles`, two at least. Without it, a window is a sixteenth of the record, between 3 and
+    /// 8 cycles; it is shorter in a record of few cycles, and longer where another mode is near.
     ///
     /// # Errors
     /// [`FrfError::Outside`] if they are fewer than two.
@@ -71,24 +72,24 @@ pub struct BackbonePoint {
 
 /// Frequency and equivalent damping of one mode against its amplitude, with standard uncertainties.
 ///
-/// Around each of many times, vibrations of slowly changing amplitude and phase are fitted to the samples under a window: the mode, its
-/// second and third multiple, and other modes within reach. Its amplitude X in the record, decay rate and frequency are those of the
-/// envelope a₀ + a₁ u + a₂ u². For a velocity or an acceleration, A = X/ω or X/ω².
+/// Around each of many times, vibrations of slowly changing amplitude and phase are fitted to the samples under a
+/// window: the mode, its second and third multiple, and other modes within reach. Its amplitude X in the record, decay
+/// rate and frequency are those of the envelope a₀ + a₁ u + a₂ u². For a velocity or an acceleration, A = X/ω or X/ω².
 ///
 /// ```text
 /// c_eq/m = −J'/J = −2 A'/A − ω'/ω,     J = ω A²/2
 /// ```
 ///
-/// J is the action, which viscous damping lets decay with c/m on any spring. The dependence of ω on A is that of a spring
-/// k (x + k₃ x³ + k₅ x⁵) fitted to the points; on a linear spring ω' is zero. A is the amplitude of the first harmonic. Uncertainties hold for white
-/// noise.
+/// J is the action, which viscous damping lets decay with c/m on any spring. The dependence of ω on A is that of a
+/// spring k (x + k₃ x³ + k₅ x⁵) fitted to the points; on a linear spring ω' is zero. A is the amplitude of the first
+/// harmonic. Uncertainties hold for white noise.
 ///
-/// In a displacement or velocity of fewer than seven cycles, half cycles make the points instead, unless a mode or a window is asked for.
-/// Sines are then fitted to turning points and passages through the centre.
+/// In a displacement or velocity of fewer than seven cycles, half cycles make the points instead, unless a mode or a
+/// window is asked for. Sines are then fitted to turning points and passages through the centre.
 ///
-/// Errors without noise: in simulated decays by Coulomb friction, quadratic damping, a spring that hardens by 20 % and a pendulum of 0.6 rad,
-/// frequency and damping are within 6e-4 of the closed forms. For two modes 5 % apart, one with a tenth of the amplitude of the other, the
-/// frequency of each is within 1e-4, and the damping within 2 %.
+/// Errors without noise: in simulated decays by Coulomb friction, quadratic damping, a spring that hardens by 20 % and
+/// a pendulum of 0.6 rad, frequency and damping are within 6e-4 of the closed forms. For two modes 5 % apart, one with
+/// a tenth of the amplitude of the other, the frequency of each is within 1e-4, and the damping within 2 %.
 ///
 /// ```
 /// use fmm_frf::{Backbone, BackboneOptions};
@@ -133,7 +134,8 @@ const NEAR: f64 = 0.5;
 const BEATS: f64 = 2.0;
 /// Least share of the amplitude for a mode to count beside the first (1).
 const LEAST_OTHER: f64 = 1e-3;
-/// Above this share of the amplitude, one at any higher frequency is fitted beside, the strongest first, so many at most.
+/// Above this share of the amplitude, one at any higher frequency is fitted beside, the strongest first, so many at
+/// most.
 const LOUD: f64 = 0.02;
 const MOST_OTHERS: usize = 8;
 /// Amplitudes count that are so many times their uncertainty.
@@ -151,8 +153,8 @@ impl Backbone {
     /// The backbone of the decay in `record`.
     ///
     /// # Errors
-    /// [`FrfError::TooFew`] if the record shows too few half swings, [`FrfError::NoFit`] if it shows no line, too few cycles for
-    /// two windows, or, if the `options` ask for a frequency, no mode within a fifth of it.
+    /// [`FrfError::TooFew`] if the record shows too few half swings, [`FrfError::NoFit`] if it shows no line, too few
+    /// cycles for two windows, or, if the `options` ask for a frequency, no mode within a fifth of it.
     pub fn of(record: &Record, options: &BackboneOptions) -> Result<Self, FrfError> {
         let orders = match record.quantity() {
             Quantity::Velocity => 1,
@@ -243,8 +245,8 @@ impl Backbone {
         &self.unit
     }
 
-    /// f₀ (Hz), k₃ and k₅ (per square and fourth power of the unit of amplitude) that the frequencies show, without those that they do
-    /// not.
+    /// f₀ (Hz), k₃ and k₅ (per square and fourth power of the unit of amplitude) that the frequencies show, without
+    /// those that they do not.
     pub fn spring(&self) -> &[Estimated] {
         &self.spring
     }
@@ -415,8 +417,8 @@ impl Local {
 }
 
 impl BackbonePoint {
-    /// Takes into account that on a spring with terms k₃ and k₅ the action, not the square of the amplitude, decays with c/m, and that a
-    /// derivative of this many `orders` does not go with the amplitude.
+    /// Takes into account that on a spring with terms k₃ and k₅ the action, not the square of the amplitude, decays
+    /// with c/m, and that a derivative of this many `orders` does not go with the amplitude.
     fn correct(&mut self, spring: &[Estimated], orders: i32) {
         let bend = bend(spring, self.amplitude.value);
         let factor = (1.0 + 0.5 * bend) / (1.0 + f64::from(orders) * bend);

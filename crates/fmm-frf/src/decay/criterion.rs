@@ -8,7 +8,8 @@ pub(crate) const SIGNIFICANT: f64 = 2.0;
 /// Points that are told by one window: neighbours share three quarters of theirs.
 const POINTS_PER_WINDOW: f64 = 2.0;
 
-/// Coefficients of `columns` for `values`, and the Bayesian criterion of what they leave; `None` if they are not told apart.
+/// Coefficients of `columns` for `values`, and the Bayesian criterion of what they leave; `None` if they are not told
+/// apart.
 ///
 /// Values are taken to be good to a relative `accuracy` (1) at best.
 pub(crate) fn scored(columns: &[Vec<f64>], values: &[Estimated], accuracy: f64) -> Option<(f64, Vec<Estimated>)> {

@@ -11,8 +11,8 @@ use crate::BackbonePoint;
 const COMPARED: usize = 3;
 /// Half swings that two points need: one more than amplitudes.
 pub(crate) const FEWEST_HALF_SWINGS: usize = COMPARED + 2;
-/// Deviation of a passage, against that of the mean of the samples it is fitted to: its centre comes from four turning points with weights 1, 3, 3, 1, two of which the
-/// next passage but one has as well, √(1 + ½ 28/64 · 1.5²).
+/// Deviation of a passage, against that of the mean of the samples it is fitted to: its centre comes from four turning
+/// points with weights 1, 3, 3, 1, two of which the next passage but one has as well, √(1 + ½ 28/64 · 1.5²).
 const PASSAGE: f64 = 1.222;
 
 /// The points of a decay from its turning points and passages through the centre, for one of displacement or velocity.
@@ -22,8 +22,8 @@ const PASSAGE: f64 = 1.222;
 /// c_eq/m = 2 ln(A_j/A_{j+2})/T,    T from passage j to passage j + 2, at the amplitude √(A_j A_{j+2})
 /// ```
 ///
-/// For viscous damping on a straight spring both are exact; dry friction F/k = d gives 0.67 (d/A)² too little. Damping is not yet corrected
-/// for the spring.
+/// For viscous damping on a straight spring both are exact; dry friction F/k = d gives 0.67 (d/A)² too little. Damping
+/// is not yet corrected for the spring.
 pub(crate) fn half_cycle_points(record: &Record) -> Vec<BackbonePoint> {
     let orders = match record.quantity() {
         Quantity::Displacement => 0,
@@ -70,7 +70,8 @@ mod tests {
     use super::*;
     use crate::{Backbone, BackboneOptions};
 
-    /// A release by 1 mm on dry friction that stops it after `halves` half swings of 0.1 s, at 1 kHz, with noise of half a micrometre.
+    /// A release by 1 mm on dry friction that stops it after `halves` half swings of 0.1 s, at 1 kHz, with noise of
+    /// half a micrometre.
     fn stopped(halves: usize) -> Record {
         // Each half swing loses twice the friction; what is left after them is less than it.
         let friction = 1.0 / (2 * halves + 1) as f64;

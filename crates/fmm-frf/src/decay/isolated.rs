@@ -19,9 +19,10 @@ pub struct IsolatedMode {
 impl IsolatedMode {
     /// The mode of `record` that the `options` ask for.
     ///
-    /// Each sample is the mode's part of a regression around it, the same as for a [backbone](crate::Backbone). A parabolic envelope passes
-    /// unchanged, and so does its phase; noise passes within about two cycles per window. Harmonics of friction are
-    /// removed with the other modes, and an event such as a stop is smeared over half a window.
+    /// Each sample is the mode's part of a regression around it, the same as for a [backbone](crate::Backbone). A
+    /// parabolic envelope passes unchanged, and so does its phase; noise passes within about two cycles per window.
+    /// Harmonics of friction are removed with the other modes, and an event such as a stop is smeared over half a
+    /// window.
     ///
     /// ```
     /// use fmm_frf::{BackboneOptions, IsolatedMode};

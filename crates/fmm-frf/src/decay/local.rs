@@ -17,8 +17,8 @@ pub(crate) struct Carrier {
 
 /// The regression on several carriers under a window of raised cosine, the same around every sample.
 ///
-/// The window leaves the samples at its ends without weight, so that a vibration that is not looked for disturbs only where it is nearer
-/// than about two cycles per window.
+/// The window leaves the samples at its ends without weight, so that a vibration that is not looked for disturbs only
+/// where it is nearer than about two cycles per window.
 pub(crate) struct LocalRegression {
     half: usize,
     /// For each unknown the numbers that, with the samples, sum up to it.
@@ -85,7 +85,8 @@ impl LocalRegression {
         Some(Self { half, filters, shapes, covariance, weights, third_in_first })
     }
 
-    /// The first carrier around sample `centre` of `values`, which has as many samples on either side; its phase counts from there.
+    /// The first carrier around sample `centre` of `values`, which has as many samples on either side; its phase counts
+    /// from there.
     pub(crate) fn at(&self, values: &[f64], centre: usize) -> LocalVibration {
         let values = &values[centre - self.half..=centre + self.half];
         let unknowns: Vec<f64> = self.filters.iter().map(|filter| dot(filter, values)).collect();
@@ -109,7 +110,8 @@ impl LocalRegression {
         LocalVibration { amplitude, slope, noise: (squares / (sum * taken)).sqrt() }
     }
 
-    /// Re a₀ around every sample of `values` that has as many samples on either side: the first vibration without the others.
+    /// Re a₀ around every sample of `values` that has as many samples on either side: the first vibration without the
+    /// others.
     pub(crate) fn filtered(&self, values: &[f64]) -> Vec<f64> {
         values.windows(2 * self.half + 1).map(|around| dot(&self.filters[0], around)).collect()
     }

@@ -9,14 +9,15 @@ use fmm_record::{Record, Spectrum, Swings, blackman_harris, period_change};
 pub struct DecayMode {
     /// f (Hz), about: a backbone finds it better.
     pub frequency: f64,
-    /// Its greatest mean amplitude under a window over the record, its half, quarter or eighth, in the unit of the record.
+    /// Its greatest mean amplitude under a window over the record, its half, quarter or eighth, in the unit of the
+    /// record.
     pub amplitude: f64,
     /// Its share of the energy of all lines (1), by the squares of the record.
     pub share: f64,
     /// Ratio of its amplitude to the mean of the noise around it (1).
     pub above_noise: f64,
-    /// c/m (1/s) by which its mean amplitude falls from one half of the record, or of its first half, quarter or eighth, to the next;
-    /// `None` where the second half does not show it, or another mode is too near.
+    /// c/m (1/s) by which its mean amplitude falls from one half of the record, or of its first half, quarter or
+    /// eighth, to the next; `None` where the second half does not show it, or another mode is too near.
     pub damping: Option<f64>,
     /// Order as a multiple of a stronger mode; friction and nonlinear springs make such multiples.
     pub multiple: Option<u32>,
@@ -34,7 +35,8 @@ impl DecayMode {
 const STEADY: f64 = 0.05;
 /// Least energy of a line in both halves of a part, as a multiple of that of the noise, to state its damping.
 const SEEN_AGAIN: f64 = 4.0;
-/// Least square of a line, as a multiple of the median of the squares around it; noise reaches it once in 10⁷ frequencies.
+/// Least square of a line, as a multiple of the median of the squares around it; noise reaches it once in 10⁷
+/// frequencies.
 const ABOVE_MEDIAN: f64 = 25.0;
 /// The median of the squares of noise over their mean, ln 2.
 const MEDIAN: f64 = core::f64::consts::LN_2;
@@ -44,7 +46,8 @@ const PROMINENCE: f64 = 4.0;
 const AROUND: f64 = 1.4;
 /// A mode lies so many widths of a window away from the next at least.
 const WIDTH: f64 = 4.0;
-/// Parts of the record that are looked at: all of it, its half, its quarter and its eighth from the greatest amplitude on.
+/// Parts of the record that are looked at: all of it, its half, its quarter and its eighth from the greatest amplitude
+/// on.
 const PARTS: usize = 4;
 /// Fewest samples of a part.
 const FEWEST: usize = 64;
@@ -63,9 +66,9 @@ const LEAST: f64 = 1e-4;
 
 /// The modes of the decay in `record`, the strongest first; empty if nothing rises above its noise.
 ///
-/// A mode is a line of the spectrum of the record, or of its first half, quarter or eighth. It rises above the noise, and above the
-/// spread of another line by the end or the changing frequency of a decay. Steady lines, such as hum, are listed as well and
-/// [marked](DecayMode::is_steady).
+/// A mode is a line of the spectrum of the record, or of its first half, quarter or eighth. It rises above the noise,
+/// and above the spread of another line by the end or the changing frequency of a decay. Steady lines, such as hum, are
+/// listed as well and [marked](DecayMode::is_steady).
 ///
 /// ```
 /// use fmm_frf::decay_modes;
@@ -197,8 +200,8 @@ impl Halves {
         Some(Self { count, spectra, floors })
     }
 
-    /// c/m (1/s) of the line at `frequency` (Hz), which sweeps over `swept` (Hz), from its energies in the two halves; `None` if the second
-    /// does not show it, or the next line is not `far` (Hz).
+    /// c/m (1/s) of the line at `frequency` (Hz), which sweeps over `swept` (Hz), from its energies in the two halves;
+    /// `None` if the second does not show it, or the next line is not `far` (Hz).
     fn damping(&self, rate: f64, frequency: f64, swept: f64, far: f64) -> Option<f64> {
         let reach = WIDTH * rate / self.count as f64 + swept;
         if far < 2.0 * reach {

@@ -5,7 +5,8 @@ use fmm_model::Estimated;
 use crate::BackbonePoint;
 use crate::decay::criterion::{SIGNIFICANT, scored};
 
-/// Relative error of the closed form for the square of the frequency (1): at best, and as a multiple of (k₃ A²)³, the first power that it omits.
+/// Relative error of the closed form for the square of the frequency (1): at best, and as a multiple of (k₃ A²)³, the
+/// first power that it omits.
 const ACCURACY: (f64, f64) = (2e-6, 0.02);
 /// Of k₃² A⁴ in the square of the frequency: the third harmonic that a cubic spring makes.
 const SECOND_ORDER: f64 = 3.0 / 128.0;
@@ -18,8 +19,8 @@ const ROUNDS: usize = 4;
 /// f² = f₀² (1 + ¾ k₃ A² + (⅝ k₅ + 3/128 k₃²) A⁴)
 /// ```
 ///
-/// A is the amplitude of the first harmonic. A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapter 2, to second order in
-/// k₃ and first in k₅.
+/// A is the amplitude of the first harmonic. A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapter 2,
+/// to second order in k₃ and first in k₅.
 pub(crate) fn spring_terms(points: &[BackbonePoint]) -> Vec<Estimated> {
     let column = |power: i32| points.iter().map(|point| point.amplitude.value.powi(power)).collect::<Vec<f64>>();
     let largest = points.iter().fold(0.0f64, |largest, point| largest.max(point.amplitude.value));

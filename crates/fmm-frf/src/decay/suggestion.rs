@@ -50,10 +50,11 @@ pub struct DampingTerm {
     pub share: Estimated,
 }
 
-/// Terms of damping and spring that explain a backbone: a start for a comparison of laws, which judges by the record itself.
+/// Terms of damping and spring that explain a backbone: a start for a comparison of laws, which judges by the record
+/// itself.
 ///
-/// It is the sum of Coulomb friction and linear, quadratic and cubic damping with the least Bayesian criterion, among those whose
-/// coefficients exceed twice their uncertainty. `Display` prints it in words.
+/// It is the sum of Coulomb friction and linear, quadratic and cubic damping with the least Bayesian criterion, among
+/// those whose coefficients exceed twice their uncertainty. `Display` prints it in words.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suggestion {
     damping: Vec<DampingTerm>,
@@ -119,7 +120,8 @@ impl Suggestion {
         self.spring.first().map(|natural| natural.value * stiffening(&self.spring, amplitude).max(0.0).sqrt())
     }
 
-    /// The name under which `fmm-identify` has this law with these terms, such as `coulomb_viscous + quadratic + cubic spring`.
+    /// The name under which `fmm-identify` has this law with these terms, such as
+    /// `coulomb_viscous + quadratic + cubic spring`.
     pub fn model(&self) -> String {
         let has = |kind: DampingTermKind| self.damping.iter().any(|term| term.kind == kind);
         let law = match (has(DampingTermKind::Coulomb), has(DampingTermKind::Linear)) {

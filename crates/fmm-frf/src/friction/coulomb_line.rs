@@ -12,13 +12,13 @@ use crate::{Estimated, FrfError, ModelError};
 /// |H|_peak = b + s J,   F = π/(8 m ω₀ s)                                                               (1)
 /// ```
 ///
-/// By [`peak_receptance_of_coulomb_impact`](crate::peak_receptance_of_coulomb_impact) dry friction alone makes b zero. An
-/// intercept that is not, or points that are not on a line, tell of something else: viscous damping bends the line down
-/// ([`friction_force_of_viscous_coulomb_impact`](crate::friction_force_of_viscous_coulomb_impact) takes it out blow by
-/// blow), friction that depends on velocity bends it either way.
+/// By [`peak_receptance_of_coulomb_impact`](crate::peak_receptance_of_coulomb_impact) dry friction alone makes b zero.
+/// An intercept that is not, or points that are not on a line, tell of something else: viscous damping bends the line
+/// down ([`friction_force_of_viscous_coulomb_impact`](crate::friction_force_of_viscous_coulomb_impact) takes it out
+/// blow by blow), friction that depends on velocity bends it either way.
 ///
-/// The points are weighed equally and the impulses taken as exact. Where either is not good enough, fit the line elsewhere and
-/// use [`friction_force_of_slope`].
+/// The points are weighed equally and the impulses taken as exact. Where either is not good enough, fit the line
+/// elsewhere and use [`friction_force_of_slope`].
 ///
 /// ```
 /// use fmm_frf::CoulombLine;
@@ -47,8 +47,8 @@ impl CoulombLine {
     ///
     /// # Errors
     /// [`FrfError::Mismatch`] for different numbers of impulses and peaks, [`FrfError::TooFew`] for fewer than three,
-    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any value that is not positive, and for a slope that is not: peaks of friction grow.
-    /// [`FrfError::NoFit`] for impulses that are all the same.
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any value that is not positive, and for a slope
+    /// that is not: peaks of friction grow. [`FrfError::NoFit`] for impulses that are all the same.
     pub fn fit(impulses: &[f64], peaks: &[f64], mass: f64, natural_angular_frequency: f64) -> Result<Self, FrfError> {
         if impulses.len() != peaks.len() {
             return Err(FrfError::point_count(impulses.len(), peaks.len()));
@@ -102,8 +102,8 @@ impl fmt::Display for CoulombLine {
     }
 }
 
-/// F = π/(8 m ω₀ s), kinetic friction force (N) out of the `slope` s (m/N per N s) of receptance peaks over impulses. Its
-/// relative uncertainty is the root of the sum of the squares of those of the three arguments.
+/// F = π/(8 m ω₀ s), kinetic friction force (N) out of the `slope` s (m/N per N s) of receptance peaks over impulses.
+/// Its relative uncertainty is the root of the sum of the squares of those of the three arguments.
 ///
 /// # Errors
 /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any argument, or for a result out of range.

@@ -4,16 +4,16 @@ use std::f64::consts::PI;
 
 use crate::{FrfError, ModelError};
 
-/// c_eq, the viscous coefficient (N s/m) that dissipates as much per cycle as a `friction_force` F (N), for a harmonic motion
-/// of velocity amplitude V (m/s).
+/// c_eq, the viscous coefficient (N s/m) that dissipates as much per cycle as a `friction_force` F (N), for a harmonic
+/// motion of velocity amplitude V (m/s).
 ///
 /// ```text
 /// c_eq = 4F/(π V),   V = ω X
 /// ```
 ///
-/// It is the describing function of F sgn v: the first harmonic of the square wave, 4F/π, by the amplitude of the velocity.
-/// The equivalent damping falls as the amplitude grows, which is why a response with friction depends on the force. It holds
-/// as long as the motion does not stick, and for the first harmonic alone.
+/// It is the describing function of F sgn v: the first harmonic of the square wave, 4F/π, by the amplitude of the
+/// velocity. The equivalent damping falls as the amplitude grows, which is why a response with friction depends on the
+/// force. It holds as long as the motion does not stick, and for the first harmonic alone.
 ///
 /// ```
 /// // Chapter 8: a friction of 0.754 N weighs as much as c = 9.6 N s/m at 0.1 m/s; the machine's own damping is 0.275 N s/m.
@@ -23,7 +23,8 @@ use crate::{FrfError, ModelError};
 /// ```
 ///
 /// # Errors
-/// [`ModelError::Negative`](crate::ModelError::Negative) for the friction force, [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the amplitude,
+/// [`ModelError::Negative`](crate::ModelError::Negative) for the friction force,
+/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the amplitude,
 /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for a result out of range.
 pub fn equivalent_damping_of_friction(friction_force: f64, velocity_amplitude: f64) -> Result<f64, FrfError> {
     ModelError::require_not_negative("friction force", friction_force, "N")?;

@@ -10,9 +10,10 @@ use crate::{FrequencyResponse, FrfError, ModelError};
 /// V = H_lin (F − R),   H = V/F:   R/F = 1 − H/H_lin                                                    (1)
 /// ```
 ///
-/// R is whatever force the linear machine does not explain; with a body that slides to and fro it is nearly a square wave,
-/// with harmonics n at 1/n of the fundamental: −9.5, −14.0, −16.9 and −19.1 dB for n = 3, 5, 7 and 9. They do not show as peaks
-/// of the response, as they stand on the slope of the linear one: only the division by H_lin brings them out.
+/// R is whatever force the linear machine does not explain; with a body that slides to and fro it is nearly a square
+/// wave, with harmonics n at 1/n of the fundamental: −9.5, −14.0, −16.9 and −19.1 dB for n = 3, 5, 7 and 9. They do not
+/// show as peaks of the response, as they stand on the slope of the linear one: only the division by H_lin brings them
+/// out.
 ///
 /// Equation (1) holds for one impact (or several alike); an average over different impulses mixes different machines.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,14 +37,14 @@ pub struct Harmonic {
 }
 
 impl FrictionSpectrum {
-    /// The spectrum behind a `measured` response, given the `linear` one of the machine without friction, in the same form
-    /// at the same frequencies: of a model as
-    /// [`SingleDegreeOfFreedom::frequency_response`](crate::SingleDegreeOfFreedom::frequency_response), or of a test with the
-    /// contact removed.
+    /// The spectrum behind a `measured` response, given the `linear` one of the machine without friction, in the same
+    /// form at the same frequencies: of a model as
+    /// [`SingleDegreeOfFreedom::frequency_response`](crate::SingleDegreeOfFreedom::frequency_response), or of a test
+    /// with the contact removed.
     ///
     /// # Errors
-    /// [`FrfError::Mismatch`] for responses of different form, window or frequencies, and [`FrfError::NotDefined`] at a line where the quotient is not
-    /// finite, such as zero frequency for a mobility.
+    /// [`FrfError::Mismatch`] for responses of different form, window or frequencies, and [`FrfError::NotDefined`] at a
+    /// line where the quotient is not finite, such as zero frequency for a mobility.
     pub fn of(measured: &FrequencyResponse, linear: &FrequencyResponse) -> Result<Self, FrfError> {
         if measured.form() != linear.form() || measured.decay_rate() != linear.decay_rate() {
             return Err(FrfError::responses_differ(0));
@@ -79,12 +80,12 @@ impl FrictionSpectrum {
 
     /// The harmonics of orders 1 to `highest` of the `fundamental` frequency (Hz), at the nearest lines.
     ///
-    /// A motion that lasts for T smears each over 1/T, so that a fundamental known to a quarter of that, times the highest order,
-    /// is good enough.
+    /// A motion that lasts for T smears each over 1/T, so that a fundamental known to a quarter of that, times the
+    /// highest order, is good enough.
     ///
     /// # Errors
-    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the fundamental, and [`FrfError::Outside`] if no line is within an eighth of the
-    /// fundamental of each multiple, or if nothing is left over at the fundamental.
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the fundamental, and [`FrfError::Outside`] if no
+    /// line is within an eighth of the fundamental of each multiple, or if nothing is left over at the fundamental.
     pub fn harmonics(&self, fundamental: f64, highest: u32) -> Result<Vec<Harmonic>, FrfError> {
         ModelError::require_positive("the fundamental frequency", fundamental, "Hz")?;
         let (spacing, reach) = (0.25 * fundamental, fundamental * f64::from(highest));
@@ -117,13 +118,14 @@ impl FrictionSpectrum {
     /// Ratio of the odd harmonics from the third on to the even ones, as the ratio of the root mean squares of |R|,
     /// over orders up to `highest`.
     ///
-    /// Friction is the same in both directions, so that its force has no even harmonics: the ratio is 5 for nine half swings of
-    /// dry friction and grows with their number. A linear machine with noise, or one whose linear response is not
-    /// quite known, has about 1; with orders up to 9, noise alone exceeds 2.4 in one of a hundred spectra.
+    /// Friction is the same in both directions, so that its force has no even harmonics: the ratio is 5 for nine half
+    /// swings of dry friction and grows with their number. A linear machine with noise, or one whose linear response is
+    /// not quite known, has about 1; with orders up to 9, noise alone exceeds 2.4 in one of a hundred spectra.
     ///
     /// # Errors
-    /// As [`FrictionSpectrum::harmonics`], with a highest order of 3 at least, and [`ModelError::NotPositive`](crate::ModelError::NotPositive) if there is nothing
-    /// at all at the odd or at the even ones.
+    /// As [`FrictionSpectrum::harmonics`], with a highest order of 3 at least, and
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) if there is nothing at all at the odd or at the even
+    /// ones.
     pub fn odd_by_even(&self, fundamental: f64, highest: u32) -> Result<f64, FrfError> {
         let harmonics = self.harmonics(fundamental, highest.max(3))?;
         let mean_square = |odd: bool| {

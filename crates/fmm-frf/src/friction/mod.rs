@@ -1,4 +1,5 @@
-//! Friction out of responses: from the height of a peak, its growth with the impulse, and the spectrum of the friction force.
+//! Friction out of responses: from the height of a peak, its growth with the impulse, and the spectrum of the friction
+//! force.
 
 mod coulomb_impact;
 mod coulomb_line;

@@ -4,7 +4,8 @@ use crate::{
     FrfError, ModelError, SingleDegreeOfFreedom, friction_force_of_coulomb_impact, peak_receptance_of_coulomb_impact,
 };
 
-/// Peak of the receptance (m/N) of a `machine` with viscous damping and a `friction_force` F (N) after an `impulse` J (N s).
+/// Peak of the receptance (m/N) of a `machine` with viscous damping and a `friction_force` F (N) after an `impulse` J
+/// (N s).
 ///
 /// ```text
 /// |H| = h(q)/(c ω₀),   h(q) = 1 − ln(1 + q)/q,   q = π c J/(4 m F)                                     (1)
@@ -18,10 +19,10 @@ use crate::{
 /// A′ = −β A − a,   A(t) = (A₀ + a/β) e^{−βt} − a/β,   T = ln(1 + q)/β,   q = β A₀/a                    (2)
 /// ```
 ///
-/// Half the area under A is |X(ω₀)| = (A₀ − a T)/2β, and A₀ = J/(m ω₀). Without friction it is 1/(c ω₀), the peak of the
-/// linear machine; without damping q is zero and h(q) = q/2. A simulated
-/// peak of the machine of the thesis' chapter 8 is 0.2 % to 0.5 % above (1), as it is above the formula without damping where
-/// there is none; ignoring its c costs 1.3 % to 2.7 %.
+/// Half the area under A is |X(ω₀)| = (A₀ − a T)/2β, and A₀ = J/(m ω₀). Without friction it is 1/(c ω₀), the peak of
+/// the linear machine; without damping q is zero and h(q) = q/2. A simulated
+/// peak of the machine of the thesis' chapter 8 is 0.2 % to 0.5 % above (1), as it is above the formula without damping
+/// where there is none; ignoring its c costs 1.3 % to 2.7 %.
 ///
 /// ```
 /// use fmm_frf::{SingleDegreeOfFreedom, peak_receptance_of_viscous_coulomb_impact};
@@ -47,8 +48,8 @@ pub fn peak_receptance_of_viscous_coulomb_impact(
     Ok(ModelError::require_positive("peak receptance", undamped * share(q), "m/N")?)
 }
 
-/// Kinetic friction force (N) out of a measured peak of the receptance (m/N) of a `machine` whose viscous damping is known,
-/// the inverse of [`peak_receptance_of_viscous_coulomb_impact`].
+/// Kinetic friction force (N) out of a measured peak of the receptance (m/N) of a `machine` whose viscous damping is
+/// known, the inverse of [`peak_receptance_of_viscous_coulomb_impact`].
 ///
 /// ```
 /// use fmm_frf::{SingleDegreeOfFreedom, friction_force_of_viscous_coulomb_impact};
@@ -60,8 +61,8 @@ pub fn peak_receptance_of_viscous_coulomb_impact(
 /// ```
 ///
 /// # Errors
-/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any argument, and for the friction force if the peak is as high as the machine's own
-/// damping allows without friction, or higher.
+/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any argument, and for the friction force if the peak
+/// is as high as the machine's own damping allows without friction, or higher.
 pub fn friction_force_of_viscous_coulomb_impact(
     impulse: f64,
     machine: &SingleDegreeOfFreedom,

@@ -15,8 +15,8 @@ pub enum Quadrature {
     /// By straight lines.
     #[default]
     Trapezoid,
-    /// By parabolas over pairs of intervals (Simpson's rule); of an odd number of intervals the last three are joined by
-    /// a cubic (the 3/8 rule), and a single one by a straight line.
+    /// By parabolas over pairs of intervals (Simpson's rule); of an odd number of intervals the last three are joined
+    /// by a cubic (the 3/8 rule), and a single one by a straight line.
     ///
     /// On a smooth pulse it is far nearer than the trapezoid rule; on white noise it is not, as it weighs neighbouring
     /// samples unequally: its variance is larger by 10/9.
@@ -53,9 +53,10 @@ pub enum Quadrature {
 /// ```
 ///
 /// # Errors
-/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFew`] for fewer than two samples,
-/// [`FrfError::Values`] for samples that are not finite, [`FrfError::Outside`] if the range of the baseline is empty or leaves the record, and
-/// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the offset or for a sum that overflows.
+/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFew`] for fewer than
+/// two samples, [`FrfError::Values`] for samples that are not finite, [`FrfError::Outside`] if the range of the
+/// baseline is empty or leaves the record, and [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the offset
+/// or for a sum that overflows.
 pub fn impulse(force: &[f64], interval: f64, baseline: Baseline) -> Result<f64, FrfError> {
     impulse_by(Quadrature::Trapezoid, force, interval, baseline)
 }

@@ -37,8 +37,9 @@ pub struct Pulse {
     pub samples: Range<usize>,
     /// Area (N s) of those samples by the trapezoid rule; what is below the threshold is not in it.
     pub impulse: f64,
-    /// Further hits in the same direction, before or after the pulse: places at which the force rises above the threshold again, as after a
-    /// hammer that bounced. Such a trial has a force spectrum with holes; it is better repeated.
+    /// Further hits in the same direction, before or after the pulse: places at which the force rises above the
+    /// threshold again, as after a hammer that bounced. Such a trial has a force spectrum with holes; it is better
+    /// repeated.
     pub further_hits: Vec<Hit>,
     /// Samples of the force cut off at the limits of the converter, if there are any; the impulse is then too small.
     pub overload: Option<Saturation>,
@@ -61,9 +62,10 @@ impl Pulse {
     /// The pulse in a `force` (N) sampled every `interval` (s).
     ///
     /// # Errors
-    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFew`] for fewer than two samples,
-    /// [`FrfError::Values`] for samples that are not finite, [`FrfError::Outside`] if the range of the baseline is empty or leaves the record,
-    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the baseline, and [`FrfError::NoForce`] if nothing rises above the baseline.
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFew`] for fewer
+    /// than two samples, [`FrfError::Values`] for samples that are not finite, [`FrfError::Outside`] if the range of
+    /// the baseline is empty or leaves the record, [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the
+    /// baseline, and [`FrfError::NoForce`] if nothing rises above the baseline.
     pub fn of(force: &[f64], interval: f64, baseline: Baseline) -> Result<Self, FrfError> {
         ModelError::require_positive("the sampling interval", interval, "s")?;
         if force.len() < 2 {

@@ -16,9 +16,9 @@ const NAME: &str = "circle fit";
 /// Y(ω) = z + r e^{i(α + φ)},   tan(φ/2) = (ω₀² − ω²)/(2ζω₀ω)                                           (1)
 /// ```
 ///
-/// With viscous damping the mobility of one degree of freedom lies on a circle of diameter 1/c through the origin, exactly.
-/// Other modes, if they are far, shift the circle to another centre z and turn it by α. First the circle is fitted to the
-/// points (distances from it, not the algebraic form), then frequency and damping to the angles on it.
+/// With viscous damping the mobility of one degree of freedom lies on a circle of diameter 1/c through the origin,
+/// exactly. Other modes, if they are far, shift the circle to another centre z and turn it by α. First the circle is
+/// fitted to the points (distances from it, not the algebraic form), then frequency and damping to the angles on it.
 ///
 /// ```
 /// use fmm_frf::{CircleFit, ResponseForm, SingleDegreeOfFreedom};
@@ -39,8 +39,8 @@ const NAME: &str = "circle fit";
 pub struct CircleFit {
     /// Natural frequency and damping.
     pub mode: Mode,
-    /// c, viscous coefficient (N s/m), as if the machine had one degree of freedom and were driven where it is measured:
-    /// the reciprocal of the diameter, less what an exponential window adds.
+    /// c, viscous coefficient (N s/m), as if the machine had one degree of freedom and were driven where it is
+    /// measured: the reciprocal of the diameter, less what an exponential window adds.
     pub damping: Estimated,
     /// z, centre (m/(N s)) of the mobility circle.
     pub centre: Complex64,
@@ -54,8 +54,8 @@ impl CircleFit {
     /// Fits the lines of `response` from `low` to `high` (Hz); at least four, around one resonance.
     ///
     /// # Errors
-    /// [`FrfError::Outside`] for a band outside the response, [`FrfError::TooFew`] for fewer lines, and [`FrfError::NoFit`] if the lines show no mode or do
-    /// not determine the circle.
+    /// [`FrfError::Outside`] for a band outside the response, [`FrfError::TooFew`] for fewer lines, and
+    /// [`FrfError::NoFit`] if the lines show no mode or do not determine the circle.
     pub fn of(response: &FrequencyResponse, low: f64, high: f64) -> Result<Self, FrfError> {
         Band::of(response, low, high, 4)?;
         let band = Band::of(&Band::apparent(&response.within(low, high)?, ResponseForm::Mobility)?, low, high, 4)?;
@@ -114,7 +114,8 @@ fn distances(points: &[Complex64], &[x, y, radius]: &[f64; 3]) -> Equations<3> {
     equations
 }
 
-/// q₀, q₁ and α to begin with: the highest line is taken for the resonance, and the others tell how fast the angle turns.
+/// q₀, q₁ and α to begin with: the highest line is taken for the resonance, and the others tell how fast the angle
+/// turns.
 fn starting_mode(band: &Band, angles: &[f64]) -> Option<[f64; 3]> {
     let rotation = angles[band.highest];
     let mut estimates: Vec<f64> = band

@@ -12,8 +12,8 @@ use crate::{Estimated, FrfError};
 /// pole s = −ζω₀ ± iω₀√(1 − ζ²),   f₀ = ω₀/2π
 /// ```
 ///
-/// Uncertainties are those of the scatter of the lines about the fit. They do not contain what all lines share: leakage, a
-/// delay between the channels, other modes in the band.
+/// Uncertainties are those of the scatter of the lines about the fit. They do not contain what all lines share:
+/// leakage, a delay between the channels, other modes in the band.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Mode {

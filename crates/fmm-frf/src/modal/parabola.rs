@@ -14,10 +14,10 @@ const NAME: &str = "fit of a peak";
 /// 1/|H|² = m²ω⁴ + (c² − 2mk) ω² + k²                                                                 (1)
 /// ```
 ///
-/// For one degree of freedom this parabola in ω² is exact, so that the lines need not be dense: where a straight line through
-/// the half-power points of a coarse grid misses the damping by 8 %, this does not. Lines are weighed for noise that is the
-/// same at all of them. Phases are not used, which makes it the method for magnitudes only, or for a delay that is not known;
-/// other modes in the band count as if they were this one.
+/// For one degree of freedom this parabola in ω² is exact, so that the lines need not be dense: where a straight line
+/// through the half-power points of a coarse grid misses the damping by 8 %, this does not. Lines are weighed for noise
+/// that is the same at all of them. Phases are not used, which makes it the method for magnitudes only, or for a delay
+/// that is not known; other modes in the band count as if they were this one.
 ///
 /// ```
 /// use fmm_frf::{PeakFit, ResponseForm, SingleDegreeOfFreedom};
@@ -45,8 +45,8 @@ impl PeakFit {
     /// Fits the lines of `response` from `low` to `high` (Hz); at least four.
     ///
     /// # Errors
-    /// [`FrfError::Outside`] for a band outside the response, [`FrfError::TooFew`] for fewer lines, and [`FrfError::NoFit`] if the magnitudes have no peak or
-    /// do not determine it.
+    /// [`FrfError::Outside`] for a band outside the response, [`FrfError::TooFew`] for fewer lines, and
+    /// [`FrfError::NoFit`] if the magnitudes have no peak or do not determine it.
     pub fn of(response: &FrequencyResponse, low: f64, high: f64) -> Result<Self, FrfError> {
         let given = Band::of(response, low, high, 4)?;
         let receptance = Band::apparent(&response.within(low, high)?, ResponseForm::Receptance)?;

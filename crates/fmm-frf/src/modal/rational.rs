@@ -28,9 +28,9 @@ pub enum Background {
 /// ```
 ///
 /// p is 0, 1 or 2 for receptance, mobility and accelerance, so that no conversion weighs the lines; s is iω, or σ + iω
-/// behind an exponential window, whose damping is thus never in the result. The sum of |H_measured − H|² over the lines is
-/// least (an output error with equal weights), found by Gauss-Newton steps from the linear fit of H·denominator = numerator
-/// with iterated weights.
+/// behind an exponential window, whose damping is thus never in the result. The sum of |H_measured − H|² over the lines
+/// is least (an output error with equal weights), found by Gauss-Newton steps from the linear fit of H·denominator =
+/// numerator with iterated weights.
 ///
 /// ```
 /// use fmm_frf::{Background, RationalFit, ResponseForm, SingleDegreeOfFreedom};
@@ -48,8 +48,8 @@ pub enum Background {
 /// ```
 ///
 /// # References
-/// C. K. Sanathanan, J. Koerner, "Transfer function synthesis as a ratio of two complex polynomials", IEEE Transactions on
-/// Automatic Control 8 (1963) 56 (the iterated weights).
+/// C. K. Sanathanan, J. Koerner, "Transfer function synthesis as a ratio of two complex polynomials", IEEE Transactions
+/// on Automatic Control 8 (1963) 56 (the iterated weights).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct RationalFit {
@@ -63,7 +63,8 @@ pub struct RationalFit {
     curve: Curve,
 }
 
-/// A fitted quotient: q₀, q₁ and the coefficients of the numerator, for s in units of `unit` (rad/s) and H in those of `size`.
+/// A fitted quotient: q₀, q₁ and the coefficients of the numerator, for s in units of `unit` (rad/s) and H in those of
+/// `size`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Curve {
     denominator: [f64; 2],
@@ -78,8 +79,8 @@ impl RationalFit {
     /// Fits the lines of `response` from `low` to `high` (Hz); at least three, or with a background four.
     ///
     /// # Errors
-    /// [`FrfError::Outside`] for a band outside the response, [`FrfError::TooFew`] for fewer lines, and [`FrfError::NoFit`] if the lines show no mode or do
-    /// not determine it.
+    /// [`FrfError::Outside`] for a band outside the response, [`FrfError::TooFew`] for fewer lines, and
+    /// [`FrfError::NoFit`] if the lines show no mode or do not determine it.
     pub fn of(response: &FrequencyResponse, low: f64, high: f64, background: Background) -> Result<Self, FrfError> {
         let band = Band::of(response, low, high, if background == Background::None { 3 } else { 4 })?;
         let form = i32::from(response.form().derivatives());

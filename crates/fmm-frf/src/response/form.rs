@@ -46,8 +46,8 @@ impl ResponseForm {
     /// ```
     ///
     /// # Errors
-    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the frequency, [`FrfError::Values`] for the value, and
-    /// [`FrfError::NotDefined`] for a division at zero frequency or any overflow.
+    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the frequency, [`FrfError::Values`] for the value,
+    /// and [`FrfError::NotDefined`] for a division at zero frequency or any overflow.
     pub fn convert(self, to: Self, value: Complex64, frequency: f64) -> Result<Complex64, FrfError> {
         let omega = TAU * ModelError::require_finite("frequency", frequency, "Hz")?;
         if !value.is_finite() {

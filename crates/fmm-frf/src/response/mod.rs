@@ -40,8 +40,8 @@ impl FrequencyResponse {
     /// A response of the given `form`, one value (SI unit of the form) for each frequency (Hz).
     ///
     /// # Errors
-    /// [`FrfError::Mismatch`] for another number of values than frequencies; [`FrfError::Values`] for frequencies that are negative, not finite or not
-    /// increasing, and for values that are not finite.
+    /// [`FrfError::Mismatch`] for another number of values than frequencies; [`FrfError::Values`] for frequencies that
+    /// are negative, not finite or not increasing, and for values that are not finite.
     pub fn new(form: ResponseForm, frequencies: Vec<f64>, values: Vec<Complex64>) -> Result<Self, FrfError> {
         if frequencies.len() != values.len() {
             return Err(FrfError::length_mismatch(frequencies.len(), values.len()));
@@ -123,7 +123,8 @@ impl FrequencyResponse {
     /// A delay of 1 ms is 0.8° at 2.2 Hz and 36° at 100 Hz; it looks like damping where there is none.
     ///
     /// # Errors
-    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the delay, [`FrfError::Values`] if a window and a long delay overflow.
+    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the delay, [`FrfError::Values`] if a window and a
+    /// long delay overflow.
     pub fn without_delay(mut self, delay: f64) -> Result<Self, FrfError> {
         ModelError::require_finite("the delay of a channel", delay, "s")?;
         for (value, &frequency) in self.values.iter_mut().zip(&*self.frequencies) {

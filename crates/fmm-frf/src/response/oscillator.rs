@@ -38,7 +38,8 @@ impl SingleDegreeOfFreedom {
     /// An oscillator of `mass` m (kg), `damping` c (N s/m) and `stiffness` k (N/m).
     ///
     /// # Errors
-    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for mass or stiffness, [`ModelError::Negative`](crate::ModelError::Negative) for the damping.
+    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for mass or stiffness,
+    /// [`ModelError::Negative`](crate::ModelError::Negative) for the damping.
     pub fn new(mass: f64, damping: f64, stiffness: f64) -> Result<Self, FrfError> {
         ModelError::require_positive("mass", mass, "kg")?;
         ModelError::require_not_negative("damping", damping, "N s/m")?;
@@ -72,7 +73,8 @@ impl SingleDegreeOfFreedom {
     /// that of the frequency itself.
     ///
     /// # Errors
-    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the frequency, [`FrfError::NotDefined`] for c = 0 at ω₀.
+    /// [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the frequency, [`FrfError::NotDefined`] for c = 0 at
+    /// ω₀.
     pub fn receptance(&self, frequency: f64) -> Result<Complex64, FrfError> {
         let omega = TAU * ModelError::require_finite("frequency", frequency, "Hz")?;
         let dynamic_stiffness = Complex64::new(self.stiffness - self.mass * omega * omega, self.damping * omega);

@@ -10,14 +10,16 @@ pub struct Resonance {
     pub frequency: f64,
     /// Magnitude (unit of the response) of the line.
     pub magnitude: f64,
-    /// Prominence (dB): the least descent from the peak before the magnitude rises above it; to the ends of the response if nothing does.
+    /// Prominence (dB): the least descent from the peak before the magnitude rises above it; to the ends of the
+    /// response if nothing does.
     pub prominence: f64,
 }
 
 /// The local maxima of a response that stand out by at least `prominence` (dB), in the order of their frequencies.
 ///
-/// The first and the last line do not count, and of equal neighbours only one does. It takes time in proportion to the number of
-/// lines, whatever they are. To the frequency between the lines, and to the damping, see [`PeakFit`](crate::PeakFit).
+/// The first and the last line do not count, and of equal neighbours only one does. It takes time in proportion to the
+/// number of lines, whatever they are. To the frequency between the lines, and to the damping, see
+/// [`PeakFit`](crate::PeakFit).
 ///
 /// ```
 /// use fmm_frf::{ResponseForm, SingleDegreeOfFreedom, resonances};

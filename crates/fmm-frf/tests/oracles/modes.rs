@@ -13,8 +13,8 @@ fn mobility() -> FrequencyResponse {
     impacts(&AverageOptions::default()).estimate(Estimator::H1).unwrap()
 }
 
-/// Of the amplitude, e^{−cT/2m} is left when the records end after T = 16 s. All lines lack it alike, so that it is in no
-/// uncertainty.
+/// Of the amplitude, e^{−cT/2m} is left when the records end after T = 16 s. All lines lack it alike, so that it is in
+/// no uncertainty.
 const LEAKAGE: f64 = 2.1e-3;
 
 /// Within `tolerance` of the truth, and but for the leakage within four of its own standard uncertainties.

@@ -40,10 +40,11 @@ pub struct Guess {
 }
 
 impl Guess {
-    /// A `candidate` law on `machine`, which vibrates at `frequency` (Hz) without friction, with `law` values in the order and the units
-    /// of the [family](fmm_friction::LawFamily): coefficients under the normal load of the machine, or forces if none is known, or forces
-    /// per mass if no mass is known either. The `terms` beside the law are given by name, as a fit has it
-    /// (`quadratic_damping_per_mass`) or without the last two words for what belongs to the mass (`damping`, in N s/m).
+    /// A `candidate` law on `machine`, which vibrates at `frequency` (Hz) without friction, with `law` values in the
+    /// order and the units of the [family](fmm_friction::LawFamily): coefficients under the normal load of the machine,
+    /// or forces if none is known, or forces per mass if no mass is known either. The `terms` beside the law are given
+    /// by name, as a fit has it (`quadratic_damping_per_mass`) or without the last two words for what belongs to the
+    /// mass (`damping`, in N s/m).
     ///
     /// # Errors
     /// [`IdentifyError::Missing`] and [`IdentifyError::UnknownName`] for values that are missing or belong to nothing,
@@ -127,8 +128,8 @@ impl Guess {
         Self::of(machine, family, candidate.terms().clone(), Unit::of("m"), values)
     }
 
-    /// What a pilot experiment found: values, their uncertainty, and the information of its `records`, which must be those of the
-    /// identification.
+    /// What a pilot experiment found: values, their uncertainty, and the information of its `records`, which must be
+    /// those of the identification.
     ///
     /// # Errors
     /// As for [`Problem::new`](crate::Problem::new), and [`IdentifyError::Simulation`].
@@ -185,8 +186,8 @@ impl Guess {
         Ok(Self { machine, law, terms, position, parameters, values, measured: nothing.clone(), spread: nothing })
     }
 
-    /// The same with values that may be off by these standard uncertainties, each by the name that a fit gives to the value and in its unit:
-    /// a design may be asked to be good over all of that. Nothing is taken for measured.
+    /// The same with values that may be off by these standard uncertainties, each by the name that a fit gives to the
+    /// value and in its unit: a design may be asked to be good over all of that. Nothing is taken for measured.
     ///
     /// # Errors
     /// [`IdentifyError::UnknownName`], and [`IdentifyError::OutOfRange`] unless each is positive.
@@ -214,8 +215,8 @@ impl Guess {
         self.place(name).ok().map(|place| self.values[place])
     }
 
-    /// As many draws of the values, from the pilot's covariance or the uncertainties given; a draw outside the bounds is put on them.
-    /// The same `seed` gives the same draws.
+    /// As many draws of the values, from the pilot's covariance or the uncertainties given; a draw outside the bounds
+    /// is put on them. The same `seed` gives the same draws.
     pub fn draws(&self, count: usize, seed: u64) -> Vec<Vec<f64>> {
         let mut draws = self.spread.draws(&self.values, count, seed).unwrap_or_default();
         for draw in &mut draws {

@@ -24,8 +24,8 @@ pub(crate) enum Input {
     Gain(PlannedSensor),
 }
 
-/// The inputs of a plan that are uncertain, each with its standard uncertainty. Beside the shared parameters they are parameters that
-/// count their error in standard uncertainties, which are known to ± 1.
+/// The inputs of a plan that are uncertain, each with its standard uncertainty. Beside the shared parameters they are
+/// parameters that count their error in standard uncertainties, which are known to ± 1.
 #[derive(Debug, Clone)]
 pub(crate) struct Inputs(Vec<(Input, f64)>);
 

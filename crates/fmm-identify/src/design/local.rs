@@ -62,8 +62,8 @@ impl Local<'_> {
         self.values.len() + self.inputs.len()
     }
 
-    /// The shared parameters as they are in `test`, with the mass and the spring that are added and the errors of its inputs: of a
-    /// record that reads too much, all lengths are too long.
+    /// The shared parameters as they are in `test`, with the mass and the spring that are added and the errors of its
+    /// inputs: of a record that reads too much, all lengths are too long.
     ///
     /// ```text
     /// m′ = m + Δm,  k′ = k + Δk,  f₀′ = √(k′/m′)/2π,  (c/m)′ = c/m · m/m′,  (F/m)′ = F/m · m/m′ · (1 + u_N ξ_N/N)

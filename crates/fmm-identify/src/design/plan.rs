@@ -11,10 +11,11 @@ use crate::{DesignPrediction, Guess, IdentifyError, PlannedTest};
 
 /// The tests that may be made on a machine, and what each of them would tell.
 ///
-/// The information of a test is that of the problem that it would be, of [`Problem`](crate::Problem), at the guessed values: its exact
-/// Jacobian, less what its own initial state and offset take. Mass, load and gain are known with an error, which is a further parameter:
-/// that of mass, damping and load of the machine is one for all tests, that of a load, a mass or a spring of a test one for
-/// all tests with the same, that of a gain one for all tests by the same sensor. Repeats therefore do not lessen what such an error does.
+/// The information of a test is that of the problem that it would be, of [`Problem`](crate::Problem), at the guessed
+/// values: its exact Jacobian, less what its own initial state and offset take. Mass, load and gain are known with an
+/// error, which is a further parameter: that of mass, damping and load of the machine is one for all tests, that of a
+/// load, a mass or a spring of a test one for all tests with the same, that of a gain one for all tests by the same
+/// sensor. Repeats therefore do not lessen what such an error does.
 ///
 /// ```
 /// use fmm_identify::{Aim, Candidate, Guess, Known, Machine, Plan, PlannedSensor, PlannedTest};
@@ -64,8 +65,8 @@ impl Plan {
     /// The plan of these `tests`, of which `guess` says what they are likely to find.
     ///
     /// # Errors
-    /// [`IdentifyError::Missing`] without a test, [`IdentifyError::Contradiction`] for a test that the machine does not allow, and
-    /// [`IdentifyError::Simulation`] if a test cannot be simulated at the guess.
+    /// [`IdentifyError::Missing`] without a test, [`IdentifyError::Contradiction`] for a test that the machine does not
+    /// allow, and [`IdentifyError::Simulation`] if a test cannot be simulated at the guess.
     pub fn new(guess: Guess, tests: Vec<PlannedTest>) -> Result<Self, IdentifyError> {
         if tests.is_empty() {
             return Err(IdentifyError::missing("there is no test to choose from; give at least one"));
@@ -118,8 +119,8 @@ impl Plan {
         &self.guess
     }
 
-    /// What the tests at these places, each as often as its place is given, would tell beside what is known; of no test, what is known
-    /// already.
+    /// What the tests at these places, each as often as its place is given, would tell beside what is known; of no
+    /// test, what is known already.
     ///
     /// # Errors
     /// [`IdentifyError::OutOfRange`] for a place beyond the tests.
@@ -168,8 +169,8 @@ impl Plan {
         fitted.chain(followed).collect()
     }
 
-    /// The combinations of parameters that `aim` asks for if the shared ones have these values, relative to their values where these are
-    /// not zero.
+    /// The combinations of parameters that `aim` asks for if the shared ones have these values, relative to their
+    /// values where these are not zero.
     fn combinations(&self, aim: &Aim, values: &[f64]) -> Result<Vec<Vec<f64>>, IdentifyError> {
         let quantities = self.quantities(values);
         let relative = |quantity: &Quantity| {
@@ -208,8 +209,8 @@ impl Plan {
     /// [worst](DesignSearch::for_worst_case).
     ///
     /// # Errors
-    /// As for [`search`](Self::search), [`IdentifyError::Missing`] without a sample or for one of another number of values, and
-    /// [`IdentifyError::Simulation`] if a test cannot be simulated at one.
+    /// As for [`search`](Self::search), [`IdentifyError::Missing`] without a sample or for one of another number of
+    /// values, and [`IdentifyError::Simulation`] if a test cannot be simulated at one.
     pub fn robust_search(&self, aim: &Aim, samples: &[Vec<f64>]) -> Result<DesignSearch, IdentifyError> {
         let shared = self.guess.parameters.len();
         if let Some(sample) = samples.iter().find(|sample| sample.len() != shared) {
@@ -259,7 +260,8 @@ impl Plan {
     /// The best set of tests at the guess whose costs add up to no more than `budget`.
     ///
     /// # Errors
-    /// As for [`search`](Self::search), and [`IdentifyError::OutOfRange`] for a budget that pays for none or more than 1000.
+    /// As for [`search`](Self::search), and [`IdentifyError::OutOfRange`] for a budget that pays for none or more than
+    /// 1000.
     pub fn best_within(&self, aim: &Aim, budget: f64) -> Result<ChosenDesign, IdentifyError> {
         let costs: Vec<f64> = self.tests.iter().map(PlannedTest::cost).collect();
         self.search(aim)?.best_within(&costs, budget).map_err(|error| number(budget, &error))

@@ -5,7 +5,8 @@ use fmm_record::{Quantity, Record};
 
 use crate::{IdentifyError, Known};
 
-/// A test that may be made: how the machine is set in motion, under which load, with what added to it, and how that is recorded.
+/// A test that may be made: how the machine is set in motion, under which load, with what added to it, and how that is
+/// recorded.
 ///
 /// ```
 /// use fmm_identify::{Known, PlannedSensor, PlannedTest};
@@ -68,12 +69,12 @@ const LEAST_NOISE: f64 = 1e-100;
 const MOST_SAMPLES: f64 = 1e7;
 
 impl PlannedSensor {
-    /// A sensor of displacement, velocity or acceleration, with white `noise` of this standard deviation (m, m/s, m/s², or in the length
-    /// of the [`Guess`](crate::Guess)).
+    /// A sensor of displacement, velocity or acceleration, with white `noise` of this standard deviation (m, m/s, m/s²,
+    /// or in the length of the [`Guess`](crate::Guess)).
     ///
     /// # Errors
-    /// [`IdentifyError::WrongRecord`] for another quantity, [`IdentifyError::InvalidInput`] for a noise that is not positive,
-    /// [`IdentifyError::OutOfRange`] for one below 1e-100.
+    /// [`IdentifyError::WrongRecord`] for another quantity, [`IdentifyError::InvalidInput`] for a noise that is not
+    /// positive, [`IdentifyError::OutOfRange`] for one below 1e-100.
     pub fn new(quantity: Quantity, noise: f64) -> Result<Self, IdentifyError> {
         if !matches!(quantity, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration) {
             let needed = "displacement, velocity or acceleration";
@@ -86,7 +87,8 @@ impl PlannedSensor {
         Ok(Self { quantity, noise, gain_uncertainty: 0.0 })
     }
 
-    /// The same with a gain of this relative standard uncertainty (1). All tests by equal sensors have the same error of the gain.
+    /// The same with a gain of this relative standard uncertainty (1). All tests by equal sensors have the same error
+    /// of the gain.
     ///
     /// # Errors
     /// [`IdentifyError::InvalidInput`] for one that is negative or not finite.
@@ -112,8 +114,8 @@ impl PlannedSensor {
 }
 
 impl PlannedTest {
-    /// The machine is let go at rest at `position` (m, or the length of the [`Guess`](crate::Guess)) and recorded `rate` times a second
-    /// for `duration` (s).
+    /// The machine is let go at rest at `position` (m, or the length of the [`Guess`](crate::Guess)) and recorded
+    /// `rate` times a second for `duration` (s).
     ///
     /// # Errors
     /// [`IdentifyError::InvalidInput`] and [`IdentifyError::OutOfRange`] for numbers that cannot be.
@@ -122,7 +124,8 @@ impl PlannedTest {
         Self::of(format!("release at {position} m"), Motion::Released(position), sensor, rate, duration)
     }
 
-    /// A blow of half a sine, `peak` (N) high and `pulse` (s) long, on the machine at rest, and the response from its beginning on.
+    /// A blow of half a sine, `peak` (N) high and `pulse` (s) long, on the machine at rest, and the response from its
+    /// beginning on.
     ///
     /// # Errors
     /// As for [`release`](Self::release), and for a pulse of fewer than four samples.
@@ -137,8 +140,8 @@ impl PlannedTest {
         Self::of(format!("blow of {peak} N"), Motion::Struck(force), sensor, rate, duration)
     }
 
-    /// A `force` (N) that is measured with a channel of this relative standard `uncertainty` (1) pushes the machine at rest; the response
-    /// is recorded `rate` times a second from its beginning to its end.
+    /// A `force` (N) that is measured with a channel of this relative standard `uncertainty` (1) pushes the machine at
+    /// rest; the response is recorded `rate` times a second from its beginning to its end.
     ///
     /// # Errors
     /// As for [`release`](Self::release), and [`IdentifyError::WrongRecord`] unless it is a force in N.
@@ -149,8 +152,8 @@ impl PlannedTest {
         Self::of(name, Motion::Pushed(force.clone(), uncertainty), sensor, rate, duration)
     }
 
-    /// A measured motion of the `base` carries the machine, which is at rest in the beginning; the response is recorded `rate` times a
-    /// second from its beginning to its end.
+    /// A measured motion of the `base` carries the machine, which is at rest in the beginning; the response is recorded
+    /// `rate` times a second from its beginning to its end.
     ///
     /// # Errors
     /// As for [`release`](Self::release), and [`IdentifyError::WrongRecord`] for a record that is no motion.
@@ -187,8 +190,9 @@ impl PlannedTest {
         })
     }
 
-    /// The same under another normal load (N) than that of the machine. All tests under equal loads have the same error, beside that of
-    /// the machine's load, which all tests have; tests under different loads have errors of their own.
+    /// The same under another normal load (N) than that of the machine. All tests under equal loads have the same
+    /// error, beside that of the machine's load, which all tests have; tests under different loads have errors of their
+    /// own.
     ///
     /// # Errors
     /// [`IdentifyError::InvalidInput`] unless the load is positive.
@@ -212,8 +216,8 @@ impl PlannedTest {
         Ok(Self { added_mass: Some(mass).filter(|mass| *mass != Known::NOTHING), ..self })
     }
 
-    /// The same with a linear spring of this `stiffness` (N/m) beside that of the machine. All tests with equal springs have the same
-    /// error.
+    /// The same with a linear spring of this `stiffness` (N/m) beside that of the machine. All tests with equal springs
+    /// have the same error.
     ///
     /// # Errors
     /// [`IdentifyError::InvalidInput`] for a stiffness that is negative.

@@ -19,7 +19,8 @@ pub(crate) struct Quantity {
     pub(crate) is_fitted: bool,
 }
 
-/// What a set of tests would find: values as they are guessed, with the standard uncertainties that the tests would give them.
+/// What a set of tests would find: values as they are guessed, with the standard uncertainties that the tests would
+/// give them.
 ///
 /// `Display` gives a table, what is correlated, and what stays free.
 #[derive(Debug, Clone)]

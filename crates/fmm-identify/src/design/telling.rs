@@ -38,8 +38,8 @@ impl Plan {
         })
     }
 
-    /// A sentence for each test of a set, once, of what it tells that the others of the set do not: the direction that would stay free
-    /// without it, or the finding that would lose most. The sentences are in the order of the places.
+    /// A sentence for each test of a set, once, of what it tells that the others of the set do not: the direction that
+    /// would stay free without it, or the finding that would lose most. The sentences are in the order of the places.
     ///
     /// # Errors
     /// As for [`predict`](Self::predict).

@@ -3,8 +3,8 @@
 /// Lower factor L of a symmetric positive definite matrix Σ = L Lᵀ with few diagonals.
 ///
 /// # Why not a library
-/// nalgebra and faer factor full matrices: with 8 diagonals beside the main one nalgebra takes 4.6 times as long at 100 rows and 58 times
-/// at 400. `benches/peers` of the workspace measures it.
+/// nalgebra and faer factor full matrices: with 8 diagonals beside the main one nalgebra takes 4.6 times as long at 100
+/// rows and 58 times at 400. `benches/peers` of the workspace measures it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct BandedFactor {
     /// Row i holds L_{i, i−width} … L_{i,i}; what lies before the first column is zero.
@@ -13,8 +13,8 @@ pub(crate) struct BandedFactor {
 }
 
 impl BandedFactor {
-    /// The factor of the matrix of `count` rows with `element(i, j)` for i − width ≤ j ≤ i; `None` unless it is positive
-    /// definite beyond rounding.
+    /// The factor of the matrix of `count` rows with `element(i, j)` for i − width ≤ j ≤ i; `None` unless it is
+    /// positive definite beyond rounding.
     pub(crate) fn of(count: usize, width: usize, element: impl Fn(usize, usize) -> f64) -> Option<Self> {
         let mut factor = Self { rows: Vec::with_capacity(count), width };
         for i in 0..count {

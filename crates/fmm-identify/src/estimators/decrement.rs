@@ -41,7 +41,8 @@ const FEWEST: usize = 4;
 /// quadratic part gives a line in V, see [`Damping::cycle_equivalent`](fmm_model::Damping::cycle_equivalent).
 ///
 /// Cycles follow each other without a gap. Neighbours share an amplitude, so the errors of their decrements have a
-/// correlation of −1/2. The uncertainty is that of the noise; slow disturbances and a gain that is not linear add to it.
+/// correlation of −1/2. The uncertainty is that of the noise; slow disturbances and a gain that is not linear add to
+/// it.
 ///
 /// ```
 /// use fmm_friction::Viscous;
@@ -62,8 +63,8 @@ const FEWEST: usize = 4;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// The line through them is [`StraightLine`](fmm_fit::StraightLine); for quadratic damping its intercept is c₁/m and its slope
-/// 8/(3π) c₂/m:
+/// The line through them is [`StraightLine`](fmm_fit::StraightLine); for quadratic damping its intercept is c₁/m and
+/// its slope 8/(3π) c₂/m:
 ///
 /// ```
 /// use std::f64::consts::PI;

@@ -27,14 +27,14 @@ pub struct EnergyRate {
 /// dE/dt = m v a + k x v,     without contact = −F_c(v) v,     F = (without contact − dE/dt)/v      (thesis ch. 6)
 /// ```
 ///
-/// with F_c the damping force of the machine. Sorted by velocity, F is a friction curve. Everything about the machine must
-/// be known; per unit mass ([`Oscillator::per_unit_mass`]) F is F/m. The velocity is smoothed and differentiated for a,
-/// and integrated as it is from the initial position for x; it must have no offset, as 0.1 mm/s of it is 0.1 mm of
-/// drift per second.
+/// with F_c the damping force of the machine. Sorted by velocity, F is a friction curve. Everything about the machine
+/// must be known; per unit mass ([`Oscillator::per_unit_mass`]) F is F/m. The velocity is smoothed and differentiated
+/// for a, and integrated as it is from the initial position for x; it must have no offset, as 0.1 mm/s of it is 0.1 mm
+/// of drift per second.
 ///
-/// The acceleration makes it noisy: white noise σ of the velocity becomes m σ/(√2 h) in each F, 7 N for 1 mm/s at 10 kg and
-/// 1 kHz. The mean over all samples is as good as any other, but a pointwise F(v) needs smoothing, and long windows are
-/// wrong near reversals. [`WeakForm`](crate::WeakForm) has neither trouble.
+/// The acceleration makes it noisy: white noise σ of the velocity becomes m σ/(√2 h) in each F, 7 N for 1 mm/s at 10 kg
+/// and 1 kHz. The mean over all samples is as good as any other, but a pointwise F(v) needs smoothing, and long windows
+/// are wrong near reversals. [`WeakForm`](crate::WeakForm) has neither trouble.
 ///
 /// ```
 /// use fmm_friction::Coulomb;
@@ -129,8 +129,8 @@ impl EnergyMethod {
         self.rates_of(record, position.values(), acceleration.values(), noise)
     }
 
-    /// The energy rates of a motion whose position (m) and acceleration (m/s²) are known at each sample of `velocity`, such
-    /// as a simulated one; neither smoothed nor differentiated.
+    /// The energy rates of a motion whose position (m) and acceleration (m/s²) are known at each sample of `velocity`,
+    /// such as a simulated one; neither smoothed nor differentiated.
     ///
     /// # Errors
     /// [`IdentifyError::WrongRecord`], [`IdentifyError::TooFew`] if no sample is left or the other two have

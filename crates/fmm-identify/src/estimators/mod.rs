@@ -1,4 +1,5 @@
-//! Estimators that take no simulation: from amplitudes, energies, the weak form of the equation of motion, and fits of a few cycles.
+//! Estimators that take no simulation: from amplitudes, energies, the weak form of the equation of motion, and fits of
+//! a few cycles.
 
 pub(crate) mod banded;
 mod decrement;

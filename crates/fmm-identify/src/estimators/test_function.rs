@@ -74,8 +74,8 @@ impl Weighing {
         self.terms.iter().map(|(factor, function)| factor * function.integral(order, time)).sum()
     }
 
-    /// The weights of samples first, first + 1, … every `interval` (s) from time 0 on, such that their sum with samples y
-    /// is the integral of w against a derivative of y (negative: an integral of y), y being straight between samples.
+    /// The weights of samples first, first + 1, … every `interval` (s) from time 0 on, such that their sum with samples
+    /// y is the integral of w against a derivative of y (negative: an integral of y), y being straight between samples.
     ///
     /// ```text
     /// ∫ w Dᵏy dt = (−1)ᵏ Σ y_i (W(t_{i+1}) − 2W(t_i) + W(t_{i−1}))/h,      W the (2−k)-fold integral of w

@@ -24,16 +24,16 @@ pub struct HalfSwing {
     pub friction: Estimated,
 }
 
-/// Friction of each half swing between `reversals`, times of zero velocity (s), of a velocity `record` without offset that
-/// begins at `initial_position` (m).
+/// Friction of each half swing between `reversals`, times of zero velocity (s), of a velocity `record` without offset
+/// that begins at `initial_position` (m).
 ///
 /// ```text
 /// F = (E_j − E_{j+1} − ∫F_c(v) v dt)/|x_j − x_{j+1}|,       E = potential energy at a turning point
 /// ```
 ///
-/// Where the velocity is zero all energy is in the spring, so that no acceleration is needed, and only an integral of the
-/// record. Noise of standard deviation σ adds up in it: u²(x) = σ² h t. The uncertainties take that into account, for a
-/// linear spring; those of neighbouring half swings are correlated. Per unit mass
+/// Where the velocity is zero all energy is in the spring, so that no acceleration is needed, and only an integral of
+/// the record. Noise of standard deviation σ adds up in it: u²(x) = σ² h t. The uncertainties take that into account,
+/// for a linear spring; those of neighbouring half swings are correlated. Per unit mass
 /// ([`Oscillator::per_unit_mass`]) F is F/m.
 ///
 /// # Errors
@@ -63,9 +63,9 @@ pub fn half_swing_losses(
 /// centre at x_{j+1} = (x_j + 2 x_{j+1} + x_{j+2})/4
 /// ```
 ///
-/// For a displacement it is their mean, unless the preparation holds an offset. The position that a velocity integrates to
-/// drifts, by its offset (the slope of the line through these centres) and by whatever is slow in the instrument; there
-/// each half swing has the mean of the centres around it. A difference of friction between the two directions is
+/// For a displacement it is their mean, unless the preparation holds an offset. The position that a velocity integrates
+/// to drifts, by its offset (the slope of the line through these centres) and by whatever is slow in the instrument;
+/// there each half swing has the mean of the centres around it. A difference of friction between the two directions is
 /// then not seen. `oscillator` holds stiffness, mass and damping in the unit of the record; per unit mass F is F/m.
 ///
 /// ```

@@ -19,8 +19,8 @@ pub(crate) struct Motion<'a> {
     pub(crate) reversals: &'a [f64],
 }
 
-/// The terms of each equation. Divided by Cholesky's factor of their covariance: white noise of variance 1 in the record
-/// leaves residuals that are independent and of variance 1.
+/// The terms of each equation. Divided by Cholesky's factor of their covariance: white noise of variance 1 in the
+/// record leaves residuals that are independent and of variance 1.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Equations {
     /// ∫w x″.

@@ -93,8 +93,8 @@ pub struct WeakFormEstimate {
     pub offset: Estimated,
     /// Half swings used, pieces at the ends included.
     pub half_swings: usize,
-    /// White noise (unit of the record) that would explain the misfit of the equations; well above the noise of the record
-    /// it says that the law misses something. `None` without more equations than unknowns.
+    /// White noise (unit of the record) that would explain the misfit of the equations; well above the noise of the
+    /// record it says that the law misses something. `None` without more equations than unknowns.
     pub explained_noise: Option<f64>,
     /// The fit of the equations: covariance, correlations, rank.
     pub fit: Fit,
@@ -143,8 +143,8 @@ impl WeakForm {
         self
     }
 
-    /// The estimate from `decay`, whose half swings are found by their crossings. An offset that the preparation holds is
-    /// held here.
+    /// The estimate from `decay`, whose half swings are found by their crossings. An offset that the preparation holds
+    /// is held here.
     ///
     /// # Errors
     /// [`IdentifyError::TooFew`] if there are fewer equations than unknowns, [`IdentifyError::Undetermined`] if
@@ -154,8 +154,8 @@ impl WeakForm {
         self.solve(decay.record(), &bridged(decay), &reversals(decay), decay.fixed_offset(), decay.white_noise())
     }
 
-    /// The estimate from `record` between known `reversals`, times of zero velocity (s); `offset` (unit of the record) is
-    /// held if it is given.
+    /// The estimate from `record` between known `reversals`, times of zero velocity (s); `offset` (unit of the record)
+    /// is held if it is given.
     ///
     /// # Errors
     /// As for [`estimate`](Self::estimate), and [`IdentifyError::WrongRecord`], [`IdentifyError::OutOfRange`].

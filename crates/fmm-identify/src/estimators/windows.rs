@@ -38,9 +38,9 @@ pub struct WindowFit {
 /// x″ + (c/m) x′ + ω₀² x = 0                                          f₀, c/m, x₀, v₀ and offset free in each window
 /// ```
 ///
-/// Each window begins at a peak. A machine whose damping is c₁ + c₂|v| gives a line with the slope 8/(3π) c₂ in V. Which
-/// V makes a difference of some percent: the amplitude in the middle of the window leaves 0.1 %, the mean over the
-/// peaks that begin its five cycles 0.5 %, the first peak alone 2 %.
+/// Each window begins at a peak. A machine whose damping is c₁ + c₂|v| gives a line with the slope 8/(3π) c₂ in V.
+/// Which V makes a difference of some percent: the amplitude in the middle of the window leaves 0.1 %, the mean over
+/// the peaks that begin its five cycles 0.5 %, the first peak alone 2 %.
 ///
 /// c/m may come out negative; where noise makes it so, that is what the window says. Standard uncertainties are
 /// those of independent residuals, or of correlated ones where that is more.

@@ -1,4 +1,5 @@
-//! What an accelerometer records of a ring-down: the velocity in which its swings are seen, and the jumps where dry friction reverses.
+//! What an accelerometer records of a ring-down: the velocity in which its swings are seen, and the jumps where dry
+//! friction reverses.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -9,8 +10,8 @@ use crate::fit::first_guess::FirstGuess;
 
 /// The velocity of an `acceleration`, less what drifts more slowly than a period; `None` if nothing swings.
 ///
-/// Of a record that ends in rest, the rest tells the offset and that the velocity is zero. Otherwise the integral of an offset is a
-/// slope, and that of noise a walk: both are in the mean over a period, the motion is not.
+/// Of a record that ends in rest, the rest tells the offset and that the velocity is zero. Otherwise the integral of an
+/// offset is a slope, and that of noise a walk: both are in the mean over a period, the motion is not.
 pub(super) fn velocity_of(acceleration: &Record) -> Option<Record> {
     if let Some((offset, rest)) = offset_of_rest(acceleration) {
         let velocity = acceleration.shifted(offset).ok()?.integrate(0.0).ok()?;
@@ -51,7 +52,8 @@ pub(super) fn velocity_of(acceleration: &Record) -> Option<Record> {
     Record::new(velocity.start(), velocity.interval(), values, Quantity::Velocity, velocity.unit()).ok()
 }
 
-/// Mean of the last eighth of an `acceleration` and the first sample of the rest that it is part of; `None` if it moves there.
+/// Mean of the last eighth of an `acceleration` and the first sample of the rest that it is part of; `None` if it moves
+/// there.
 fn offset_of_rest(acceleration: &Record) -> Option<(f64, usize)> {
     /// Standard deviations of a mean.
     const FAR: f64 = 5.0;
@@ -77,8 +79,9 @@ fn offset_of_rest(acceleration: &Record) -> Option<(f64, usize)> {
     Some((level, (last + FEW).min(values.len() - 1)))
 }
 
-/// The time (s) at which a `velocity` changes its sign, as near to `time` (s) as it does within a quarter of a half swing; `time` if it
-/// does not. A crossing of the centre of two peaks lies off where the one is much smaller than the other.
+/// The time (s) at which a `velocity` changes its sign, as near to `time` (s) as it does within a quarter of a half
+/// swing; `time` if it does not. A crossing of the centre of two peaks lies off where the one is much smaller than the
+/// other.
 fn zero_near(velocity: &Record, time: f64, guess: &FirstGuess) -> f64 {
     let place = (time - velocity.start()) * velocity.rate();
     let reach = 0.125 * velocity.rate() / guess.frequency();
@@ -90,8 +93,8 @@ fn zero_near(velocity: &Record, time: f64, guess: &FirstGuess) -> f64 {
     nearest.map_or(time, |place| velocity.start() + place * velocity.interval())
 }
 
-/// The samples beside the changes of sign of a `velocity` near its `crossings` (s), the release and the stop among them, in order. `noise`
-/// is that of its acceleration.
+/// The samples beside the changes of sign of a `velocity` near its `crossings` (s), the release and the stop among
+/// them, in order. `noise` is that of its acceleration.
 pub(super) fn jumps(crossings: &[f64], noise: f64, guess: &FirstGuess, velocity: &Record) -> Vec<Range<usize>> {
     /// Samples on either side of a jump, over which a sensor may smear it, and standard deviations of its time.
     const SAMPLES: f64 = 3.0;

@@ -12,8 +12,8 @@ use crate::machine::Scale;
 
 /// What drives a machine during a record, measured on the same time axis.
 ///
-/// Between its samples it is taken to be straight: sample it at ten times the highest frequency in it or more (an error of
-/// (ωh)²/12 of a sine of ω rad/s with samples every h seconds).
+/// Between its samples it is taken to be straight: sample it at ten times the highest frequency in it or more (an error
+/// of (ωh)²/12 of a sine of ω rad/s with samples every h seconds).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drive {
     record: Record,
@@ -41,11 +41,13 @@ impl Drive {
         Ok(Self { record: record.clone(), kind: Kind::Force, gain_uncertainty: 0.0, longest_delay: 0.0 })
     }
 
-    /// The measured motion of a base to which spring and counterface are fixed; best its acceleration. A velocity is differentiated
-    /// once, a displacement twice, by central differences. The response is the motion relative to the base, in the same unit of length.
+    /// The measured motion of a base to which spring and counterface are fixed; best its acceleration. A velocity is
+    /// differentiated once, a displacement twice, by central differences. The response is the motion relative to the
+    /// base, in the same unit of length.
     ///
     /// # Errors
-    /// [`IdentifyError::WrongRecord`] for a record that is no motion, [`IdentifyError::Record`] for one too short to differentiate.
+    /// [`IdentifyError::WrongRecord`] for a record that is no motion, [`IdentifyError::Record`] for one too short to
+    /// differentiate.
     pub fn base(record: &Record) -> Result<Self, IdentifyError> {
         let record = match record.quantity() {
             Quantity::Acceleration => record.clone(),
@@ -59,9 +61,9 @@ impl Drive {
         Ok(Self { record, kind: Kind::Base, gain_uncertainty: 0.0, longest_delay: 0.0 })
     }
 
-    /// The same read by a channel of this relative standard uncertainty (1). Its gain, what it reads by what acts, is fitted if the
-    /// machine tells it: of a force beside a mass or a stiffness that is known, of a base always. A force on a machine of unknown
-    /// mass tells that mass, and all forces are as uncertain as its channel.
+    /// The same read by a channel of this relative standard uncertainty (1). Its gain, what it reads by what acts, is
+    /// fitted if the machine tells it: of a force beside a mass or a stiffness that is known, of a base always. A force
+    /// on a machine of unknown mass tells that mass, and all forces are as uncertain as its channel.
     ///
     /// # Errors
     /// [`IdentifyError::InvalidInput`] for one that is negative or not finite.
@@ -71,12 +73,12 @@ impl Drive {
         Ok(Self { gain_uncertainty, ..self })
     }
 
-    /// The same with a response that is up to `longest` (s) late or early, by a delay that is fitted. One that is known is that of the
-    /// [`Sensor`](crate::Sensor).
+    /// The same with a response that is up to `longest` (s) late or early, by a delay that is fitted. One that is known
+    /// is that of the [`Sensor`](crate::Sensor).
     ///
     /// # Errors
-    /// [`IdentifyError::InvalidInput`] for one that is negative or not finite, [`IdentifyError::OutOfRange`] for one longer than the
-    /// record of the drive.
+    /// [`IdentifyError::InvalidInput`] for one that is negative or not finite, [`IdentifyError::OutOfRange`] for one
+    /// longer than the record of the drive.
     pub fn with_free_delay(self, longest: f64) -> Result<Self, IdentifyError> {
         let longest_delay = ModelError::require_not_negative("longest delay of a response", longest, "s")?;
         self.require_delay(longest_delay)?;
@@ -129,8 +131,8 @@ impl Drive {
         Ok(())
     }
 
-    /// Its values from `start` (s) on, one every interval of its record, for a response that is `delay` (s) late: forces in N, or the
-    /// acceleration of the base with its sign reversed, which is the force on a unit of mass.
+    /// Its values from `start` (s) on, one every interval of its record, for a response that is `delay` (s) late:
+    /// forces in N, or the acceleration of the base with its sign reversed, which is the force on a unit of mass.
     pub(crate) fn values_from<D: Scalar>(&self, start: f64, delay: D) -> Vec<D> {
         /// Samples on one grid differ by rounding.
         const ON_GRID: f64 = 1e-6;

@@ -12,8 +12,8 @@ use crate::fit::tangent::inverse_of_products;
 use crate::{IdentifyError, Offset, Preparation, RecordSummary};
 
 impl Experiment {
-    /// A driven motion: the `response` of the machine to `drive`, both on one time axis. The drive must be known during all of the
-    /// response.
+    /// A driven motion: the `response` of the machine to `drive`, both on one time axis. The drive must be known during
+    /// all of the response.
     ///
     /// A static level of its own, which a ring-down does not tell, is fitted as soon as an experiment is driven.
     ///
@@ -42,8 +42,9 @@ impl Experiment {
     /// ```
     ///
     /// # Errors
-    /// [`IdentifyError::WrongRecord`] for a response that is neither displacement nor velocity, [`IdentifyError::TooFew`],
-    /// and [`IdentifyError::NotSeen`] if the drive does not last as long, nothing moves, or the offset is to be that of a rest.
+    /// [`IdentifyError::WrongRecord`] for a response that is neither displacement nor velocity,
+    /// [`IdentifyError::TooFew`], and [`IdentifyError::NotSeen`] if the drive does not last as long, nothing moves, or
+    /// the offset is to be that of a rest.
     pub fn driven(response: &Record, drive: Drive, preparation: &Preparation) -> Result<Self, IdentifyError> {
         let quantity = response.quantity();
         if !matches!(quantity, Quantity::Displacement | Quantity::Velocity) {
@@ -102,8 +103,8 @@ impl Experiment {
 /// m ∫w x″ + c ∫w x′ + k ∫w x + F ∫w sgn x′ + κ ∫w = ∫w f        w = sin² πτ on overlapping windows
 /// ```
 ///
-/// Integration by parts moves the derivatives to w. κ stands for the offset of a displacement, or for the unknown position at the
-/// beginning of a velocity. Of a base, f is its acceleration with the sign reversed and m is 1.
+/// Integration by parts moves the derivatives to w. κ stands for the offset of a displacement, or for the unknown
+/// position at the beginning of a velocity. Of a base, f is its acceleration with the sign reversed and m is 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct DrivenGuess {
     /// m (kg); 1 of a base.

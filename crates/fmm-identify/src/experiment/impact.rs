@@ -7,11 +7,13 @@ use crate::experiment::ring_down;
 use crate::{Drive, IdentifyError, ImpactTrial, Offset, Preparation};
 
 impl Experiment {
-    /// A hammer blow: the velocity from the beginning of the blow until a while after rest, driven by the measured force. The machine
-    /// is at rest before; samples during contact are left out, as the force between its samples is not known. What these leave open of
-    /// the impulse and of its time is fitted, or, on a machine of unknown mass, an uncertainty of all forces.
+    /// A hammer blow: the velocity from the beginning of the blow until a while after rest, driven by the measured
+    /// force. The machine is at rest before; samples during contact are left out, as the force between its samples is
+    /// not known. What these leave open of the impulse and of its time is fitted, or, on a machine of unknown mass, an
+    /// uncertainty of all forces.
     ///
-    /// [`identify_impact`](crate::identify_impact) fits blows alone, on a machine of which everything is known, and as mobility too.
+    /// [`identify_impact`](crate::identify_impact) fits blows alone, on a machine of which everything is known, and as
+    /// mobility too.
     ///
     /// ```
     /// use fmm_friction::Coulomb;

@@ -27,11 +27,12 @@ use crate::experiment::nuisance::Nuisance;
 use crate::fit::first_guess::{Dissipation, FirstGuess};
 use crate::{IdentifyError, Machine, Warning};
 
-/// An experiment on a machine: a ring-down ([`ring_down`](Self::ring_down)), a hammer blow ([`impact`](Self::impact)), or a motion that
-/// is driven by a measured force or by a measured motion of the base ([`driven`](Self::driven)).
+/// An experiment on a machine: a ring-down ([`ring_down`](Self::ring_down)), a hammer blow ([`impact`](Self::impact)),
+/// or a motion that is driven by a measured force or by a measured motion of the base ([`driven`](Self::driven)).
 ///
-/// Experiments of all kinds are fitted together: they share the machine and the law, and each has its own initial state and offset,
-/// its own normal load ([`with_load_factor`](Self::with_load_factor)) and its own sensor ([`seen_by`](Self::seen_by)).
+/// Experiments of all kinds are fitted together: they share the machine and the law, and each has its own initial state
+/// and offset, its own normal load ([`with_load_factor`](Self::with_load_factor)) and its own sensor
+/// ([`seen_by`](Self::seen_by)).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experiment {
     record: Record,
@@ -83,7 +84,8 @@ impl Experiment {
     /// The same seen by `sensor`. What its filter remembers of the time before the record is left out of the fit.
     ///
     /// # Errors
-    /// [`IdentifyError::OutOfRange`] for a corner above half the sampling rate or, behind a drive, a delay longer than that, [`IdentifyError::TooFew`] if the filter leaves nothing.
+    /// [`IdentifyError::OutOfRange`] for a corner above half the sampling rate or, behind a drive, a delay longer than
+    /// that, [`IdentifyError::TooFew`] if the filter leaves nothing.
     pub fn seen_by(mut self, sensor: Sensor) -> Result<Self, IdentifyError> {
         let frequency = self.guess.frequency();
         let limit = 0.5 * self.record.rate();
@@ -219,7 +221,8 @@ impl Experiment {
         &self.summary
     }
 
-    /// What limits what its record tells, whatever is fitted to it: what was found at its beginning, on its way and at its end.
+    /// What limits what its record tells, whatever is fitted to it: what was found at its beginning, on its way and at
+    /// its end.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();
         Warning::of_record(self.summary(), false, &mut warnings);
@@ -236,8 +239,8 @@ impl Experiment {
         &self.kept
     }
 
-    /// Samples in a row among those that are kept over which the values stay within one step of the converter; empty if the steps do
-    /// not exceed the noise.
+    /// Samples in a row among those that are kept over which the values stay within one step of the converter; empty if
+    /// the steps do not exceed the noise.
     pub(crate) fn stays(&self) -> Vec<Range<usize>> {
         let Some(step) = self.summary.resolution.filter(|_| self.summary.is_rounded()) else { return Vec::new() };
         let mut stays: Vec<Range<usize>> = Vec::new();
@@ -258,8 +261,8 @@ impl Experiment {
 
     /// The same ring-down up to its last peak; `None` if that leaves nothing out or too little.
     ///
-    /// In the displacement a stop one swing too early or too late shows as a jump, over which no gradient leads. Without
-    /// the end of the motion there is no such jump.
+    /// In the displacement a stop one swing too early or too late shows as a jump, over which no gradient leads.
+    /// Without the end of the motion there is no such jump.
     pub(crate) fn up_to_last_peak(&self) -> Option<Self> {
         let (last, _) = *self.peaks.last()?;
         self.up_to(last)
@@ -310,8 +313,8 @@ impl Experiment {
         }
     }
 
-    /// f₀ (Hz) of small vibrations of an undamped `machine`, given what its contact loses: a pendulum swings more slowly the
-    /// farther it swings, by φ²/16.
+    /// f₀ (Hz) of small vibrations of an undamped `machine`, given what its contact loses: a pendulum swings more
+    /// slowly the farther it swings, by φ²/16.
     pub(crate) fn natural_frequency(&self, dissipation: Dissipation, machine: &Machine) -> f64 {
         let frequency = self.guess.natural_frequency(dissipation);
         let Restoring::Sine { length } = machine.restoring() else { return frequency };
@@ -330,8 +333,8 @@ impl Experiment {
         self.summary.held_offset
     }
 
-    /// Two octaves either way of what the crossings of a ring-down show: wide enough for any law, and no fit that leaves it
-    /// describes this record. What drives a machine shows less of it.
+    /// Two octaves either way of what the crossings of a ring-down show: wide enough for any law, and no fit that
+    /// leaves it describes this record. What drives a machine shows less of it.
     pub(crate) fn frequency_bounds(&self) -> Bounds {
         if self.driven.is_some() {
             return Bounds::POSITIVE;
@@ -341,8 +344,8 @@ impl Experiment {
     }
 }
 
-/// The experiment that shows the machine best, by which a fit begins: the first ring-down with the contact closed, or else the first
-/// ring-down, or the first of all.
+/// The experiment that shows the machine best, by which a fit begins: the first ring-down with the contact closed, or
+/// else the first ring-down, or the first of all.
 ///
 /// # Panics
 /// Without an experiment, which is refused before.
@@ -353,8 +356,8 @@ pub(crate) fn reference(experiments: &[Experiment]) -> &Experiment {
     all().find(is_loaded).or_else(|| all().find(is_free)).unwrap_or(&experiments[0])
 }
 
-/// Each experiment with the factor by which its residuals are multiplied (1): the noise of the first over its own, if they are not all
-/// of one quantity and kind, else 1.
+/// Each experiment with the factor by which its residuals are multiplied (1): the noise of the first over its own, if
+/// they are not all of one quantity and kind, else 1.
 pub(crate) fn scaled(experiments: &[Experiment]) -> impl Iterator<Item = (&Experiment, f64)> {
     let kind = |experiment: &Experiment| (experiment.record.quantity(), experiment.driven.is_some());
     // Rounding of doubles is the least noise there is.

@@ -7,8 +7,8 @@ use crate::RecordSummary;
 use crate::fit::first_guess::FirstGuess;
 
 impl Experiment {
-    /// An experiment of a machine that vibrates at this `frequency` (Hz); the `record` says when and what would be recorded, and its values
-    /// nothing. It begins at rest where the spring is free of force if it `is_at_rest`.
+    /// An experiment of a machine that vibrates at this `frequency` (Hz); the `record` says when and what would be
+    /// recorded, and its values nothing. It begins at rest where the spring is free of force if it `is_at_rest`.
     pub(crate) fn planned(
         record: Record,
         drive: Option<Drive>,

@@ -111,11 +111,13 @@ pub struct RecordSummary {
     pub offset_step: Option<OffsetStep>,
     /// Relative change of the period (1) from the first sixth of the half swings to the last, if it is significant.
     pub period_change: Option<f64>,
-    /// Steady lines in the record, such as hum of the mains, the largest first. They are still in the record that is fitted.
+    /// Steady lines in the record, such as hum of the mains, the largest first. They are still in the record that is
+    /// fitted.
     pub hum: Vec<Hum>,
     /// When the machine was released or pushed again (s). The record is used until shortly before the first of them.
     pub further_releases: Vec<f64>,
-    /// Where something else than the machine itself took the motion, after which the record was not used unless it was asked for.
+    /// Where something else than the machine itself took the motion, after which the record was not used unless it was
+    /// asked for.
     pub interruption: Option<Interruption>,
     /// How the samples were multiplied before they were recorded; only the measured ones are used.
     pub upsampling: Option<Upsampling>,

@@ -23,22 +23,24 @@ const FEWEST_HALF_SWINGS: usize = 2;
 const WALKS: f64 = 5.0;
 
 impl Experiment {
-    /// A ring-down: the part of a `record` of displacement, velocity or acceleration in which the machine vibrates freely.
+    /// A ring-down: the part of a `record` of displacement, velocity or acceleration in which the machine vibrates
+    /// freely.
     ///
     /// If the record begins at rest, it is used from the first peak after the release on (of a displacement, from the
-    /// first crossing), as whatever held the machine may act on for a while; otherwise from its beginning. If it is released or
-    /// pushed again, it is used until shortly before that; if something else takes its motion, until then. Of samples that are held or
-    /// interpolated, the measured ones are used. Spikes of one to three samples are left out, and where the steps of a
-    /// converter exceed the noise, what follows the last turning point. Nothing is smoothed and nothing is subtracted: smoothing
-    /// would correlate the noise, and the offset is a parameter. Swings, release, spikes and noise are looked for in the record less
-    /// its hum.
+    /// first crossing), as whatever held the machine may act on for a while; otherwise from its beginning. If it is
+    /// released or pushed again, it is used until shortly before that; if something else takes its motion, until then.
+    /// Of samples that are held or interpolated, the measured ones are used. Spikes of one to three samples are left
+    /// out, and where the steps of a converter exceed the noise, what follows the last turning point. Nothing is
+    /// smoothed and nothing is subtracted: smoothing would correlate the noise, and the offset is a parameter. Swings,
+    /// release, spikes and noise are looked for in the record less its hum.
     ///
-    /// An acceleration jumps where dry friction reverses. It is fitted as it is, but for the samples beside the reversals: no
-    /// accelerometer follows a jump. Its swings are looked for in its integral, less what drifts more slowly than the motion.
+    /// An acceleration jumps where dry friction reverses. It is fitted as it is, but for the samples beside the
+    /// reversals: no accelerometer follows a jump. Its swings are looked for in its integral, less what drifts more
+    /// slowly than the motion.
     ///
     /// # Errors
-    /// [`IdentifyError`] if the record is no motion, too short, constant, or shows fewer than two half swings, or if the preparation
-    /// leaves nothing of it.
+    /// [`IdentifyError`] if the record is no motion, too short, constant, or shows fewer than two half swings, or if
+    /// the preparation leaves nothing of it.
     pub fn ring_down(record: &Record, preparation: &Preparation) -> Result<Self, IdentifyError> {
         let quantity = record.quantity();
         if !matches!(quantity, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration) {
@@ -163,7 +165,8 @@ fn measured(record: Record) -> Result<(Record, Option<Upsampling>), IdentifyErro
     Ok((record, upsampling))
 }
 
-/// What swings after a time: turning points, the times at which the velocity is zero and the heights beside them, and the frequency (Hz).
+/// What swings after a time: turning points, the times at which the velocity is zero and the heights beside them, and
+/// the frequency (Hz).
 struct Swung {
     peaks: Vec<Peak>,
     times: Vec<f64>,
@@ -172,7 +175,8 @@ struct Swung {
 }
 
 impl Swung {
-    /// The part of `swings` of a `quantity` later than `after` (s), up to the first peak that does not exceed `least`, if that is given.
+    /// The part of `swings` of a `quantity` later than `after` (s), up to the first peak that does not exceed `least`,
+    /// if that is given.
     fn of(swings: &Swings, quantity: Quantity, after: f64, least: Option<f64>) -> Self {
         let mut peaks: Vec<Peak> = swings.peaks().iter().copied().filter(|peak| peak.time > after).collect();
         let (times, heights) = swings.turns(quantity);
@@ -209,8 +213,8 @@ fn between(range: Range<usize>, holes: &[Range<usize>]) -> Vec<Range<usize>> {
     without(range.len(), shifted).into_iter().map(|part| part.start + range.start..part.end + range.start).collect()
 }
 
-/// When `record` comes to rest (s): from there on its values stay within their noise and a `resolution` for at least half a period of
-/// the motion; `None` if they do not.
+/// When `record` comes to rest (s): from there on its values stay within their noise and a `resolution` for at least
+/// half a period of the motion; `None` if they do not.
 fn rest_from(record: &Record, resolution: f64, frequency: f64) -> Option<f64> {
     /// The range of a thousand normal values, in standard deviations, with some to spare.
     const RANGE: f64 = 8.0;
@@ -256,7 +260,8 @@ mod tests {
         assert_eq!(without(3, std::iter::once(0..3)), Vec::<Range<usize>>::new());
     }
 
-    /// The velocity of a mass of 10.391 kg on a spring of 1982 N/m, with friction of 0.25 under 14 N, released at 0 and 2 s.
+    /// The velocity of a mass of 10.391 kg on a spring of 1982 N/m, with friction of 0.25 under 14 N, released at 0 and
+    /// 2 s.
     fn released(times: &[f64]) -> Record {
         let (angular, deadband) = (13.81, 1.766e-3);
         let velocity = |t: f64, amplitude: f64| {

@@ -8,9 +8,10 @@ use crate::IdentifyError;
 
 /// Sensor of an experiment: what lies between the motion and the record besides gain and offset.
 ///
-/// The default passes the motion on as it is. A low-pass filter rounds the kink of a velocity and the jump of an acceleration at
-/// every reversal; a fit that does not know of it takes that for friction. The delay of a sensor does not show in a free
-/// vibration, whose beginning is unknown anyway: it moves the times that are reported, such as that of the stop.
+/// The default passes the motion on as it is. A low-pass filter rounds the kink of a velocity and the jump of an
+/// acceleration at every reversal; a fit that does not know of it takes that for friction. The delay of a sensor does
+/// not show in a free vibration, whose beginning is unknown anyway: it moves the times that are reported, such as that
+/// of the stop.
 ///
 /// ```
 /// use fmm_identify::Sensor;
@@ -71,7 +72,8 @@ impl Sensor {
         self.delay
     }
 
-    /// Order and corner frequency (Hz) of the low-pass filter; no corner if it is fitted, and none at all without a filter.
+    /// Order and corner frequency (Hz) of the low-pass filter; no corner if it is fitted, and none at all without a
+    /// filter.
     pub fn low_pass(&self) -> Option<(usize, Option<f64>)> {
         self.low_pass.map(|filter| (filter.order, filter.corner))
     }
@@ -86,8 +88,8 @@ impl Sensor {
         self.low_pass.map(|filter| filter.corner.unwrap_or(FIRST_CORNER * frequency))
     }
 
-    /// The time (s) after which what the filter remembers of the unknown motion before the record is below a millionth; 0 without a
-    /// filter.
+    /// The time (s) after which what the filter remembers of the unknown motion before the record is below a millionth;
+    /// 0 without a filter.
     pub(crate) fn settling(&self, frequency: f64) -> f64 {
         const FORGOTTEN: f64 = 14.0;
         let slowest = |filter: LowPass| {
@@ -181,8 +183,8 @@ impl Filter {
         Self { states: vec![[0.0; 2]; sections.len()], sections, before: None, rate: interval.recip() }
     }
 
-    /// Appends what becomes of the next samples of `input` to `output`: the filtered series or, if it is wanted, its rate of change
-    /// (1/s).
+    /// Appends what becomes of the next samples of `input` to `output`: the filtered series or, if it is wanted, its
+    /// rate of change (1/s).
     pub(crate) fn run(&mut self, input: &[f64], wants_rate: bool, output: &mut Vec<f64>) {
         output.extend(input.iter().map(|value| self.next(*value, wants_rate)));
     }

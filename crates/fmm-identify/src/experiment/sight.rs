@@ -29,7 +29,8 @@ struct Beside {
     difference: f64,
 }
 
-/// Relative step of the corner for its derivative. The output is analytic in it: the error is of the order of the step's square.
+/// Relative step of the corner for its derivative. The output is analytic in it: the error is of the order of the
+/// step's square.
 const STEP: f64 = 1e-4;
 
 impl Sight {
@@ -54,8 +55,8 @@ impl Sight {
         self.filtering.is_some()
     }
 
-    /// What has to be simulated. The rate of a filtered velocity is the filtered acceleration, without the error that a jump between
-    /// two samples makes.
+    /// What has to be simulated. The rate of a filtered velocity is the filtered acceleration, without the error that a
+    /// jump between two samples makes.
     pub(crate) fn channels(&self) -> Channels {
         match self.quantity {
             Quantity::Displacement => Channels::Position,

@@ -80,8 +80,8 @@ impl FirstGuess {
         })
     }
 
-    /// What stands for these of a driven motion, which begins at `first` and swings about `offset` by `amplitude` at this
-    /// `frequency` (Hz).
+    /// What stands for these of a driven motion, which begins at `first` and swings about `offset` by `amplitude` at
+    /// this `frequency` (Hz).
     pub(crate) fn of_driven(frequency: f64, offset: f64, amplitude: f64, first: f64, quantity: Quantity) -> Self {
         let (angular, amplitudes) = (2.0 * PI * frequency, vec![amplitude]);
         Self { angular, offset, amplitudes, first: (0.0, first, 2.0 * offset - first), quantity }

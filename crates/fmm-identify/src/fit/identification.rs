@@ -30,7 +30,8 @@ pub struct FittedMotion {
 }
 
 impl FittedMotion {
-    /// The motion behind `trajectory`, which begins at `start` (s) on the time axis of a record sampled every `interval` (s).
+    /// The motion behind `trajectory`, which begins at `start` (s) on the time axis of a record sampled every
+    /// `interval` (s).
     pub(crate) fn of_events(start: f64, interval: f64, trajectory: &Trajectory) -> Self {
         // A velocity of nearly zero at the first sample reverses at once, or does not: that is no swing of the record.
         let turns = |event: &&Event| matches!(event.kind, EventKind::Reversal | EventKind::Stop);
@@ -133,8 +134,9 @@ pub fn identify_with<F: LawFamily>(
     identify_observed::<F>(machine, terms, decays, &Options::default(), &mut |_| ControlFlow::Continue(()))
 }
 
-/// As [`identify_with`], with options for the solver and an observer of every trial step, which may end the fit. Where fits from several starts go on
-/// several threads, it is told of their steps in any order, and must not wait for work of the pool.
+/// As [`identify_with`], with options for the solver and an observer of every trial step, which may end the fit. Where
+/// fits from several starts go on several threads, it is told of their steps in any order, and must not wait for work
+/// of the pool.
 ///
 /// # Errors
 /// As for [`identify_with`].
@@ -218,7 +220,8 @@ pub(crate) fn identify_by(
     Ok(identification)
 }
 
-/// By how many standard uncertainties the linear damping would leave the bound that it lies on; `None` if it lies on none.
+/// By how many standard uncertainties the linear damping would leave the bound that it lies on; `None` if it lies on
+/// none.
 fn pull_at_bound(problem: &Problem<'_>, fit: &Fit, covariance: &Covariance) -> Option<f64> {
     let index = fit.estimates().iter().position(|estimate| estimate.name() == LINEAR)?;
     fit.estimates()[index].status().is_at_bound().then_some(())?;
@@ -226,7 +229,8 @@ fn pull_at_bound(problem: &Problem<'_>, fit: &Fit, covariance: &Covariance) -> O
     Some(step / covariance.relaxed(index)?.sqrt())
 }
 
-/// F/m at rest that fitted `values` stand for: the sliding level of the law with what lies above it; `None` for laws without.
+/// F/m at rest that fitted `values` stand for: the sliding level of the law with what lies above it; `None` for laws
+/// without.
 fn friction_at_rest(layout: &Layout, values: &[f64]) -> Option<f64> {
     let parameters = || layout.family.fitted().zip(&values[layout.law..]);
     let (_, level) = parameters().nth(layout.family.level()?)?;
@@ -256,8 +260,8 @@ impl Identification {
         &self.terms
     }
 
-    /// F/m at rest, in the unit of the friction per mass: the sliding level with what the law adds to it at zero speed; `None` for
-    /// laws without a level.
+    /// F/m at rest, in the unit of the friction per mass: the sliding level with what the law adds to it at zero speed;
+    /// `None` for laws without a level.
     pub fn friction_at_rest(&self) -> Option<f64> {
         self.friction_at_rest
     }
@@ -362,14 +366,15 @@ impl Identification {
         with_drift(self, &problem, decays)
     }
 
-    /// How many parameters the fit makes use of: those that the records determine, and those that ended on a bound other than zero,
-    /// where a term is not merely left out.
+    /// How many parameters the fit makes use of: those that the records determine, and those that ended on a bound
+    /// other than zero, where a term is not merely left out.
     pub(crate) fn parameters_used(&self) -> usize {
         let is_used = |estimate: &&Estimate| estimate.status().is_at_bound() && estimate.value() != 0.0;
         self.fit.rank() + self.fit.estimates().iter().filter(is_used).count()
     }
 
-    /// How many places a law has to leap at: the samples of a half swing for one that comes to rest within a dead zone, else one.
+    /// How many places a law has to leap at: the samples of a half swing for one that comes to rest within a dead zone,
+    /// else one.
     pub(crate) fn tries(&self) -> f64 {
         if self.finding("dead_zone").is_none() {
             return 1.0;
@@ -388,13 +393,14 @@ impl Identification {
         self.covariance.degrees_of_freedom() + self.fit.rank() as f64
     }
 
-    /// What the parameters of this fit to `problem` can follow, those on a bound included; `None` if the derivatives cannot be had.
+    /// What the parameters of this fit to `problem` can follow, those on a bound included; `None` if the derivatives
+    /// cannot be had.
     pub(crate) fn tangent(&self, problem: &Problem<'_>) -> Option<Tangent> {
         Tangent::of(problem, &self.fit)
     }
 
-    /// Whether a viscous part that ended at zero would be significantly negative without its bound, as if friction fell with the
-    /// speed.
+    /// Whether a viscous part that ended at zero would be significantly negative without its bound, as if friction fell
+    /// with the speed.
     pub(crate) fn damping_would_be_negative(&self) -> bool {
         /// Standard uncertainties by which it would be negative.
         const PLAIN: f64 = 2.33;
@@ -404,8 +410,9 @@ impl Identification {
         self.fit.estimates()[index].status().is_at_bound() && self.pull_at_bound.is_some_and(|pull| pull < -PLAIN)
     }
 
-    /// By how much this fit is worse than that by `other`, in variances of the noise that the residuals of the other show in the
-    /// direction in which the laws differ (1), and the degrees of freedom with which that variance is known.
+    /// By how much this fit is worse than that by `other`, in variances of the noise that the residuals of the other
+    /// show in the direction in which the laws differ (1), and the degrees of freedom with which that variance is
+    /// known.
     pub(crate) fn misfit_beside(&self, other: &Self) -> (f64, f64) {
         let floor = self.floor().max(other.floor());
         let excess = self.fit.sum_of_squares().max(floor) - other.fit.sum_of_squares().max(floor);
@@ -418,8 +425,8 @@ impl Identification {
         (misfit, freedom.min(other.fit.degrees_of_freedom() as f64).max(1.0))
     }
 
-    /// The findings that mean the same in both, each with that of `other`: what has the same name, and the sliding levels, which
-    /// laws name as they like.
+    /// The findings that mean the same in both, each with that of `other`: what has the same name, and the sliding
+    /// levels, which laws name as they like.
     pub(crate) fn common_findings<'a>(&'a self, other: &'a Self) -> Vec<(&'a Finding, &'a Finding)> {
         let (own, theirs) = (self.level_names(), other.level_names());
         let same = |finding: &'a Finding| {
@@ -431,8 +438,8 @@ impl Identification {
         self.findings.iter().filter_map(same).collect()
     }
 
-    /// What most ask for: the friction at large speed and at rest, as coefficient, force or per mass, whichever is known; of a law
-    /// without friction the damping.
+    /// What most ask for: the friction at large speed and at rest, as coefficient, force or per mass, whichever is
+    /// known; of a law without friction the damping.
     pub(crate) fn main_findings(&self) -> Vec<&Finding> {
         let sliding = self.level_names().into_iter().rev().find_map(|name| self.finding(&name));
         let Some(sliding) = sliding else {

@@ -18,8 +18,8 @@ use crate::{Experiment, IdentifyError, Machine, Terms};
 /// Amplitude (rad) beyond which a record is not one of a pendulum with that length: no crossing counts turns.
 const MOST_RADIANS: f64 = 4.0 * PI;
 
-/// Order of the parameters: oscillator, damping beside the law, law, then for each record its initial state and, unless it
-/// is fixed, its offset.
+/// Order of the parameters: oscillator, damping beside the law, law, then for each record its initial state and, unless
+/// it is fixed, its offset.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
     pub(crate) family: Law,
@@ -33,7 +33,8 @@ pub(crate) struct Layout {
     pub(crate) law: usize,
     /// Parameters of oscillator, damping and law: those that all records share.
     pub(crate) shared: usize,
-    /// For each record, the index of its initial position; initial velocity, gain and delay of its drive, and offset follow.
+    /// For each record, the index of its initial position; initial velocity, gain and delay of its drive, and offset
+    /// follow.
     pub(crate) own: Vec<usize>,
     /// For each record, how many parameters of its own its motion depends on.
     of_motion: Vec<usize>,
@@ -162,7 +163,8 @@ impl Layout {
         Ok((layout, parameters))
     }
 
-    /// How many parameters the motion of record number `record` depends on: the shared ones, its initial state and its drive.
+    /// How many parameters the motion of record number `record` depends on: the shared ones, its initial state and its
+    /// drive.
     pub(crate) fn directions(&self, record: usize) -> usize {
         self.shared + self.of_motion[record]
     }

@@ -206,9 +206,9 @@ impl<F: LawFamily> MachineProblem<F> {
         self
     }
 
-    /// The same simulated to a relative `tolerance` (1), where the law has no closed form: with 1e-9 instead of the engine's
-    /// own a fit takes less than half as long, and refits of the Berger law on other machines were found to move by less
-    /// than 1e-5 of their standard uncertainty.
+    /// The same simulated to a relative `tolerance` (1), where the law has no closed form: with 1e-9 instead of the
+    /// engine's own a fit takes less than half as long, and refits of the Berger law on other machines were found to
+    /// move by less than 1e-5 of their standard uncertainty.
     ///
     /// # Errors
     /// [`IdentifyError::Simulation`] for a tolerance outside the engine's.

@@ -6,7 +6,8 @@ use fmm_model::Parameter;
 use crate::fit::problem::Problem;
 use crate::{Experiment, Identification, IdentifyError};
 
-/// The sum of squares along one fitted quantity, all others fitted anew, beside what its standard uncertainty says of it.
+/// The sum of squares along one fitted quantity, all others fitted anew, beside what its standard uncertainty says of
+/// it.
 ///
 /// Both speak of the residuals alone, with the noise that they show, and not of what else makes the
 /// [finding](crate::Finding) uncertain: gains, inputs, other laws.
@@ -20,7 +21,8 @@ pub struct Profile {
     curve: Vec<(f64, f64)>,
 }
 
-/// Of a half width of the interval, the share by which the profile differs from value ± k u where a quantity counts as bent (1).
+/// Of a half width of the interval, the share by which the profile differs from value ± k u where a quantity counts as
+/// bent (1).
 const BENT: f64 = 0.1;
 /// Steps of a curve on either side of the estimate.
 const STEPS: usize = 8;
@@ -54,8 +56,8 @@ impl Profile {
         (self.interval.threshold() * self.variance).sqrt()
     }
 
-    /// The share of k u by which the end that differs most does so (1); infinite if a side ends at a bound, at the edge of the model, or
-    /// not at all.
+    /// The share of k u by which the end that differs most does so (1); infinite if a side ends at a bound, at the edge
+    /// of the model, or not at all.
     pub fn bend(&self) -> f64 {
         let of_end = |end: ProfileEnd| match end {
             ProfileEnd::At(value) => ((value - self.value).abs() / self.reach() - 1.0).abs(),
@@ -69,8 +71,8 @@ impl Profile {
         !(self.bend() <= BENT)
     }
 
-    /// The profile to be drawn: values of the parameter, ascending, and the rise (S_k − S_min)/s² of the sum of squares there (1), which
-    /// is [`ProfileInterval::threshold`] at the ends. Empty where nothing is bent.
+    /// The profile to be drawn: values of the parameter, ascending, and the rise (S_k − S_min)/s² of the sum of squares
+    /// there (1), which is [`ProfileInterval::threshold`] at the ends. Empty where nothing is bent.
     pub fn curve(&self) -> &[(f64, f64)] {
         &self.curve
     }
@@ -112,22 +114,22 @@ impl Profiles {
 }
 
 impl Identification {
-    /// The profiles of what was fitted to `decays`, which must be those of the identification, for intervals that cover with probability
-    /// `level`. None without noise.
+    /// The profiles of what was fitted to `decays`, which must be those of the identification, for intervals that cover
+    /// with probability `level`. None without noise.
     ///
     /// A profile costs about thirty evaluations of the motion with its derivatives, and as many again if it is bent.
     /// After [`Profiles::MOST_EVALUATIONS`] the rest is left out.
     ///
-    /// Where residuals are correlated the sum of squares counts for as much as the standard uncertainty says: its rise is divided by
-    /// V/C, the variance V of the quantity over that by residuals of unit variance.
+    /// Where residuals are correlated the sum of squares counts for as much as the standard uncertainty says: its rise
+    /// is divided by V/C, the variance V of the quantity over that by residuals of unit variance.
     ///
     /// # Errors
     /// [`IdentifyError::WrongRecord`] for other records than those of the identification.
     ///
     /// # References
-    /// R. E. Chandler, S. Bate, "Inference for clustered data using the independence loglikelihood", Biometrika 94 (2007) 167,
-    /// <https://doi.org/10.1093/biomet/asm015>; D. M. Bates, D. G. Watts, "Nonlinear Regression Analysis and Its Applications", Wiley
-    /// (1988), ch. 6.
+    /// R. E. Chandler, S. Bate, "Inference for clustered data using the independence loglikelihood", Biometrika 94
+    /// (2007) 167, <https://doi.org/10.1093/biomet/asm015>; D. M. Bates, D. G. Watts, "Nonlinear Regression Analysis
+    /// and Its Applications", Wiley (1988), ch. 6.
     pub fn profiles(&self, decays: &[Experiment], level: f64) -> Result<Profiles, IdentifyError> {
         let decays = self.experiments(decays)?;
         let problem = Problem::of(self.family(), *self.machine(), self.terms().clone(), &decays)?;

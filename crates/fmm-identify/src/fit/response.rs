@@ -23,8 +23,8 @@ const MOST_ITERATIONS: usize = 40;
 /// δx″ + (c/m) δx′ + ω₀² δx = −δF/m,    δx′ times (ω₀²|x| − F/m)/(ω₀²|x| + F/m) at each turning point
 /// ```
 ///
-/// δF is the friction of the other law along the known motion less that of the simple one. Oscillator, initial state and offset follow
-/// by their own derivatives.
+/// δF is the friction of the other law along the known motion less that of the simple one. Oscillator, initial state
+/// and offset follow by their own derivatives.
 pub(crate) struct Response<'a> {
     /// That of the other law.
     problem: &'a Problem<'a>,
@@ -63,8 +63,8 @@ impl<'a> Response<'a> {
             && decay.load_factor() == 1.0
     }
 
-    /// That of the record of `problem` about the fit of `simple`, by Coulomb and viscous friction, with these `values`; `None` where none
-    /// [exists](Self::exists), or the motion is too short.
+    /// That of the record of `problem` about the fit of `simple`, by Coulomb and viscous friction, with these `values`;
+    /// `None` where none [exists](Self::exists), or the motion is too short.
     pub(crate) fn of(problem: &'a Problem<'a>, simple: &Problem<'_>, values: &[f64]) -> Option<Self> {
         let decay = problem.decays().first().filter(|_| Self::exists(problem))?;
         let record = decay.record();
@@ -250,7 +250,8 @@ fn sign(velocity: f64) -> f64 {
     if velocity == 0.0 { 0.0 } else { velocity.signum() }
 }
 
-/// What a time makes of position and velocity of a damped vibration (ω₀² and c/m given), and of a constant acceleration of one.
+/// What a time makes of position and velocity of a damped vibration (ω₀² and c/m given), and of a constant acceleration
+/// of one.
 fn transition(stiffness: f64, damping: f64, time: f64) -> ([[f64; 2]; 2], [f64; 2]) {
     let decay = 0.5 * damping;
     let angular = (stiffness - decay * decay).max(1e-12 * stiffness).sqrt();
@@ -276,8 +277,8 @@ mod tests {
     /// Level and damping of [`CoulombViscous`] per unit mass.
     const TRUTH: [f64; 2] = [0.3, 0.1];
 
-    /// By how much the response to a change of each value of the law differs from the derivatives of the simulated motion, as a share of
-    /// these (1), in a record of this `quantity`.
+    /// By how much the response to a change of each value of the law differs from the derivatives of the simulated
+    /// motion, as a share of these (1), in a record of this `quantity`.
     fn differences(quantity: Quantity, unit: &str) -> [f64; 2] {
         let law = CoulombViscous::new(TRUTH[0], TRUTH[1]).unwrap();
         let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), law, 1.0).unwrap();
@@ -318,8 +319,8 @@ mod tests {
         })
     }
 
-    /// Friction is held from one sample to the next, of which a swing has at least 64: what it does comes less than a 64th of a swing
-    /// late, which is a phase of 2π/64.
+    /// Friction is held from one sample to the next, of which a swing has at least 64: what it does comes less than a
+    /// 64th of a swing late, which is a phase of 2π/64.
     #[test]
     fn the_response_is_the_derivative_of_the_motion() {
         let most = std::f64::consts::TAU / SAMPLES_PER_SWING;

@@ -1,4 +1,5 @@
-//! The stages in which a fit is begun: with few samples, with a simple law, with a part of the record, or near another fit.
+//! The stages in which a fit is begun: with few samples, with a simple law, with a part of the record, or near another
+//! fit.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -38,7 +39,8 @@ pub(crate) enum Begin<'a> {
 /// Iterations after which a law that still fits worse than Coulomb and viscous friction is given up.
 const ENOUGH_TO_BE_BETTER: usize = 30;
 
-/// Relative fall of the sum of squares (1) below which a search for the lowest minimum ends, and its most iterations from one start.
+/// Relative fall of the sum of squares (1) below which a search for the lowest minimum ends, and its most iterations
+/// from one start.
 const ROUGH: f64 = 1e-6;
 const MOST_ROUGH: usize = 30;
 
@@ -51,22 +53,25 @@ const MOST_FINAL: usize = 300;
 /// The same by parameters in which fits take few steps.
 const MOST_RECAST: usize = 100;
 
-/// The same where all starts are followed: which of them leads to the lowest minimum shows long before one has crept to its end.
+/// The same where all starts are followed: which of them leads to the lowest minimum shows long before one has crept to
+/// its end.
 const MOST_THOROUGH: usize = 100;
 const MOST_THOROUGH_STARTS: usize = 8;
 
-/// Starts that are taken from the linear response of a record, and those that are fitted of all, the nearest to the records.
+/// Starts that are taken from the linear response of a record, and those that are fitted of all, the nearest to the
+/// records.
 const MOST_FOLLOWED: usize = 4;
 const MOST_STARTS: usize = 5;
 
 /// Starts of a driven motion that are fitted, those nearest to the records.
 const MOST_DRIVEN_STARTS: usize = 2;
 
-/// Shares of a record to which a spring that is not linear is fitted before the whole: where the period depends on the amplitude, a small
-/// error of it adds up.
+/// Shares of a record to which a spring that is not linear is fitted before the whole: where the period depends on the
+/// amplitude, a small error of it adds up.
 const BEGINNINGS: [f64; 2] = [0.125, 0.4];
 
-/// The best fit from where `begin` says: by parameters in which it takes few steps, if the law has such, and from there on by its own.
+/// The best fit from where `begin` says: by parameters in which it takes few steps, if the law has such, and from there
+/// on by its own.
 pub(crate) fn fit_begun(
     problem: &Problem<'_>,
     begin: Begin<'_>,
@@ -124,8 +129,8 @@ fn fit_in_stages(problem: &Problem<'_>, options: &Options, observer: &mut Observ
     best_fit(problem, problem.name(), &[found.values().to_vec()], options, observer)
 }
 
-/// The best end of the fits from the starts near a simple fit, or near one by another law, with few of the samples first. The latter
-/// is given up if it stays worse than the simple fit.
+/// The best end of the fits from the starts near a simple fit, or near one by another law, with few of the samples
+/// first. The latter is given up if it stays worse than the simple fit.
 fn fit_near(
     problem: &Problem<'_>,
     near: &Near<'_>,
@@ -197,8 +202,9 @@ fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec
     sums.into_iter().take(count).map(|(_, start)| start).collect()
 }
 
-/// The fit of a law with shapes to free vibrations on a linear spring, begun from `starts` and near a `simple` fit, where a `search` with
-/// few of the samples ends. If its residuals do not look like noise, all starts are followed, and the better of both is given.
+/// The fit of a law with shapes to free vibrations on a linear spring, begun from `starts` and near a `simple` fit,
+/// where a `search` with few of the samples ends. If its residuals do not look like noise, all starts are followed, and
+/// the better of both is given.
 fn fit_with_shapes(
     problem: &Problem<'_>,
     search: &Problem<'_>,
@@ -231,8 +237,8 @@ fn fit_with_shapes(
     }
 }
 
-/// Where the fits of a law with shapes go from `starts` and from those that the response of a `simple` fit leads to, near enough to tell
-/// which is the lowest minimum.
+/// Where the fits of a law with shapes go from `starts` and from those that the response of a `simple` fit leads to,
+/// near enough to tell which is the lowest minimum.
 fn fit_roughly(
     problem: &Problem<'_>,
     simple: (&Problem<'_>, &[f64]),
@@ -262,7 +268,8 @@ fn fit_simple(problem: &Problem<'_>, options: &Options, observer: &mut Observer<
     if problem.has_corners() {
         return fit_with_corners(problem, starts, options, observer);
     }
-    // Where the period depends on the amplitude, a fit creeps to the whole record unless it begins where one of the beginning has ended.
+    // Where the period depends on the amplitude, a fit creeps to the whole record unless it begins where one of the
+    // beginning has ended.
     let is_bent = problem.machine().restoring() != Restoring::Linear || problem.has_spring();
     let mut fit = |problem: &Problem<'_>, starts: &[Vec<f64>]| {
         if is_bent {
@@ -289,8 +296,8 @@ fn fit_simple(problem: &Problem<'_>, options: &Options, observer: &mut Observer<
     fit(problem, &starts)
 }
 
-/// Where the fits from `starts` of a spring with corners go, near enough to begin the last one: all of them to few swings, the best of these
-/// to more and more.
+/// Where the fits from `starts` of a spring with corners go, near enough to begin the last one: all of them to few
+/// swings, the best of these to more and more.
 fn fit_with_corners(
     problem: &Problem<'_>,
     mut starts: Vec<Vec<f64>>,

@@ -45,10 +45,11 @@ impl Tangent {
     }
 }
 
-/// (JᵀJ)⁻ of the columns of J, row by row: J (JᵀJ)⁻ Jᵀ takes what the columns can follow and nothing else, however alike they are.
+/// (JᵀJ)⁻ of the columns of J, row by row: J (JᵀJ)⁻ Jᵀ takes what the columns can follow and nothing else, however
+/// alike they are.
 ///
-/// Of columns that are alike but for rounding, one is left. The normal matrix of at most a dozen columns is swept here, column by column
-/// (Beaton): a matrix crate would be nine more to build.
+/// Of columns that are alike but for rounding, one is left. The normal matrix of at most a dozen columns is swept here,
+/// column by column (Beaton): a matrix crate would be nine more to build.
 pub(crate) fn inverse_of_products(columns: &[Vec<f64>]) -> Vec<f64> {
     /// Of a column of unit length, what is left below this square beside the others is rounding.
     const ROUNDING: f64 = 1e-10;

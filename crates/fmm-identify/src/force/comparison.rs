@@ -15,8 +15,8 @@ pub struct ForceComparison {
     table: ModelTable,
 }
 
-/// Fits each of `models` to `records` and compares what they leave, by Schwarz' criterion of the samples that count for all of them; of
-/// neighbouring samples that leave the same only one counts.
+/// Fits each of `models` to `records` and compares what they leave, by Schwarz' criterion of the samples that count for
+/// all of them; of neighbouring samples that leave the same only one counts.
 ///
 /// ```
 /// use fmm_identify::{ForceModel, ForceRecord, compare_force};
@@ -37,8 +37,8 @@ pub struct ForceComparison {
 /// ```
 ///
 /// # Errors
-/// As for [`identify_force`], [`IdentifyError::Missing`] without a model, [`IdentifyError::Contradiction`] for a model given twice, and
-/// [`IdentifyError::TooFew`] if hardly a sample counts for all of them.
+/// As for [`identify_force`], [`IdentifyError::Missing`] without a model, [`IdentifyError::Contradiction`] for a model
+/// given twice, and [`IdentifyError::TooFew`] if hardly a sample counts for all of them.
 pub fn compare_force(models: &[ForceModel], records: &[ForceRecord]) -> Result<ForceComparison, IdentifyError> {
     let identifications = models.iter().map(|model| identify_force(model, records)).collect::<Result<Vec<_>, _>>()?;
     let residuals = identifications.iter().map(|found| residuals(found, records)).collect::<Result<Vec<_>, _>>()?;

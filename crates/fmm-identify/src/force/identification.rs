@@ -53,12 +53,13 @@ const ROUNDING: f64 = 1e-9;
 
 /// Fits `model` to the forces of `records`, which share all parameters.
 ///
-/// Levels and what else the force is proportional to begin where a linear fit puts them, shapes where a search on a few scales of the
-/// motion does. Standard uncertainties hold for noise with the correlation that the residuals show.
+/// Levels and what else the force is proportional to begin where a linear fit puts them, shapes where a search on a few
+/// scales of the motion does. Standard uncertainties hold for noise with the correlation that the residuals show.
 ///
-/// At rest, and between two samples with velocities of opposite signs, a law of the speed that leaps there says no more than between which
-/// levels friction lies: such a sample does not count, and a static level is held at the sliding one. A law with internal state says
-/// friction there too; where its bristles are at the beginning of a record is fitted.
+/// At rest, and between two samples with velocities of opposite signs, a law of the speed that leaps there says no more
+/// than between which levels friction lies: such a sample does not count, and a static level is held at the sliding
+/// one. A law with internal state says friction there too; where its bristles are at the beginning of a record is
+/// fitted.
 ///
 /// ```
 /// use fmm_identify::{ForceModel, ForceRecord, identify_force};
@@ -80,8 +81,9 @@ const ROUNDING: f64 = 1e-9;
 /// ```
 ///
 /// # Errors
-/// [`IdentifyError::Missing`] without a record, [`IdentifyError::WrongRecord`] and [`IdentifyError::Contradiction`] if the records do not
-/// go together, [`IdentifyError::TooFew`], and [`IdentifyError::Simulation`] or [`IdentifyError::Fit`] if the fit cannot begin.
+/// [`IdentifyError::Missing`] without a record, [`IdentifyError::WrongRecord`] and [`IdentifyError::Contradiction`] if
+/// the records do not go together, [`IdentifyError::TooFew`], and [`IdentifyError::Simulation`] or
+/// [`IdentifyError::Fit`] if the fit cannot begin.
 pub fn identify_force(model: &ForceModel, records: &[ForceRecord]) -> Result<ForceIdentification, IdentifyError> {
     let model = model.settled(records);
     let problem = ForceProblem::new(&model, records)?;
@@ -155,7 +157,8 @@ pub fn identify_force(model: &ForceModel, records: &[ForceRecord]) -> Result<For
     Ok(ForceIdentification { model, fit, findings, warnings, structure, force: forces, units, counted })
 }
 
-/// What is stated as an excess over the sliding level, as the level that it makes with it; variances are larger by `spread`.
+/// What is stated as an excess over the sliding level, as the level that it makes with it; variances are larger by
+/// `spread`.
 fn levels_above(problem: &ForceProblem<'_>, fit: &Fit, covariance: &Covariance, spread: f64) -> Vec<Finding> {
     let law = problem.law();
     let Some(level) = law.level() else { return Vec::new() };
@@ -255,8 +258,9 @@ impl ForceIdentification {
         Validation { rms: self.rms_residual(), force: self.force }.share()
     }
 
-    /// The force that was found at each sample of `record`, to which nothing is fitted but where its bristles begin; `None` where a delay
-    /// asks for a motion before or after what was measured, and at a sample that [does not count](identify_force).
+    /// The force that was found at each sample of `record`, to which nothing is fitted but where its bristles begin;
+    /// `None` where a delay asks for a motion before or after what was measured, and at a sample that [does not
+    /// count](identify_force).
     ///
     /// # Errors
     /// As for [`identify_force`], of a record beside those that were fitted.

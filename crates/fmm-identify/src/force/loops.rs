@@ -15,8 +15,8 @@ pub struct ForceLoop {
     pub energy: Estimated,
     /// The energy over the length of the way, which is the mean friction of the cycle, in the unit of the force.
     pub friction: Estimated,
-    /// Rise of the force with the position, by the unit of force per position, beside a level of friction and a zero; its uncertainty takes
-    /// all that these three leave for noise.
+    /// Rise of the force with the position, by the unit of force per position, beside a level of friction and a zero;
+    /// its uncertainty takes all that these three leave for noise.
     pub stiffness: Estimated,
 }
 
@@ -26,8 +26,8 @@ const FEWEST: usize = 8;
 impl ForceRecord {
     /// The hysteresis loops of this record, one for each whole cycle between reversals; empty if there is none.
     ///
-    /// Uncertainties are those by the noise between neighbouring samples, taken to be white; a zero of the force does not matter, as the
-    /// mean force of each loop is left out.
+    /// Uncertainties are those by the noise between neighbouring samples, taken to be white; a zero of the force does
+    /// not matter, as the mean force of each loop is left out.
     ///
     /// ```
     /// use fmm_identify::ForceRecord;

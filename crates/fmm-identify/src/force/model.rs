@@ -12,9 +12,10 @@ use crate::{Candidate, ForceRecord, IdentifyError};
 /// F(t + τ) = (N + N₀) (µ + a |µ|) + c v + c₂ |v| v + c₃ v³ + m v' + k x + A sin x + B cos x + F₀ + Σ κᵢ yᵢ(t + τ)
 /// ```
 ///
-/// µ is the law, with the sign of the velocity; N is 1 without a measured load, so that levels are forces. A force record tells the
-/// levels of the two directions apart, a = (F₊ − F₋)/(F₊ + F₋), which a ring-down does not: there they are a level and a force that
-/// moves the rest position. yᵢ are what was measured beside the force, [`ForceRecord::with_channel`].
+/// µ is the law, with the sign of the velocity; N is 1 without a measured load, so that levels are forces. A force
+/// record tells the levels of the two directions apart, a = (F₊ − F₋)/(F₊ + F₋), which a ring-down does not: there they
+/// are a level and a force that moves the rest position. yᵢ are what was measured beside the force,
+/// [`ForceRecord::with_channel`].
 ///
 /// ```
 /// use fmm_identify::ForceModel;
@@ -80,8 +81,8 @@ impl ForceModel {
     /// Friction by `law`, with the damping that stands beside it.
     ///
     /// # Errors
-    /// [`IdentifyError::Contradiction`] for a term of a spring, as the part `stiffness` is the spring of a force record, and for damping
-    /// with a free power, as that is a law.
+    /// [`IdentifyError::Contradiction`] for a term of a spring, as the part `stiffness` is the spring of a force
+    /// record, and for damping with a free power, as that is a law.
     pub fn of(law: Candidate) -> Result<Self, IdentifyError> {
         if law.terms().has_spring() {
             return Err(IdentifyError::contradiction(
@@ -99,8 +100,9 @@ impl ForceModel {
         Ok(Self { law, has: [false; Part::ALL.len()], longest: None })
     }
 
-    /// The model called so: a law of the [catalogue](Candidate::catalogue), then after plus signs terms of damping (`linear`,
-    /// `quadratic`, `cubic`, `any sign`) and parts (`zero`, `inertia`, `stiffness`, `gravity`, `asymmetry`, `load offset`, `channels`, `delay`).
+    /// The model called so: a law of the [catalogue](Candidate::catalogue), then after plus signs terms of damping
+    /// (`linear`, `quadratic`, `cubic`, `any sign`) and parts (`zero`, `inertia`, `stiffness`, `gravity`, `asymmetry`,
+    /// `load offset`, `channels`, `delay`).
     ///
     /// # Errors
     /// [`IdentifyError::UnknownName`], with the names there are, and as for [`of`](Self::of).
@@ -239,7 +241,8 @@ impl ForceModel {
         !self.law.law().is_of_speed()
     }
 
-    /// The parameters of a fit to `records`: those of the law, then [`shapes`](Self::shapes), asymmetry, load, delay and deflections.
+    /// The parameters of a fit to `records`: those of the law, then [`shapes`](Self::shapes), asymmetry, load, delay
+    /// and deflections.
     pub(crate) fn parameters(&self, records: &[ForceRecord]) -> Result<Vec<Parameter>, IdentifyError> {
         let law = self.law.law();
         law.require_units()?;
@@ -300,7 +303,8 @@ impl ForceModel {
     }
 }
 
-/// Units of the motion and of the force in `records`, and what a level of a law is stated as: a force, or, with a load, a coefficient.
+/// Units of the motion and of the force in `records`, and what a level of a law is stated as: a force, or, with a load,
+/// a coefficient.
 pub(crate) fn naming(records: &[ForceRecord]) -> (Units, Level) {
     let level = if records[0].loads.is_none() { Level::Force } else { Level::Coefficient };
     (Units::new(records[0].position_unit(), records[0].force_unit()), level)
@@ -347,7 +351,8 @@ impl Shape {
         Parameter::named(name, symbol, unit.to_string()).bounded(bounds)
     }
 
-    /// Its value at position `x`, velocity `v` and acceleration `a` with what was measured beside the force, and its slopes by these three.
+    /// Its value at position `x`, velocity `v` and acceleration `a` with what was measured beside the force, and its
+    /// slopes by these three.
     pub(crate) fn at(self, [x, v, a]: [f64; 3], channel: impl Fn(usize) -> f64) -> (f64, [f64; 3]) {
         match self {
             Self::Damping(Term::QuadraticDamping) => (v.abs() * v, [0.0, 2.0 * v.abs(), 0.0]),

@@ -12,16 +12,18 @@ pub struct Onset {
     pub begin: f64,
     /// The sign of the velocity that follows (±1).
     pub direction: f64,
-    /// Rise of the force with the displacement where that begins, by the unit of force per position: the presliding stiffness. After a
-    /// reversal Dahl's law has up to twice the stiffness of its bristles there, elements have all of theirs.
+    /// Rise of the force with the displacement where that begins, by the unit of force per position: the presliding
+    /// stiffness. After a reversal Dahl's law has up to twice the stiffness of its bristles there, elements have all of
+    /// theirs.
     pub stiffness: Estimated,
-    /// The force along the direction at which the contact breaks away, in the unit of the force: the largest middle one of three samples
-    /// before it slides, so that it is as much too small as the force rises in a sample; what does
+    /// The force along the direction at which the contact breaks away, in the unit of the force: the largest middle one
+    /// of three samples before it slides, so that it is as much too small as the force rises in a sample; what does
     /// not change with the direction is in it.
     pub breakaway: Estimated,
     /// Median force along the direction in the later half of the samples, while the contact slides, in the same unit.
     pub sliding: Estimated,
-    /// The displacement in which the force would rise to the sliding one by the presliding stiffness (m, or the unit of position).
+    /// The displacement in which the force would rise to the sliding one by the presliding stiffness (m, or the unit of
+    /// position).
     pub displacement: f64,
 }
 
@@ -33,8 +35,8 @@ const SLOPE: f64 = 0.5;
 const BEFORE: f64 = 4.0;
 
 impl ForceRecord {
-    /// The onsets of sliding that this record shows by enough samples: of a slow ramp, or of a slow motion to and fro. A motion that is
-    /// over the presliding in fewer than six samples shows none.
+    /// The onsets of sliding that this record shows by enough samples: of a slow ramp, or of a slow motion to and fro.
+    /// A motion that is over the presliding in fewer than six samples shows none.
     ///
     /// ```
     /// use fmm_identify::ForceRecord;

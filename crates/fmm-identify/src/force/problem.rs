@@ -13,8 +13,8 @@ use crate::{ForceModel, ForceRecord, IdentifyError};
 
 /// The residuals "model less force" of records, one after the other.
 ///
-/// Where the contact rests or turns, friction by a law of the speed that leaps there lies anywhere between the levels: such a sample does
-/// not count.
+/// Where the contact rests or turns, friction by a law of the speed that leaps there lies anywhere between the levels:
+/// such a sample does not count.
 #[derive(Debug)]
 pub(crate) struct ForceProblem<'a> {
     records: &'a [ForceRecord],
@@ -196,8 +196,8 @@ impl<'a> ForceProblem<'a> {
         self.shapes.iter().zip(&p[self.layout.shapes..]).map(|(shape, factor)| factor * parts.of(*shape).0).sum()
     }
 
-    /// Residual of a sample whose friction coefficient is `friction`, and its slopes by that coefficient at a load of one and by what
-    /// stands beside friction.
+    /// Residual of a sample whose friction coefficient is `friction`, and its slopes by that coefficient at a load of
+    /// one and by what stands beside friction.
     #[inline]
     fn residual(&self, p: &[f64], parts: &Parts<'_>, friction: f64, force: f64) -> (f64, f64, f64) {
         if !parts.counts {
@@ -247,7 +247,8 @@ impl<'a> ForceProblem<'a> {
         self.records.iter().zip(&self.rows).map(of_record).sum()
     }
 
-    /// What the model says of the force at the samples of `record` that are compared: `None` for a sample of which it says nothing.
+    /// What the model says of the force at the samples of `record` that are compared: `None` for a sample of which it
+    /// says nothing.
     pub(crate) fn predicted(&self, record: usize, p: &[f64]) -> Result<Vec<Option<f64>>, EvaluationError> {
         let mut residuals = vec![0.0; self.len()];
         self.residuals(p, &mut residuals)?;
@@ -265,7 +266,8 @@ impl<'a> ForceProblem<'a> {
         self.law.is_of_speed() && at_rest().is_some_and(|level| level > 0.0)
     }
 
-    /// Deflection of the bristles (1) at the first sample of `record` with which a fit begins: they have come the way they go on.
+    /// Deflection of the bristles (1) at the first sample of `record` with which a fit begins: they have come the way
+    /// they go on.
     fn first_deflection(&self, record: usize) -> f64 {
         let data = &self.records[record];
         data.motion

@@ -36,13 +36,14 @@ const FEWEST_SAMPLES: usize = 3;
 const REST: f64 = 1e-3;
 
 impl ForceRecord {
-    /// A record of `positions` (m) and `forces` (N) at `times` (s). Noise and steps of the positions are averaged over as many samples as a
-    /// cubic follows; velocities and accelerations are the slopes of these cubics. Give measured ones where there are some.
+    /// A record of `positions` (m) and `forces` (N) at `times` (s). Noise and steps of the positions are averaged over
+    /// as many samples as a cubic follows; velocities and accelerations are the slopes of these cubics. Give measured
+    /// ones where there are some.
     ///
     /// # Errors
-    /// [`IdentifyError::Contradiction`] if the lists differ in length, [`IdentifyError::OutOfRange`] if the times do not ascend,
-    /// [`IdentifyError::TooFew`], [`IdentifyError::InvalidInput`] for a number that is not finite, and [`IdentifyError::NotSeen`] if
-    /// nothing moves.
+    /// [`IdentifyError::Contradiction`] if the lists differ in length, [`IdentifyError::OutOfRange`] if the times do
+    /// not ascend, [`IdentifyError::TooFew`], [`IdentifyError::InvalidInput`] for a number that is not finite, and
+    /// [`IdentifyError::NotSeen`] if nothing moves.
     pub fn of_positions(times: &[f64], positions: &[f64], forces: &[f64]) -> Result<Self, IdentifyError> {
         require_times(times)?;
         require_series(times, positions, "position", "m")?;
@@ -51,8 +52,8 @@ impl ForceRecord {
         Self::along(times, values, forces).moving_at(&slopes)
     }
 
-    /// A record of which `velocities` (m/s) were measured beside the `forces` (N) at `times` (s), and no positions: these are the sum of
-    /// the velocities, from 0.
+    /// A record of which `velocities` (m/s) were measured beside the `forces` (N) at `times` (s), and no positions:
+    /// these are the sum of the velocities, from 0.
     ///
     /// # Errors
     /// As for [`of_positions`](Self::of_positions).
@@ -91,15 +92,16 @@ impl ForceRecord {
     /// The same with measured `velocities` (m/s), as they are; accelerations are the slopes of their cubics.
     ///
     /// # Errors
-    /// As for [`of_positions`](Self::of_positions), and [`IdentifyError::Contradiction`] for velocities that go with the slope of the
-    /// positions, but are more than three times or less than a third of it, or of the other sign.
+    /// As for [`of_positions`](Self::of_positions), and [`IdentifyError::Contradiction`] for velocities that go with
+    /// the slope of the positions, but are more than three times or less than a third of it, or of the other sign.
     pub fn with_velocities(self, velocities: &[f64]) -> Result<Self, IdentifyError> {
         require_series(&self.motion.times, velocities, "velocity", "m/s")?;
         self.require_slope(velocities)?;
         self.moving_at(velocities)
     }
 
-    /// Refuses velocities that are another multiple of the slope of the positions than noise and drift can make of them.
+    /// Refuses velocities that are another multiple of the slope of the positions than noise and drift can make of
+    /// them.
     fn require_slope(&self, velocities: &[f64]) -> Result<(), IdentifyError> {
         /// Correlation of both from which on the multiple tells.
         const ALIKE: f64 = 0.9;
@@ -141,13 +143,14 @@ impl ForceRecord {
         Ok(self)
     }
 
-    /// The same with `values` of a channel called `name` that was measured beside the force, of which the force holds a share: the
-    /// actuator of a brake, the other end of a band, a second load cell. Hum and noise are averaged over `seconds` around each sample, by
-    /// the cubic of least squares; with 0 the values stay as they are. Noise that is left in them makes shares a little too small.
+    /// The same with `values` of a channel called `name` that was measured beside the force, of which the force holds a
+    /// share: the actuator of a brake, the other end of a band, a second load cell. Hum and noise are averaged over
+    /// `seconds` around each sample, by the cubic of least squares; with 0 the values stay as they are. Noise that is
+    /// left in them makes shares a little too small.
     ///
     /// # Errors
-    /// As for [`of_positions`](Self::of_positions), and [`IdentifyError::Contradiction`] for a name that is there or a time that is
-    /// neither 0 nor between five samples and the whole record.
+    /// As for [`of_positions`](Self::of_positions), and [`IdentifyError::Contradiction`] for a name that is there or a
+    /// time that is neither 0 nor between five samples and the whole record.
     pub fn with_channel(mut self, name: &str, values: &[f64], seconds: f64) -> Result<Self, IdentifyError> {
         require_series(&self.motion.times, values, "channel", "of a force")?;
         if self.channels.iter().any(|(other, _)| other == name) {
@@ -239,7 +242,8 @@ impl ForceRecord {
         )))
     }
 
-    /// Standard deviation of what differs between neighbouring samples of the force, in its unit: its noise, or a step of its converter.
+    /// Standard deviation of what differs between neighbouring samples of the force, in its unit: its noise, or a step
+    /// of its converter.
     pub(crate) fn noise(&self) -> f64 {
         // Of white noise a second difference has √6 times the deviation; of a median the deviation is 1.4826 times.
         let bends: Vec<f64> = self.forces.windows(3).map(|f| f[0] - 2.0 * f[1] + f[2]).collect();

@@ -10,13 +10,15 @@ pub(crate) struct Smoothed {
 
 /// Neighbours to either side that are tried, the fewest first.
 const WIDTHS: [usize; 13] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128];
-/// What cubics leave of a series grows with the fourth power of the neighbours where they do not follow it, and not at all where it is white
-/// noise; up to this power it is taken for noise. Steps, which stay while the series is slow, lie between.
+/// What cubics leave of a series grows with the fourth power of the neighbours where they do not follow it, and not at
+/// all where it is white noise; up to this power it is taken for noise. Steps, which stay while the series is slow, lie
+/// between.
 const GROWTH: f64 = 0.7;
 /// Samples, spread over the series, by which that is decided.
 const LOOKED_AT: usize = 2000;
 
-/// A cubic through neighbours: value and slope at the sample, and the squares that it leaves, over its degrees of freedom.
+/// A cubic through neighbours: value and slope at the sample, and the squares that it leaves, over its degrees of
+/// freedom.
 struct Cubic {
     value: f64,
     slope: f64,
@@ -24,8 +26,8 @@ struct Cubic {
 }
 
 impl Smoothed {
-    /// That of `values` at `times` (s), at least three, which ascend. A series without noise stays as it is, and has the slopes of the
-    /// parabola through a sample and its neighbours.
+    /// That of `values` at `times` (s), at least three, which ascend. A series without noise stays as it is, and has
+    /// the slopes of the parabola through a sample and its neighbours.
     pub(crate) fn of(times: &[f64], values: &[f64]) -> Self {
         let count = times.len();
         let stride = count.div_ceil(LOOKED_AT);
@@ -50,7 +52,8 @@ impl Smoothed {
         chosen.and_then(|width| Self::by_cubics(times, values, width)).unwrap_or_else(plain)
     }
 
-    /// That of `values` by cubics through `width` neighbours to either side; `None` if there are not enough samples for that.
+    /// That of `values` by cubics through `width` neighbours to either side; `None` if there are not enough samples for
+    /// that.
     pub(crate) fn by_cubics(times: &[f64], values: &[f64], width: usize) -> Option<Self> {
         let count = times.len();
         let is_enough = width >= WIDTHS[0] && 2 * width < count;
@@ -64,8 +67,8 @@ impl Smoothed {
     }
 }
 
-/// The cubic of least squares through `width` neighbours to either side of sample `at`, as far as there are any; `None` if they do not
-/// determine it.
+/// The cubic of least squares through `width` neighbours to either side of sample `at`, as far as there are any; `None`
+/// if they do not determine it.
 fn cubic(times: &[f64], values: &[f64], at: usize, width: usize) -> Option<Cubic> {
     const ORDER: usize = 4;
     // At the ends as many neighbours, of one side.
@@ -86,8 +89,8 @@ fn cubic(times: &[f64], values: &[f64], at: usize, width: usize) -> Option<Cubic
         square += y * y;
     }
     let right = normal.map(|row| row[ORDER]);
-    // Positive definite: no pivot need be looked for. Four rows are eliminated here, once a sample and a width that is tried;
-    // nalgebra would be a dependency of the crate for these lines alone.
+    // Positive definite: no pivot need be looked for. Four rows are eliminated here, once a sample and a width that is
+    // tried; nalgebra would be a dependency of the crate for these lines alone.
     for pivot in 0..ORDER {
         if normal[pivot][pivot] <= 1e-14 {
             return None;

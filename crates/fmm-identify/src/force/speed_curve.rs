@@ -11,8 +11,8 @@ pub struct SpeedBin {
     pub speed: f64,
     /// Friction, in the unit of the force.
     pub friction: Estimated,
-    /// What does not change with the direction, half the sum of the two medians, in the same unit: the zero of the sensor, gravity, or
-    /// levels that differ by direction.
+    /// What does not change with the direction, half the sum of the two medians, in the same unit: the zero of the
+    /// sensor, gravity, or levels that differ by direction.
     pub offset: Estimated,
     /// Median normal load (N); `None` where none was measured.
     pub load: Option<f64>,
@@ -39,9 +39,9 @@ const FEWEST: usize = 8;
 const MEDIAN: f64 = 1.253_314_137_315_500_3;
 
 impl ForceRecord {
-    /// Friction in up to `count` bins of speed with as many samples each, slow ones first; without those that only one direction
-    /// passes. Uncertainties take the scatter within a bin for noise, of which neighbouring samples share what their correlation says;
-    /// a force that is bent within a bin, or differs from pass to pass, is in them.
+    /// Friction in up to `count` bins of speed with as many samples each, slow ones first; without those that only one
+    /// direction passes. Uncertainties take the scatter within a bin for noise, of which neighbouring samples share
+    /// what their correlation says; a force that is bent within a bin, or differs from pass to pass, is in them.
     ///
     /// ```
     /// use fmm_identify::ForceRecord;
@@ -61,8 +61,9 @@ impl ForceRecord {
         self.bins((0..self.len()).collect(), count)
     }
 
-    /// As [`friction_over_speed`](Self::friction_over_speed), for up to `loads` groups of the measured normal load with as many samples
-    /// each, light ones first: Stribeck's plot, friction by load over speed by load. Without a measured load there is one group.
+    /// As [`friction_over_speed`](Self::friction_over_speed), for up to `loads` groups of the measured normal load with
+    /// as many samples each, light ones first: Stribeck's plot, friction by load over speed by load. Without a measured
+    /// load there is one group.
     ///
     /// ```
     /// use fmm_identify::ForceRecord;

@@ -51,7 +51,8 @@ pub(crate) fn starts(problem: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, Evalua
     nearest(&mut found);
     if let Some(place) = problem.delay().filter(|place| !problem.parameters()[*place].bounds().is_fixed()) {
         let longest = problem.parameters()[place].bounds().upper();
-        // First over all delays, then between those that are looked at: where friction jumps, no derivative leads there.
+        // First over all delays, then between those that are looked at: where friction jumps, no derivative leads
+        // there.
         for width in [longest, longest / f64::from(DELAYS)] {
             let best = found[0].1.clone();
             for step in (-DELAYS..=DELAYS).filter(|step| *step != 0) {

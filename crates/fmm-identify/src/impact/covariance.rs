@@ -96,7 +96,8 @@ impl ImpactCovariance {
         self.random.inflation
     }
 
-    /// Variance of the product of the normal load and parameter `index`, of `values`, if the load was held: by noise, and in all.
+    /// Variance of the product of the normal load and parameter `index`, of `values`, if the load was held: by noise,
+    /// and in all.
     pub(crate) fn variances_times_load(&self, index: usize, values: &[f64]) -> Option<(f64, f64)> {
         let load = values[LOAD];
         let random = load * load * self.variances(index)?.0;
@@ -169,9 +170,9 @@ fn series(problem: &ImpactProblem<'_>) -> Vec<Range<usize>> {
 /// ```
 ///
 /// T and L are the derivatives of samples and lines, and B makes lines of samples; e is white noise. A band
-/// that holds all that a parameter changes has L = BT and LᵀL = TᵀT, and V is that of the samples alone. σ² is the larger of what
-/// samples and lines show, as a misfit shows least diluted in the lines. What is known of the pulses is counted twice like the record,
-/// of which it is independent.
+/// that holds all that a parameter changes has L = BT and LᵀL = TᵀT, and V is that of the samples alone. σ² is the
+/// larger of what samples and lines show, as a misfit shows least diluted in the lines. What is known of the pulses is
+/// counted twice like the record, of which it is independent.
 fn of_both(problem: &ImpactProblem<'_>, fit: &Fit) -> Result<Vec<Option<f64>>, EvaluationError> {
     let count = fit.values().len();
     let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();

@@ -74,7 +74,8 @@ fn compare_with_differences<F: LawFamily>(law: &[f64]) {
                 let (column, rest) = columns.split_at(block.rows());
                 let difference = |i: usize| (above[row + i] - below[row + i]) / (2.0 * h);
                 let scale = column.iter().fold(0.0f64, |scale, d| scale.max(d.abs()));
-                // A reversal may cross a sample within h, which spoils its difference: one sample per half swing at most.
+                // A reversal may cross a sample within h, which spoils its difference: one sample per half swing at
+                // most.
                 let off = (0..block.rows()).filter(|&i| (column[i] - difference(i)).abs() > 1e-4 * scale).count();
                 let has_effect = scale > 0.0 || (name.starts_with("offset") && domain == ImpactDomain::Mobility);
                 let worst = (0..block.rows()).map(|i| (column[i] - difference(i)).abs() / scale).fold(0.0, f64::max);

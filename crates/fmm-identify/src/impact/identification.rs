@@ -36,16 +36,17 @@ pub struct ImpactIdentification {
 
 /// Identifies the parameters of law family `F` from blows on one machine.
 ///
-/// No start values are needed: they come from the height of the receptance peaks ([`ImpactProblem::closed_form`]). Laws with more
-/// than one level continue a fit of dry friction; a fit to the time record continues one to the mobility, which is quick.
+/// No start values are needed: they come from the height of the receptance peaks ([`ImpactProblem::closed_form`]). Laws
+/// with more than one level continue a fit of dry friction; a fit to the time record continues one to the mobility,
+/// which is quick.
 ///
-/// Standard uncertainties hold the noise of the velocity, as the residuals show it; what the samples of the force leave open of
-/// each pulse, and the calibration of the hammer, as far as the motion does not tell; and the uncertainty of everything held: mass,
-/// stiffness, damping and load of the machine, the calibration of the velocity channel, and the offset taken from each velocity
-/// (JCGM 100:2008, 5.1.2).
+/// Standard uncertainties hold the noise of the velocity, as the residuals show it; what the samples of the force leave
+/// open of each pulse, and the calibration of the hammer, as far as the motion does not tell; and the uncertainty of
+/// everything held: mass, stiffness, damping and load of the machine, the calibration of the velocity channel, and the
+/// offset taken from each velocity (JCGM 100:2008, 5.1.2).
 ///
-/// A decay shows friction with little help of the impulse, so that a coarse pulse or a hammer of unknown calibration widens the
-/// uncertainty of friction twofold at most; mass and load set its scale.
+/// A decay shows friction with little help of the impulse, so that a coarse pulse or a hammer of unknown calibration
+/// widens the uncertainty of friction twofold at most; mass and load set its scale.
 ///
 /// # Errors
 /// As for [`ImpactProblem::new`], and [`IdentifyError::Fit`] if the fit cannot begin. How it *ends* is in the result.
@@ -203,7 +204,8 @@ impl ImpactIdentification {
         &self.options
     }
 
-    /// The fit behind the findings. Its own uncertainties are those of independent residuals, and all else known exactly.
+    /// The fit behind the findings. Its own uncertainties are those of independent residuals, and all else known
+    /// exactly.
     pub fn fit(&self) -> &Fit {
         &self.fit
     }
@@ -233,7 +235,8 @@ impl ImpactIdentification {
         &self.motions
     }
 
-    /// For each trial the friction force (N) that its receptance peak gives without a fit, [`ImpactProblem::closed_form`].
+    /// For each trial the friction force (N) that its receptance peak gives without a fit,
+    /// [`ImpactProblem::closed_form`].
     pub fn closed_forms(&self) -> &[Option<f64>] {
         &self.closed_forms
     }
@@ -248,15 +251,15 @@ impl ImpactIdentification {
         self.residual
     }
 
-    /// χ (1), what remains of the residuals by the noise of the velocity, when the pulses and all that was held may be off within
-    /// what is known of them: about 1 if the law describes the blows. Of a time record it is that of all samples or of the lines
-    /// in the band, whichever is larger.
+    /// χ (1), what remains of the residuals by the noise of the velocity, when the pulses and all that was held may be
+    /// off within what is known of them: about 1 if the law describes the blows. Of a time record it is that of all
+    /// samples or of the lines in the band, whichever is larger.
     pub fn chi(&self) -> f64 {
         self.chi
     }
 
-    /// Velocity (m/s) that the law gives for every sample of `trial`, which must be one of the `trials` of the identification;
-    /// `None` for another number.
+    /// Velocity (m/s) that the law gives for every sample of `trial`, which must be one of the `trials` of the
+    /// identification; `None` for another number.
     pub fn model(&self, trials: &[ImpactTrial], trial: usize) -> Option<Vec<f64>> {
         if trial >= trials.len() || trials.len() != self.trials.len() {
             return None;

@@ -29,8 +29,8 @@ pub(crate) struct Scratch {
 }
 
 impl Lines {
-    /// The lines of records that `plan` is for, sampled at `rate` (Hz), within `band` (Hz). The line of zero frequency and that of half the
-    /// rate, which have no imaginary part, are left out.
+    /// The lines of records that `plan` is for, sampled at `rate` (Hz), within `band` (Hz). The line of zero frequency
+    /// and that of half the rate, which have no imaginary part, are left out.
     pub(crate) fn new(plan: RealTransform, rate: f64, band: (f64, f64)) -> Result<Self, IdentifyError> {
         let length = plan.length();
         let position = |frequency: f64| frequency * length as f64 / rate;
@@ -61,8 +61,8 @@ impl Lines {
         (2.0 / self.plan.length() as f64).sqrt()
     }
 
-    /// Writes real and imaginary part of each line of `series`, which begins with sample `begin` of a record that is zero
-    /// elsewhere.
+    /// Writes real and imaginary part of each line of `series`, which begins with sample `begin` of a record that is
+    /// zero elsewhere.
     pub(crate) fn transform(
         &self,
         begin: usize,

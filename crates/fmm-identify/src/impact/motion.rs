@@ -10,8 +10,8 @@ pub(crate) const FEWEST_QUIET: usize = 16;
 /// A motion is seen this far above the noise (standard deviations), or this share of its largest velocity.
 const SEEN: f64 = 6.0;
 const SEEN_SHARE: f64 = 1e-3;
-/// Means that show motion below the noise are over this part of the motion, and no more samples than that, so that drift and hum
-/// are not taken for motion.
+/// Means that show motion below the noise are over this part of the motion, and no more samples than that, so that
+/// drift and hum are not taken for motion.
 const SWINGS: usize = 32;
 const LONGEST_MEAN: usize = 64;
 /// Share of an offset that may be rounding.
@@ -39,9 +39,9 @@ pub(crate) fn bridged(record: &Record) -> (Vec<f64>, usize) {
     (values, count)
 }
 
-/// The last sample in which a mean over a small part of the motion, which runs from `begin` to `last` at least, is off the `rough`
-/// offset by more than [`SEEN`] times its uncertainty, for samples of this `deviation`. The last swing is often below the noise of
-/// single samples, and all of it to one side, which would make an offset of it.
+/// The last sample in which a mean over a small part of the motion, which runs from `begin` to `last` at least, is off
+/// the `rough` offset by more than [`SEEN`] times its uncertainty, for samples of this `deviation`. The last swing is
+/// often below the noise of single samples, and all of it to one side, which would make an offset of it.
 fn last_in_means(velocity: &[f64], begin: usize, last: usize, rough: &Estimated, deviation: f64) -> Option<usize> {
     let span = ((last - begin) / SWINGS).clamp(1, LONGEST_MEAN);
     let seen = SEEN * (deviation / (span as f64).sqrt()).hypot(rough.uncertainty);

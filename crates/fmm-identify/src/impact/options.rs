@@ -13,24 +13,26 @@ use fmm_model::ModelError;
 /// lines:     r_k = √(2/n) (V_model(f_k) − V(f_k)) = √(2/n) F(f_k) (H_model(f_k) − H(f_k))              (2)
 /// ```
 ///
-/// (2) is the complex mobility, weighted with the force: white noise σ of the velocity then gives real and imaginary part of every
-/// line the variance σ², as it does every sample, while the mobility itself is noisy where there is little force. With the sum
-/// over all lines (2) is (1) by Parseval's theorem, so that a band is the part of the time record that lies in it.
+/// (2) is the complex mobility, weighted with the force: white noise σ of the velocity then gives real and imaginary
+/// part of every line the variance σ², as it does every sample, while the mobility itself is noisy where there is
+/// little force. With the sum over all lines (2) is (1) by Parseval's theorem, so that a band is the part of the time
+/// record that lies in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum ImpactDomain {
-    /// The complex mobility in a band, (2). What lies outside the band does not count: an offset, drift, hum, other modes.
+    /// The complex mobility in a band, (2). What lies outside the band does not count: an offset, drift, hum, other
+    /// modes.
     #[default]
     Mobility,
-    /// The velocity from the end of the blow until a while after rest, (1). While the hammer is in contact the velocity follows a force
-    /// of which only the samples are known, so that these few samples count as zero.
+    /// The velocity from the end of the blow until a while after rest, (1). While the hammer is in contact the velocity
+    /// follows a force of which only the samples are known, so that these few samples count as zero.
     Time,
     /// Both, as they are: what lies in the band counts twice for the estimate, once for its uncertainty.
     Both,
 }
 
-/// How blows are fitted; the default takes the mobility from half to twice the natural frequency, finds the parameters of the law
-/// and holds everything else at what is known.
+/// How blows are fitted; the default takes the mobility from half to twice the natural frequency, finds the parameters
+/// of the law and holds everything else at what is known.
 ///
 /// What can be set free or held, beside the parameters of the law by its own names:
 ///
@@ -43,9 +45,9 @@ pub enum ImpactDomain {
 /// | `impulse_error` of each trial | 1 | by how much straight lines between the samples of the force have too large an impulse |
 /// | `pulse_delay` of each trial | s | how much later the blow acts than these straight lines |
 ///
-/// The last two are found like the friction, but near zero, as far as [`ImpactSummary`](crate::ImpactSummary) says that they are
-/// known; free, they are not known at all, and held they are an uncertain input. A free `force_gain` takes the error of the impulse
-/// in.
+/// The last two are found like the friction, but near zero, as far as [`ImpactSummary`](crate::ImpactSummary) says that
+/// they are known; free, they are not known at all, and held they are an uncertain input. A free `force_gain` takes the
+/// error of the impulse in.
 ///
 /// ```
 /// use fmm_identify::{ImpactDomain, ImpactOptions};
@@ -98,8 +100,8 @@ impl ImpactOptions {
         self
     }
 
-    /// The same with one more parameter held at `value`, in its unit. Its uncertainty stays that of what is known of it; a parameter
-    /// of the law has none then.
+    /// The same with one more parameter held at `value`, in its unit. Its uncertainty stays that of what is known of
+    /// it; a parameter of the law has none then.
     ///
     /// # Errors
     /// [`ModelError::NotFinite`]. Whether there is such a parameter shows when the law is known.
@@ -109,8 +111,9 @@ impl ImpactOptions {
         Ok(self)
     }
 
-    /// The same with a relative standard uncertainty (1) of the calibration of the hammer, which all trials share. That of each
-    /// impulse is added by itself. The fit takes both for what is known before: where the motion tells the impulse better, it counts.
+    /// The same with a relative standard uncertainty (1) of the calibration of the hammer, which all trials share. That
+    /// of each impulse is added by itself. The fit takes both for what is known before: where the motion tells the
+    /// impulse better, it counts.
     ///
     /// # Errors
     /// [`ModelError`] if it is negative or not finite.
@@ -120,7 +123,8 @@ impl ImpactOptions {
         Ok(self)
     }
 
-    /// The same with a relative standard uncertainty (1) of the calibration of the velocity channel, which all trials share.
+    /// The same with a relative standard uncertainty (1) of the calibration of the velocity channel, which all trials
+    /// share.
     ///
     /// # Errors
     /// [`ModelError`] if it is negative or not finite.

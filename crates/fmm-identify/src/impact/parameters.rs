@@ -38,8 +38,8 @@ const OWN: [Parameter; PER_TRIAL] = [
     Parameter::new("pulse_delay", "δ", "s"),
 ];
 
-/// All parameters: machine, gain of the response, law, then for each trial gain of the force, offset, error of the impulse and
-/// delay of the pulse.
+/// All parameters: machine, gain of the response, law, then for each trial gain of the force, offset, error of the
+/// impulse and delay of the pulse.
 #[derive(Debug, Clone)]
 pub(crate) struct Parameters {
     pub(crate) all: Vec<Parameter>,

@@ -19,19 +19,20 @@ use crate::{IdentifyError, Known};
 
 /// The residuals "model less measurement" of one or several blows by a law, with exact derivatives.
 ///
-/// The machine rests in the force-free position, held by friction, until the measured force, joined by straight lines between its
-/// samples, breaks it loose; the motion is followed through every reversal to where it stops. What is compared is said by
-/// [`ImpactDomain`], what can be found or held by [`ImpactOptions`]. The law's parameters and the machine are shared by
-/// all trials. Everything that is not found is an input with an uncertainty, of which
+/// The machine rests in the force-free position, held by friction, until the measured force, joined by straight lines
+/// between its samples, breaks it loose; the motion is followed through every reversal to where it stops. What is
+/// compared is said by [`ImpactDomain`], what can be found or held by [`ImpactOptions`]. The law's parameters and the
+/// machine are shared by all trials. Everything that is not found is an input with an uncertainty, of which
 /// [`Sensitivity`](fmm_fit::Sensitivity) can be asked.
 ///
-/// A gain g of the force channel, reading by force, multiplies mass, stiffness, damping and load in the equation of motion,
-/// which is how it enters here.
+/// A gain g of the force channel, reading by force, multiplies mass, stiffness, damping and load in the equation of
+/// motion, which is how it enters here.
 ///
-/// Between its samples a force is not known. Straight lines have its impulse and its centre on average over where the samples
-/// lie, but of one blow both are a little off: by a relative error ε of the impulse, which acts as a gain 1 + ε, and a delay δ.
-/// They are found with everything else, and what is known of them beforehand, [`ImpactSummary::impulse`](crate::ImpactSummary)
-/// with its uncertainty, are residuals after those of the trials: σ ε/u(ε) and σ δ/u(δ), with the noise σ of the velocity.
+/// Between its samples a force is not known. Straight lines have its impulse and its centre on average over where the
+/// samples lie, but of one blow both are a little off: by a relative error ε of the impulse, which acts as a gain 1 +
+/// ε, and a delay δ. They are found with everything else, and what is known of them beforehand,
+/// [`ImpactSummary::impulse`](crate::ImpactSummary) with its uncertainty, are residuals after those of the trials: σ
+/// ε/u(ε) and σ δ/u(δ), with the noise σ of the velocity.
 ///
 /// [`identify_impact`](crate::identify_impact) is what most want.
 #[derive(Debug)]
@@ -63,8 +64,8 @@ impl<'a> ImpactProblem<'a> {
     ///
     /// # Errors
     /// [`IdentifyError::Missing`], [`IdentifyError::NotSeen`], [`IdentifyError::UnknownName`],
-    /// [`IdentifyError::OutOfRange`], and [`IdentifyError::Contradiction`] if the damping is to be found beside a law that has
-    /// a viscous part.
+    /// [`IdentifyError::OutOfRange`], and [`IdentifyError::Contradiction`] if the damping is to be found beside a law
+    /// that has a viscous part.
     pub fn new<F: LawFamily>(
         machine: &ImpactMachine,
         trials: &'a [ImpactTrial],
@@ -139,8 +140,8 @@ impl<'a> ImpactProblem<'a> {
         other
     }
 
-    /// The same problem with derivatives by the held parameters as well, for [`Sensitivity`](fmm_fit::Sensitivity). A fit of it
-    /// would take longer.
+    /// The same problem with derivatives by the held parameters as well, for [`Sensitivity`](fmm_fit::Sensitivity). A
+    /// fit of it would take longer.
     #[must_use]
     pub fn with_derivatives_by_inputs(mut self) -> Self {
         self.is_complete = true;

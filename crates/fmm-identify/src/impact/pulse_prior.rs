@@ -2,17 +2,17 @@
 
 use crate::impact::parameters::{PER_TRIAL, Parameters};
 
-/// The errors of the impulses and the times of the pulses as what they are before the motion is looked at: about zero, within
-/// their uncertainties.
+/// The errors of the impulses and the times of the pulses as what they are before the motion is looked at: about zero,
+/// within their uncertainties.
 ///
 /// ```text
 /// r = σ L⁻¹ x,   V = L Lᵀ,   V = diag(u²) + u_c² 1 1ᵀ                                                     (1)
 /// rᵢ = σ (xᵢ − κᵢ Σ_{j<i} xⱼ/uⱼ²) / √(uᵢ² + κᵢ),   1/κᵢ = 1/u_c² + Σ_{j<i} 1/uⱼ²                          (2)
 /// ```
 ///
-/// (1) is generalised least squares: the residuals that a set of errors x of covariance V adds to those of a velocity with noise
-/// σ. The calibration of the hammer, u_c, is common to all impulses; (2) is L⁻¹ for that, each error by what those before it
-/// say of the calibration. Times have nothing in common.
+/// (1) is generalised least squares: the residuals that a set of errors x of covariance V adds to those of a velocity
+/// with noise σ. The calibration of the hammer, u_c, is common to all impulses; (2) is L⁻¹ for that, each error by what
+/// those before it say of the calibration. Times have nothing in common.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PulsePrior {
     /// Indices of the parameters, one for each residual.

@@ -8,17 +8,17 @@ use crate::estimators::banded::BandedFactor;
 use crate::impact::ImpactProblem;
 use crate::impact::lines::Scratch;
 
-/// Root mean square (m/s) of what remains of the residuals r of `fit` when what is held moves as far as its covariance C =
-/// Σ aₖ aₖᵀ explains, and what is found follows:
+/// Root mean square (m/s) of what remains of the residuals r of `fit` when what is held moves as far as its covariance
+/// C = Σ aₖ aₖᵀ explains, and what is found follows:
 ///
 /// ```text
 /// min over x of |r + Z x|² + σ² xᵀx,    Z = (1 − P) J_held A:    x = −(σ² 1 + ZᵀZ)⁻¹ Zᵀr                    (1)
 /// ```
 ///
-/// J_held are the derivatives by what is held, P projects on those by what was found, and σ is the noise. If noise and C are all
-/// that is wrong, (1) is about σ² times the number of residuals, however far the held values are off within C; what a law leaves
-/// out stays in it. A slow misfit of a long record shows in the lines of the band rather than in all samples, so that the larger
-/// of the two is taken.
+/// J_held are the derivatives by what is held, P projects on those by what was found, and σ is the noise. If noise and
+/// C are all that is wrong, (1) is about σ² times the number of residuals, however far the held values are off within
+/// C; what a law leaves out stays in it. A slow misfit of a long record shows in the lines of the band rather than in
+/// all samples, so that the larger of the two is taken.
 ///
 /// `problem` must give derivatives by what is held, and `inputs` is C, by rows.
 pub(crate) fn of(problem: &ImpactProblem<'_>, fit: &Fit, inputs: &[f64]) -> Result<f64, EvaluationError> {
@@ -99,8 +99,8 @@ fn allow_for(
     Ok(penalty)
 }
 
-/// Vectors aₖ over all `count` parameters with Σ aₖ aₖᵀ = C, the covariance `inputs` of those `held`: one for each that has an
-/// uncertainty, by Cholesky's factor.
+/// Vectors aₖ over all `count` parameters with Σ aₖ aₖᵀ = C, the covariance `inputs` of those `held`: one for each that
+/// has an uncertainty, by Cholesky's factor.
 fn sources(inputs: &[f64], held: &[usize], count: usize) -> Vec<Vec<f64>> {
     let width = held.len();
     let uncertain: Vec<usize> = (0..width).filter(|&place| inputs[place * width + place] > 0.0).collect();

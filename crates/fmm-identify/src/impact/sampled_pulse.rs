@@ -9,18 +9,20 @@ use std::ops::Range;
 /// var J = h² Σ_ends (s²/720 + q²/30240) + h² n σ²                                                         (2)
 /// ```
 ///
-/// (1) are impulse and centre of the samples joined by straight lines. With samples every h that lie anywhere against the pulse,
-/// neither is off on average, whatever the pulse: the mean of h Σ f(t₀ + i h) over t₀ is ∫ f dt. How far one such sum is off comes
-/// from the ends of the pulse, where it begins with a slope (s, in N per interval) or a curvature (q, in N per interval
-/// squared): by h s B₂(φ)/2 and h q B₃(φ)/6, with Bernoulli's polynomials of the part φ of an interval that lies between the end
-/// and the next sample (Euler's and Maclaurin's formula). With φ anywhere these have the variances |B₄|/4! = 1/720 and
+/// (1) are impulse and centre of the samples joined by straight lines. With samples every h that lie anywhere against
+/// the pulse, neither is off on average, whatever the pulse: the mean of h Σ f(t₀ + i h) over t₀ is ∫ f dt. How far one
+/// such sum is off comes from the ends of the pulse, where it begins with a slope (s, in N per interval) or a curvature
+/// (q, in N per interval squared): by h s B₂(φ)/2 and h q B₃(φ)/6, with Bernoulli's polynomials of the part φ of an
+/// interval that lies between the end and the next sample (Euler's and Maclaurin's formula). With φ anywhere these have
+/// the variances |B₄|/4! = 1/720 and
 /// |B₆|/6! = 1/30240 of (2). The n samples add the noise σ. A half sine has s = π F₀/n and is left with u(J)/J = 0.67/n² (n
 /// intervals, either end for itself), where the worst case is 0.82/n².
 ///
 /// A pulse that an anti-aliasing filter rounds before it is sampled is known better than that.
 ///
 /// # References
-/// F. W. J. Olver et al., NIST Digital Library of Mathematical Functions, 2.10(i), 24.2 and 24.13, <https://dlmf.nist.gov>.
+/// F. W. J. Olver et al., NIST Digital Library of Mathematical Functions, 2.10(i), 24.2 and 24.13,
+/// <https://dlmf.nist.gov>.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SampledPulse {
     /// Of the impulse (N s).
@@ -30,8 +32,8 @@ pub(crate) struct SampledPulse {
 }
 
 impl SampledPulse {
-    /// Of a `force` (N) sampled every `interval` (s), with this `noise` (N). It is zero but for `hits`, the ranges within which the
-    /// hammer is in contact.
+    /// Of a `force` (N) sampled every `interval` (s), with this `noise` (N). It is zero but for `hits`, the ranges
+    /// within which the hammer is in contact.
     pub(crate) fn of(force: &[f64], hits: &[Range<usize>], interval: f64, noise: f64) -> Self {
         let sum: f64 = force.iter().sum();
         let moment: f64 = force.iter().enumerate().map(|(i, f)| i as f64 * f).sum();
@@ -89,8 +91,8 @@ mod tests {
 
     #[test]
     fn errors_of_sampling_are_those_stated() {
-        // With whole intervals both ends lie alike: the sum errs √2 times as much as of ends that have nothing to do with each
-        // other, and the centre not at all. Halfway between, the errors of the two ends do the reverse.
+        // With whole intervals both ends lie alike: the sum errs √2 times as much as of ends that have nothing to do
+        // with each other, and the centre not at all. Halfway between, the errors of the two ends do the reverse.
         for (intervals, low, high) in [(10.0, 1.3, 1.5), (18.0, 1.3, 1.5), (18.25, 0.8, 1.2), (34.3, 0.8, 1.2)] {
             let [sum, centre] = errors_by_stated(|t| (PI * t).sin(), 2.0 / PI, intervals);
             assert!(

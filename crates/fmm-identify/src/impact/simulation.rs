@@ -88,8 +88,8 @@ impl ImpactProblem<'_> {
         (0..scale).filter(|number| self.is_wanted(Self::index(*number))).chain(has_scale.then_some(scale)).collect()
     }
 
-    /// Simulates `trial` by `simulate` from the beginning of its blow on, with derivatives by the numbers of a simulation in
-    /// `directions`, as far as its residuals need it.
+    /// Simulates `trial` by `simulate` from the beginning of its blow on, with derivatives by the numbers of a
+    /// simulation in `directions`, as far as its residuals need it.
     fn simulate<D: Scalar>(
         &self,
         simulate: Simulate<D>,
@@ -151,8 +151,8 @@ impl ImpactProblem<'_> {
         Ok(())
     }
 
-    /// Writes zeros for the samples during which the hammer of `trial` is in contact: there the velocity depends on the course of
-    /// a force of which only the samples are known, afterwards on its impulse and its time.
+    /// Writes zeros for the samples during which the hammer of `trial` is in contact: there the velocity depends on the
+    /// course of a force of which only the samples are known, afterwards on its impulse and its time.
     fn leave_contact_out(&self, trial: usize, rows: &mut [f64]) {
         let (samples, _) = self.rows(trial);
         for hit in self.trials()[trial].hits() {

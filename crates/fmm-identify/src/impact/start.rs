@@ -14,7 +14,8 @@ const DAMPING_RATIO: f64 = 1e-3;
 const VISCOUS_SHARE: f64 = 0.1;
 
 impl ImpactProblem<'_> {
-    /// Height (m/N) of the peak of the measured receptance of `trial` in the band; `None` for a trial that is not there.
+    /// Height (m/N) of the peak of the measured receptance of `trial` in the band; `None` for a trial that is not
+    /// there.
     ///
     /// Of a record that ends before the motion it is too low.
     pub fn peak_receptance(&self, trial: usize) -> Option<f64> {
@@ -27,11 +28,11 @@ impl ImpactProblem<'_> {
         receptances.filter(|receptance| receptance.is_finite()).reduce(f64::max)
     }
 
-    /// Friction force (N) that the closed form of [`friction_force_of_viscous_coulomb_impact`] makes of the receptance peak of
-    /// `trial`; `None` for a trial that is not there, or whose peak is higher than the damping alone allows.
+    /// Friction force (N) that the closed form of [`friction_force_of_viscous_coulomb_impact`] makes of the receptance
+    /// peak of `trial`; `None` for a trial that is not there, or whose peak is higher than the damping alone allows.
     ///
-    /// It takes friction as independent of velocity, and the record as long enough for the motion to end. With that it is good to
-    /// 0.5 % and some more between lines that miss the peak.
+    /// It takes friction as independent of velocity, and the record as long enough for the motion to end. With that it
+    /// is good to 0.5 % and some more between lines that miss the peak.
     pub fn closed_form(&self, trial: usize) -> Option<f64> {
         let impulse = self.trials().get(trial)?.summary().impulse.value.abs();
         let peak = self.peak_receptance(trial)?;
@@ -47,8 +48,8 @@ impl ImpactProblem<'_> {
         }
     }
 
-    /// Coefficient of dry friction that the trials show without a fit: from the receptance peaks or, where they do not tell, from
-    /// how long the motion lasts, T = π J/2F.
+    /// Coefficient of dry friction that the trials show without a fit: from the receptance peaks or, where they do not
+    /// tell, from how long the motion lasts, T = π J/2F.
     pub(crate) fn coefficient_without_fit(&self) -> f64 {
         let force = |trial: usize| {
             let of_trial = &self.trials()[trial];

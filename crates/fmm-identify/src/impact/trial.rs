@@ -18,10 +18,10 @@ const SPENT_SHARE: f64 = 1e-6;
 
 /// A blow: the force of its pulse and the velocity that it caused.
 ///
-/// The force is set to zero outside the pulse, as the noise of a hammer between blows has no effect on the machine: 0.5 N rms over
-/// 33 s at 10 kHz disturb every line of the spectrum of a blow of 1.4 N s by 2 %, within the pulse by 0.02 %. Offsets of both
-/// channels are taken from where they are quiet, and removed; isolated spikes of the velocity are bridged by straight lines. What
-/// was done stands in the [`summary`](Self::summary).
+/// The force is set to zero outside the pulse, as the noise of a hammer between blows has no effect on the machine: 0.5
+/// N rms over 33 s at 10 kHz disturb every line of the spectrum of a blow of 1.4 N s by 2 %, within the pulse by 0.02
+/// %. Offsets of both channels are taken from where they are quiet, and removed; isolated spikes of the velocity are
+/// bridged by straight lines. What was done stands in the [`summary`](Self::summary).
 ///
 /// ```
 /// use fmm_identify::ImpactTrial;
@@ -63,8 +63,9 @@ pub struct ImpactSummary {
     pub rate: f64,
     /// When the blow begins (s).
     pub begin: f64,
-    /// J, impulse (N s) by the trapezoid rule, further hits included; its uncertainty is that of what lies between the samples,
-    /// of the noise in the pulse and of the offset. Of a half sine over n intervals the first is J 0.67/n², by where the samples lie.
+    /// J, impulse (N s) by the trapezoid rule, further hits included; its uncertainty is that of what lies between the
+    /// samples, of the noise in the pulse and of the offset. Of a half sine over n intervals the first is J 0.67/n², by
+    /// where the samples lie.
     pub impulse: Estimated,
     /// Standard uncertainty (s) of when the impulse acts, for the same reasons.
     pub time_uncertainty: f64,
@@ -95,13 +96,13 @@ pub struct ImpactSummary {
 }
 
 impl ImpactTrial {
-    /// Prepares a trial of a `force` (N) and the `velocity` (m/s) that it causes, recorded together; a positive force must push
-    /// towards positive velocities.
+    /// Prepares a trial of a `force` (N) and the `velocity` (m/s) that it causes, recorded together; a positive force
+    /// must push towards positive velocities.
     ///
     /// # Errors
     /// [`IdentifyError::Impact`] with what is wrong between the two: quantity, number of samples, rate or beginning;
-    /// [`IdentifyError::WrongRecord`] for a channel of another quantity or unit, [`IdentifyError::TooFew`] if one is never quiet, and
-    /// [`IdentifyError::NotSeen`] without a blow, without motion, or for motion against the force.
+    /// [`IdentifyError::WrongRecord`] for a channel of another quantity or unit, [`IdentifyError::TooFew`] if one is
+    /// never quiet, and [`IdentifyError::NotSeen`] without a blow, without motion, or for motion against the force.
     pub fn prepare(force: &Record, velocity: &Record) -> Result<Self, IdentifyError> {
         require_together(force, velocity)?;
         let interval = velocity.interval();

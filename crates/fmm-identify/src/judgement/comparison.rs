@@ -19,20 +19,21 @@ pub struct NestedTest {
     pub restricted: String,
     /// Name of the law that has it as a special case.
     pub full: String,
-    /// Probability of so much less misfit by the full law if the restricted one is true, for the noise that the residuals
-    /// show (1).
+    /// Probability of so much less misfit by the full law if the restricted one is true, for the noise that the
+    /// residuals show (1).
     pub p_value: f64,
 }
 
 /// Identifications of the same records by several laws.
 ///
 /// A law is *excluded* if its misfit, beside the law that fits best, has p below 0.002 for the noise that the
-/// residuals show; correlated residuals count for as much as they tell, so that the answer is the same however often a record is
-/// sampled. Among the others the simplest with p of at least 0.0125 is preferred. The preference is *decided* if its
-/// p is at least 0.05 and what is left beside it are laws that have it as a special case, whose further parameters the record
-/// does not ask for, if no filter in the sensor would explain the record as well, and if no drift was fitted beside residuals that are
-/// still correlated. Where a simple law is true, about one simulated record of seven stays undecided (example `judgement`). The
-/// uncertainties of the preferred law include what the laws that are left would change, by how probable they are.
+/// residuals show; correlated residuals count for as much as they tell, so that the answer is the same however often a
+/// record is sampled. Among the others the simplest with p of at least 0.0125 is preferred. The preference is *decided*
+/// if its p is at least 0.05 and what is left beside it are laws that have it as a special case, whose further
+/// parameters the record does not ask for, if no filter in the sensor would explain the record as well, and if no drift
+/// was fitted beside residuals that are still correlated. Where a simple law is true, about one simulated record of
+/// seven stays undecided (example `judgement`). The uncertainties of the preferred law include what the laws that are
+/// left would change, by how probable they are.
 ///
 /// `Display` gives the report.
 #[derive(Debug, Clone)]
@@ -87,8 +88,8 @@ pub fn compare_observed(
     Comparison::of(decays, candidates, identifications)
 }
 
-/// Whether what is left of the records by the closest of these laws is noise: a drift that leaves more may be a law that misses
-/// something.
+/// Whether what is left of the records by the closest of these laws is noise: a drift that leaves more may be a law
+/// that misses something.
 pub(crate) fn explains(identifications: &[Identification]) -> bool {
     closest(identifications).is_some_and(|found| !found.structure().is_structured())
 }
@@ -160,8 +161,8 @@ fn tests(candidates: &[Candidate], identifications: &[Identification]) -> Vec<Ne
     tests
 }
 
-/// The level and straight line among the others that states the most different friction at rest, if it does so by more than half of it and has
-/// missed the record by far: what somebody would have reported who had asked no further.
+/// The level and straight line among the others that states the most different friction at rest, if it does so by more
+/// than half of it and has missed the record by far: what somebody would have reported who had asked no further.
 fn misled(identifications: &[Identification], preferred: usize) -> Option<Warning> {
     /// Residuals that exceed those of the preferred law by this factor do not describe the record.
     const FAR: f64 = 2.0;
@@ -198,19 +199,19 @@ fn unfinished(candidates: &[Candidate], identifications: &[Identification]) -> V
     candidates.iter().enumerate().flat_map(of_law).collect()
 }
 
-/// Widens the uncertainties of the preferred law's parameters for what other laws, which the record does not exclude, see
-/// differently; returns a warning for each that matters.
+/// Widens the uncertainties of the preferred law's parameters for what other laws, which the record does not exclude,
+/// see differently; returns a warning for each that matters.
 ///
-/// Preferring a law because the record is too short to show that it is too simple does not make it true. With the weight w of the
-/// other law the variance becomes
+/// Preferring a law because the record is too short to show that it is too simple does not make it true. With the
+/// weight w of the other law the variance becomes
 ///
 /// ```text
 /// (1 − w) u² + w (u_o² + (θ − θ_o)²)
 /// ```
 ///
 /// # References
-/// S. T. Buckland, K. P. Burnham, N. H. Augustin, "Model selection: an integral part of inference", Biometrics 53 (1997) 603,
-/// <https://doi.org/10.2307/2533961>.
+/// S. T. Buckland, K. P. Burnham, N. H. Augustin, "Model selection: an integral part of inference", Biometrics 53
+/// (1997) 603, <https://doi.org/10.2307/2533961>.
 fn widen_for_other_laws(
     candidates: &[Candidate],
     identifications: &mut [Identification],
@@ -304,14 +305,14 @@ impl Comparison {
         (0..self.identifications.len()).filter(left).map(|place| &self.identifications[place])
     }
 
-    /// p, probability of a misfit at least as large as that of each law, beside the law that fits best, if the law were true (1),
-    /// one per identification. It is no probability of the law.
+    /// p, probability of a misfit at least as large as that of each law, beside the law that fits best, if the law were
+    /// true (1), one per identification. It is no probability of the law.
     pub fn p_values(&self) -> &[f64] {
         &self.judgement.p_values
     }
 
-    /// The misfit of each law beside the law that fits best in variances of the noise, with 2 for each parameter that is determined
-    /// or on a bound other than zero (1), one per identification. Only differences mean anything.
+    /// The misfit of each law beside the law that fits best in variances of the noise, with 2 for each parameter that
+    /// is determined or on a bound other than zero (1), one per identification. Only differences mean anything.
     pub fn scores(&self) -> &[f64] {
         &self.judgement.scores
     }

@@ -16,7 +16,8 @@ const LEVEL: f64 = 0.95;
 pub enum LoadVerdict {
     /// It is in proportion to the load, as far as the runs tell: F = μ N (Amontons).
     Proportional,
-    /// It grows with the load from a level other than zero: F/N depends on the load, and one coefficient does not describe it.
+    /// It grows with the load from a level other than zero: F/N depends on the load, and one coefficient does not
+    /// describe it.
     Offset,
     /// It does not grow with the load, as far as the runs tell.
     Independent,
@@ -29,10 +30,10 @@ pub enum LoadVerdict {
 /// F_i/N_i = μ + F₀ (1/N_i) + b_i + e_i/N_i                   the line that is fitted, RandomEffectsLine
 /// ```
 ///
-/// A coefficient that differs by as much at each load makes forces that differ in proportion to it, which a line through forces with one
-/// spread does not know. Uncertainties of load and force enter both sides of the fitted line, with their correlation; they are taken to
-/// be independent from run to run. A scale that is wrong by one factor in all loads or all forces changes μ by that factor, and not
-/// whether F₀ is zero.
+/// A coefficient that differs by as much at each load makes forces that differ in proportion to it, which a line
+/// through forces with one spread does not know. Uncertainties of load and force enter both sides of the fitted line,
+/// with their correlation; they are taken to be independent from run to run. A scale that is wrong by one factor in all
+/// loads or all forces changes μ by that factor, and not whether F₀ is zero.
 ///
 /// `Display` gives the judgement in a sentence.
 ///
@@ -63,8 +64,9 @@ impl FrictionOverLoad {
     /// Of at least three runs, each with its normal load and its friction force (N), at two different loads or more.
     ///
     /// # Errors
-    /// [`IdentifyError::TooFew`]; [`IdentifyError::OutOfRange`] for a load that is not positive or a number that is not finite;
-    /// [`IdentifyError::NotSeen`] if no line describes the runs, as where neither force nor load of a run has an uncertainty.
+    /// [`IdentifyError::TooFew`]; [`IdentifyError::OutOfRange`] for a load that is not positive or a number that is not
+    /// finite; [`IdentifyError::NotSeen`] if no line describes the runs, as where neither force nor load of a run has
+    /// an uncertainty.
     pub fn of(runs: &[(Estimated, Estimated)]) -> Result<Self, IdentifyError> {
         if runs.len() < 3 {
             return Err(IdentifyError::too_few_runs("runs", runs.len(), 3));
@@ -125,8 +127,8 @@ impl FrictionOverLoad {
         self.line.slope_p_value()
     }
 
-    /// The interval that covers the friction force at a `load` (N) of a mean run with probability `level` (N); `None` unless
-    /// 0 < level < 1 and the load is positive.
+    /// The interval that covers the friction force at a `load` (N) of a mean run with probability `level` (N); `None`
+    /// unless 0 < level < 1 and the load is positive.
     pub fn force_interval(&self, load: f64, level: f64) -> Option<(f64, f64)> {
         let (low, high) = self.line.value_interval(load.recip(), level).filter(|_| load > 0.0)?;
         Some((load * low, load * high))
@@ -208,7 +210,8 @@ mod tests {
         loads.iter().enumerate().map(run).collect()
     }
 
-    /// Runs whose coefficients differ by turns: the line of forces over loads with weights 1/N², closed form of `StraightLine`.
+    /// Runs whose coefficients differ by turns: the line of forces over loads with weights 1/N², closed form of
+    /// `StraightLine`.
     #[test]
     fn it_is_the_line_weighted_by_the_load() {
         let loads = [2.0, 2.0, 4.0, 4.0, 8.0, 8.0, 16.0];
@@ -261,8 +264,8 @@ mod tests {
             let run = |load: f64| (Estimated::new(load, u * load), Estimated::new(0.1 * load, 1e-6));
             FrictionOverLoad::of(&loads.map(run)).unwrap()
         };
-        // About F = μ N, the error of a load moves a run along the line of F/N against 1/N only by what F₀ is, and off it by μ u(N)/N:
-        // u(μ)² = (u μ)² (Σ x²)/(n Σ (x − x̄)²) with x = 1/N.
+        // About F = μ N, the error of a load moves a run along the line of F/N against 1/N only by what F₀ is, and off
+        // it by μ u(N)/N: u(μ)² = (u μ)² (Σ x²)/(n Σ (x − x̄)²) with x = 1/N.
         let (sum, square, count) = (1.5_f64, 0.625_f64, 4.0);
         let expected = 0.01 * 0.1 * (square / (count * square - sum * sum)).sqrt();
         let found = of(0.01).coefficient();

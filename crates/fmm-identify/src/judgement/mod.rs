@@ -14,8 +14,8 @@ use fmm_fit::f_tail;
 
 use crate::{Candidate, Finding, Identification};
 
-/// What the records say of each of several laws beside the one that fits them best, which laws are left, and which of them is
-/// preferred.
+/// What the records say of each of several laws beside the one that fits them best, which laws are left, and which of
+/// them is preferred.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Judgement {
     /// D of each law, by how much it fits worse than the best, in variances of the noise (1).
@@ -32,17 +32,17 @@ pub(crate) struct Judgement {
     pub(crate) is_decided: bool,
 }
 
-/// A law that fits worse than this by chance is excluded. The law that is true is excluded by no more than one in a hundred records:
-/// the best of several others is a little better than one other.
+/// A law that fits worse than this by chance is excluded. The law that is true is excluded by no more than one in a
+/// hundred records: the best of several others is a little better than one other.
 pub(crate) const EXCLUDED: f64 = 0.002;
 /// A law with a smaller p is not preferred to a more general one. The best of a dozen laws is better than one other by
 /// chance about four times as often as that one.
 const UNFIT: f64 = 0.0125;
-/// A preferred law with a smaller p has the more general ones as rivals. A simple law that is true is called undecided by
-/// about one record in eight.
+/// A preferred law with a smaller p has the more general ones as rivals. A simple law that is true is called undecided
+/// by about one record in eight.
 pub(crate) const DOUBTED: f64 = 0.05;
-/// A rival with more parameters must come within this of the score of the preferred law: what lies farther off has a twentieth of its
-/// likelihood.
+/// A rival with more parameters must come within this of the score of the preferred law: what lies farther off has a
+/// twentieth of its likelihood.
 const CLOSE: f64 = 6.0;
 
 /// Relative uncertainty (1) from which on a parameter is told too badly to say that there is no damping beside it.
@@ -50,7 +50,8 @@ const TOLD_BADLY: f64 = 0.004;
 /// How much of that uncertainty, against that of the law without damping, is due to the damping (1).
 const DUE_TO_DAMPING: f64 = 2.0;
 
-/// Whether a parameter of the law `without` damping may be off by more than four thousandths for want of it, as the law `with` it says.
+/// Whether a parameter of the law `without` damping may be off by more than four thousandths for want of it, as the law
+/// `with` it says.
 fn hides_damping(without: &Identification, with: &Identification) -> bool {
     without.findings().iter().filter(|own| !own.is_of_record()).any(|own| {
         let theirs = with.finding(own.parameter().name());
@@ -62,7 +63,8 @@ fn hides_damping(without: &Identification, with: &Identification) -> bool {
     })
 }
 
-/// What keeps the fit at this place from being the best that its law can do: it has not ended, or a special case fits better.
+/// What keeps the fit at this place from being the best that its law can do: it has not ended, or a special case fits
+/// better.
 pub(crate) fn shortcomings(place: usize, candidates: &[Candidate], identifications: &[Identification]) -> Vec<String> {
     /// Rounding of a sum of squares.
     const ROUNDING: f64 = 1e-9;
@@ -88,11 +90,12 @@ impl Judgement {
     /// D_i = (S_i − S_b)/σ_i²,     σ_i² = δᵀΣδ/δᵀδ,     δ = r_i − r_b
     /// ```
     ///
-    /// b is the law with the smallest sum of squares S, Σ the noise that its residuals r show. σ_i² is the variance of that noise in the
-    /// direction in which the two laws differ: twice the logarithm of a ratio of likelihoods for correlated noise. It depends on
-    /// the two laws alone, and not on how often the record was sampled, nor on other candidates. The probability of D_i is that of
-    /// Fisher's F with as many degrees of freedom as the best law has more parameters, at least one; times the places at which a best
-    /// law that leaps can leap, each of which is a try (Bonferroni).
+    /// b is the law with the smallest sum of squares S, Σ the noise that its residuals r show. σ_i² is the variance of
+    /// that noise in the direction in which the two laws differ: twice the logarithm of a ratio of likelihoods for
+    /// correlated noise. It depends on the two laws alone, and not on how often the record was sampled, nor on other
+    /// candidates. The probability of D_i is that of Fisher's F with as many degrees of freedom as the best law has
+    /// more parameters, at least one; times the places at which a best law that leaps can leap, each of which is a try
+    /// (Bonferroni).
     pub(crate) fn of(candidates: &[Candidate], identifications: &[Identification]) -> Option<Self> {
         let floor = |found: &Identification| found.fit().sum_of_squares().max(found.floor());
         let best = identifications.iter().min_by(|a, b| floor(a).total_cmp(&floor(b)))?;
@@ -127,8 +130,8 @@ impl Judgement {
         self.p_values[place] >= EXCLUDED
     }
 
-    /// Whether the law at this place may be true in the stead of the preferred one: not excluded, and no law that merely says the
-    /// same with more parameters.
+    /// Whether the law at this place may be true in the stead of the preferred one: not excluded, and no law that
+    /// merely says the same with more parameters.
     fn is_rival(&self, place: usize, candidates: &[Candidate], identifications: &[Identification]) -> bool {
         let preferred = self.preferred;
         if place == preferred || !self.is_left(place) {
@@ -151,9 +154,9 @@ impl Judgement {
         !is_general && !says_the_same && self.scores[place] < self.scores[preferred] + CLOSE
     }
 
-    /// The weight of the law at `general`, of which the preferred one is a special case, beside the preferred one (1): the ratio of
-    /// their probabilities by Akaike's criterion where the one has only a viscous part more, as every machine has some, and by
-    /// Schwarz' for about `count` independent residuals otherwise.
+    /// The weight of the law at `general`, of which the preferred one is a special case, beside the preferred one (1):
+    /// the ratio of their probabilities by Akaike's criterion where the one has only a viscous part more, as every
+    /// machine has some, and by Schwarz' for about `count` independent residuals otherwise.
     pub(crate) fn weight(&self, general: usize, further: usize, is_damping: bool, count: f64) -> f64 {
         let gain = self.misfits[self.preferred] - self.misfits[general];
         let penalty = if is_damping { 2.0 } else { count.max(8.0).ln() };

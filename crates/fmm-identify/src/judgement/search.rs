@@ -15,7 +15,8 @@ use crate::judgement::{Judgement, shortcomings};
 use crate::residuals::filtering::behind_filter;
 use crate::{Candidate, Comparison, Experiment, Identification, IdentifyError, Machine, Warning};
 
-/// How laws are searched for. The default tries as many as the record asks for, on all threads of the current rayon pool.
+/// How laws are searched for. The default tries as many as the record asks for, on all threads of the current rayon
+/// pool.
 ///
 /// ```
 /// use std::time::Duration;
@@ -34,8 +35,8 @@ pub struct Search {
 }
 
 impl Search {
-    /// The same with the parameter called `name` held at `value`, in the unit in which it would be fitted: of the law called `law`, or of
-    /// every law that has one of that name.
+    /// The same with the parameter called `name` held at `value`, in the unit in which it would be fitted: of the law
+    /// called `law`, or of every law that has one of that name.
     #[must_use]
     pub fn holding(mut self, law: Option<&str>, name: &str, value: f64) -> Self {
         self.held.push((law.map(str::to_owned), name.to_owned(), value));
@@ -48,7 +49,8 @@ impl Search {
         Self { time_limit: Some(limit), ..self }
     }
 
-    /// The same on so many threads of its own, at least one; without the feature `rayon` there is one. The result does not depend on it.
+    /// The same on so many threads of its own, at least one; without the feature `rayon` there is one. The result does
+    /// not depend on it.
     #[must_use]
     pub fn on_threads(self, threads: usize) -> Self {
         Self { threads: Some(threads.max(1)), ..self }
@@ -143,11 +145,12 @@ const WITH_STATE_FURTHER: [&str; 2] = ["lugre,exponent=2", "bouc_wen+linear,ampl
 
 /// Identifies `decays` by as many laws as they ask for.
 ///
-/// First viscous damping, Coulomb friction and both. If the residuals of these show signs of something else, or are alike where they
-/// should be noise, laws whose friction changes with speed, and springs that harden, soften, meet a stop or have a gap if there are
-/// signs of one; then, unless such a spring explains the records, further families, each begun where its friction over the speed follows
-/// that of the best law so far; and laws with presliding if there are signs of that. What was looked for is in [`Comparison::signs`].
-/// Laws that could not be fitted to the end, and that are then far from what others reach, are left out; a warning names them.
+/// First viscous damping, Coulomb friction and both. If the residuals of these show signs of something else, or are
+/// alike where they should be noise, laws whose friction changes with speed, and springs that harden, soften, meet a
+/// stop or have a gap if there are signs of one; then, unless such a spring explains the records, further families,
+/// each begun where its friction over the speed follows that of the best law so far; and laws with presliding if there
+/// are signs of that. What was looked for is in [`Comparison::signs`]. Laws that could not be fitted to the end, and
+/// that are then far from what others reach, are left out; a warning names them.
 ///
 /// # Errors
 /// [`IdentifyError`] as for [`identify`](crate::identify), and for a parameter that no law has.
@@ -229,8 +232,8 @@ where
             let further = run.fit(further, found.near(&signs, &[|_| true], 1).as_ref())?;
             found.add(further);
         }
-        // A converter hides what is not longer than a few of its steps, and its steps look like presliding: neither moves where the
-        // machine turns.
+        // A converter hides what is not longer than a few of its steps, and its steps look like presliding: neither
+        // moves where the machine turns.
         let steps = decays.iter().map(|decay| {
             let summary = decay.summary();
             summary.resolution.filter(|_| summary.is_rounded()).unwrap_or(0.0) / summary.amplitudes.0
@@ -285,8 +288,8 @@ impl Found {
         }
     }
 
-    /// Fits to begin another one near: that by Coulomb and viscous friction, and the closest to the records of each of `kinds`; so many
-    /// `tries` are made.
+    /// Fits to begin another one near: that by Coulomb and viscous friction, and the closest to the records of each of
+    /// `kinds`; so many `tries` are made.
     fn near<'a>(&'a self, signs: &'a [Sign], kinds: &[fn(&Identification) -> bool], tries: usize) -> Option<Near<'a>> {
         let simple = self.simple()?;
         let others =
@@ -301,8 +304,8 @@ impl Found {
             .map(|(_, candidate)| candidate.clone())
     }
 
-    /// Leaves out the laws whose fits have not ended in their lowest minimum and are far from what other laws reach; returns their
-    /// names.
+    /// Leaves out the laws whose fits have not ended in their lowest minimum and are far from what other laws reach;
+    /// returns their names.
     fn drop_unfinished(&mut self) -> Vec<String> {
         let Some(judgement) = Judgement::of(&self.candidates, &self.identifications) else { return Vec::new() };
         let all = std::mem::take(&mut self.candidates).into_iter().zip(std::mem::take(&mut self.identifications));

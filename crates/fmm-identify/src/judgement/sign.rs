@@ -46,8 +46,8 @@ impl fmt::Display for Addition {
 pub struct Sign {
     /// What would be added.
     pub addition: Addition,
-    /// How much of it the residuals ask for, as a share of the friction, of the amplitude or of the stiffness (1). Negative: its
-    /// opposite.
+    /// How much of it the residuals ask for, as a share of the friction, of the amplitude or of the stiffness (1).
+    /// Negative: its opposite.
     pub size: f64,
     /// Standard uncertainty of the size (1).
     pub uncertainty: f64,
@@ -78,7 +78,8 @@ const STEP: f64 = 0.01;
 /// a = −dᵀr/dᵀd,     u² = dᵀΣd/(dᵀd)²,     d = (1 − J(JᵀJ)⁻¹Jᵀ) (m(a₀) − m(0))/a₀
 /// ```
 ///
-/// m(a₀) is the motion with a small addition, d what of its change no parameter of the simple law can follow (a score test).
+/// m(a₀) is the motion with a small addition, d what of its change no parameter of the simple law can follow (a score
+/// test).
 pub(crate) fn signs(base: &Identification, decays: &[Experiment]) -> Result<Vec<Sign>, IdentifyError> {
     let machine = *base.machine();
     let problem = Problem::with_terms::<CoulombViscous>(machine, base.terms().clone(), decays)?;
@@ -130,8 +131,8 @@ pub(crate) fn signs(base: &Identification, decays: &[Experiment]) -> Result<Vec<
     Ok(changes.into_iter().filter_map(|(addition, changed)| sign(base, &tangent, addition, &changed)).collect())
 }
 
-/// The sign for an `addition` whose small step makes the residuals `changed`; `None` if the parameters can follow it, or if the
-/// residuals are rounding.
+/// The sign for an `addition` whose small step makes the residuals `changed`; `None` if the parameters can follow it,
+/// or if the residuals are rounding.
 fn sign(base: &Identification, tangent: &Tangent, addition: Addition, changed: &[f64]) -> Option<Sign> {
     /// What is left below this share is rounding and curvature.
     const LEAST: f64 = 1e-6;

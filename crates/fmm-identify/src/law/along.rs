@@ -45,8 +45,8 @@ pub(crate) struct Place {
     pub(crate) slides: bool,
 }
 
-/// Friction coefficient (1) at the sample of each place; of a law of the speed that leaps at rest none, 0, where the contact may not
-/// slide.
+/// Friction coefficient (1) at the sample of each place; of a law of the speed that leaps at rest none, 0, where the
+/// contact may not slide.
 pub(crate) type Along<D> = fn(&[D], Guide<'_, D>, &mut Vec<D>) -> Result<(), EvaluationError>;
 
 /// Friction of family `F` by these `values`.
@@ -108,7 +108,8 @@ impl<D: Scalar> Guide<'_, D> {
         D::from(series[node]) + elapsed * slope
     }
 
-    /// Friction of a law without a closed form, which is followed from sample to sample; between them it is taken to be straight.
+    /// Friction of a law without a closed form, which is followed from sample to sample; between them it is taken to be
+    /// straight.
     fn stepped(&self, law: &dyn BristleLaw<D>, friction: &mut Vec<D>) -> Result<(), EvaluationError> {
         let MeasuredMotion { times, positions, .. } = self.motion;
         // Bristles are at first as after a long way in the direction in which the record begins, as fast as it begins.
@@ -142,7 +143,8 @@ impl<D: Scalar> Guide<'_, D> {
     }
 }
 
-/// The motion between two samples: the velocity changes in proportion to time, and what the positions differ by from that is spread evenly.
+/// The motion between two samples: the velocity changes in proportion to time, and what the positions differ by from
+/// that is spread evenly.
 struct Leg {
     duration: f64,
     /// Velocity at the beginning, with what is spread.

@@ -134,7 +134,8 @@ impl Candidate {
             && self.terms.held().all(|held| other.terms.held().any(|theirs| theirs == held))
     }
 
-    /// Whether the part of this law that does not grow with the speed is that of `other` for some values of its parameters.
+    /// Whether the part of this law that does not grow with the speed is that of `other` for some values of its
+    /// parameters.
     fn is_dry_case_of(&self, other: &Self) -> bool {
         // What the other holds, this one must hold as well.
         let held = |name: &str| self.terms.held().find(|(held, _)| *held == name).map(|(_, value)| value);

@@ -24,8 +24,8 @@ pub(crate) struct Scales {
     pub(crate) sharpness: f64,
 }
 
-/// What the value of a parameter of a law scales with beside a force, as powers of position and time. Angles are positions, and a power
-/// that is itself a parameter of the law has its typical value.
+/// What the value of a parameter of a law scales with beside a force, as powers of position and time. Angles are
+/// positions, and a power that is itself a parameter of the law has its typical value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Powers {
     position: f64,
@@ -50,7 +50,8 @@ impl Powers {
         (self.position != 0.0 && self.time == -self.position).then_some(self.position)
     }
 
-    /// The value that stands for a `stiffness` of a parameter that is a force over a length beside it; `None` for others.
+    /// The value that stands for a `stiffness` of a parameter that is a force over a length beside it; `None` for
+    /// others.
     pub(crate) fn at_stiffness(&self, stiffness: f64) -> Option<f64> {
         (self.position == -1.0 && self.time == 0.0).then(|| stiffness / self.factor)
     }
@@ -89,8 +90,9 @@ impl Law {
         parameter.role() != Role::Slope && (position, time) != (0.0, 0.0)
     }
 
-    /// Start values of its [fitted](Self::fitted) parameters: `start`, and others in which two that stand for the same lie apart. Where these
-    /// are equal, the law bends once instead of twice, no derivative tells the two, and a fit that comes near creeps.
+    /// Start values of its [fitted](Self::fitted) parameters: `start`, and others in which two that stand for the same
+    /// lie apart. Where these are equal, the law bends once instead of twice, no derivative tells the two, and a fit
+    /// that comes near creeps.
     pub(crate) fn apart(&self, start: &[f64]) -> Vec<Vec<f64>> {
         let is_alike = |one: &LawParameter, other: &LawParameter| {
             (one.typical(), one.parameter().unit()) == (other.typical(), other.parameter().unit())

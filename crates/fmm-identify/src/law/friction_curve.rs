@@ -25,8 +25,8 @@ struct Point {
 const SPEEDS: u32 = 40;
 
 impl FrictionCurve {
-    /// The curve of a law in `layout` with `terms` by fitted `values`, up to the `peak` speed; `None` if the law states none. The
-    /// speeds lie closer near rest, where laws bend.
+    /// The curve of a law in `layout` with `terms` by fitted `values`, up to the `peak` speed; `None` if the law states
+    /// none. The speeds lie closer near rest, where laws bend.
     pub(crate) fn of(layout: &Layout, terms: &Terms, values: &[f64], peak: f64) -> Option<Self> {
         let at = |(step, losing): (u32, bool)| {
             let speed = peak * (f64::from(step) / f64::from(SPEEDS)).powi(2);
@@ -37,8 +37,8 @@ impl FrictionCurve {
         Some(Self { points: points.collect::<Option<_>>()? })
     }
 
-    /// The values of a law in `layout` with `terms` that follow this curve best, of those that a search from `starts` finds; what
-    /// lies outside damping and law is left as it is. `None` if the law states no curve.
+    /// The values of a law in `layout` with `terms` that follow this curve best, of those that a search from `starts`
+    /// finds; what lies outside damping and law is left as it is. `None` if the law states no curve.
     pub(crate) fn followed(
         &self,
         layout: &Layout,

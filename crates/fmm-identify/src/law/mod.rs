@@ -1,4 +1,5 @@
-//! A law family as a value: what must know its type is the simulation alone, and all else is compiled once for all laws.
+//! A law family as a value: what must know its type is the simulation alone, and all else is compiled once for all
+//! laws.
 
 pub(crate) mod along;
 mod candidate;
@@ -49,7 +50,8 @@ impl<D: Scalar> Motion<D> {
     }
 }
 
-/// Friction coefficient (1) of steady sliding by family `F` of these `values` at a speed (m/s) that grows or, if it is `losing`, falls.
+/// Friction coefficient (1) of steady sliding by family `F` of these `values` at a speed (m/s) that grows or, if it is
+/// `losing`, falls.
 fn steady<F: LawFamily>(values: &[f64], speed: f64, losing: bool) -> Option<f64> {
     F::steady_coefficient(&F::at::<f64>(values).ok()?, speed, losing)
 }
@@ -104,8 +106,8 @@ impl Law {
         }
     }
 
-    /// Friction of steady sliding by the law of these [`fitted`](Self::fitted) values, in their unit of force, at a `speed` that grows
-    /// or, if it is `losing`, falls; `None` if the family does not say.
+    /// Friction of steady sliding by the law of these [`fitted`](Self::fitted) values, in their unit of force, at a
+    /// `speed` that grows or, if it is `losing`, falls; `None` if the family does not say.
     pub(crate) fn steady(&self, fitted: &[f64], speed: f64, losing: bool) -> Option<f64> {
         (self.steady)(&self.values(fitted), speed, losing)
     }
@@ -136,15 +138,15 @@ impl Law {
         self.parameters.iter().filter(move |parameter| is_held && parameter.role() == Role::Breakaway)
     }
 
-    /// The parameters that records are fitted by: of ring-downs all but static levels, on which the motion depends only in where it
-    /// stops. They are held at the sliding level.
+    /// The parameters that records are fitted by: of ring-downs all but static levels, on which the motion depends only
+    /// in where it stops. They are held at the sliding level.
     pub(crate) fn fitted(&self) -> impl Iterator<Item = &'static LawParameter> + use<> {
         let is_all = self.fits_breakaway;
         self.parameters.iter().filter(move |parameter| is_all || parameter.role() != Role::Breakaway)
     }
 
-    /// The place of its sliding level among the [`fitted`](Self::fitted) parameters: of several levels the one that is called so, or
-    /// else the first.
+    /// The place of its sliding level among the [`fitted`](Self::fitted) parameters: of several levels the one that is
+    /// called so, or else the first.
     pub(crate) fn level(&self) -> Option<usize> {
         let is_level = |parameter: &LawParameter| parameter.role() == Role::Level && is_coefficient(parameter);
         let is_named = |parameter: &LawParameter| {
@@ -153,7 +155,8 @@ impl Law {
         self.fitted().position(is_named).or_else(|| self.fitted().position(is_level))
     }
 
-    /// The share of the largest speed at which the law typically bends, of the first parameter that says so; `None` for laws without.
+    /// The share of the largest speed at which the law typically bends, of the first parameter that says so; `None` for
+    /// laws without.
     pub(crate) fn bend(&self) -> Option<f64> {
         self.fitted().filter(|parameter| parameter.role() == Role::Shape).find_map(|parameter| {
             self.powers(parameter).of_speed().map(|power| parameter.typical().powf(power.recip()))
@@ -177,8 +180,8 @@ impl Law {
         self.parameters.iter().any(|parameter| parameter.role() == Role::Slope)
     }
 
-    /// Values for all parameters from those of the [`fitted`](Self::fitted) ones: static levels are put in, and a level that may
-    /// not lie below another is that with what it is above it.
+    /// Values for all parameters from those of the [`fitted`](Self::fitted) ones: static levels are put in, and a level
+    /// that may not lie below another is that with what it is above it.
     pub(crate) fn values<D: Scalar>(&self, fitted: &[D]) -> Vec<D> {
         let level = self.level().map_or(D::from(0.0), |level| fitted[level]);
         let mut values = fitted.iter();

@@ -76,11 +76,11 @@ impl Machine {
         Ok(Self { scale: Scale::Stiffness(stiffness), ..Self::per_unit_mass() })
     }
 
-    /// A machine whose mass *and* stiffness are to be found, which takes a measured force: [`Drive::force`](crate::Drive::force) or
-    /// [`Experiment::impact`](crate::Experiment::impact).
+    /// A machine whose mass *and* stiffness are to be found, which takes a measured force:
+    /// [`Drive::force`](crate::Drive::force) or [`Experiment::impact`](crate::Experiment::impact).
     ///
-    /// Free vibrations alone do not tell them, as the thesis' appendix A1 supposes: the fit then reports the direction in which mass,
-    /// stiffness, damping and friction may be scaled together.
+    /// Free vibrations alone do not tell them, as the thesis' appendix A1 supposes: the fit then reports the direction
+    /// in which mass, stiffness, damping and friction may be scaled together.
     pub const fn unknown() -> Self {
         Self { scale: Scale::Unknown, damping: None, normal_load: None, restoring: Restoring::Linear }
     }
@@ -106,8 +106,8 @@ impl Machine {
         Ok(self)
     }
 
-    /// The same machine with another restoring force than that of a linear spring. A length in it is in the unit of position
-    /// that belongs to the record: for angles in radians the sine has length 1.
+    /// The same machine with another restoring force than that of a linear spring. A length in it is in the unit of
+    /// position that belongs to the record: for angles in radians the sine has length 1.
     #[must_use]
     pub const fn with_restoring(mut self, restoring: Restoring) -> Self {
         self.restoring = restoring;
@@ -134,8 +134,9 @@ impl Machine {
         self.normal_load
     }
 
-    /// The same machine with each known input on which a fit depends moved to the ends of its standard uncertainty, with the value there:
-    /// its damping, the lower end cut at zero, and its scale if the motion depends on it. Inputs without an uncertainty are left out.
+    /// The same machine with each known input on which a fit depends moved to the ends of its standard uncertainty,
+    /// with the value there: its damping, the lower end cut at zero, and its scale if the motion depends on it. Inputs
+    /// without an uncertainty are left out.
     pub(crate) fn inputs_moved(&self, depends_on_scale: bool) -> Vec<(Source, [(f64, Self); 2])> {
         let ends = |known: Known| [(known.value() - known.uncertainty()).max(0.0), known.value() + known.uncertainty()];
         let uncertain = |known: &Known| known.uncertainty() > 0.0;

@@ -92,7 +92,8 @@ impl Term {
         matches!(self, Self::CubicSpring | Self::QuinticSpring | Self::Stop | Self::StopRatio | Self::Gap)
     }
 
-    /// The power of the gain of a record to which its parameter is proportional; `exponent` is that of a power-law damping.
+    /// The power of the gain of a record to which its parameter is proportional; `exponent` is that of a power-law
+    /// damping.
     pub(crate) const fn power_of_gain(self, exponent: f64) -> f64 {
         match self {
             Self::LinearDamping | Self::PowerExponent | Self::StopRatio => 0.0,
@@ -104,7 +105,8 @@ impl Term {
         }
     }
 
-    /// The stiffness that a term of the spring adds, k k₃/m or k k₅/m, for positions in units of `position`; `None` for other terms.
+    /// The stiffness that a term of the spring adds, k k₃/m or k k₅/m, for positions in units of `position`; `None` for
+    /// other terms.
     pub(crate) fn stiffness_per_mass(self, position: &Unit) -> Option<Parameter> {
         let (name, symbol, power) = match self {
             Self::CubicSpring => ("cubic_stiffness_per_mass", "k k₃/m", 2),
@@ -142,7 +144,8 @@ pub(crate) const LINEAR: &str = "damping_per_mass";
 /// Name of the quadratic damping among the parameters.
 pub(crate) const QUADRATIC: &str = "quadratic_damping_per_mass";
 
-/// Exponents of a power-law damping. What grows more slowly than the speed is friction, of which there is a law `power_law`.
+/// Exponents of a power-law damping. What grows more slowly than the speed is friction, of which there is a law
+/// `power_law`.
 const POWERS: Bounds = Bounds::UNBOUNDED.at_least(1.0).at_most(5.0);
 
 impl Terms {
@@ -182,20 +185,22 @@ impl Terms {
         self.with(Term::PowerDamping)
     }
 
-    /// The same with a stop on both sides, at a distance and of a stiffness that are fitted ([`Restoring::stop`](fmm_model::Restoring::stop));
-    /// a preloaded joint that opens is one that is softer beyond.
+    /// The same with a stop on both sides, at a distance and of a stiffness that are fitted
+    /// ([`Restoring::stop`](fmm_model::Restoring::stop)); a preloaded joint that opens is one that is softer beyond.
     #[must_use]
     pub fn with_stop(self) -> Self {
         self.with(Term::Stop)
     }
 
-    /// The same with backlash: no restoring force within a gap about the rest position ([`Restoring::gap`](fmm_model::Restoring::gap)).
+    /// The same with backlash: no restoring force within a gap about the rest position
+    /// ([`Restoring::gap`](fmm_model::Restoring::gap)).
     #[must_use]
     pub fn with_gap(self) -> Self {
         self.with(Term::Gap)
     }
 
-    /// The same with a spring that hardens or softens, F = k (x + k₃ x³) ([`Restoring::Polynomial`](fmm_model::Restoring)).
+    /// The same with a spring that hardens or softens, F = k (x + k₃ x³)
+    /// ([`Restoring::Polynomial`](fmm_model::Restoring)).
     #[must_use]
     pub fn with_cubic_spring(self) -> Self {
         self.with(Term::CubicSpring)
@@ -207,8 +212,8 @@ impl Terms {
         self.with(Term::QuinticSpring)
     }
 
-    /// The same with damping that may come out negative. A negative damper is no damper; it says that the law lacks friction that
-    /// falls with speed.
+    /// The same with damping that may come out negative. A negative damper is no damper; it says that the law lacks
+    /// friction that falls with speed.
     #[must_use]
     pub fn with_damping_of_any_sign(self) -> Self {
         Self { any_sign: true, ..self }
@@ -217,7 +222,8 @@ impl Terms {
     /// The same with the fitted parameter called `name` held at `value`, in the unit in which it would be fitted.
     ///
     /// # Errors
-    /// [`ModelError::NotFinite`] if the value is not finite. Whether there is such a parameter shows when the law is known.
+    /// [`ModelError::NotFinite`] if the value is not finite. Whether there is such a parameter shows when the law is
+    /// known.
     pub fn holding(mut self, name: impl Into<String>, value: f64) -> Result<Self, ModelError> {
         let value = ModelError::require_finite("held value", value, "(in the unit of its parameter)")?;
         self.held.push((name.into(), value));
@@ -271,7 +277,8 @@ impl Terms {
         }
     }
 
-    /// Why the terms of the spring do not go together, or not with the restoring force that is `known`; `None` if they do.
+    /// Why the terms of the spring do not go together, or not with the restoring force that is `known`; `None` if they
+    /// do.
     pub(crate) fn spring_contradiction(&self, known: Restoring) -> Option<&'static str> {
         let is_bent = self.has(Term::CubicSpring) || self.has(Term::QuinticSpring);
         let kinds = [is_bent, self.has(Term::Stop), self.has(Term::Gap)].into_iter().filter(|has| *has).count();

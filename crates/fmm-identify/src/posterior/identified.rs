@@ -10,10 +10,12 @@ use crate::posterior::known_inputs::KnownInputs;
 use crate::posterior::predictive::predicted;
 use crate::{Experiment, Identification, IdentifyError, IntervalComparison, Origin, PredictiveCheck};
 
-/// The posterior of everything that an identification found, beside its intervals of the other kinds, with predictive checks.
+/// The posterior of everything that an identification found, beside its intervals of the other kinds, with predictive
+/// checks.
 ///
-/// The parameters of the fit have flat priors within their bounds unless the [`Sampler`] has others. Mass, stiffness, load and gains
-/// have normal priors by the standard uncertainties of the [`Machine`](crate::Machine) and of the records.
+/// The parameters of the fit have flat priors within their bounds unless the [`Sampler`] has others. Mass, stiffness,
+/// load and gains have normal priors by the standard uncertainties of the [`Machine`](crate::Machine) and of the
+/// records.
 ///
 /// `Display` gives the report.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,7 +38,8 @@ impl IdentificationPosterior {
         &self.posterior
     }
 
-    /// The marginal posterior of each finding that is not held, in the order of the [findings](Identification::findings).
+    /// The marginal posterior of each finding that is not held, in the order of the
+    /// [findings](Identification::findings).
     pub fn findings(&self) -> &[Marginal] {
         &self.findings
     }
@@ -46,7 +49,8 @@ impl IdentificationPosterior {
         self.findings.iter().find(|marginal| marginal.parameter().name() == name)
     }
 
-    /// The 95 % intervals of each finding that all records share: by its standard uncertainty, from the profile, from the posterior.
+    /// The 95 % intervals of each finding that all records share: by its standard uncertainty, from the profile, from
+    /// the posterior.
     pub fn intervals(&self) -> &[IntervalComparison] {
         &self.intervals
     }
@@ -63,7 +67,8 @@ impl IdentificationPosterior {
 }
 
 impl Identification {
-    /// The request for a posterior that suits the residuals of this identification: correlated ones if neighbours are alike.
+    /// The request for a posterior that suits the residuals of this identification: correlated ones if neighbours are
+    /// alike.
     pub fn sampler(&self) -> Sampler {
         let sampler = Sampler::default();
         if self.structure().is_correlated() { sampler.with_correlated_residuals() } else { sampler }
@@ -93,8 +98,8 @@ impl Identification {
     /// ```
     ///
     /// # Errors
-    /// [`IdentifyError::Posterior`] if there is no posterior, and errors as for [`identify`](crate::identify) if the `experiments` are
-    /// others than those of the identification.
+    /// [`IdentifyError::Posterior`] if there is no posterior, and errors as for [`identify`](crate::identify) if the
+    /// `experiments` are others than those of the identification.
     pub fn posterior(
         &self,
         experiments: &[Experiment],

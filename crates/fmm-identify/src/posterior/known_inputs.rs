@@ -11,8 +11,8 @@ use crate::{Drive, Experiment, Identification, IdentifyError, Machine};
 
 /// What is known of machine and instruments, with normal priors by their standard uncertainties.
 ///
-/// Scale, load and gains multiply what was fitted. A damping that is held, and the mass beside a measured force, are inputs of the fit
-/// itself: the draws are moved by what the fit moves by, in proportion.
+/// Scale, load and gains multiply what was fitted. A damping that is held, and the mass beside a measured force, are
+/// inputs of the fit itself: the draws are moved by what the fit moves by, in proportion.
 pub(super) struct KnownInputs<'a> {
     machine: Machine,
     layout: &'a Layout,

@@ -19,12 +19,12 @@ const SURPRISING: f64 = 0.01;
 /// p = P(T_replicated > T_measured) + P(T_replicated = T_measured)/2
 /// ```
 ///
-/// A p near 0 or 1 says that the model cannot make records like the measured one. Features of a replicated record are found as those of
-/// the measured one are, noise and all.
+/// A p near 0 or 1 says that the model cannot make records like the measured one. Features of a replicated record are
+/// found as those of the measured one are, noise and all.
 ///
 /// # References
-/// A. Gelman, X.-L. Meng, H. Stern, "Posterior predictive assessment of model fitness via realized discrepancies", Statistica Sinica 6
-/// (1996) 733, <https://www3.stat.sinica.edu.tw/statistica/j6n4/j6n41/j6n41.htm>.
+/// A. Gelman, X.-L. Meng, H. Stern, "Posterior predictive assessment of model fitness via realized discrepancies",
+/// Statistica Sinica 6 (1996) 733, <https://www3.stat.sinica.edu.tw/statistica/j6n4/j6n41/j6n41.htm>.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PredictiveCheck {
     feature: &'static str,
@@ -55,7 +55,8 @@ impl PredictiveCheck {
         self.measured
     }
 
-    /// The feature of each replicated record; infinite for one that does not stop, or decays before it has swung as often.
+    /// The feature of each replicated record; infinite for one that does not stop, or decays before it has swung as
+    /// often.
     pub fn replicated(&self) -> &[f64] {
         &self.replicated
     }

@@ -43,7 +43,8 @@ impl Serialize for PredictiveCheck {
     }
 }
 
-/// `law`, `draws`, `chains`, `divergences`, `acceptance`, `parameters` (by name), `agrees`, `verdict`, `checks`, `warnings`.
+/// `law`, `draws`, `chains`, `divergences`, `acceptance`, `parameters` (by name), `agrees`, `verdict`, `checks`,
+/// `warnings`.
 impl Serialize for IdentificationPosterior {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let row = |marginal| {

@@ -28,7 +28,8 @@ pub enum Origin {
 pub struct Finding {
     pub(crate) parameter: Parameter,
     pub(crate) value: f64,
-    /// Variances by their sources, in the unit of the parameter squared; `None` if the record does not determine the value.
+    /// Variances by their sources, in the unit of the parameter squared; `None` if the record does not determine the
+    /// value.
     parts: Option<Vec<(Source, f64)>>,
     /// ν of the part of the residuals.
     of_residuals: f64,
@@ -52,7 +53,8 @@ impl Finding {
         Self { parameter, value, parts, of_residuals, origin, is_of_record, at_bound: None }
     }
 
-    /// The same for a value that lies on a bound, or follows from one: the standard uncertainty that it had without the bound.
+    /// The same for a value that lies on a bound, or follows from one: the standard uncertainty that it had without the
+    /// bound.
     pub(crate) fn at_bound(mut self, uncertainty: Option<f64>, degrees_of_freedom: f64) -> Self {
         if self.parts.is_none() && uncertainty.is_some() {
             self.at_bound = uncertainty;
@@ -92,8 +94,8 @@ impl Finding {
         self.parts.as_ref().map(|parts| parts.iter().map(|(_, variance)| variance).sum())
     }
 
-    /// ν, the effective degrees of freedom of the uncertainty (1) by Welch and Satterthwaite (JCGM 100:2008, G.4.1), infinite if nothing
-    /// of it was estimated from residuals.
+    /// ν, the effective degrees of freedom of the uncertainty (1) by Welch and Satterthwaite (JCGM 100:2008, G.4.1),
+    /// infinite if nothing of it was estimated from residuals.
     pub fn degrees_of_freedom(&self) -> f64 {
         let Some(parts) = &self.parts else { return self.of_residuals };
         let random = parts.iter().find(|(source, variance)| *source == Source::Residuals && *variance > 0.0);
@@ -101,8 +103,8 @@ impl Finding {
         random.map_or(f64::INFINITY, |(_, random)| self.of_residuals * (all / random).powi(2))
     }
 
-    /// The budget of the uncertainty: what each source contributes to it, without those that contribute nothing. Empty if there is no
-    /// uncertainty.
+    /// The budget of the uncertainty: what each source contributes to it, without those that contribute nothing. Empty
+    /// if there is no uncertainty.
     ///
     /// ```
     /// use fmm_friction::Coulomb;
@@ -137,10 +139,10 @@ impl Finding {
         })
     }
 
-    /// The interval that covers the quantity with probability `level`, in the unit of the parameter: value ± k u by Student's t
-    /// with the [degrees of freedom](Self::degrees_of_freedom) (JCGM 100:2008, G.4), as far as the bounds of the parameter allow; of
-    /// a value on its bound what lies within the bounds. `None` without an uncertainty, for what was held, or for a level outside
-    /// (0, 1).
+    /// The interval that covers the quantity with probability `level`, in the unit of the parameter: value ± k u by
+    /// Student's t with the [degrees of freedom](Self::degrees_of_freedom) (JCGM 100:2008, G.4), as far as the bounds
+    /// of the parameter allow; of a value on its bound what lies within the bounds. `None` without an uncertainty, for
+    /// what was held, or for a level outside (0, 1).
     pub fn interval(&self, level: f64) -> Option<(f64, f64)> {
         if self.origin == Origin::Fitted(EstimateStatus::Fixed) {
             return None;
@@ -353,8 +355,8 @@ pub(crate) fn findings(
     findings
 }
 
-/// The values of all findings, in the order of [`findings`], for one draw of the fitted `values`, of what is known of the machine, and
-/// of the errors of the `gains` of the instrument and of a measured force, as factors (1).
+/// The values of all findings, in the order of [`findings`], for one draw of the fitted `values`, of what is known of
+/// the machine, and of the errors of the `gains` of the instrument and of a measured force, as factors (1).
 #[cfg(feature = "sampler")]
 pub(crate) fn values_of_findings(machine: &Machine, layout: &Layout, values: &[f64], gains: [f64; 2]) -> Vec<f64> {
     let fitted = values.iter().enumerate().map(|(index, value)| {

@@ -68,8 +68,8 @@ impl Serialize for Identification {
     }
 }
 
-/// `law`, `fitted_to`, `parameters` (by name), `rms_residual` (m/s), `chi`, `rank`, `outcome`, `trials`, `stop_times_s`,
-/// `closed_form_forces_n`, `warnings`.
+/// `law`, `fitted_to`, `parameters` (by name), `rms_residual` (m/s), `chi`, `rank`, `outcome`, `trials`,
+/// `stop_times_s`, `closed_form_forces_n`, `warnings`.
 impl Serialize for ImpactIdentification {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let parameters: BTreeMap<_, _> =
@@ -161,9 +161,9 @@ impl Serialize for Sign {
     }
 }
 
-/// `preferred` (name of the law), `decided`, `summary` (one sentence), `not_excluded` (names), `complete`, `signs`, `p` and
-/// `scores` (one per model, by which laws are preferred), `models`, `preparation` (one object, or a list if there are several
-/// records), `warnings`.
+/// `preferred` (name of the law), `decided`, `summary` (one sentence), `not_excluded` (names), `complete`, `signs`, `p`
+/// and `scores` (one per model, by which laws are preferred), `models`, `preparation` (one object, or a list if there
+/// are several records), `warnings`.
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();

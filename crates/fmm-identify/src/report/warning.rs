@@ -118,8 +118,8 @@ pub enum Warning {
         /// Name of the parameter of the law.
         parameter: String,
     },
-    /// A more general law, which the record does not exclude, finds something else for a parameter or knows it less well;
-    /// its uncertainty was widened for that.
+    /// A more general law, which the record does not exclude, finds something else for a parameter or knows it less
+    /// well; its uncertainty was widened for that.
     DependsOnLaw {
         /// Name of the parameter.
         parameter: String,

@@ -8,8 +8,8 @@ use fmm_frf::Complex64;
 /// z_i = Σ_j a_j z_{i−j} + e_i,     j = 1 … p:        S(f) = σ_e²/|1 − Σ a_j e^{−2πi f j}|²
 /// ```
 ///
-/// The coefficients are those of Yule and Walker by Levinson's recursion, the order is that of the smallest criterion of Akaike's
-/// kind.
+/// The coefficients are those of Yule and Walker by Levinson's recursion, the order is that of the smallest criterion
+/// of Akaike's kind.
 ///
 /// # References
 /// H. Akaike, "Power spectrum estimation through autoregressive model fitting", Ann. Inst. Stat. Math. 21 (1969) 407,
@@ -34,7 +34,8 @@ impl Autoregression {
         HIGHEST.min(count / VALUES_PER_COEFFICIENT) + 1
     }
 
-    /// The autoregression of a series of `count` values with these autocovariances, from that of lag 0, the variance, on.
+    /// The autoregression of a series of `count` values with these autocovariances, from that of lag 0, the variance,
+    /// on.
     pub(crate) fn of(autocovariances: &[f64], count: usize) -> Self {
         let variance = autocovariances.first().copied().unwrap_or(0.0);
         let mut best = Self { coefficients: Vec::new(), innovation: variance };

@@ -16,8 +16,8 @@ pub(crate) fn are_correlated(autocorrelation_time: f64) -> bool {
     autocorrelation_time > INDEPENDENT
 }
 
-/// The covariance in windows as long as residuals of this autocorrelation time (samples) ask for and the shortest of `series`
-/// allows; `None` if that is too short for any.
+/// The covariance in windows as long as residuals of this autocorrelation time (samples) ask for and the shortest of
+/// `series` allows; `None` if that is too short for any.
 pub(crate) fn correlated_covariance(
     problem: &impl Residuals,
     fit: &Fit,

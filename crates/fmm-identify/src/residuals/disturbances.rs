@@ -1,4 +1,5 @@
-//! Warnings about what is in a record besides the free vibration of one mode in white noise, and about what it leaves open.
+//! Warnings about what is in a record besides the free vibration of one mode in white noise, and about what it leaves
+//! open.
 
 use std::fmt;
 
@@ -30,7 +31,8 @@ impl Warning {
         upsampled.into_iter().chain(further).chain(taken).chain(second).chain(hum).chain(rounded)
     }
 
-    /// What the noise of the records is like, as the residuals of `identification` show it, and whether a slow drift was fitted.
+    /// What the noise of the records is like, as the residuals of `identification` show it, and whether a slow drift
+    /// was fitted.
     pub(crate) fn of_noise(identification: &Identification, decays: &[Experiment]) -> Vec<Self> {
         let mut warnings = Vec::new();
         let unit = || decays.first().map_or_else(String::new, |decay| decay.record().unit().to_owned());

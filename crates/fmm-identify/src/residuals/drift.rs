@@ -10,20 +10,21 @@ use crate::{Experiment, Identification};
 
 /// The chance that noise alone looks like a drift.
 const CHANCE: f64 = 1e-3;
-/// Residuals below this many times the noise are near it: the parameters of the motion follow the drift by a little as well.
+/// Residuals below this many times the noise are near it: the parameters of the motion follow the drift by a little as
+/// well.
 const NEAR: f64 = 2.0;
 /// Frequencies between the harmonics of the motion, in natural frequencies, where the residuals show their noise.
 const BETWEEN: [f64; 6] = [1.5, 2.5, 3.5, 4.5, 5.5, 6.5];
 
-/// The `decays` with a slow polynomial to be fitted beside the motion of each whose residuals, those of `found`, hold more of it than of
-/// vibrations just above the motion; `None` if no record shows any.
+/// The `decays` with a slow polynomial to be fitted beside the motion of each whose residuals, those of `found`, hold
+/// more of it than of vibrations just above the motion; `None` if no record shows any.
 ///
 /// ```text
 /// F = Σ (qᵀr)²/3 : Σ (cᵀr)²/12,     q polynomials of degree 1 to 3, c cosines and sines at 1.5, 2.5 … 6.5 f₀
 /// ```
 ///
-/// q and c are of unit length and without what the parameters of the fit can follow. Noise, white or remembering for a few samples,
-/// has as much of either.
+/// q and c are of unit length and without what the parameters of the fit can follow. Noise, white or remembering for a
+/// few samples, has as much of either.
 pub(crate) fn with_drift(
     found: &Identification,
     problem: &Problem<'_>,

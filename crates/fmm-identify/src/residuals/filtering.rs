@@ -21,9 +21,9 @@ const ENOUGH_SAMPLES: f64 = 400.0;
 /// Iterations after which the filter is no plain explanation.
 const MOST_ITERATIONS: usize = 60;
 
-/// That a low-pass filter in the sensor, of which nothing was said, would explain the records by a simple law as well as the preferred law does
-/// without: both round the motion where it reverses, and only one is friction. Or, if the records do not tell the filter, that their
-/// beginning, which it leaves out, is all that the preferred law misses.
+/// That a low-pass filter in the sensor, of which nothing was said, would explain the records by a simple law as well
+/// as the preferred law does without: both round the motion where it reverses, and only one is friction. Or, if the
+/// records do not tell the filter, that their beginning, which it leaves out, is all that the preferred law misses.
 pub(crate) fn filtering_sensor(
     decays: &[Experiment],
     identifications: &[Identification],
@@ -44,8 +44,8 @@ pub(crate) fn filtering_sensor(
     is_explained.then_some(Warning::Beginning { law, time: settled })
 }
 
-/// The fit by the closest simple law, behind a low-pass filter in the sensor, with the time (s) at the beginning that it leaves out; none
-/// if nothing is left to explain, a filter is known, or the fit fails.
+/// The fit by the closest simple law, behind a low-pass filter in the sensor, with the time (s) at the beginning that
+/// it leaves out; none if nothing is left to explain, a filter is known, or the fit fails.
 pub(crate) fn behind_filter(
     decays: &[Experiment],
     identifications: &[Identification],

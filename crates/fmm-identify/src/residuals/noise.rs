@@ -1,4 +1,5 @@
-//! Noise of the records as the residuals of a fit show it: how it grows with the signal, and how neighbouring samples share it.
+//! Noise of the records as the residuals of a fit show it: how it grows with the signal, and how neighbouring samples
+//! share it.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -14,12 +15,14 @@ use crate::residuals::noise_growth::NoiseGrowth;
 /// e_i = σ_i z_i,     z stationary with unit variance and the spectral density S(f):     Σ = D C D,   D = diag(σ_i)
 /// ```
 ///
-/// S is that of an autoregression, whose order Akaike's criterion chooses, times the periodogram over it where that, averaged
-/// over frequencies up to 2.5 times lower and higher, is significantly larger (prewhitening; Andrews and Monahan). What the
-/// parameters of the fit took out of the periodogram P is put back, E[P] = (1 − h) S with h their share of a line.
+/// S is that of an autoregression, whose order Akaike's criterion chooses, times the periodogram over it where that,
+/// averaged over frequencies up to 2.5 times lower and higher, is significantly larger (prewhitening; Andrews and
+/// Monahan). What the parameters of the fit took out of the periodogram P is put back, E[P] = (1 − h) S with h their
+/// share of a line.
 ///
-/// The errors of a converter whose steps exceed the noise are not stationary: they go on while the machine turns, and change with
-/// every sample while it is fast. There the residuals within a stay count together, and different stays are independent:
+/// The errors of a converter whose steps exceed the noise are not stationary: they go on while the machine turns, and
+/// change with every sample while it is fast. There the residuals within a stay count together, and different stays are
+/// independent:
 ///
 /// ```text
 /// aᵀΣb = Σ_g (a_gᵀe_g)(b_gᵀe_g)/(1 − h_g)
@@ -29,8 +32,8 @@ use crate::residuals::noise_growth::NoiseGrowth;
 ///
 /// # References
 /// K.-Y. Liang, S. L. Zeger, "Longitudinal data analysis using generalized linear models", Biometrika 73 (1986) 13,
-/// <https://doi.org/10.1093/biomet/73.1.13>; R. M. Bell, D. F. McCaffrey, "Bias reduction in standard errors for linear regression with
-/// multi-stage samples", Survey Methodology 28 (2002) 169.
+/// <https://doi.org/10.1093/biomet/73.1.13>; R. M. Bell, D. F. McCaffrey, "Bias reduction in standard errors for linear
+/// regression with multi-stage samples", Survey Methodology 28 (2002) 169.
 ///
 /// D. W. K. Andrews, J. C. Monahan, "An improved heteroskedasticity and autocorrelation consistent covariance matrix
 /// estimator", Econometrica 60 (1992) 953, <https://doi.org/10.2307/2951574>.
@@ -50,7 +53,8 @@ pub(crate) struct Series<'a> {
     /// Columns of the fit at all rows, and the elements (JᵀJ)⁺ by which they count: pairs of columns with their weight.
     pub(crate) columns: &'a [Vec<f64>],
     pub(crate) weights: &'a [f64],
-    /// Rows within the series over which the values stay at one step of the converter, where its steps exceed the noise.
+    /// Rows within the series over which the values stay at one step of the converter, where its steps exceed the
+    /// noise.
     pub(crate) stays: Vec<Range<usize>>,
 }
 
@@ -131,7 +135,8 @@ impl ResidualNoise {
         products
     }
 
-    /// Variance of the noise along `direction`, aᵀ Σ a/aᵀa, in the unit of the residuals squared; that of white noise for none.
+    /// Variance of the noise along `direction`, aᵀ Σ a/aᵀa, in the unit of the residuals squared; that of white noise
+    /// for none.
     pub(crate) fn variance_along(&self, direction: &[f64]) -> f64 {
         let square: f64 = direction.iter().map(|a| a * a).sum();
         if square > 0.0 {
@@ -257,7 +262,8 @@ impl SeriesNoise {
         (0..self.transform.lines()).map(|k| regression.density(k as f64 / length)).collect()
     }
 
-    /// The autocovariances of a series of `count` values that belong to its `periodogram`; `cosines` are those of one turn.
+    /// The autocovariances of a series of `count` values that belong to its `periodogram`; `cosines` are those of one
+    /// turn.
     fn autocovariances(&self, periodogram: &[f64], cosines: &[f64], count: usize) -> Vec<f64> {
         let length = self.transform.length();
         let last = periodogram.len() - 1;
@@ -301,7 +307,8 @@ impl SeriesNoise {
         spectrum
     }
 
-    /// What the noise of the series makes of a `column` over all residuals: the spectrum of D a, or its part in every stay.
+    /// What the noise of the series makes of a `column` over all residuals: the spectrum of D a, or its part in every
+    /// stay.
     fn image(&self, column: &[f64]) -> Image {
         let column = &column[self.rows.clone()];
         if !self.stays.is_empty() {
@@ -313,8 +320,8 @@ impl SeriesNoise {
         Image::Spectrum(self.spectrum(&values))
     }
 
-    /// aᵀ Σ b of the images of two columns. With C the Toeplitz matrix that belongs to the density, aᵀ D C D b is a sum over the
-    /// lines of spectra of values with as many zeros behind them.
+    /// aᵀ Σ b of the images of two columns. With C the Toeplitz matrix that belongs to the density, aᵀ D C D b is a sum
+    /// over the lines of spectra of values with as many zeros behind them.
     fn product(&self, a: &Image, b: &Image) -> f64 {
         match (a, b) {
             (Image::Spectrum(a), Image::Spectrum(b)) => {
@@ -352,7 +359,8 @@ fn stays(residuals: &[f64], series: &Series<'_>) -> Vec<Stay> {
     series.stays.iter().map(stay).collect()
 }
 
-/// Σ/√m of every `group` of m neighbouring values: independent ones keep their variance, and slow ones their sum of products.
+/// Σ/√m of every `group` of m neighbouring values: independent ones keep their variance, and slow ones their sum of
+/// products.
 fn gathered(values: &[f64], group: usize) -> Vec<f64> {
     if group == 1 {
         return values.to_vec();

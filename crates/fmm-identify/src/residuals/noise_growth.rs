@@ -41,7 +41,8 @@ impl NoiseGrowth {
         let evidence = EVIDENCE * autocorrelation_time(residuals).unwrap_or(1.0);
         let none = likelihood(&squares, |_| constant);
         let explained = explained(&squares, &instantaneous, &by_amplitude, constant);
-        // Most records show no growth. The logarithm rises by a quarter of what a small growth explains, and one that is not small explains far more.
+        // Most records show no growth. The logarithm rises by a quarter of what a small growth explains, and one that
+        // is not small explains far more.
         let candidates = [[true, false], [false, true], [true, true]].into_iter().zip(explained);
         let candidates = candidates.filter(|(_, explained)| *explained > share * evidence).map(|(active, _)| active);
         let mut best: Option<(f64, Self)> = None;
@@ -89,11 +90,13 @@ fn squared_amplitudes(signal: &[f64], period: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Sum of squares of the relative variances r²/σ² that a straight line in the first growing part explains, one in the second, and a plane in both; half
-/// of it is the statistic of Breusch and Pagan. Where no line grows there is nothing to explain.
+/// Sum of squares of the relative variances r²/σ² that a straight line in the first growing part explains, one in the
+/// second, and a plane in both; half of it is the statistic of Breusch and Pagan. Where no line grows there is nothing
+/// to explain.
 ///
 /// # References
-/// T. S. Breusch, A. R. Pagan, "A simple test for heteroscedasticity and random coefficient variation", Econometrica 47 (1979) 1287.
+/// T. S. Breusch, A. R. Pagan, "A simple test for heteroscedasticity and random coefficient variation", Econometrica 47
+/// (1979) 1287.
 fn explained(squares: &[f64], instantaneous: &[f64], by_amplitude: &[f64], constant: f64) -> [f64; 3] {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (mean_a, mean_b) = (mean(instantaneous), mean(by_amplitude));
@@ -122,8 +125,8 @@ fn likelihood(squares: &[f64], variance: impl Fn(usize) -> f64) -> f64 {
     -0.5 * terms.sum::<f64>()
 }
 
-/// The variances of the constant part and of the `active` ones of two growing parts, by Fisher's scoring from a `constant`
-/// variance; `None` if a part comes out at zero.
+/// The variances of the constant part and of the `active` ones of two growing parts, by Fisher's scoring from a
+/// `constant` variance; `None` if a part comes out at zero.
 fn variances(
     squares: &[f64],
     instantaneous: &[f64],

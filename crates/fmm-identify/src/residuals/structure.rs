@@ -56,8 +56,8 @@ impl ResidualStructure {
         self.is_excessive() && self.is_correlated()
     }
 
-    /// What a noise that is not white has to tell, for the largest `inflation` of a standard uncertainty; nothing where the law
-    /// misses something or the noise is white.
+    /// What a noise that is not white has to tell, for the largest `inflation` of a standard uncertainty; nothing where
+    /// the law misses something or the noise is white.
     pub(crate) fn coloured_noise(&self, inflation: f64) -> Option<Warning> {
         let is_coloured = self.is_excessive() != self.is_correlated();
         let ratio = self.residual / self.noise;
@@ -75,8 +75,8 @@ impl ResidualStructure {
 /// V = (JᵀJ)⁻¹ JᵀΣJ (JᵀJ)⁻¹
 /// ```
 ///
-/// Where the noise is white and of one variance this is that of the [`Fit`]. A parameter that ended on its bound counts as free
-/// to leave it, so that the uncertainty of the others includes what it may take from them.
+/// Where the noise is white and of one variance this is that of the [`Fit`]. A parameter that ended on its bound counts
+/// as free to leave it, so that the uncertainty of the others includes what it may take from them.
 #[derive(Debug, Clone)]
 pub(crate) struct Covariance {
     count: usize,
@@ -105,7 +105,8 @@ impl Covariance {
         fit.relaxed_covariance(i, j).or_else(|| fit.covariance(i, j))
     }
 
-    /// That of a `fit` whose residuals show this `noise`; `columns` are the derivatives by the [`known`](Self::known) parameters.
+    /// That of a `fit` whose residuals show this `noise`; `columns` are the derivatives by the [`known`](Self::known)
+    /// parameters.
     pub(crate) fn of_noise(
         fit: &Fit,
         structure: &ResidualStructure,

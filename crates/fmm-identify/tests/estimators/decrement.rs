@@ -27,8 +27,8 @@ fn fitted_peaks_give_the_line_of_the_thesis() {
     }
 }
 
-/// The stated uncertainties are those that happen: 170 cycles tell a standard deviation to about 6 %, and a little more as
-/// neighbours are correlated.
+/// The stated uncertainties are those that happen: 170 cycles tell a standard deviation to about 6 %, and a little more
+/// as neighbours are correlated.
 #[test]
 fn uncertainties_are_those_that_happen() {
     let motion = free(0.0, (0.01, 0.0), 80.0);

@@ -62,7 +62,8 @@ const CORNER: f64 = 44.0;
 pub(crate) const DELAY: f64 = 5e-3;
 pub(crate) const FINER: usize = 20;
 
-/// What a Butterworth filter of second order gives of `values`, by Heun's method on a grid as fine as they are, every `FINER`-th.
+/// What a Butterworth filter of second order gives of `values`, by Heun's method on a grid as fine as they are, every
+/// `FINER`-th.
 pub(crate) fn filtered(values: &[f64]) -> Vec<f64> {
     let (angular, interval) = (TAU * CORNER, INTERVAL / FINER as f64);
     let rate = |[y, v]: [f64; 2], u: f64| [v, angular * angular * (u - y) - 2f64.sqrt() * angular * v];

@@ -46,8 +46,8 @@ fn berger() -> Guess {
     guess(machine(0.0, 0.0), "berger", &[0.228, 0.261, 2.852], &[])
 }
 
-/// Three releases at 16 mm under 14 N, and the best three of releases at 8, 16 and 22 mm under 3.5, 7 and 14 N: 2.73 % and 0.80 %, as
-/// computed beside this library from differences of simulated records.
+/// Three releases at 16 mm under 14 N, and the best three of releases at 8, 16 and 22 mm under 3.5, 7 and 14 N: 2.73 %
+/// and 0.80 %, as computed beside this library from differences of simulated records.
 #[test]
 fn a_designed_set_of_three_against_three_repeats() {
     let loads = [3.5, 7.0, 14.0];
@@ -243,7 +243,8 @@ fn a_pilot_is_where_tests_begin() {
     for name in ["mu", "damping", "natural_frequency_hz"] {
         let [ours, theirs] =
             [before.finding(name).unwrap(), found.finding(name).unwrap()].map(|one| one.uncertainty().unwrap());
-        // The noise of 2000 residuals need not look white to the last digit, which counts for all parameters here: √(2/2000).
+        // The noise of 2000 residuals need not look white to the last digit, which counts for all parameters here:
+        // √(2/2000).
         assert!((-1e-6..0.03).contains(&(ours / theirs - 1.0)), "{name}: {ours} and {theirs}");
     }
     let after = plan.predict(&[1]).unwrap();

@@ -174,7 +174,8 @@ const CASES: &[Case] = &[
     ),
 ];
 
-/// Records of each law; of 20 intervals of 95 % at least 15 hold but once in three thousand, and of all of them 90 to 99 % do.
+/// Records of each law; of 20 intervals of 95 % at least 15 hold but once in three thousand, and of all of them 90 to
+/// 99 % do.
 const RECORDS: u64 = 20;
 
 /// Unequal steps, a zero and a delay that are not known, noise: the intervals hold what the law was.
@@ -205,7 +206,8 @@ fn each_law_comes_back() {
         // A sample on the wrong side of a leap would show: 0.08 N and more.
         assert!((squares.sqrt() / NOISE - 1.0).abs() < 0.05, "{name}: {} N", squares.sqrt());
         for (count, (parameter, _)) in inside.iter().zip(&truths) {
-            // Levels alone leap where the motion turns; what a delay does there has no derivative, and it is not determined.
+            // Levels alone leap where the motion turns; what a delay does there has no derivative, and it is not
+            // determined.
             let is_leap = *parameter == "delay" && name.contains("coulomb") && !name.contains("viscous");
             assert!(is_leap || count.1 == records, "{name}: {parameter} is stated in {} of {records}", count.1);
             assert!(4 * count.0 >= 3 * count.1, "{name}: {parameter} holds {count:?}");
@@ -287,7 +289,8 @@ fn a_rest_is_no_sliding() {
     assert!(matches!(found.validate_on(&resting), Err(IdentifyError::NotSeen { .. })));
 }
 
-/// A friction damper on a test bench (CC BY-SA 4.0, examples/data/SOURCES.md): what a fit outside of this project leaves is 17.3 %.
+/// A friction damper on a test bench (CC BY-SA 4.0, examples/data/SOURCES.md): what a fit outside of this project
+/// leaves is 17.3 %.
 #[test]
 fn a_damper_is_described_as_well_as_by_others() {
     let text = include_str!("../../../../examples/data/damper_1Hz_36lb_1amplitude.csv");
@@ -305,8 +308,8 @@ fn a_damper_is_described_as_well_as_by_others() {
     assert!(found.warnings().iter().any(|warning| warning.to_string().contains("structured")));
 }
 
-/// A robot's joint, of which an encoder tells the angle in steps of 0.1 mrad at 500 Hz and nothing tells speed or acceleration: differences
-/// of neighbours would find a twentieth of the inertia.
+/// A robot's joint, of which an encoder tells the angle in steps of 0.1 mrad at 500 Hz and nothing tells speed or
+/// acceleration: differences of neighbours would find a twentieth of the inertia.
 #[test]
 fn a_joint_is_known_from_the_steps_of_its_encoder() {
     let step = 1e-4;
@@ -350,7 +353,8 @@ fn a_joint_is_known_from_the_steps_of_its_encoder() {
     assert!((rigid.finding("inertia").unwrap().value() - 0.15).abs() < 0.02, "{rigid}");
 }
 
-/// The model that has made the forces wins, whether the others are cases of it or not; two words for one model are refused.
+/// The model that has made the forces wins, whether the others are cases of it or not; two words for one model are
+/// refused.
 #[test]
 fn the_model_behind_the_forces_wins() {
     let times: Vec<f64> = (0..1500).map(|i| 2e-3 * f64::from(i)).collect();

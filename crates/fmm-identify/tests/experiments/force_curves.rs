@@ -39,8 +39,8 @@ fn friction_over_speed_holds_what_it_states() {
     assert!((0.92..0.98).contains(&share), "{inside} of {all}");
 }
 
-/// Cycles and onsets of Dahl's friction along a slow motion beside a spring, against what the law says of them, and how often their
-/// uncertainty holds it.
+/// Cycles and onsets of Dahl's friction along a slow motion beside a spring, against what the law says of them, and how
+/// often their uncertainty holds it.
 #[test]
 fn loops_and_onsets_hold_what_the_law_says() {
     let (level, stiffness, spring, zero, noise) = (5.0, 2e4, 100.0, 0.4, 0.02);

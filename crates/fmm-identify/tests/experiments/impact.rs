@@ -126,7 +126,8 @@ fn a_blow_and_a_ring_down_are_compared_together() {
     assert!((gain.value() - 1.03).abs() < 4.0 * u(best, "force_gain_2"), "{}", gain.value());
 }
 
-/// A response that is late by 3.4 ms, of a force that is read 2 % too large: both are found, and their derivatives are right.
+/// A response that is late by 3.4 ms, of a force that is read 2 % too large: both are found, and their derivatives are
+/// right.
 #[test]
 fn gain_and_delay_of_a_drive_are_found() {
     const SAMPLES: usize = 3000;
@@ -171,7 +172,8 @@ fn gain_and_delay_of_a_drive_are_found() {
     assert!(of(plain()).seen_by(Sensor::default().with_delay(1e12).unwrap()).is_err());
 }
 
-/// A response that is read 3 % wrong makes the gain of a force as wrong the other way, and no delay; the gain of a base is found as well.
+/// A response that is read 3 % wrong makes the gain of a force as wrong the other way, and no delay; the gain of a base
+/// is found as well.
 #[test]
 fn the_gain_of_the_response_is_in_that_of_the_drive() {
     const SAMPLES: usize = 3000;

@@ -57,7 +57,8 @@ fn found(experiments: &[Experiment]) -> Result<Identification, IdentifyError> {
     identify_with::<CoulombStatic>(&machine(), &Terms::default().with_linear_damping(), experiments)
 }
 
-/// A ring-down without contact, one with contact and a slow ramp tell damping, sliding and static level apart; single ones do not.
+/// A ring-down without contact, one with contact and a slow ramp tell damping, sliding and static level apart; single
+/// ones do not.
 #[test]
 fn three_experiments_tell_what_no_one_does() {
     let motions = motions();
@@ -121,8 +122,8 @@ fn loads_of_their_own_scale_friction() {
     assert!(matches!(refused, Err(IdentifyError::WrongRecord { .. })));
 }
 
-/// Rows of different quantities count by their noise, and their derivatives, that by the corner of a sensor among them, are those of
-/// differences.
+/// Rows of different quantities count by their noise, and their derivatives, that by the corner of a sensor among them,
+/// are those of differences.
 #[test]
 fn rows_are_weighed_and_their_derivatives_are_right() {
     let [lifted, sliding, pushed] = experiments(&motions(), 2);

@@ -1,4 +1,5 @@
-//! Experiments besides a ring-down seen by a faithful sensor: accelerations, filters, driven motion, and several kinds together.
+//! Experiments besides a ring-down seen by a faithful sensor: accelerations, filters, driven motion, and several kinds
+//! together.
 
 mod acceleration;
 mod design;

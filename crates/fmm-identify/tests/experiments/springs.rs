@@ -42,7 +42,8 @@ fn springs_come_back() {
     }
 }
 
-/// The findings of these names lie within four of their uncertainties of the truth, which are less than the last number.
+/// The findings of these names lie within four of their uncertainties of the truth, which are less than the last
+/// number.
 fn come_back(motion: &[f64], seed: u64, terms: &Terms, truths: &[(&str, f64, f64)]) {
     let record = record(motion, 1e-4, seed, Quantity::Displacement, "rad");
     let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
@@ -140,7 +141,8 @@ fn the_search_finds_a_stop() {
     assert!(!warns(found.preferred().warnings()) && !warns(found.warnings()), "{found}");
 }
 
-/// Lengths of a spring are uncertain with the gain of the record, ratios are not, and a power of the velocity is by one less than itself.
+/// Lengths of a spring are uncertain with the gain of the record, ratios are not, and a power of the velocity is by one
+/// less than itself.
 #[test]
 fn lengths_are_uncertain_with_the_gain() {
     let uncertain = |motion: &[f64], term: &str, gain: f64| {

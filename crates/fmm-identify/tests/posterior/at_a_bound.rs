@@ -13,7 +13,8 @@ use rand_distr::{Distribution, Normal};
 /// m (kg), k (N/m), load (N), release (m), as in the thesis; the viscous part is less than its own uncertainty.
 const MACHINE: [(&str, f64); 3] = [("mass", 10.391), ("stiffness", 1982.0), ("normal_load", 7.2)];
 const VISCOUS: f64 = 0.007;
-/// White noise (m/s), with which μ has a standard uncertainty of 2.67e-3 without the bound; with it 1.41e-3 by quadrature.
+/// White noise (m/s), with which μ has a standard uncertainty of 2.67e-3 without the bound; with it 1.41e-3 by
+/// quadrature.
 const NOISE: f64 = 2.2e-3;
 
 fn record() -> Record {

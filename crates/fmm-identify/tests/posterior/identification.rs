@@ -26,15 +26,16 @@ fn machine() -> Machine {
     mass.with_normal_load(Known::new(14.0, 0.1).unwrap()).unwrap()
 }
 
-/// Far from its bounds a ring-down is nearly linear: the posterior has the deviation of the standard uncertainty, that of the load
-/// included, and the report says that it was not needed.
+/// Far from its bounds a ring-down is nearly linear: the posterior has the deviation of the standard uncertainty, that
+/// of the load included, and the report says that it was not needed.
 #[test]
 fn the_posterior_of_a_plain_ring_down_is_value_and_uncertainty() {
     let decays = decays();
     let found: Identification = identify::<CoulombViscous>(&machine(), &decays).unwrap();
     let posterior = found.posterior(&decays, &found.sampler()).unwrap();
     println!("{posterior}");
-    // Of twelve such records two or three have 5 to 9 trajectories of 4000 that diverge; which ones, the last digits of the motion decide.
+    // Of twelve such records two or three have 5 to 9 trajectories of 4000 that diverge; which ones, the last digits of
+    // the motion decide.
     let sampled = posterior.posterior();
     assert!(200 * sampled.divergences() <= sampled.len(), "{posterior}");
     assert_eq!(posterior.warnings().len(), usize::from(sampled.divergences() > 0), "{posterior}");

@@ -1,5 +1,5 @@
-//! Blows of known truth, whose force is seen at its samples only: whether intervals cover the truth, and whether the residuals
-//! pass for noise.
+//! Blows of known truth, whose force is seen at its samples only: whether intervals cover the truth, and whether the
+//! residuals pass for noise.
 
 use std::f64::consts::PI;
 
@@ -98,7 +98,8 @@ fn machine(damping: f64) -> ImpactMachine {
     machine.with_normal_load(known(LOAD)).unwrap()
 }
 
-/// What many seeds gave: how many intervals cover the truth of each finding, and how often something was said to be left out.
+/// What many seeds gave: how many intervals cover the truth of each finding, and how often something was said to be
+/// left out.
 #[derive(Debug, Default)]
 struct Count {
     runs: usize,
@@ -124,8 +125,9 @@ impl Count {
 
 const DOMAINS: [ImpactDomain; 3] = [ImpactDomain::Mobility, ImpactDomain::Time, ImpactDomain::Both];
 
-/// Of 100 intervals 95 ± 2.2 % contain the truth by chance alone; three of these deviations are allowed. Straight lines between the
-/// samples miss the impulse of the half sines by up to 0.8 %, 0.25 % and 0.07 %, where the velocity tells it to 0.01 %.
+/// Of 100 intervals 95 ± 2.2 % contain the truth by chance alone; three of these deviations are allowed. Straight lines
+/// between the samples miss the impulse of the half sines by up to 0.8 %, 0.25 % and 0.07 %, where the velocity tells
+/// it to 0.01 %.
 #[test]
 fn intervals_cover_the_truth_whatever_lies_between_samples() {
     const SEEDS: u64 = 25;
@@ -153,7 +155,8 @@ fn intervals_cover_the_truth_whatever_lies_between_samples() {
     }
 }
 
-/// Friction and damping together; and dry friction alone, where there is as much damping, says that it leaves something out.
+/// Friction and damping together; and dry friction alone, where there is as much damping, says that it leaves something
+/// out.
 #[test]
 fn laws_of_two_parameters_and_laws_of_one_too_few() {
     const SEEDS: u64 = 10;
@@ -178,7 +181,8 @@ fn laws_of_two_parameters_and_laws_of_one_too_few() {
 const MEANS: [f64; 4] = [MASS, STIFFNESS, 0.275, LOAD];
 const DEVIATIONS: [f64; 4] = [0.0049, 1.3, 0.034, 0.014];
 
-/// Counts blows, `trials` at a time, on machines drawn around what is known of them, by a hammer of this relative uncertainty.
+/// Counts blows, `trials` at a time, on machines drawn around what is known of them, by a hammer of this relative
+/// uncertainty.
 fn on_drawn_machines(domain: ImpactDomain, trials: u64, calibration: f64, seeds: u64) -> Count {
     let [mass, stiffness, damping, load] = [0, 1, 2, 3].map(|i: usize| Known::new(MEANS[i], DEVIATIONS[i]).unwrap());
     let machine = ImpactMachine::new(mass, stiffness).unwrap().with_damping(damping).unwrap();

@@ -83,7 +83,8 @@ fn a_force_by_stiffness() {
     assert!((by_noise / expected - 1.0).abs() < 1e-9, "{by_noise} instead of {expected}");
 }
 
-/// A damping of the machine that is held takes from friction what it is too large: moved by u, friction moves by its part.
+/// A damping of the machine that is held takes from friction what it is too large: moved by u, friction moves by its
+/// part.
 #[test]
 fn friction_beside_a_known_damping() {
     let machine = |damping: f64, u: f64| {

@@ -1,4 +1,5 @@
-//! Two levels fitted to friction that has no hysteresis: by exact simulation they agree, by the thesis' Euler they do not.
+//! Two levels fitted to friction that has no hysteresis: by exact simulation they agree, by the thesis' Euler they do
+//! not.
 
 use fmm_friction::{AccelerationCoulomb, Berger, Coulomb, LawFamily};
 use fmm_identify::{Candidate, Experiment, Identification, Machine, compare};
@@ -32,8 +33,8 @@ fn misfit(levels: [f64; 2], release: f64, measured: &[f64]) -> f64 {
     motion.velocity().values().iter().zip(measured).map(|(v, measured)| (v - measured).powi(2)).sum()
 }
 
-/// μ₁ and μ₂ of the lowest misfit: a search by steps along each level and along both, which halve when none of them helps. The
-/// misfit jumps, so no gradient leads there.
+/// μ₁ and μ₂ of the lowest misfit: a search by steps along each level and along both, which halve when none of them
+/// helps. The misfit jumps, so no gradient leads there.
 fn thesis_levels(start: f64, release: f64, measured: &[f64]) -> [f64; 2] {
     const DIRECTIONS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, -1.0]];
     let mut best = ([start; 2], misfit([start; 2], release, measured));
@@ -87,7 +88,8 @@ fn falling_friction_has_none() {
     }
 }
 
-/// Nineteen of twenty intervals of 95 % contain zero: 95 ± 2.2 % of a hundred, and three standard deviations are allowed.
+/// Nineteen of twenty intervals of 95 % contain zero: 95 ± 2.2 % of a hundred, and three standard deviations are
+/// allowed.
 #[test]
 fn noise_makes_none() {
     const SEEDS: u64 = 100;

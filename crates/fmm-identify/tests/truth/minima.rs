@@ -1,5 +1,5 @@
-//! Minima of laws whose sum of squares has several or a bent valley: the one that the truth lies in is found, the same on any number of
-//! threads.
+//! Minima of laws whose sum of squares has several or a bent valley: the one that the truth lies in is found, the same
+//! on any number of threads.
 
 use fmm_fit::{Options, Residuals, solve};
 use fmm_friction::{BoucWen, BoucWenByLevel, LawFamily, MakkarDixon};
@@ -34,8 +34,8 @@ fn ends_as_from<F: LawFamily>(values: &[f64], terms: &Terms, decays: &[Experimen
     assert!(own < theirs * (1.0 + 0.25 / problem.len() as f64), "{own:e} above {theirs:e}\n{found}");
 }
 
-/// β and γ of a bent loop lie in a valley along which a fit by them creeps: begun far away it is to end where one from the truth does, or
-/// lower.
+/// β and γ of a bent loop lie in a valley along which a fit by them creeps: begun far away it is to end where one from
+/// the truth does, or lower.
 #[test]
 fn a_gradual_loop_is_found_as_from_the_truth() {
     for seed in 1..=3 {
@@ -45,8 +45,8 @@ fn a_gradual_loop_is_found_as_from_the_truth() {
     }
 }
 
-/// Where γ₂ and γ₅ are equal the law rises once instead of twice, and a fit that gets there creeps: one that began there ended 0.6 % above
-/// the truth in the first of these records.
+/// Where γ₂ and γ₅ are equal the law rises once instead of twice, and a fit that gets there creeps: one that began
+/// there ended 0.6 % above the truth in the first of these records.
 #[test]
 fn a_law_of_two_rises_is_found_as_from_the_truth() {
     let law = [0.06, 300.0, 20.0, 0.15, 80.0, 0.01];
@@ -75,7 +75,8 @@ fn a_loop_is_found_with_gamma_held() {
 fn threads_change_no_bit() {
     use fmm_friction::LuGre;
 
-    // A contact that is softer before it slides, and falls with the speed; level, static level, speed, stiffness, damping, viscous part.
+    // A contact that is softer before it slides, and falls with the speed; level, static level, speed, stiffness,
+    // damping, viscous part.
     let law = [0.15, 0.2, 0.02, 2.0, 2000.0, 20.0, 0.02];
     let decays = [noisy(&velocity::<LuGre>(machine(), &law, RELEASES[2], SAMPLES), 1)];
     let on = |threads: usize| {

@@ -30,8 +30,8 @@ fn ends_are_those_of_held_fits(
             let ProfileEnd::At(end) = end else { continue };
             let rise = held(name, end).fit().sum_of_squares() - fit.sum_of_squares();
             let distance = rise.sqrt() / fit.residual_standard_deviation().unwrap();
-            // Where a reversal passes a sample the sum of squares has a small corner, at which a fit that comes from elsewhere may end;
-            // a lower end would show that the profile is not the lowest.
+            // Where a reversal passes a sample the sum of squares has a small corner, at which a fit that comes from
+            // elsewhere may end; a lower end would show that the profile is not the lowest.
             let ratio = distance / factor;
             assert!(ratio > 1.0 - 1e-6 && ratio < 1.0 + 1e-3, "{name} at {end}: {distance} instead of {factor}");
         }

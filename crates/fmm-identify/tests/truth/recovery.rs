@@ -148,8 +148,8 @@ fn karnopp() {
     recovers_from_one::<Karnopp>(&[0.25, 0.3, 1e-3]);
 }
 
-/// The speeds over which peak and level rise are hardly told apart: with both free there is a second minimum, at 61 and 171 s/m,
-/// which misses these records by less than 1 μm/s.
+/// The speeds over which peak and level rise are hardly told apart: with both free there is a second minimum, at 61 and
+/// 171 s/m, which misses these records by less than 1 μm/s.
 #[test]
 fn makkar_dixon() {
     recovers::<MakkarDixon>(&MAKKAR_DIXON, holding("level_rise", 40.0), &RELEASES[2..]);

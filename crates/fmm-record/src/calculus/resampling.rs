@@ -15,11 +15,12 @@ use crate::{Quantity, Record, RecordError};
 /// D = ½ (1 + cos π(f − B)/(s − B)),        s = rate − B or b, whichever is less,  b = half the rate of the samples
 /// ```
 ///
-/// The second term lets what lies beside the band pass in the same way everywhere, as it would be modulated into it otherwise.
+/// The second term lets what lies beside the band pass in the same way everywhere, as it would be modulated into it
+/// otherwise.
 ///
 /// This is the linear estimate of least mean square for a flat spectrum (J. L. Yen, On nonuniform sampling of
-/// bandwidth-limited signals, IRE Transactions on Circuit Theory 3 (1956) 251); the last term keeps noise from growing. A rate
-/// below a quarter of that of the samples is reached in steps.
+/// bandwidth-limited signals, IRE Transactions on Circuit Theory 3 (1956) 251); the last term keeps noise from growing.
+/// A rate below a quarter of that of the samples is reached in steps.
 ///
 /// ```
 /// use fmm_record::{Quantity, Resampling};
@@ -52,8 +53,8 @@ pub struct Resampled {
     pub rate: f64,
     /// The samples, in the unit of the values given.
     pub values: Vec<f64>,
-    /// Root mean square error, relative to that of a motion with as much of every frequency of the band (1). What lies above
-    /// the band adds to it.
+    /// Root mean square error, relative to that of a motion with as much of every frequency of the band (1). What lies
+    /// above the band adds to it.
     pub error: f64,
     /// The same error of the least known sample (1): larger at the ends, where samples lie on one side only.
     pub worst: f64,
@@ -104,10 +105,12 @@ impl Resampling {
     /// Brings `values` at `times` (s), which increase, to the rate. The first sample is at the first of the times.
     ///
     /// # Errors
-    /// * [`RecordError::TimeAxis`] for times whose number is not that of the values, fewer than two times, times that are not finite or not
-    ///   increasing, or that are so far apart that the error exceeds a tenth of a motion of this band;
+    /// * [`RecordError::TimeAxis`] for times whose number is not that of the values, fewer than two times, times that
+    ///   are not finite or not increasing, or that are so far apart that the error exceeds a tenth of a motion of this
+    ///   band;
     /// * [`RecordError::Values`] for values that are not finite;
-    /// * [`RecordError::Options`] if the band is above 0.45 of the mean rate of the samples, or for more samples than a memory holds.
+    /// * [`RecordError::Options`] if the band is above 0.45 of the mean rate of the samples, or for more samples than a
+    ///   memory holds.
     pub fn of(&self, times: &[f64], values: &[f64]) -> Result<Resampled, RecordError> {
         let mean_rate = checked(times, values)?;
         if self.band > WIDEST * mean_rate {
@@ -227,7 +230,8 @@ impl Spectrum {
         (band + BESIDE * (stop - band) + top - stop) / self.band
     }
 
-    /// Covariance of a sample and the wanted value at a distance (s): ∫ D cos 2πfτ df with the weights of the terms, over B.
+    /// Covariance of a sample and the wanted value at a distance (s): ∫ D cos 2πfτ df with the weights of the terms,
+    /// over B.
     fn wanted(&self, distance: f64) -> f64 {
         let [band, stop] = [self.band, self.stop].map(|frequency| integral(frequency, distance));
         // ∫ᴮₛ cos(π(f − B)/(s − B)) cos 2πfτ df, with the middle m of the edge and half its width h: by the sum and the

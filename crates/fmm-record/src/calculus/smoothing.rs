@@ -57,8 +57,8 @@ impl Smoothing {
         }
     }
 
-    /// The derivative of the smoothed `values` per sample; divide by the sampling interval. Averages are differentiated by
-    /// central differences, polynomials as such.
+    /// The derivative of the smoothed `values` per sample; divide by the sampling interval. Averages are differentiated
+    /// by central differences, polynomials as such.
     ///
     /// # Errors
     /// As for [`Smoothing::apply`], and [`RecordError::TooShort`] below three values.

@@ -10,8 +10,9 @@ use crate::{Record, Swings, noise, quantisation_step};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct FurtherRelease {
-    /// Time at which the values leave their earlier pattern (s), within about a tenth of a period after rest, half of one in motion.
-    /// If a hand draws the machine to its point of release, that may be the time at which the hand takes it.
+    /// Time at which the values leave their earlier pattern (s), within about a tenth of a period after rest, half of
+    /// one in motion. If a hand draws the machine to its point of release, that may be the time at which the hand takes
+    /// it.
     pub time: f64,
     /// Up to here, the record shows the motion before (s): the machine has not yet been taken hold of.
     pub sound_until: f64,
@@ -25,21 +26,21 @@ const LASTING: f64 = 1.5;
 const VISIBLE: f64 = 0.05;
 /// Standard deviations of noise that the range of noise alone stays below.
 const ABOVE_NOISE: f64 = 10.0;
-/// Least share (1) of the range of the record that a motion must have to be a ring-down, and its fewest peaks. Handling before
-/// the release has less of them.
+/// Least share (1) of the range of the record that a motion must have to be a ring-down, and its fewest peaks. Handling
+/// before the release has less of them.
 const LARGE: f64 = 0.15;
 const FEWEST_PEAKS: usize = 3;
 /// Later rises that are as regular as this (1) are those of a beat.
 const REGULAR: f64 = 0.25;
 
-/// Further releases and pushes in `record`, in order: times at which the motion becomes clearly larger again after a ring-down; empty
-/// if there is only one ring-down.
+/// Further releases and pushes in `record`, in order: times at which the motion becomes clearly larger again after a
+/// ring-down; empty if there is only one ring-down.
 ///
-/// A free motion of one mode never grows. A release shows where the range of the values in the period that follows is twice
-/// that in the period before, by 5 % of the largest range and by noise, and stays 1.5 times as large after it. Before
-/// it there must be a ring-down: three peaks that span 15 % of the range of the record. What moves the machine to where
-/// it is held before the first release is none. Neither are rises of half swings that a beat of two modes describes, or
-/// three rises at regular distances.
+/// A free motion of one mode never grows. A release shows where the range of the values in the period that follows is
+/// twice that in the period before, by 5 % of the largest range and by noise, and stays 1.5 times as large after it.
+/// Before it there must be a ring-down: three peaks that span 15 % of the range of the record. What moves the machine
+/// to where it is held before the first release is none. Neither are rises of half swings that a beat of two modes
+/// describes, or three rises at regular distances.
 ///
 /// ```
 /// use fmm_record::{Quantity, Record, further_releases};
@@ -145,7 +146,8 @@ impl Envelope {
         self.values[i..end].iter().position(outside).map_or(end, |k| i + k)
     }
 
-    /// The last sample before a motion that leaves its band at `start`, and has not done so by `i`, that nothing disturbs.
+    /// The last sample before a motion that leaves its band at `start`, and has not done so by `i`, that nothing
+    /// disturbs.
     fn sound_until(&self, i: usize, start: usize) -> usize {
         let is_rest = self.extent(i - self.period, i) < 0.2 * self.extent(i, i + self.period);
         // From rest the band is left soon; in motion a push shows after half a swing.

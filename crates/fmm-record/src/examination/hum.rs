@@ -63,11 +63,11 @@ pub(crate) const MOST_SAMPLES: usize = 1 << 18;
 ///   and noise, the last quarter included, and its phase goes on. What decays or stops with the motion fails this;
 /// * its amplitude is less than 0.45 of half the range of the record, and more than 0.3 steps of the converter.
 ///
-/// The record must contain 28 periods of the line, and if it has more than 262 144 samples the line must lie below half of the
-/// rate that so many would have. A line below some four frequencies of the motion is found in a rest
+/// The record must contain 28 periods of the line, and if it has more than 262 144 samples the line must lie below half
+/// of the rate that so many would have. A line below some four frequencies of the motion is found in a rest
 /// only, of 16 of its periods or more, and a line within 4/T of half the rate not at all. The frequency is uncertain by
-/// about 0.5/(T SNR) for a line that is seen for a time T at an amplitude of SNR standard deviations of the spectrum there,
-/// 5 at least: by less than 1/(20 T) from SNR = 10 on.
+/// about 0.5/(T SNR) for a line that is seen for a time T at an amplitude of SNR standard deviations of the spectrum
+/// there, 5 at least: by less than 1/(20 T) from SNR = 10 on.
 ///
 /// ```
 /// use fmm_record::{Quantity, Record, hum, without_lines};

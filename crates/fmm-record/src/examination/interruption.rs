@@ -33,10 +33,10 @@ const DEVIATION: f64 = 1.4826;
 impl Interruption {
     /// Looks for an interruption of the decay in `record`; `None` if it is free to its end.
     ///
-    /// The half swings of a free decay lose about as much as those before them: friction takes the same from each, damping less and less,
-    /// and friction that rises as the speed falls some more. One that loses four times the median loss of the eight before it, 8 % of its
-    /// height at least, while the machine would have gone on for six half swings more, has been taken hold of. So has a motion that ends at
-    /// once, in a record that goes on.
+    /// The half swings of a free decay lose about as much as those before them: friction takes the same from each,
+    /// damping less and less, and friction that rises as the speed falls some more. One that loses four times the
+    /// median loss of the eight before it, 8 % of its height at least, while the machine would have gone on for six
+    /// half swings more, has been taken hold of. So has a motion that ends at once, in a record that goes on.
     ///
     /// ```
     /// use fmm_record::{Interruption, Quantity, Record};
@@ -149,7 +149,8 @@ mod tests {
         }
     }
 
-    /// Dry friction to its stop, damping of three kinds, friction that doubles towards rest, a beat, offsets that step up and down.
+    /// Dry friction to its stop, damping of three kinds, friction that doubles towards rest, a beat, offsets that step
+    /// up and down.
     #[test]
     fn free_decays_are_free() {
         let line = |t: f64| (1.0 - t / 5.0).max(0.0) * (TAU * 3.0 * t).cos();

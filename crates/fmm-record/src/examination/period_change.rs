@@ -15,24 +15,26 @@ const PARTS: usize = 6;
 const STUDENT: [f64; 12] = [636.6, 31.6, 12.92, 8.61, 6.87, 5.96, 5.41, 5.04, 4.78, 4.59, 4.44, 4.32];
 
 /// Relative change of the period (1) from the first sixth of the turning points to the last; `None` if it is not
-/// significant, or less than half a percent, which is more than a good spring shows, and (Λ/π)². A pendulum, a spring that
-/// stiffens, and a contact that creeps before it slides have one. (Λ is the logarithm of the ratio of the first two swings.
-/// Viscous damping makes periods longer by (Λ/π)²/2; if it grows with the speed, that changes during the decay.)
+/// significant, or less than half a percent, which is more than a good spring shows, and (Λ/π)². A pendulum, a spring
+/// that stiffens, and a contact that creeps before it slides have one. (Λ is the logarithm of the ratio of the first
+/// two swings. Viscous damping makes periods longer by (Λ/π)²/2; if it grows with the speed, that changes during the
+/// decay.)
 ///
-/// `times` (s) are those at which the velocity changes its sign: neither viscous damping nor dry friction changes the time
-/// between two of them. `swings` are the heights of the half swings there, in the unit of the record: noise shifts
-/// a turn in inverse proportion. [`Swings::turns`](crate::Swings::turns) gives both. With s from −1 at the first turn k = 0
-/// to 1 at the last,
+/// `times` (s) are those at which the velocity changes its sign: neither viscous damping nor dry friction changes the
+/// time between two of them. `swings` are the heights of the half swings there, in the unit of the record: noise shifts
+/// a turn in inverse proportion. [`Swings::turns`](crate::Swings::turns) gives both. With s from −1 at the first turn k
+/// = 0 to 1 at the last,
 ///
 /// ```text
 /// t = c₀ + c₁ s + c₂ s² + c₃ (−1)ᵏ
 /// ```
 ///
 /// is fitted by least squares with the weights swing². The term c₃ takes up a wrong offset, by which half periods
-/// are long and short by turns. The change is significant if the one that c₂ gives, less the quantile of Student's t that noise exceeds
-/// in one record of a thousand times its standard uncertainty, still exceeds these limits: so a record without a change raises an
-/// alarm less than once in a thousand. (Of 6400 simulated decays with dry friction, damping, white noise, drift and hum none did.)
-/// The last turn, after which the motion may stop, is left out, and eight are needed.
+/// are long and short by turns. The change is significant if the one that c₂ gives, less the quantile of Student's t
+/// that noise exceeds in one record of a thousand times its standard uncertainty, still exceeds these limits: so a
+/// record without a change raises an alarm less than once in a thousand. (Of 6400 simulated decays with dry friction,
+/// damping, white noise, drift and hum none did.) The last turn, after which the motion may stop, is left out, and
+/// eight are needed.
 ///
 /// ```
 /// use fmm_record::period_change;
@@ -60,7 +62,8 @@ pub fn period_change(times: &[f64], swings: &[f64]) -> Option<f64> {
     let fit = LeastSquares::of(&points)?;
     let curve = fit.coefficients[2];
     let freedom = fit.freedom as usize;
-    // From thirteen degrees of freedom on by the first terms of the expansion about the quantile of the normal distribution.
+    // From thirteen degrees of freedom on by the first terms of the expansion about the quantile of the normal
+    // distribution.
     let student = STUDENT.get(freedom - 1).copied().unwrap_or(3.29 * (1.0 + 3.0 / fit.freedom));
     let loss = 0.5 * (swings[0] / swings[2]).ln() / PI;
     let least = LARGE + loss * loss;
@@ -78,8 +81,8 @@ pub fn period_change(times: &[f64], swings: &[f64]) -> Option<f64> {
 }
 
 impl Swings {
-    /// Times (s) at which the velocity changes its sign, in a record of `quantity`, and the height of the half swing around
-    /// each, in the unit of the record: peaks of a displacement, crossings of anything else.
+    /// Times (s) at which the velocity changes its sign, in a record of `quantity`, and the height of the half swing
+    /// around each, in the unit of the record: peaks of a displacement, crossings of anything else.
     pub fn turns(&self, quantity: Quantity) -> (Vec<f64>, Vec<f64>) {
         let heights = self.peaks().windows(2).map(|pair| (pair[1].value - pair[0].value).abs());
         if quantity != Quantity::Displacement {
@@ -176,7 +179,8 @@ mod tests {
         Record::sampled(rate, values.collect(), quantity, "1").unwrap()
     }
 
-    /// At most one alarm in a thousand. A curve that merely differs from zero, with ends that are apart by chance, raised seven here.
+    /// At most one alarm in a thousand. A curve that merely differs from zero, with ends that are apart by chance,
+    /// raised seven here.
     #[test]
     fn records_without_a_change_raise_no_alarm() {
         let alarms = (0..2000).filter(|seed| of(&disturbed(*seed)).is_some()).count();

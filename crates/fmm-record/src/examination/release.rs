@@ -33,12 +33,12 @@ impl Release {
     /// Motion has begun where four samples in a row lie off the mean of the rest on the same side, by more than a
     /// band: five standard deviations of its white noise, four of all its noise, 1.5 steps of the converter, 0.5 % of
     /// half the record's range. A motion near its turning point stays within such a band for a while too. A rest
-    /// must therefore last longer than a sine stays there that reaches the first extremum of the record in the same time as
-    /// the record.
+    /// must therefore last longer than a sine stays there that reaches the first extremum of the record in the same
+    /// time as the record.
     ///
-    /// The instant is fitted to the rest and the first quarter of the way to that extremum, with the motion of an oscillator that
-    /// is let go: a velocity follows sin φ, a displacement 1 − cos φ, with φ running to the extremum; an acceleration jumps.
-    /// (Force and other quantities are taken like a velocity.)
+    /// The instant is fitted to the rest and the first quarter of the way to that extremum, with the motion of an
+    /// oscillator that is let go: a velocity follows sin φ, a displacement 1 − cos φ, with φ running to the extremum;
+    /// an acceleration jumps. (Force and other quantities are taken like a velocity.)
     ///
     /// ```
     /// use fmm_record::{Quantity, Record, Release};
@@ -193,7 +193,8 @@ impl Rest {
     }
 }
 
-/// Place of the least value of `f` between `low` and `high`, to a thousandth of a sample (golden section); `f` has one minimum there.
+/// Place of the least value of `f` between `low` and `high`, to a thousandth of a sample (golden section); `f` has one
+/// minimum there.
 fn least(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     const RATIO: f64 = 0.618_033_988_749_894_9;
     const RESOLUTION: f64 = 1e-3;

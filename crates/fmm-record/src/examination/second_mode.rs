@@ -13,8 +13,8 @@ use crate::{Record, Swings, period_change};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SecondMode {
-    /// Its frequency (Hz). Where it shows as a beat of few cycles only, it may lie as far on the other side of the frequency of
-    /// the motion.
+    /// Its frequency (Hz). Where it shows as a beat of few cycles only, it may lie as far on the other side of the
+    /// frequency of the motion.
     pub frequency: f64,
     /// Its amplitude over that of the motion (1), about, where it shows best.
     pub share: f64,
@@ -41,8 +41,8 @@ const FALSE_RATE: f64 = 1e-2;
 /// Relative rise of the half swings that no decay has (1).
 const RISE: f64 = 0.1;
 
-/// Whether the half swings of `record` rise and fall as those of two modes do: a modulation leaves less than a fifth of the
-/// squares. (Of two modes it left up to a tenth, after a push in motion more than a third.)
+/// Whether the half swings of `record` rise and fall as those of two modes do: a modulation leaves less than a fifth of
+/// the squares. (Of two modes it left up to a tenth, after a push in motion more than a third.)
 pub(crate) fn beats(record: &Record) -> bool {
     let beats = |modulation: Modulation| modulation.residuals.0 < EXPLAINED * modulation.residuals.1;
     let modulation = |motion: Motion| {
@@ -56,13 +56,14 @@ impl SecondMode {
     /// Looks for a second mode in `record`; `None` if the record shows one vibration that decays.
     ///
     /// There are two signs. A mode far from the first has a line of its own in the spectrum of the motion, or of its
-    /// first half, quarter or eighth. The line must stand above the noise as in [`hum`](crate::hum()) and have 1 % of the motion at least.
-    /// At multiples of the first frequency friction and nonlinear restoring forces have harmonics; there it must be larger
-    /// than harmonics of friction are. (If the period changes with the amplitude, time is measured in half swings.)
+    /// first half, quarter or eighth. The line must stand above the noise as in [`hum`](crate::hum()) and have 1 % of
+    /// the motion at least. At multiples of the first frequency friction and nonlinear restoring forces have harmonics;
+    /// there it must be larger than harmonics of friction are. (If the period changes with the amplitude, time is
+    /// measured in half swings.)
     ///
     /// A mode near to the first makes the half swings larger and smaller by turns. A cubic in their number k for
-    /// their heights, the logarithms or the inverses of them describes a decay by dry friction, viscous or quadratic damping.
-    /// About the nearest of these, h, a modulation is fitted:
+    /// their heights, the logarithms or the inverses of them describes a decay by dry friction, viscous or quadratic
+    /// damping. About the nearest of these, h, a modulation is fitted:
     ///
     /// ```text
     /// h (1 + c₀ + c₁ k + c₂ k² + c₃ k³ + a cos 2πνk + b sin 2πνk)
@@ -73,9 +74,9 @@ impl SecondMode {
     /// cycles than 1.8 count if half swings rise by a tenth. The frequency is that of n f (1 ± 2ν/n), n odd, where
     /// the spectrum is largest.
     ///
-    /// In 4000 simulated decays with friction and damping of many kinds, two showed one of the signs. Of modes with a share of a tenth or more,
-    /// 25 % and more away from the first, nineteen of twenty were found in 16 half swings or more; in fewer, a mode
-    /// near to the first is mostly missed.
+    /// In 4000 simulated decays with friction and damping of many kinds, two showed one of the signs. Of modes with a
+    /// share of a tenth or more, 25 % and more away from the first, nineteen of twenty were found in 16 half swings or
+    /// more; in fewer, a mode near to the first is mostly missed.
     ///
     /// ```
     /// use fmm_record::{Quantity, Record, SecondMode};
@@ -249,8 +250,8 @@ impl Modulation {
     }
 }
 
-/// Heights of half swings without a beat: a cubic for themselves, their logarithms or their inverses, whichever is nearest.
-/// Dry friction, viscous and quadratic damping make one of them a straight line.
+/// Heights of half swings without a beat: a cubic for themselves, their logarithms or their inverses, whichever is
+/// nearest. Dry friction, viscous and quadratic damping make one of them a straight line.
 fn trend(heights: &[f64]) -> Option<Vec<f64>> {
     /// How a height becomes its form, the slope there, and how the form becomes a height.
     type Form = (fn(f64) -> f64, fn(f64) -> f64, fn(f64) -> f64);
@@ -272,8 +273,8 @@ fn trend(heights: &[f64]) -> Option<Vec<f64>> {
     best.map(|(_, curve)| curve)
 }
 
-/// Cycles per half swing and share of a beat that makes the half swings, in pairs, larger again, if one does: half a cycle
-/// from the smallest to the largest after it.
+/// Cycles per half swing and share of a beat that makes the half swings, in pairs, larger again, if one does: half a
+/// cycle from the smallest to the largest after it.
 fn rise(heights: &[f64]) -> Option<(f64, f64)> {
     let pairs: Vec<f64> = heights.windows(2).map(|pair| pair[0] + pair[1]).collect();
     let mut least = 0;

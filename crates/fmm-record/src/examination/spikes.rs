@@ -29,8 +29,9 @@ const LONGEST: usize = SIDE;
 ///
 /// A sample is off if it differs from the median of the seven samples around it by more than eight standard
 /// deviations of the noise, three steps of the converter, 0.1 % of the record's range, and four times what all but
-/// one sample in 200 differ. The last of these lets pass what a fast motion or its sharp onset does by itself. The first and last three samples
-/// are not judged. A pulse of up to three samples in a force record is a spike in this sense.
+/// one sample in 200 differ. The last of these lets pass what a fast motion or its sharp onset does by itself. The
+/// first and last three samples are not judged. A pulse of up to three samples in a force record is a spike in this
+/// sense.
 ///
 /// ```
 /// use fmm_record::{Quantity, Record, spikes};

@@ -148,7 +148,8 @@ fn is_level(segments: &[Segment], amplitude: f64) -> bool {
     (line.slope * span).abs() <= CHANGE * amplitude + SCATTER * 1.2 * line.slope_scatter * span
 }
 
-/// Slope (rad per sample) and intercept (rad) of the straight line through the phases; `None` if they do not lie on one.
+/// Slope (rad per sample) and intercept (rad) of the straight line through the phases; `None` if they do not lie on
+/// one.
 fn in_phase(segments: &[Segment]) -> Option<(f64, f64)> {
     // From the end, where the motion is smallest, each phase is taken by the whole turn that comes nearest to the
     // line through those after it.

@@ -21,8 +21,9 @@ pub struct Peak {
 }
 
 impl Peak {
-    /// u, standard uncertainty of the value of a fitted turning point by white noise of this deviation, in its unit, at so many
-    /// `samples_per_period`: a sine of unknown height, phase and centre scatters by 1.5 σ/√n at its extremum, as a parabola does.
+    /// u, standard uncertainty of the value of a fitted turning point by white noise of this deviation, in its unit, at
+    /// so many `samples_per_period`: a sine of unknown height, phase and centre scatters by 1.5 σ/√n at its extremum,
+    /// as a parabola does.
     pub fn standard_uncertainty(noise: f64, samples_per_period: f64) -> f64 {
         1.5 * noise / Swings::samples_per_point(samples_per_period).sqrt()
     }
@@ -113,8 +114,8 @@ impl Swings {
         &self.crossings
     }
 
-    /// n, samples to which a turning point or a passage is fitted, at so many `samples_per_period`: those within ±1/12 of it, three at
-    /// least.
+    /// n, samples to which a turning point or a passage is fitted, at so many `samples_per_period`: those within ±1/12
+    /// of it, three at least.
     pub fn samples_per_point(samples_per_period: f64) -> f64 {
         (2 * reach(0.5 * samples_per_period) + 1) as f64
     }
@@ -143,8 +144,8 @@ impl Swings {
     }
 }
 
-/// Standard deviation of the white noise where it is loud, but not loudest: a noise that grows with the motion is larger in the
-/// motion than in the rest, and a shock in one part is none.
+/// Standard deviation of the white noise where it is loud, but not loudest: a noise that grows with the motion is
+/// larger in the motion than in the rest, and a shock in one part is none.
 fn noise_in_motion(values: &[f64]) -> f64 {
     const PARTS: usize = 8;
     const FEWEST: usize = 100;
@@ -247,9 +248,9 @@ fn begins_moving(fitted: &[Fitted]) -> bool {
     first.turns() && far
 }
 
-/// Whether the first turning point lies where something is held until it is released, as noise turns anywhere in that: where
-/// the values before it are near it, which in a swing come from the other side, and after a blow from the centre; or
-/// those on the way to the next one, which in a swing have left it by a half to the whole of its height.
+/// Whether the first turning point lies where something is held until it is released, as noise turns anywhere in that:
+/// where the values before it are near it, which in a swing come from the other side, and after a blow from the centre;
+/// or those on the way to the next one, which in a swing have left it by a half to the whole of its height.
 fn begins_held(values: &[f64], fitted: &[Fitted]) -> bool {
     let [first, second, ..] = fitted else { return false };
     let half = second.at - first.at;

@@ -24,8 +24,8 @@ const ROUNDING: f64 = 1e-9;
 impl Upsampling {
     /// Looks for held or interpolated samples in `record`; `None` if each sample may have been measured.
     ///
-    /// Of held samples all differences, of interpolated ones all second differences, lie at each so many-th sample. Both make noise
-    /// look correlated, and delay the motion. Only whole factors up to 64 are found.
+    /// Of held samples all differences, of interpolated ones all second differences, lie at each so many-th sample.
+    /// Both make noise look correlated, and delay the motion. Only whole factors up to 64 are found.
     ///
     /// ```
     /// use fmm_record::{Quantity, Record, Upsampling};
@@ -60,7 +60,8 @@ impl Upsampling {
     }
 }
 
-/// The largest factor such that `changes` from sample 1 to `end` lie at samples of one remainder by it, and the first of these.
+/// The largest factor such that `changes` from sample 1 to `end` lie at samples of one remainder by it, and the first
+/// of these.
 fn factor(end: usize, changes: impl Fn(usize) -> f64) -> Option<(usize, usize)> {
     let total: f64 = (1..end).map(&changes).sum();
     if !(total > 0.0 && total.is_finite()) {

@@ -108,8 +108,8 @@ impl Clock {
         self.unit == Written::Nothing && are_whole(numbers)
     }
 
-    /// Brings the time stamps of the series called `name` to seconds; `by_nature` tells that nobody called it time, but that it
-    /// increases uniformly.
+    /// Brings the time stamps of the series called `name` to seconds; `by_nature` tells that nobody called it time, but
+    /// that it increases uniformly.
     ///
     /// # Errors
     /// [`RecordError::TimeAxis`] if something else is written where the unit belongs, or if they
@@ -134,8 +134,8 @@ impl Clock {
 }
 
 impl Reading {
-    /// The values of a column of time stamps in s, as the unit in its name says: for a table whose times are not equally spaced, of which
-    /// no [`Record`](crate::Record) is made. Read it at any [`rate`](crate::Reader::rate).
+    /// The values of a column of time stamps in s, as the unit in its name says: for a table whose times are not
+    /// equally spaced, of which no [`Record`](crate::Record) is made. Read it at any [`rate`](crate::Reader::rate).
     ///
     /// ```
     /// use fmm_record::Reader;

@@ -167,8 +167,8 @@ impl DataFile {
     /// The array called `name` in a MATLAB, HDF5 or NumPy file, with or without its unit.
     ///
     /// # Errors
-    /// [`RecordError::NoSuchChannel`] without such an array, [`RecordError::WhichChannel`] if several are called so, [`RecordError::Unsupported`] if it is not a real numeric array,
-    /// [`RecordError::Damaged`] if it cannot be read.
+    /// [`RecordError::NoSuchChannel`] without such an array, [`RecordError::WhichChannel`] if several are called so,
+    /// [`RecordError::Unsupported`] if it is not a real numeric array, [`RecordError::Damaged`] if it cannot be read.
     #[cfg(any(feature = "mat", feature = "npy"))]
     pub fn array(&self, name: &str) -> Result<&Array, RecordError> {
         match &self.content {
@@ -228,8 +228,8 @@ impl DataFile {
     /// The record of a channel, by name or by position.
     ///
     /// # Errors
-    /// [`RecordError::NoSuchChannel`] if no channel has the name or position, [`RecordError::WhichChannel`] if several have the name, and the
-    /// errors of the channel or its time.
+    /// [`RecordError::NoSuchChannel`] if no channel has the name or position, [`RecordError::WhichChannel`] if several
+    /// have the name, and the errors of the channel or its time.
     pub fn channel(&self, channel: impl Into<Column>) -> Result<Reading, RecordError> {
         self.read(&self.reader.clone().channel(channel))
     }
@@ -242,8 +242,8 @@ impl DataFile {
         self.read(&self.reader)
     }
 
-    /// The record of the channel that is meant: the only one, or else the one that a request tells out by its quantity and
-    /// unit ([`Request::choose`]).
+    /// The record of the channel that is meant: the only one, or else the one that a request tells out by its quantity
+    /// and unit ([`Request::choose`]).
     ///
     /// # Errors
     /// [`RecordError::Units`] if it is not clear which channel is meant, otherwise as [`DataFile::channel`].

@@ -98,8 +98,8 @@ pub(crate) fn is_matlab_4(head: &[u8]) -> bool {
     })
 }
 
-/// Whether a data set begins here: behind a line of -1 in its six columns the number of a data set, or behind any line of
-/// -1 the number 58. A column of numbers has neither.
+/// Whether a data set begins here: behind a line of -1 in its six columns the number of a data set, or behind any line
+/// of -1 the number 58. A column of numbers has neither.
 fn is_universal(head: &[u8]) -> bool {
     let mut lines = head.split(|byte| matches!(byte, b'\n' | b'\r')).filter(|line| !line.trim_ascii().is_empty());
     let mut before: &[u8] = b"";

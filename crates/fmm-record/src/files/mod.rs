@@ -32,7 +32,8 @@ pub use reader::Reader;
 
 use crate::RecordError;
 
-/// Opens a file of measured channels, whatever its format and its name are: [`Reader::open`] with nothing said beside it.
+/// Opens a file of measured channels, whatever its format and its name are: [`Reader::open`] with nothing said beside
+/// it.
 ///
 /// # Errors
 /// As [`Reader::open`].

@@ -6,8 +6,8 @@ use super::DataFile;
 use crate::record::Span;
 use crate::{Column, Quantity, Reading, RecordError, Resampling};
 
-/// Opens and reads files of every format. The format is told by the content, the name of the file does not matter; what the
-/// file cannot tell is said here. What its format states itself, or does not have, is refused
+/// Opens and reads files of every format. The format is told by the content, the name of the file does not matter; what
+/// the file cannot tell is said here. What its format states itself, or does not have, is refused
 /// ([`RecordError::Options`]).
 ///
 /// ```
@@ -24,8 +24,8 @@ use crate::{Column, Quantity, Reading, RecordError, Resampling};
 ///
 /// # Text
 ///
-/// Comma, semicolon or tab separated, or aligned by blanks. Files of LabVIEW (`.lvm`), Tektronix, Rigol, PicoScope and catman
-/// and the `sep=` of Excel need nothing said.
+/// Comma, semicolon or tab separated, or aligned by blanks. Files of LabVIEW (`.lvm`), Tektronix, Rigol, PicoScope and
+/// catman and the `sep=` of Excel need nothing said.
 ///
 /// | what | found by default |
 /// |---|---|
@@ -36,15 +36,16 @@ use crate::{Column, Quantity, Reading, RecordError, Resampling};
 /// | time | the column called `t`, `time`, `Zeit`, `timestamp` or the like, in seconds unless its name tells another unit (ms, µs, ns, min, h, in any usual spelling); else the first column, if it increases uniformly, but not by whole numbers without a unit |
 /// | channel | the first column that is neither the time nor called a number of samples |
 ///
-/// Where no column is time, a number above the table that is called an interval or a rate (`Sample Interval`, `Delta_X`) tells
-/// the rate. With a rate, time stamps are not looked at, and the record begins at 0 s.
+/// Where no column is time, a number above the table that is called an interval or a rate (`Sample Interval`,
+/// `Delta_X`) tells the rate. With a rate, time stamps are not looked at, and the record begins at 0 s.
 ///
 /// # MATLAB (versions 5 to 7.3, HDF5) and NumPy (npy, npz)
 ///
-/// A channel is written as the program writes it: `data`, `run.v` for a field of a structure; `m(:,2)` for the second column of
-/// a matrix in MATLAB, `m[:,1]` in NumPy; `m(2,:)` and `m[1]` for the second row. The array of an npy file has no name:
-/// `[1]`. A position counts all vectors, and the rows or columns of matrices (whichever are longer), from 0. Where none is
-/// named, the file must have exactly one array that can be it: a vector, or a matrix of time and one more series.
+/// A channel is written as the program writes it: `data`, `run.v` for a field of a structure; `m(:,2)` for the second
+/// column of a matrix in MATLAB, `m[:,1]` in NumPy; `m(2,:)` and `m[1]` for the second row. The array of an npy file
+/// has no name: `[1]`. A position counts all vectors, and the rows or columns of matrices (whichever are longer), from
+/// 0. Where none is named, the file must have exactly one array that can be it: a vector, or a matrix of time and one
+///    more series.
 ///
 /// The rate comes from the first of these that exists:
 ///
@@ -52,7 +53,8 @@ use crate::{Column, Quantity, Reading, RecordError, Resampling};
 /// 2. the time stamps given;
 /// 3. the first column or row of the channel's own matrix, if it increases uniformly and not by whole numbers;
 /// 4. a vector called `t`, `time` or the like of the same length, in the unit of time that its name tells;
-/// 5. a scalar whose name means rate or interval, such as `fs`, `ActualRate`, `sample_rate`, `dt`, `Ts`, in upper or lower case.
+/// 5. a scalar whose name means rate or interval, such as `fs`, `ActualRate`, `sample_rate`, `dt`, `Ts`, in upper or
+///    lower case.
 ///
 /// Variables of the same structure come before those around it.
 ///
@@ -80,7 +82,8 @@ impl Reader {
         self
     }
 
-    /// The byte between columns of a text: comma, semicolon, tab, `|` or `:`; a space stands for blanks, as many as there are.
+    /// The byte between columns of a text: comma, semicolon, tab, `|` or `:`; a space stands for blanks, as many as
+    /// there are.
     #[must_use]
     pub fn separator(mut self, separator: u8) -> Self {
         self.separator = Some(separator);
@@ -115,8 +118,8 @@ impl Reader {
         self
     }
 
-    /// Leave out the samples before this time (s), whatever they are: values that are not finite are an error only where they are
-    /// kept. Resampling needs all of them.
+    /// Leave out the samples before this time (s), whatever they are: values that are not finite are an error only
+    /// where they are kept. Resampling needs all of them.
     #[must_use]
     pub fn from(mut self, time: f64) -> Self {
         self.span.from = Some(time);
@@ -156,8 +159,8 @@ impl Reader {
     ///
     /// # Errors
     /// [`RecordError::UnknownFormat`] and [`RecordError::MissingFeature`] for the format; [`RecordError::Damaged`] and
-    /// [`RecordError::Unsupported`] for the file as a whole; [`RecordError::Options`] for an option that the format itself decides. A fault of a
-    /// channel is an error only when the channel is asked for.
+    /// [`RecordError::Unsupported`] for the file as a whole; [`RecordError::Options`] for an option that the format
+    /// itself decides. A fault of a channel is an error only when the channel is asked for.
     pub fn parse(&self, bytes: impl Into<Vec<u8>>) -> Result<DataFile, RecordError> {
         DataFile::parse(self.clone(), bytes.into())
     }

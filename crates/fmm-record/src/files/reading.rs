@@ -62,8 +62,9 @@ pub(crate) fn too_large() -> RecordError {
 
 /// A column of a table, by name or by position.
 ///
-/// A name matches exactly or, if no column does, without regard to case, or else without what the column has in brackets:
-/// `velocity` means `velocity [m/s]`, if no other column is called so. A position counts from **0**. Text of digits only is a position, any other text is a name; a column whose *name* is a number is chosen with
+/// A name matches exactly or, if no column does, without regard to case, or else without what the column has in
+/// brackets: `velocity` means `velocity [m/s]`, if no other column is called so. A position counts from **0**. Text of
+/// digits only is a position, any other text is a name; a column whose *name* is a number is chosen with
 /// [`Column::Name`]. In a table without a header row the names are the positions.
 ///
 /// ```
@@ -80,8 +81,8 @@ pub enum Column {
     Index(usize),
 }
 
-/// The only position of those `found` of what is `written`; `column` is what was looked for among columns, data sets or variables, as
-/// `kind` calls one.
+/// The only position of those `found` of what is `written`; `column` is what was looked for among columns, data sets or
+/// variables, as `kind` calls one.
 #[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 pub(crate) fn only(found: &[usize], column: &Column, kind: &str, written: &[String]) -> Result<usize, RecordError> {
     match found {
@@ -104,8 +105,8 @@ pub(crate) fn only(found: &[usize], column: &Column, kind: &str, written: &[Stri
 
 #[cfg(any(feature = "csv", feature = "uff"))]
 impl Column {
-    /// Positions of the columns that are meant. They are written in one way or several, of which the first has the units; the first
-    /// way of looking that finds anything counts.
+    /// Positions of the columns that are meant. They are written in one way or several, of which the first has the
+    /// units; the first way of looking that finds anything counts.
     pub(crate) fn among(&self, written: &[&[String]]) -> Vec<usize> {
         let names = written.first().copied().unwrap_or_default();
         let name = match self {

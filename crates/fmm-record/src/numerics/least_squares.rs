@@ -1,5 +1,5 @@
-//! Linear fits of a few coefficients, whose normal equations are solved here: the solver of `fmm-fit` stands above this crate,
-//! and an algebra crate would be nine more to build for so small a matrix.
+//! Linear fits of a few coefficients, whose normal equations are solved here: the solver of `fmm-fit` stands above this
+//! crate, and an algebra crate would be nine more to build for so small a matrix.
 
 /// A linear fit of weighted least squares.
 #[derive(Debug, Clone, PartialEq)]

@@ -39,8 +39,8 @@ const SIDE: usize = 20;
 /// ```
 ///
 /// (an exponential variable over the mean of ν others; the variance of the median is that of the mean over ln²2), and
-/// x is such that this is one in a thousand. Harmonics of a motion fall as their order rises. A line must therefore exceed
-/// all that lies within 2.6 fundamental frequencies as well, by a factor of two.
+/// x is such that this is one in a thousand. Harmonics of a motion fall as their order rises. A line must therefore
+/// exceed all that lies within 2.6 fundamental frequencies as well, by a factor of two.
 pub(crate) fn lines(values: &[f64], part: Range<usize>, fundamental: f64, known: &[f64]) -> Vec<Candidate> {
     let values = &values[part];
     if values.len() < SHORTEST {

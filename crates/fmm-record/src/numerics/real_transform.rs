@@ -14,8 +14,9 @@ use crate::RecordError;
 /// X_k = Σ_j x_j e^{−2πi jk/n},   0 ≤ k ≤ n/2
 /// ```
 ///
-/// Of `realfft`, and compiled once for all crates that transform: its plans are generic, and each crate that made its own would
-/// compile every algorithm of it again, half a minute each. It is planned once for as many records as have that length, and copies share the plan. Any length will do, but primes are slow.
+/// Of `realfft`, and compiled once for all crates that transform: its plans are generic, and each crate that made its
+/// own would compile every algorithm of it again, half a minute each. It is planned once for as many records as have
+/// that length, and copies share the plan. Any length will do, but primes are slow.
 ///
 /// ```
 /// use fmm_record::RealTransform;
@@ -53,8 +54,8 @@ impl RealTransform {
         self.plan.make_scratch_vec()
     }
 
-    /// Writes the lines of `samples`, which are lost, to `spectrum`, in the unit of the samples; `scratch` is memory, and both
-    /// are used again.
+    /// Writes the lines of `samples`, which are lost, to `spectrum`, in the unit of the samples; `scratch` is memory,
+    /// and both are used again.
     ///
     /// # Errors
     /// [`RecordError::Options`] for another number of samples.

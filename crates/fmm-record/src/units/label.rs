@@ -14,10 +14,11 @@ use crate::{Quantity, WrittenUnit};
 /// | behind a slash | `x/mm`, `v / m/s` |
 /// | behind underscores | `theta_rad`, `vel_mm_s`, `omega_rad_per_s`, `acc_ms2`, `encoder_counts` |
 ///
-/// A suffix that may be something else, as `m`, `cm` or `g`, is a unit only behind a word for its quantity: `pos_m` is in
-/// metres, of `x_m` nothing is known. Words are `velocity`, `vel`, `speed`, `rate`; `displacement`, `disp`, `position`,
-/// `pos`, `angle`; `acceleration`, `accel`, `acc`; `force`, `torque`. Sensors and symbols (`gyro`, `encoder`,
-/// `accelerometer`, `omega`, `theta`) are words as well, but leave it to the unit and to other words to say otherwise.
+/// A suffix that may be something else, as `m`, `cm` or `g`, is a unit only behind a word for its quantity: `pos_m` is
+/// in metres, of `x_m` nothing is known. Words are `velocity`, `vel`, `speed`, `rate`; `displacement`, `disp`,
+/// `position`, `pos`, `angle`; `acceleration`, `accel`, `acc`; `force`, `torque`. Sensors and symbols (`gyro`,
+/// `encoder`, `accelerometer`, `omega`, `theta`) are words as well, but leave it to the unit and to other words to say
+/// otherwise.
 ///
 /// ```
 /// use fmm_record::{Label, Quantity};

@@ -2,7 +2,8 @@
 
 use crate::{Label, Meaning, MeaningError, Quantity, WrittenUnit};
 
-/// Quantity and unit of a channel as the caller states them, beside the file. It may be empty where the file tells enough.
+/// Quantity and unit of a channel as the caller states them, beside the file. It may be empty where the file tells
+/// enough.
 ///
 /// | said | counts |
 /// |---|---|
@@ -10,8 +11,9 @@ use crate::{Label, Meaning, MeaningError, Quantity, WrittenUnit};
 /// | unit | if the file writes none, or the same |
 /// | scale | with the unit of the scaled numbers, instead of the unit in the file |
 ///
-/// Without a quantity, that of the unit is taken, else that of a word in the name. Without a unit, SI units are taken only if
-/// a quantity was said, and never where the name tells of rotation or of a sensor; [`Meaning::is_assumed`] tells of it.
+/// Without a quantity, that of the unit is taken, else that of a word in the name. Without a unit, SI units are taken
+/// only if a quantity was said, and never where the name tells of rotation or of a sensor; [`Meaning::is_assumed`]
+/// tells of it.
 ///
 /// ```
 /// use fmm_record::{Label, Quantity, Request};
@@ -140,8 +142,8 @@ impl Request {
         Ok(Meaning { quantity, factor: self.scale.unwrap_or(1.0), unit: likely, is_assumed: true })
     }
 
-    /// Position of the channel that is meant among all channels but the time: the only one, or the one that stands alone
-    /// by its unit, else by a word in its name, else by being the only one of which nothing is known.
+    /// Position of the channel that is meant among all channels but the time: the only one, or the one that stands
+    /// alone by its unit, else by a word in its name, else by being the only one of which nothing is known.
     ///
     /// With a quantity or a unit said, that is looked for; otherwise a velocity, then a displacement.
     ///

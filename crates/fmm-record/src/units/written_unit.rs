@@ -16,8 +16,8 @@ use crate::units::spelling::{COUNTS, MOTIONS, meaning};
 /// | force, torque | `N`, `kN`, `mN`, `lbf`, `kgf`, `N m`, `N mm` |
 /// | anything | `V`, `mV`, `A`, `mA`; `counts`, `ticks`, `LSB`, whose size nobody has said |
 ///
-/// The micro sign may be U+00B5, U+03BC or `u`. Capitals matter where a prefix or a unit would be another with them: `mN`
-/// and `MN`, `g` and `G`; words and other units of motion may be in any case, as in `MM/S`.
+/// The micro sign may be U+00B5, U+03BC or `u`. Capitals matter where a prefix or a unit would be another with them:
+/// `mN` and `MN`, `g` and `G`; words and other units of motion may be in any case, as in `MM/S`.
 ///
 /// ```
 /// use fmm_record::{Quantity, WrittenUnit};

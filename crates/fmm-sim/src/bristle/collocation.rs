@@ -22,8 +22,8 @@ const MOST_DERIVATIVE_ITERATIONS: usize = 60;
 /// What is left over by Newton's method, in units of the tolerance.
 const LEFT_OVER: f64 = 0.01;
 
-/// Step times stiffness below which the stiffness of a state does not count beside the eigenvalues of the method, of 10 to 13; found by
-/// the number of iterations, which is the least for 5 to 6.
+/// Step times stiffness below which the stiffness of a state does not count beside the eigenvalues of the method, of 10
+/// to 13; found by the number of iterations, which is the least for 5 to 6.
 const LEAST_STIFF: f64 = 6.0;
 
 /// The method: what it needs beside the motion.
@@ -34,8 +34,8 @@ pub(super) struct Collocation<D> {
     modes: Modes<D>,
     state: Vec<D>,
     rate: Vec<D>,
-    /// Increments and length of a step from which this one is predicted, and where in units of that step this one begins:
-    /// at 1, or at 0 if it is a first attempt at the same step.
+    /// Increments and length of a step from which this one is predicted, and where in units of that step this one
+    /// begins: at 1, or at 0 if it is a first attempt at the same step.
     guess: Vec<Stages<D>>,
     guess_length: f64,
     guess_begin: f64,
@@ -77,8 +77,8 @@ impl<D: Scalar> Collocation<D> {
 
     /// Solves the step over `span`. `None` if Newton's method does not converge.
     ///
-    /// The values are iterated first, by rules that look at nothing but values, and then left alone while the derivatives
-    /// are iterated: the values are those of plain numbers to the last bit.
+    /// The values are iterated first, by rules that look at nothing but values, and then left alone while the
+    /// derivatives are iterated: the values are those of plain numbers to the last bit.
     pub(super) fn solve<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
@@ -214,11 +214,11 @@ impl<D: Scalar> Collocation<D> {
         }
     }
 
-    /// One iteration of Newton's method; afterwards `residual` holds the change of the increments. Without `values` these
-    /// stay what they are.
+    /// One iteration of Newton's method; afterwards `residual` holds the change of the increments. Without `values`
+    /// these stay what they are.
     ///
-    /// The Jacobian is that in the middle of the step. The equations of a state are multiplied by how stiff they are there over how stiff
-    /// they are at their stage, so that it is that of all stages where a state follows the motion.
+    /// The Jacobian is that in the middle of the step. The equations of a state are multiplied by how stiff they are
+    /// there over how stiff they are at their stage, so that it is that of all stages where a state follows the motion.
     fn correct(&mut self, motion: &mut Motion<D>, span: Span, values: bool) {
         // f(Y) − (1/h) A⁻¹ W
         let per_second = 1.0 / span.length;

@@ -18,8 +18,8 @@ const SAFETY: f64 = 0.1;
 
 /// The Dormand-Prince method, as the [`RungeKutta`](crate::RungeKutta) engine uses it.
 ///
-/// Its interpolant is of the same degree as the polynomial of the collocation method and is handed on as that: by what it
-/// is at the stages there.
+/// Its interpolant is of the same degree as the polynomial of the collocation method and is handed on as that: by what
+/// it is at the stages there.
 pub(super) struct Explicit<D> {
     rates: Vec<Rates<D>>,
     state: Vec<D>,
@@ -75,8 +75,8 @@ impl<D: Scalar> Explicit<D> {
         if self.is_settled(motion) {
             field.relaxations(branch, &self.end, &mut self.relaxations);
             stiffness = self.relaxations.iter().fold(stiffness, |most, relaxation| most.max(length * relaxation));
-            // The values stay where they are however long the step, and move nothing, but derivatives and rounding grow in one that is not
-            // stable.
+            // The values stay where they are however long the step, and move nothing, but derivatives and rounding grow
+            // in one that is not stable.
             error = error.max((stiffness / STABLE).powi(ORDER));
         }
         let variation = self.variation(motion);
@@ -101,7 +101,8 @@ impl<D: Scalar> Explicit<D> {
         worst
     }
 
-    /// Length of the step times the rate by which the two stages at its end tell the stiffest direction from the others.
+    /// Length of the step times the rate by which the two stages at its end tell the stiffest direction from the
+    /// others.
     ///
     /// # References
     /// E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, Springer 1996, section IV.2, eq. (2.25).
@@ -117,8 +118,8 @@ impl<D: Scalar> Explicit<D> {
         if states > 0.0 { length * (rates / states).sqrt() } else { 0.0 }
     }
 
-    /// Whether the states are where they stay: their values show nothing of how fast they would return there, but their derivatives
-    /// do return.
+    /// Whether the states are where they stay: their values show nothing of how fast they would return there, but their
+    /// derivatives do return.
     fn is_settled(&self, motion: &Motion<D>) -> bool {
         /// Changes below, in units of the scales, do not count beside that of the position.
         const UNSEEN: f64 = 1e-9;

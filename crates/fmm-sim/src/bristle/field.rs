@@ -20,8 +20,8 @@ const DIFFERENCE: f64 = 1e-7;
 /// The part of its bound within which a state is near zero.
 const NEAR_ZERO: f64 = 1e-4;
 
-/// Tolerances (1) from its bound at which a bristle is at it. Where its rate has an infinite slope there, steps that are not implicit leave a
-/// value one or two short of it, and derivatives would grow from step to step.
+/// Tolerances (1) from its bound at which a bristle is at it. Where its rate has an infinite slope there, steps that
+/// are not implicit leave a value one or two short of it, and derivatives would grow from step to step.
 const AT_BOUND: f64 = 8.0;
 
 /// A speed (m/s) beyond all that a law may depend on.
@@ -29,10 +29,10 @@ const FAST: f64 = 1e6;
 
 /// The right-hand side of (x, v, z)′.
 ///
-/// Everything is evaluated as if the swing went in the positive direction, with u and z of the other direction mirrored:
-/// the law is odd, so this changes nothing but which side of its kink u = 0 belongs to, and that is the side of the
-/// swing. Behind the end of the swing, where a step may reach before its end is found, the law is that of its end; and
-/// so it is behind the zero of a state, where the law may have a corner.
+/// Everything is evaluated as if the swing went in the positive direction, with u and z of the other direction
+/// mirrored: the law is odd, so this changes nothing but which side of its kink u = 0 belongs to, and that is the side
+/// of the swing. Behind the end of the swing, where a step may reach before its end is found, the law is that of its
+/// end; and so it is behind the zero of a state, where the law may have a corner.
 pub(super) struct Field<'a, D, L: ?Sized> {
     pub(super) oscillator: &'a Oscillator<D>,
     /// The spring on the side of its corners on which the step is.
@@ -40,8 +40,8 @@ pub(super) struct Field<'a, D, L: ?Sized> {
     pub(super) normal_load: D,
     pub(super) belt: D,
     pub(super) law: &'a L,
-    /// Whether something outside prescribes the acceleration, which then stands in the place of the force (N), whatever the
-    /// forces of machine and contact are.
+    /// Whether something outside prescribes the acceleration, which then stands in the place of the force (N), whatever
+    /// the forces of machine and contact are.
     pub(super) guided: bool,
     /// 1/m.
     pub(super) per_mass: D,
@@ -216,8 +216,9 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         }
     }
 
-    /// Writes at which rates (1/s) the states return to where they tend to, from differences with the rates at `state` that
-    /// [`rates`](Self::rates) has just left, all states moved at once: exact for states that do not act upon each other.
+    /// Writes at which rates (1/s) the states return to where they tend to, from differences with the rates at `state`
+    /// that [`rates`](Self::rates) has just left, all states moved at once: exact for states that do not act upon each
+    /// other.
     pub(super) fn relaxations(&mut self, branch: Branch, state: &[D], relaxations: &mut [f64]) {
         for (centre, rate) in self.centre.iter_mut().zip(&self.rate) {
             *centre = rate.value();
@@ -244,8 +245,8 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         self.law.reserve(index, speed, &self.mirrored)
     }
 
-    /// Size of the terms whose difference is the reserve of element `index`, if it holds and can slide: the reserve as it
-    /// is and that without any deflection.
+    /// Size of the terms whose difference is the reserve of element `index`, if it holds and can slide: the reserve as
+    /// it is and that without any deflection.
     pub(super) fn reserve_size(&mut self, index: usize, branch: Branch, state: &[D]) -> Option<f64> {
         let left = self.reserve(index, branch, state)?.value().abs();
         let speed = self.mirror(branch, state);
@@ -313,7 +314,8 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
     }
 }
 
-/// By how much to move a state `z` of this `bound` for a difference: towards the origin, where the states of the motion come from.
+/// By how much to move a state `z` of this `bound` for a difference: towards the origin, where the states of the motion
+/// come from.
 fn reach_of(z: f64, bound: f64) -> f64 {
     let reach = DIFFERENCE * z.abs().max(1e-2 * bound.abs().min(f64::MAX)).max(f64::MIN_POSITIVE / DIFFERENCE);
     if z > 0.0 { -reach } else { reach }

@@ -13,8 +13,8 @@ pub(super) const BEGINNING: f64 = 1.0 / 32.0;
 
 /// The first τ in [0, 1] at which the polynomial with these Bernstein coefficients, positive before, reaches zero.
 ///
-/// The polynomial lies within the convex hull of its coefficients: where all are positive there is no zero, and where some
-/// are not, halves are looked at, the left one first (de Casteljau). A zero at 0 from which it rises is none.
+/// The polynomial lies within the convex hull of its coefficients: where all are positive there is no zero, and where
+/// some are not, halves are looked at, the left one first (de Casteljau). A zero at 0 from which it rises is none.
 ///
 /// # References
 /// G. Farin, *Curves and Surfaces for CAGD*, Morgan Kaufmann 2002, chapter 5.
@@ -138,8 +138,8 @@ fn halves<const N: usize>(mut right: [f64; N]) -> ([f64; N], [f64; N]) {
     (left, right)
 }
 
-/// The magnitude of the greater of the Legendre coefficients of degrees s − 1 and s, relative to the greatest Bernstein coefficient. That
-/// of degree s alone would not do: the polynomial of an explicit step has none.
+/// The magnitude of the greater of the Legendre coefficients of degrees s − 1 and s, relative to the greatest Bernstein
+/// coefficient. That of degree s alone would not do: the polynomial of an explicit step has none.
 pub(super) fn last_coefficient(coefficients: [f64; STAGES + 1]) -> f64 {
     let size = coefficients.iter().fold(f64::MIN_POSITIVE, |size, coefficient| size.max(coefficient.abs()));
     let (mut differences, mut central) = (coefficients, 1.0);
@@ -149,8 +149,9 @@ pub(super) fn last_coefficient(coefficients: [f64; STAGES + 1]) -> f64 {
         }
         central *= (4 * level - 2) as f64 / level as f64;
     }
-    // With n for s − 1: the n-th derivative over n! is s times the n-th difference, which goes in a line from one end to the other. In the
-    // middle it is that of the polynomial of degree n alone, (2n)!/(n!)² times the coefficient sought; its slope is that of degree s.
+    // With n for s − 1: the n-th derivative over n! is s times the n-th difference, which goes in a line from one end
+    // to the other. In the middle it is that of the polynomial of degree n alone, (2n)!/(n!)² times the coefficient
+    // sought; its slope is that of degree s.
     let [begin, end, ..] = differences;
     let before = STAGES as f64 * 0.5 * (begin + end) / central;
     let last = (end - begin) / (central * (4 * STAGES - 2) as f64 / STAGES as f64);

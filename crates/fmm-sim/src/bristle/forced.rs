@@ -1,5 +1,5 @@
-//! Runs under forces, beside a reference that knows no events: classical Runge-Kutta with steps so short that kinks do not
-//! matter.
+//! Runs under forces, beside a reference that knows no events: classical Runge-Kutta with steps so short that kinks do
+//! not matter.
 
 use fmm_friction::{BoucWen, BristleLaw, Dahl, LuGre, MaxwellSlip, Regime};
 use fmm_model::{Damping, Oscillator};
@@ -77,8 +77,8 @@ fn bouc_wen(level: f64, stiffness: f64) -> BoucWen {
     BoucWen::new(stiffness, 1.0, softening * 0.6, softening * 0.4, 1.0).unwrap()
 }
 
-/// A wave on a soft contact, and a fast one on the machine of the thesis: steps that were too long saw zeros of the velocity
-/// that were none, and shorter ones ended there all the same.
+/// A wave on a soft contact, and a fast one on the machine of the thesis: steps that were too long saw zeros of the
+/// velocity that were none, and shorter ones ended there all the same.
 #[test]
 fn a_zero_that_only_a_bad_step_saw_is_no_event() {
     let machine = Oscillator::new(1.0, 1.0).unwrap();
@@ -198,8 +198,8 @@ fn the_first_swing_may_be_the_shortest() {
     check_first("Bouc-Wen", &bouc_wen(0.2, 1.0));
 }
 
-/// A force takes a contact to rest and on again; the narrower the bounds between which it just turns it round, the nearer
-/// the velocity comes to touching zero.
+/// A force takes a contact to rest and on again; the narrower the bounds between which it just turns it round, the
+/// nearer the velocity comes to touching zero.
 #[test]
 fn a_velocity_that_touches_zero_keeps_its_direction() {
     let machine = Oscillator::new(1.0, 1.0).unwrap();

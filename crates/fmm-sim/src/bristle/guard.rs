@@ -30,7 +30,8 @@ impl Approach {
     }
 }
 
-/// How the end of a step lies to the zero of a guard; corrections are in units of the step, positive if the zero is ahead.
+/// How the end of a step lies to the zero of a guard; corrections are in units of the step, positive if the zero is
+/// ahead.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Landing {
     /// The tangent covers what is left.

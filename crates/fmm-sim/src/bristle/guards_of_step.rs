@@ -22,12 +22,12 @@ const NEAR: f64 = 0.1;
 pub(super) struct NotSmooth;
 
 impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
-    /// The first guard that is reached within the step, and where, if there is one. A step that begins `at_zero` velocity does not find
-    /// that zero.
+    /// The first guard that is reached within the step, and where, if there is one. A step that begins `at_zero`
+    /// velocity does not find that zero.
     ///
     /// # Errors
-    /// [`NotSmooth`] if the reserve of an element is no polynomial on the step as good as those of the motion, so that its zeros cannot be
-    /// sought on that: it may depend on the velocity in a way that the motion does not.
+    /// [`NotSmooth`] if the reserve of an element is no polynomial on the step as good as those of the motion, so that
+    /// its zeros cannot be sought on that: it may depend on the velocity in a way that the motion does not.
     pub(super) fn first_guard(&mut self, at_zero: bool) -> Result<Option<(f64, Guard)>, NotSmooth> {
         let mut first: Option<(f64, Guard)> = None;
         let mut look = |coefficients: [f64; STAGES + 1], guard| {

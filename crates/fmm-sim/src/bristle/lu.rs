@@ -8,12 +8,13 @@ pub(super) const SYSTEMS: usize = 4;
 /// A complex number of each system: the real parts, then the imaginary ones.
 pub(super) type Complex<D> = [D; 2 * SYSTEMS];
 
-/// The factors of a square matrix of each system, by Gaussian elimination with partial pivoting. The systems share their pivots, as those
-/// which differ on their diagonals only may.
+/// The factors of a square matrix of each system, by Gaussian elimination with partial pivoting. The systems share
+/// their pivots, as those which differ on their diagonals only may.
 ///
 /// # Why not a library
-/// Right sides carry derivatives, memory is used again from step to step, and four systems fill the lanes of a processor: nalgebra takes
-/// 3.9, 3.3 and 2.7 times as long at 3, 6 and 12 rows of plain numbers. `benches/peers` of the workspace measures it.
+/// Right sides carry derivatives, memory is used again from step to step, and four systems fill the lanes of a
+/// processor: nalgebra takes 3.9, 3.3 and 2.7 times as long at 3, 6 and 12 rows of plain numbers. `benches/peers` of
+/// the workspace measures it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Factors {
     size: usize,

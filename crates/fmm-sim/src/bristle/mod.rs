@@ -37,40 +37,41 @@ pub(crate) use prescribed::follow;
 ///
 /// with z₀ zero or what [`Scenario::with_deflection`] says.
 ///
-/// The rates of bristles depend on |u|: they have a kink wherever the relative velocity u passes zero, and jump where an
-/// element of [`MaxwellSlip`](fmm_friction::MaxwellSlip) or [`Gms`](fmm_friction::Gms) begins to slide. Between such events
-/// the equations are smooth. While the bristles bend, a step is the Taylor series of the motion of order 24, if damping and spring are
-/// linear and the law [expands itself](BristleLaw::expand), as [`Dahl`](fmm_friction::Dahl), [`LuGre`](fmm_friction::LuGre) and
-/// [`BoucWen`](fmm_friction::BoucWen) do but for powers next to where they bend. The last terms say how far the series reaches, so that no
-/// step is tried twice. Without one, steps are those of the explicit method of order 8 that
-/// [`RungeKutta`](crate::RungeKutta) uses. Once the bristles only follow the sliding speed, which is where the equations are stiff,
-/// each step solves the 8 stages of the Radau IIA method of order 15 together, by Newton's method with a Jacobian from
-/// differences of the law's own formulas: the method is L-stable, so that the stiffness of the bristles does not limit the
-/// step. Rates from differences, or the two last stages of a step of order 8, measure the stiffness, and with it which of the methods is
-/// cheaper. A state
+/// The rates of bristles depend on |u|: they have a kink wherever the relative velocity u passes zero, and jump where
+/// an element of [`MaxwellSlip`](fmm_friction::MaxwellSlip) or [`Gms`](fmm_friction::Gms) begins to slide. Between such
+/// events the equations are smooth. While the bristles bend, a step is the Taylor series of the motion of order 24, if
+/// damping and spring are linear and the law [expands itself](BristleLaw::expand), as [`Dahl`](fmm_friction::Dahl),
+/// [`LuGre`](fmm_friction::LuGre) and [`BoucWen`](fmm_friction::BoucWen) do but for powers next to where they bend. The
+/// last terms say how far the series reaches, so that no step is tried twice. Without one, steps are those of the
+/// explicit method of order 8 that [`RungeKutta`](crate::RungeKutta) uses. Once the bristles only follow the sliding
+/// speed, which is where the equations are stiff, each step solves the 8 stages of the Radau IIA method of order 15
+/// together, by Newton's method with a Jacobian from differences of the law's own formulas: the method is L-stable, so
+/// that the stiffness of the bristles does not limit the step. Rates from differences, or the two last stages of a step
+/// of order 8, measure the stiffness, and with it which of the methods is cheaper. A state
 /// that has reached a bound which attracts it at any speed ([`Dahl`](fmm_friction::Dahl) and
 /// [`BoucWen`](fmm_friction::BoucWen) slide so) stays there until the swing ends.
 ///
-/// The polynomial of a step gives the samples, the right-hand side at these the accelerations (good to 4e-10 of the largest at
-/// the default tolerance), and its Bernstein coefficients prove that no zero of u lies within the step,
-/// or show where: a series ends there as it is, another step is taken again to end there, by Newton's method on its length.
+/// The polynomial of a step gives the samples, the right-hand side at these the accelerations (good to 4e-10 of the
+/// largest at the default tolerance), and its Bernstein coefficients prove that no zero of u lies within the step,
+/// or show where: a series ends there as it is, another step is taken again to end there, by Newton's method on its
+/// length.
 ///
-/// A law with bristles has no stick: a contact that seems to hold creeps or swings on its bristles. At u = 0 all elements
-/// hold again ([`EventKind::Reversal`](crate::EventKind::Reversal)), and the direction comes from the load, never from the
-/// velocity; [`EventKind::Yield`](crate::EventKind::Yield) says which element begins to slide. Where nothing drives the
-/// contact within rounding, it rests ([`Mode::Stick`](crate::Mode::Stick)) until the force changes. The
-/// [`static_level`](crate::Event::static_level) of an event is the force that the bristles carry.
+/// A law with bristles has no stick: a contact that seems to hold creeps or swings on its bristles. At u = 0 all
+/// elements hold again ([`EventKind::Reversal`](crate::EventKind::Reversal)), and the direction comes from the load,
+/// never from the velocity; [`EventKind::Yield`](crate::EventKind::Yield) says which element begins to slide. Where
+/// nothing drives the contact within rounding, it rests ([`Mode::Stick`](crate::Mode::Stick)) until the force changes.
+/// The [`static_level`](crate::Event::static_level) of an event is the force that the bristles carry.
 ///
-/// `tolerance` bounds the error of a step, its inside included, relative to the motion since the last reversal or to a third
-/// of that before it, whichever is larger. Steps are
+/// `tolerance` bounds the error of a step, its inside included, relative to the motion since the last reversal or to a
+/// third of that before it, whichever is larger. Steps are
 /// chosen by values alone: at a dual number they are those of the plain number, values agree to the last bit, and
-/// derivatives include the change of event times. Where a power of LuGre or Bouc-Wen is exactly 1 or 2 and a parameter with derivatives,
-/// there is no series, and values agree within the tolerance. At rest the derivatives are held as well; a start at rest that the
-/// inputs would disturb is marked as [`grazing`](crate::Event::grazing).
+/// derivatives include the change of event times. Where a power of LuGre or Bouc-Wen is exactly 1 or 2 and a parameter
+/// with derivatives, there is no series, and values agree within the tolerance. At rest the derivatives are held as
+/// well; a start at rest that the inputs would disturb is marked as [`grazing`](crate::Event::grazing).
 ///
-/// A half swing takes about eight steps of a series, and some fourteen implicit ones on top where bristles are stiff at all speeds (LuGre).
-/// What it costs does not grow with the stiffness of the bristles, but a contact that no longer slides goes on
-/// swinging on them, as often as √(N σ/m)/π a second.
+/// A half swing takes about eight steps of a series, and some fourteen implicit ones on top where bristles are stiff at
+/// all speeds (LuGre). What it costs does not grow with the stiffness of the bristles, but a contact that no longer
+/// slides goes on swinging on them, as often as √(N σ/m)/π a second.
 ///
 /// Guaranteed is a typed error instead of an endless run: at most three hundred thousand steps, and a million events.
 ///
@@ -94,9 +95,9 @@ pub(crate) use prescribed::follow;
 /// E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, Springer 1996, sections IV.5 and IV.8,
 /// doi 10.1007/978-3-642-05221-7; "Stiff differential equations solved by Radau methods", J. Comput. Appl. Math. 111
 /// (1999) 93, doi 10.1016/S0377-0427(99)00134-X. E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential
-/// Equations I*, 2nd ed., Springer 1993, section II.10 (DOP853), doi 10.1007/978-3-540-78862-1. À. Jorba, M. Zou, "A software package for
-/// the numerical integration of ODEs by means of high-order Taylor methods", Experimental Mathematics 14 (2005) 99,
-/// doi 10.1080/10586458.2005.10128904.
+/// Equations I*, 2nd ed., Springer 1993, section II.10 (DOP853), doi 10.1007/978-3-540-78862-1. À. Jorba, M. Zou, "A
+/// software package for the numerical integration of ODEs by means of high-order Taylor methods", Experimental
+/// Mathematics 14 (2005) 99, doi 10.1080/10586458.2005.10128904.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bristle {
     tolerance: f64,

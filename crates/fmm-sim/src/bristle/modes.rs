@@ -5,7 +5,8 @@ use fmm_model::Scalar;
 use super::lu::{Factors, SYSTEMS};
 use super::radau::{EIGENVALUES, STAGES, Stages};
 
-/// The systems (λ − J) q = r for the eigenvalues λ of A⁻¹/h, one of each conjugate pair, with J the Jacobian of the equations of motion.
+/// The systems (λ − J) q = r for the eigenvalues λ of A⁻¹/h, one of each conjugate pair, with J the Jacobian of the
+/// equations of motion.
 ///
 /// The position follows the velocity, q_x = q_v/λ, and is eliminated:
 ///
@@ -82,7 +83,8 @@ mod tests {
     use super::super::radau::{COEFFICIENTS_COLUMNS, FROM_MODES_COLUMNS, INVERSE_COLUMNS, TO_MODES_COLUMNS, product};
     use super::*;
 
-    /// The whole system, (A⁻¹/h ⊗ I − I ⊗ J) W = R, is put together again from a known W of which the positions follow the velocities.
+    /// The whole system, (A⁻¹/h ⊗ I − I ⊗ J) W = R, is put together again from a known W of which the positions follow
+    /// the velocities.
     #[test]
     fn modes_solve_the_whole_system() {
         let jacobian = [[0.0, 1.0, 0.0, 0.0], [-7.0, -0.3, -50.0, 2.0], [0.0, 0.9, -30.0, 0.1], [0.0, 0.4, 1.5, -8.0]];

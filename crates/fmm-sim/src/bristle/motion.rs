@@ -45,8 +45,8 @@ pub(super) struct Motion<D> {
     pub(super) increments: Vec<Stages<D>>,
     /// What errors of each component are compared with.
     scale: Vec<f64>,
-    /// The state at the beginning of the swing, the velocity being that of the counterface, and how far each component has
-    /// moved from there.
+    /// The state at the beginning of the swing, the velocity being that of the counterface, and how far each component
+    /// has moved from there.
     origin: Vec<f64>,
     moved: Vec<f64>,
     /// What remains of the scale of the swing before.
@@ -139,8 +139,9 @@ impl<D: Scalar> Motion<D> {
         dot(&INVERSE[STAGES - 1], &self.increments[component]).value()
     }
 
-    /// How far it is from the end of the step to where the velocity reaches that of the counterface, `belt`, along the tangent, in units of
-    /// the step; infinite if it does not fall, or has fallen to a small part of what it was in this swing.
+    /// How far it is from the end of the step to where the velocity reaches that of the counterface, `belt`, along the
+    /// tangent, in units of the step; infinite if it does not fall, or has fallen to a small part of what it was in
+    /// this swing.
     pub(super) fn to_turn(&self, belt: f64) -> f64 {
         const SMALL: f64 = 0.1;
         let relative = self.begin[1].value() + self.increments[1][STAGES - 1].value() - belt;
@@ -148,8 +149,8 @@ impl<D: Scalar> Motion<D> {
         if ahead > 0.0 && relative.abs() > SMALL * self.scale[1] { ahead } else { f64::INFINITY }
     }
 
-    /// The Bernstein coefficients of the polynomial through what `value` gives at the states at the beginning and at all
-    /// stages.
+    /// The Bernstein coefficients of the polynomial through what `value` gives at the states at the beginning and at
+    /// all stages.
     pub(super) fn bernstein(&mut self, mut value: impl FnMut(&[D]) -> f64) -> [f64; STAGES + 1] {
         let mut nodal = [0.0; STAGES + 1];
         nodal[0] = value(&self.begin);
@@ -177,15 +178,16 @@ impl<D: Scalar> Motion<D> {
         self.scale[component]
     }
 
-    /// Compares errors with how far each component has moved in this swing, this step included, or with what rounding makes
-    /// of it; `rounding` is that of the velocity (m/s) in units of the tolerance.
+    /// Compares errors with how far each component has moved in this swing, this step included, or with what rounding
+    /// makes of it; `rounding` is that of the velocity (m/s) in units of the tolerance.
     pub(super) fn rescale(&mut self, span: Span, rounding: f64) {
         for component in 0..self.size {
             self.scale[component] = self.moved(component).max(self.least_scale(component, span.tolerance, rounding));
         }
     }
 
-    /// What errors of a component are compared with at least, before a step; arguments are those of [`rescale`](Self::rescale).
+    /// What errors of a component are compared with at least, before a step; arguments are those of
+    /// [`rescale`](Self::rescale).
     pub(super) fn least_scale(&self, component: usize, tolerance: f64, rounding: f64) -> f64 {
         let floor = ROUNDING / tolerance * self.begin[component].value().abs();
         let floor = if component == 1 { floor.max(rounding) } else { floor };
@@ -228,8 +230,8 @@ impl<D: Scalar> Motion<D> {
         series
     }
 
-    /// About how many times as long as the step of the series one of the collocation method may be: its first missing term, of degree
-    /// s + 1, is the less the wider its stages spread, by 2^(2s + 1).
+    /// About how many times as long as the step of the series one of the collocation method may be: its first missing
+    /// term, of degree s + 1, is the less the wider its stages spread, by 2^(2s + 1).
     pub(super) fn reach_of_stages(&self, tolerance: f64) -> f64 {
         let missing = self.series.iter().zip(&self.scale);
         let missing = missing.fold(0.0f64, |most, (series, scale)| most.max(series[STAGES + 1].value().abs() / scale));

@@ -9,29 +9,30 @@ const AT_LIMIT: f64 = 0.5;
 /// Step times stiffness above which explicit steps are as long as they are for the sake of stability.
 pub(super) const STABLE: f64 = 4.0;
 
-/// Change of the rates of the states over a step, in units of step times stiffness, below which they follow the motion; a
-/// transient changes as much as it is stiff.
+/// Change of the rates of the states over a step, in units of step times stiffness, below which they follow the motion;
+/// a transient changes as much as it is stiff.
 const FOLLOWS: f64 = 0.2;
 
-/// The angle (rad) by which a machine goes on, and the change of the rates of the states, in a step that only the motion
-/// limits.
+/// The angle (rad) by which a machine goes on, and the change of the rates of the states, in a step that only the
+/// motion limits.
 const SMOOTH_ANGLE: f64 = 0.25;
 const SMOOTH_CHANGE: f64 = 1.0;
 
-/// Step times stiffness from which on an implicit step is worth the explicit ones that it replaces, and up to which it is
-/// not. An implicit one costs five to ten explicit ones.
+/// Step times stiffness from which on an implicit step is worth the explicit ones that it replaces, and up to which it
+/// is not. An implicit one costs five to ten explicit ones.
 const STIFF: f64 = 8.0;
 const NOT_STIFF: f64 = 4.0;
 
-/// Steps of the series that an implicit one, which costs about as much, must be worth, the part of the longest stable one from which on
-/// they are limited by stiffness, the part of its reach that the first implicit one is tried with, and step times stiffness up to which an
-/// implicit step is not worth those that it replaces.
+/// Steps of the series that an implicit one, which costs about as much, must be worth, the part of the longest stable
+/// one from which on they are limited by stiffness, the part of its reach that the first implicit one is tried with,
+/// and step times stiffness up to which an implicit step is not worth those that it replaces.
 const WORTH_AN_IMPLICIT_ONE: f64 = 2.0;
 const NEARLY: f64 = 0.9;
 const PART_OF_REACH: f64 = 0.7;
 const NOT_STIFF_FOR_SERIES: f64 = 15.0;
 
-/// The part of the way to the next turn that an implicit step goes at most: laws fall with the speed, so that steps become shorter with it.
+/// The part of the way to the next turn that an implicit step goes at most: laws fall with the speed, so that steps
+/// become shorter with it.
 const PART_TO_TURN: f64 = 0.3;
 
 /// Explicit steps that have to be limited by stiffness in a row, and implicit ones that have to be refused in vain.
@@ -64,19 +65,19 @@ pub(super) struct Pace {
     proposed: f64,
     /// Length (s) and error of the last step, in units of the tolerance.
     last: (f64, f64),
-    /// Explicit steps in a row that stiffness has limited, and the relative change of the rates of the states in the last
-    /// of these, per second.
+    /// Explicit steps in a row that stiffness has limited, and the relative change of the rates of the states in the
+    /// last of these, per second.
     stiff_steps: usize,
     variation: f64,
-    /// Twice the explicit steps that stability has refused, less those that were good, and the greatest rate (1/s) then: states
-    /// that follow the motion to the last digit show no stiffness in a good step.
+    /// Twice the explicit steps that stability has refused, less those that were good, and the greatest rate (1/s)
+    /// then: states that follow the motion to the last digit show no stiffness in a good step.
     unstable: usize,
     rate: f64,
     /// Error of the last refused step, and how many refusals in a row have been in vain.
     refused: f64,
     vain: usize,
-    /// Length that a first step would have by the stiffness (s), whether the swing waits for its first step, and the part
-    /// of that length that the last first step from rest has had.
+    /// Length that a first step would have by the stiffness (s), whether the swing waits for its first step, and the
+    /// part of that length that the last first step from rest has had.
     first: f64,
     opens: bool,
     /// Whether explicit steps are those of the series.
@@ -124,9 +125,9 @@ impl Pace {
         (self.proposed, self.last) = (SMOOTH_ANGLE / slow, NO_STEP);
     }
 
-    /// Takes note of an accepted step of `length` (s) from relative rest (`at_zero`) or not, where the motion has the angular
-    /// frequency `slow` (rad/s), and `room` (s) is left after it, `to_turn` (s) to where the relative velocity would pass zero if it went on
-    /// falling as it does.
+    /// Takes note of an accepted step of `length` (s) from relative rest (`at_zero`) or not, where the motion has the
+    /// angular frequency `slow` (rad/s), and `room` (s) is left after it, `to_turn` (s) to where the relative velocity
+    /// would pass zero if it went on falling as it does.
     pub(super) fn accept(&mut self, solved: Solved, length: f64, at_zero: bool, slow: f64, [room, to_turn]: [f64; 2]) {
         if std::mem::take(&mut self.opens) && at_zero {
             self.opening = length / self.first;
@@ -164,8 +165,8 @@ impl Pace {
         }
     }
 
-    /// Takes note of a step of the series of `length` (s), where `limited` (1) is its part of the longest one that is stable, and an
-    /// implicit step would `reach` so many times as far.
+    /// Takes note of a step of the series of `length` (s), where `limited` (1) is its part of the longest one that is
+    /// stable, and an implicit step would `reach` so many times as far.
     pub(super) fn expand(&mut self, limited: f64, reach: f64, length: f64) {
         (self.opens, self.expands) = (false, true);
         (self.proposed, self.last) = (length, NO_STEP);
@@ -185,8 +186,8 @@ impl Pace {
         if self.vain < PERSISTENT {
             return length * self.change(solved.error);
         }
-        // States that do not begin where they would follow the motion jump there, however short the step is, until it is
-        // as short as the jump.
+        // States that do not begin where they would follow the motion jump there, however short the step is, until it
+        // is as short as the jump.
         self.implicit = false;
         (self.last, self.refused, self.vain) = (NO_STEP, f64::INFINITY, 0);
         length / solved.stiffness.max(1.0)
@@ -209,7 +210,8 @@ impl Pace {
     /// By which factor to change the length of a step with this error, in units of the tolerance.
     fn change(&self, error: f64) -> f64 {
         if self.implicit {
-            // Of so high an order, a step hardly longer is one too long: what is left of the error is worth little length.
+            // Of so high an order, a step hardly longer is one too long: what is left of the error is worth little
+            // length.
             (0.8 * error.powf(-1.0 / (STAGES + 1) as f64)).clamp(0.1, 2.0)
         } else {
             // The estimate grows with the eighth power of the length.

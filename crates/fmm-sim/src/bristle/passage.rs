@@ -24,7 +24,8 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
                 let before = self.branch.direction;
                 let direction = self.departure(piece);
                 self.go(direction);
-                // A velocity that goes on as it came has only touched zero, and one that dies away on the bristles reaches it at no time.
+                // A velocity that goes on as it came has only touched zero, and one that dies away on the bristles
+                // reaches it at no time.
                 let grazing = grazing || direction == Some(before) || acceleration == 0.0;
                 let kind = if direction.is_none() { EventKind::Stop } else { EventKind::Reversal };
                 self.pass(kind, piece, shift, grazing)
@@ -54,8 +55,8 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         }
     }
 
-    /// Goes over from the rates `self.before` an event to those after it: the event shifts by `shift`, whose value is 0,
-    /// and with it the time from which on the new rates hold, y_θ⁺ = y_θ⁻ + (f⁻ − f⁺) t_θ.
+    /// Goes over from the rates `self.before` an event to those after it: the event shifts by `shift`, whose value is
+    /// 0, and with it the time from which on the new rates hold, y_θ⁺ = y_θ⁻ + (f⁻ − f⁺) t_θ.
     fn pass(&mut self, kind: EventKind, piece: &Piece<D>, shift: D, grazing: bool) -> Result<(), SimulationError> {
         let shift = if grazing || D::DIRECTIONS == 0 { D::from(0.0) } else { shift };
         let [x, v] = [0, 1].map(|component| self.step.begin[component] + self.before[component] * shift);
@@ -114,7 +115,8 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         let size = self.field.force_size(force, branch, begin) + piece.waves().iter().map(amplitude).sum::<f64>();
         let load = self.after[1].value() * mass;
         let rounding = 4.0 * f64::EPSILON * size;
-        // A swing on the bristles that the position has no digits for is none, unless they are pulled by more than they can hold.
+        // A swing on the bristles that the position has no digits for is none, unless they are pulled by more than they
+        // can hold.
         let unseen = 4.0 * f64::EPSILON * begin[0].value().abs() * self.stiffness * mass;
         if load.abs() > rounding {
             let mut is_beyond_bristles = || {

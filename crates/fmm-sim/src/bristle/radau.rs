@@ -72,8 +72,8 @@ pub(super) const EIGENVALUES: [(f64, f64); SYSTEMS] = [
     (4.685_494_632_821_197, 12.010_578_599_813_79),
 ];
 
-/// T, with A⁻¹ T = T Λ, Λ = [diag α, diag β; −diag β, diag α], so that A⁻¹ is α − iβ for the mode whose real and imaginary parts are
-/// as many rows apart as there are pairs.
+/// T, with A⁻¹ T = T Λ, Λ = [diag α, diag β; −diag β, diag α], so that A⁻¹ is α − iβ for the mode whose real and
+/// imaginary parts are as many rows apart as there are pairs.
 #[rustfmt::skip]
 pub(super) const FROM_MODES: [[f64; STAGES]; STAGES] = [
     [-0.000_653_271_852_908_335_6, 0.001_604_210_470_322_820_4, -0.000_154_110_841_081_114_02, -0.016_540_912_009_393_3,

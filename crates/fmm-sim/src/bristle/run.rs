@@ -127,7 +127,8 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         Ok(self.steps)
     }
 
-    /// Takes what a force has given that jumps, at the beginning of the piece of this `index`, at a time with derivatives.
+    /// Takes what a force has given that jumps, at the beginning of the piece of this `index`, at a time with
+    /// derivatives.
     fn jump(&mut self, drive: &Drive<D>, index: usize) {
         if !self.resting {
             let gained = drive.impulse_of_jumps(index) / self.field.oscillator.mass();
@@ -264,8 +265,8 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         Err(SimulationError::step_too_small(self.tolerance, self.time))
     }
 
-    /// A time (s) that rounding makes of the end of a step of this `length` (s): no step is shorter, and what lies within
-    /// it is at its beginning.
+    /// A time (s) that rounding makes of the end of a step of this `length` (s): no step is shorter, and what lies
+    /// within it is at its beginning.
     pub(super) fn least(&self, length: f64) -> f64 {
         4.0 * f64::EPSILON * (self.time + length)
     }
@@ -303,8 +304,8 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         if self.steps > STEP_BUDGET { Err(SimulationError::step_budget(STEP_BUDGET, end)) } else { Ok(()) }
     }
 
-    /// Length (s) of the step to try first: as the last one says, or a part of the period in which the machine swings on
-    /// its bristles.
+    /// Length (s) of the step to try first: as the last one says, or a part of the period in which the machine swings
+    /// on its bristles.
     pub(super) fn first_length(&mut self) -> f64 {
         if let Some(proposed) = self.pace.proposed() {
             return proposed;

@@ -17,8 +17,9 @@ pub(super) const ORDER: usize = Expansion::<f64>::TERMS - 1;
 /// The error allowed in a step, in units of the tolerance: many steps add up.
 const SAFETY: f64 = 0.1;
 
-/// Share of the first terms of a component that its last ones may have, above rounding. Beyond that the step has passed a singularity, as
-/// of a state that reaches its bound in finite time, which a tolerance as large as what is left of the way does not see.
+/// Share of the first terms of a component that its last ones may have, above rounding. Beyond that the step has passed
+/// a singularity, as of a state that reaches its bound in finite time, which a tolerance as large as what is left of
+/// the way does not see.
 const FALL: f64 = 1e-3;
 
 /// Step times stiffness up to which a step damps what is off the motion: |1 − x + x²/2! − … + x²⁴/24!| < 0.05.
@@ -30,8 +31,8 @@ const ANGLE: f64 = 4.0;
 /// How many times as fast as the machine a wave may be that exists in derivatives only, which step lengths do not see.
 const CALM: f64 = 4.0;
 
-/// The defect of a step, in units of the tolerance, from which on its series has not seen all of the law. That of a series which has is
-/// 24 times the error allowed.
+/// The defect of a step, in units of the tolerance, from which on its series has not seen all of the law. That of a
+/// series which has is 24 times the error allowed.
 const MOST_DEFECT: f64 = 100.0;
 
 /// Parts of a step at which it is looked for where that is slowest.
@@ -51,8 +52,8 @@ impl<D: Scalar> Taylor<D> {
         Self { law: Expansion::new(), force: [D::from(0.0); ORDER + 1] }
     }
 
-    /// Writes the series of all components into those of `motion`, in time since `time` (s) in units of `unit` (s). False if machine or
-    /// law have none here.
+    /// Writes the series of all components into those of `motion`, in time since `time` (s) in units of `unit` (s).
+    /// False if machine or law have none here.
     pub(super) fn expand<L: BristleLaw<D> + ?Sized>(
         &mut self,
         motion: &mut Motion<D>,
@@ -94,7 +95,8 @@ impl<D: Scalar> Taylor<D> {
 }
 
 impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
-    /// Goes on by one step of the series, to `limit` (s) at most, or to an event before it. False if there is no series here.
+    /// Goes on by one step of the series, to `limit` (s) at most, or to an event before it. False if there is no series
+    /// here.
     pub(super) fn expand(&mut self, piece: &Piece<D>, limit: f64) -> Result<bool, SimulationError> {
         let at_zero = self.step.begin[1].value() == self.field.belt.value();
         let unit = self.first_length().min(limit - self.time);
@@ -146,8 +148,8 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         self.finish(length, 0.0, limit, piece).map(|()| true)
     }
 
-    /// The greatest rate (1/s) at which velocity and state follow themselves at the end of the step, or swing, the latter in units of the
-    /// angle that a step may go on by. `None` if there is no end.
+    /// The greatest rate (1/s) at which velocity and state follow themselves at the end of the step, or swing, the
+    /// latter in units of the angle that a step may go on by. `None` if there is no end.
     ///
     /// Derivatives swing where values stand still, and tell no step how long it may be.
     fn rate_at_end(&mut self) -> Option<f64> {
@@ -162,9 +164,10 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         Some(drag.max(relax).max(swing * (STABLE / ANGLE)))
     }
 
-    /// Whether the series obeys the equation of motion up to `end`, a part of the step of this `length`: at its quarters, and where it is
-    /// slowest. Its last terms do not tell of a part of the law that begins within the step, such as the rise of the friction of a fast
-    /// motion where that is slow for a while. That the position follows the velocity is no matter of the law, and its last terms tell.
+    /// Whether the series obeys the equation of motion up to `end`, a part of the step of this `length`: at its
+    /// quarters, and where it is slowest. Its last terms do not tell of a part of the law that begins within the step,
+    /// such as the rise of the friction of a fast motion where that is slow for a while. That the position follows the
+    /// velocity is no matter of the law, and its last terms tell.
     fn is_obeyed(&mut self, piece: &Piece<D>, length: f64, end: f64) -> bool {
         let [position, velocity, state] = [0, 1, 2].map(|component| self.step.plain_series(component, 0.0, 1.0));
         let belt = self.field.belt.value();
@@ -188,7 +191,8 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         })
     }
 
-    /// The first guard that is reached within the step, and where. A step that begins `at_zero` velocity does not find that zero.
+    /// The first guard that is reached within the step, and where. A step that begins `at_zero` velocity does not find
+    /// that zero.
     fn first_guard_of_series(&self, at_zero: bool) -> Option<Found> {
         let (belt, sign) = (self.field.belt.value(), self.branch.direction.sign());
         let speed = zero_of(self.step.plain_series(1, belt, sign), at_zero).map(|tau| (tau, Guard::Speed));

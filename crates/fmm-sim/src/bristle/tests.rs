@@ -8,7 +8,8 @@ use fmm_model::{Damping, Dual, Oscillator, Scalar};
 use super::*;
 use crate::{Direction, EventKind, Exact, Excitation, Mode};
 
-/// Mass, stiffness, damping, coefficient, bristle stiffness, initial position and velocity: the directions of a gradient.
+/// Mass, stiffness, damping, coefficient, bristle stiffness, initial position and velocity: the directions of a
+/// gradient.
 const INPUTS: [f64; 7] = [10.391, 1982.0, 0.3, 0.2, 1e4, 0.01, 0.03];
 
 type Gradient = Dual<7>;
@@ -210,8 +211,8 @@ fn maxwell_slip_moves_as_in_the_exact_engine() {
     }
 }
 
-/// After a reversal the bristles give back what they hold, over a deflection of μ/σ: turning points move by so much. (Times
-/// move by more, by its square root.)
+/// After a reversal the bristles give back what they hold, over a deflection of μ/σ: turning points move by so much.
+/// (Times move by more, by its square root.)
 #[test]
 fn stiff_bristles_turn_where_coulomb_friction_does() {
     let machine = Oscillator::new(10.391, 1982.0).unwrap();
@@ -374,8 +375,8 @@ fn imbalance<L: BristleLaw<f64>>(scenario: Scenario<f64, L>, force: Option<Excit
     Bristle::default().run(&scenario, &sampling()).unwrap().energy_imbalance(&scenario).unwrap()
 }
 
-/// The velocity dies away on bristles with much damping until speed and acceleration are no more than rounding: some of these motions
-/// reach an acceleration of exactly zero, from which no time follows.
+/// The velocity dies away on bristles with much damping until speed and acceleration are no more than rounding: some of
+/// these motions reach an acceleration of exactly zero, from which no time follows.
 #[test]
 fn a_motion_that_dies_away_on_its_bristles_comes_to_rest() {
     type Number = Dual<2>;
@@ -402,8 +403,8 @@ fn a_motion_that_dies_away_on_its_bristles_comes_to_rest() {
     }
 }
 
-/// With an exponent below 1 the bristle reaches its bound in finite time, and the slope of its rate there is infinite: derivatives stay those
-/// of a contact that slides.
+/// With an exponent below 1 the bristle reaches its bound in finite time, and the slope of its rate there is infinite:
+/// derivatives stay those of a contact that slides.
 #[test]
 fn derivatives_stay_finite_where_bristles_saturate() {
     type Number = Dual<3>;
@@ -417,7 +418,8 @@ fn derivatives_stay_finite_where_bristles_saturate() {
         let motion = Bristle::default().run(&scenario, &Sampling::uniform(1e-3, 1000).unwrap()).unwrap();
         for index in 0..1000 {
             let position = motion.position().get(index);
-            // Two shifts of the centre a swing by the level, of 5 mm each for a level of 1 m/s²; stiffness and exponent do less.
+            // Two shifts of the centre a swing by the level, of 5 mm each for a level of 1 m/s²; stiffness and exponent
+            // do less.
             assert!(
                 (0..3).all(|input| position.partial(input).abs() < 0.1),
                 "{exponent:?}, sample {index}: {position:?}"

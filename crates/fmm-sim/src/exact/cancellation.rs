@@ -13,9 +13,9 @@ const WEAK: f64 = 1e-2;
 
 /// Rounding of the terms of all stretches of a motion, and how far the motion has gone.
 ///
-/// A stretch under a force f on a spring k has terms of f/k and ḟ/k, which cancel as long as the spring has not turned the motion
-/// round. Their rounding adds up from stretch to stretch like that of independent numbers, that of the velocity also in the
-/// position.
+/// A stretch under a force f on a spring k has terms of f/k and ḟ/k, which cancel as long as the spring has not turned
+/// the motion round. Their rounding adds up from stretch to stretch like that of independent numbers, that of the
+/// velocity also in the position.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Cancellation {
     /// Sums of the squares of the terms (m², m²/s²).
@@ -62,8 +62,8 @@ impl Cancellation {
         !(end > 0.0 && oscillator.natural_angular_frequency().value() * end < WEAK)
     }
 
-    /// That enough digits are left at `end` (s) of a motion of `oscillator`, relative to the motion or to what the force `held` (N) at
-    /// rest would move it by, if that is more.
+    /// That enough digits are left at `end` (s) of a motion of `oscillator`, relative to the motion or to what the
+    /// force `held` (N) at rest would move it by, if that is more.
     ///
     /// # Errors
     /// [`SimulationError::NoClosedForm`].

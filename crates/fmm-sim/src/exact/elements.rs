@@ -1,4 +1,5 @@
-//! Elastic elements that yield, in closed form: a linear machine whose stiffness grows by that of the elements that hold.
+//! Elastic elements that yield, in closed form: a linear machine whose stiffness grows by that of the elements that
+//! hold.
 
 use fmm_friction::{Element, PiecewiseLinearLaw, Regime};
 use fmm_model::Scalar;
@@ -155,7 +156,8 @@ impl<'a, D: Scalar> Yielding<'a, D> {
         }
     }
 
-    /// Takes what a force has given that jumps, at the beginning of the piece of this `index`, at a time with derivatives.
+    /// Takes what a force has given that jumps, at the beginning of the piece of this `index`, at a time with
+    /// derivatives.
     fn jump(&mut self, index: usize) {
         if !self.at_rest {
             let gained = self.drive.impulse_of_jumps(index) / self.scenario.oscillator().mass();

@@ -28,23 +28,23 @@ use swing::{Flows, Swing};
 /// ```
 ///
 /// Free of force, position, velocity and the time of the next zero velocity have closed forms, and every further half
-/// swing lasts π/ω_d. Under a force the first zero is found by steps that provably do not reach over one. At zero relative
-/// velocity the contact sticks if |L| ≤ N μ_s, the comparison being made on the numbers as they are; otherwise it slips
-/// in the direction of the load, never in that of a velocity that has just vanished. A contact that holds lets go where
-/// the load, a line plus waves, leaves the static level. Under-, over- and critically damped machines are all covered;
-/// without oscillation the motion creeps towards the edge of the stick zone and has no stop.
+/// swing lasts π/ω_d. Under a force the first zero is found by steps that provably do not reach over one. At zero
+/// relative velocity the contact sticks if |L| ≤ N μ_s, the comparison being made on the numbers as they are; otherwise
+/// it slips in the direction of the load, never in that of a velocity that has just vanished. A contact that holds lets
+/// go where the load, a line plus waves, leaves the static level. Under-, over- and critically damped machines are all
+/// covered; without oscillation the motion creeps towards the edge of the stick zone and has no stop.
 ///
 /// A law whose level is higher while the speed grows than while it falls (thesis Eq. 7.3) has no solution between its
-/// levels but constant speed: such phases are part of the motion. In the reverse case both branches are possible, and the
-/// contact keeps its branch until its own acceleration changes sign.
+/// levels but constant speed: such phases are part of the motion. In the reverse case both branches are possible, and
+/// the contact keeps its branch until its own acceleration changes sign.
 ///
-/// On a spring that does not turn the motion round the closed form is a small difference of large numbers; where it would lose more
-/// than nine digits, and without a spring, the run ends in [`SimulationError::NoClosedForm`].
+/// On a spring that does not turn the motion round the closed form is a small difference of large numbers; where it
+/// would lose more than nine digits, and without a spring, the run ends in [`SimulationError::NoClosedForm`].
 ///
 /// Guaranteed: no event is missed, events are in order, and their number is at most one million (a typed error
 /// otherwise). Samples within a swing come from a table of powers of exp((−a + iω_d)Δt), anew from the closed
-/// form every 256 samples, so that rounding does not grow along the record. Accelerations are linear in position and velocity, or
-/// the second derivative of the closed form where elements yield.
+/// form every 256 samples, so that rounding does not grow along the record. Accelerations are linear in position and
+/// velocity, or the second derivative of the closed form where elements yield.
 ///
 /// At dual numbers the derivatives are exact, including those of the event times; a derivative does not see
 /// that the *number* of half swings may change, which [`Event::margin`](crate::Event::margin) tells.

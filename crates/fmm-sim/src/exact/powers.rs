@@ -26,8 +26,8 @@ const LONGEST: usize = 256;
 const STRIDE: usize = 16;
 
 impl Powers {
-    /// Powers for the swings of `decay` at the times of `sampling`; `None` if it does not oscillate or the times are not
-    /// uniform.
+    /// Powers for the swings of `decay` at the times of `sampling`; `None` if it does not oscillate or the times are
+    /// not uniform.
     pub(super) fn for_swings<D: Scalar>(decay: &Decay<D>, sampling: &Sampling) -> Option<Self> {
         let (half_swing, interval) = (decay.half_swing()?, sampling.interval()?);
         let longest = (half_swing.duration.value() / interval).min(sampling.count() as f64) as usize + 1;
@@ -164,11 +164,11 @@ impl Powers {
         }
     }
 
-    /// Fills `out`, which is not longer than the table, with what `of` makes of each power, real and imaginary part, and its
-    /// exponent.
+    /// Fills `out`, which is not longer than the table, with what `of` makes of each power, real and imaginary part,
+    /// and its exponent.
     ///
-    /// In strides, the last one found whole and cut: with a loop over all of `out`, which every swing gives another length, a
-    /// ring-down took a seventh longer.
+    /// In strides, the last one found whole and cut: with a loop over all of `out`, which every swing gives another
+    /// length, a ring-down took a seventh longer.
     #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
     #[inline(always)]
     fn fill_with(&self, out: &mut [f64], of: impl Fn(f64, f64, f64) -> f64) {
@@ -224,7 +224,8 @@ mod tests {
         assert_eq!(Powers::new(0.7, 13.8, 1e-3, 3).len(), STRIDE);
     }
 
-    /// A wave whose decay, frequency, centre and parts depend on inputs alone and together, beside the formula at each sample.
+    /// A wave whose decay, frequency, centre and parts depend on inputs alone and together, beside the formula at each
+    /// sample.
     #[test]
     fn waves_have_the_derivatives_of_their_formula() {
         type Number = Dual<4>;

@@ -27,8 +27,8 @@ pub(super) struct Swing<'a, D> {
     belt: D,
     has_belt: bool,
     flows: &'a Flows<D>,
-    /// First zero velocity of the last uninterrupted free decay, and half swings since. Counting half periods from there
-    /// keeps the rounding of a sum out of later event times.
+    /// First zero velocity of the last uninterrupted free decay, and half swings since. Counting half periods from
+    /// there keeps the rounding of a sum out of later event times.
     rhythm: Option<(D, u32)>,
     budget: usize,
     digits: Cancellation,
@@ -142,8 +142,8 @@ impl<'a, D: Scalar> Swing<'a, D> {
         Some((time, centre + decay.position_at_zero_velocity(free, duration)))
     }
 
-    /// How a free phase ends at `rest`, a time and a position whose derivatives do not know of forces that exist in derivatives
-    /// only.
+    /// How a free phase ends at `rest`, a time and a position whose derivatives do not know of forces that exist in
+    /// derivatives only.
     fn rest_under_derivatives(
         &self,
         phase: &Phase<D>,
@@ -160,8 +160,8 @@ impl<'a, D: Scalar> Swing<'a, D> {
         (Ending::RelativeRest, time, state, grazing)
     }
 
-    /// A phase under a constant force that ends at rest, as all of a ring-down do: what the general way gives to the last bit, at
-    /// a third of its cost. `None` where another quantity is asked for, or another end comes first.
+    /// A phase under a constant force that ends at rest, as all of a ring-down do: what the general way gives to the
+    /// last bit, at a third of its cost. `None` where another quantity is asked for, or another end comes first.
     #[inline]
     fn swing_freely(
         &mut self,
@@ -287,7 +287,8 @@ impl<D: Scalar> Swing<'_, D> {
 }
 
 impl<D: Scalar> Swing<'_, D> {
-    /// Writes the accelerations of the samples from `first` on, which lie on `path`: they are linear in position and velocity.
+    /// Writes the accelerations of the samples from `first` on, which lie on `path`: they are linear in position and
+    /// velocity.
     fn write_accelerations(
         &self,
         first: usize,

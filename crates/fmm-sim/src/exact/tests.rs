@@ -153,9 +153,10 @@ fn what_cannot_be_simulated_is_refused() {
     assert!(matches!(error, SimulationError::NotFinite { .. }), "{error}");
 }
 
-/// A machine with a damper a billion times too strong: what rounding leaves of an acceleration that should vanish outlives
-/// the beginning of a slip, and once turned it round for ever. Without inertia the velocity is (f − F)/c, and the contact
-/// rests while |f| < F: it stops and lets go where the force crosses the level, within the delay m/c = 0.56 µs.
+/// A machine with a damper a billion times too strong: what rounding leaves of an acceleration that should vanish
+/// outlives the beginning of a slip, and once turned it round for ever. Without inertia the velocity is (f − F)/c, and
+/// the contact rests while |f| < F: it stops and lets go where the force crosses the level, within the delay m/c = 0.56
+/// µs.
 #[test]
 fn a_damper_that_hides_inertia_leaves_the_events_of_the_force() {
     let damping = Damping::linear(30_968_428.776).unwrap();
@@ -177,9 +178,9 @@ fn a_damper_that_hides_inertia_leaves_the_events_of_the_force() {
     }
 }
 
-/// A contact whose friction is higher while it slows down starts and stops again and again under a load that falls to the
-/// level of growing speed. At ten million seconds the last starts are nearer to that time than the numbers of a clock are to
-/// each other, and must not be.
+/// A contact whose friction is higher while it slows down starts and stops again and again under a load that falls to
+/// the level of growing speed. At ten million seconds the last starts are nearer to that time than the numbers of a
+/// clock are to each other, and must not be.
 #[test]
 fn starts_and_stops_end_when_the_load_has_fallen() {
     let damping = Damping::linear(2.853_2).unwrap();

@@ -19,8 +19,8 @@ const LEAST: f64 = 0.05;
 /// dt/dw = 1/(s x″),   dx/dw = x′/(s x″),   x′ = v_b + s w
 /// ```
 ///
-/// At a given speed w the friction of neighbouring motions differs by what the parameters change of it, not by its slope,
-/// however steep that is: an infinite slope at rest is no part of these equations at all.
+/// At a given speed w the friction of neighbouring motions differs by what the parameters change of it, not by its
+/// slope, however steep that is: an infinite slope at rest is no part of these equations at all.
 pub(super) struct BySpeed<D> {
     /// Speed at the beginning, and by how much it grows (m/s).
     begin: f64,
@@ -76,8 +76,8 @@ impl<D: Scalar> BySpeed<D> {
         Some(Self { begin, growth, sign, start, end, nested, rates, better: Vec::new(), greatest })
     }
 
-    /// The local error of a derivative in `direction`, as one of the velocity (m/s) of a machine that swings with `angular`
-    /// (rad/s); see [`error`](crate::dormand_prince::error).
+    /// The local error of a derivative in `direction`, as one of the velocity (m/s) of a machine that swings with
+    /// `angular` (rad/s); see [`error`](crate::dormand_prince::error).
     pub(super) fn error(&self, direction: usize, angular: f64) -> f64 {
         let [time, position] = [0, 1].map(|unknown| errors(&self.rates[unknown]));
         let norm = |time: D, position: D| {
@@ -93,10 +93,11 @@ impl<D: Scalar> BySpeed<D> {
         self.better = better;
     }
 
-    /// The `state`, where the acceleration is `acceleration` (m/s²), with these derivatives where they are better, at a given time.
+    /// The `state`, where the acceleration is `acceleration` (m/s²), with these derivatives where they are better, at a
+    /// given time.
     ///
-    /// Next to a steep rest the acceleration changes within the error of a step: that of the state itself makes a time of a
-    /// speed, or a time of an event would not be that of this speed.
+    /// Next to a steep rest the acceleration changes within the error of a step: that of the state itself makes a time
+    /// of a speed, or a time of an event would not be that of this speed.
     pub(super) fn derive<L: SlidingLaw<D> + ?Sized>(
         &self,
         field: &Field<D, L>,

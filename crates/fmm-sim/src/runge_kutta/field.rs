@@ -145,8 +145,8 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Field<'a, D, L> {
         self.balance(phase, side, outside, state, self.speed(phase, state.velocity))
     }
 
-    /// Rounding of an acceleration (m/s²): what is less is zero, or a motion that tends to a constant speed would go from
-    /// branch to branch for ever.
+    /// Rounding of an acceleration (m/s²): what is less is zero, or a motion that tends to a constant speed would go
+    /// from branch to branch for ever.
     pub(super) fn noise(&self, phase: &Phase<D>, side: Side, state: State<D>) -> f64 {
         let load = load(self.oscillator, phase.piece, phase.time, state);
         let coefficient = self.coefficient(phase, side, self.speed(phase, state.velocity));

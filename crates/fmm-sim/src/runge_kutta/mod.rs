@@ -25,29 +25,31 @@ use slide::Integrator;
 /// ```
 ///
 /// Within a stretch the right-hand side is smooth, so the method keeps its order; it never steps over a change of sign.
-/// A step whose polynomial reaches zero relative velocity anywhere, turning points within the step included, is taken again
-/// to end there, by Newton's method on its length: the landing is as accurate as a step and not as the interpolant. In stick
-/// nothing is integrated; breakaway is found on the load itself, without missing a peak.
+/// A step whose polynomial reaches zero relative velocity anywhere, turning points within the step included, is taken
+/// again to end there, by Newton's method on its length: the landing is as accurate as a step and not as the
+/// interpolant. In stick nothing is integrated; breakaway is found on the load itself, without missing a peak.
 ///
 /// Samples come from the interpolant of order 7. The steps do not depend on them, so that more samples change nothing.
-/// Accelerations are the right-hand side at these samples: good to 3e-13 of the largest where the law is smooth, to 2e-12 with a
-/// slope that is infinite at rest (1e-9 at a tolerance of 1e-10).
+/// Accelerations are the right-hand side at these samples: good to 3e-13 of the largest where the law is smooth, to
+/// 2e-12 with a slope that is infinite at rest (1e-9 at a tolerance of 1e-10).
 ///
-/// `tolerance` bounds the local error of a step relative to the amplitude of the motion. An acceleration within rounding of the
-/// forces counts as zero where its sign decides the branch of the law.
+/// `tolerance` bounds the local error of a step relative to the amplitude of the motion. An acceleration within
+/// rounding of the forces counts as zero where its sign decides the branch of the law.
 ///
-/// At a dual number the steps are those of the plain number, and derivatives include the change of event times. Their own
-/// error is watched: in a step in which a steep law parts neighbouring motions, they are found with the speed as the
-/// independent variable, so that an infinite slope at rest costs nothing. Where friction jumps at the speed of a dead zone
-/// ([`Karnopp`](fmm_friction::Karnopp)), a step ends and the derivatives jump with it. The measured relative error of
-/// derivatives is 1e-8 (1e-6 at a tolerance of 1e-10). It is 1e-5 (1e-3) where a contact breaks away while friction falls with the
-/// root of the speed (Stribeck with an exponent of ½), as the speed cannot replace the time there.
+/// At a dual number the steps are those of the plain number, and derivatives include the change of event times. Their
+/// own error is watched: in a step in which a steep law parts neighbouring motions, they are found with the speed as
+/// the independent variable, so that an infinite slope at rest costs nothing. Where friction jumps at the speed of a
+/// dead zone ([`Karnopp`](fmm_friction::Karnopp)), a step ends and the derivatives jump with it. The measured relative
+/// error of derivatives is 1e-8 (1e-6 at a tolerance of 1e-10). It is 1e-5 (1e-3) where a contact breaks away while
+/// friction falls with the root of the speed (Stribeck with an exponent of ½), as the speed cannot replace the time
+/// there.
 ///
-/// A law need only be a formula; where it has kinks or an infinite slope (power laws at zero speed) the steps become short
-/// there. Where friction without a static level balances a weak force at a speed near rest, the slope of such a law limits them for as
-/// long as the contact creeps: 10 kg on a power law of exponent ½ and 5 N at 1 m/s, driven by 10 mN, end in
-/// [`SimulationError::Exhausted`] at any tolerance. A law with two branches ([`SlidingLaw::depends_on_acceleration`]) slides at constant speed where neither is
-/// consistent, as in [`Exact`](crate::Exact).
+/// A law need only be a formula; where it has kinks or an infinite slope (power laws at zero speed) the steps become
+/// short there. Where friction without a static level balances a weak force at a speed near rest, the slope of such a
+/// law limits them for as long as the contact creeps: 10 kg on a power law of exponent ½ and 5 N at 1 m/s, driven by 10
+/// mN, end in [`SimulationError::Exhausted`] at any tolerance. A law with two branches
+/// ([`SlidingLaw::depends_on_acceleration`]) slides at constant speed where neither is consistent, as in
+/// [`Exact`](crate::Exact).
 ///
 /// # References
 /// E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer 1993, section
@@ -59,7 +61,8 @@ pub struct RungeKutta {
 }
 
 impl Default for RungeKutta {
-    /// A relative tolerance of 3e-14: the motion is good to about 1e-13 of its amplitude. A run to 1e-10 takes half as long.
+    /// A relative tolerance of 3e-14: the motion is good to about 1e-13 of its amplitude. A run to 1e-10 takes half as
+    /// long.
     fn default() -> Self {
         Self { tolerance: 3e-14 }
     }

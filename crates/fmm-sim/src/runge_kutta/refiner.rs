@@ -10,8 +10,9 @@ use super::step::Step;
 use crate::State;
 use crate::automaton::Phase;
 
-/// The estimated error from which on derivatives of a step are looked at again, in units of the tolerance and at most: the
-/// estimate is that of formulas of orders 5 and 3, and the error of a step in which the law is smooth is a small part of it.
+/// The estimated error from which on derivatives of a step are looked at again, in units of the tolerance and at most:
+/// the estimate is that of formulas of orders 5 and 3, and the error of a step in which the law is smooth is a small
+/// part of it.
 const SUSPICIOUS: f64 = 1e5;
 const MOST: f64 = 1e-6;
 
@@ -21,8 +22,8 @@ const NEGLIGIBLE: f64 = 1e-3;
 /// Watches the error of derivatives.
 ///
 /// The steps are chosen by values alone, so that these are the same with derivatives and without. A steep law parts
-/// neighbouring motions within a fraction of such a step: its derivatives are then found with the speed as the independent
-/// variable.
+/// neighbouring motions within a fraction of such a step: its derivatives are then found with the speed as the
+/// independent variable.
 pub(super) struct Refiner {
     allowed: f64,
     /// ω₀ (rad/s), which makes a velocity of a position.
@@ -36,8 +37,8 @@ impl Refiner {
         Self { allowed: (SUSPICIOUS * tolerance).min(MOST), angular, greatest: vec![0.0; directions] }
     }
 
-    /// Puts the derivatives at the end of `step`, which begins at `at`, right, and gives those within; `None` if the step has
-    /// good ones, or if its speed is no measure of time.
+    /// Puts the derivatives at the end of `step`, which begins at `at`, right, and gives those within; `None` if the
+    /// step has good ones, or if its speed is no measure of time.
     pub(super) fn refine<D: Scalar, L: SlidingLaw<D> + ?Sized>(
         &mut self,
         field: &Field<D, L>,

@@ -158,7 +158,8 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
         step.within(|elapsed, state| self.field.acceleration(phase, at.side, at.time + elapsed, state))
     }
 
-    /// Largest distance of a step's end from an event (s) that a straight line may cover: the parabola adds less than rounding.
+    /// Largest distance of a step's end from an event (s) that a straight line may cover: the parabola adds less than
+    /// rounding.
     fn close(&self) -> f64 {
         1e-9 / self.angular
     }
@@ -186,7 +187,8 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
         step
     }
 
-    /// The step from `at` that ends at the `corner` (m) of the spring beyond which `step` has gone. `None` if none is found.
+    /// The step from `at` that ends at the `corner` (m) of the spring beyond which `step` has gone. `None` if none is
+    /// found.
     ///
     /// The force is continuous there: nothing shifts with the inputs, but no polynomial follows a motion across it.
     fn to_corner(&self, phase: &Phase<D>, at: &Progress<D>, step: &Step<D>, corner: f64) -> Option<Step<D>> {
@@ -251,8 +253,8 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
         Ended { ending, time: time + late, state, grazing: flat && D::DIRECTIONS > 0 }
     }
 
-    /// Writes the samples before `stop` and the work until `end` of `step`, which begins at `at`; derivatives are those of
-    /// `by_speed` if there are such.
+    /// Writes the samples before `stop` and the work until `end` of `step`, which begins at `at`; derivatives are those
+    /// of `by_speed` if there are such.
     fn record(
         &self,
         phase: &Phase<D>,
@@ -284,8 +286,8 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
         recorder.work(at.time, end, end - at.time, |time| self.field.power(phase, at.side, time, state(time)))
     }
 
-    /// The motion that follows an event or a jump, from the `time` of that, which has derivatives, to the number that is its
-    /// value.
+    /// The motion that follows an event or a jump, from the `time` of that, which has derivatives, to the number that
+    /// is its value.
     fn depart(&self, phase: &Phase<D>, time: D, state: State<D>, side: Side) -> Progress<D> {
         let late = -time + time.value();
         let time = time.value();
@@ -321,8 +323,8 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
     }
 }
 
-/// Largest growth of a step with this `error`, for which 1 is allowed: the error grows with the eighth power of the length, and a
-/// tenth is a margin.
+/// Largest growth of a step with this `error`, for which 1 is allowed: the error grows with the eighth power of the
+/// length, and a tenth is a margin.
 fn factor(error: f64) -> f64 {
     0.9 / error.sqrt().sqrt().sqrt()
 }
@@ -368,7 +370,8 @@ impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Slide<D> for Integrator<'_, D, L> {
                 scale.position += rise / self.angular;
             }
             let mut error = step.error(scale) / self.tolerance;
-            // Where a motion creeps, values stay good beyond the limit of stability for long, and derivatives grow without end.
+            // Where a motion creeps, values stay good beyond the limit of stability for long, and derivatives grow
+            // without end.
             let stable = 0.9 * STABLE / step.stiffness();
             if error <= 1.0 && step.stiffness() > STABLE {
                 self.shorten(&at, length * stable.max(0.1))?;

@@ -108,10 +108,11 @@ impl<D: Scalar> Step<D> {
     }
 }
 
-/// The rate at which neighbouring velocities approach each other (1/s), of two `velocities` at one time and their `accelerations`; 0
-/// where they part, and where they differ by rounding.
+/// The rate at which neighbouring velocities approach each other (1/s), of two `velocities` at one time and their
+/// `accelerations`; 0 where they part, and where they differ by rounding.
 ///
-/// From the two last stages, as in section IV.2 of E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, Springer 1996.
+/// From the two last stages, as in section IV.2 of E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*,
+/// Springer 1996.
 fn decay_rate<D: Scalar>(velocities: [D; 2], accelerations: [D; 2]) -> f64 {
     let difference = |[a, b]: [D; 2]| {
         let (a, b) = (a.value(), b.value());
@@ -135,8 +136,8 @@ fn rate_of<D: Scalar>(mut accelerate: impl FnMut(f64, State<D>) -> D) -> impl Fn
 
 /// The first θ in (0, 1] at which the polynomial, positive before it, reaches zero; `None` if it stays positive.
 ///
-/// The coefficients in the Bernstein basis enclose the polynomial. Where they are not all positive the interval is halved,
-/// so that no pair of zeros hides between two samples.
+/// The coefficients in the Bernstein basis enclose the polynomial. Where they are not all positive the interval is
+/// halved, so that no pair of zeros hides between two samples.
 pub(super) fn first_zero_within(coefficients: [f64; COEFFICIENTS]) -> Option<f64> {
     let mut bernstein = coefficients;
     // b_j = Σ_{i ≤ j} (j choose i)/(7 choose i) c_i, by repeated sums of scaled coefficients.

@@ -1,4 +1,5 @@
-//! Derivatives under steep laws and laws that jump: identities that hold whatever the motion is, and a motion that creeps.
+//! Derivatives under steep laws and laws that jump: identities that hold whatever the motion is, and a motion that
+//! creeps.
 
 use fmm_friction::{Karnopp, LawFamily, MakkarDixon, PowerLaw, SlidingLaw, Stribeck};
 use fmm_model::{Damping, Dual, Oscillator, Scalar};
@@ -12,8 +13,8 @@ type Numbers = Dual<9>;
 const MASS: (f64, f64) = (1.0, 2.0);
 const DAMPING: (f64, f64) = (0.3, 1.0);
 
-/// A motion through some stops and reversals, with a wave and a belt if it is `driven`, and the numbers in it that have a
-/// power of time in their units, with that power.
+/// A motion through some stops and reversals, with a wave and a belt if it is `driven`, and the numbers in it that have
+/// a power of time in their units, with that power.
 fn motion<F: LawFamily>(law: &[(f64, f64)], driven: bool, tolerance: f64) -> (Trajectory<Numbers>, Vec<(f64, f64)>)
 where
     F::At<Numbers>: SlidingLaw<Numbers>,
@@ -35,8 +36,8 @@ where
     (RungeKutta::new(tolerance).unwrap().run(&scenario, &sampling).unwrap(), numbers)
 }
 
-/// Nothing depends on the unit of time: a number q of a unit with the power e of it has Σ e q ∂T/∂q = T for every time T of an
-/// event, and Σ e q ∂x/∂q = −t v for the position at a given time t. The greatest miss, relative to the terms.
+/// Nothing depends on the unit of time: a number q of a unit with the power e of it has Σ e q ∂T/∂q = T for every time
+/// T of an event, and Σ e q ∂x/∂q = −t v for the position at a given time t. The greatest miss, relative to the terms.
 fn miss(motion: &Trajectory<Numbers>, numbers: &[(f64, f64)]) -> f64 {
     let mut worst = 0.0f64;
     let mut compare = |partial: &dyn Fn(usize) -> f64, expected: f64| {
@@ -82,8 +83,8 @@ fn derivatives_know_an_infinite_slope_at_rest() {
         check::<PowerLaw>(&[(0.1, exponent), (exponent, 0.0), (0.05, 0.0)], true, GOOD);
         let law = [(0.05, 0.0), (0.1, 0.0), (0.05, -1.0), (exponent, 0.0), (0.01, 1.0)];
         check::<Stribeck>(&law, false, GOOD);
-        // A contact that breaks away where friction falls with the root of the speed begins without an acceleration, so that
-        // its speed is no measure of time.
+        // A contact that breaks away where friction falls with the root of the speed begins without an acceleration, so
+        // that its speed is no measure of time.
         check::<Stribeck>(&law, true, if exponent > 0.5 { GOOD } else { [1e-5, 1e-3] });
     }
 }
@@ -97,7 +98,8 @@ fn derivatives_know_the_jump_at_a_dead_zone() {
     }
 }
 
-/// A motion that creeps towards rest is so near its end that steps far beyond the limit of stability keep its values good.
+/// A motion that creeps towards rest is so near its end that steps far beyond the limit of stability keep its values
+/// good.
 #[test]
 fn derivatives_of_a_motion_that_creeps_stay_small() {
     let law = [0.013_949, 83_740.9, 17.1668, 0.040_172_7, 348.469, 0.110_452];

@@ -1,4 +1,5 @@
-//! Accelerations are those of the equation of motion, the derivatives of the velocities, and have derivatives themselves.
+//! Accelerations are those of the equation of motion, the derivatives of the velocities, and have derivatives
+//! themselves.
 
 use fmm_friction::{
     AccelerationCoulomb, Berger, BristleLaw, Coulomb, CoulombStatic, CoulombViscous, Dahl, LawFamily, LuGre,
@@ -104,7 +105,8 @@ fn modes<D: Scalar>(motion: &Trajectory<D>, distance: f64) -> Vec<Option<Mode>> 
     motion.times().map(mode).collect()
 }
 
-/// Coefficient of friction by a law of the sliding speed, with its sign; none where the contact does not slide or does so steadily.
+/// Coefficient of friction by a law of the sliding speed, with its sign; none where the contact does not slide or does
+/// so steadily.
 fn sliding<L: SlidingLaw<f64>>(law: &L, mode: Mode, relative: f64) -> Option<f64> {
     match mode {
         Mode::Losing(direction) => Some(direction.sign() * law.coefficient_losing_speed(relative.abs())),

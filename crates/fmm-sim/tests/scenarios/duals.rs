@@ -7,7 +7,8 @@ use fmm_friction::{
 use fmm_model::{Damping, Dual, Oscillator, Restoring, Scalar};
 use fmm_sim::{Bristle, Channels, Engine, Exact, Excitation, RungeKutta, Sampling, Scenario, Trajectory};
 
-/// A machine, mostly on a belt, under a wave whose amplitude may be zero. `number` makes a value and a direction a number.
+/// A machine, mostly on a belt, under a wave whose amplitude may be zero. `number` makes a value and a direction a
+/// number.
 fn scenario<D: Scalar, L>(
     kind: usize,
     law: L,

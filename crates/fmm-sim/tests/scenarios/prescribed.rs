@@ -119,8 +119,8 @@ fn what_is_no_motion_is_refused() {
     assert_eq!(friction_along(&dahl(), 1.0, &nothing), Ok(vec![]));
 }
 
-/// In closed form or by steps, a motion of straight lines is the same: a path of cubics whose velocities are those of the lines has the
-/// same motion and no closed form where a velocity changes a little.
+/// In closed form or by steps, a motion of straight lines is the same: a path of cubics whose velocities are those of
+/// the lines has the same motion and no closed form where a velocity changes a little.
 #[test]
 fn closed_forms_are_what_steps_find() {
     let times: Vec<f64> = (0..60).map(|i| 0.01 * f64::from(i) + 1e-3 * f64::from(i % 3)).collect();

@@ -66,8 +66,8 @@ fn periods_are_elliptic_integrals() {
     }
 }
 
-/// A release from A beyond a corner at g: a sine of the outer stiffness about the point where that force would vanish, then one of
-/// the inner stiffness, or a straight line across a gap.
+/// A release from A beyond a corner at g: a sine of the outer stiffness about the point where that force would vanish,
+/// then one of the inner stiffness, or a straight line across a gap.
 #[test]
 fn periods_with_corners_are_sums_of_arcs() {
     let angular = (STIFFNESS / MASS).sqrt();
@@ -93,8 +93,8 @@ fn periods_with_corners_are_sums_of_arcs() {
     }
 }
 
-/// Dahl's bristles on a spring with a corner: they come near Coulomb's friction, which another engine passes, as the root of their
-/// compliance, as on a spring without, and the engine's own tolerance does not matter.
+/// Dahl's bristles on a spring with a corner: they come near Coulomb's friction, which another engine passes, as the
+/// root of their compliance, as on a spring without, and the engine's own tolerance does not matter.
 #[test]
 fn bristles_pass_corners() {
     let sampling = Sampling::uniform(0.02, 101).unwrap();
@@ -114,8 +114,8 @@ fn bristles_pass_corners() {
     assert!(off[0] < 2e-3 && off[1] < 0.11 * off[0], "{off:?} m from Coulomb's law");
 }
 
-/// The turning points under friction F follow from the energy of the spring, k (x²/2 + k₃ x⁴/4 + k₅ x⁶/6) or two parabolas, and the
-/// work F |Δx|.
+/// The turning points under friction F follow from the energy of the spring, k (x²/2 + k₃ x⁴/4 + k₅ x⁶/6) or two
+/// parabolas, and the work F |Δx|.
 #[test]
 fn turning_points_follow_from_energy() {
     let friction = 1.3;
@@ -148,8 +148,8 @@ fn turning_points_follow_from_energy() {
     }
 }
 
-/// Derivatives by both numbers of a spring, through the reversals, against differences: of k₃ and k₅, of where a stop is and how
-/// stiff; under friction that has one level, and one that depends on whether the speed grows.
+/// Derivatives by both numbers of a spring, through the reversals, against differences: of k₃ and k₅, of where a stop
+/// is and how stiff; under friction that has one level, and one that depends on whether the speed grows.
 #[test]
 fn derivatives_know_the_spring() {
     let polynomial = |numbers: [Dual<2>; 2]| Restoring::polynomial(numbers[0], numbers[1]).unwrap();
@@ -203,8 +203,8 @@ fn agrees_with_differences<L: SlidingLaw<Dual<2>> + Copy>(
     }
 }
 
-/// Friction that is higher while the speed grows holds a constant speed from where the spring balances the one level to where it
-/// balances the other.
+/// Friction that is higher while the speed grows holds a constant speed from where the spring balances the one level to
+/// where it balances the other.
 #[test]
 fn constant_speeds_end_where_the_spring_says() {
     let (gaining, losing) = (0.8, 0.5);

@@ -38,7 +38,8 @@ fn the_closed_form_is_right_or_refused() {
     assert!(Exact.run(&block(1e-3), &sampling).is_ok());
 }
 
-/// A hammer of 1 kN and 1 ms sampled at 1 MHz, its impulse 0.637 N s, on 1 kg with next to no spring: 0.637 m after a second.
+/// A hammer of 1 kN and 1 ms sampled at 1 MHz, its impulse 0.637 N s, on 1 kg with next to no spring: 0.637 m after a
+/// second.
 #[test]
 fn a_hammer_on_a_weak_spring_is_right_or_refused() {
     let force: Vec<f64> = (0..=1000).map(|i| 1e3 * (f64::from(i) * 1e-3 * std::f64::consts::PI).sin()).collect();

@@ -28,8 +28,8 @@ impl ArcSine {
         (self.centre - self.amplitude, self.centre + self.amplitude)
     }
 
-    /// The value of a point of the unit square, and whether that lies in the unit disc: such a point has a random phase, and
-    /// the cosine of twice that needs no cosine.
+    /// The value of a point of the unit square, and whether that lies in the unit disc: such a point has a random
+    /// phase, and the cosine of twice that needs no cosine.
     #[inline]
     pub(crate) fn of(&self, [x, y]: [f64; 2]) -> (f64, bool) {
         let (xx, yy) = (x * x, y * y);

@@ -41,7 +41,8 @@ impl CurvilinearTrapezoid {
         (self.centre - reach, self.centre + reach)
     }
 
-    /// The value of two uniform numbers: the half width is drawn first, then the place within it (JCGM 101:2008, 6.4.3.4).
+    /// The value of two uniform numbers: the half width is drawn first, then the place within it (JCGM 101:2008,
+    /// 6.4.3.4).
     #[inline]
     pub(crate) fn of(&self, [first, second]: [f64; 2]) -> f64 {
         let half_width = self.half_width + self.inexactness * (2.0 * first - 1.0);

@@ -148,7 +148,8 @@ impl Distribution {
     /// t_ν(x, s²): Student's t, shifted to x and scaled by s (JCGM 101:2008, 6.4.9). ν = ∞ gives the normal.
     ///
     /// For n observations x is their mean, s their standard deviation over √n, and ν = n − 1; for an expanded
-    /// uncertainty U with coverage factor k, s is U/k. The standard deviation is s √(ν/(ν − 2)), and infinite for ν ≤ 2.
+    /// uncertainty U with coverage factor k, s is U/k. The standard deviation is s √(ν/(ν − 2)), and infinite for ν ≤
+    /// 2.
     ///
     /// # Errors
     /// [`UncertaintyError::OutOfRange`] unless x is finite, s positive and finite, and ν at least 1.
@@ -207,8 +208,8 @@ impl Distribution {
     /// Its mean and standard deviation are those between the limits, not x and u.
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless a < b, x is finite, and u positive and finite, or if the limits leave no more than some
-    /// 1e-290 of the distribution.
+    /// [`UncertaintyError::OutOfRange`] unless a < b, x is finite, and u positive and finite, or if the limits leave no
+    /// more than some 1e-290 of the distribution.
     pub fn truncated_normal(
         mean: f64,
         standard_deviation: f64,
@@ -224,8 +225,8 @@ impl Distribution {
         Ok(Shape::TruncatedNormal(TruncatedNormal::new(mean, u, (lower, upper)).ok_or_else(none)?).into())
     }
 
-    /// A positive quantity whose logarithm is normal: ln(x/m) has the standard deviation σ, so that a σ of 0.1 is a factor of
-    /// about 1.1.
+    /// A positive quantity whose logarithm is normal: ln(x/m) has the standard deviation σ, so that a σ of 0.1 is a
+    /// factor of about 1.1.
     ///
     /// ```text
     /// E = m e^(σ²/2),   u = E √(e^(σ²) − 1)
@@ -278,8 +279,9 @@ impl Distribution {
     /// Equal probability for each of `values`.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooFewObservations`] without a value; [`UncertaintyError::OutOfRange`] if a value or the standard deviation is not finite;
-    /// [`UncertaintyError::NoAnswer`] if the values differ by so little that their squares are lost.
+    /// [`UncertaintyError::TooFewObservations`] without a value; [`UncertaintyError::OutOfRange`] if a value or the
+    /// standard deviation is not finite; [`UncertaintyError::NoAnswer`] if the values differ by so little that their
+    /// squares are lost.
     pub fn empirical(values: &[f64]) -> Result<Self, UncertaintyError> {
         if values.is_empty() {
             return Err(UncertaintyError::TooFewObservations { found: 0, needed: 1 });

@@ -33,8 +33,8 @@ pub(crate) struct TruncatedNormal {
 }
 
 impl TruncatedNormal {
-    /// The caller has seen to a finite μ, σ > 0 and a < b. `None` if the limits leave so little of the distribution that its
-    /// probability is no number.
+    /// The caller has seen to a finite μ, σ > 0 and a < b. `None` if the limits leave so little of the distribution
+    /// that its probability is no number.
     pub(crate) fn new(centre: f64, scale: f64, limits: (f64, f64)) -> Option<Self> {
         let (low, high) = ((limits.0 - centre) / scale, (limits.1 - centre) / scale);
         let normal = Normal::standard();

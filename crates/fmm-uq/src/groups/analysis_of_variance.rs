@@ -12,9 +12,9 @@ use crate::{Moments, UncertaintyError};
 /// F = (SS_b/ν_b)/(SS_w/ν_w)
 /// ```
 ///
-/// Sums are taken of differences from the first observation and corrected for their rounding, so that a large constant in
-/// all observations costs no digits that they have: of the eleven sets of NIST, each comes out to the digits that it keeps
-/// when its printed observations become `f64`, as exact fractions show.
+/// Sums are taken of differences from the first observation and corrected for their rounding, so that a large constant
+/// in all observations costs no digits that they have: of the eleven sets of NIST, each comes out to the digits that it
+/// keeps when its printed observations become `f64`, as exact fractions show.
 ///
 /// ```
 /// use fmm_uq::AnalysisOfVariance;
@@ -41,9 +41,9 @@ impl AnalysisOfVariance {
     /// Analysis of at least two groups, each with one observation or more, and one of them with two or more.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooFewObservations`] if no group has two; [`UncertaintyError::Inputs`] for fewer than two groups or an empty one;
-    /// [`UncertaintyError::OutOfRange`] if an observation or the squares are not finite; [`UncertaintyError::NoAnswer`] if the observations
-    /// differ by so little that their squares are lost.
+    /// [`UncertaintyError::TooFewObservations`] if no group has two; [`UncertaintyError::Inputs`] for fewer than two
+    /// groups or an empty one; [`UncertaintyError::OutOfRange`] if an observation or the squares are not finite;
+    /// [`UncertaintyError::NoAnswer`] if the observations differ by so little that their squares are lost.
     pub fn of<G: AsRef<[f64]>>(groups: &[G]) -> Result<Self, UncertaintyError> {
         if groups.len() < 2 || groups.iter().any(|group| group.as_ref().is_empty()) {
             return Err(UncertaintyError::no_groups(groups.len()));
@@ -110,7 +110,8 @@ impl AnalysisOfVariance {
         (self.between / between, self.within() / within)
     }
 
-    /// F (1); infinite if nothing differs within the groups but something between them, and 0 if nothing differs at all.
+    /// F (1); infinite if nothing differs within the groups but something between them, and 0 if nothing differs at
+    /// all.
     pub fn f(&self) -> f64 {
         let (between, within) = self.mean_squares();
         if between == 0.0 { 0.0 } else { between / within }

@@ -46,11 +46,11 @@ pub struct Influence {
 /// Q = q (p − 1) at τ = 0,     I² = max(0, 1 − (p − 1)/Q)
 /// ```
 ///
-/// The interval is that of Hartung and Knapp (2001): the spread of the results themselves widens it, and Student's t takes the
-/// place of the normal distribution, so that it holds for few results. By chance q may be far below 1 with three or four of
-/// them, which would make it narrower than the usual one; max(1, q) does not let it (Röver, Knapp and Friede 2015). The price
-/// is an interval that covers more than it says where the results do not differ (τ = 0): 99 % of six results and more of
-/// fewer, instead of 95 %.
+/// The interval is that of Hartung and Knapp (2001): the spread of the results themselves widens it, and Student's t
+/// takes the place of the normal distribution, so that it holds for few results. By chance q may be far below 1 with
+/// three or four of them, which would make it narrower than the usual one; max(1, q) does not let it (Röver, Knapp and
+/// Friede 2015). The price is an interval that covers more than it says where the results do not differ (τ = 0): 99 %
+/// of six results and more of fewer, instead of 95 %.
 ///
 /// What several results share, such as the mass of one machine, does not average out: see [`Consensus::with_shared`].
 ///
@@ -85,16 +85,16 @@ pub struct Consensus {
     shared: Vec<Vec<f64>>,
 }
 
-/// Steps of the search for τ² at most; six are the rule. Each at least doubles what is small beside the solution, and f64 has
-/// some 2100 doublings.
+/// Steps of the search for τ² at most; six are the rule. Each at least doubles what is small beside the solution, and
+/// f64 has some 2100 doublings.
 const STEPS: usize = 2200;
 
 impl Consensus {
     /// The consensus of at least two results.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooFewObservations`] for fewer than two results; [`UncertaintyError::OutOfRange`] if a result is not finite, or its
-    /// uncertainty, or the square of it, is not positive and finite.
+    /// [`UncertaintyError::TooFewObservations`] for fewer than two results; [`UncertaintyError::OutOfRange`] if a
+    /// result is not finite, or its uncertainty, or the square of it, is not positive and finite.
     pub fn of(results: &[Estimated], effects: RandomEffects) -> Result<Self, UncertaintyError> {
         if results.len() < 2 {
             return Err(UncertaintyError::TooFewObservations { found: results.len(), needed: 2 });
@@ -128,18 +128,19 @@ impl Consensus {
         Ok(Self { results: results.to_vec(), effects, variance, mean, uncertainty, homogeneity, shared: Vec::new() })
     }
 
-    /// The same consensus of results that share inputs, such as the mass of one machine. Each input is a list of what it contributes to
-    /// each result, c_i = (∂x_i/∂input) u(input) with its sign, in the unit of the results; 0 for a result without it. The uncertainties
-    /// u_i of the results must then be those of what is their own.
+    /// The same consensus of results that share inputs, such as the mass of one machine. Each input is a list of what
+    /// it contributes to each result, c_i = (∂x_i/∂input) u(input) with its sign, in the unit of the results; 0 for a
+    /// result without it. The uncertainties u_i of the results must then be those of what is their own.
     ///
     /// ```text
     /// u_s = |Σ w_i c_i|/Σ w_i     for each shared input s
     /// u² = u(μ̂)² + Σ_s u_s²,     ν = (p − 1) u⁴/u(μ̂)⁴,     μ̂ ± t(ν) u
     /// ```
     ///
-    /// An input is one quantity, so its contributions add up with their signs before they are squared (JCGM 100:2008, 5.2.2, correlation 1),
-    /// and more results do not make them smaller. They do not enter the weights or τ. The shared inputs are taken to be known with
-    /// infinitely many degrees of freedom, which makes ν that of Welch and Satterthwaite (G.4.1).
+    /// An input is one quantity, so its contributions add up with their signs before they are squared (JCGM 100:2008,
+    /// 5.2.2, correlation 1), and more results do not make them smaller. They do not enter the weights or τ. The shared
+    /// inputs are taken to be known with infinitely many degrees of freedom, which makes ν that of Welch and
+    /// Satterthwaite (G.4.1).
     ///
     /// ```
     /// use fmm_model::Estimated;
@@ -153,8 +154,8 @@ impl Consensus {
     /// ```
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`] for an input with another number of contributions than results; [`UncertaintyError::OutOfRange`] if a
-    /// contribution, or the uncertainty with all of them, is not finite.
+    /// [`UncertaintyError::Inputs`] for an input with another number of contributions than results;
+    /// [`UncertaintyError::OutOfRange`] if a contribution, or the uncertainty with all of them, is not finite.
     pub fn with_shared(self, inputs: &[Vec<f64>]) -> Result<Self, UncertaintyError> {
         for (input, contributions) in inputs.iter().enumerate() {
             if contributions.len() != self.results.len() {
@@ -229,10 +230,11 @@ impl Consensus {
         Ok(Interval { low: self.mean - reach, high: self.mean + reach, level })
     }
 
-    /// The mean weighted by the uncertainties alone, 1/u², as if the results differed by no more, and its standard uncertainty by them
-    /// and the shared inputs (unit of the results).
+    /// The mean weighted by the uncertainties alone, 1/u², as if the results differed by no more, and its standard
+    /// uncertainty by them and the shared inputs (unit of the results).
     ///
-    /// It claims too little where they differ by more: of four results with τ = 2 and u near 0.4, its 95 % interval holds in 27 % of cases.
+    /// It claims too little where they differ by more: of four results with τ = 2 and u near 0.4, its 95 % interval
+    /// holds in 27 % of cases.
     pub fn without_effects(&self) -> Estimated {
         let (mean, _, weights) = weighted(&self.results, 0.0);
         Estimated::new(mean, self.shared_at(0.0).into_iter().fold(weights.sqrt().recip(), f64::hypot))
@@ -298,8 +300,8 @@ fn weighted(results: &[Estimated], variance: f64) -> (f64, f64, f64) {
     let weights: f64 = results.iter().map(weight).sum();
     let from =
         |origin: f64| results.iter().map(|result| weight(result) * (result.value - origin)).sum::<f64>() / weights;
-    // About one of them, so that a constant in all costs no digits, and again about what comes out, as that one may be far
-    // off.
+    // About one of them, so that a constant in all costs no digits, and again about what comes out, as that one may be
+    // far off.
     let first = results[0].value;
     let near = first + from(first);
     let mean = from(near);
@@ -330,8 +332,8 @@ fn weight_between(results: &[Estimated]) -> f64 {
     weights().zip(behind).map(share).sum()
 }
 
-/// τ² with Q(τ²) = `freedom`; 0 if Q is less without it. Q falls and is convex, so that Newton's steps from 0 do not pass the
-/// solution.
+/// τ² with Q(τ²) = `freedom`; 0 if Q is less without it. Q falls and is convex, so that Newton's steps from 0 do not
+/// pass the solution.
 fn mandel_paule(results: &[Estimated], freedom: f64) -> f64 {
     let mut variance = 0.0;
     for _ in 0..STEPS {

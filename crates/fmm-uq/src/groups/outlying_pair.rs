@@ -2,10 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
-/// The probability with which the two largest of `count` ≥ 4 normal values leave no more than a share `ratio` of the squares.
+/// The probability with which the two largest of `count` ≥ 4 normal values leave no more than a share `ratio` of the
+/// squares.
 ///
-/// With φ_n for the largest of n values, sin φ_n = (x − x̄)/√(Σ (x − x̄)² (n − 1)/n), the squares without it are cos²φ_n of
-/// what they were, and it is the largest if that of the others lies lower:
+/// With φ_n for the largest of n values, sin φ_n = (x − x̄)/√(Σ (x − x̄)² (n − 1)/n), the squares without it are
+/// cos²φ_n of what they were, and it is the largest if that of the others lies lower:
 ///
 /// ```text
 /// f_n(φ) ∝ cosⁿ⁻³φ F_{n−1}(φ'),   sin φ' = √(n/(n − 2)) tan φ        F_2 = 1 for φ' ≥ π/2, else 0
@@ -38,8 +39,8 @@ fn with_cells(ratio: f64, count: usize, cells: usize) -> f64 {
     (less / all).min(bound(ratio, count))
 }
 
-/// The sum of the probabilities with which each two values, above the mean of the others, leave as little. More than one pair
-/// may, so that it is an upper bound; the smaller the ratio, the closer.
+/// The sum of the probabilities with which each two values, above the mean of the others, leave as little. More than
+/// one pair may, so that it is an upper bound; the smaller the ratio, the closer.
 ///
 /// ```text
 /// P ≤ n (n − 1)/2 (1/4 + arcsin(1/(n − 1))/2π) g^((n − 3)/2)
@@ -65,8 +66,8 @@ fn limit(angle: f64, n: usize) -> f64 {
 
 /// The angle of the largest of some values.
 struct Largest {
-    /// F, the probability of an angle below. It is summed from its small end: there 1 − (1 − F) would be rounding, which the
-    /// next n multiplies by n/2.
+    /// F, the probability of an angle below. It is summed from its small end: there 1 − (1 − F) would be rounding,
+    /// which the next n multiplies by n/2.
     below: Curve,
     /// 1 − F, summed from its own small end.
     beyond: Curve,

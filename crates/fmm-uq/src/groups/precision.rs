@@ -8,7 +8,8 @@ use crate::groups::outlying_pair;
 use crate::gum::coverage::valid_level;
 use crate::{AnalysisOfVariance, Moments, UncertaintyError, coverage_factor};
 
-/// Precision of a method by observations in groups (laboratories, operators, days, releases), after ISO 5725-2:1994, clause 7.4.
+/// Precision of a method by observations in groups (laboratories, operators, days, releases), after ISO 5725-2:1994,
+/// clause 7.4.
 ///
 /// ```text
 /// s_r² = Σ (n_i − 1) s_i²/Σ (n_i − 1)                    repeatability
@@ -30,8 +31,8 @@ use crate::{AnalysisOfVariance, Moments, UncertaintyError, coverage_factor};
 /// ```
 ///
 /// # References
-/// - ISO 5725-2:1994, *Accuracy (trueness and precision) of measurement methods and results, Part 2*, clauses 7.3 (h, k, the tests of
-///   Cochran and Grubbs) and 7.4.
+/// - ISO 5725-2:1994, *Accuracy (trueness and precision) of measurement methods and results, Part 2*, clauses 7.3 (h,
+///   k, the tests of Cochran and Grubbs) and 7.4.
 /// - P.-T. Wilrich, AStA Advances in Statistical Analysis 97 (2013) 1, <https://doi.org/10.1007/s10182-011-0185-y>
 ///   (what its tables of limits are computed from).
 #[derive(Debug, Clone, PartialEq)]
@@ -93,14 +94,14 @@ impl Precision {
         self.analysis.residual_standard_deviation()
     }
 
-    /// s_L, standard deviation between groups (unit of the observations); 0 where the groups differ no more than observations
-    /// within them make them, which [`Precision::between_variance`] tells.
+    /// s_L, standard deviation between groups (unit of the observations); 0 where the groups differ no more than
+    /// observations within them make them, which [`Precision::between_variance`] tells.
     pub fn between(&self) -> f64 {
         self.between_variance().max(0.0).sqrt()
     }
 
-    /// (s_d² − s_r²)/n̄, the variance between groups as it is estimated without bias (unit of the observations squared).
-    /// Negative where the means of the groups lie closer together than chance within them lets expect: then
+    /// (s_d² − s_r²)/n̄, the variance between groups as it is estimated without bias (unit of the observations
+    /// squared). Negative where the means of the groups lie closer together than chance within them lets expect: then
     /// [`Precision::between`] is 0.
     pub fn between_variance(&self) -> f64 {
         let counts = || self.analysis.counts.iter().map(|count| *count as f64);
@@ -115,7 +116,8 @@ impl Precision {
         self.repeatability().hypot(self.between())
     }
 
-    /// h, Mandel's statistic of the mean of each group (1): its distance from the mean of the means in their standard deviations; 0 if all are equal.
+    /// h, Mandel's statistic of the mean of each group (1): its distance from the mean of the means in their standard
+    /// deviations; 0 if all are equal.
     pub fn h(&self) -> Vec<f64> {
         let (mean, deviation, means) = self.spread_of_means();
         means.iter().map(|of_group| if deviation > 0.0 { (of_group - mean) / deviation } else { 0.0 }).collect()
@@ -135,8 +137,8 @@ impl Precision {
     /// ```
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1; [`UncertaintyError::NoAnswer`] for two groups, whose h are
-    /// ±1/√2 always.
+    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1; [`UncertaintyError::NoAnswer`] for two groups, whose h
+    /// are ±1/√2 always.
     pub fn h_limit(&self, level: f64) -> Result<f64, UncertaintyError> {
         let groups = self.analysis.counts.len();
         if groups < 3 {
@@ -158,7 +160,8 @@ impl Precision {
         variances.into_iter().map(|variance| variance.map(ratio)).collect()
     }
 
-    /// The k that one group of `observations` exceeds by chance with probability 1 − `level` (1), if all groups have as many.
+    /// The k that one group of `observations` exceeds by chance with probability 1 − `level` (1), if all groups have as
+    /// many.
     ///
     /// ```text
     /// k²/p is beta distributed, α = (n − 1)/2, β = (p − 1)(n − 1)/2
@@ -172,8 +175,8 @@ impl Precision {
     /// ```
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1; [`UncertaintyError::TooFewObservations`] for fewer than two;
-    /// [`UncertaintyError::NoAnswer`] if fewer than two groups have a spread.
+    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1; [`UncertaintyError::TooFewObservations`] for fewer than
+    /// two; [`UncertaintyError::NoAnswer`] if fewer than two groups have a spread.
     pub fn k_limit(&self, observations: usize, level: f64) -> Result<f64, UncertaintyError> {
         let level = valid_level(level)?;
         if observations < 2 {
@@ -239,16 +242,16 @@ impl Precision {
     }
 
     /// Grubbs' test of the two largest or the two smallest means, whichever leaves less without them; `None` for
-    /// fewer than four groups, or if all are equal. Two that hide each other from [`Precision::grubbs`] show here; after one
-    /// that shows there, ask again without it.
+    /// fewer than four groups, or if all are equal. Two that hide each other from [`Precision::grubbs`] show here;
+    /// after one that shows there, ask again without it.
     ///
     /// ```text
     /// G = Σ (ȳ_i − ȳ')²/Σ (ȳ_i − ȳ)²        above and ȳ' without the two
     /// ```
     ///
-    /// The probability follows from that of the largest of p, p − 1, … 3 means, one after the other, as Grubbs (1950) found
-    /// it. It is computed to 3e-4 of it for up to 40 groups and 2e-3 for 300, in a time that grows with their number: 1 ms for
-    /// eight, 0.3 s for a thousand.
+    /// The probability follows from that of the largest of p, p − 1, … 3 means, one after the other, as Grubbs (1950)
+    /// found it. It is computed to 3e-4 of it for up to 40 groups and 2e-3 for 300, in a time that grows with their
+    /// number: 1 ms for eight, 0.3 s for a thousand.
     ///
     /// ```
     /// let laboratories = [1.02, 0.98, 1.01, 0.99, 1.00, 1.03, 0.97, 2.1, 2.2].map(|mean| [mean - 0.01, mean + 0.01]);

@@ -10,8 +10,8 @@ use crate::distributions::student;
 /// k = t_p(ν)                                                       (JCGM 100:2008, G.3.2 and Table G.2)
 /// ```
 ///
-/// For ν ≤ 1000 this is the inverse of the regularised incomplete beta function, good to 1e-12 of k there also for levels
-/// close to 1; it loses digits as ν grows. Beyond, it is the Cornish–Fisher expansion about the normal
+/// For ν ≤ 1000 this is the inverse of the regularised incomplete beta function, good to 1e-12 of k there also for
+/// levels close to 1; it loses digits as ν grows. Beyond, it is the Cornish–Fisher expansion about the normal
 /// quantile z to 1/ν⁴, whose error relative to k stays below 2e-14 for levels up to 0.9973 (z = 3) and 1e-11 up to
 /// z = 6.
 ///

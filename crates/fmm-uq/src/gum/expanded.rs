@@ -89,8 +89,8 @@ impl Budget {
     /// makes the interval too short; [`coverage_factor`] at ν_eff itself interpolates instead.
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1; [`UncertaintyError::NoAnswer`] if u(y) is zero although inputs are uncertain,
-    /// or if there is no ν_eff.
+    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1; [`UncertaintyError::NoAnswer`] if u(y) is zero although
+    /// inputs are uncertain, or if there is no ν_eff.
     pub fn expanded(&self, level: f64) -> Result<Expanded, UncertaintyError> {
         if self.linearisation() == Linearisation::ZeroUncertainty {
             return Err(UncertaintyError::linearisation_suspect());

@@ -18,8 +18,8 @@ impl Propagation {
     /// uncertainties come from one ensemble of ν degrees of freedom each (the multivariate t of a Monte Carlo).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless 0 < p < 1; [`UncertaintyError::NoAnswer`] as for [`Budget::expanded`], and if the outputs are
-    /// fully correlated or one is certain.
+    /// [`UncertaintyError::OutOfRange`] unless 0 < p < 1; [`UncertaintyError::NoAnswer`] as for [`Budget::expanded`],
+    /// and if the outputs are fully correlated or one is certain.
     pub fn ellipsoid(&self, level: f64) -> Result<Region, UncertaintyError> {
         let (mut region, nu) = self.region(level)?;
         let (u, m) = (&region.standard_uncertainties, self.outputs().len());

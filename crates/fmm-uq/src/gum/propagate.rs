@@ -90,10 +90,10 @@ impl<'a> Gum<'a> {
     /// Propagates with exact derivatives.
     ///
     /// # Errors
-    /// [`UncertaintyError::Model`] if the model fails (with its own error as the source), gives a result or a sensitivity that is not finite
-    /// (with the values of the inputs), gives other results for the same inputs, has no output, or changes their number.
-    /// [`UncertaintyError::OutOfRange`] if the sum of finite contributions overflows; [`UncertaintyError::NoAnswer`] if all contributions vanish
-    /// by underflow.
+    /// [`UncertaintyError::Model`] if the model fails (with its own error as the source), gives a result or a
+    /// sensitivity that is not finite (with the values of the inputs), gives other results for the same inputs, has no
+    /// output, or changes their number. [`UncertaintyError::OutOfRange`] if the sum of finite contributions overflows;
+    /// [`UncertaintyError::NoAnswer`] if all contributions vanish by underflow.
     ///
     /// # Panics
     /// If the model does.

@@ -5,8 +5,8 @@ use crate::model::derivatives::{Derivatives, Expansion};
 use crate::model::excursion::{Departure, Excursion};
 use crate::{Budget, Input, Inputs, UncertaintyError};
 
-/// Largest effect of the curvature, relative to u(y), at which the linear approximation is still accepted (1). An uncertainty is stated
-/// to two digits, so that rounding changes it by up to 5 % as well.
+/// Largest effect of the curvature, relative to u(y), at which the linear approximation is still accepted (1). An
+/// uncertainty is stated to two digits, so that rounding changes it by up to 5 % as well.
 pub(crate) const TOLERATED: f64 = 0.05;
 
 /// The second-order terms of the GUM.
@@ -33,8 +33,8 @@ pub struct SecondOrder {
 /// Known curvature of an output.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Curvature {
-    /// The second-order terms; `None` where they are not finite, make a variance negative, or are not those of the model
-    /// within the uncertainties of its inputs.
+    /// The second-order terms; `None` where they are not finite, make a variance negative, or are not those of the
+    /// model within the uncertainties of its inputs.
     pub(crate) terms: Option<SecondOrder>,
     /// Whether the output stands still though its inputs move and its slopes do not vanish: what they do cancels.
     pub(crate) cancels: bool,
@@ -163,7 +163,8 @@ mod tests {
         ]
     }
 
-    /// The result must have this correction and variance, which follow from the sum in the note of JCGM 100:2008, 5.1.2.
+    /// The result must have this correction and variance, which follow from the sum in the note of JCGM 100:2008,
+    /// 5.1.2.
     fn check(propagations: [(&str, Propagation); 2], correction: f64, variance: f64) {
         for (how, propagation) in propagations {
             let terms = propagation.single().unwrap().second_order().unwrap();

@@ -38,8 +38,8 @@ impl Input {
     /// A normally distributed input of infinite degrees of freedom; `unit` is `"1"` for a pure number.
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`] for an empty name; [`UncertaintyError::OutOfRange`] if the value is not finite, or the uncertainty negative
-    /// or not finite.
+    /// [`UncertaintyError::Inputs`] for an empty name; [`UncertaintyError::OutOfRange`] if the value is not finite, or
+    /// the uncertainty negative or not finite.
     pub fn new(
         name: impl Into<String>,
         value: f64,

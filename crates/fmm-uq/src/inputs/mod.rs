@@ -77,8 +77,8 @@ impl Inputs {
     /// by which they miss; take them from the observations instead.
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`] for an unknown name, an input with itself, a pair given twice, or coefficients that are impossible together;
-    /// [`UncertaintyError::OutOfRange`] for a coefficient outside [−1, 1].
+    /// [`UncertaintyError::Inputs`] for an unknown name, an input with itself, a pair given twice, or coefficients that
+    /// are impossible together; [`UncertaintyError::OutOfRange`] for a coefficient outside [−1, 1].
     pub fn with_correlations(mut self, coefficients: &[(&str, &str, f64)]) -> Result<Self, UncertaintyError> {
         let mut seen = Vec::with_capacity(coefficients.len());
         for &(first, second, value) in coefficients {
@@ -107,8 +107,8 @@ impl Inputs {
     /// The means of simultaneous observations, each a name, a unit and its values: correlated as the observations
     /// are, and one ensemble of n − 1 degrees of freedom (JCGM 100:2008, 5.2.3 and example H.2).
     ///
-    /// JCGM 102:2011, 5.3.2 takes n − N degrees of freedom for N quantities instead, and scales that are larger by the root
-    /// of (n − 1)/(n − N).
+    /// JCGM 102:2011, 5.3.2 takes n − N degrees of freedom for N quantities instead, and scales that are larger by the
+    /// root of (n − 1)/(n − N).
     ///
     /// # Errors
     /// Those of [`Observations::new`], [`Observations::correlation`], [`Input::new`], [`Inputs::new`] and

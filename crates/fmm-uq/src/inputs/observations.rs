@@ -32,8 +32,9 @@ impl Observations {
     /// At least two finite values.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooFewObservations`] for fewer than two values; [`UncertaintyError::OutOfRange`] if a value or the squares are not finite;
-    /// [`UncertaintyError::NoAnswer`] if the values differ by so little that their squares are lost.
+    /// [`UncertaintyError::TooFewObservations`] for fewer than two values; [`UncertaintyError::OutOfRange`] if a value
+    /// or the squares are not finite; [`UncertaintyError::NoAnswer`] if the values differ by so little that their
+    /// squares are lost.
     pub fn new(values: &[f64]) -> Result<Self, UncertaintyError> {
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
             return Err(UncertaintyError::observation_not_finite(index, values[index]));

@@ -6,8 +6,8 @@ use fmm_model::Scalar;
 
 use crate::{ModelOutput, Taylor};
 
-/// A model over [`Taylor`] numbers as one over plain numbers, with the same bits: what a Monte Carlo, a Sobol' analysis or
-/// a difference wants of a closure that [`propagate`](crate::propagate) takes.
+/// A model over [`Taylor`] numbers as one over plain numbers, with the same bits: what a Monte Carlo, a Sobol' analysis
+/// or a difference wants of a closure that [`propagate`](crate::propagate) takes.
 ///
 /// A closure has one number type, so that one that is written for derivatives cannot be called with plain numbers. A
 /// function generic in `D: Scalar` can, and its trials cost a tenth of these, which carry derivatives of zero along.

@@ -3,7 +3,8 @@
 use crate::model::derivatives::{Derivatives, Expansion};
 use crate::{Distribution, Input, Inputs};
 
-/// Half distance of three points with the weights 1/6, 2/3, 1/6, which have the mean and the variance of a normal quantity.
+/// Half distance of three points with the weights 1/6, 2/3, 1/6, which have the mean and the variance of a normal
+/// quantity.
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 /// Roundings that a model may have made of its inputs.
 const ROUNDINGS: f64 = 16.0;
@@ -28,11 +29,11 @@ impl Departure {
     }
 }
 
-/// The points at √3 standard uncertainties on both sides along each direction, or at the limits of the inputs if those are
-/// nearer.
+/// The points at √3 standard uncertainties on both sides along each direction, or at the limits of the inputs if those
+/// are nearer.
 ///
-/// An expansion is made at a point, where a kink, a pole or a high power is not to be seen. With r the difference of model
-/// and expansion at a distance of ±h, the three-point rule gives what it changes:
+/// An expansion is made at a point, where a kink, a pole or a high power is not to be seen. With r the difference of
+/// model and expansion at a distance of ±h, the three-point rule gives what it changes:
 ///
 /// ```text
 /// ΔE = (r₊ + r₋)/2h²,   ΔV = g (r₊ − r₋)/h + (r₊² + r₋²)/2h²

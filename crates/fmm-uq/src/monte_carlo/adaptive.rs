@@ -36,8 +36,8 @@ pub enum IntervalKind {
 /// They take more trials, eight times as many in the guide's examples, and a flat density, of which
 /// all intervals are equally short, ends in [`UncertaintyError::NotStable`].
 ///
-/// At least ten sequences are made: two may agree by chance. The stop succeeds in about nine of ten runs, since it waits
-/// for a favourable estimate of s_z; [`Adaptive::two_stage`] takes s_z from the first sequences alone and
+/// At least ten sequences are made: two may agree by chance. The stop succeeds in about nine of ten runs, since it
+/// waits for a favourable estimate of s_z; [`Adaptive::two_stage`] takes s_z from the first sequences alone and
 /// succeeds more often, for some more trials.
 ///
 /// # References

@@ -3,7 +3,8 @@
 use crate::distributions::Shape;
 use crate::{Input, Inputs, UncertaintyError};
 
-/// The t-distributed input of the fewest degrees of freedom, if it has no variance: ν ≤ 2, from two or three observations.
+/// The t-distributed input of the fewest degrees of freedom, if it has no variance: ν ≤ 2, from two or three
+/// observations.
 ///
 /// The sample of its trials has a standard deviation, which is another one with every seed and grows with their number.
 #[derive(Debug, Clone, PartialEq)]

@@ -41,8 +41,8 @@ use crate::monte_carlo::run::Plan;
 use crate::monte_carlo::sampler::Sampler;
 use crate::{Inputs, ModelOutput, UncertaintyError};
 
-/// A run of JCGM 101:2008 (one output) or JCGM 102:2011 (several): the distributions of the inputs propagated through the
-/// model by random trials.
+/// A run of JCGM 101:2008 (one output) or JCGM 102:2011 (several): the distributions of the inputs propagated through
+/// the model by random trials.
 ///
 /// Trials come in blocks of 1000. A block is drawn from a stream of its own of the ChaCha8 generator, with the
 /// seed as the key and the index of the block as the stream; blocks are put together by index. So the bits of a result
@@ -50,8 +50,8 @@ use crate::{Inputs, ModelOutput, UncertaintyError};
 /// `rayon`, in the current pool), nor on how blocks are spread over machines
 /// ([`MonteCarlo::run_blocks`], [`PartialRun`]).
 ///
-/// A trial fails if the model gives back an error or a number that is not finite. By default a single failure is an error:
-/// results without the failed trials are conditional on success, and that must be asked for
+/// A trial fails if the model gives back an error or a number that is not finite. By default a single failure is an
+/// error: results without the failed trials are conditional on success, and that must be asked for
 /// ([`MonteCarlo::with_allowed_failures`]).
 ///
 /// ```
@@ -166,11 +166,12 @@ impl<'a> MonteCarlo<'a> {
     /// Runs all trials and pools them.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooManyFailures`] if more trials fail than allowed; where none may fail, at the first failure.
-    /// [`UncertaintyError::Model`] if no trial succeeds, or the number of outputs changes. [`UncertaintyError::Cancelled`] if the observer of the
-    /// progress ends the run. [`UncertaintyError::OutOfRange`] if the squares of the values overflow. For an adaptive run also
-    /// [`UncertaintyError::NotStable`] at its largest number of trials, [`UncertaintyError::TooFewTrials`] if that number is too small for the
-    /// rule, and [`UncertaintyError::NoAnswer`] if an input has Student's t of ν ≤ 2.
+    /// [`UncertaintyError::TooManyFailures`] if more trials fail than allowed; where none may fail, at the first
+    /// failure. [`UncertaintyError::Model`] if no trial succeeds, or the number of outputs changes.
+    /// [`UncertaintyError::Cancelled`] if the observer of the progress ends the run. [`UncertaintyError::OutOfRange`]
+    /// if the squares of the values overflow. For an adaptive run also [`UncertaintyError::NotStable`] at its largest
+    /// number of trials, [`UncertaintyError::TooFewTrials`] if that number is too small for the rule, and
+    /// [`UncertaintyError::NoAnswer`] if an input has Student's t of ν ≤ 2.
     ///
     /// # Panics
     /// If the model does: a panic ends the run and passes through. What may fail should give back an error.
@@ -221,8 +222,8 @@ impl<'a> MonteCarlo<'a> {
     /// Pools the trials of a complete partial result; for an adaptive run, those up to the stop.
     ///
     /// # Errors
-    /// [`UncertaintyError::PartialRun`] if it is of another run, or with the first block that is still needed; and those of
-    /// [`MonteCarlo::run`].
+    /// [`UncertaintyError::PartialRun`] if it is of another run, or with the first block that is still needed; and
+    /// those of [`MonteCarlo::run`].
     pub fn finish(&self, partial: PartialRun) -> Result<OutputSample, UncertaintyError> {
         self.finish_plan(partial)
     }

@@ -82,8 +82,8 @@ impl OutputSample {
     /// y, mean of the values (unit of the output).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] for an output that does not exist; [`UncertaintyError::NoAnswer`] if an input has Student's t of ν = 1, which has
-    /// no mean.
+    /// [`UncertaintyError::OutOfRange`] for an output that does not exist; [`UncertaintyError::NoAnswer`] if an input
+    /// has Student's t of ν = 1, which has no mean.
     pub fn estimate(&self, output: usize) -> Result<f64, UncertaintyError> {
         HeavyTail::require_mean(self.heavy_tail.as_ref())?;
         Ok(self.moments(output)?.mean())
@@ -92,9 +92,10 @@ impl OutputSample {
     /// u(y), standard deviation of the values (unit of the output).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] for an output that does not exist; [`UncertaintyError::TooFewObservations`] for a single trial;
-    /// [`UncertaintyError::NoAnswer`] for values whose squares vanish, or if an input has Student's t of ν ≤ 2, such as the mean of two or three
-    /// observations. If the model bounds such an input, [`OutputSample::moments`] has the deviation nevertheless.
+    /// [`UncertaintyError::OutOfRange`] for an output that does not exist; [`UncertaintyError::TooFewObservations`] for
+    /// a single trial; [`UncertaintyError::NoAnswer`] for values whose squares vanish, or if an input has Student's t
+    /// of ν ≤ 2, such as the mean of two or three observations. If the model bounds such an input,
+    /// [`OutputSample::moments`] has the deviation nevertheless.
     pub fn standard_uncertainty(&self, output: usize) -> Result<f64, UncertaintyError> {
         let moments = self.moments(output)?;
         HeavyTail::require_variance(self.heavy_tail.as_ref())?;

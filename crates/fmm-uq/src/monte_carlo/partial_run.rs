@@ -6,8 +6,8 @@ use crate::monte_carlo::block::{BLOCK_TRIALS, Block};
 /// The results of some blocks of a run, in the order of the blocks.
 ///
 /// Parts come from [`MonteCarlo::run_blocks`](crate::MonteCarlo::run_blocks), on any machine and in any order, and are
-/// [merged](PartialRun::merge) until [`MonteCarlo::finish`](crate::MonteCarlo::finish) has them all. The result has the bits
-/// of a single run. With the feature `serde` a part can be written to a file; its values travel as bits.
+/// [merged](PartialRun::merge) until [`MonteCarlo::finish`](crate::MonteCarlo::finish) has them all. The result has the
+/// bits of a single run. With the feature `serde` a part can be written to a file; its values travel as bits.
 ///
 /// ```
 /// # #[cfg(feature = "serde")]

@@ -15,7 +15,8 @@ use crate::{FailureKind, Failures, Inputs, ModelOutput, Moments, OutputSample, U
 ///
 /// For smooth models of few inputs, estimate and uncertainty converge almost as 1/n instead of 1/√n: with 16 384
 /// points, the variance of u(y) is some thousand times smaller than that of as many random trials for the
-/// mass calibration of JCGM 101:2008, 9.3, and a hundred times for the gauge block of 9.5. Interval ends gain less, 2 to 15.
+/// mass calibration of JCGM 101:2008, 9.3, and a hundred times for the gauge block of 9.5. Interval ends gain less, 2
+/// to 15.
 ///
 /// The error is told by independent scramblings, at least eight, whose results scatter. The adaptive procedure of
 /// JCGM 101 does not apply. Inputs are drawn through their quantiles, one dimension each, up to 64.
@@ -87,8 +88,9 @@ impl QuasiMonteCarlo {
     /// Evaluates the model at all points.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooManyFailures`] if more points fail than allowed; [`UncertaintyError::Model`] if none of a scrambling succeeds, or the number of
-    /// outputs changes; [`UncertaintyError::OutOfRange`] if the squares of the values overflow.
+    /// [`UncertaintyError::TooManyFailures`] if more points fail than allowed; [`UncertaintyError::Model`] if none of a
+    /// scrambling succeeds, or the number of outputs changes; [`UncertaintyError::OutOfRange`] if the squares of the
+    /// values overflow.
     ///
     /// # Panics
     /// If the model does.

@@ -44,17 +44,17 @@ pub struct VarianceShare {
 /// the row is left out for all; `allowed_failures` is the share of rows for which that may happen.
 ///
 /// # Errors
-/// [`UncertaintyError::NoAnswer`] if inputs are correlated, an input has Student's t of ν ≤ 2, the output does not vary, or the squares of
-/// the values vanish. [`UncertaintyError::OutOfRange`] for fewer than 10 blocks of 1000 trials, from which the errors come, for more than
-/// 2⁴⁰ trials, for a share outside [0, 1), or if the squares of the values overflow. [`UncertaintyError::Model`] if more rows fail than
-/// allowed, or all.
+/// [`UncertaintyError::NoAnswer`] if inputs are correlated, an input has Student's t of ν ≤ 2, the output does not
+/// vary, or the squares of the values vanish. [`UncertaintyError::OutOfRange`] for fewer than 10 blocks of 1000 trials,
+/// from which the errors come, for more than 2⁴⁰ trials, for a share outside [0, 1), or if the squares of the values
+/// overflow. [`UncertaintyError::Model`] if more rows fail than allowed, or all.
 ///
 /// # Panics
 /// If the model does.
 ///
 /// # References
-/// A. Saltelli, P. Annoni, I. Azzini, F. Campolongo, M. Ratto, S. Tarantola, "Variance based sensitivity analysis of model
-/// output", Comput. Phys. Commun. 181 (2010) 259, doi:10.1016/j.cpc.2009.09.018, Table 2 (b) and (f).
+/// A. Saltelli, P. Annoni, I. Azzini, F. Campolongo, M. Ratto, S. Tarantola, "Variance based sensitivity analysis of
+/// model output", Comput. Phys. Commun. 181 (2010) 259, doi:10.1016/j.cpc.2009.09.018, Table 2 (b) and (f).
 pub fn variance_shares<R: ModelOutput<f64>>(
     inputs: &Inputs,
     trials: u64,

@@ -7,7 +7,8 @@
 /// S. Joe, F. Y. Kuo, "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 30
 /// (2008) 2635, doi:10.1137/070709359; the numbers are those of their file `new-joe-kuo-6`.
 ///
-/// Copyright (c) 2008, Frances Y. Kuo and Stephen Joe. All rights reserved. The licence is in `LICENSE-joe-kuo.txt` beside this file.
+/// Copyright (c) 2008, Frances Y. Kuo and Stephen Joe. All rights reserved. The licence is in `LICENSE-joe-kuo.txt`
+/// beside this file.
 pub(crate) const DIRECTIONS: [(u32, &[u32]); 63] = [
     (0, &[1]),
     (1, &[1, 3]),

@@ -13,8 +13,8 @@ const BITS: u32 = 32;
 /// scatter is an honest error.
 ///
 /// # Why not a library
-/// A shard begins at any index, and errors are honest through Owen's scrambling, both in double precision: the crate sobol gives points
-/// one after the other and unscrambled, sobol_burley scrambled ones in single precision.
+/// A shard begins at any index, and errors are honest through Owen's scrambling, both in double precision: the crate
+/// sobol gives points one after the other and unscrambled, sobol_burley scrambled ones in single precision.
 ///
 /// # References
 /// I. M. Sobol', USSR Comput. Math. Math. Phys. 7 (1967) 86; A. B. Owen, "Randomly permuted (t, m, s)-nets and (t, s)-

@@ -16,8 +16,8 @@ const STEPS: usize = 100;
 
 static NORMAL: LazyLock<Arc<Ziggurat>> = LazyLock::new(|| Arc::new(Ziggurat::new(f64::INFINITY)));
 
-/// Student's t of ν degrees of freedom, the normal distribution for ν = ∞, sampled by Marsaglia's ziggurat: the area below
-/// the density is cut into layers of equal area, of which one is chosen at random, and a point in it.
+/// Student's t of ν degrees of freedom, the normal distribution for ν = ∞, sampled by Marsaglia's ziggurat: the area
+/// below the density is cut into layers of equal area, of which one is chosen at random, and a point in it.
 ///
 /// ```text
 /// f(x) = (1 + x²/ν)^(−(ν + 1)/2),   x_i (f(x_{i+1}) − f(x_i)) = x₁ f(x₁) + ∫_{x₁}^∞ f dx
@@ -27,18 +27,19 @@ static NORMAL: LazyLock<Arc<Ziggurat>> = LazyLock::new(|| Arc::new(Ziggurat::new
 /// number, a multiplication and a comparison. Of the others some need the density; those beyond x₁ are quantiles.
 ///
 /// # Why not a library
-/// rand_distr takes as long for a normal value (4 ns) and 4.2 times as long for one of Student's t (21 ns against 5), which is what most
-/// inputs of a budget are; its values may change from one version to the next, which those here must not. `benches/peers` of the
-/// workspace measures it.
+/// rand_distr takes as long for a normal value (4 ns) and 4.2 times as long for one of Student's t (21 ns against 5),
+/// which is what most inputs of a budget are; its values may change from one version to the next, which those here must
+/// not. `benches/peers` of the workspace measures it.
 ///
 /// # References
-/// G. Marsaglia, W. W. Tsang, J. Stat. Softw. 5 (2000) 8, doi:10.18637/jss.v005.i08; J. A. Doornik, "An improved ziggurat
-/// method to generate normal random samples" (2005).
+/// G. Marsaglia, W. W. Tsang, J. Stat. Softw. 5 (2000) 8, doi:10.18637/jss.v005.i08; J. A. Doornik, "An improved
+/// ziggurat method to generate normal random samples" (2005).
 #[derive(Debug)]
 pub(crate) struct Ziggurat {
     /// ν.
     degrees_of_freedom: f64,
-    /// x_i from the lowest layer to the top; x₀ is what a rectangle of the lowest layer's area and height would reach to.
+    /// x_i from the lowest layer to the top; x₀ is what a rectangle of the lowest layer's area and height would reach
+    /// to.
     edges: [f64; LAYERS + 1],
     /// f(x_i).
     heights: [f64; LAYERS + 1],

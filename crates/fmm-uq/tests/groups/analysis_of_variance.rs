@@ -26,8 +26,8 @@ fn simon_and_lesage(set: &Value) -> Vec<Vec<f64>> {
     list(&set["first_tenths"]).iter().map(treatment).collect()
 }
 
-/// All eleven sets of NIST. A constant of 10⁶ or 10¹² takes the digits that f64 cannot hold beside it: of 10¹² + 0.4 four
-/// remain, and exact fractions of the rounded observations have no more.
+/// All eleven sets of NIST. A constant of 10⁶ or 10¹² takes the digits that f64 cannot hold beside it: of 10¹² + 0.4
+/// four remain, and exact fractions of the rounded observations have no more.
 #[test]
 fn certified_analyses_of_variance() {
     let document = document(include_str!("../data/nist_strd_anova.json"));
@@ -50,8 +50,8 @@ fn certified_analyses_of_variance() {
         let least = pairs.map(|(found, name)| digits(found, number(&certified[name]))).into_iter().fold(15.0, f64::min);
         let name = set["name"].as_str().unwrap();
         println!("{name}: {least:.1} digits");
-        // What is left of the certified digits when the observations become f64; of 15 the last is at the mercy of a few
-        // roundings.
+        // What is left of the certified digits when the observations become f64; of 15 the last is at the mercy of a
+        // few roundings.
         let attainable = number(&set["attainable_digits"]).min(14.0);
         assert!(least >= attainable - 0.1, "{name}: {least} digits, of {attainable}");
         let p_value = number(&set["p_value"]);

@@ -179,7 +179,8 @@ fn what_is_shared_does_not_average_out() {
     assert_eq!(found.influences()[2].without, Some(without.mean()));
 }
 
-/// One error in all results of a campaign, drawn anew for each: the interval holds, that of results taken for independent does not.
+/// One error in all results of a campaign, drawn anew for each: the interval holds, that of results taken for
+/// independent does not.
 #[test]
 fn intervals_of_results_that_share_an_error_hold() {
     const CAMPAIGNS: u32 = 2000;

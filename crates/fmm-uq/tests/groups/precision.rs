@@ -35,7 +35,8 @@ fn precision_of_a_simulated_method() {
     assert!(cochran.group == 5 && cochran.p_value < 0.01, "{cochran:?}");
 }
 
-/// Critical values of the standard's tables: Grubbs 2.126 at 5 % for 8 groups, Cochran 0.680 at 5 % for 8 groups of two.
+/// Critical values of the standard's tables: Grubbs 2.126 at 5 % for 8 groups, Cochran 0.680 at 5 % for 8 groups of
+/// two.
 #[test]
 fn critical_values_of_the_tables() {
     // Seven means at ±1 and one at the critical distance: G = x √(…) is solved for by hand of the statistic alone.
@@ -53,8 +54,8 @@ fn critical_values_of_the_tables() {
     assert!((critical.statistic - 0.680).abs() < 1e-3, "{critical:?}");
 }
 
-/// Glucose in serum of five materials by eight laboratories, the example of ASTM E691. Of the first material the laboratories
-/// differ by less than their repeatability lets expect.
+/// Glucose in serum of five materials by eight laboratories, the example of ASTM E691. Of the first material the
+/// laboratories differ by less than their repeatability lets expect.
 #[test]
 fn glucose_in_serum() {
     let document = document(include_str!("../data/precision.json"));
@@ -166,8 +167,8 @@ fn pair_leaving(ratio: f64, count: usize) -> Vec<[f64; 2]> {
     with(low).into_iter().map(|mean| [mean - 0.5, mean + 0.5]).collect()
 }
 
-/// The percentage points of Grubbs (1950). His table rounds to four digits after the point; where its last digits are off by
-/// some, the probability is off by less than a hundredth of itself.
+/// The percentage points of Grubbs (1950). His table rounds to four digits after the point; where its last digits are
+/// off by some, the probability is off by less than a hundredth of itself.
 #[test]
 fn pairs_of_the_table_of_grubbs() {
     let document = document(include_str!("../data/grubbs_1950.json"));

@@ -47,8 +47,8 @@ fn multivariate_t() {
     let inputs = Inputs::new([input("a"), input("b")]).unwrap().with_ensemble(&["a", "b"], nu).unwrap();
     assert_eq!(inputs.as_slice()[0].degrees_of_freedom(), nu);
     let sample = MonteCarlo::new(&inputs, TRIALS).unwrap().run(|x| [x[0], x[1], x[0] * x[0] * x[1] * x[1]]).unwrap();
-    // E(a² b²) = ν²/((ν − 2)(ν − 4)), 8/3 here; for independent t's it would be (ν/(ν − 2))², 16/9. The product has hardly
-    // a variance, so that a tenth is what its mean can be held to.
+    // E(a² b²) = ν²/((ν − 2)(ν − 4)), 8/3 here; for independent t's it would be (ν/(ν − 2))², 16/9. The product has
+    // hardly a variance, so that a tenth is what its mean can be held to.
     assert!((sample.estimate(2).unwrap() - 8.0 / 3.0).abs() < 0.1, "{}", sample.estimate(2).unwrap());
     assert!(sample.correlation(0, 1).unwrap().abs() < 0.01);
     // The margin is t: its 97.5 % quantile is 2.3060, with √(p (1 − p)/M)/g = 0.0066 from the density 0.0376 there.

@@ -99,8 +99,8 @@ fn parts_travel_as_text() {
     }
 }
 
-/// Every bit of every value survives the way through text, also of values that decimal digits are hard on, and parts give
-/// the bits of one run whatever the order they are merged in.
+/// Every bit of every value survives the way through text, also of values that decimal digits are hard on, and parts
+/// give the bits of one run whatever the order they are merged in.
 #[cfg(feature = "serde")]
 #[test]
 fn parts_travel_as_text_to_the_last_bit_and_merge_in_any_order() {

@@ -15,13 +15,14 @@ pub(super) const SAFETY: f64 = 6.0;
 
 /// Four leaves, by section 3.1.
 const LEAVES: u32 = 4;
-/// Width and thickness (m) of stock sizes in inches, and the elastic modulus of steel (Pa), that fit Table 2 and section 4.1.
+/// Width and thickness (m) of stock sizes in inches, and the elastic modulus of steel (Pa), that fit Table 2 and
+/// section 4.1.
 const WIDTH: f64 = 4.0 * 0.0254;
 const THICKNESS: f64 = 0.0254 / 16.0;
 const ELASTIC_MODULUS: f64 = 205e9;
 
-/// The machine's flexure: length by the printed ratio; width, thickness and modulus inferred. Its thickness and length are the
-/// variables 0 and 1 of a number type with derivatives.
+/// The machine's flexure: length by the printed ratio; width, thickness and modulus inferred. Its thickness and length
+/// are the variables 0 and 1 of a number type with derivatives.
 pub(super) fn inferred<D: Scalar>() -> Found<Flexure<D>> {
     let (deflection, ratio) = PRINTED_RATIO;
     let length = Flexure::length_for_motion_ratio(deflection, ratio)?;

@@ -1,7 +1,7 @@
 //! Chapter 4, the flexure: how far it may be deflected, how straight it moves, how much the shaft leans.
 //!
-//! The thesis prints no dimension of the flexure. The length follows from a printed ratio; width, thickness and modulus are
-//! stock sizes that fit the printed stiffness and stress. All that depends on them is a check of consistency.
+//! The thesis prints no dimension of the flexure. The length follows from a printed ratio; width, thickness and modulus
+//! are stock sizes that fit the printed stiffness and stress. All that depends on them is a check of consistency.
 
 mod figures;
 mod geometry;

@@ -27,8 +27,8 @@ pub(super) struct FreeVibration {
 }
 
 impl FreeVibration {
-    /// The machine of Table 2 with the damping of Eq. 5.5, let go at `displacement` (m) and recorded for `duration` (s); the
-    /// record is integrated and differentiated as section 4.2 does it.
+    /// The machine of Table 2 with the damping of Eq. 5.5, let go at `displacement` (m) and recorded for `duration`
+    /// (s); the record is integrated and differentiated as section 4.2 does it.
     pub(super) fn of(flexure: &Flexure, displacement: f64, duration: f64) -> Found<Self> {
         let [mass, stiffness, _] = printed::MACHINE;
         let [slope, intercept, _] = printed::EQUATION_5_5;

@@ -1,4 +1,5 @@
-//! Chapter 5 without 5.3: modal parameters from free vibrations, the logarithmic decrement, and damping against velocity.
+//! Chapter 5 without 5.3: modal parameters from free vibrations, the logarithmic decrement, and damping against
+//! velocity.
 
 mod decrement;
 mod drag;

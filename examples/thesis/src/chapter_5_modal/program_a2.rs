@@ -29,10 +29,10 @@ const GAP: usize = 400;
 /// δ = ln(p_{i−1}/p_i),   ζ = δ/√(4π² + δ²),   c = 2ζ √(k m)                         (thesis A2)
 /// ```
 ///
-/// The record is cut at its largest sample and smoothed by a moving mean (`movmean`). Of its local maxima the first are dropped,
-/// then those that are not positive, then those that follow the one before too soon. Of a noisy cluster this keeps the first
-/// maximum and not the highest, and nothing is interpolated: below 0.03 mm/s of noise the result is good, at 0.5 mm/s many a
-/// damping is negative. No uncertainty is stated, as the code has none.
+/// The record is cut at its largest sample and smoothed by a moving mean (`movmean`). Of its local maxima the first are
+/// dropped, then those that are not positive, then those that follow the one before too soon. Of a noisy cluster this
+/// keeps the first maximum and not the highest, and nothing is interpolated: below 0.03 mm/s of noise the result is
+/// good, at 0.5 mm/s many a damping is negative. No uncertainty is stated, as the code has none.
 pub(super) fn cycles(record: &Record) -> Found<Vec<Cycle>> {
     let values = record.values();
     // MATLAB's `find(v == max(v))` gives the first of equal maxima.
@@ -81,7 +81,8 @@ mod tests {
         assert_eq!(local_maxima(&[]), Vec::<usize>::new());
     }
 
-    /// 80 s from 10 mm: the scatter about c(V) = 0.2005 + 8/(3π) c₂ V that an independent recomputation found at three noises, within 40 %.
+    /// 80 s from 10 mm: the scatter about c(V) = 0.2005 + 8/(3π) c₂ V that an independent recomputation found at three
+    /// noises, within 40 %.
     #[test]
     fn damping_scatters_with_the_noise() {
         let motion = motion(machine(INSTANTANEOUS_SLOPE).unwrap(), (0.01, 0.0), 80.0).unwrap();

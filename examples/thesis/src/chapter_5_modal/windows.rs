@@ -1,4 +1,5 @@
-//! Fits over five cycles and over more: Table 1's damping, Eq. 5.5, and the factor between equivalent and instantaneous.
+//! Fits over five cycles and over more: Table 1's damping, Eq. 5.5, and the factor between equivalent and
+//! instantaneous.
 
 use fmm_fit::{StraightLine, Weighting};
 use fmm_identify::{Experiment, Offset, Preparation, WindowFit, Windows};
@@ -24,7 +25,8 @@ enum Over {
 }
 
 impl Column {
-    /// Fits `cycles` of the vibration of a machine with `quadratic` damping (N s²/m²), through the first sample as in A1.
+    /// Fits `cycles` of the vibration of a machine with `quadratic` damping (N s²/m²), through the first sample as in
+    /// A1.
     fn of(quadratic: f64, cycles: usize) -> Found<Self> {
         let [mass, ..] = MACHINE;
         // One more cycle, so that the last peak of the window is seen.
@@ -57,7 +59,8 @@ impl Column {
     }
 }
 
-/// Damping (N s/m) of the five-cycle windows of Table 1, with the instantaneous law that Eq. 5.5 needs and with that of A5.
+/// Damping (N s/m) of the five-cycle windows of Table 1, with the instantaneous law that Eq. 5.5 needs and with that of
+/// A5.
 pub(super) fn of_few_cycles(chapter: &mut Chapter, settings: &Settings<'_>) -> Found<[Column; 2]> {
     let laws = [INSTANTANEOUS_SLOPE, EQUATION_5_5[0]];
     let mut rows = Vec::new();

@@ -75,8 +75,8 @@ fn range(trials: &[Trial], how: &str) -> [f64; 2] {
     [differences().fold(f64::INFINITY, f64::min), differences().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// What fits of two levels give for truths with and without them; returns highest velocity (m/s) and levels for truths by
-/// Table 5, which have no hysteresis.
+/// What fits of two levels give for truths with and without them; returns highest velocity (m/s) and levels for truths
+/// by Table 5, which have no hysteresis.
 fn fits(chapter: &mut Chapter, settings: &Settings<'_>) -> Found<Vec<(f64, [f64; 2])>> {
     let mean = Viscous::Mean;
     let two = Release { viscous: mean, law: &HYSTERETIC, load: LOAD_4, displacement: DISPLACEMENT };

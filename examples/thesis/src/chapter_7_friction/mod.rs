@@ -1,7 +1,7 @@
 //! Chapter 7: four laws of friction, their tables and curves.
 //!
-//! No raw data are published. What a table says is taken as the truth of a simulated ring-down, which is then fitted as in
-//! the thesis, but with the motion located exactly and the initial velocity free. Where the thesis' own program does
+//! No raw data are published. What a table says is taken as the truth of a simulated ring-down, which is then fitted as
+//! in the thesis, but with the motion located exactly and the initial velocity free. Where the thesis' own program does
 //! something else than the thesis says, both are computed.
 
 mod acceleration;
@@ -67,7 +67,8 @@ impl Release<'_> {
         Ok(motion::<F>(&self.scenario::<F>()?, &sampling)?.velocity().values().iter().copied().fold(0.0, f64::max))
     }
 
-    /// Velocity (m/s) at 1 kHz from the highest sample on, as the thesis cuts its records, until it has rested for 0.1 s.
+    /// Velocity (m/s) at 1 kHz from the highest sample on, as the thesis cuts its records, until it has rested for 0.1
+    /// s.
     fn velocity<F: LawFamily>(&self) -> Found<Vec<f64>> {
         let sampling = Sampling::uniform(INTERVAL, 2500)?;
         let motion = motion::<F>(&self.scenario::<F>()?, &sampling)?;
@@ -102,8 +103,8 @@ struct Known {
 }
 
 impl Known {
-    /// Law `F` and the position at the first sample, with m, k and c of the tables, as a problem that begins at the law's
-    /// values in `law`, of which those in `free` are to be found.
+    /// Law `F` and the position at the first sample, with m, k and c of the tables, as a problem that begins at the
+    /// law's values in `law`, of which those in `free` are to be found.
     fn problem<F: LawFamily>(self, record: &Record, law: &[(&str, f64)], free: &[&str]) -> Found<MachineProblem<F>> {
         let [mass, stiffness, _] = printed::MACHINE;
         let [linear, quadratic] = self.viscous.coefficients();
@@ -125,8 +126,8 @@ impl Known {
         Ok(problem)
     }
 
-    /// All of `law` fitted from these values and the position at the first sample; the velocity is held at that sample, as
-    /// in the thesis.
+    /// All of `law` fitted from these values and the position at the first sample; the velocity is held at that sample,
+    /// as in the thesis.
     fn fit_holding_velocity<F: LawFamily>(self, record: &Record, law: &[(&str, f64)]) -> Found<Fit> {
         self.fit_holding::<F>(record, record.values()[0], law)
     }

@@ -1,7 +1,7 @@
 //! Chapter 8: blows of a hammer on the machine with its contact, in the frequency domain.
 //!
-//! No raw data are published. The printed peaks and impulses of three levels, with the printed coefficient, are the truth
-//! of simulated blows; they are analysed as in the thesis, and the coefficient is found again.
+//! No raw data are published. The printed peaks and impulses of three levels, with the printed coefficient, are the
+//! truth of simulated blows; they are analysed as in the thesis, and the coefficient is found again.
 
 mod blows;
 mod forces;

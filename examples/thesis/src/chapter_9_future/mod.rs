@@ -1,8 +1,8 @@
 //! Section 9.2: what the thesis leaves to the future, on simulated records of known truth and on real ones.
 //!
-//! Laws with a state, of Dahl, `LuGre` and Maxwell, that the thesis would use if there were tests at low constant velocity:
-//! what a ring-down says of them. And a monolithic machine beside an assembled one: what a ring-down says of the clamps. And which tests
-//! would have told more than those of Table 5.
+//! Laws with a state, of Dahl, `LuGre` and Maxwell, that the thesis would use if there were tests at low constant
+//! velocity: what a ring-down says of them. And a monolithic machine beside an assembled one: what a ring-down says of
+//! the clamps. And which tests would have told more than those of Table 5.
 
 mod clamps;
 mod measured;
@@ -42,8 +42,8 @@ fn side_by_side<T: Send>(count: usize, of: &(impl Fn(usize) -> Found<T> + Sync))
     })
 }
 
-/// Dry friction, and the three laws that have it as their limit: Dahl's with exponent 1, `LuGre`'s with a simple exponential, and
-/// two Maxwell elements; beside those without a viscous part of their own with `terms`.
+/// Dry friction, and the three laws that have it as their limit: Dahl's with exponent 1, `LuGre`'s with a simple
+/// exponential, and two Maxwell elements; beside those without a viscous part of their own with `terms`.
 fn candidates(terms: &Terms) -> Found<[Candidate; 4]> {
     Ok([
         Candidate::of::<Coulomb>().with(terms.clone()),

@@ -26,7 +26,8 @@ pub fn errata() -> Vec<Erratum> {
     parsed(TEXT)
 }
 
-/// One erratum for each heading `### E1. Title`, with the list items below it; lines that continue an item are indented.
+/// One erratum for each heading `### E1. Title`, with the list items below it; lines that continue an item are
+/// indented.
 fn parsed(text: &str) -> Vec<Erratum> {
     let mut errata: Vec<Erratum> = Vec::new();
     for section in text.split("\n### ").skip(1) {

@@ -68,8 +68,8 @@ impl Report {
         page::page(self, &errata())
     }
 
-    /// One object for each target, as [`Target::document`] makes it, with its `chapter`. A chapter that failed is one object
-    /// that does not pass, with the reason as its note.
+    /// One object for each target, as [`Target::document`] makes it, with its `chapter`. A chapter that failed is one
+    /// object that does not pass, with the reason as its note.
     pub fn json(&self) -> Value {
         let mut documents = Vec::new();
         for outcome in &self.outcomes {

@@ -1,8 +1,8 @@
 //! Table 3: what a coefficient of friction inherits from the mass, stiffness and damping that a fit holds.
 //!
-//! A ring-down of known truth is fitted again and again, each time on another machine: mass, stiffness and damping drawn
-//! from what is known of them, one at a time and all together. The thesis' raw data are not published, so the record is
-//! simulated, with the machine, load and initial velocity of the thesis' program A3.
+//! A ring-down of known truth is fitted again and again, each time on another machine: mass, stiffness and damping
+//! drawn from what is known of them, one at a time and all together. The thesis' raw data are not published, so the
+//! record is simulated, with the machine, load and initial velocity of the thesis' program A3.
 //!
 //! ```
 //! use fmm_fit::{Options, solve};

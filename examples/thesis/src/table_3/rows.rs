@@ -22,7 +22,8 @@ pub struct Row {
     pub seconds: f64,
 }
 
-/// All rows by the exact motion, `trials` fits each, from the `fit` of `problem`; `watch` is told how many fits are done.
+/// All rows by the exact motion, `trials` fits each, from the `fit` of `problem`; `watch` is told how many fits are
+/// done.
 ///
 /// # Errors
 /// If a fit fails.
@@ -39,8 +40,8 @@ pub fn exact_rows(
 
 /// All rows by the thesis' Euler motion, each with its number of `trials`.
 ///
-/// The sum of squares of that motion jumps wherever a stop moves to another sample, so that one start alone, the thesis'
-/// own, ends beside the minimum; `kicks` more starts about the best values so far find it.
+/// The sum of squares of that motion jumps wherever a stop moves to another sample, so that one start alone, the
+/// thesis' own, ends beside the minimum; `kicks` more starts about the best values so far find it.
 ///
 /// # Errors
 /// If a fit fails.

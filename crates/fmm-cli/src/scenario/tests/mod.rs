@@ -41,8 +41,8 @@ fn the_scenario_files_run_and_keep_their_energy() {
         let work = motion.energy.work.as_ref().expect("all of them record the work");
         let most = |values: &[f64]| values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
         let scale = most(&motion.energy.total) + most(&work.external) + most(&work.friction);
-        // Closed forms balance to rounding, integrated motions to the default tolerance of their engine times the number of
-        // their steps.
+        // Closed forms balance to rounding, integrated motions to the default tolerance of their engine times the
+        // number of their steps.
         let relative = match motion.engine {
             "exact" => 1e-12,
             "runge_kutta" => 1e-10,

@@ -205,8 +205,8 @@ fn ties_are_exact() {
     }
 }
 
-/// A load whose peak passes the static level by a nanonewton breaks away, and one that stays below it does not, whatever the
-/// samples.
+/// A load whose peak passes the static level by a nanonewton breaks away, and one that stays below it does not,
+/// whatever the samples.
 #[test]
 fn a_nanonewton_decides() {
     for (peak, kinds) in [(2.5 + 1e-9, vec!["start", "breakaway+", "zero_velocity"]), (2.5 - 1e-9, vec!["start"])] {

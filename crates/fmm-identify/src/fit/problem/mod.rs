@@ -149,8 +149,9 @@ impl<'a> Problem<'a> {
         Ok(Motion { tolerance: self.tolerance, ..motion })
     }
 
-    /// Simulates `record` by `simulate` once, window by window; `visit` gets, for each of `ranges` in a window, the number of
-    /// samples of the ranges before it, its samples' indices in the record, and those among the simulated samples.
+    /// Simulates `record` by `simulate` once, window by window; `visit` gets, for each of `ranges` in a window, the
+    /// number of samples of the ranges before it, its samples' indices in the record, and those among the simulated
+    /// samples.
     fn simulate<D: Scalar>(
         &self,
         simulate: Simulate<D>,
@@ -377,7 +378,8 @@ mod tests {
                 let (column, rest) = columns.split_at(block.rows());
                 let difference = |i: usize| (above[row + i] - below[row + i]) / (2.0 * h);
                 let scale = column.iter().fold(0.0f64, |scale, d| scale.max(d.abs()));
-                // A reversal may cross a sample within h, which spoils its difference: one sample per half swing at most.
+                // A reversal may cross a sample within h, which spoils its difference: one sample per half swing at
+                // most.
                 let off = (0..block.rows()).filter(|&i| (column[i] - difference(i)).abs() > 1e-5 * scale).count();
                 let name = problem.parameters()[j].name();
                 assert!(scale > 0.0 && off < 20, "{name}: {off} of {} samples differ", block.rows());

@@ -10,19 +10,20 @@ use super::{Problem, blocks};
 use crate::Experiment;
 use crate::experiment::reference;
 
-/// Samples of a record, and of each of its periods, that are enough to search with. With fewer, a run takes as long, and the last fit begins
-/// farther from its end.
+/// Samples of a record, and of each of its periods, that are enough to search with. With fewer, a run takes as long,
+/// and the last fit begins farther from its end.
 const ENOUGH_SAMPLES: usize = 3000;
 const SAMPLES_PER_SWING: f64 = 24.0;
 
 impl Problem<'_> {
-    /// The ring-downs up to a `share` of their duration (1), for a fit in which a small error of the period does not yet add up.
+    /// The ring-downs up to a `share` of their duration (1), for a fit in which a small error of the period does not
+    /// yet add up.
     pub(crate) fn beginnings(&self, share: f64) -> Vec<Experiment> {
         self.decays.iter().map(|decay| decay.beginning(share)).collect()
     }
 
-    /// The ring-downs with so few of their samples that a search among many starts is quick and yet sees every swing; `None` if
-    /// they have no more.
+    /// The ring-downs with so few of their samples that a search among many starts is quick and yet sees every swing;
+    /// `None` if they have no more.
     pub(crate) fn thinned(&self) -> Option<Vec<Experiment>> {
         let stride = |decay: &Experiment| {
             let swings = decay.record().duration() * decay.guess().frequency();
@@ -45,9 +46,9 @@ impl Problem<'_> {
         any.then(|| complete.collect())
     }
 
-    /// The same problem with laws that bend at no less than 1e-4 of the largest speed, and contacts on which the machine would vibrate at
-    /// no more than 300 times its own frequency: beyond, a law is to the records as good as one that leaps, and its motion takes far
-    /// longer to simulate.
+    /// The same problem with laws that bend at no less than 1e-4 of the largest speed, and contacts on which the
+    /// machine would vibrate at no more than 300 times its own frequency: beyond, a law is to the records as good as
+    /// one that leaps, and its motion takes far longer to simulate.
     pub(crate) fn bending_in_sight(mut self) -> Self {
         const SLOWEST: f64 = 1e-4;
         const STIFFEST: f64 = 1e5;
@@ -75,8 +76,8 @@ impl Problem<'_> {
         self
     }
 
-    /// The same problem for a search, with simulations to a relative tolerance of 1e-10: to that of the fit itself, motions by laws of the
-    /// sliding speed take twice as long.
+    /// The same problem for a search, with simulations to a relative tolerance of 1e-10: to that of the fit itself,
+    /// motions by laws of the sliding speed take twice as long.
     pub(crate) fn simulated_roughly(self) -> Self {
         Self { tolerance: Some(1e-10), ..self }
     }
@@ -95,8 +96,8 @@ impl Problem<'_> {
         }
     }
 
-    /// The same problem by parameters that a fit finds in fewer steps; `None` for a law without such parameters, and where one that only
-    /// this problem has is held.
+    /// The same problem by parameters that a fit finds in fewer steps; `None` for a law without such parameters, and
+    /// where one that only this problem has is held.
     pub(crate) fn recast(&self) -> Option<Self> {
         let recast = (self.law().recast)()?;
         Self::of(recast.family, self.machine, self.terms.clone(), self.decays).ok()

@@ -9,8 +9,8 @@ use super::Problem;
 use crate::fit::threads::on_all_threads;
 use crate::law::DIRECTIONS;
 
-/// What one simulation with derivatives fills: the columns of a few directions of one record, and with the first of them its residuals
-/// and the column of its sensor's corner.
+/// What one simulation with derivatives fills: the columns of a few directions of one record, and with the first of
+/// them its residuals and the column of its sensor's corner.
 struct Part<'o> {
     record: usize,
     first: usize,
@@ -28,7 +28,8 @@ impl Problem<'_> {
         value: f64,
         derivatives: &[f64],
     ) -> Result<(), EvaluationError> {
-        /// Amplitudes by which a relative change of one would move the motion. The phase of ten million periods moves by as much.
+        /// Amplitudes by which a relative change of one would move the motion. The phase of ten million periods moves
+        /// by as much.
         const STEEP: f64 = 1e8;
         let most = STEEP * self.decays[record].summary().amplitudes.0;
         if derivatives.iter().all(|derivative| (derivative * value).abs() <= most) {
@@ -38,8 +39,8 @@ impl Problem<'_> {
         Err(EvaluationError::message(format!("the motion changes with {name} by leaps near {value:e}")))
     }
 
-    /// Fills the columns of `record` that no simulation is needed for: those of the offset and of the disturbances. The one of the sensor's
-    /// corner, which is the last, is returned.
+    /// Fills the columns of `record` that no simulation is needed for: those of the offset and of the disturbances. The
+    /// one of the sensor's corner, which is the last, is returned.
     fn fill_beside<'o>(&self, record: usize, mut columns: &'o mut [f64]) -> Option<&'o mut [f64]> {
         let decay = &self.decays[record];
         let (rows, weight) = (decay.summary().samples, self.weights[record]);
@@ -194,7 +195,8 @@ mod tests {
     use crate::experiment::nuisance::DRIFT;
     use crate::{Experiment, Machine, Preparation, Sensor};
 
-    /// A velocity behind a filter whose corner is fitted, and a displacement that drifts, in more samples than are simulated at a time.
+    /// A velocity behind a filter whose corner is fitted, and a displacement that drifts, in more samples than are
+    /// simulated at a time.
     fn decays() -> Vec<Experiment> {
         let record = |quantity: Quantity, unit: &'static str, interval: f64, count: usize| {
             let law = CoulombViscous::new(0.3, 0.05).unwrap();

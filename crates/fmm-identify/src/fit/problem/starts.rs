@@ -58,8 +58,8 @@ impl Problem<'_> {
         self.with_corners(starts)
     }
 
-    /// The `starts` with corners of the spring where there may be some: a distance that no motion shows, and a spring that does not
-    /// change there, say nothing of where to go.
+    /// The `starts` with corners of the spring where there may be some: a distance that no motion shows, and a spring
+    /// that does not change there, say nothing of where to go.
     fn with_corners(&self, starts: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         let length = reference(self.decays).scales().0;
         let at = |term: Term| self.terms.place(term).map(|place| self.layout.oscillator + place);
@@ -133,8 +133,8 @@ impl Problem<'_> {
         self.clamped(&start)
     }
 
-    /// Start values that continue a fit of `simple`, which has a level and a viscous part: the same losses, put into the law
-    /// in as many ways as it offers.
+    /// Start values that continue a fit of `simple`, which has a level and a viscous part: the same losses, put into
+    /// the law in as many ways as it offers.
     pub(crate) fn continued(&self, simple: &Problem<'_>, values: &[f64]) -> Vec<Vec<f64>> {
         let (oscillator, rest) = values.split_at(simple.layout.oscillator);
         let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
@@ -158,8 +158,8 @@ impl Problem<'_> {
         starts
     }
 
-    /// Start values near a fit of `simple`, with what its residuals ask for: friction that falls over the speeds of the plainest
-    /// signs, by as much as they say; and the same losses without it.
+    /// Start values near a fit of `simple`, with what its residuals ask for: friction that falls over the speeds of the
+    /// plainest signs, by as much as they say; and the same losses without it.
     pub(crate) fn near(&self, simple: &Problem<'_>, values: &[f64], signs: &[Sign]) -> Vec<Vec<f64>> {
         if simple.layout.oscillator != 1 || !self.is_elaborate() {
             return self.starts();
@@ -193,8 +193,9 @@ impl Problem<'_> {
         starts
     }
 
-    /// Start values that put this law where `other` has ended: the same friction over the speed, as nearly as it can, and what else has
-    /// the same name there or in one of `others`; `None` if one of the two laws states no friction over the speed.
+    /// Start values that put this law where `other` has ended: the same friction over the speed, as nearly as it can,
+    /// and what else has the same name there or in one of `others`; `None` if one of the two laws states no friction
+    /// over the speed.
     pub(crate) fn beside(
         &self,
         other: &Identification,
@@ -233,8 +234,8 @@ impl Problem<'_> {
         self.push_dissipation_with(dissipation, sharpness, None, start);
     }
 
-    /// As [`push_dissipation`](Self::push_dissipation), with the excess of the friction at rest as a share of the level, if it is
-    /// given.
+    /// As [`push_dissipation`](Self::push_dissipation), with the excess of the friction at rest as a share of the
+    /// level, if it is given.
     fn push_dissipation_with(
         &self,
         dissipation: Dissipation,

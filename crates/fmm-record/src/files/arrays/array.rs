@@ -29,7 +29,8 @@ impl Array {
         &self.name
     }
 
-    /// Rows, columns and further dimensions: at least two in MATLAB; in NumPy one for a vector, `None` for a single number.
+    /// Rows, columns and further dimensions: at least two in MATLAB; in NumPy one for a vector, `None` for a single
+    /// number.
     pub fn shape(&self) -> &[usize] {
         &self.shape
     }

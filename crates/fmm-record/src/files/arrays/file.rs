@@ -12,7 +12,8 @@ pub(crate) struct ArrayFile {
     pub(crate) arrays: Vec<Array>,
     /// Content that was not read: names and kinds.
     pub(crate) others: Vec<(String, String)>,
-    /// Content that cannot be read, and the reasons. Without a readable name, the place stands for it, as `(at byte 128)`.
+    /// Content that cannot be read, and the reasons. Without a readable name, the place stands for it, as
+    /// `(at byte 128)`.
     pub(crate) damaged: Vec<(String, RecordError)>,
 }
 

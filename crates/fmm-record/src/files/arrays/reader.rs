@@ -9,8 +9,9 @@ use crate::{Quantity, Reader, Reading, RecordError, Sampling, UniformTimes};
 impl ArrayFile {
     /// Makes a record of the channel that a reader names.
     ///
-    /// The channel is a vector, or a row or column of a matrix. Where none is named, a matrix must have two columns, or two
-    /// rows, the first of them time. Where no array is named, the file must have exactly one that can be the channel.
+    /// The channel is a vector, or a row or column of a matrix. Where none is named, a matrix must have two columns, or
+    /// two rows, the first of them time. Where no array is named, the file must have exactly one that can be the
+    /// channel.
     ///
     /// The page of [`Reader`] has the sources of the rate, in their order.
     pub(crate) fn read(&self, reader: &Reader) -> Result<Reading, RecordError> {
@@ -93,7 +94,8 @@ impl ArrayFile {
         Ok((array, values))
     }
 
-    /// The scalars that may speak of an array, and their names: those beside it, and beside the structures that it lies in.
+    /// The scalars that may speak of an array, and their names: those beside it, and beside the structures that it lies
+    /// in.
     fn scalars<'a>(&'a self, array: &'a Array) -> impl Iterator<Item = (&'a str, f64)> {
         let speaks = |other: &&Array| {
             let parent = parent(other.name());
@@ -102,8 +104,8 @@ impl ArrayFile {
         self.arrays.iter().filter(speaks).filter_map(|other| other.scalar().map(|value| (other.name(), value)))
     }
 
-    /// Time stamps beside the channel: in the first row or column of its matrix, or in a vector of the same length that is
-    /// called time, in the same structure.
+    /// Time stamps beside the channel: in the first row or column of its matrix, or in a vector of the same length that
+    /// is called time, in the same structure.
     fn time_beside(&self, array: &Array, channel: &Slice, length: usize) -> Option<Slice> {
         let first = match channel.series {
             Series::Row(1..) => Some(Series::Row(0)),

@@ -32,8 +32,8 @@ impl Slice {
         self.series == Series::Whole && Clock::of(leaf(&self.array)).is_time
     }
 
-    /// Selection written as in MATLAB (`data`, `m(:,2)` for the second column, `m(2,:)` for the second row), or as in NumPy
-    /// (`data`, `m[:,1]`, `m[1]` or `m[1,:]`). Any other text is the name of an array.
+    /// Selection written as in MATLAB (`data`, `m(:,2)` for the second column, `m(2,:)` for the second row), or as in
+    /// NumPy (`data`, `m[:,1]`, `m[1]` or `m[1,:]`). Any other text is the name of an array.
     pub(crate) fn parse(text: &str, notation: Notation) -> Self {
         let text = text.trim();
         let indexed = match notation {
@@ -73,8 +73,8 @@ impl Slice {
     }
 }
 
-/// The position that a number of a row or column says, counted from 0. The one before the first in MATLAB is none that an
-/// array has.
+/// The position that a number of a row or column says, counted from 0. The one before the first in MATLAB is none that
+/// an array has.
 fn from_zero(number: &str, notation: Notation) -> Option<usize> {
     let number = number.trim().parse::<usize>().ok()?;
     Some(match notation {

@@ -1,7 +1,7 @@
 //! The fields of a line.
 //!
-//! Taken apart here and not by the crate `csv`, as that one takes what follows a quote that is never closed for one field,
-//! whatever its size (520 MB of memory for such a file), and knows no columns that are aligned by blanks.
+//! Taken apart here and not by the crate `csv`, as that one takes what follows a quote that is never closed for one
+//! field, whatever its size (520 MB of memory for such a file), and knows no columns that are aligned by blanks.
 
 use std::ops::Range;
 

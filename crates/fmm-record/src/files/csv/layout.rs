@@ -78,8 +78,8 @@ fn kinds(rows: &[Row], width: usize, separator: Separator) -> Vec<Kind> {
     (0..width).map(kind).collect()
 }
 
-/// The first row of the table: of its width, with a number in the first column of numbers and in half of all others. What
-/// is wrong with the others of its fields is then an error that tells the line, and not a row that is lost.
+/// The first row of the table: of its width, with a number in the first column of numbers and in half of all others.
+/// What is wrong with the others of its fields is then an error that tells the line, and not a row that is lost.
 fn first_row(rows: &[Row], columns: &[Kind], separator: Separator) -> usize {
     let numbers: Vec<usize> = (0..columns.len()).filter(|column| columns[*column] == Kind::Number).collect();
     let is_row = |row: &Row| {
@@ -92,8 +92,8 @@ fn first_row(rows: &[Row], columns: &[Kind], separator: Separator) -> usize {
     first.unwrap_or_else(|| rows.iter().position(|row| row.len() == columns.len()).map_or(0, |header| header + 1))
 }
 
-/// The separator in the last two lines: a semicolon or a tab, where there is one, since a comma beside them is a decimal
-/// comma; blanks between nothing but numbers; else a comma.
+/// The separator in the last two lines: a semicolon or a tab, where there is one, since a comma beside them is a
+/// decimal comma; blanks between nothing but numbers; else a comma.
 fn likely_separator(lines: &[Line]) -> Result<Separator, RecordError> {
     let last = || lines.iter().rev().take(2);
     let found = |separator: &u8| last().any(|line| line.text.contains(separator));

@@ -59,8 +59,8 @@ impl Reader {
         self.reading(series, columns)
     }
 
-    /// The columns of text that can be the channel, by position counted from 0 and name: all but the time. Beyond the header,
-    /// only what is needed to find the time is read.
+    /// The columns of text that can be the channel, by position counted from 0 and name: all but the time. Beyond the
+    /// header, only what is needed to find the time is read.
     pub(crate) fn text_channels(&self, input: impl Read) -> Result<Vec<(usize, String)>, RecordError> {
         let table = Table::open(input, self.separator, self.skip)?;
         let columns = table.names().to_vec();
@@ -114,9 +114,9 @@ fn time_by_name(columns: &[String], channel: Option<usize>) -> Option<usize> {
     first(Clock::is_known_time).or_else(|| first(|clock| clock.is_time))
 }
 
-/// The series of a table in which no column says that it is time: the first one is, if it increases uniformly and does not
-/// count. `rate` is that which is given or stated above the table; `is_chosen` tells whether the second column is the channel
-/// in any case.
+/// The series of a table in which no column says that it is time: the first one is, if it increases uniformly and does
+/// not count. `rate` is that which is given or stated above the table; `is_chosen` tells whether the second column is
+/// the channel in any case.
 fn by_nature(
     columns: &[String],
     [first, second]: [usize; 2],

@@ -130,7 +130,8 @@ impl<R: Read> Table<R> {
         }
     }
 
-    /// Refuses a row with more or fewer fields than the table has columns; only columns in which nothing is may be missing.
+    /// Refuses a row with more or fewer fields than the table has columns; only columns in which nothing is may be
+    /// missing.
     fn check_width(&self) -> Result<(), RecordError> {
         let (expected, found) = (self.columns.len(), self.fields.len());
         let missing_are_blank = || self.columns[found..].iter().all(|kind| *kind == Kind::Blank);

@@ -67,7 +67,8 @@ pub(super) fn endian(file: &[u8]) -> Result<Endian, RecordError> {
     }
 }
 
-/// Place of a variable, and the body of its array, as it stands in the file or expanded; or the reason why it cannot be expanded.
+/// Place of a variable, and the body of its array, as it stands in the file or expanded; or the reason why it cannot be
+/// expanded.
 type Variable<'a> = (usize, Result<Cow<'a, [u8]>, RecordError>);
 
 /// Name of the variable at `offset` as long as its own name is not known.

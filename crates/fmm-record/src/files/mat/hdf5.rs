@@ -41,8 +41,8 @@ struct Variables<'a> {
 }
 
 impl Variables<'_> {
-    /// Adds what lies in a group, and in those in it: fields of structures. `prefix` is how they are called, up to their own
-    /// name.
+    /// Adds what lies in a group, and in those in it: fields of structures. `prefix` is how they are called, up to
+    /// their own name.
     fn add(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<(), hdf5_pure::Error> {
         let (datasets, groups) = members(group, self.bytes)?;
         for (name, dataset) in datasets {
@@ -78,8 +78,8 @@ impl Variables<'_> {
 /// Data sets, or why they cannot be read, and groups, with their names.
 type Members = (Vec<(String, Result<Dataset, Error>)>, Vec<(String, Group)>);
 
-/// Members of a group. The decoder does not list a group in which one object header is damaged; each of its objects is then
-/// looked for by the names in the bytes of the file.
+/// Members of a group. The decoder does not list a group in which one object header is damaged; each of its objects is
+/// then looked for by the names in the bytes of the file.
 fn members(group: &Group, bytes: &[u8]) -> Result<Members, Error> {
     let listed = group.iter_datasets().and_then(|datasets| Ok((datasets, group.iter_groups()?)));
     let unlisted = match listed {

@@ -16,15 +16,16 @@ const COMPLEX: u32 = 0x0800;
 /// Structures within structures that are followed.
 const DEEPEST: usize = 32;
 
-/// Adds what a variable holds, with the fields of structures as variables of their own: `s.v`, or `s(2).v` where there are
-/// several. Nothing is found in one without a name, as the data that MATLAB keeps for its own objects are.
+/// Adds what a variable holds, with the fields of structures as variables of their own: `s.v`, or `s(2).v` where there
+/// are several. Nothing is found in one without a name, as the data that MATLAB keeps for its own objects are.
 pub(super) fn add(found: &mut ArrayFile, offset: usize, body: &[u8], endian: Endian) {
     if let Err(what) = take_apart(body, endian, None, 0, found) {
         found.damaged.push((place(offset), RecordError::damaged(what)));
     }
 }
 
-/// Takes an array apart; `field` is what it is called in its structure. An error is what is wrong before its name is known.
+/// Takes an array apart; `field` is what it is called in its structure. An error is what is wrong before its name is
+/// known.
 fn take_apart(
     body: &[u8],
     endian: Endian,

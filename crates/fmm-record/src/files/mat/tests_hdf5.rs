@@ -121,8 +121,8 @@ fn a_link_that_leads_nowhere_leaves_the_others() {
 fn a_damaged_object_header_leaves_the_others() {
     let whole = parse_bytes(&file()).unwrap();
     let mut lost = 0;
-    // The entries of the first node of the symbol table: address of an object behind the header of MATLAB; the header of the
-    // object begins with its version.
+    // The entries of the first node of the symbol table: address of an object behind the header of MATLAB; the header
+    // of the object begins with its version.
     let bytes = file();
     let node = bytes.windows(4).position(|window| window == b"SNOD").unwrap();
     let count = usize::from(u16::from_le_bytes([bytes[node + 6], bytes[node + 7]]));

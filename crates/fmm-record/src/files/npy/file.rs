@@ -9,8 +9,8 @@ use crate::RecordError;
 use crate::files::arrays::{ArrayFile, Notation};
 use crate::files::reading::{MOST_INFLATED, too_large};
 
-/// The arrays in the bytes of an npy or npz file. One of an archive that cannot be read is an error only where it is asked
-/// for.
+/// The arrays in the bytes of an npy or npz file. One of an archive that cannot be read is an error only where it is
+/// asked for.
 pub(crate) fn parse(bytes: &[u8]) -> Result<ArrayFile, RecordError> {
     let mut file = ArrayFile::new(Notation::Numpy);
     if bytes.starts_with(MAGIC) {

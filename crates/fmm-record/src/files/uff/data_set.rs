@@ -68,8 +68,8 @@ impl DataSet {
     /// A function in double precision.
     ///
     /// # Errors
-    /// [`RecordError::Values`] without points, [`RecordError::Options`] for other numbers of abscissae than of ordinates, or a
-    /// start or step that are not finite.
+    /// [`RecordError::Values`] without points, [`RecordError::Options`] for other numbers of abscissae than of
+    /// ordinates, or a start or step that are not finite.
     pub fn new(header: Header, abscissa: Abscissa, ordinate: Ordinate) -> Result<Self, RecordError> {
         if ordinate.is_empty() {
             let what = "a data set needs at least one point, but none were given".into();

@@ -30,8 +30,9 @@ impl UffFile {
     /// Reads the bytes of a file. A missing end of a data set, or of the file, is a [`Warning`].
     ///
     /// # Errors
-    /// [`RecordError::UnknownFormat`] for other files and those without any function; for a data set that contradicts the format
-    /// [`RecordError::Damaged`]; [`RecordError::Unsupported`] for binary numbers that are not those of IEEE 754.
+    /// [`RecordError::UnknownFormat`] for other files and those without any function; for a data set that contradicts
+    /// the format [`RecordError::Damaged`]; [`RecordError::Unsupported`] for binary numbers that are not those of IEEE
+    /// 754.
     pub fn parse(bytes: &[u8]) -> Result<Self, RecordError> {
         let mut file = Self { sets: Vec::new(), others: Vec::new(), warnings: Vec::new() };
         let mut lines = Lines::new(bytes);

@@ -13,8 +13,8 @@ impl DataSet {
     /// them within [`RATE_ROUNDING`](crate::RATE_ROUNDING), that is the sampling rate.
     ///
     /// # Errors
-    /// [`RecordError::Unsupported`] for a function that is not one of time or not real, [`RecordError::TimeAxis`] for a unit of
-    /// time that is not known, otherwise as [`Record::new`] and [`Record::from_times`].
+    /// [`RecordError::Unsupported`] for a function that is not one of time or not real, [`RecordError::TimeAxis`] for a
+    /// unit of time that is not known, otherwise as [`Record::new`] and [`Record::from_times`].
     pub fn record(&self) -> Result<Record, RecordError> {
         self.sampled_record(Span::default()).map(|(record, _)| record)
     }

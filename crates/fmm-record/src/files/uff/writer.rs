@@ -45,7 +45,8 @@ pub fn write(path: impl AsRef<Path>, sets: &[DataSet], form: Form) -> Result<(),
 /// abscissa has six digits in text, and is single in bytes.
 ///
 /// # Errors
-/// [`RecordError::Unsupported`] or [`RecordError::Values`] for content that the format cannot hold, and [`RecordError::Io`] if writing fails.
+/// [`RecordError::Unsupported`] or [`RecordError::Values`] for content that the format cannot hold, and
+/// [`RecordError::Io`] if writing fails.
 pub fn write_to(mut out: impl Write, sets: &[DataSet], form: Form) -> Result<(), RecordError> {
     for set in sets {
         out.write_all(&block(set, form)?).map_err(interrupted)?;

@@ -16,8 +16,9 @@ use parser::Step;
 ///                                                         sinh cosh tanh abs, atan2(y, x)
 /// ```
 ///
-/// They bind as in a textbook: −2² is −4, 2^3^2 is 2^9, a/b/c is (a/b)/c. A product needs its sign. Angles are in radians.
-/// Names begin with a letter or an underscore and go on with letters, digits, underscores and indices such as ₀.
+/// They bind as in a textbook: −2² is −4, 2^3^2 is 2^9, a/b/c is (a/b)/c. A product needs its sign. Angles are in
+/// radians. Names begin with a letter or an underscore and go on with letters, digits, underscores and indices such as
+/// ₀.
 ///
 /// ```
 /// use fmm_uq::{Formula, Input, Inputs, MonteCarlo, propagate};
@@ -42,11 +43,13 @@ pub struct Formula {
 }
 
 impl Formula {
-    /// Reads a formula over quantities with these `names`, in the order in which [`Formula::evaluate`] is given their values.
+    /// Reads a formula over quantities with these `names`, in the order in which [`Formula::evaluate`] is given their
+    /// values.
     ///
     /// # Errors
-    /// [`UncertaintyError::Model`] if the text is no formula, has more than 200 parentheses, powers and signs, or has a name that is not among
-    /// `names`; [`UncertaintyError::Inputs`] for a name given twice, for one that no formula can contain, and for that of a constant or function.
+    /// [`UncertaintyError::Model`] if the text is no formula, has more than 200 parentheses, powers and signs, or has a
+    /// name that is not among `names`; [`UncertaintyError::Inputs`] for a name given twice, for one that no formula can
+    /// contain, and for that of a constant or function.
     pub fn new(text: &str, names: &[&str]) -> Result<Self, UncertaintyError> {
         for (place, name) in names.iter().enumerate() {
             if !parser::is_name(name) {

@@ -18,8 +18,8 @@ const PRODUCTS: [(usize, usize, usize); 35] = products();
 /// ```
 ///
 /// It is what a model is evaluated in for its sensitivities, its curvature and the second-order terms of the GUM, pair
-/// by pair of inputs. [`Scalar`] holds its functions; the arithmetic is with itself and with `f64`. Its values are those of
-/// `f64` to the last bit, and comparisons are those of values.
+/// by pair of inputs. [`Scalar`] holds its functions; the arithmetic is with itself and with `f64`. Its values are
+/// those of `f64` to the last bit, and comparisons are those of values.
 ///
 /// ```
 /// use fmm_uq::{Scalar, Taylor};
@@ -36,7 +36,8 @@ pub struct Taylor {
 }
 
 impl Taylor {
-    /// c_ij, coefficient of the `i`th power of the first direction and the `j`th of the second; 0 beyond the third order.
+    /// c_ij, coefficient of the `i`th power of the first direction and the `j`th of the second; 0 beyond the third
+    /// order.
     pub fn coefficient(self, i: usize, j: usize) -> f64 {
         POWERS.iter().position(|&power| power == (i, j)).map_or(0.0, |at| self.coefficients[at])
     }
