@@ -167,7 +167,6 @@ impl RecordError {
     }
 }
 
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 impl RecordError {
     /// A file that the system does not open, read or create.
     pub(crate) fn io(verb: &str, path: &std::path::Path, source: io::Error) -> Self {
@@ -175,13 +174,11 @@ impl RecordError {
     }
 
     /// Error of a damaged file, or of a part of it.
-    #[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
     pub(crate) fn damaged(what: impl Into<String>) -> Self {
         Self::Damaged { line: None, what: what.into(), source: None }
     }
 
     /// Error of a line of text.
-    #[cfg(any(feature = "csv", feature = "uff"))]
     pub(crate) fn on_line(line: u64, what: String) -> Self {
         Self::Damaged { line: Some(line), what, source: None }
     }

@@ -59,10 +59,9 @@
 //!
 //! # Features
 //!
-//! `csv`, `mat` and `uff`, all on by default, read text, MATLAB files of versions 5 to 7, and Universal Files, which
-//! are also written. `hdf5` adds version 7.3 to `mat`, and `npy` reads files of NumPy. A file whose reader is not
-//! compiled is refused with the name of the feature. Without `mat`, `hdf5` and `npy` the crate depends on `realfft` and
-//! `thiserror` only.
+//! Text and Universal Files are always read. `mat`, on by default, reads MATLAB files of versions 5 to 7, `hdf5` those
+//! of version 7.3, and `npy` files of NumPy. A file whose reader is not compiled is refused with the name of the
+//! feature. Without these features the crate depends on `realfft` and `thiserror` only.
 //!
 //! # Neighbours
 //!
@@ -74,7 +73,6 @@
 mod calculus;
 mod error;
 mod examination;
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 mod files;
 mod numerics;
 mod quantity;
@@ -104,11 +102,8 @@ pub use examination::swings::{Crossing, Peak, Swings};
 pub use examination::upsampling::Upsampling;
 #[cfg(any(feature = "mat", feature = "npy"))]
 pub use files::arrays::Array;
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 pub use files::reading::{Column, Reading};
-#[cfg(feature = "uff")]
 pub use files::uff;
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 pub use files::{Channel, DataFile, Format, Reader, open};
 pub use numerics::fourier::{Spectrum, blackman_harris};
 pub use numerics::real_transform::RealTransform;
@@ -122,6 +117,6 @@ pub use units::request::Request;
 pub use units::written_unit::{UnknownUnit, WrittenUnit};
 
 /// Runs the example of the README.
-#[cfg(all(doctest, feature = "csv"))]
+#[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

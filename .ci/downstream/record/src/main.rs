@@ -32,13 +32,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let record = decay()?;
     check("made", &record)?;
 
-    #[cfg(feature = "csv")]
     {
         let rows = record.times().zip(record.values()).map(|(time, velocity)| format!("{time:.3};{velocity:.9}\n"));
         let text = String::from("time;velocity\n") + &rows.collect::<String>();
         check("CSV", &fmm_record::Reader::default().read_from(text.as_bytes())?.record)?;
     }
-    #[cfg(feature = "uff")]
     {
         use fmm_record::uff::{DataSet, Form, UffFile, write_to};
 

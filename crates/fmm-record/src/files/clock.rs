@@ -98,7 +98,6 @@ impl Clock {
     }
 
     /// Whether a series that is not called time may be it.
-    #[cfg(feature = "csv")]
     pub(crate) fn may_be_time(&self) -> bool {
         self.is_time || self.is_counter || !matches!(self.unit, Written::Other(_))
     }

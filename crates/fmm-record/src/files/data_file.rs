@@ -40,23 +40,19 @@ pub struct DataFile {
 #[derive(Debug, Clone)]
 enum Content {
     /// Text is read when a channel is asked for, as it may be larger than the memory.
-    #[cfg(feature = "csv")]
     Text(Source),
     #[cfg(any(feature = "mat", feature = "npy"))]
     Arrays(ArrayFile),
-    #[cfg(feature = "uff")]
     Universal(crate::files::uff::UffFile),
 }
 
 /// Place of the text of a file.
-#[cfg(feature = "csv")]
 #[derive(Debug, Clone)]
 enum Source {
     Path(std::path::PathBuf),
     Bytes(Vec<u8>),
 }
 
-#[cfg(feature = "csv")]
 impl Source {
     fn open(&self) -> Result<Box<dyn Read + '_>, RecordError> {
         Ok(match self {
@@ -84,7 +80,6 @@ impl DataFile {
         let mut file = File::open(path).map_err(failed)?;
         let mut bytes = Vec::new();
         file.by_ref().take(HEAD as u64).read_to_end(&mut bytes).map_err(failed)?;
-        #[cfg(feature = "csv")]
         if matches!(Format::of(&bytes), Ok(Format::Text)) {
             return Self { reader, format: Format::Text, content: Content::Text(Source::Path(path.into())) }.checked();
         }
@@ -92,11 +87,9 @@ impl DataFile {
         Self::parse(reader, bytes)
     }
 
-    #[cfg_attr(not(feature = "csv"), expect(clippy::needless_pass_by_value, reason = "text is kept as it is"))]
     pub(super) fn parse(reader: Reader, bytes: Vec<u8>) -> Result<Self, RecordError> {
         let format = Format::of(&bytes[..bytes.len().min(HEAD)])?;
         let content = match format {
-            #[cfg(feature = "csv")]
             Format::Text => Content::Text(Source::Bytes(bytes)),
             #[cfg(feature = "mat")]
             Format::Matlab => Content::Arrays(crate::files::mat::parse(&bytes)?),
@@ -104,9 +97,8 @@ impl DataFile {
             Format::Hdf5 => Content::Arrays(crate::files::mat::parse_hdf5(&bytes)?),
             #[cfg(feature = "npy")]
             Format::Numpy => Content::Arrays(crate::files::npy::parse(&bytes)?),
-            #[cfg(feature = "uff")]
             Format::Universal => Content::Universal(crate::files::uff::UffFile::parse(&bytes)?),
-            #[cfg(not(all(feature = "csv", feature = "hdf5", feature = "npy", feature = "uff")))]
+            #[cfg(not(all(feature = "hdf5", feature = "npy")))]
             _ => return Err(format.missing()),
         };
         Self { reader, format, content }.checked()
@@ -142,14 +134,12 @@ impl DataFile {
     /// named, with the reason.
     pub fn warnings(&self) -> Vec<String> {
         match &self.content {
-            #[cfg(feature = "csv")]
             Content::Text(_) => Vec::new(),
             #[cfg(any(feature = "mat", feature = "npy"))]
             Content::Arrays(file) => {
                 let warning = |(name, reason): &(String, RecordError)| format!("{name} cannot be read: {reason}");
                 file.damaged.iter().map(warning).collect()
             }
-            #[cfg(feature = "uff")]
             Content::Universal(file) => file.warnings().iter().map(ToString::to_string).collect(),
         }
     }
@@ -159,7 +149,6 @@ impl DataFile {
     pub fn arrays(&self) -> &[Array] {
         match &self.content {
             Content::Arrays(file) => &file.arrays,
-            #[cfg(any(feature = "csv", feature = "uff"))]
             _ => &[],
         }
     }
@@ -173,7 +162,6 @@ impl DataFile {
     pub fn array(&self, name: &str) -> Result<&Array, RecordError> {
         match &self.content {
             Content::Arrays(file) => file.array(name),
-            #[cfg(any(feature = "csv", feature = "uff"))]
             _ => {
                 let what = format!("there is no variable \"{name}\"; the file is of format {}", self.format);
                 Err(RecordError::NoSuchChannel { what })
@@ -188,7 +176,6 @@ impl DataFile {
     /// What is wrong with the table of a text file.
     pub fn channels(&self) -> Result<Vec<Channel>, RecordError> {
         match &self.content {
-            #[cfg(feature = "csv")]
             Content::Text(source) => {
                 let columns = self.reader.text_channels(source.open()?)?;
                 // All columns have one time.
@@ -212,7 +199,6 @@ impl DataFile {
                 };
                 Ok(offers.iter().zip(&readings).enumerate().filter_map(channel).collect())
             }
-            #[cfg(feature = "uff")]
             Content::Universal(file) => {
                 let channel = |(position, set): (usize, &crate::files::uff::DataSet)| {
                     let axis = &set.header.ordinate;
@@ -261,11 +247,9 @@ impl DataFile {
 
     fn read(&self, reader: &Reader) -> Result<Reading, RecordError> {
         let mut reading = match &self.content {
-            #[cfg(feature = "csv")]
             Content::Text(source) => reader.read_text(source.open()?)?,
             #[cfg(any(feature = "mat", feature = "npy"))]
             Content::Arrays(file) => file.read(reader)?,
-            #[cfg(feature = "uff")]
             Content::Universal(file) => file.part(reader.channel.as_ref(), reader.span)?,
         };
         if reading.record.quantity() == crate::Quantity::Other {

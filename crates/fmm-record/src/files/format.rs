@@ -27,14 +27,12 @@ impl Format {
     }
 
     /// Error of a file whose reader was not compiled.
-    #[cfg(not(all(feature = "csv", feature = "hdf5", feature = "npy", feature = "uff")))]
+    #[cfg(not(all(feature = "hdf5", feature = "npy")))]
     pub(super) fn missing(self) -> RecordError {
         let (format, feature) = match self {
-            Self::Text => ("text", "csv"),
-            Self::Matlab => ("a MATLAB file", "mat"),
             Self::Hdf5 => ("a MATLAB version 7.3 file (HDF5)", "hdf5"),
             Self::Numpy => ("a file of NumPy", "npy"),
-            Self::Universal => ("a Universal File", "uff"),
+            _ => ("a MATLAB file", "mat"),
         };
         let remedy = if self == Self::Hdf5 { "; or load it in MATLAB and save it with -v7" } else { "" };
         RecordError::MissingFeature { format, feature, remedy }

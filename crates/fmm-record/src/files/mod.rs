@@ -2,9 +2,7 @@
 
 #[cfg(any(feature = "mat", feature = "npy"))]
 pub(crate) mod arrays;
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
 pub(crate) mod clock;
-#[cfg(feature = "csv")]
 mod csv;
 mod data_file;
 mod format;
@@ -14,12 +12,10 @@ mod mat;
 mod npy;
 mod reader;
 pub(crate) mod reading;
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
 pub(crate) mod stated;
-#[cfg(all(test, feature = "csv", feature = "hdf5", feature = "npy", feature = "uff"))]
+#[cfg(all(test, feature = "hdf5", feature = "npy"))]
 mod tests;
 
-#[cfg(feature = "uff")]
 pub mod uff;
 
 use std::path::Path;

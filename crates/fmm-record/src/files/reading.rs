@@ -3,13 +3,9 @@
 use std::convert::Infallible;
 use std::str::FromStr;
 
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 use crate::RecordError;
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
 use crate::record::Span;
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 use crate::units::label::without_groups;
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
 use crate::{Quantity, Resampling};
 use crate::{Record, Sampling};
 
@@ -30,7 +26,6 @@ pub struct Reading {
 }
 
 /// The part within `span` of the record of `values` at `times` (s) in the series called `name`, resampled if asked for.
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy"))]
 pub(crate) fn timed(
     name: String,
     times: &[f64],
@@ -83,7 +78,6 @@ pub enum Column {
 
 /// The only position of those `found` of what is `written`; `column` is what was looked for among columns, data sets or
 /// variables, as `kind` calls one.
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 pub(crate) fn only(found: &[usize], column: &Column, kind: &str, written: &[String]) -> Result<usize, RecordError> {
     match found {
         [index] => Ok(*index),
@@ -103,7 +97,6 @@ pub(crate) fn only(found: &[usize], column: &Column, kind: &str, written: &[Stri
     }
 }
 
-#[cfg(any(feature = "csv", feature = "uff"))]
 impl Column {
     /// Positions of the columns that are meant. They are written in one way or several, of which the first has the
     /// units; the first way of looking that finds anything counts.
@@ -129,7 +122,6 @@ impl Column {
 }
 
 /// A name without what it has in brackets, and without a slash before them.
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 pub(crate) fn without_unit(name: &str) -> String {
     without_groups(name).0.trim_end_matches(['/', ' ']).to_owned()
 }
@@ -179,7 +171,6 @@ pub(crate) fn seconds_in(unit: &str) -> Option<f64> {
 }
 
 /// Names for an error that lists them.
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 pub(crate) fn quoted(names: &[String]) -> String {
     names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
 }

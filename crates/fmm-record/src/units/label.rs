@@ -137,7 +137,6 @@ impl std::fmt::Display for Label {
 }
 
 /// Label by the file that was read.
-#[cfg(any(feature = "csv", feature = "mat", feature = "npy", feature = "uff"))]
 impl From<&crate::Reading> for Label {
     fn from(reading: &crate::Reading) -> Self {
         Self::of(&reading.channel).with_unit(reading.record.unit()).with_quantity(reading.record.quantity())
