@@ -1,8 +1,9 @@
 //! Inputs of a plan: what is known of machine, loads and sensors with an error that tests have in common.
 
 use crate::design::planned_test::{Load, Motion};
+use crate::design::{PlannedSensor, PlannedTest};
 use crate::machine::Scale;
-use crate::{Known, Machine, PlannedSensor, PlannedTest};
+use crate::machine::{Known, Machine};
 
 /// Something that is known with an error. Which tests share the error, this says.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,12 +9,17 @@ use fmm_record::{Quantity, Record};
 
 use crate::design::inputs::{Input, Inputs};
 use crate::design::planned_test::{Load, Motion};
+use crate::design::{Guess, PlannedTest};
+use crate::error::IdentifyError;
+use crate::experiment::{Drive, Experiment};
+use crate::fit::Problem;
 use crate::fit::layout::{Layout, mass, mass_of_stiffness};
 use crate::law::dimension::is_force;
 use crate::law::{DIRECTIONS, Law};
 use crate::machine::Scale;
 use crate::machine::terms::Term;
-use crate::{Drive, Experiment, Guess, IdentifyError, Known, Machine, PlannedTest, Problem, Source, Terms};
+use crate::machine::{Known, Machine, Terms};
+use crate::report::Source;
 
 /// Layout and parameters that all tests share, static levels among them.
 pub(crate) fn layout(

@@ -5,9 +5,10 @@ use fmm_fit::{ChosenDesign, DesignCase, DesignCriterion, DesignSearch, Informati
 use crate::design::inputs::{Input, Inputs};
 use crate::design::local::{self, Local};
 use crate::design::prediction::Quantity;
+use crate::design::{DesignPrediction, Guess, PlannedTest};
+use crate::error::IdentifyError;
 use crate::fit::layout::Layout;
 use crate::report::finding::derived;
-use crate::{DesignPrediction, Guess, IdentifyError, PlannedTest};
 
 /// The tests that may be made on a machine, and what each of them would tell.
 ///

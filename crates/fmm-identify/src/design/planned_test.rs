@@ -3,7 +3,8 @@
 use fmm_model::ModelError;
 use fmm_record::{Quantity, Record};
 
-use crate::{IdentifyError, Known};
+use crate::error::IdentifyError;
+use crate::machine::Known;
 
 /// A test that may be made: how the machine is set in motion, under which load, with what added to it, and how that is
 /// recorded.
@@ -146,7 +147,7 @@ impl PlannedTest {
     /// # Errors
     /// As for [`release`](Self::release), and [`IdentifyError::WrongRecord`] unless it is a force in N.
     pub fn pushed(force: &Record, uncertainty: f64, sensor: PlannedSensor, rate: f64) -> Result<Self, IdentifyError> {
-        crate::Drive::force(force)?.with_gain_uncertainty(uncertainty)?;
+        crate::experiment::Drive::force(force)?.with_gain_uncertainty(uncertainty)?;
         let duration = force.duration();
         let name = format!("force for {duration} s");
         Self::of(name, Motion::Pushed(force.clone(), uncertainty), sensor, rate, duration)
@@ -158,7 +159,7 @@ impl PlannedTest {
     /// # Errors
     /// As for [`release`](Self::release), and [`IdentifyError::WrongRecord`] for a record that is no motion.
     pub fn carried(base: &Record, sensor: PlannedSensor, rate: f64) -> Result<Self, IdentifyError> {
-        crate::Drive::base(base)?;
+        crate::experiment::Drive::base(base)?;
         let duration = base.duration();
         Self::of(format!("moving base for {duration} s"), Motion::Carried(base.clone()), sensor, rate, duration)
     }

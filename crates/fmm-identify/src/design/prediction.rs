@@ -5,9 +5,11 @@ use std::fmt;
 use fmm_fit::{EstimateStatus, Information, NullDirection};
 use fmm_model::Parameter;
 
+use crate::design::Guess;
 use crate::design::local;
+use crate::error::IdentifyError;
+use crate::report::Source;
 use crate::report::{Finding, Origin};
-use crate::{Guess, IdentifyError, Source};
 
 /// A quantity that tests would find, as a combination of shared parameters and errors of inputs.
 #[derive(Debug, Clone)]

@@ -1,7 +1,8 @@
 //! Sentences on what a test tells that others do not.
 
+use crate::design::{DesignPrediction, Plan};
+use crate::error::IdentifyError;
 use crate::report::{Finding, Origin};
-use crate::{DesignPrediction, IdentifyError, Plan};
 
 /// Without a test, an uncertainty that grows by less than this says nothing.
 const NOTABLE: f64 = 1.02;

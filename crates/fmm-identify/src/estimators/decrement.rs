@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 
 use fmm_record::{Peak, Quantity};
 
-use crate::{Estimated, Experiment, IdentifyError};
+use crate::error::IdentifyError;
+use crate::experiment::Experiment;
+use fmm_model::Estimated;
 
 /// What one cycle lost, read both as damping and as friction.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,7 +3,7 @@
 use fmm_model::{ModelError, Oscillator};
 use fmm_record::{Quantity, Record, RecordError, Smoothing, noise};
 
-use crate::IdentifyError;
+use crate::error::IdentifyError;
 
 /// Energy rate and friction at one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]

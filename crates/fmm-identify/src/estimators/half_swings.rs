@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use fmm_record::{Quantity, Record, Swings};
 
-use crate::{Experiment, IdentifyError};
+use crate::error::IdentifyError;
+use crate::experiment::Experiment;
 
 /// Shortest piece of a half swing at an end of the record that is worth having, in half swings.
 const SHORTEST: f64 = 0.25;

@@ -5,8 +5,10 @@ use std::f64::consts::PI;
 use fmm_model::{ModelError, Oscillator};
 use fmm_record::{Quantity, Record, noise};
 
+use crate::error::IdentifyError;
 use crate::estimators::half_swings::{bridged, check_reversals, reversals};
-use crate::{Estimated, Experiment, IdentifyError};
+use crate::experiment::Experiment;
+use fmm_model::Estimated;
 
 /// What one half swing lost.
 #[derive(Debug, Clone, Copy, PartialEq)]

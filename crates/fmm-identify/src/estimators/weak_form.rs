@@ -6,10 +6,12 @@ use fmm_fit::{EvaluationError, Fit, Options, Residuals, solve};
 use fmm_model::{Bounds, ModelError, Parameter};
 use fmm_record::{Quantity, Record, noise, quantisation_step};
 
+use crate::error::IdentifyError;
 use crate::estimators::half_swings::{bridged, check_reversals, reversals};
 use crate::estimators::weak_equations::{Equations, Motion};
+use crate::experiment::Experiment;
+use fmm_model::Estimated;
 use crate::law::naming::Units;
-use crate::{Estimated, Experiment, IdentifyError};
 
 /// Friction and damping without a derivative of the record, without smoothing and without a simulation.
 ///

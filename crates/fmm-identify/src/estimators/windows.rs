@@ -6,10 +6,12 @@ use fmm_fit::{EvaluationError, Fit, Options, Residuals, autocorrelation_time, so
 use fmm_model::{Bounds, Dual, Parameter, Scalar};
 use fmm_record::Quantity;
 
+use crate::error::IdentifyError;
+use crate::experiment::Experiment;
 use crate::fit::free_vibration::FreeVibration;
+use fmm_model::Estimated;
 use crate::law::naming::Units;
 use crate::residuals::correlation::{are_correlated, correlated_covariance};
-use crate::{Estimated, Experiment, IdentifyError};
 
 /// The viscous fit over one window.
 #[derive(Debug, Clone)]

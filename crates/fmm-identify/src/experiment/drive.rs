@@ -7,7 +7,7 @@ use fmm_model::{ModelError, Scalar};
 use fmm_record::{Quantity, Record};
 use fmm_sim::Excitation;
 
-use crate::IdentifyError;
+use crate::error::IdentifyError;
 use crate::machine::Scale;
 
 /// What drives a machine during a record, measured on the same time axis.

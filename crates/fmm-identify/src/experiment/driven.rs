@@ -7,9 +7,10 @@ use fmm_model::ModelError;
 use fmm_record::{Quantity, Record, Swings, noise, quantisation_step, saturation, spikes};
 
 use super::{Drive, Driven, Experiment, ring_down, usable};
+use crate::error::IdentifyError;
+use crate::experiment::{Offset, Preparation, RecordSummary};
 use crate::fit::first_guess::{Dissipation, FirstGuess};
 use crate::fit::tangent::inverse_of_products;
-use crate::{IdentifyError, Offset, Preparation, RecordSummary};
 
 impl Experiment {
     /// A driven motion: the `response` of the machine to `drive`, both on one time axis. The drive must be known during

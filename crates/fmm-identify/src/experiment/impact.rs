@@ -3,8 +3,10 @@
 use fmm_record::{Quantity, Record};
 
 use super::{Experiment, FEWEST_SAMPLES};
+use crate::error::IdentifyError;
 use crate::experiment::ring_down;
-use crate::{Drive, IdentifyError, ImpactTrial, Offset, Preparation};
+use crate::experiment::{Drive, Offset, Preparation};
+use crate::impact::ImpactTrial;
 
 impl Experiment {
     /// A hammer blow: the velocity from the beginning of the blow until a while after rest, driven by the measured

@@ -23,9 +23,11 @@ pub use preparation::{Offset, Preparation, RecordSummary};
 pub(crate) use sensor::Filter;
 pub use sensor::Sensor;
 
+use crate::error::IdentifyError;
 use crate::experiment::nuisance::Nuisance;
 use crate::fit::first_guess::{Dissipation, FirstGuess};
-use crate::{IdentifyError, Machine, Warning};
+use crate::machine::Machine;
+use crate::report::Warning;
 
 /// An experiment on a machine: a ring-down ([`ring_down`](Self::ring_down)), a hammer blow ([`impact`](Self::impact)),
 /// or a motion that is driven by a measured force or by a measured motion of the base ([`driven`](Self::driven)).

@@ -3,7 +3,7 @@
 use fmm_record::Record;
 
 use super::{Drive, Driven, DrivenGuess, Experiment, Sensor};
-use crate::RecordSummary;
+use crate::experiment::RecordSummary;
 use crate::fit::first_guess::FirstGuess;
 
 impl Experiment {

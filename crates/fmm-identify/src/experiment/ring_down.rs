@@ -11,10 +11,11 @@ use fmm_record::{
 
 use super::acceleration::{jumps, velocity_of};
 use super::{Experiment, Sensor, usable};
+use crate::error::IdentifyError;
 use crate::experiment::nuisance::Nuisance;
 use crate::experiment::preparation::COARSE;
+use crate::experiment::{Offset, Preparation, RecordSummary};
 use crate::fit::first_guess::{FirstGuess, Oscillation};
-use crate::{IdentifyError, Offset, Preparation, RecordSummary};
 
 /// Fewest half swings that show a period.
 const FEWEST_HALF_SWINGS: usize = 2;
@@ -251,7 +252,7 @@ pub(super) fn without(count: usize, holes: impl Iterator<Item = Range<usize>>) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Warning;
+    use crate::report::Warning;
 
     #[test]
     fn holes_are_left_out() {

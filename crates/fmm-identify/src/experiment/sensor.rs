@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use fmm_model::ModelError;
 
-use crate::IdentifyError;
+use crate::error::IdentifyError;
 
 /// Sensor of an experiment: what lies between the motion and the record besides gain and offset.
 ///

@@ -4,7 +4,7 @@ use fmm_model::Scalar;
 use fmm_record::Quantity;
 use fmm_sim::{Channels, Samples, Trajectory};
 
-use crate::Experiment;
+use crate::experiment::Experiment;
 use crate::experiment::Filter;
 
 /// How an experiment sees a motion that is simulated window by window.

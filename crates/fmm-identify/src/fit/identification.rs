@@ -6,8 +6,10 @@ use fmm_fit::{Estimate, EvaluationError, Fit, Options, Progress, solve_observed}
 use fmm_friction::{LawFamily, Role};
 use fmm_sim::{Event, EventKind, Trajectory};
 
+use crate::error::IdentifyError;
 use crate::experiment::nuisance::Nuisance;
 use crate::experiment::scaled;
+use crate::experiment::{Drive, Experiment};
 use crate::fit::layout::Layout;
 use crate::fit::problem::Problem;
 use crate::fit::stages::{Begin, fit_begun};
@@ -15,11 +17,12 @@ use crate::fit::tangent::Tangent;
 use crate::law::Law;
 use crate::law::naming::{Level, level_name};
 use crate::machine::terms::LINEAR;
+use crate::machine::{Machine, Terms};
 use crate::report::finding::{Finding, findings};
+use crate::report::{Source, Warning};
 use crate::residuals::drift::{as_fitted, with_drift};
 use crate::residuals::noise::ResidualNoise;
 use crate::residuals::structure::{Covariance, ResidualStructure};
-use crate::{Drive, Experiment, IdentifyError, Machine, Source, Terms, Warning};
 
 /// How the fitted motion of one record ends.
 #[derive(Debug, Clone, Copy, PartialEq)]

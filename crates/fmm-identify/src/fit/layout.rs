@@ -7,13 +7,15 @@ use fmm_fit::EvaluationError;
 use fmm_friction::Role;
 use fmm_model::{Bounds, Damping, Oscillator, Parameter, Restoring, Rounded, Scalar};
 
+use crate::error::IdentifyError;
+use crate::experiment::Experiment;
 use crate::experiment::reference;
 use crate::law::dimension::is_force;
 use crate::law::naming::{Level, Units};
 use crate::law::{Law, Motion};
 use crate::machine::Scale;
 use crate::machine::terms::Term;
-use crate::{Experiment, IdentifyError, Machine, Terms};
+use crate::machine::{Machine, Terms};
 
 /// Amplitude (rad) beyond which a record is not one of a pendulum with that length: no crossing counts turns.
 const MOST_RADIANS: f64 = 4.0 * PI;

@@ -3,8 +3,10 @@
 use fmm_fit::{EstimateStatus, Options, ProfileEnd, ProfileError, ProfileInterval, ResidualVariance, profile_interval};
 use fmm_model::Parameter;
 
+use crate::error::IdentifyError;
+use crate::experiment::Experiment;
+use crate::fit::Identification;
 use crate::fit::problem::Problem;
-use crate::{Experiment, Identification, IdentifyError};
 
 /// The sum of squares along one fitted quantity, all others fitted anew, beside what its standard uncertainty says of
 /// it.

@@ -272,7 +272,8 @@ mod tests {
     use fmm_sim::{Scenario, simulate_into};
 
     use super::*;
-    use crate::{Experiment, Machine, Preparation};
+    use crate::experiment::{Experiment, Preparation};
+    use crate::machine::Machine;
 
     /// Level and damping of [`CoulombViscous`] per unit mass.
     const TRUTH: [f64; 2] = [0.3, 0.1];

@@ -8,12 +8,14 @@ use fmm_fit::{Fit, FitError, Options, Outcome, Progress, Residuals, solve_best, 
 use fmm_friction::CoulombViscous;
 use fmm_model::Restoring;
 
+use crate::error::IdentifyError;
+use crate::fit::Identification;
 use crate::fit::identification::Observer;
 use crate::fit::problem::Problem;
 use crate::fit::response::Response;
 use crate::fit::threads::on_all_threads;
+use crate::judgement::Sign;
 use crate::residuals::structure::ResidualStructure;
-use crate::{Identification, IdentifyError, Sign};
 
 /// A fit by Coulomb and viscous friction to begin another one near, and what its residuals ask for.
 pub(crate) struct Near<'a> {

@@ -4,7 +4,8 @@ use std::fmt;
 
 use fmm_fit::{ComparisonOptions, Contender, Criterion, ModelTable};
 
-use crate::{ForceIdentification, ForceModel, ForceRecord, IdentifyError, identify_force};
+use crate::error::IdentifyError;
+use crate::force::{ForceIdentification, ForceModel, ForceRecord, identify_force};
 
 /// Models of the same forces side by side, and whether the records decide between them.
 ///

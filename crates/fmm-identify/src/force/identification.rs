@@ -5,14 +5,16 @@ use std::fmt;
 use fmm_fit::{EvaluationError, Fit, Options, Residuals, solve};
 use fmm_friction::Role;
 
+use crate::error::IdentifyError;
 use crate::fit::tangent::inverse_of_products;
 use crate::force::model::naming;
 use crate::force::problem::ForceProblem;
 use crate::force::start::starts;
+use crate::force::{ForceModel, ForceRecord};
+use crate::report::{Finding, Origin, Source, Warning};
 use crate::report::{name_width, write_warnings};
 use crate::residuals::noise::{ResidualNoise, Series};
 use crate::residuals::structure::{Covariance, ResidualStructure};
-use crate::{Finding, ForceModel, ForceRecord, IdentifyError, Origin, Source, Warning};
 
 /// Friction parameters out of forces along motions, with their uncertainty.
 ///

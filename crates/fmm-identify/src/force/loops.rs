@@ -2,7 +2,8 @@
 
 use fmm_fit::{LinearRegression, Weighting};
 
-use crate::{Estimated, ForceRecord};
+use fmm_model::Estimated;
+use crate::force::ForceRecord;
 
 /// One cycle of a motion to and fro, from a reversal to the next but one.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,9 +2,11 @@
 
 use fmm_model::{Bounds, Parameter, Unit};
 
+use crate::error::IdentifyError;
+use crate::force::ForceRecord;
+use crate::law::Candidate;
 use crate::law::naming::{Level, Units};
 use crate::machine::terms::Term;
-use crate::{Candidate, ForceRecord, IdentifyError};
 
 /// What a force along a motion is made of: a law, damping beside it, and what else acts or is measured along.
 ///

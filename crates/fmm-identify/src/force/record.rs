@@ -3,7 +3,7 @@
 use fmm_fit::median_deviation;
 use fmm_model::ModelError;
 
-use crate::IdentifyError;
+use crate::error::IdentifyError;
 use crate::force::smoothed::Smoothed;
 use crate::law::along::MeasuredMotion;
 

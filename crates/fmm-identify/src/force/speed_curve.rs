@@ -2,7 +2,8 @@
 
 use fmm_fit::{effective_count, median_deviation};
 
-use crate::{Estimated, ForceRecord};
+use fmm_model::Estimated;
+use crate::force::ForceRecord;
 
 /// Friction at about one speed: half the difference between the median forces of the two directions.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,8 +3,8 @@
 use fmm_fit::{EvaluationError, Residuals};
 use fmm_friction::Role;
 
-use crate::ForceRecord;
 use crate::fit::tangent::inverse_of_products;
+use crate::force::ForceRecord;
 use crate::force::problem::ForceProblem;
 use crate::law::dimension::{Scales, is_force};
 

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use fmm_fit::{EvaluationError, Fit};
 use fmm_friction::{Coulomb, LawFamily, Role};
 
+use crate::error::IdentifyError;
 use crate::fit::identification::FittedMotion;
 use crate::fit::stages::best_fit;
 use crate::impact::covariance::ImpactCovariance;
@@ -14,7 +15,7 @@ use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactProblem, I
 use crate::law::dimension::is_coefficient;
 use crate::law::naming::{Level, Units};
 use crate::report::finding::{Finding, Origin};
-use crate::{IdentifyError, Source, Warning};
+use crate::report::{Source, Warning};
 
 /// Friction parameters of one law out of blows, with their uncertainty and what limits them.
 ///

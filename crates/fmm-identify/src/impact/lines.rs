@@ -6,7 +6,7 @@ use std::ops::Range;
 use fmm_fit::EvaluationError;
 use fmm_frf::{Complex64, RealTransform};
 
-use crate::IdentifyError;
+use crate::error::IdentifyError;
 
 /// The lines in a band of the transform of records of one length, scaled so that white noise keeps its variance.
 ///

@@ -2,7 +2,7 @@
 
 use fmm_model::{ModelError, Oscillator};
 
-use crate::Known;
+use crate::machine::Known;
 
 /// What is known of a machine that is hit: all of it, as a measured force gives the motion its scale.
 ///

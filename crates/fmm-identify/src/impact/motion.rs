@@ -3,7 +3,8 @@
 use fmm_frf::Channel;
 use fmm_record::{Record, noise, quantisation_step, spikes};
 
-use crate::{Estimated, IdentifyError};
+use crate::error::IdentifyError;
+use fmm_model::Estimated;
 
 /// Fewer samples than this are too few to know an offset from.
 pub(crate) const FEWEST_QUIET: usize = 16;

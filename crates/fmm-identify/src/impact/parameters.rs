@@ -4,10 +4,11 @@ use std::borrow::Cow;
 
 use fmm_model::{Bounds, Parameter};
 
+use crate::error::IdentifyError;
 use crate::impact::{ImpactMachine, ImpactOptions, ImpactTrial};
 use crate::law::Law;
 use crate::law::naming::{Level, Units};
-use crate::{IdentifyError, Known};
+use crate::machine::Known;
 
 /// Indices of the parameters before those of the law.
 pub(crate) const MASS: usize = 0;

@@ -8,6 +8,7 @@ use fmm_frf::RealTransform;
 use fmm_friction::LawFamily;
 use fmm_model::Parameter;
 
+use crate::error::IdentifyError;
 use crate::fit::pool::Pool;
 use crate::impact::lines::{Lines, Scratch};
 use crate::impact::parameters::Parameters;
@@ -15,7 +16,7 @@ use crate::impact::pulse_prior::PulsePrior;
 use crate::impact::simulation::{FEW, ImpactLaw, Memory};
 use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactTrial};
 use crate::law::Law;
-use crate::{IdentifyError, Known};
+use crate::machine::Known;
 
 /// The residuals "model less measurement" of one or several blows by a law, with exact derivatives.
 ///

@@ -6,9 +6,10 @@ use std::sync::Arc;
 use fmm_frf::{Baseline, Channel, Hit, Pulse};
 use fmm_record::{Quantity, Record, noise, quantisation_step, saturation};
 
+use crate::error::IdentifyError;
+use fmm_model::Estimated;
 use crate::impact::motion::{FEWEST_QUIET, Motion, bridged, mean};
 use crate::impact::sampled_pulse::SampledPulse;
-use crate::{Estimated, IdentifyError};
 
 /// A pulse stands this far above the noise (standard deviations),
 const SIGNIFICANT: f64 = 20.0;

@@ -6,10 +6,10 @@ use std::fmt;
 use fmm_fit::Fit;
 use fmm_frf::{Channel, coulomb_impact_duration};
 
-use crate::Warning;
 use crate::fit::identification::FittedMotion;
 use crate::impact::ImpactTrial;
 use crate::impact::covariance::ImpactCovariance;
+use crate::report::Warning;
 
 /// Relative error of an impulse from which on a pulse is coarse.
 const COARSE: f64 = 5e-3;

@@ -5,7 +5,7 @@ use std::fmt;
 use fmm_fit::{RandomEffectsLine, UncertainPoint};
 use fmm_model::{Estimated, Rounded};
 
-use crate::IdentifyError;
+use crate::error::IdentifyError;
 
 /// Coverage probability by which an intercept or a coefficient counts as different from zero (1).
 const LEVEL: f64 = 0.95;

@@ -12,7 +12,9 @@ pub use sign::{Addition, Sign};
 
 use fmm_fit::f_tail;
 
-use crate::{Candidate, Finding, Identification};
+use crate::fit::Identification;
+use crate::law::Candidate;
+use crate::report::Finding;
 
 /// What the records say of each of several laws beside the one that fits them best, which laws are left, and which of
 /// them is preferred.

@@ -6,14 +6,20 @@ use std::time::{Duration, Instant};
 
 use fmm_fit::{Options, Progress};
 
+use crate::error::IdentifyError;
+use crate::experiment::Experiment;
+use crate::fit::Identification;
 use crate::fit::identification::closest;
 use crate::fit::stages::Near;
 use crate::fit::threads::on_all_threads;
+use crate::judgement::Comparison;
 use crate::judgement::comparison::explains;
 use crate::judgement::sign::{Addition, Sign, signs};
 use crate::judgement::{Judgement, shortcomings};
+use crate::law::Candidate;
+use crate::machine::Machine;
+use crate::report::Warning;
 use crate::residuals::filtering::behind_filter;
-use crate::{Candidate, Comparison, Experiment, Identification, IdentifyError, Machine, Warning};
 
 /// How laws are searched for. The default tries as many as the record asks for, on all threads of the current rayon
 /// pool.

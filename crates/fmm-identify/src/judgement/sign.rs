@@ -7,11 +7,14 @@ use fmm_fit::{EvaluationError, Residuals};
 use fmm_friction::{Berger, CoulombViscous, Dahl};
 use fmm_model::{ModelError, Restoring};
 
+use crate::error::IdentifyError;
+use crate::experiment::Experiment;
 use crate::experiment::reference;
+use crate::fit::Identification;
 use crate::fit::problem::Problem;
 use crate::fit::tangent::Tangent;
 use crate::law::Law;
-use crate::{Experiment, Identification, IdentifyError, Terms};
+use crate::machine::Terms;
 
 /// An addition to Coulomb and viscous friction on a linear spring.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,12 +3,15 @@
 use fmm_fit::Options;
 use fmm_friction::{Coulomb, CoulombViscous, FamilyVisitor, LawFamily, SpecialCase, Viscous, catalogue, family_named};
 
+use crate::error::IdentifyError;
+use crate::experiment::Experiment;
+use crate::fit::Identification;
 use crate::fit::identification::{Observer, identify_by};
 use crate::fit::layout::Layout;
 use crate::fit::stages::{Begin, Near};
 use crate::law::Law;
 use crate::machine::terms::Term;
-use crate::{Experiment, Identification, IdentifyError, Machine, Terms};
+use crate::machine::{Machine, Terms};
 
 /// A law family as a value, with terms beside it, so that laws can be chosen at run time and compared in one list.
 #[derive(Debug, Clone)]

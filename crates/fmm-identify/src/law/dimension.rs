@@ -3,7 +3,7 @@
 use fmm_friction::{LawParameter, Role};
 use fmm_model::Unit;
 
-use crate::IdentifyError;
+use crate::error::IdentifyError;
 use crate::law::Law;
 
 /// What two parameters that stand for the same are multiplied and divided by to begin with.

@@ -3,8 +3,8 @@
 use fmm_fit::{EvaluationError, Options, Residuals, solve};
 use fmm_model::Parameter;
 
-use crate::Terms;
 use crate::fit::layout::Layout;
+use crate::machine::Terms;
 use crate::machine::terms::Term;
 
 /// Retarding force per mass over the speed, of a law with the damping beside it, in the units of a record.

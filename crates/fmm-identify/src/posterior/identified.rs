@@ -4,11 +4,15 @@ use fmm_fit::{Marginal, Posterior, PosteriorError, Sampler};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
+use crate::error::IdentifyError;
+use crate::experiment::Experiment;
+use crate::fit::Identification;
 use crate::fit::problem::Problem;
 use crate::posterior::intervals::{LEVEL, compared};
 use crate::posterior::known_inputs::KnownInputs;
 use crate::posterior::predictive::predicted;
-use crate::{Experiment, Identification, IdentifyError, IntervalComparison, Origin, PredictiveCheck};
+use crate::posterior::{IntervalComparison, PredictiveCheck};
+use crate::report::Origin;
 
 /// The posterior of everything that an identification found, beside its intervals of the other kinds, with predictive
 /// checks.

@@ -2,7 +2,8 @@
 
 use fmm_fit::Marginal;
 
-use crate::{Finding, Identification, Profile, Profiles};
+use crate::fit::{Identification, Profile, Profiles};
+use crate::report::Finding;
 
 /// Probability of the intervals.
 pub(super) const LEVEL: f64 = 0.95;

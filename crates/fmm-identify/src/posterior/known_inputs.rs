@@ -4,10 +4,13 @@ use fmm_fit::{Fit, Options, solve};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
+use crate::error::IdentifyError;
+use crate::experiment::{Drive, Experiment};
+use crate::fit::Identification;
 use crate::fit::layout::Layout;
 use crate::fit::problem::Problem;
+use crate::machine::Machine;
 use crate::report::finding::values_of_findings;
-use crate::{Drive, Experiment, Identification, IdentifyError, Machine};
 
 /// What is known of machine and instruments, with normal priors by their standard uncertainties.
 ///

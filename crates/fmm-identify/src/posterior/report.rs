@@ -5,7 +5,7 @@ use std::fmt;
 use fmm_model::Rounded;
 
 use crate::posterior::intervals::LEVEL;
-use crate::{IdentificationPosterior, IntervalComparison};
+use crate::posterior::{IdentificationPosterior, IntervalComparison};
 
 impl fmt::Display for IdentificationPosterior {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

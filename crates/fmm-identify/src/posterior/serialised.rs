@@ -6,7 +6,7 @@ use fmm_fit::Marginal;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 use crate::posterior::intervals::LEVEL;
-use crate::{IdentificationPosterior, IntervalComparison, PredictiveCheck};
+use crate::posterior::{IdentificationPosterior, IntervalComparison, PredictiveCheck};
 
 /// A marginal with its intervals of all kinds.
 struct Row<'a>(&'a Marginal, Option<&'a IntervalComparison>);

@@ -4,14 +4,14 @@ use fmm_fit::{EstimateStatus, Fit, coverage_factor};
 use fmm_friction::Role;
 use fmm_model::{Bounds, Dual, Parameter, Rounded, Scalar};
 
-use crate::Machine;
 use crate::fit::layout::{Layout, mass_of_stiffness};
 use crate::law::DIRECTIONS;
 use crate::law::dimension::{is_coefficient, is_force};
 use crate::law::naming::{Level, Units};
+use crate::machine::Machine;
 use crate::machine::Scale;
+use crate::report::{Contribution, Source};
 use crate::residuals::structure::Covariance;
-use crate::{Contribution, Source};
 
 /// Where the value of a finding comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

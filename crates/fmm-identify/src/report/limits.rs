@@ -3,9 +3,11 @@
 use fmm_fit::Fit;
 use fmm_model::Restoring;
 
+use crate::experiment::{Experiment, RecordSummary};
+use crate::fit::{FittedMotion, Identification};
 use crate::machine::Scale;
 use crate::machine::terms::{LINEAR, QUADRATIC};
-use crate::{Experiment, FittedMotion, Identification, RecordSummary, Warning};
+use crate::report::Warning;
 
 /// Fewer half swings than this are few.
 const ENOUGH_HALF_SWINGS: usize = 4;

@@ -15,8 +15,9 @@ use std::fmt;
 
 use fmm_fit::EstimateStatus;
 
+use crate::fit::Identification;
 use crate::judgement::EXCLUDED;
-use crate::{Comparison, Identification, Sign};
+use crate::judgement::{Comparison, Sign};
 
 /// Width of the column that holds the names of parameters.
 pub(crate) fn name_width(findings: &[Finding]) -> usize {
@@ -161,9 +162,9 @@ impl fmt::Display for Comparison {
         writeln!(f, "  {:<width$}  rms residual  rank  half swings    rest from   misfit + 2 rank         p", "")?;
         let standings = self.scores().iter().copied().zip(self.p_values().iter().copied());
         for (law, (score, p)) in self.identifications().iter().zip(standings) {
-            let stop = law.motions().iter().find_map(crate::FittedMotion::stop_time);
+            let stop = law.motions().iter().find_map(crate::fit::FittedMotion::stop_time);
             let stop = stop.map_or_else(|| "-".to_owned(), |time| format!("{time:.4} s"));
-            let half_swings: usize = law.motions().iter().map(crate::FittedMotion::half_swings).sum();
+            let half_swings: usize = law.motions().iter().map(crate::fit::FittedMotion::half_swings).sum();
             let p = if p < EXCLUDED { "excluded".to_owned() } else { format!("{p:.3}") };
             writeln!(
                 f,

@@ -5,8 +5,10 @@ use std::fmt;
 
 use fmm_model::Rounded;
 
+use crate::experiment::{Experiment, RecordSummary};
+use crate::fit::Identification;
+use crate::report::Warning;
 use crate::residuals::correlation::are_correlated;
-use crate::{Experiment, Identification, RecordSummary, Warning};
 
 /// A factor of the uncertainties that is worth a word.
 const NOTABLE: f64 = 1.1;

@@ -4,9 +4,10 @@ use std::f64::consts::TAU;
 
 use fmm_fit::f_tail;
 
+use crate::experiment::Experiment;
 use crate::experiment::nuisance::{DRIFT, Nuisance};
+use crate::fit::Identification;
 use crate::fit::problem::Problem;
-use crate::{Experiment, Identification};
 
 /// The chance that noise alone looks like a drift.
 const CHANCE: f64 = 1e-3;

@@ -4,9 +4,11 @@ use std::ops::ControlFlow;
 
 use fmm_fit::Options;
 
+use crate::experiment::{Experiment, Sensor};
+use crate::fit::Identification;
 use crate::fit::identification::{closest, identify_by};
 use crate::fit::stages::Begin;
-use crate::{Experiment, Identification, Sensor, Warning};
+use crate::report::Warning;
 
 /// Order of the filter that is tried: that of most sensors with one.
 const ORDER: usize = 2;

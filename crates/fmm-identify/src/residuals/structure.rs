@@ -2,12 +2,13 @@
 
 use fmm_fit::{EvaluationError, Fit, autocorrelation_time};
 
+use crate::experiment::Experiment;
 use crate::experiment::scaled;
 use crate::fit::problem::Problem;
 use crate::fit::tangent::inverse_of_products;
+use crate::report::Warning;
 use crate::residuals::correlation::are_correlated;
 use crate::residuals::noise::{ResidualNoise, Series};
-use crate::{Experiment, Warning};
 
 /// What the residuals of a fit look like beside the noise of the records.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,6 +7,8 @@ use fmm_friction::LawFamily;
 use fmm_model::{Parameter, Scalar};
 use fmm_sim::{Channels, Sampling, Trajectory};
 
+use crate::error::IdentifyError;
+use crate::experiment::Experiment;
 use crate::experiment::sight::{Seen, Sight};
 use crate::experiment::{Drive, scaled};
 use crate::fit::layout::Layout;
@@ -14,7 +16,7 @@ use crate::law::naming::Units;
 use crate::law::{Law, Motion, Simulate};
 use crate::machine::Scale;
 use crate::machine::terms::Term;
-use crate::{Experiment, IdentifyError, Machine, Terms};
+use crate::machine::{Machine, Terms};
 
 mod parts;
 mod residuals;
@@ -339,7 +341,7 @@ mod tests {
     use fmm_sim::{Engine, Exact, Scenario};
 
     use super::*;
-    use crate::Preparation;
+    use crate::experiment::Preparation;
 
     /// Two velocity records of a machine of 2 Hz, c/m = 0.05 1/s, F/m = 0.3 m/s², of different length.
     pub(super) fn decays() -> Vec<Experiment> {

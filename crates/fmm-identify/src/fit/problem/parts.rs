@@ -7,7 +7,7 @@ use fmm_model::Bounds;
 use fmm_record::Quantity;
 
 use super::{Problem, blocks};
-use crate::Experiment;
+use crate::experiment::Experiment;
 use crate::experiment::reference;
 
 /// Samples of a record, and of each of its periods, that are enough to search with. With fewer, a run takes as long,
@@ -119,7 +119,7 @@ mod tests {
 
     use super::super::tests::decays;
     use super::*;
-    use crate::{Machine, Terms};
+    use crate::machine::{Machine, Terms};
 
     /// Every parameter that is bounded otherwise in sight, with its lower and upper bound.
     fn bounded_in_sight(problem: &Problem<'_>) -> Vec<(String, f64, f64)> {

@@ -193,7 +193,8 @@ mod tests {
     use super::super::tests::require_derivatives;
     use super::*;
     use crate::experiment::nuisance::DRIFT;
-    use crate::{Experiment, Machine, Preparation, Sensor};
+    use crate::experiment::{Experiment, Preparation, Sensor};
+    use crate::machine::Machine;
 
     /// A velocity behind a filter whose corner is fitted, and a displacement that drifts, in more samples than are
     /// simulated at a time.

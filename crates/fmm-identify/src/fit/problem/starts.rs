@@ -9,13 +9,15 @@ use fmm_model::Parameter;
 use super::Problem;
 use crate::experiment::nuisance::Nuisance;
 use crate::experiment::reference;
+use crate::experiment::{Drive, Experiment};
+use crate::fit::Identification;
 use crate::fit::first_guess::Dissipation;
 use crate::fit::layout::{Layout, mass_of_stiffness};
+use crate::judgement::Sign;
 use crate::judgement::sign::Addition;
 use crate::law::dimension::{Scales, is_coefficient, is_force};
 use crate::law::friction_curve::FrictionCurve;
 use crate::machine::terms::Term;
-use crate::{Drive, Experiment, Identification, Sign};
 
 /// What a static level lies above the sliding one by, to begin with (1).
 const FIRST_STATIC_EXCESS: f64 = 0.2;
