@@ -102,50 +102,54 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+mod candidate;
 mod design;
 mod error;
 mod estimators;
 mod experiment;
+mod finding;
 mod fit;
 mod force;
+mod identification;
 mod impact;
 mod judgement;
 mod law;
+mod linear_algebra;
 mod machine;
 #[cfg(feature = "sampler")]
 mod posterior;
+mod problem;
+mod quantities;
 mod report;
 mod residuals;
+mod threads;
+mod warning;
 
+pub use candidate::Candidate;
 pub use design::{Aim, DesignPrediction, Guess, Plan, PlannedSensor, PlannedTest};
 pub use error::IdentifyError;
 pub use estimators::{
     Decrement, EnergyMethod, EnergyRate, EnergyRates, HalfSwing, WeakForm, WeakFormEstimate, WindowFit, Windows,
     decrements, half_swing_losses, half_swing_losses_of,
 };
-pub use experiment::{Drive, Experiment, Offset, Preparation, RecordSummary, Sensor};
-pub use fit::{
-    FittedMotion, Identification, MachineProblem, Problem, Profile, Profiles, identify, identify_observed,
-    identify_with,
-};
+pub use experiment::{Drive, Experiment, ImpactSummary, ImpactTrial, Offset, Preparation, RecordSummary, Sensor};
+pub use finding::{Contribution, Finding, Origin, Source};
 pub use fmm_model::Estimated;
 pub use force::{
     ForceComparison, ForceIdentification, ForceLoop, ForceModel, ForceRecord, Onset, SpeedBin, Validation,
     compare_force, identify_force,
 };
-pub use impact::{
-    ImpactDomain, ImpactIdentification, ImpactMachine, ImpactOptions, ImpactProblem, ImpactSummary, ImpactTrial,
-    identify_impact,
-};
+pub use identification::{FittedMotion, Identification, Profile, Profiles, identify, identify_observed, identify_with};
+pub use impact::{ImpactDomain, ImpactIdentification, ImpactMachine, ImpactOptions, ImpactProblem, identify_impact};
 pub use judgement::{
     Addition, Comparison, FrictionOverLoad, LoadVerdict, NestedTest, Search, Sign, compare, compare_observed, search,
     search_observed,
 };
-pub use law::Candidate;
 pub use machine::{Known, Machine, Scale, Terms};
 #[cfg(feature = "sampler")]
 pub use posterior::{IdentificationPosterior, IntervalComparison, PredictiveCheck};
-pub use report::{Contribution, Finding, Origin, Source, Warning};
+pub use problem::{MachineProblem, Problem};
+pub use warning::Warning;
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

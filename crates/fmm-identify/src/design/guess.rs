@@ -5,11 +5,11 @@ use fmm_friction::Role;
 use fmm_model::{ModelError, Parameter, Rounded, Unit};
 use fmm_record::{Quantity, Record};
 
+use crate::candidate::Candidate;
 use crate::design::local;
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
-use crate::fit::Identification;
-use crate::law::Candidate;
+use crate::identification::Identification;
 use crate::law::Law;
 use crate::law::dimension::is_force;
 use crate::law::naming::Units;
@@ -139,7 +139,7 @@ impl Guess {
     /// As for [`Problem::new`](crate::Problem::new), and [`IdentifyError::Simulation`].
     pub fn of_pilot(found: &Identification, records: &[Experiment]) -> Result<Self, IdentifyError> {
         let (machine, terms) = (*found.machine(), found.terms().clone());
-        let problem = crate::fit::Problem::of(found.family(), machine, terms.clone(), records)?;
+        let problem = crate::problem::Problem::of(found.family(), machine, terms.clone(), records)?;
         let layout = problem.layout();
         let position = layout.units.position.clone();
         let shared = layout.shared;

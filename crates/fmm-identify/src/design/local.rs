@@ -12,14 +12,14 @@ use crate::design::planned_test::{Load, Motion};
 use crate::design::{Guess, PlannedTest};
 use crate::error::IdentifyError;
 use crate::experiment::{Drive, Experiment};
-use crate::fit::Problem;
-use crate::fit::layout::{Layout, mass, mass_of_stiffness};
+use crate::finding::Source;
 use crate::law::dimension::is_force;
 use crate::law::{DIRECTIONS, Law};
 use crate::machine::Scale;
 use crate::machine::terms::Term;
 use crate::machine::{Known, Machine, Terms};
-use crate::report::Source;
+use crate::problem::Problem;
+use crate::quantities::layout::{Layout, mass, mass_of_stiffness};
 
 /// Layout and parameters that all tests share, static levels among them.
 pub(crate) fn layout(

@@ -7,8 +7,8 @@ use crate::design::local::{self, Local};
 use crate::design::prediction::Quantity;
 use crate::design::{DesignPrediction, Guess, PlannedTest};
 use crate::error::IdentifyError;
-use crate::fit::layout::Layout;
-use crate::report::finding::derived;
+use crate::quantities::derived::derived;
+use crate::quantities::layout::Layout;
 
 /// The tests that may be made on a machine, and what each of them would tell.
 ///

@@ -8,8 +8,8 @@ use fmm_model::Parameter;
 use crate::design::Guess;
 use crate::design::local;
 use crate::error::IdentifyError;
-use crate::report::Source;
-use crate::report::{Finding, Origin};
+use crate::finding::Source;
+use crate::finding::{Finding, Origin};
 
 /// A quantity that tests would find, as a combination of shared parameters and errors of inputs.
 #[derive(Debug, Clone)]

@@ -2,7 +2,7 @@
 
 use crate::design::{DesignPrediction, Plan};
 use crate::error::IdentifyError;
-use crate::report::{Finding, Origin};
+use crate::finding::{Finding, Origin};
 
 /// Without a test, an uncertainty that grows by less than this says nothing.
 const NOTABLE: f64 = 1.02;

@@ -4,6 +4,7 @@
 pub(crate) mod banded;
 mod decrement;
 mod energy_rates;
+mod free_vibration;
 mod half_swings;
 mod test_function;
 mod turning_energies;

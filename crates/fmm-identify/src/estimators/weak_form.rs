@@ -10,8 +10,8 @@ use crate::error::IdentifyError;
 use crate::estimators::half_swings::{bridged, check_reversals, reversals};
 use crate::estimators::weak_equations::{Equations, Motion};
 use crate::experiment::Experiment;
-use fmm_model::Estimated;
 use crate::law::naming::Units;
+use fmm_model::Estimated;
 
 /// Friction and damping without a derivative of the record, without smoothing and without a simulation.
 ///

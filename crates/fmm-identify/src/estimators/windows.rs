@@ -7,11 +7,11 @@ use fmm_model::{Bounds, Dual, Parameter, Scalar};
 use fmm_record::Quantity;
 
 use crate::error::IdentifyError;
+use crate::estimators::free_vibration::FreeVibration;
 use crate::experiment::Experiment;
-use crate::fit::free_vibration::FreeVibration;
-use fmm_model::Estimated;
 use crate::law::naming::Units;
 use crate::residuals::correlation::{are_correlated, correlated_covariance};
+use fmm_model::Estimated;
 
 /// The viscous fit over one window.
 #[derive(Debug, Clone)]

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use fmm_record::{Quantity, Record, Swings, noise};
 
-use crate::fit::first_guess::FirstGuess;
+use crate::experiment::first_guess::FirstGuess;
 
 /// The velocity of an `acceleration`, less what drifts more slowly than a period; `None` if nothing swings.
 ///

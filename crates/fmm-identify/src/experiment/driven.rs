@@ -8,9 +8,9 @@ use fmm_record::{Quantity, Record, Swings, noise, quantisation_step, saturation,
 
 use super::{Drive, Driven, Experiment, ring_down, usable};
 use crate::error::IdentifyError;
+use crate::experiment::first_guess::{Dissipation, FirstGuess};
 use crate::experiment::{Offset, Preparation, RecordSummary};
-use crate::fit::first_guess::{Dissipation, FirstGuess};
-use crate::fit::tangent::inverse_of_products;
+use crate::linear_algebra::inverse_of_products;
 
 impl Experiment {
     /// A driven motion: the `response` of the machine to `drive`, both on one time axis. The drive must be known during

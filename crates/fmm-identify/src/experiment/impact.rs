@@ -4,9 +4,9 @@ use fmm_record::{Quantity, Record};
 
 use super::{Experiment, FEWEST_SAMPLES};
 use crate::error::IdentifyError;
+use crate::experiment::ImpactTrial;
 use crate::experiment::ring_down;
 use crate::experiment::{Drive, Offset, Preparation};
-use crate::impact::ImpactTrial;
 
 impl Experiment {
     /// A hammer blow: the velocity from the beginning of the blow until a while after rest, driven by the measured

@@ -3,11 +3,16 @@
 mod acceleration;
 mod drive;
 mod driven;
+pub(crate) mod first_guess;
 mod impact;
+pub(crate) mod impact_motion;
+mod impact_trial;
+mod limits;
 pub(crate) mod nuisance;
 mod planned;
 mod preparation;
 mod ring_down;
+mod sampled_pulse;
 mod sensor;
 pub(crate) mod sight;
 
@@ -19,15 +24,16 @@ use fmm_record::{Quantity, Record};
 
 pub use drive::Drive;
 pub(crate) use driven::DrivenGuess;
+pub use impact_trial::{ImpactSummary, ImpactTrial};
 pub use preparation::{Offset, Preparation, RecordSummary};
 pub(crate) use sensor::Filter;
 pub use sensor::Sensor;
 
 use crate::error::IdentifyError;
+use crate::experiment::first_guess::{Dissipation, FirstGuess};
 use crate::experiment::nuisance::Nuisance;
-use crate::fit::first_guess::{Dissipation, FirstGuess};
 use crate::machine::Machine;
-use crate::report::Warning;
+use crate::warning::Warning;
 
 /// An experiment on a machine: a ring-down ([`ring_down`](Self::ring_down)), a hammer blow ([`impact`](Self::impact)),
 /// or a motion that is driven by a measured force or by a measured motion of the base ([`driven`](Self::driven)).

@@ -4,7 +4,7 @@ use fmm_record::Record;
 
 use super::{Drive, Driven, DrivenGuess, Experiment, Sensor};
 use crate::experiment::RecordSummary;
-use crate::fit::first_guess::FirstGuess;
+use crate::experiment::first_guess::FirstGuess;
 
 impl Experiment {
     /// An experiment of a machine that vibrates at this `frequency` (Hz); the `record` says when and what would be

@@ -12,10 +12,10 @@ use fmm_record::{
 use super::acceleration::{jumps, velocity_of};
 use super::{Experiment, Sensor, usable};
 use crate::error::IdentifyError;
+use crate::experiment::first_guess::{FirstGuess, Oscillation};
 use crate::experiment::nuisance::Nuisance;
 use crate::experiment::preparation::COARSE;
 use crate::experiment::{Offset, Preparation, RecordSummary};
-use crate::fit::first_guess::{FirstGuess, Oscillation};
 
 /// Fewest half swings that show a period.
 const FEWEST_HALF_SWINGS: usize = 2;
@@ -252,7 +252,7 @@ pub(super) fn without(count: usize, holes: impl Iterator<Item = Range<usize>>) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Warning;
+    use crate::warning::Warning;
 
     #[test]
     fn holes_are_left_out() {

@@ -5,11 +5,11 @@ use fmm_model::{Parameter, Restoring};
 use fmm_record::Quantity;
 use fmm_sim::{Channels, Sampling, Trajectory};
 
-use crate::fit::problem::Problem;
-use crate::fit::tangent::inverse_of_products;
-use crate::fit::threads::on_all_threads;
 use crate::law::along::{Guide, MeasuredMotion, Place, places};
+use crate::linear_algebra::inverse_of_products;
 use crate::machine::terms::Term;
+use crate::problem::Problem;
+use crate::threads::on_all_threads;
 
 /// Samples of a period that are enough to follow friction along it.
 const SAMPLES_PER_SWING: f64 = 64.0;

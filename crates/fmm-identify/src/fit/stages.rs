@@ -9,20 +9,22 @@ use fmm_friction::CoulombViscous;
 use fmm_model::Restoring;
 
 use crate::error::IdentifyError;
-use crate::fit::Identification;
-use crate::fit::identification::Observer;
-use crate::fit::problem::Problem;
+use crate::problem::fitted::{Fall, Fitted};
+
 use crate::fit::response::Response;
-use crate::fit::threads::on_all_threads;
-use crate::judgement::Sign;
+use crate::problem::Problem;
 use crate::residuals::structure::ResidualStructure;
+use crate::threads::on_all_threads;
+
+/// Observer of the trial steps of a fit; a break ends it.
+pub(crate) type Observer<'o> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + Send + 'o;
 
 /// A fit by Coulomb and viscous friction to begin another one near, and what its residuals ask for.
 pub(crate) struct Near<'a> {
-    pub(crate) simple: &'a Identification,
-    pub(crate) signs: &'a [Sign],
+    pub(crate) simple: &'a Fitted,
+    pub(crate) falls: &'a [Fall],
     /// Fits by other laws that describe the records better.
-    pub(crate) others: Vec<&'a Identification>,
+    pub(crate) others: Vec<&'a Fitted>,
     /// How many of the starts beside others are fitted, the best first.
     pub(crate) tries: usize,
 }
@@ -35,7 +37,7 @@ pub(crate) enum Begin<'a> {
     /// Near another fit.
     Near(&'a Near<'a>),
     /// Where a fit by the same law to the same records has ended, of which now the sensors filter.
-    Behind(&'a Identification),
+    Behind(&'a Fitted),
 }
 
 /// Iterations after which a law that still fits worse than Coulomb and viscous friction is given up.
@@ -81,7 +83,7 @@ pub(crate) fn fit_begun(
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
     if let Begin::Behind(plain) = begin {
-        return best_fit(problem, problem.name(), &[problem.behind_sensors(plain.fit().values())], options, observer);
+        return best_fit(problem, problem.name(), &[problem.behind_sensors(plain.fit.values())], options, observer);
     }
     let limited = |most: usize| options.clone().with_max_iterations(options.max_iterations().min(most));
     let by_recast = problem.recast().and_then(|recast| {
@@ -140,11 +142,11 @@ fn fit_near(
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
     let simple = Problem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
-    let mut starts = problem.near(&simple, near.simple.fit().values(), near.signs);
+    let mut starts = problem.near(&simple, near.simple.fit.values(), near.falls);
     let beside: Vec<Vec<f64>> =
         near.others.iter().filter_map(|other| problem.beside(other, &near.others, &starts)).collect();
     if !beside.is_empty() {
-        let mut all = problem.continued(&simple, near.simple.fit().values());
+        let mut all = problem.continued(&simple, near.simple.fit.values());
         all.truncate(1);
         all.extend(beside);
         starts = lowest(problem, all, near.tries);
@@ -163,7 +165,7 @@ fn fit_near(
     };
     let is_driven = problem.is_driven();
     if is_driven {
-        starts.extend(problem.continued(&simple, near.simple.fit().values()));
+        starts.extend(problem.continued(&simple, near.simple.fit.values()));
         starts = lowest(problem, starts, MOST_STARTS);
     }
     let mut fit = |problem: &Problem<'_>, starts: &[Vec<f64>], options: &Options| {

@@ -6,15 +6,17 @@ use fmm_fit::{EvaluationError, Fit, Options, Residuals, solve};
 use fmm_friction::Role;
 
 use crate::error::IdentifyError;
-use crate::fit::tangent::inverse_of_products;
+use crate::finding::name_width;
+use crate::finding::{Finding, Origin, Source};
 use crate::force::model::naming;
 use crate::force::problem::ForceProblem;
 use crate::force::start::starts;
 use crate::force::{ForceModel, ForceRecord};
-use crate::report::{Finding, Origin, Source, Warning};
-use crate::report::{name_width, write_warnings};
+use crate::linear_algebra::inverse_of_products;
 use crate::residuals::noise::{ResidualNoise, Series};
 use crate::residuals::structure::{Covariance, ResidualStructure};
+use crate::warning::Warning;
+use crate::warning::write_warnings;
 
 /// Friction parameters out of forces along motions, with their uncertainty.
 ///

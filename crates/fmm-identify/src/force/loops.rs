@@ -2,8 +2,8 @@
 
 use fmm_fit::{LinearRegression, Weighting};
 
-use fmm_model::Estimated;
 use crate::force::ForceRecord;
+use fmm_model::Estimated;
 
 /// One cycle of a motion to and fro, from a reversal to the next but one.
 #[derive(Debug, Clone, Copy, PartialEq)]

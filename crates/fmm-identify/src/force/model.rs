@@ -2,9 +2,9 @@
 
 use fmm_model::{Bounds, Parameter, Unit};
 
+use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::force::ForceRecord;
-use crate::law::Candidate;
 use crate::law::naming::{Level, Units};
 use crate::machine::terms::Term;
 

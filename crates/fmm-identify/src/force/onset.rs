@@ -2,9 +2,9 @@
 
 use fmm_fit::{Polynomial, Weighting};
 
-use fmm_model::Estimated;
 use crate::force::ForceRecord;
 use crate::force::speed_curve::median;
+use fmm_model::Estimated;
 
 /// The onset of sliding after a rest or a reversal, as the force over the displacement from there shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,11 +6,11 @@ use fmm_fit::{EvaluationError, Residuals};
 use fmm_model::{Dual, Parameter, Scalar};
 
 use crate::error::IdentifyError;
-use crate::fit::pool::Pool;
 use crate::force::model::{Part, Shape};
 use crate::force::{ForceModel, ForceRecord};
 use crate::law::along::{Guide, Place, places};
 use crate::law::{DIRECTIONS, Law};
+use crate::threads::Pool;
 
 /// The residuals "model less force" of records, one after the other.
 ///

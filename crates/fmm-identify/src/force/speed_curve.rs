@@ -2,8 +2,8 @@
 
 use fmm_fit::{effective_count, median_deviation};
 
-use fmm_model::Estimated;
 use crate::force::ForceRecord;
+use fmm_model::Estimated;
 
 /// Friction at about one speed: half the difference between the median forces of the two directions.
 #[derive(Debug, Clone, Copy, PartialEq)]

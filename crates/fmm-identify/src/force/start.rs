@@ -3,10 +3,10 @@
 use fmm_fit::{EvaluationError, Residuals};
 use fmm_friction::Role;
 
-use crate::fit::tangent::inverse_of_products;
 use crate::force::ForceRecord;
 use crate::force::problem::ForceProblem;
 use crate::law::dimension::{Scales, is_force};
+use crate::linear_algebra::inverse_of_products;
 
 /// How much more sharply a law may bend than it typically does in a free vibration.
 const SHARPNESS: [f64; 7] = [1.0, 0.1, 0.3, 3.0, 10.0, 30.0, 100.0];

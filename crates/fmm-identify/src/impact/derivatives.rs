@@ -6,8 +6,9 @@ use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Excitation, Sampling, Scenario, Trajectory, simulate_into};
 
+use crate::experiment::ImpactTrial;
 use crate::impact::parameters::{LAW, RESPONSE_GAIN};
-use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactProblem, ImpactTrial};
+use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactProblem};
 use crate::machine::Known;
 
 const INTERVAL: f64 = 1e-3;

@@ -6,16 +6,18 @@ use fmm_fit::{EvaluationError, Fit};
 use fmm_friction::{Coulomb, LawFamily, Role};
 
 use crate::error::IdentifyError;
-use crate::fit::identification::FittedMotion;
+use crate::experiment::{ImpactSummary, ImpactTrial};
+use crate::finding::Source;
+use crate::finding::{Finding, Origin};
 use crate::fit::stages::best_fit;
+use crate::identification::FittedMotion;
 use crate::impact::covariance::ImpactCovariance;
 use crate::impact::parameters::{DAMPING, LAW, LOAD, MASS, RESPONSE_GAIN, STIFFNESS};
 use crate::impact::simulation::ImpactLaw;
-use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactProblem, ImpactSummary, ImpactTrial, warnings};
+use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactProblem, warnings};
 use crate::law::dimension::is_coefficient;
 use crate::law::naming::{Level, Units};
-use crate::report::finding::{Finding, Origin};
-use crate::report::{Source, Warning};
+use crate::warning::Warning;
 
 /// Friction parameters of one law out of blows, with their uncertainty and what limits them.
 ///

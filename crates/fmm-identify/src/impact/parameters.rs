@@ -5,7 +5,8 @@ use std::borrow::Cow;
 use fmm_model::{Bounds, Parameter};
 
 use crate::error::IdentifyError;
-use crate::impact::{ImpactMachine, ImpactOptions, ImpactTrial};
+use crate::experiment::ImpactTrial;
+use crate::impact::{ImpactMachine, ImpactOptions};
 use crate::law::Law;
 use crate::law::naming::{Level, Units};
 use crate::machine::Known;

@@ -9,14 +9,15 @@ use fmm_friction::LawFamily;
 use fmm_model::Parameter;
 
 use crate::error::IdentifyError;
-use crate::fit::pool::Pool;
+use crate::experiment::ImpactTrial;
 use crate::impact::lines::{Lines, Scratch};
 use crate::impact::parameters::Parameters;
 use crate::impact::pulse_prior::PulsePrior;
 use crate::impact::simulation::{FEW, ImpactLaw, Memory};
-use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions, ImpactTrial};
+use crate::impact::{ImpactDomain, ImpactMachine, ImpactOptions};
 use crate::law::Law;
 use crate::machine::Known;
+use crate::threads::Pool;
 
 /// The residuals "model less measurement" of one or several blows by a law, with exact derivatives.
 ///

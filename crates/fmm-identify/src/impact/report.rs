@@ -2,8 +2,9 @@
 
 use std::fmt;
 
+use crate::finding::name_width;
 use crate::impact::{ImpactDomain, ImpactIdentification};
-use crate::report::{name_width, write_warnings};
+use crate::warning::write_warnings;
 
 impl fmt::Display for ImpactDomain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

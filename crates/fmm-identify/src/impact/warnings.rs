@@ -1,15 +1,14 @@
 //! Warnings about the findings of blows.
 
 use std::f64::consts::PI;
-use std::fmt;
 
 use fmm_fit::Fit;
 use fmm_frf::{Channel, coulomb_impact_duration};
 
-use crate::fit::identification::FittedMotion;
-use crate::impact::ImpactTrial;
+use crate::experiment::ImpactTrial;
+use crate::identification::FittedMotion;
 use crate::impact::covariance::ImpactCovariance;
-use crate::report::Warning;
+use crate::warning::Warning;
 
 /// Relative error of an impulse from which on a pulse is coarse.
 const COARSE: f64 = 5e-3;
@@ -71,49 +70,5 @@ fn of_trial(number: usize, trial: &ImpactTrial, friction: Option<f64>, warnings:
         // Half the area under a ramp that is cut off, which is the height of its peak in the spectrum.
         let lost = whole.map_or(0.0, |whole| (1.0 - recorded / whole).max(0.0).powi(2));
         warnings.push(Warning::NotAtRest { trial: number, recorded, lost });
-    }
-}
-
-impl Warning {
-    /// The sentence of a warning that only blows give; nothing for others.
-    pub(crate) fn write_of_blows(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Warning::FurtherHit { trial, time, share } => write!(
-                f,
-                "trial {trial}: the hammer hit again at {time:.4} s with {:.0} % of the force; the fit follows both, but the spectrum \
-                 of the force has holes, so better repeat the trial",
-                100.0 * share
-            ),
-            Warning::Overload { trial, channel, samples } => write!(
-                f,
-                "trial {trial}: {samples} samples of the {channel} lie on the end of the range, as if clipped; they were fitted as they \
-                 are, which biases the friction"
-            ),
-            Warning::CoarsePulse { trial, intervals, error } => write!(
-                f,
-                "trial {trial}: the pulse has {intervals} intervals only; by where its samples lie, straight lines between them make \
-                 the impulse of a half sine up to {:.1} % too small, and a closed form with it: sample faster (the fit takes the \
-                 impulse from the motion as well)",
-                100.0 * error
-            ),
-            Warning::SpikesBridged { trial, samples } => write!(
-                f,
-                "trial {trial}: {samples} isolated samples of the velocity far off their neighbours were bridged by straight lines"
-            ),
-            Warning::NotAtRest { trial, recorded, lost } => write!(
-                f,
-                "trial {trial}: the record ends after {recorded:.2} s of motion, before rest: a peak read off the spectrum is {:.0} % \
-                 too low, while the fit ends with the record; the offset of the velocity rests on the samples before the blow alone, \
-                 and only the friction of that part shows",
-                100.0 * lost
-            ),
-            Warning::InputsNotPropagated { reason } => {
-                write!(
-                    f,
-                    "there are no uncertainties, as it is not known what the held values do to the findings: {reason}"
-                )
-            }
-            _ => Ok(()),
-        }
     }
 }

@@ -4,16 +4,17 @@ use std::ops::ControlFlow;
 
 use fmm_fit::{Options, Progress, f_tail};
 
+use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::{Experiment, RecordSummary};
-use crate::fit::Identification;
-use crate::fit::identification::closest;
+use crate::finding::{Finding, Source};
+use crate::identification::Identification;
+use crate::identification::closest;
 use crate::judgement::Sign;
+use crate::judgement::filtering::filtering_sensor;
 use crate::judgement::{Judgement, shortcomings};
-use crate::law::Candidate;
 use crate::machine::Machine;
-use crate::report::{Finding, Source, Warning};
-use crate::residuals::filtering::filtering_sensor;
+use crate::warning::Warning;
 
 /// A law and the more general one that it was tested against.
 #[derive(Debug, Clone, PartialEq)]

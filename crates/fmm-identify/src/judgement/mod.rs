@@ -1,6 +1,7 @@
 //! The judgement: which of several fitted laws the records bear, and which they exclude.
 
 pub(crate) mod comparison;
+pub(crate) mod filtering;
 mod friction_over_load;
 mod search;
 pub(crate) mod sign;
@@ -12,9 +13,9 @@ pub use sign::{Addition, Sign};
 
 use fmm_fit::f_tail;
 
-use crate::fit::Identification;
-use crate::law::Candidate;
-use crate::report::Finding;
+use crate::candidate::Candidate;
+use crate::finding::Finding;
+use crate::identification::Identification;
 
 /// What the records say of each of several laws beside the one that fits them best, which laws are left, and which of
 /// them is preferred.

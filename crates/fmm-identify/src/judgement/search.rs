@@ -6,20 +6,21 @@ use std::time::{Duration, Instant};
 
 use fmm_fit::{Options, Progress};
 
+use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
-use crate::fit::Identification;
-use crate::fit::identification::closest;
 use crate::fit::stages::Near;
-use crate::fit::threads::on_all_threads;
+use crate::identification::Identification;
+use crate::identification::closest;
 use crate::judgement::Comparison;
 use crate::judgement::comparison::explains;
+use crate::judgement::filtering::behind_filter;
 use crate::judgement::sign::{Addition, Sign, signs};
 use crate::judgement::{Judgement, shortcomings};
-use crate::law::Candidate;
 use crate::machine::Machine;
-use crate::report::Warning;
-use crate::residuals::filtering::behind_filter;
+use crate::problem::fitted::Fall;
+use crate::threads::on_all_threads;
+use crate::warning::Warning;
 
 /// How laws are searched for. The default tries as many as the record asks for, on all threads of the current rayon
 /// pool.
@@ -213,8 +214,9 @@ where
     }
     let run = Run { decays, ..run };
     let mut signs = run.signs(&found);
+    let falls: Vec<Fall> = signs.iter().filter_map(Sign::fall).collect();
     if found.asks_for_more(&signs) {
-        let falling = run.fit(run.candidates(&OF_SPEED)?, found.near(&signs, &[], 0).as_ref())?;
+        let falling = run.fit(run.candidates(&OF_SPEED)?, found.near(&falls, &[], 0).as_ref())?;
         found.add(falling);
         let is_bent = |sign: &Sign| sign.addition == Addition::SofteningSpring && sign.is_plain();
         // What a filter in the sensor does to a decay looks like a bent spring as well.
@@ -222,7 +224,7 @@ where
             behind_filter(decays, &found.identifications).is_some_and(|(found, _)| !found.structure().is_correlated())
         };
         if found.is_structured() && signs.iter().any(is_bent) && !is_filtered() {
-            let bent = run.fit(run.candidates(&WITH_SPRING)?, found.near(&signs, &[], 0).as_ref())?;
+            let bent = run.fit(run.candidates(&WITH_SPRING)?, found.near(&falls, &[], 0).as_ref())?;
             found.add(bent);
             if found.is_structured() {
                 let with_corners = run.fit(run.candidates(&WITH_CORNERS)?, None)?;
@@ -235,7 +237,7 @@ where
         // What a spring explains, no friction of the speed does.
         if found.is_structured() || !found.is_bent() {
             let further = found.unfinished().chain(run.candidates(&OF_SPEED_FURTHER)?).collect();
-            let further = run.fit(further, found.near(&signs, &[|_| true], 1).as_ref())?;
+            let further = run.fit(further, found.near(&falls, &[|_| true], 1).as_ref())?;
             found.add(further);
         }
         // A converter hides what is not longer than a few of its steps, and its steps look like presliding: neither
@@ -249,10 +251,10 @@ where
             |sign: &Sign| sign.addition == Addition::Presliding && sign.significance() > 2.0 && sign.size > least;
         if signs.iter().any(seen) {
             let run = Run { options: &limited_more, ..run };
-            let with_state = run.fit(run.candidates(&WITH_STATE)?, found.near(&signs, &[], 0).as_ref())?;
+            let with_state = run.fit(run.candidates(&WITH_STATE)?, found.near(&falls, &[], 0).as_ref())?;
             found.add(with_state);
             let with_state =
-                run.fit(run.candidates(&WITH_STATE_FURTHER)?, found.near(&signs, &[preslides], 2).as_ref())?;
+                run.fit(run.candidates(&WITH_STATE_FURTHER)?, found.near(&falls, &[preslides], 2).as_ref())?;
             found.add(with_state);
         }
     }
@@ -296,11 +298,11 @@ impl Found {
 
     /// Fits to begin another one near: that by Coulomb and viscous friction, and the closest to the records of each of
     /// `kinds`; so many `tries` are made.
-    fn near<'a>(&'a self, signs: &'a [Sign], kinds: &[fn(&Identification) -> bool], tries: usize) -> Option<Near<'a>> {
+    fn near<'a>(&'a self, falls: &'a [Fall], kinds: &[fn(&Identification) -> bool], tries: usize) -> Option<Near<'a>> {
         let simple = self.simple()?;
         let others =
             kinds.iter().filter_map(|is_kind| closest(self.identifications.iter().filter(|found| is_kind(found))));
-        Some(Near { simple, signs, others: others.collect(), tries })
+        Some(Near { simple: simple.fitted(), falls, others: others.map(Identification::fitted).collect(), tries })
     }
 
     /// Laws whose fits have not ended in their lowest minimum.

@@ -10,11 +10,12 @@ use fmm_model::{ModelError, Restoring};
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
 use crate::experiment::reference;
-use crate::fit::Identification;
-use crate::fit::problem::Problem;
-use crate::fit::tangent::Tangent;
+use crate::identification::Identification;
 use crate::law::Law;
 use crate::machine::Terms;
+use crate::problem::Problem;
+use crate::problem::fitted::Fall;
+use crate::problem::tangent::Tangent;
 
 /// An addition to Coulomb and viscous friction on a linear spring.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,6 +61,14 @@ impl Sign {
     /// The size in standard uncertainties (1).
     pub fn significance(&self) -> f64 {
         self.size / self.uncertainty
+    }
+
+    /// Friction that falls with the speed, if it is of that kind.
+    pub(crate) fn fall(&self) -> Option<Fall> {
+        match self.addition {
+            Addition::FallsWithSpeed(speed) => Some(Fall { speed, size: self.size, significance: self.significance() }),
+            _ => None,
+        }
     }
 
     /// Whether chance alone gives so much for one such sign in fifty or fewer.

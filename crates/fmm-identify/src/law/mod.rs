@@ -2,12 +2,8 @@
 //! laws.
 
 pub(crate) mod along;
-mod candidate;
 pub(crate) mod dimension;
-pub(crate) mod friction_curve;
 pub(crate) mod naming;
-
-pub use candidate::Candidate;
 
 use fmm_fit::EvaluationError;
 use fmm_friction::{FamilyVisitor, LawFamily, LawKind, LawParameter, Recast, Role, SpecialCase};

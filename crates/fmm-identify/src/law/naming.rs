@@ -5,7 +5,9 @@ use fmm_model::{Parameter, Unit};
 use fmm_record::{Quantity, Record};
 
 use crate::law::dimension::{is_coefficient, is_force};
-use crate::machine::terms::LINEAR;
+
+/// Name of the linear damping per mass, of the machine or of a law.
+pub(crate) const LINEAR: &str = "damping_per_mass";
 
 /// What the level of a law is stated as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,7 +8,7 @@ pub use terms::Terms;
 
 use fmm_model::{ModelError, Restoring};
 
-use crate::report::Source;
+use crate::finding::Source;
 
 /// What is known about the machine besides the record of its motion.
 ///

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::law::naming::LINEAR;
 use fmm_model::{Bounds, ModelError, Parameter, Restoring, Scalar, Unit};
 
 /// Damping and spring terms of the machine that are fitted beside the law, and parameters that are held.
@@ -139,8 +140,6 @@ impl Term {
     }
 }
 
-/// Name of the linear damping among the parameters, of the machine or of the law: a record determines their sum only.
-pub(crate) const LINEAR: &str = "damping_per_mass";
 /// Name of the quadratic damping among the parameters.
 pub(crate) const QUADRATIC: &str = "quadratic_damping_per_mass";
 

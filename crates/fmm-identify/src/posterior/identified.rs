@@ -6,13 +6,13 @@ use rand_chacha::rand_core::SeedableRng;
 
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
-use crate::fit::Identification;
-use crate::fit::problem::Problem;
+use crate::finding::Origin;
+use crate::identification::Identification;
 use crate::posterior::intervals::{LEVEL, compared};
 use crate::posterior::known_inputs::KnownInputs;
 use crate::posterior::predictive::predicted;
 use crate::posterior::{IntervalComparison, PredictiveCheck};
-use crate::report::Origin;
+use crate::problem::Problem;
 
 /// The posterior of everything that an identification found, beside its intervals of the other kinds, with predictive
 /// checks.

@@ -2,8 +2,8 @@
 
 use fmm_fit::Marginal;
 
-use crate::fit::{Identification, Profile, Profiles};
-use crate::report::Finding;
+use crate::finding::Finding;
+use crate::identification::{Identification, Profile, Profiles};
 
 /// Probability of the intervals.
 pub(super) const LEVEL: f64 = 0.95;

@@ -6,11 +6,11 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::error::IdentifyError;
 use crate::experiment::{Drive, Experiment};
-use crate::fit::Identification;
-use crate::fit::layout::Layout;
-use crate::fit::problem::Problem;
+use crate::identification::Identification;
 use crate::machine::Machine;
-use crate::report::finding::values_of_findings;
+use crate::problem::Problem;
+use crate::quantities::derived::values_of_findings;
+use crate::quantities::layout::Layout;
 
 /// What is known of machine and instruments, with normal priors by their standard uncertainties.
 ///

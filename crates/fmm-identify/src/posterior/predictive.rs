@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::experiment::{Experiment, Preparation};
-use crate::fit::problem::Problem;
+use crate::problem::Problem;
 
 /// Replicated records, so that a p-value of 1 % is known to a third of itself.
 const REPLICATES: usize = 400;

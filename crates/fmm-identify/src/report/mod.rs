@@ -1,53 +1,15 @@
 //! The reports, on one screen each.
 
-mod contribution;
-pub(crate) mod finding;
-mod limits;
 #[cfg(feature = "serde")]
 mod serialised;
-mod warning;
-
-pub use contribution::{Contribution, Source};
-pub use finding::{Finding, Origin};
-pub use warning::Warning;
 
 use std::fmt;
 
-use fmm_fit::EstimateStatus;
-
-use crate::fit::Identification;
+use crate::finding::{Contribution, Finding, name_width};
+use crate::identification::Identification;
 use crate::judgement::EXCLUDED;
 use crate::judgement::{Comparison, Sign};
-
-/// Width of the column that holds the names of parameters.
-pub(crate) fn name_width(findings: &[Finding]) -> usize {
-    findings.iter().map(|finding| finding.parameter().name().chars().count()).max().unwrap_or(0)
-}
-
-impl fmt::Display for Finding {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.quantity())?;
-        if let Some(interval) = self.interval_text() {
-            write!(f, "  {interval}")?;
-        }
-        match self.origin() {
-            Origin::Derived => write!(f, "  (with what is known of the machine)"),
-            Origin::Fitted(_) => self.reservation().map_or(Ok(()), |reservation| write!(f, "  ({reservation})")),
-        }
-    }
-}
-
-impl Finding {
-    /// What keeps it from being a measured value, if something does.
-    fn reservation(&self) -> Option<&'static str> {
-        match self.origin() {
-            Origin::Fitted(EstimateStatus::Undetermined) => Some("not determined"),
-            Origin::Fitted(EstimateStatus::Fixed) => Some("held"),
-            Origin::Fitted(status) if status.is_at_bound() => Some("at its bound"),
-            _ => None,
-        }
-    }
-}
+use crate::warning::write_warnings;
 
 impl Identification {
     fn write_findings(&self, f: &mut fmt::Formatter<'_>, rests: &[Option<f64>]) -> fmt::Result {
@@ -82,13 +44,6 @@ fn write_sources(f: &mut fmt::Formatter<'_>, finding: &Finding) -> fmt::Result {
     };
     let parts: Vec<String> = parts.iter().map(text).collect();
     writeln!(f, "  u² of {}: {}", finding.parameter().name(), parts.join(", "))
-}
-
-pub(crate) fn write_warnings(f: &mut fmt::Formatter<'_>, warnings: &[Warning]) -> fmt::Result {
-    if !warnings.is_empty() {
-        writeln!(f, "\nWarnings")?;
-    }
-    warnings.iter().try_for_each(|warning| writeln!(f, "  - {warning}"))
 }
 
 impl fmt::Display for Identification {
@@ -162,9 +117,9 @@ impl fmt::Display for Comparison {
         writeln!(f, "  {:<width$}  rms residual  rank  half swings    rest from   misfit + 2 rank         p", "")?;
         let standings = self.scores().iter().copied().zip(self.p_values().iter().copied());
         for (law, (score, p)) in self.identifications().iter().zip(standings) {
-            let stop = law.motions().iter().find_map(crate::fit::FittedMotion::stop_time);
+            let stop = law.motions().iter().find_map(crate::identification::FittedMotion::stop_time);
             let stop = stop.map_or_else(|| "-".to_owned(), |time| format!("{time:.4} s"));
-            let half_swings: usize = law.motions().iter().map(crate::fit::FittedMotion::half_swings).sum();
+            let half_swings: usize = law.motions().iter().map(crate::identification::FittedMotion::half_swings).sum();
             let p = if p < EXCLUDED { "excluded".to_owned() } else { format!("{p:.3}") };
             writeln!(
                 f,

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use fmm_fit::EstimateStatus;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
+use crate::experiment::ImpactSummary;
 use crate::experiment::RecordSummary;
-use crate::fit::Identification;
-use crate::impact::{ImpactIdentification, ImpactSummary};
+use crate::finding::{Contribution, Finding, Origin};
+use crate::identification::Identification;
+use crate::impact::ImpactIdentification;
 use crate::judgement::{Comparison, Sign};
-use crate::report::{Contribution, Finding, Origin};
 
 impl Serialize for Finding {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -60,9 +61,12 @@ impl Serialize for Identification {
         document.serialize_field("parameters", &parameters)?;
         document.serialize_field("rms_residual", &self.rms_residual())?;
         document.serialize_field("rank", &self.fit().rank())?;
+        document.serialize_field(
+            "stop_time_s",
+            &self.motions().first().and_then(crate::identification::FittedMotion::stop_time),
+        )?;
         document
-            .serialize_field("stop_time_s", &self.motions().first().and_then(crate::fit::FittedMotion::stop_time))?;
-        document.serialize_field("swings", &self.motions().first().map(crate::fit::FittedMotion::half_swings))?;
+            .serialize_field("swings", &self.motions().first().map(crate::identification::FittedMotion::half_swings))?;
         document.serialize_field("aicc", &self.fit().corrected_akaike())?;
         document.serialize_field("outcome", &self.fit().outcome().to_string())?;
         document.serialize_field("autocorrelation_time", &self.autocorrelation_time())?;
@@ -78,7 +82,8 @@ impl Serialize for ImpactIdentification {
         let parameters: BTreeMap<_, _> =
             self.findings().iter().map(|finding| (finding.parameter().name(), finding)).collect();
         let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();
-        let stop_times: Vec<Option<f64>> = self.motions().iter().map(crate::fit::FittedMotion::stop_time).collect();
+        let stop_times: Vec<Option<f64>> =
+            self.motions().iter().map(crate::identification::FittedMotion::stop_time).collect();
         let mut document = serializer.serialize_struct("ImpactIdentification", 11)?;
         document.serialize_field("law", self.law())?;
         document.serialize_field("fitted_to", &self.options().domain().to_string())?;

@@ -2,9 +2,6 @@
 
 mod autoregression;
 pub(crate) mod correlation;
-mod disturbances;
-pub(crate) mod drift;
-pub(crate) mod filtering;
 pub(crate) mod noise;
 mod noise_growth;
 pub(crate) mod structure;

@@ -4,11 +4,11 @@ use fmm_fit::{EvaluationError, Fit, autocorrelation_time};
 
 use crate::experiment::Experiment;
 use crate::experiment::scaled;
-use crate::fit::problem::Problem;
-use crate::fit::tangent::inverse_of_products;
-use crate::report::Warning;
+use crate::linear_algebra::inverse_of_products;
+use crate::problem::Problem;
 use crate::residuals::correlation::are_correlated;
 use crate::residuals::noise::{ResidualNoise, Series};
+use crate::warning::Warning;
 
 /// What the residuals of a fit look like beside the noise of the records.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,7 +62,12 @@ impl ResidualStructure {
     pub(crate) fn coloured_noise(&self, inflation: f64) -> Option<Warning> {
         let is_coloured = self.is_excessive() != self.is_correlated();
         let ratio = self.residual / self.noise;
-        is_coloured.then_some(Warning::ColouredNoise { time: self.autocorrelation_time, ratio, inflation })
+        is_coloured.then_some(Warning::ColouredNoise {
+            is_correlated: self.is_correlated(),
+            time: self.autocorrelation_time,
+            ratio,
+            inflation,
+        })
     }
 
     fn is_excessive(&self) -> bool {

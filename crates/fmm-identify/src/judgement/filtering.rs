@@ -5,10 +5,10 @@ use std::ops::ControlFlow;
 use fmm_fit::Options;
 
 use crate::experiment::{Experiment, Sensor};
-use crate::fit::Identification;
-use crate::fit::identification::{closest, identify_by};
 use crate::fit::stages::Begin;
-use crate::report::Warning;
+use crate::identification::Identification;
+use crate::identification::{closest, identify_by};
+use crate::warning::Warning;
 
 /// Order of the filter that is tried: that of most sensors with one.
 const ORDER: usize = 2;
@@ -75,7 +75,8 @@ pub(crate) fn behind_filter(
     let (machine, terms) = (simple.machine(), simple.terms());
     let mut observer = |_: &fmm_fit::Progress<'_>| ControlFlow::Continue(());
     let found =
-        identify_by(simple.family(), machine, terms, &seen, Begin::Behind(simple), &options, &mut observer).ok()?;
+        identify_by(simple.family(), machine, terms, &seen, Begin::Behind(simple.fitted()), &options, &mut observer)
+            .ok()?;
     let settled = decays.iter().map(|decay| sensor.settling(decay.guess().frequency())).fold(0.0, f64::max);
     Some((found, settled))
 }

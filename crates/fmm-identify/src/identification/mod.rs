@@ -1,28 +1,40 @@
 //! The main job: friction parameters of one law out of ring-down records.
 
+mod disturbances;
+pub(crate) mod drift;
+mod findings;
+mod limits;
+mod profile;
+
 use std::ops::ControlFlow;
 
 use fmm_fit::{Estimate, EvaluationError, Fit, Options, Progress, solve_observed};
 use fmm_friction::{LawFamily, Role};
 use fmm_sim::{Event, EventKind, Trajectory};
 
+use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::nuisance::Nuisance;
 use crate::experiment::scaled;
 use crate::experiment::{Drive, Experiment};
-use crate::fit::layout::Layout;
-use crate::fit::problem::Problem;
-use crate::fit::stages::{Begin, fit_begun};
-use crate::fit::tangent::Tangent;
+use crate::finding::Finding;
+use crate::finding::Source;
+use crate::fit::stages::{Begin, Near, Observer, fit_begun};
+use crate::identification::drift::{as_fitted, with_drift};
+use crate::identification::findings::findings;
 use crate::law::Law;
+use crate::law::naming::LINEAR;
 use crate::law::naming::{Level, level_name};
-use crate::machine::terms::LINEAR;
 use crate::machine::{Machine, Terms};
-use crate::report::finding::{Finding, findings};
-use crate::report::{Source, Warning};
-use crate::residuals::drift::{as_fitted, with_drift};
+use crate::problem::Problem;
+use crate::problem::fitted::Fitted;
+use crate::problem::tangent::Tangent;
+use crate::quantities::layout::Layout;
 use crate::residuals::noise::ResidualNoise;
 use crate::residuals::structure::{Covariance, ResidualStructure};
+use crate::warning::Warning;
+
+pub use profile::{Profile, Profiles};
 
 /// How the fitted motion of one record ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,11 +83,9 @@ impl FittedMotion {
 #[derive(Debug, Clone)]
 pub struct Identification {
     law: String,
-    family: Law,
+    fitted: Fitted,
     friction_at_rest: Option<f64>,
-    terms: Terms,
     machine: Machine,
-    fit: Fit,
     findings: Vec<Finding>,
     motions: Vec<FittedMotion>,
     warnings: Vec<Warning>,
@@ -154,7 +164,6 @@ pub fn identify_observed<F: LawFamily>(
 }
 
 /// An observer of trial steps that may end the fit.
-pub(crate) type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + Send + 'a;
 
 /// As [`identify_observed`], by a law that is known at run time.
 pub(crate) fn identify_by(
@@ -201,16 +210,14 @@ pub(crate) fn identify_by(
     }
     let mut identification = Identification {
         law: terms.name(law.name),
-        family: problem.layout().family,
         friction_at_rest: friction_at_rest(problem.layout(), fit.values()),
-        terms: terms.clone(),
         machine: *machine,
         structure,
         disturbances: decays.iter().map(|decay| decay.nuisances().to_vec()).collect(),
         pull_at_bound: pull_at_bound(&problem, &fit, &covariance),
         covariance,
         amplitude: scaled(decays).map(|(decay, weight)| weight * decay.summary().amplitudes.0).fold(0.0, f64::max),
-        fit,
+        fitted: Fitted { law: problem.layout().family, terms: terms.clone(), fit },
         findings: found,
         motions,
         warnings: Vec::new(),
@@ -221,6 +228,43 @@ pub(crate) fn identify_by(
         .warnings
         .extend(held.map(|held| Warning::StaticLevelHeld { parameter: held.parameter().name().to_owned() }));
     Ok(identification)
+}
+
+impl Candidate {
+    pub(crate) fn identify(
+        &self,
+        machine: &Machine,
+        decays: &[Experiment],
+        options: &Options,
+        observer: &mut Observer<'_>,
+    ) -> Result<Identification, IdentifyError> {
+        identify_by(*self.law(), machine, self.terms(), decays, Begin::Anywhere, options, observer)
+    }
+
+    /// As [`identify`](Self::identify), begun near other fits of the same records.
+    pub(crate) fn identify_near(
+        &self,
+        machine: &Machine,
+        decays: &[Experiment],
+        near: Option<&Near<'_>>,
+        options: &Options,
+        observer: &mut Observer<'_>,
+    ) -> Result<Identification, IdentifyError> {
+        let begin = near.map_or(Begin::Anywhere, Begin::Near);
+        identify_by(*self.law(), machine, self.terms(), decays, begin, options, observer)
+    }
+
+    /// Names of the parameters of a fit to `decays`: of the oscillator, the damping, the law, and the initial state.
+    ///
+    /// # Errors
+    /// [`IdentifyError::Missing`], and as [`Layout::of`].
+    pub(crate) fn parameters(&self, machine: &Machine, decays: &[Experiment]) -> Result<Vec<String>, IdentifyError> {
+        if decays.is_empty() {
+            return Err(IdentifyError::no_record());
+        }
+        let (_, parameters) = Layout::of(*self.law(), machine, self.terms(), decays)?;
+        Ok(parameters.iter().map(|parameter| parameter.name().to_owned()).collect())
+    }
 }
 
 /// By how many standard uncertainties the linear damping would leave the bound that it lies on; `None` if it lies on
@@ -254,13 +298,18 @@ impl Identification {
         &self.law
     }
 
+    /// The fit, near which others may begin.
+    pub(crate) fn fitted(&self) -> &Fitted {
+        &self.fitted
+    }
+
     pub(crate) fn family(&self) -> Law {
-        self.family
+        self.fitted.law
     }
 
     /// What was fitted beside the law, and what was held.
     pub fn terms(&self) -> &Terms {
-        &self.terms
+        &self.fitted.terms
     }
 
     /// F/m at rest, in the unit of the friction per mass: the sliding level with what the law adds to it at zero speed;
@@ -276,7 +325,7 @@ impl Identification {
 
     /// The fit behind the findings: covariance, rank, residuals, intervals.
     pub fn fit(&self) -> &Fit {
-        &self.fit
+        &self.fitted.fit
     }
 
     /// Everything found: fitted parameters first, then what follows from them and from the machine.
@@ -333,14 +382,14 @@ impl Identification {
             return None;
         }
         let decays = self.experiments(decays).ok()?;
-        let problem = Problem::of(self.family, self.machine, self.terms.clone(), &decays).ok()?;
-        problem.model(record, self.fit.values()).ok()
+        let problem = Problem::of(self.fitted.law, self.machine, self.fitted.terms.clone(), &decays).ok()?;
+        problem.model(record, self.fitted.fit.values()).ok()
     }
 
     /// The `decays`, which must be those of the identification, with what was fitted beside their motion.
     pub(crate) fn experiments(&self, decays: &[Experiment]) -> Result<Vec<Experiment>, IdentifyError> {
         let samples = |decays: &[Experiment]| decays.iter().map(|decay| decay.summary().samples).sum::<usize>();
-        let (given, fitted) = (samples(decays), self.fit.residuals().len());
+        let (given, fitted) = (samples(decays), self.fitted.fit.residuals().len());
         if decays.len() != self.motions.len() || given != fitted {
             let (count, expected) = (decays.len(), self.motions.len());
             return Err(IdentifyError::wrong_record(format!(
@@ -365,7 +414,7 @@ impl Identification {
 
     /// The `decays` with slow drift to be fitted beside their motion, if the residuals of this fit show any.
     pub(crate) fn with_drift(&self, decays: &[Experiment]) -> Option<Vec<Experiment>> {
-        let problem = Problem::of(self.family, self.machine, self.terms.clone(), decays).ok()?;
+        let problem = Problem::of(self.fitted.law, self.machine, self.fitted.terms.clone(), decays).ok()?;
         with_drift(self, &problem, decays)
     }
 
@@ -373,7 +422,7 @@ impl Identification {
     /// other than zero, where a term is not merely left out.
     pub(crate) fn parameters_used(&self) -> usize {
         let is_used = |estimate: &&Estimate| estimate.status().is_at_bound() && estimate.value() != 0.0;
-        self.fit.rank() + self.fit.estimates().iter().filter(is_used).count()
+        self.fitted.fit.rank() + self.fitted.fit.estimates().iter().filter(is_used).count()
     }
 
     /// How many places a law has to leap at: the samples of a half swing for one that comes to rest within a dead zone,
@@ -383,7 +432,7 @@ impl Identification {
             return 1.0;
         }
         let half_swings: usize = self.motions.iter().map(FittedMotion::half_swings).sum();
-        self.fit.residuals().len() as f64 / half_swings.max(1) as f64
+        self.fitted.fit.residuals().len() as f64 / half_swings.max(1) as f64
     }
 
     /// The noise that the residuals show.
@@ -393,13 +442,13 @@ impl Identification {
 
     /// As how many independent residuals those of this fit count (1).
     pub(crate) fn told(&self) -> f64 {
-        self.covariance.degrees_of_freedom() + self.fit.rank() as f64
+        self.covariance.degrees_of_freedom() + self.fitted.fit.rank() as f64
     }
 
     /// What the parameters of this fit to `problem` can follow, those on a bound included; `None` if the derivatives
     /// cannot be had.
     pub(crate) fn tangent(&self, problem: &Problem<'_>) -> Option<Tangent> {
-        Tangent::of(problem, &self.fit)
+        Tangent::of(problem, &self.fitted.fit)
     }
 
     /// Whether a viscous part that ended at zero would be significantly negative without its bound, as if friction fell
@@ -407,10 +456,11 @@ impl Identification {
     pub(crate) fn damping_would_be_negative(&self) -> bool {
         /// Standard uncertainties by which it would be negative.
         const PLAIN: f64 = 2.33;
-        let Some(index) = self.fit.estimates().iter().position(|estimate| estimate.name() == LINEAR) else {
+        let Some(index) = self.fitted.fit.estimates().iter().position(|estimate| estimate.name() == LINEAR) else {
             return false;
         };
-        self.fit.estimates()[index].status().is_at_bound() && self.pull_at_bound.is_some_and(|pull| pull < -PLAIN)
+        self.fitted.fit.estimates()[index].status().is_at_bound()
+            && self.pull_at_bound.is_some_and(|pull| pull < -PLAIN)
     }
 
     /// By how much this fit is worse than that by `other`, in variances of the noise that the residuals of the other
@@ -418,14 +468,14 @@ impl Identification {
     /// known.
     pub(crate) fn misfit_beside(&self, other: &Self) -> (f64, f64) {
         let floor = self.floor().max(other.floor());
-        let excess = self.fit.sum_of_squares().max(floor) - other.fit.sum_of_squares().max(floor);
-        let pairs = self.fit.residuals().iter().zip(other.fit.residuals());
+        let excess = self.fitted.fit.sum_of_squares().max(floor) - other.fitted.fit.sum_of_squares().max(floor);
+        let pairs = self.fitted.fit.residuals().iter().zip(other.fitted.fit.residuals());
         let difference: Vec<f64> = pairs.map(|(own, theirs)| own - theirs).collect();
         let rounding = floor / difference.len().max(1) as f64;
         let variance = other.noise().variance_along(&difference).max(rounding);
         let freedom = 2.0 * other.noise().ordinates_along(&difference);
         let misfit = if excess > 0.0 && variance > 0.0 { excess / variance } else { 0.0 };
-        (misfit, freedom.min(other.fit.degrees_of_freedom() as f64).max(1.0))
+        (misfit, freedom.min(other.fitted.fit.degrees_of_freedom() as f64).max(1.0))
     }
 
     /// The findings that mean the same in both, each with that of `other`: what has the same name, and the sliding
@@ -450,7 +500,8 @@ impl Identification {
         };
         let unit = sliding.parameter().unit();
         let at_rest = self
-            .family
+            .fitted
+            .law
             .fitted()
             .filter(|parameter| matches!(parameter.role(), Role::LevelAbove | Role::Excess | Role::Breakaway));
         let at_rest = at_rest.filter_map(|parameter| {
@@ -463,14 +514,14 @@ impl Identification {
 
     /// Names of the findings of the first level, as friction per mass, force and coefficient; empty for laws without.
     fn level_names(&self) -> Vec<String> {
-        let Some(level) = self.family.level() else { return Vec::new() };
-        let Some(parameter) = self.family.fitted().nth(level) else { return Vec::new() };
+        let Some(level) = self.fitted.law.level() else { return Vec::new() };
+        let Some(parameter) = self.fitted.law.fitted().nth(level) else { return Vec::new() };
         [Level::PerMass, Level::Force, Level::Mu].map(|level| level_name(parameter.parameter().name(), level)).to_vec()
     }
 
     /// Sum of squares below which a fit reproduces its records to rounding, and none is better than another.
     pub(crate) fn floor(&self) -> f64 {
-        (1e-12 * self.amplitude).powi(2) * self.fit.residuals().len() as f64
+        (1e-12 * self.amplitude).powi(2) * self.fitted.fit.residuals().len() as f64
     }
 }
 

@@ -3,9 +3,9 @@
 use fmm_fit::{EvaluationError, Options, Residuals, solve};
 use fmm_model::Parameter;
 
-use crate::fit::layout::Layout;
 use crate::machine::Terms;
 use crate::machine::terms::Term;
+use crate::quantities::layout::Layout;
 
 /// Retarding force per mass over the speed, of a law with the damping beside it, in the units of a record.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,8 +5,8 @@ use fmm_model::Parameter;
 
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
-use crate::fit::Identification;
-use crate::fit::problem::Problem;
+use crate::identification::Identification;
+use crate::problem::Problem;
 
 /// The sum of squares along one fitted quantity, all others fitted anew, beside what its standard uncertainty says of
 /// it.

@@ -7,9 +7,9 @@ use fmm_frf::{Baseline, Channel, Hit, Pulse};
 use fmm_record::{Quantity, Record, noise, quantisation_step, saturation};
 
 use crate::error::IdentifyError;
+use crate::experiment::impact_motion::{FEWEST_QUIET, Motion, bridged, mean};
+use crate::experiment::sampled_pulse::SampledPulse;
 use fmm_model::Estimated;
-use crate::impact::motion::{FEWEST_QUIET, Motion, bridged, mean};
-use crate::impact::sampled_pulse::SampledPulse;
 
 /// A pulse stands this far above the noise (standard deviations),
 const SIGNIFICANT: f64 = 20.0;

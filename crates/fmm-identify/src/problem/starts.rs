@@ -7,17 +7,15 @@ use fmm_friction::Role;
 use fmm_model::Parameter;
 
 use super::Problem;
+use crate::experiment::first_guess::Dissipation;
 use crate::experiment::nuisance::Nuisance;
 use crate::experiment::reference;
 use crate::experiment::{Drive, Experiment};
-use crate::fit::Identification;
-use crate::fit::first_guess::Dissipation;
-use crate::fit::layout::{Layout, mass_of_stiffness};
-use crate::judgement::Sign;
-use crate::judgement::sign::Addition;
 use crate::law::dimension::{Scales, is_coefficient, is_force};
-use crate::law::friction_curve::FrictionCurve;
 use crate::machine::terms::Term;
+use crate::problem::fitted::{Fall, Fitted};
+use crate::problem::friction_curve::FrictionCurve;
+use crate::quantities::layout::{Layout, mass_of_stiffness};
 
 /// What a static level lies above the sliding one by, to begin with (1).
 const FIRST_STATIC_EXCESS: f64 = 0.2;
@@ -160,33 +158,27 @@ impl Problem<'_> {
         starts
     }
 
-    /// Start values near a fit of `simple`, with what its residuals ask for: friction that falls over the speeds of the
-    /// plainest signs, by as much as they say; and the same losses without it.
-    pub(crate) fn near(&self, simple: &Problem<'_>, values: &[f64], signs: &[Sign]) -> Vec<Vec<f64>> {
+    /// Start values near a fit of `simple`, with what its residuals ask for: the most significant `falls` of friction
+    /// with the speed; and the same losses without it.
+    pub(crate) fn near(&self, simple: &Problem<'_>, values: &[f64], falls: &[Fall]) -> Vec<Vec<f64>> {
         if simple.layout.oscillator != 1 || !self.is_elaborate() {
             return self.starts();
         }
         let (oscillator, rest) = values.split_at(simple.layout.oscillator);
         let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
         let own = &values[simple.layout.shared..];
-        let mut falls: Vec<(f64, f64, f64)> = signs
-            .iter()
-            .filter_map(|sign| match sign.addition {
-                Addition::FallsWithSpeed(share) => Some((share, sign.size, sign.significance())),
-                _ => None,
-            })
-            .collect();
-        falls.sort_by(|a, b| b.2.total_cmp(&a.2));
+        let mut falls = falls.to_vec();
+        falls.sort_by(|a, b| b.significance.total_cmp(&a.significance));
         falls.truncate(2);
         if falls.is_empty() {
-            falls = vec![(0.06, 0.3, 0.0), (0.3, 0.3, 0.0)];
+            falls = [0.06, 0.3].map(|speed| Fall { speed, size: 0.3, significance: 0.0 }).to_vec();
         }
         if !self.law().fitted().any(|parameter| self.law().bends(parameter)) {
             falls.truncate(1);
         }
         let bends_at = |share: f64| self.law().bend().map_or(1.0, |typical| typical / share);
         let mut starts = Vec::new();
-        for (share, size, _) in falls {
+        for Fall { speed: share, size, .. } in falls {
             let mut start = oscillator.to_vec();
             self.push_dissipation_with(dissipation, bends_at(share), Some(size.clamp(0.05, 2.0)), &mut start);
             start.extend_from_slice(own);
@@ -198,21 +190,16 @@ impl Problem<'_> {
     /// Start values that put this law where `other` has ended: the same friction over the speed, as nearly as it can,
     /// and what else has the same name there or in one of `others`; `None` if one of the two laws states no friction
     /// over the speed.
-    pub(crate) fn beside(
-        &self,
-        other: &Identification,
-        others: &[&Identification],
-        starts: &[Vec<f64>],
-    ) -> Option<Vec<f64>> {
+    pub(crate) fn beside(&self, other: &Fitted, others: &[&Fitted], starts: &[Vec<f64>]) -> Option<Vec<f64>> {
         if self.layout.oscillator != 1 {
             return None;
         }
-        let fitted = other.fit();
-        let (layout, _) = Layout::of(other.family(), &self.machine, other.terms(), self.decays).ok()?;
-        let curve = FrictionCurve::of(&layout, other.terms(), fitted.values(), reference(self.decays).scales().1)?;
+        let fitted = &other.fit;
+        let (layout, _) = Layout::of(other.law, &self.machine, &other.terms, self.decays).ok()?;
+        let curve = FrictionCurve::of(&layout, &other.terms, fitted.values(), reference(self.decays).scales().1)?;
         let own = &fitted.values()[layout.shared..];
         let of_that_name = |(value, parameter): (&f64, &Parameter)| {
-            let mut estimates = std::iter::once(&other).chain(others).flat_map(|other| other.fit().estimates());
+            let mut estimates = std::iter::once(&other).chain(others).flat_map(|other| other.fit.estimates());
             estimates.find(|estimate| estimate.name() == parameter.name()).map_or(*value, Estimate::value)
         };
         let continued = |start: &Vec<f64>| {

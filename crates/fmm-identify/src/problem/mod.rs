@@ -11,16 +11,22 @@ use crate::error::IdentifyError;
 use crate::experiment::Experiment;
 use crate::experiment::sight::{Seen, Sight};
 use crate::experiment::{Drive, scaled};
-use crate::fit::layout::Layout;
 use crate::law::naming::Units;
 use crate::law::{Law, Motion, Simulate};
 use crate::machine::Scale;
 use crate::machine::terms::Term;
 use crate::machine::{Machine, Terms};
+use crate::quantities::layout::Layout;
 
+pub(crate) mod fitted;
+pub(crate) mod friction_curve;
+mod machine_problem;
 mod parts;
 mod residuals;
 mod starts;
+pub(crate) mod tangent;
+
+pub use machine_problem::MachineProblem;
 
 /// The residuals "model less record" of one or several ring-downs by a law, with exact derivatives.
 ///
@@ -408,7 +414,7 @@ mod tests {
         let other = crate::identify::<CoulombViscous>(&Machine::per_unit_mass(), decays).unwrap();
         let machine = Machine::per_unit_mass();
         let problem = Problem::new::<Stribeck>(machine, decays).unwrap();
-        let start = problem.beside(&other, &[&other], &problem.starts()).unwrap();
+        let start = problem.beside(other.fitted(), &[other.fitted()], &problem.starts()).unwrap();
         let law = problem.layout().law..problem.layout().shared;
         let steady = |speed: f64| problem.law().steady(&start[law.clone()], speed, true).unwrap();
         let known = |name: &str| other.finding(name).unwrap().value();

@@ -1,58 +1,15 @@
-//! Warnings about what is in a record besides the free vibration of one mode in white noise, and about what it leaves
-//! open.
+//! Sentences of warnings about disturbances of a record and about impacts.
 
 use std::fmt;
 
 use fmm_model::Rounded;
 
-use crate::experiment::{Experiment, RecordSummary};
-use crate::fit::Identification;
-use crate::report::Warning;
-use crate::residuals::correlation::are_correlated;
+use crate::warning::Warning;
 
-/// A factor of the uncertainties that is worth a word.
+/// Factor of the uncertainties that is worth a word (1).
 const NOTABLE: f64 = 1.1;
 
 impl Warning {
-    /// What besides one ring-down of one mode is in a record.
-    pub(crate) fn of_disturbances(summary: &RecordSummary) -> impl Iterator<Item = Self> {
-        let further = summary.further_releases.first().map(|time| Self::FurtherRelease { time: *time });
-        let second = summary.second_mode.map(|mode| Self::SecondMode { frequency: mode.frequency, share: mode.share });
-        let hum = summary.hum.iter().map(|line| Self::Hum {
-            frequency: line.frequency,
-            amplitude: line.amplitude,
-            unit: summary.unit.clone(),
-        });
-        let rounded = summary.resolution.filter(|_| summary.is_rounded());
-        let rounded = rounded.map(|step| Self::Rounded { step, unit: summary.unit.clone() });
-        let taken = summary.interruption.map(|taken| Self::Interrupted { time: taken.sound_until, ratio: taken.ratio });
-        let upsampled = summary.upsampling.map(|upsampling| Self::Upsampled {
-            factor: upsampling.factor,
-            is_interpolated: upsampling.is_interpolated,
-        });
-        upsampled.into_iter().chain(further).chain(taken).chain(second).chain(hum).chain(rounded)
-    }
-
-    /// What the noise of the records is like, as the residuals of `identification` show it, and whether a slow drift
-    /// was fitted.
-    pub(crate) fn of_noise(identification: &Identification, decays: &[Experiment]) -> Vec<Self> {
-        let mut warnings = Vec::new();
-        let unit = || decays.first().map_or_else(String::new, |decay| decay.record().unit().to_owned());
-        if decays.iter().any(Experiment::drifts) {
-            warnings.push(Self::Drift);
-        }
-        let structure = identification.structure();
-        if !structure.is_noisy() {
-            return warnings;
-        }
-        if let Some(growth) = identification.noise().growth() {
-            let share = growth.instantaneous.hypot(growth.by_amplitude);
-            warnings.push(Self::GrowingNoise { floor: growth.floor, share, unit: unit() });
-        }
-        warnings.extend(structure.coloured_noise(identification.inflation()));
-        warnings
-    }
-
     /// The sentences of these warnings; nothing for others.
     pub(crate) fn write_of_disturbances(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -101,8 +58,8 @@ impl Warning {
                  account",
                 100.0 * share
             ),
-            Self::ColouredNoise { time, ratio, inflation } => {
-                if are_correlated(*time) {
+            Self::ColouredNoise { is_correlated, time, ratio, inflation } => {
+                if *is_correlated {
                     write!(f, "neighbouring residuals are alike over some {time:.0} samples")?;
                 } else {
                     write!(f, "the residuals are {ratio:.1} times the noise that neighbouring samples show")?;
@@ -145,6 +102,48 @@ impl Warning {
                 f,
                 "the record does not decide between the laws that are left; the simplest of those that agree well with it is shown as preferred"
             ),
+            _ => Ok(()),
+        }
+    }
+
+    /// The sentence of a warning that only blows give; nothing for others.
+    pub(crate) fn write_of_blows(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Warning::FurtherHit { trial, time, share } => write!(
+                f,
+                "trial {trial}: the hammer hit again at {time:.4} s with {:.0} % of the force; the fit follows both, but the spectrum \
+                 of the force has holes, so better repeat the trial",
+                100.0 * share
+            ),
+            Warning::Overload { trial, channel, samples } => write!(
+                f,
+                "trial {trial}: {samples} samples of the {channel} lie on the end of the range, as if clipped; they were fitted as they \
+                 are, which biases the friction"
+            ),
+            Warning::CoarsePulse { trial, intervals, error } => write!(
+                f,
+                "trial {trial}: the pulse has {intervals} intervals only; by where its samples lie, straight lines between them make \
+                 the impulse of a half sine up to {:.1} % too small, and a closed form with it: sample faster (the fit takes the \
+                 impulse from the motion as well)",
+                100.0 * error
+            ),
+            Warning::SpikesBridged { trial, samples } => write!(
+                f,
+                "trial {trial}: {samples} isolated samples of the velocity far off their neighbours were bridged by straight lines"
+            ),
+            Warning::NotAtRest { trial, recorded, lost } => write!(
+                f,
+                "trial {trial}: the record ends after {recorded:.2} s of motion, before rest: a peak read off the spectrum is {:.0} % \
+                 too low, while the fit ends with the record; the offset of the velocity rests on the samples before the blow alone, \
+                 and only the friction of that part shows",
+                100.0 * lost
+            ),
+            Warning::InputsNotPropagated { reason } => {
+                write!(
+                    f,
+                    "there are no uncertainties, as it is not known what the held values do to the findings: {reason}"
+                )
+            }
             _ => Ok(()),
         }
     }

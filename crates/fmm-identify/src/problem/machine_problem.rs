@@ -9,7 +9,7 @@ use fmm_record::{Quantity, Record};
 use fmm_sim::{Channels, Engine, RungeKutta, Sampling, Scenario, SimulationError, Thesis, Trajectory, simulate_into};
 
 use crate::error::IdentifyError;
-use crate::fit::pool::Pool;
+use crate::threads::Pool;
 
 /// The residuals "model less record" of one record, as a function of the machine, the law and the initial state.
 ///

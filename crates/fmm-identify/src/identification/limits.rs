@@ -3,14 +3,13 @@
 use fmm_fit::Fit;
 use fmm_model::Restoring;
 
-use crate::experiment::{Experiment, RecordSummary};
-use crate::fit::{FittedMotion, Identification};
+use crate::experiment::Experiment;
+use crate::identification::{FittedMotion, Identification};
+use crate::law::naming::LINEAR;
 use crate::machine::Scale;
-use crate::machine::terms::{LINEAR, QUADRATIC};
-use crate::report::Warning;
+use crate::machine::terms::QUADRATIC;
+use crate::warning::Warning;
 
-/// Fewer half swings than this are few.
-const ENOUGH_HALF_SWINGS: usize = 4;
 /// A decision between stop and reversal closer than this is narrow.
 const NARROW: f64 = 5e-3;
 
@@ -45,31 +44,6 @@ impl Warning {
     pub(crate) fn of_narrow_stop(motions: &[FittedMotion]) -> Option<Self> {
         let narrowest = FittedMotion::narrowest_decision(motions).filter(|(margin, _)| margin.abs() < NARROW);
         narrowest.map(|(margin, time)| Self::NarrowStop { margin, time })
-    }
-
-    /// What limits what a record tells of a machine, whose spring `is_bent` or a straight line.
-    pub(crate) fn of_record(summary: &RecordSummary, is_bent: bool, warnings: &mut Vec<Self>) {
-        let (first, last) = summary.amplitudes;
-        // Two turning points give one amplitude.
-        if last >= first && summary.half_swings > 2 && !summary.is_driven {
-            warnings.push(Self::NoDecay);
-        }
-        if summary.half_swings < ENOUGH_HALF_SWINGS && !summary.is_driven {
-            warnings.push(Self::FewHalfSwings { count: summary.half_swings });
-        }
-        // A pendulum that is taken for one, or a spring that is fitted, has such a period.
-        let period_change = summary.period_change.filter(|_| !is_bent);
-        warnings.extend(period_change.map(|change| Self::PeriodDependsOnAmplitude { change }));
-        warnings.extend(summary.saturation.map(|saturation| Self::Saturated { count: saturation.samples }));
-        warnings.extend(summary.offset_step.map(|step| Self::OffsetStep {
-            time: step.time,
-            height: step.height,
-            unit: summary.unit.clone(),
-        }));
-        warnings.extend(Self::of_disturbances(summary));
-        if summary.spikes > 0 {
-            warnings.push(Self::Spikes { count: summary.spikes });
-        }
     }
 
     /// What limits any `fit`.

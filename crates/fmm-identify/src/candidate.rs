@@ -1,17 +1,11 @@
 //! A law that takes part in a comparison.
 
-use fmm_fit::Options;
 use fmm_friction::{Coulomb, CoulombViscous, FamilyVisitor, LawFamily, SpecialCase, Viscous, catalogue, family_named};
 
 use crate::error::IdentifyError;
-use crate::experiment::Experiment;
-use crate::fit::Identification;
-use crate::fit::identification::{Observer, identify_by};
-use crate::fit::layout::Layout;
-use crate::fit::stages::{Begin, Near};
 use crate::law::Law;
+use crate::machine::Terms;
 use crate::machine::terms::Term;
-use crate::machine::{Machine, Terms};
 
 /// A law family as a value, with terms beside it, so that laws can be chosen at run time and compared in one list.
 #[derive(Debug, Clone)]
@@ -166,29 +160,6 @@ impl Candidate {
         (self.law.parameters.len() + beside).saturating_sub(self.terms.held().count())
     }
 
-    pub(crate) fn identify(
-        &self,
-        machine: &Machine,
-        decays: &[Experiment],
-        options: &Options,
-        observer: &mut Observer<'_>,
-    ) -> Result<Identification, IdentifyError> {
-        identify_by(self.law, machine, &self.terms, decays, Begin::Anywhere, options, observer)
-    }
-
-    /// As [`identify`](Self::identify), begun near other fits of the same records.
-    pub(crate) fn identify_near(
-        &self,
-        machine: &Machine,
-        decays: &[Experiment],
-        near: Option<&Near<'_>>,
-        options: &Options,
-        observer: &mut Observer<'_>,
-    ) -> Result<Identification, IdentifyError> {
-        let begin = near.map_or(Begin::Anywhere, Begin::Near);
-        identify_by(self.law, machine, &self.terms, decays, begin, options, observer)
-    }
-
     pub(crate) const fn law(&self) -> &Law {
         &self.law
     }
@@ -200,18 +171,6 @@ impl Candidate {
     /// Name of the law alone.
     pub fn law_name(&self) -> &'static str {
         self.law.name
-    }
-
-    /// Names of the parameters of a fit to `decays`: of the oscillator, the damping, the law, and the initial state.
-    ///
-    /// # Errors
-    /// [`IdentifyError::Missing`], and as [`Layout::of`].
-    pub(crate) fn parameters(&self, machine: &Machine, decays: &[Experiment]) -> Result<Vec<String>, IdentifyError> {
-        if decays.is_empty() {
-            return Err(IdentifyError::no_record());
-        }
-        let (_, parameters) = Layout::of(self.law, machine, &self.terms, decays)?;
-        Ok(parameters.iter().map(|parameter| parameter.name().to_owned()).collect())
     }
 }
 

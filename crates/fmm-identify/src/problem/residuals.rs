@@ -6,8 +6,8 @@ use fmm_fit::{Block, EvaluationError, Residuals};
 use fmm_model::Parameter;
 
 use super::Problem;
-use crate::fit::threads::on_all_threads;
 use crate::law::DIRECTIONS;
+use crate::threads::on_all_threads;
 
 /// What one simulation with derivatives fills: the columns of a few directions of one record, and with the first of
 /// them its residuals and the column of its sensor's corner.

@@ -6,8 +6,8 @@ use fmm_fit::f_tail;
 
 use crate::experiment::Experiment;
 use crate::experiment::nuisance::{DRIFT, Nuisance};
-use crate::fit::Identification;
-use crate::fit::problem::Problem;
+use crate::identification::Identification;
+use crate::problem::Problem;
 
 /// The chance that noise alone looks like a drift.
 const CHANCE: f64 = 1e-3;

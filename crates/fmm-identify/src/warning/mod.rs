@@ -1,5 +1,7 @@
 //! Warnings: limits of the results that a reader has to know.
 
+mod sentences;
+
 use std::fmt;
 
 use fmm_frf::Channel;
@@ -193,6 +195,8 @@ pub enum Warning {
     },
     /// Neighbouring residuals are alike, though not larger than the noise; or they are larger, though hardly alike.
     ColouredNoise {
+        /// Whether neighbouring residuals are correlated.
+        is_correlated: bool,
         /// Autocorrelation time (samples).
         time: f64,
         /// Root mean square of the residuals beside the noise that neighbouring samples show (1).
@@ -375,4 +379,12 @@ impl fmt::Display for Warning {
             _ => self.write_of_disturbances(f),
         }
     }
+}
+
+/// Writes the section of the `warnings`.
+pub(crate) fn write_warnings(f: &mut fmt::Formatter<'_>, warnings: &[Warning]) -> fmt::Result {
+    if !warnings.is_empty() {
+        writeln!(f, "\nWarnings")?;
+    }
+    warnings.iter().try_for_each(|warning| writeln!(f, "  - {warning}"))
 }

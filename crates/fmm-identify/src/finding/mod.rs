@@ -1,0 +1,205 @@
+//! One number of a report: a quantity with its uncertainty and where it comes from.
+
+mod contribution;
+
+use std::fmt;
+
+use fmm_fit::{EstimateStatus, coverage_factor};
+use fmm_model::{Parameter, Rounded};
+
+pub use contribution::{Contribution, Source};
+
+/// Where the value of a finding comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Origin {
+    /// Found by the fit.
+    Fitted(EstimateStatus),
+    /// Follows from fitted values and what is known of the machine.
+    Derived,
+}
+
+/// A quantity that the identification found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    pub(crate) parameter: Parameter,
+    pub(crate) value: f64,
+    /// Variances by their sources, in the unit of the parameter squared; `None` if the record does not determine the
+    /// value.
+    parts: Option<Vec<(Source, f64)>>,
+    /// ν of the part of the residuals.
+    of_residuals: f64,
+    pub(crate) origin: Origin,
+    is_of_record: bool,
+    /// u as if a value on its bound were not there, where there are no parts for the bound.
+    at_bound: Option<f64>,
+}
+
+impl Finding {
+    /// A finding with variances, if it has any, of which that of the residuals is known with `degrees_of_freedom`.
+    pub(crate) fn new(
+        parameter: Parameter,
+        value: f64,
+        parts: Option<Vec<(Source, f64)>>,
+        degrees_of_freedom: f64,
+        origin: Origin,
+        is_of_record: bool,
+    ) -> Self {
+        let of_residuals = if parts.is_some() { degrees_of_freedom } else { f64::INFINITY };
+        Self { parameter, value, parts, of_residuals, origin, is_of_record, at_bound: None }
+    }
+
+    /// The same for a value that lies on a bound, or follows from one: the standard uncertainty that it had without the
+    /// bound.
+    pub(crate) fn at_bound(mut self, uncertainty: Option<f64>, degrees_of_freedom: f64) -> Self {
+        if self.parts.is_none() && uncertainty.is_some() {
+            self.at_bound = uncertainty;
+            self.of_residuals = degrees_of_freedom;
+        }
+        self
+    }
+
+    /// Adds a contribution of `source` to the uncertainty, if there is one.
+    pub(crate) fn add(&mut self, source: Source, uncertainty: f64) {
+        if let Some(parts) = &mut self.parts {
+            parts.push((source, uncertainty * uncertainty));
+        }
+    }
+
+    /// Whether what follows from the machine has a square, as its variance needs one.
+    pub(crate) fn is_representable(&self) -> bool {
+        self.origin != Origin::Derived || self.value == 0.0 || (self.value * self.value).is_normal()
+    }
+
+    /// Name, symbol and unit.
+    pub fn parameter(&self) -> &Parameter {
+        &self.parameter
+    }
+
+    /// The estimate, in the unit of the parameter.
+    pub fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// u, its standard uncertainty, in the unit of the parameter; `None` if the record does not determine it.
+    pub fn uncertainty(&self) -> Option<f64> {
+        self.variance().map(f64::sqrt)
+    }
+
+    fn variance(&self) -> Option<f64> {
+        self.parts.as_ref().map(|parts| parts.iter().map(|(_, variance)| variance).sum())
+    }
+
+    /// ν, the effective degrees of freedom of the uncertainty (1) by Welch and Satterthwaite (JCGM 100:2008, G.4.1),
+    /// infinite if nothing of it was estimated from residuals.
+    pub fn degrees_of_freedom(&self) -> f64 {
+        let Some(parts) = &self.parts else { return self.of_residuals };
+        let random = parts.iter().find(|(source, variance)| *source == Source::Residuals && *variance > 0.0);
+        let all = self.variance().unwrap_or(0.0);
+        random.map_or(f64::INFINITY, |(_, random)| self.of_residuals * (all / random).powi(2))
+    }
+
+    /// The budget of the uncertainty: what each source contributes to it, without those that contribute nothing. Empty
+    /// if there is no uncertainty.
+    ///
+    /// ```
+    /// use fmm_friction::Coulomb;
+    /// use fmm_identify::{Experiment, Known, Machine, Preparation, Source, identify};
+    /// # use fmm_model::Oscillator;
+    /// # use fmm_record::{Quantity, Record};
+    /// # use fmm_sim::{Engine, Exact, Sampling, Scenario};
+    ///
+    /// # let machine = Oscillator::new(10.391, 1982.0)?;
+    /// # let scenario = Scenario::new(machine, Coulomb::new(0.25)?, 14.0)?.starting_at(0.015, 0.0)?;
+    /// # let velocity = Exact.run(&scenario, &Sampling::uniform(1e-3, 1500)?)?.velocity().values().to_vec();
+    /// # let record = Record::new(0.0, 1e-3, velocity, Quantity::Velocity, "m/s")?;
+    /// // A record without noise: μ = F/N is as uncertain as mass (0.05 %) and load (0.1 %) are.
+    /// let machine = Machine::of_mass(Known::new(10.391, 0.0052)?)?.with_normal_load(Known::new(14.0, 0.014)?)?;
+    /// let found = identify::<Coulomb>(&machine, &[Experiment::ring_down(&record, &Preparation::default())?])?;
+    /// let load = found.finding("mu").unwrap().contributions().find(|part| part.source == Source::NormalLoad).unwrap();
+    /// assert!((load.uncertainty - 0.25 * 0.014 / 14.0).abs() < 1e-9);
+    /// // (0.1 %)²/((0.1 %)² + (0.05 %)²)
+    /// assert!((load.share - 0.8).abs() < 1e-3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn contributions(&self) -> impl Iterator<Item = Contribution> + '_ {
+        let all = self.variance().unwrap_or(0.0);
+        self.parts.iter().flatten().filter(|(_, variance)| *variance > 0.0).map(move |&(source, variance)| {
+            let is_estimated = source == Source::Residuals;
+            Contribution {
+                source,
+                uncertainty: variance.sqrt(),
+                share: variance / all,
+                degrees_of_freedom: if is_estimated { self.of_residuals } else { f64::INFINITY },
+            }
+        })
+    }
+
+    /// The interval that covers the quantity with probability `level`, in the unit of the parameter: value ± k u by
+    /// Student's t with the [degrees of freedom](Self::degrees_of_freedom) (JCGM 100:2008, G.4), as far as the bounds
+    /// of the parameter allow; of a value on its bound what lies within the bounds. `None` without an uncertainty, for
+    /// what was held, or for a level outside (0, 1).
+    pub fn interval(&self, level: f64) -> Option<(f64, f64)> {
+        if self.origin == Origin::Fitted(EstimateStatus::Fixed) {
+            return None;
+        }
+        let reach = self.uncertainty().or(self.at_bound)? * coverage_factor(level, self.degrees_of_freedom())?;
+        let bounds = self.parameter.bounds();
+        Some((bounds.clamp(self.value - reach), bounds.clamp(self.value + reach)))
+    }
+
+    /// Value, uncertainty and unit as text.
+    pub(crate) fn quantity(&self) -> String {
+        let value = Rounded::new(self.value, self.uncertainty());
+        match self.parameter.unit() {
+            "1" => value.to_string(),
+            unit => format!("{value} {unit}"),
+        }
+    }
+
+    /// Its 95 % interval as text, to the place to which the uncertainty is rounded.
+    pub(crate) fn interval_text(&self) -> Option<String> {
+        let (low, high) = self.interval(0.95)?;
+        Some(Rounded::new(self.value, self.uncertainty().or(self.at_bound)).interval(low, high))
+    }
+
+    /// Whether it belongs to one record alone: its initial state or its offset.
+    pub fn is_of_record(&self) -> bool {
+        self.is_of_record
+    }
+
+    /// Where it comes from.
+    pub fn origin(&self) -> Origin {
+        self.origin
+    }
+}
+
+/// Width of the column that holds the names of parameters.
+pub(crate) fn name_width(findings: &[Finding]) -> usize {
+    findings.iter().map(|finding| finding.parameter().name().chars().count()).max().unwrap_or(0)
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.quantity())?;
+        if let Some(interval) = self.interval_text() {
+            write!(f, "  {interval}")?;
+        }
+        match self.origin() {
+            Origin::Derived => write!(f, "  (with what is known of the machine)"),
+            Origin::Fitted(_) => self.reservation().map_or(Ok(()), |reservation| write!(f, "  ({reservation})")),
+        }
+    }
+}
+
+impl Finding {
+    /// What keeps it from being a measured value, if something does.
+    pub(crate) fn reservation(&self) -> Option<&'static str> {
+        match self.origin() {
+            Origin::Fitted(EstimateStatus::Undetermined) => Some("not determined"),
+            Origin::Fitted(EstimateStatus::Fixed) => Some("held"),
+            Origin::Fitted(status) if status.is_at_bound() => Some("at its bound"),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! Quantities that follow from the rows of a table, with their uncertainties.
+
+use fmm_friction::Role;
+use fmm_model::{Bounds, Dual, Parameter, Scalar};
+
+use crate::finding::Source;
+use crate::law::DIRECTIONS;
+use crate::law::dimension::{is_coefficient, is_force};
+use crate::law::naming::{Level, Units};
+use crate::machine::{Machine, Scale};
+use crate::quantities::layout::{Layout, mass_of_stiffness};
+
+/// Shared values of one fit and what is known from elsewhere, from which the derived quantities follow.
+pub(crate) struct Inputs<'a> {
+    pub(crate) machine: &'a Machine,
+    pub(crate) shared: &'a [f64],
+    pub(crate) layout: &'a Layout,
+    /// Relative errors of the gains of the instrument and of a measured force, as factors (1).
+    pub(crate) gains: [f64; 2],
+    pub(crate) gain_uncertainty: f64,
+}
+
+/// Inputs that were not fitted: scale of the machine, normal load, gain of the instrument, gain of a measured force.
+pub(crate) const KNOWN: usize = 4;
+
+impl Inputs<'_> {
+    /// Standard uncertainties of the inputs that were not fitted.
+    pub(crate) fn uncertainties(&self) -> [(Source, f64); KNOWN] {
+        let scale = match self.machine.scale() {
+            Scale::Stiffness(known) => (Source::Stiffness, known.uncertainty()),
+            Scale::Mass(known) => (Source::Mass, known.uncertainty()),
+            Scale::PerUnitMass | Scale::Unknown => (Source::Mass, 0.0),
+        };
+        let load = self.machine.normal_load().map_or(0.0, |load| load.uncertainty());
+        let force = self.layout.force_uncertainty;
+        [scale, (Source::NormalLoad, load), (Source::Gain, self.gain_uncertainty), (Source::ForceGain, force)]
+    }
+
+    /// The derived quantities with their derivatives.
+    pub(crate) fn with_gradients(&self) -> Vec<Derived> {
+        let directions = self.shared.len() + KNOWN;
+        let values = self.derived::<f64>(0);
+        let mut gradients = vec![vec![0.0; directions]; values.len()];
+        for first in (0..directions).step_by(DIRECTIONS) {
+            for (gradient, (_, number)) in gradients.iter_mut().zip(self.derived::<Dual<DIRECTIONS>>(first)) {
+                for (direction, slope) in gradient[first..].iter_mut().enumerate().take(DIRECTIONS) {
+                    *slope = number.partial(direction);
+                }
+            }
+        }
+        let with_gradient = |((parameter, value), gradient)| Derived { parameter, value, gradient };
+        values.into_iter().zip(gradients).map(with_gradient).collect()
+    }
+
+    /// Whether forces per mass are accelerations in SI, so that a mass makes forces of them.
+    fn is_si(&self) -> bool {
+        self.machine.scale() == Scale::Unknown || self.layout.units.is_metric()
+    }
+
+    /// The derived quantities, as numbers whose directions from `first` on are the shared values, then the inputs.
+    fn derived<D: Scalar>(&self, first: usize) -> Vec<(Parameter, D)> {
+        let variable = |value: f64, direction: usize| D::variable(value, direction.wrapping_sub(first));
+        let natural_frequency = variable(self.shared[0], 0);
+        let mut derived = Vec::new();
+        let mass = match self.machine.scale() {
+            Scale::PerUnitMass | Scale::Unknown => None,
+            Scale::Mass(known) => {
+                let mass = variable(known.value(), self.shared.len());
+                let stiffness = mass / mass_of_stiffness(D::from(1.0), natural_frequency);
+                derived.push((Parameter::new("stiffness", "k", "N/m").bounded(Bounds::POSITIVE), stiffness));
+                Some(mass)
+            }
+            Scale::Stiffness(known) => {
+                let mass = mass_of_stiffness(variable(known.value(), self.shared.len()), natural_frequency);
+                derived.push((Parameter::new("mass", "m", "kg").bounded(Bounds::POSITIVE), mass));
+                Some(mass)
+            }
+        };
+        if self.machine.scale() != Scale::Unknown {
+            for (place, term) in self.layout.terms.iter().enumerate() {
+                let Some(parameter) = term.stiffness_per_mass(&self.layout.units.position) else { continue };
+                let value = variable(self.shared[1 + place], 1 + place);
+                derived.push((parameter, value / mass_of_stiffness(D::from(1.0), natural_frequency)));
+            }
+        }
+        // With an unknown scale the fitted values are forces already, by the channel of a measured one if there is one.
+        let by_force = variable(self.gains[1], self.shared.len() + 3);
+        let to_force = match self.machine.scale() {
+            Scale::Unknown => Some(by_force),
+            _ => mass,
+        };
+        let load = self.machine.normal_load().map(|load| variable(load.value(), self.shared.len() + 1));
+        let gain = variable(self.gains[0], self.shared.len() + 2);
+        let Layout { family, units, law, .. } = self.layout;
+        let law_value = |index: usize| variable(self.shared[law + index], law + index);
+        let level = family.level().map(law_value);
+        // Forces that a mass makes of forces per mass.
+        let metric = Units::new("m", "N");
+        for (i, law_parameter) in family.fitted().enumerate() {
+            let role = law_parameter.role();
+            let mut value = law_value(i);
+            if let (Role::LevelAbove | Role::Breakaway, Some(level)) = (role, level) {
+                value += level;
+                derived.push(match self.machine.scale() {
+                    Scale::Unknown => (units.stated(law_parameter, Level::Force), value * by_force),
+                    _ => (units.stated(law_parameter, Level::PerMass), value / gain),
+                });
+            }
+            let Some(force) = to_force.map(|to_force| value * to_force) else { continue };
+            let stated = |level: Level| metric.stated(law_parameter, level);
+            if is_coefficient(law_parameter) {
+                if self.is_si() {
+                    let force = force / gain;
+                    derived.extend(mass.map(|_| (stated(Level::Force), force)));
+                    derived.extend(load.map(|load| (stated(Level::Mu), force / load)));
+                }
+            } else if mass.is_some() && (role == Role::Slope || is_force(role) && self.is_si()) {
+                derived.push((stated(Level::Force), force));
+            }
+        }
+        derived
+    }
+}
+
+/// A quantity that follows from shared values and inputs, with its derivatives by all of them.
+pub(crate) struct Derived {
+    pub(crate) parameter: Parameter,
+    pub(crate) value: f64,
+    /// By the shared values, then by scale, normal load, gain of the instrument and gain of a measured force.
+    pub(crate) gradient: Vec<f64>,
+}
+
+/// What follows from the `shared` values of a fit and from what is known of the `machine`.
+pub(crate) fn derived(machine: &Machine, layout: &Layout, shared: &[f64]) -> Vec<Derived> {
+    Inputs { machine, shared, layout, gains: [1.0; 2], gain_uncertainty: 0.0 }.with_gradients()
+}
+
+/// The values of all findings, in the order of [`findings`], for one draw of the fitted `values`, of what is known of
+/// the machine, and of the errors of the `gains` of the instrument and of a measured force, as factors (1).
+#[cfg(feature = "sampler")]
+pub(crate) fn values_of_findings(machine: &Machine, layout: &Layout, values: &[f64], gains: [f64; 2]) -> Vec<f64> {
+    let fitted = values.iter().enumerate().map(|(index, value)| {
+        let by_force = if layout.is_scaled_by_force(index) { gains[1] } else { 1.0 };
+        value * gains[0].powf(-layout.power_of_gain(index, values)) * by_force
+    });
+    let inputs = Inputs { machine, shared: &values[..layout.shared], layout, gains, gain_uncertainty: 0.0 };
+    fitted.chain(inputs.derived::<f64>(0).into_iter().map(|(_, value)| value)).collect()
+}

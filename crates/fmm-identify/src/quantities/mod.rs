@@ -1,0 +1,4 @@
+//! Table of quantities: each number of machine, law, experiment and sensor, and the findings that follow from them.
+
+pub(crate) mod derived;
+pub(crate) mod layout;
