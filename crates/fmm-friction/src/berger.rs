@@ -46,6 +46,7 @@ law_family! {
     /// [`LawError::OutOfBounds`] if a parameter is negative or not finite.
     pub fn new {}
     special cases [crate::SpecialCase::of("coulomb")]
+    tried [crate::SearchStage::Stribeck.trial().damped()]
 }
 
 impl<D: Scalar> SlidingLaw<D> for Berger<D> {

@@ -62,6 +62,7 @@ law_family! {
     }
     fitted by BoucWenByLevel
     special cases [crate::SpecialCase::only("dahl", &[("exponent", 1.0)]), crate::SpecialCase::of("coulomb")]
+    tried [crate::SearchStage::FurtherPresliding.trial().damped().fixing(&[("amplitude", 1.0)])]
 }
 
 impl<D: Scalar> BristleLaw<D> for BoucWen<D> {

@@ -2,7 +2,7 @@
 
 use fmm_model::{Bounds, Parameter, Scalar};
 
-use crate::{BoucWen, LawError, LawFamily, LawParameter, LawVisitor, Role};
+use crate::{BoucWen, LawError, LawFamily, LawParameter, LawVisitor, Role, SearchRole};
 
 /// [`BoucWen`] by parameters that a record tells apart: its level, and how the loop unloads.
 ///
@@ -52,6 +52,7 @@ impl LawFamily for BoucWenByLevel {
             Role::Shape,
         ),
     ];
+    const SEARCH: SearchRole = SearchRole::NotTried("it is tried as the family bouc_wen");
     type At<D: Scalar> = BoucWen<D>;
 
     fn at<D: Scalar>(values: &[D]) -> Result<BoucWen<D>, LawError> {

@@ -20,7 +20,8 @@ pub trait FamilyVisitor {
 
 macro_rules! catalogue {
     ($($law:ty),+ $(,)?) => {
-        /// Results of `visitor` for every family of laws, in the order of the catalogue.
+        /// Results of `visitor` for every family of laws, in the order of the catalogue: from simple to general, as a search
+        /// tries them within a stage.
         ///
         /// ```
         /// use fmm_friction::{FamilyVisitor, LawFamily, catalogue};
@@ -57,16 +58,16 @@ catalogue!(
     CoulombStatic,
     CoulombViscous,
     AccelerationCoulomb,
+    Berger,
     Stribeck,
     StribeckLorentzian,
     Hyperbolic,
-    Berger,
     PowerLaw,
     ExponentialPair,
-    Karnopp,
     MakkarDixon,
     Shifted<MakkarDixon>,
     RegularisedStribeck,
+    Karnopp,
     Dahl,
     LuGre,
     BoucWen,
@@ -80,29 +81,38 @@ catalogue!(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::LawKind;
+    use crate::{LawKind, SearchRole};
 
-    struct NameAndKind;
+    struct Facts;
 
-    impl FamilyVisitor for NameAndKind {
-        type Output = (&'static str, LawKind);
+    impl FamilyVisitor for Facts {
+        type Output = (&'static str, LawKind, SearchRole);
 
         fn visit<F: LawFamily>(&mut self) -> Self::Output {
-            (F::NAME, F::kind())
+            (F::NAME, F::kind(), F::SEARCH)
         }
     }
 
     #[test]
     fn names_are_unique_and_lead_to_their_family() {
-        let all = catalogue(&mut NameAndKind);
-        for (name, kind) in &all {
-            assert_eq!(all.iter().filter(|(other, _)| other == name).count(), 1, "{name}");
-            assert_eq!(family_named(name, &mut NameAndKind), Some((*name, *kind)));
+        let all = catalogue(&mut Facts);
+        for (name, kind, role) in &all {
+            assert_eq!(all.iter().filter(|(other, ..)| other == name).count(), 1, "{name}");
+            assert_eq!(family_named(name, &mut Facts), Some((*name, *kind, *role)));
         }
-        assert_eq!(family_named("glue", &mut NameAndKind), None);
-        let of_kind = |kind| all.iter().filter(|(_, other)| *other == kind).count();
+        assert_eq!(family_named("glue", &mut Facts), None);
+        let of_kind = |kind| all.iter().filter(|(_, other, _)| *other == kind).count();
         assert_eq!(of_kind(LawKind::PiecewiseLinear), 5);
         assert_eq!(of_kind(LawKind::Bristle), 4);
         assert_eq!(of_kind(LawKind::Elements), 4);
+    }
+
+    /// A search asks every family, so that none may leave its part open.
+    #[test]
+    fn every_family_states_its_part_in_a_search() {
+        for (name, _, role) in catalogue(&mut Facts) {
+            assert_ne!(role, SearchRole::UNSTATED, "{name}");
+            assert_ne!(role, SearchRole::Tried(&[]), "{name}");
+        }
     }
 }

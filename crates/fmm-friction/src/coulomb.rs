@@ -27,6 +27,7 @@ law_family! {
     /// # Errors
     /// [`LawError::OutOfBounds`] if the coefficient is negative or not finite.
     pub fn new {}
+    tried [crate::SearchStage::Simple.trial()]
 }
 
 impl<D: Scalar> PiecewiseLinearLaw<D> for Coulomb<D> {

@@ -33,6 +33,7 @@ law_family! {
         static_not_below(sliding, breakaway)?;
     }
     special cases [crate::SpecialCase::of("coulomb")]
+    not tried "a ring-down depends on the static level only in the turning point at which it ends"
 }
 
 impl<D: Scalar> PiecewiseLinearLaw<D> for CoulombStatic<D> {

@@ -29,6 +29,7 @@ law_family! {
     /// [`LawError::OutOfBounds`] if either is negative or not finite.
     pub fn new {}
     special cases [crate::SpecialCase::of("coulomb")]
+    tried [crate::SearchStage::Simple.trial()]
 }
 
 impl<D: Scalar> PiecewiseLinearLaw<D> for CoulombViscous<D> {

@@ -39,6 +39,7 @@ law_family! {
     /// [`LawError::OutOfBounds`] if a parameter is not positive or not finite.
     pub fn new {}
     special cases [crate::SpecialCase::of("coulomb")]
+    tried [crate::SearchStage::Presliding.trial().damped().fixing(&[("exponent", 1.0)])]
 }
 
 impl<D: Scalar> BristleLaw<D> for Dahl<D> {

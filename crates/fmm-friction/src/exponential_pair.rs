@@ -45,6 +45,7 @@ law_family! {
         static_not_below(sliding, breakaway)?;
     }
     special cases [crate::SpecialCase::of("coulomb")]
+    tried [crate::SearchStage::FurtherOfSpeed.trial().damped()]
 }
 
 impl<D: Scalar> SlidingLaw<D> for ExponentialPair<D> {

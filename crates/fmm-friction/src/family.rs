@@ -7,7 +7,7 @@ use core::fmt::Debug;
 use fmm_model::{Bounds, Parameter, Scalar};
 
 use crate::kind::{KindOf, SteadyCoefficient};
-use crate::{FamilyVisitor, LawError, LawKind, LawVisitor};
+use crate::{FamilyVisitor, LawError, LawKind, LawVisitor, SearchRole};
 
 /// Role of a parameter in the friction force. It says in which form the parameter remains when the normal
 /// load and the mass are unknown.
@@ -180,6 +180,9 @@ pub trait LawFamily: 'static {
     /// what those laws become in turn. A comparison of laws reads off it which of two is the more general.
     const SPECIAL_CASES: &'static [SpecialCase] = &[];
 
+    /// Trials of the family in a search for the law of a record, or the reason why there is none.
+    const SEARCH: SearchRole = SearchRole::UNSTATED;
+
     /// The law at number type `D`.
     type At<D: Scalar>: Clone + Debug;
 
@@ -329,7 +332,9 @@ macro_rules! law_family {
         $(#[$new_doc:meta])*
         pub fn $new:ident { $($condition:tt)* }
         $(fitted by $recast:ident)?
-        $(special cases $cases:expr)?
+        $(special cases [$($case:expr),+])?
+        $(tried [$($trial:expr),+])?
+        $(not tried $reason:literal)?
     ) => {
         $(#[$law_doc])*
         #[derive(Debug, Clone, Copy, PartialEq)]
@@ -354,7 +359,9 @@ macro_rules! law_family {
         impl LawFamily for $law {
             const NAME: &'static str = $name;
             const PARAMETERS: &'static [LawParameter] = &[$($parameter),+];
-            $(const SPECIAL_CASES: &'static [$crate::SpecialCase] = &$cases;)?
+            $(const SPECIAL_CASES: &'static [$crate::SpecialCase] = &[$($case),+];)?
+            $(const SEARCH: $crate::SearchRole = $crate::SearchRole::Tried(&[$($trial),+]);)?
+            $(const SEARCH: $crate::SearchRole = $crate::SearchRole::NotTried($reason);)?
             type At<D: Scalar> = $law<D>;
 
             fn at<D: Scalar>(values: &[D]) -> Result<$law<D>, LawError> {

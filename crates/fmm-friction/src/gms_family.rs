@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use fmm_model::Scalar;
 
 use crate::stribeck::EXPONENT;
-use crate::{Gms, LawError, LawFamily, LawParameter, LawVisitor, Role, SpecialCase, Stribeck};
+use crate::{Gms, LawError, LawFamily, LawParameter, LawVisitor, Role, SearchRole, SpecialCase, Stribeck};
 
 /// The family of [`Gms`] laws of `N` elements, from 1 to 4: what makes their numbers parameters that can be fitted.
 ///
@@ -67,6 +67,7 @@ impl<const N: usize> LawFamily for GmsOf<N> {
     const NAME: &'static str = NAMES[N - 1];
     const PARAMETERS: &'static [LawParameter] = PARAMETERS.split_at(BEFORE - 1 + 2 * N).0;
     const SPECIAL_CASES: &'static [SpecialCase] = SPECIAL_CASES.split_at(N + 1).0;
+    const SEARCH: SearchRole = SearchRole::NotTried("its parameters exceed the information of a ring-down");
     type At<D: Scalar> = Gms<D>;
 
     fn at<D: Scalar>(values: &[D]) -> Result<Gms<D>, LawError> {

@@ -33,6 +33,7 @@ law_family! {
     /// [`LawError::OutOfBounds`] if either is negative or not finite.
     pub fn new {}
     special cases [crate::SpecialCase::of("coulomb")]
+    tried [crate::SearchStage::TwoNumbers.trial().damped()]
 }
 
 impl<D: Scalar> SlidingLaw<D> for Hyperbolic<D> {

@@ -57,6 +57,7 @@ law_family! {
         static_not_below(sliding, breakaway)?;
     }
     special cases [crate::SpecialCase::only("dahl", &[("exponent", 1.0)]), crate::SpecialCase::of("stribeck")]
+    tried [crate::SearchStage::FurtherPresliding.trial().fixing(&[("exponent", 2.0)])]
 }
 
 impl<D: Scalar> LuGre<D> {

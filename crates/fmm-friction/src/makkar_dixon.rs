@@ -68,6 +68,7 @@ law_family! {
         }
     }
     special cases [crate::SpecialCase::of("coulomb")]
+    tried [crate::SearchStage::FurtherOfSpeed.trial()]
 }
 
 impl<D: Scalar> MakkarDixon<D> {

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use fmm_model::Scalar;
 
-use crate::{LawError, LawFamily, LawParameter, LawVisitor, MaxwellSlip, Role, SpecialCase};
+use crate::{LawError, LawFamily, LawParameter, LawVisitor, MaxwellSlip, Role, SearchRole, SpecialCase};
 
 /// The family of [`MaxwellSlip`] laws of `N` elements, from 1 to 8: what makes their levels and stiffnesses parameters
 /// that can be fitted.
@@ -63,6 +63,8 @@ impl<const N: usize> LawFamily for MaxwellSlipOf<N> {
     const PARAMETERS: &'static [LawParameter] = PARAMETERS.split_at(2 * N).0;
     const SPECIAL_CASES: &'static [SpecialCase] =
         &[SpecialCase::of(if N == 1 { "coulomb" } else { NAMES[N.saturating_sub(2)] })];
+    const SEARCH: SearchRole =
+        SearchRole::NotTried("a sum of elements is fitted to records of force, which show its corners");
     type At<D: Scalar> = MaxwellSlip<D>;
 
     fn at<D: Scalar>(values: &[D]) -> Result<MaxwellSlip<D>, LawError> {

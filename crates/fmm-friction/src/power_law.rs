@@ -40,6 +40,7 @@ law_family! {
     /// [`LawError::OutOfBounds`] if a parameter lies outside its bounds or is not finite.
     pub fn new {}
     special cases [crate::SpecialCase::of("coulomb_viscous")]
+    tried [crate::SearchStage::FurtherOfSpeed.trial()]
 }
 
 impl<D: Scalar> SlidingLaw<D> for PowerLaw<D> {

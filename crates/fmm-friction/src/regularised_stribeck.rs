@@ -43,6 +43,7 @@ law_family! {
         static_not_below(sliding, peak)?;
     }
     special cases [crate::SpecialCase::of("coulomb")]
+    tried [crate::SearchStage::FurtherOfSpeed.trial()]
 }
 
 impl<D: Scalar> SlidingLaw<D> for RegularisedStribeck<D> {

@@ -2,7 +2,7 @@
 
 use fmm_model::Scalar;
 
-use crate::{FamilyMember, LawError, LawFamily, LawParameter, LawVisitor, MakkarDixon, SlidingLaw};
+use crate::{FamilyMember, LawError, LawFamily, LawParameter, LawVisitor, MakkarDixon, SearchRole, SlidingLaw};
 
 /// A law whose curve over the speed rises to a Stribeck peak and bends while it falls.
 pub trait Inflected {
@@ -81,6 +81,9 @@ impl LawFamily for Shifted<MakkarDixon> {
     const NAME: &'static str = "makkar_dixon_shifted";
     const PARAMETERS: &'static [LawParameter] = MakkarDixon::PARAMETERS;
     const SPECIAL_CASES: &'static [crate::SpecialCase] = MakkarDixon::SPECIAL_CASES;
+    const SEARCH: SearchRole = SearchRole::NotTried(
+        "its curve beyond the inflection is nearly that of a Stribeck law, which has fewer parameters",
+    );
     type At<D: Scalar> = Shifted<MakkarDixon<D>>;
 
     fn at<D: Scalar>(values: &[D]) -> Result<Shifted<MakkarDixon<D>>, LawError> {

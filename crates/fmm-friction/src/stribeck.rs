@@ -58,6 +58,7 @@ law_family! {
         static_not_below(sliding, breakaway)?;
     }
     special cases [crate::SpecialCase::at("berger", &[("exponent", 1.0)]), crate::SpecialCase::of("coulomb")]
+    tried [crate::SearchStage::Stribeck.trial().fixing(&[("exponent", 2.0)]), crate::SearchStage::FurtherOfSpeed.trial()]
 }
 
 impl<D: Scalar> Stribeck<D> {

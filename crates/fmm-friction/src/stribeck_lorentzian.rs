@@ -42,6 +42,7 @@ law_family! {
         static_not_below(sliding, breakaway)?;
     }
     special cases [crate::SpecialCase::of("coulomb")]
+    tried [crate::SearchStage::Stribeck.trial()]
 }
 
 impl<D: Scalar> SlidingLaw<D> for StribeckLorentzian<D> {

@@ -24,6 +24,7 @@ law_family! {
     /// # Errors
     /// [`LawError::OutOfBounds`] if it is negative or not finite.
     pub fn new {}
+    tried [crate::SearchStage::Simple.trial()]
 }
 
 impl<D: Scalar> PiecewiseLinearLaw<D> for Viscous<D> {

@@ -5,6 +5,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use fmm_fit::{Options, Progress};
+use fmm_friction::{CoulombViscous, FamilyVisitor, LawFamily, SearchRole, SearchStage, SearchTrial, catalogue};
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
@@ -18,6 +19,8 @@ use crate::judgement::filtering::behind_filter;
 use crate::judgement::sign::{Addition, Sign, signs};
 use crate::judgement::{Judgement, shortcomings};
 use crate::machine::Machine;
+use crate::machine::terms::Term;
+use crate::machine::terms::Terms;
 use crate::problem::fitted::Fall;
 use crate::threads::on_all_threads;
 use crate::warning::Warning;
@@ -36,12 +39,21 @@ use crate::warning::Warning;
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Search {
+    families: Vec<Family>,
     held: Vec<(Option<String>, String, f64)>,
     time_limit: Option<Duration>,
     threads: Option<usize>,
 }
 
 impl Search {
+    /// The same with family `F` beside those of the catalogue: it is tried as its
+    /// [`SEARCH`](LawFamily::SEARCH) says, after the laws of the catalogue at the same stage.
+    #[must_use]
+    pub fn including<F: LawFamily>(mut self) -> Self {
+        self.families.push(Families.visit::<F>());
+        self
+    }
+
     /// The same with the parameter called `name` held at `value`, in the unit in which it would be fitted: of the law
     /// called `law`, or of every law that has one of that name.
     #[must_use]
@@ -63,15 +75,44 @@ impl Search {
         Self { threads: Some(threads.max(1)), ..self }
     }
 
-    /// The candidate of this name, with what is held.
-    fn candidate(&self, name: &str, machine: &Machine, decays: &[Experiment]) -> Result<Candidate, IdentifyError> {
-        let (name, own) = name.split_once(',').unwrap_or((name, ""));
-        let mut candidate = Candidate::named(name)?;
-        if let Some((parameter, value)) = own.split_once('=') {
+    /// Trials that the families state for a stage.
+    fn at(&self, stage: SearchStage) -> Vec<Trial> {
+        let families = catalogue(&mut Families).into_iter().chain(self.families.iter().cloned());
+        let of_family = |family: Family| {
+            let trials = family.trials.iter().filter(move |trial| trial.stage() == stage);
+            trials.map(move |trial| {
+                let terms = if trial.is_damped() { Terms::NONE.with(Term::LinearDamping) } else { Terms::NONE };
+                Trial { candidate: family.candidate.clone().with(terms), fixed: trial.fixed() }
+            })
+        };
+        families.flat_map(of_family).collect()
+    }
+
+    /// Trials of laws that change with speed: Stribeck curves, simple laws beside quadratic damping, and others.
+    fn of_speed(&self) -> Vec<Trial> {
+        let damped = |trial: Trial| {
+            let candidate = trial.candidate.with(Terms::NONE.with(Term::QuadraticDamping));
+            Trial { candidate, ..trial }
+        };
+        let simple = self.at(SearchStage::Simple).into_iter().map(damped);
+        self.at(SearchStage::Stribeck).into_iter().chain(simple).chain(self.at(SearchStage::TwoNumbers)).collect()
+    }
+
+    /// Trials of all stages but that of springs with corners.
+    fn all(&self) -> impl Iterator<Item = Trial> {
+        let further = [SearchStage::FurtherOfSpeed, SearchStage::Presliding, SearchStage::FurtherPresliding];
+        let first = self.at(SearchStage::Simple).into_iter().chain(self.of_speed()).chain(beside(&SPRINGS));
+        first.chain(further.into_iter().flat_map(|stage| self.at(stage)))
+    }
+
+    /// The candidate of a trial, with the parameters that are held.
+    fn candidate(&self, trial: &Trial, machine: &Machine, decays: &[Experiment]) -> Result<Candidate, IdentifyError> {
+        let mut candidate = trial.candidate.clone();
+        for (parameter, value) in trial.fixed {
             let is_given =
-                self.held.iter().any(|(law, held, _)| held == parameter.trim() && is_meant(law.as_deref(), &candidate));
-            if let (false, Ok(value)) = (is_given, value.trim().parse()) {
-                candidate = candidate.holding(parameter.trim(), value)?;
+                self.held.iter().any(|(law, held, _)| held == parameter && is_meant(law.as_deref(), &candidate));
+            if !is_given {
+                candidate = candidate.holding(parameter, *value)?;
             }
         }
         let known = candidate.parameters(machine, decays)?;
@@ -86,15 +127,8 @@ impl Search {
     /// That each parameter that is held is one of some law that may be tried.
     fn require_known(&self, machine: &Machine, decays: &[Experiment]) -> Result<(), IdentifyError> {
         let mut known = Vec::new();
-        for name in SIMPLE
-            .iter()
-            .chain(&OF_SPEED)
-            .chain(&WITH_SPRING)
-            .chain(&OF_SPEED_FURTHER)
-            .chain(&WITH_STATE)
-            .chain(&WITH_STATE_FURTHER)
-        {
-            let candidate = self.candidate(name, machine, decays)?;
+        for trial in self.all() {
+            let candidate = self.candidate(&trial, machine, decays)?;
             known.extend(candidate.parameters(machine, decays)?.into_iter().map(|name| (candidate.law_name(), name)));
         }
         let is_one = |(law, name): (&Option<String>, &String)| {
@@ -108,35 +142,25 @@ impl Search {
     }
 }
 
+/// Trials of a level and a straight line beside each of these lists of terms.
+fn beside(terms: &[&[Term]]) -> impl Iterator<Item = Trial> {
+    let with = |terms: &&[Term]| terms.iter().fold(Terms::NONE, |terms, term| terms.with(*term));
+    terms.iter().map(move |terms| Trial { candidate: Candidate::of::<CoulombViscous>().with(with(terms)), fixed: &[] })
+}
+
 /// Whether what is held of `law`, or of all if it is none, is meant for the `candidate`.
 fn is_meant(law: Option<&str>, candidate: &Candidate) -> bool {
     law.is_none_or(|law| candidate.law_name() == law)
 }
 
-/// Laws of the first stage.
-const SIMPLE: [&str; 3] = ["viscous", "coulomb", "coulomb_viscous"];
-/// Laws that change with speed, with the viscous part that a simple law has.
-const OF_SPEED: [&str; 8] = [
-    "berger+linear",
-    "stribeck,exponent=2",
-    "stribeck_lorentzian",
-    "viscous+quadratic",
-    "coulomb+quadratic",
-    "coulomb_viscous+quadratic",
-    "acceleration_coulomb+linear",
-    "hyperbolic+linear",
+/// Terms beside a level and a straight line: a spring that hardens or softens.
+const SPRINGS: [&[Term]; 3] = [
+    &[Term::CubicSpring],
+    &[Term::CubicSpring, Term::QuinticSpring],
+    &[Term::QuadraticDamping, Term::CubicSpring, Term::QuinticSpring],
 ];
-/// Laws whose friction changes with speed in ways of their own.
-const OF_SPEED_FURTHER: [&str; 6] =
-    ["stribeck", "power_law", "exponential_pair+linear", "makkar_dixon", "regularised_stribeck", "karnopp+linear"];
-/// A level and a straight line on a spring that hardens or softens.
-const WITH_SPRING: [&str; 3] = [
-    "coulomb_viscous+cubic spring",
-    "coulomb_viscous+cubic spring+quintic spring",
-    "coulomb_viscous+quadratic+cubic spring+quintic spring",
-];
-/// The same on a spring with a stop, a preload or a gap, where a smooth one leaves something.
-const WITH_CORNERS: [&str; 2] = ["coulomb_viscous+stop", "coulomb_viscous+gap"];
+/// Springs with a stop, a preload or a gap, tried if a smooth spring leaves correlated residuals.
+const CORNERS: [&[Term]; 2] = [&[Term::Stop], &[Term::Gap]];
 /// Presliding over less of the amplitude than this (1) is none that a record shows.
 const LEAST_PRESLIDING: f64 = 2e-3;
 /// Steps of a converter that presliding must exceed to be seen.
@@ -145,10 +169,41 @@ const STEPS_OF_PRESLIDING: f64 = 3.0;
 const MOST_ITERATIONS: usize = 80;
 /// The same of laws with presliding, whose motion takes long to simulate.
 const MOST_ITERATIONS_WITH_STATE: usize = 40;
-/// Laws with presliding.
-const WITH_STATE: [&str; 1] = ["dahl+linear,exponent=1"];
-/// Laws with presliding that are begun near the one that describes the records best.
-const WITH_STATE_FURTHER: [&str; 2] = ["lugre,exponent=2", "bouc_wen+linear,amplitude=1"];
+/// A law family and the trials that it states.
+#[derive(Debug, Clone)]
+struct Family {
+    candidate: Candidate,
+    trials: &'static [SearchTrial],
+}
+
+/// Families are equal if their names are.
+impl PartialEq for Family {
+    fn eq(&self, other: &Self) -> bool {
+        self.candidate.law_name() == other.candidate.law_name()
+    }
+}
+
+/// Makes families of the catalogue values.
+struct Families;
+
+impl FamilyVisitor for Families {
+    type Output = Family;
+
+    fn visit<F: LawFamily>(&mut self) -> Family {
+        let trials = match F::SEARCH {
+            SearchRole::Tried(trials) => trials,
+            SearchRole::NotTried(_) => &[],
+        };
+        Family { candidate: Candidate::of::<F>(), trials }
+    }
+}
+
+/// One fit of a search: a law with terms beside it, and the parameters that its family fixes.
+#[derive(Debug, Clone)]
+struct Trial {
+    candidate: Candidate,
+    fixed: &'static [(&'static str, f64)],
+}
 
 /// Identifies `decays` by as many laws as they ask for.
 ///
@@ -203,11 +258,11 @@ where
     if !search.held.is_empty() {
         search.require_known(machine, decays)?;
     }
-    let mut found = run.fit(run.candidates(&SIMPLE)?, None)?;
+    let mut found = run.fit(run.candidates(search.at(SearchStage::Simple))?, None)?;
     let drifting = closest(found.identifications.iter()).and_then(|found| found.with_drift(decays));
     let mut decays = decays;
     if let Some(drifting) = &drifting {
-        let with_drift = Run { decays: drifting, ..run }.fit(run.candidates(&SIMPLE)?, None)?;
+        let with_drift = Run { decays: drifting, ..run }.fit(run.candidates(search.at(SearchStage::Simple))?, None)?;
         if explains(&with_drift.identifications) {
             (decays, found) = (drifting, with_drift);
         }
@@ -216,7 +271,7 @@ where
     let mut signs = run.signs(&found);
     let falls: Vec<Fall> = signs.iter().filter_map(Sign::fall).collect();
     if found.asks_for_more(&signs) {
-        let falling = run.fit(run.candidates(&OF_SPEED)?, found.near(&falls, &[], 0).as_ref())?;
+        let falling = run.fit(run.candidates(search.of_speed())?, found.near(&falls, &[], 0).as_ref())?;
         found.add(falling);
         let is_bent = |sign: &Sign| sign.addition == Addition::SofteningSpring && sign.is_plain();
         // What a filter in the sensor does to a decay looks like a bent spring as well.
@@ -224,10 +279,10 @@ where
             behind_filter(decays, &found.identifications).is_some_and(|(found, _)| !found.structure().is_correlated())
         };
         if found.is_structured() && signs.iter().any(is_bent) && !is_filtered() {
-            let bent = run.fit(run.candidates(&WITH_SPRING)?, found.near(&falls, &[], 0).as_ref())?;
+            let bent = run.fit(run.candidates(beside(&SPRINGS))?, found.near(&falls, &[], 0).as_ref())?;
             found.add(bent);
             if found.is_structured() {
-                let with_corners = run.fit(run.candidates(&WITH_CORNERS)?, None)?;
+                let with_corners = run.fit(run.candidates(beside(&CORNERS))?, None)?;
                 found.add(with_corners);
             }
         }
@@ -236,7 +291,7 @@ where
         let run = Run { options: &of_speed, ..run };
         // What a spring explains, no friction of the speed does.
         if found.is_structured() || !found.is_bent() {
-            let further = found.unfinished().chain(run.candidates(&OF_SPEED_FURTHER)?).collect();
+            let further = found.unfinished().chain(run.candidates(search.at(SearchStage::FurtherOfSpeed))?).collect();
             let further = run.fit(further, found.near(&falls, &[|_| true], 1).as_ref())?;
             found.add(further);
         }
@@ -251,14 +306,17 @@ where
             |sign: &Sign| sign.addition == Addition::Presliding && sign.significance() > 2.0 && sign.size > least;
         if signs.iter().any(seen) {
             let run = Run { options: &limited_more, ..run };
-            let with_state = run.fit(run.candidates(&WITH_STATE)?, found.near(&falls, &[], 0).as_ref())?;
-            found.add(with_state);
             let with_state =
-                run.fit(run.candidates(&WITH_STATE_FURTHER)?, found.near(&falls, &[preslides], 2).as_ref())?;
+                run.fit(run.candidates(search.at(SearchStage::Presliding))?, found.near(&falls, &[], 0).as_ref())?;
+            found.add(with_state);
+            let with_state = run.fit(
+                run.candidates(search.at(SearchStage::FurtherPresliding))?,
+                found.near(&falls, &[preslides], 2).as_ref(),
+            )?;
             found.add(with_state);
         }
     }
-    let dropped = found.drop_unfinished();
+    let dropped = found.drop_unfinished(&search.at(SearchStage::Simple));
     signs.retain(|sign| sign.uncertainty.is_finite());
     let mut comparison = Comparison::of(decays, &found.candidates, found.identifications)?;
     comparison.signs = signs;
@@ -314,12 +372,13 @@ impl Found {
 
     /// Leaves out the laws whose fits have not ended in their lowest minimum and are far from what other laws reach;
     /// returns their names.
-    fn drop_unfinished(&mut self) -> Vec<String> {
+    fn drop_unfinished(&mut self, simple: &[Trial]) -> Vec<String> {
+        let simple: Vec<&str> = simple.iter().map(|trial| trial.candidate.law_name()).collect();
         let Some(judgement) = Judgement::of(&self.candidates, &self.identifications) else { return Vec::new() };
         let all = std::mem::take(&mut self.candidates).into_iter().zip(std::mem::take(&mut self.identifications));
         let mut dropped = Vec::new();
         for (place, (candidate, found)) in all.enumerate() {
-            let is_simple = SIMPLE.contains(&candidate.law_name());
+            let is_simple = simple.contains(&candidate.law_name());
             if !is_simple && !judgement.is_left(place) && !judgement.is_finished[place] {
                 dropped.push(candidate.name());
             } else {
@@ -353,7 +412,7 @@ impl Found {
 
     /// The fit by Coulomb and viscous friction, whatever is held of it; it is among the first.
     fn simple(&self) -> Option<&Identification> {
-        self.identifications.iter().find(|found| found.family().name == "coulomb_viscous")
+        self.identifications.iter().find(|found| found.family().name == CoulombViscous::NAME)
     }
 }
 
@@ -372,9 +431,9 @@ struct Run<'a, F> {
 }
 
 impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
-    /// The candidates of these names, with what is held.
-    fn candidates(&self, names: &[&str]) -> Result<Vec<Candidate>, IdentifyError> {
-        names.iter().map(|name| self.search.candidate(name, self.machine, self.decays)).collect()
+    /// The candidates of these trials, with the parameters that are held.
+    fn candidates(&self, trials: impl IntoIterator<Item = Trial>) -> Result<Vec<Candidate>, IdentifyError> {
+        trials.into_iter().map(|trial| self.search.candidate(&trial, self.machine, self.decays)).collect()
     }
 
     fn is_late(&self) -> bool {
@@ -421,5 +480,101 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
     fn signs(&self, found: &Found) -> Vec<Sign> {
         let base = found.simple();
         base.and_then(|base| signs(base, self.decays).ok()).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fmm_friction::{Berger, LawError, LawParameter, LawVisitor};
+    use fmm_model::Scalar;
+
+    use super::*;
+
+    fn names(trials: impl IntoIterator<Item = Trial>) -> Vec<String> {
+        let name = |trial: Trial| {
+            let fixed = trial.fixed.iter().try_fold(trial.candidate, |law, (name, value)| law.holding(name, *value));
+            fixed.unwrap().name()
+        };
+        trials.into_iter().map(name).collect()
+    }
+
+    /// Every law of the catalogue is tried as often as it states, or says why it is not.
+    #[test]
+    fn every_law_of_the_catalogue_is_searched_or_says_why_not() {
+        struct Roles;
+        impl FamilyVisitor for Roles {
+            type Output = (&'static str, SearchRole);
+
+            fn visit<F: LawFamily>(&mut self) -> Self::Output {
+                (F::NAME, F::SEARCH)
+            }
+        }
+        let tried = names(Search::default().all());
+        for (law, role) in catalogue(&mut Roles) {
+            let found = tried.iter().filter(|name| name.split([' ', ',']).next() == Some(law)).count();
+            match role {
+                SearchRole::Tried(trials) => assert!(found >= trials.len() && found > 0, "{law}: {found} trials"),
+                SearchRole::NotTried(reason) => {
+                    assert!(found == 0 && role != SearchRole::UNSTATED, "{law}: {found} trials, {reason}");
+                }
+            }
+        }
+    }
+
+    /// Laws that simulate slowly or need a start near another law come last.
+    #[test]
+    fn laws_are_tried_from_simple_to_general() {
+        assert_eq!(
+            names(Search::default().all()),
+            [
+                "viscous",
+                "coulomb",
+                "coulomb_viscous",
+                "berger + linear",
+                "stribeck, exponent = 2",
+                "stribeck_lorentzian",
+                "viscous + quadratic",
+                "coulomb + quadratic",
+                "coulomb_viscous + quadratic",
+                "acceleration_coulomb + linear",
+                "hyperbolic + linear",
+                "coulomb_viscous + cubic spring",
+                "coulomb_viscous + cubic spring + quintic spring",
+                "coulomb_viscous + quadratic + cubic spring + quintic spring",
+                "stribeck",
+                "power_law",
+                "exponential_pair + linear",
+                "makkar_dixon",
+                "regularised_stribeck",
+                "karnopp + linear",
+                "dahl + linear, exponent = 1",
+                "lugre, exponent = 2",
+                "bouc_wen + linear, amplitude = 1",
+            ]
+        );
+        assert_eq!(names(beside(&CORNERS)), ["coulomb_viscous + stop", "coulomb_viscous + gap"]);
+    }
+
+    /// A law of one's own is tried at the stage that it states, after those of the catalogue.
+    #[test]
+    fn a_family_of_ones_own_takes_part() {
+        struct Own;
+        impl LawFamily for Own {
+            const NAME: &'static str = "own";
+            const PARAMETERS: &'static [LawParameter] = Berger::PARAMETERS;
+            const SEARCH: SearchRole = SearchRole::Tried(&[SearchStage::TwoNumbers.trial().damped()]);
+            type At<D: Scalar> = Berger<D>;
+
+            fn at<D: Scalar>(values: &[D]) -> Result<Berger<D>, LawError> {
+                Berger::at(values)
+            }
+
+            fn visit<D: Scalar, V: LawVisitor<D, Berger<D>>>(visitor: V) -> V::Output {
+                visitor.sliding()
+            }
+        }
+        let search = Search::default().including::<Own>();
+        assert_eq!(names(search.of_speed()).last().map(String::as_str), Some("own + linear"));
+        assert_ne!(search, Search::default());
     }
 }

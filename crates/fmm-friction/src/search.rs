@@ -1,0 +1,87 @@
+//! Part of a law family in a search for the law of a record.
+
+/// Stages of a search for the law of a record, in the order in which they are tried.
+///
+/// ```
+/// use fmm_friction::{Berger, LawFamily, SearchRole, SearchStage};
+///
+/// let SearchRole::Tried([trial]) = Berger::SEARCH else { panic!("one trial") };
+/// assert_eq!(trial.stage(), SearchStage::Stribeck);
+/// // The law has no viscous part of its own.
+/// assert!(trial.is_damped());
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum SearchStage {
+    /// A level, a straight line, or both: tried on every record.
+    Simple,
+    /// A fall with the speed from a static to a sliding level: tried if the simple laws leave a part of the motion
+    /// unexplained.
+    Stribeck,
+    /// Another change with speed or acceleration that takes two numbers: tried beside the Stribeck curves.
+    TwoNumbers,
+    /// A curve over the speed with a shape of its own: tried if correlated residuals remain. Its fit begins near the
+    /// best law so far.
+    FurtherOfSpeed,
+    /// Friction that builds up over a small displacement: tried if the residuals show presliding.
+    Presliding,
+    /// Presliding with further parameters: tried in the same case, and begun near the best presliding law.
+    FurtherPresliding,
+}
+
+impl SearchStage {
+    /// A trial at this stage, with all parameters free and without damping beside the law.
+    pub const fn trial(self) -> SearchTrial {
+        SearchTrial { stage: self, fixed: &[], is_damped: false }
+    }
+}
+
+/// One fit of a family in a search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SearchTrial {
+    stage: SearchStage,
+    fixed: &'static [(&'static str, f64)],
+    is_damped: bool,
+}
+
+impl SearchTrial {
+    /// The same trial with these parameters of the law fixed, by name and value.
+    #[must_use]
+    pub const fn fixing(self, fixed: &'static [(&'static str, f64)]) -> Self {
+        Self { fixed, ..self }
+    }
+
+    /// The same trial with viscous damping of the machine fitted beside the law, for laws without a viscous part.
+    #[must_use]
+    pub const fn damped(self) -> Self {
+        Self { is_damped: true, ..self }
+    }
+
+    /// Stage of the search.
+    pub const fn stage(&self) -> SearchStage {
+        self.stage
+    }
+
+    /// Names and values of the parameters that are fixed.
+    pub const fn fixed(&self) -> &'static [(&'static str, f64)] {
+        self.fixed
+    }
+
+    /// True if viscous damping of the machine is fitted beside the law.
+    pub const fn is_damped(&self) -> bool {
+        self.is_damped
+    }
+}
+
+/// Part of a family in a search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SearchRole {
+    /// Fits that a search makes.
+    Tried(&'static [SearchTrial]),
+    /// No fit, with the reason.
+    NotTried(&'static str),
+}
+
+impl SearchRole {
+    /// Role of a family that states none.
+    pub const UNSTATED: Self = Self::NotTried("the family states no trial");
+}
