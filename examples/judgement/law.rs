@@ -2,8 +2,8 @@
 
 use fmm_friction::{
     AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, Hyperbolic,
-    Karnopp, LawFamily, LawParameter, LuGre, MakkarDixon, PowerLaw, RegularisedStribeck, Role, Shifted, SlidingLaw,
-    Stribeck, StribeckLorentzian, Viscous,
+    Karnopp, LawFamily, LawParameter, LuGre, MakkarDixon, PowerLaw, RegularisedStribeck, Role, ShiftedMakkarDixon,
+    SlidingLaw, Stribeck, StribeckLorentzian, Viscous,
 };
 use fmm_model::Oscillator;
 use fmm_sim::{Sampling, Scenario, Trajectory, simulate_into};
@@ -103,7 +103,7 @@ const LAWS: &[Law] = &[
     Law::of::<PowerLaw>(sliding::<PowerLaw>),
     Law::of::<ExponentialPair>(sliding::<ExponentialPair>),
     Law::of::<Karnopp>(sliding::<Karnopp>),
-    Law::of::<Shifted<MakkarDixon>>(sliding::<Shifted<MakkarDixon>>),
+    Law::of::<ShiftedMakkarDixon>(sliding::<ShiftedMakkarDixon>),
     Law::of::<MakkarDixon>(creeping::<MakkarDixon>),
     Law::of::<RegularisedStribeck>(creeping::<RegularisedStribeck>),
     Law::of::<Dahl>(with_state::<Dahl>),

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use fmm_fit::{Options, Progress, Residuals as _, solve};
-use fmm_friction::{BoucWen, Dahl, LawFamily, LuGre, MakkarDixon, Role, Shifted, Stribeck};
+use fmm_friction::{BoucWen, Dahl, LawFamily, LuGre, MakkarDixon, Role, ShiftedMakkarDixon, Stribeck};
 use fmm_identify::{Experiment, Machine, Preparation, Problem, Terms, identify_observed};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
@@ -69,7 +69,7 @@ pub(crate) const FITS: &[Fits] = &[
     Fits::of::<BoucWen>("bouc_wen", "bouc_wen-held", &[("amplitude", 1.0)], bouc_wen),
     Fits::of::<BoucWen>("bouc_wen", "bouc_wen", &[], bouc_wen),
     Fits::of::<MakkarDixon>("makkar_dixon", "makkar_dixon", &[], makkar_dixon),
-    Fits::of::<Shifted<MakkarDixon>>("makkar_dixon_shifted", "makkar_dixon_shifted", &[], makkar_dixon),
+    Fits::of::<ShiftedMakkarDixon>("makkar_dixon_shifted", "makkar_dixon_shifted", &[], makkar_dixon),
     Fits::of::<Stribeck>("stribeck", "stribeck", &[], stribeck),
 ];
 

@@ -1,8 +1,8 @@
 //! Motions under every kind of law and force, event by event, sample by sample, with the work done.
 
 use fmm_friction::{
-    AccelerationCoulomb, Berger, CoulombStatic, MakkarDixon, MaxwellSlip, PowerLaw, Shifted, SlidingLaw, Stribeck,
-    Viscous,
+    AccelerationCoulomb, Berger, CoulombStatic, MakkarDixon, MaxwellSlip, PowerLaw, ShiftedMakkarDixon, SlidingLaw,
+    Stribeck, Viscous,
 };
 use fmm_model::{Damping, Oscillator};
 use fmm_sim::{Engine, Event, EventKind, Exact, Excitation, Mode, RungeKutta, Sampling, Scenario, Trajectory};
@@ -154,7 +154,7 @@ fn makkar_dixon(case: &Case) -> MakkarDixon {
 
 #[test]
 fn makkar_dixon_with_a_shift_sticks() {
-    integrated("makkar_dixon_shifted_free_decay", |case| Shifted::new(makkar_dixon(case)), "N");
+    integrated("makkar_dixon_shifted_free_decay", |case| ShiftedMakkarDixon::new(makkar_dixon(case)), "N");
 }
 
 #[test]

@@ -3,25 +3,16 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::{
+use crate::law::{FamilyVisitor, LawFamily};
+use crate::laws::{
     AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, GmsOf,
-    Hyperbolic, Karnopp, LawFamily, LuGre, MakkarDixon, MaxwellSlipOf, PowerLaw, RegularisedStribeck, Shifted,
+    Hyperbolic, Karnopp, LuGre, MakkarDixon, MaxwellSlipOf, PowerLaw, RegularisedStribeck, ShiftedMakkarDixon,
     Stribeck, StribeckLorentzian, Viscous,
 };
 
-/// Action on each family of a catalogue.
-pub trait FamilyVisitor {
-    /// Result for a family.
-    type Output;
-
-    /// For family `F`.
-    fn visit<F: LawFamily>(&mut self) -> Self::Output;
-}
-
 macro_rules! catalogue {
     ($($law:ty),+ $(,)?) => {
-        /// Results of `visitor` for every family of laws, in the order of the catalogue: from simple to general, as a search
-        /// tries them within a stage.
+        /// Results of `visitor` for every family of laws, in the order of the catalogue: from simple to general.
         ///
         /// ```
         /// use fmm_friction::{FamilyVisitor, LawFamily, catalogue};
@@ -65,7 +56,7 @@ catalogue!(
     PowerLaw,
     ExponentialPair,
     MakkarDixon,
-    Shifted<MakkarDixon>,
+    ShiftedMakkarDixon,
     RegularisedStribeck,
     Karnopp,
     Dahl,
@@ -81,7 +72,7 @@ catalogue!(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{LawKind, SearchRole};
+    use crate::law::{LawKind, SearchRole};
 
     struct Facts;
 

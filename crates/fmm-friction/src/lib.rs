@@ -22,13 +22,13 @@
 //! | one level | [`Coulomb`] | a static level of its own: [`CoulombStatic`], which a free decay hardly shows |
 //! | a level and a part proportional to the speed | [`CoulombViscous`] | telling that part from the damping of the machine |
 //! | no dry friction | [`Viscous`], the hypothesis to be refuted | contacts that stop |
-//! | falls with speed | [`Berger`] (exponential, to a floor), [`Hyperbolic`] (two parameters, to zero) | records of one amplitude: floor and excess are correlated by −0.999 |
+//! | falls with speed | [`Berger`] (exponential, to a floor), [`Hyperbolic`] (two parameters, to zero) | records of one amplitude: correlation of floor and excess −0.999 |
 //! | falls, then rises | [`Stribeck`], [`StribeckLorentzian`] | records that do not cover both sides of the minimum |
 //! | rises with a power of the speed | [`PowerLaw`] | stick-slip: it creeps above its floor |
 //! | differs between growing and falling speed | [`AccelerationCoulomb`] (two levels), [`ExponentialPair`] (two curves) | smoothing |
-//! | a peak over a smooth curve | [`MakkarDixon`], [`RegularisedStribeck`]; [`Shifted`] makes the first stick | holding a load: without the shift they creep |
+//! | a peak over a smooth curve | [`MakkarDixon`], [`RegularisedStribeck`]; [`ShiftedMakkarDixon`] makes the first stick | holding a load: without the shift they creep |
 //! | gives before it slides, path only | [`Dahl`], [`BoucWen`] or, by its level, [`BoucWenByLevel`] (one state), [`MaxwellSlip`] (elements) | records that do not resolve some micrometres |
-//! | gives, lags and falls | [`LuGre`], [`Gms`] | fits without constants held: seven parameters and more |
+//! | gives, lags and falls | [`LuGre`], [`Gms`] | fits without fixed constants: seven parameters and more |
 //! | has to agree with another simulator | [`Karnopp`] (dead zone), [`Smoothed`] (any law times tanh) | anything else: their error grows with the zone |
 //!
 //! # The traits
@@ -37,7 +37,7 @@
 //! internal state, which do not; their pages state the contract of an implementor and its reasons.
 //! [`PiecewiseLinearLaw`] marks the laws that move a linear machine in closed form. [`LawFamily`] names the parameters
 //! and builds a law at any number type, for fits, budgets and reports. [`MaxwellSlip`] and [`Gms`] are lists of
-//! elements; their families for a given number of elements are [`MaxwellSlipOf`] and [`GmsOf`]. A law of one's own that
+//! elements; their families for a given number of elements are [`MaxwellSlipOf`] and [`GmsOf`]. A user's law that
 //! implements it is simulated and fitted like these. A family also states its kind: a [`LawVisitor`] has one method for
 //! each kind of law, and [`catalogue()`] leads a [`FamilyVisitor`] through all families by name.
 //!
@@ -59,7 +59,7 @@
 //!
 //! A coefficient is a handful of operations: arithmetic alone for laws that are a level plus a slope, one exponential
 //! for [`Berger`], four functions for [`MakkarDixon`]. Only [`MaxwellSlip`] and [`Gms`] allocate, when they are made.
-//! [`Shifted`] searches its inflection once, when it is made, and so once for each evaluation of a fit.
+//! [`ShiftedMakkarDixon`] searches its inflection once, when it is made, and so once for each evaluation of a fit.
 //!
 //! # Neighbours
 //!
@@ -71,85 +71,29 @@
 //! | feature | |
 //! |---|---|
 //! | `std` | on by default: elementary functions of the standard library |
-//! | `libm` | those of the crate libm where `std` is off, so that a controller evaluates a law; laws of a variable number of elements and messages need an allocator |
+//! | `libm` | those of the crate libm if `std` is off, for a controller; lists of elements and messages need an allocator |
 
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;
 
-mod acceleration_coulomb;
-mod affine;
-mod berger;
-mod blend;
-mod bouc_wen;
-mod bouc_wen_by_level;
 mod catalogue;
-mod coulomb;
-mod coulomb_static;
-mod coulomb_viscous;
-mod dahl;
-mod elements;
-mod error;
-mod expansion;
-mod exponential_pair;
-mod family;
-mod gms;
-mod gms_family;
-mod hyperbolic;
-mod karnopp;
-mod kind;
 mod law;
-mod lugre;
-mod makkar_dixon;
-mod maxwell_slip;
-mod maxwell_slip_family;
-mod power;
-mod power_law;
-mod regularised_stribeck;
-mod search;
-mod shifted;
-mod smoothed;
-mod stribeck;
-mod stribeck_lorentzian;
-mod viscous;
-
+mod laws;
 #[cfg(test)]
-mod bristle_properties;
-#[cfg(test)]
-mod sliding_properties;
+mod tests;
 
-pub use acceleration_coulomb::AccelerationCoulomb;
-pub use affine::{Affine, Element, PiecewiseLinearLaw};
-pub use berger::Berger;
-pub use bouc_wen::BoucWen;
-pub use bouc_wen_by_level::BoucWenByLevel;
-pub use catalogue::{FamilyVisitor, catalogue, family_named};
-pub use coulomb::Coulomb;
-pub use coulomb_static::CoulombStatic;
-pub use coulomb_viscous::CoulombViscous;
-pub use dahl::Dahl;
-pub use error::LawError;
-pub use expansion::Expansion;
-pub use exponential_pair::ExponentialPair;
-pub use family::{FamilyMember, LawFamily, LawParameter, Recast, Role, SpecialCase};
-pub use gms::Gms;
-pub use gms_family::GmsOf;
-pub use hyperbolic::Hyperbolic;
-pub use karnopp::Karnopp;
-pub use kind::{LawKind, LawVisitor};
-pub use law::{BristleLaw, Regime, SlidingLaw};
-pub use lugre::LuGre;
-pub use makkar_dixon::MakkarDixon;
-pub use maxwell_slip::MaxwellSlip;
-pub use maxwell_slip_family::MaxwellSlipOf;
-pub use power_law::PowerLaw;
-pub use regularised_stribeck::RegularisedStribeck;
-pub use search::{SearchRole, SearchStage, SearchTrial};
-pub use shifted::{Inflected, Shifted};
-pub use smoothed::Smoothed;
-pub use stribeck::Stribeck;
-pub use stribeck_lorentzian::StribeckLorentzian;
-pub use viscous::Viscous;
+pub use catalogue::{catalogue, family_named};
+pub use law::{
+    Affine, BristleLaw, Element, Expansion, FamilyMember, FamilyVisitor, LawError, LawFamily, LawKind, LawParameter,
+    LawVisitor, PiecewiseLinearLaw, Regime, Reparametrisation, Role, SearchRole, SearchStage, SearchTrial, SlidingLaw,
+    SpecialCase,
+};
+pub use laws::{
+    AccelerationCoulomb, Berger, BoucWen, BoucWenByLevel, Coulomb, CoulombStatic, CoulombViscous, Dahl,
+    ExponentialPair, Gms, GmsOf, Hyperbolic, Karnopp, LuGre, MakkarDixon, MaxwellSlip, MaxwellSlipOf, PowerLaw,
+    RegularisedStribeck, ShiftedMakkarDixon, Smoothed, Stribeck, StribeckLorentzian, Viscous,
+};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

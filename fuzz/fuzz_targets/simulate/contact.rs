@@ -3,7 +3,7 @@
 use fmm_friction::{
     AccelerationCoulomb, Berger, BoucWen, BristleLaw, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair,
     Gms, Hyperbolic, Karnopp, LuGre, MakkarDixon, MaxwellSlip, PiecewiseLinearLaw, PowerLaw, RegularisedStribeck,
-    Shifted, SlidingLaw, Smoothed, Stribeck, StribeckLorentzian, Viscous,
+    ShiftedMakkarDixon, SlidingLaw, Smoothed, Stribeck, StribeckLorentzian, Viscous,
 };
 use fmm_model::{Dual, Scalar};
 use fmm_sim::{Bristle, Exact, Moreau, RungeKutta, Thesis};
@@ -85,7 +85,7 @@ fn with_law<D: Number>(case: &Case) -> Option<()> {
         }
         Law::Karnopp => sliding_law(case, Karnopp::new(sliding, breakaway, positive(2)).ok()?),
         Law::MakkarDixon => sliding_law(case, law.makkar_dixon::<D>()?),
-        Law::ShiftedMakkarDixon => sliding_law(case, Shifted::new(law.makkar_dixon::<D>()?)),
+        Law::ShiftedMakkarDixon => sliding_law(case, ShiftedMakkarDixon::new(law.makkar_dixon::<D>()?)),
         Law::RegularisedStribeck => {
             sliding_law(case, RegularisedStribeck::new(breakaway, sliding, positive(2), at(3)).ok()?)
         }

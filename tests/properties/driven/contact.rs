@@ -2,8 +2,8 @@
 
 use fmm_friction::{
     AccelerationCoulomb, Affine, Berger, Coulomb, CoulombStatic, CoulombViscous, Element, ExponentialPair, Hyperbolic,
-    Karnopp, LawFamily, MakkarDixon, MaxwellSlip, PiecewiseLinearLaw, PowerLaw, RegularisedStribeck, Shifted,
-    SlidingLaw, Stribeck, StribeckLorentzian, Viscous,
+    Karnopp, LawFamily, MakkarDixon, MaxwellSlip, PiecewiseLinearLaw, PowerLaw, RegularisedStribeck,
+    ShiftedMakkarDixon, SlidingLaw, Stribeck, StribeckLorentzian, Viscous,
 };
 use fmm_model::Scalar;
 use rand::RngExt;
@@ -71,7 +71,7 @@ any_law! {
         AccelerationCoulomb = AccelerationCoulomb;
     curved: Stribeck = Stribeck, StribeckLorentzian = StribeckLorentzian, Hyperbolic = Hyperbolic, Berger = Berger,
         PowerLaw = PowerLaw, ExponentialPair = ExponentialPair, Karnopp = Karnopp, MakkarDixon = MakkarDixon,
-        Shifted = Shifted<MakkarDixon>, RegularisedStribeck = RegularisedStribeck
+        Shifted = ShiftedMakkarDixon, RegularisedStribeck = RegularisedStribeck
 }
 
 impl<D: Scalar> SlidingLaw<D> for AnyLaw<D> {

@@ -6,7 +6,7 @@ pub(crate) mod dimension;
 pub(crate) mod naming;
 
 use fmm_fit::EvaluationError;
-use fmm_friction::{FamilyVisitor, LawFamily, LawKind, LawParameter, Recast, Role, SpecialCase};
+use fmm_friction::{FamilyVisitor, LawFamily, LawKind, LawParameter, Reparametrisation, Role, SpecialCase};
 use fmm_model::{Dual, Oscillator, Scalar};
 use fmm_sim::{Excitation, Sampling, Scenario, Trajectory, simulate_into};
 
@@ -66,7 +66,7 @@ pub(crate) struct Law {
     pub(crate) along: Along<f64>,
     pub(crate) along_with_derivatives: Along<Dual<DIRECTIONS>>,
     /// The same laws by parameters that a fit finds in fewer steps.
-    pub(crate) recast: fn() -> Option<Recast<Self>>,
+    pub(crate) recast: fn() -> Option<Reparametrisation<Self>>,
     kind: fn() -> LawKind,
     /// Whether static levels of their own are fitted.
     fits_breakaway: bool,
@@ -95,7 +95,7 @@ impl Law {
             with_derivatives: Motion::simulate::<F>,
             along: along::<F, f64>,
             along_with_derivatives: along::<F, Dual<DIRECTIONS>>,
-            recast: || F::recast(&mut Laws),
+            recast: || F::reparametrisation(&mut Laws),
             kind: F::kind,
             fits_breakaway: false,
             steady: steady::<F>,

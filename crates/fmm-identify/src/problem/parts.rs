@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fmm_friction::{Recast, Role};
+use fmm_friction::{Reparametrisation, Role};
 use fmm_model::Bounds;
 use fmm_record::Quantity;
 
@@ -105,7 +105,7 @@ impl Problem<'_> {
 
     /// The values of this problem where those of the [recast](Self::recast) one have been `found`.
     pub(crate) fn of_recast(&self, found: &[f64]) -> Option<Vec<f64>> {
-        let Recast { family, values } = (self.law().recast)()?;
+        let Reparametrisation { family, values } = (self.law().recast)()?;
         let (before, rest) = found.split_at(self.layout.law);
         let (of_law, own) = rest.split_at(family.fitted().count());
         Some([before, &values(of_law).ok()?, own].concat())

@@ -2,8 +2,8 @@
 
 use fmm_friction::{
     AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, GmsOf,
-    Hyperbolic, Karnopp, LawFamily, LuGre, MakkarDixon, MaxwellSlipOf, PowerLaw, RegularisedStribeck, Shifted,
-    Stribeck, StribeckLorentzian, Viscous,
+    Hyperbolic, Karnopp, LawFamily, LuGre, MakkarDixon, MaxwellSlipOf, PowerLaw, RegularisedStribeck,
+    ShiftedMakkarDixon, Stribeck, StribeckLorentzian, Viscous,
 };
 use fmm_identify::{Candidate, Identification, Known, Machine, Terms, Warning, compare, identify};
 
@@ -157,7 +157,7 @@ fn makkar_dixon() {
 
 #[test]
 fn makkar_dixon_shifted() {
-    recovers::<Shifted<MakkarDixon>>(&MAKKAR_DIXON, holding("level_rise", 40.0), &RELEASES[2..]);
+    recovers::<ShiftedMakkarDixon>(&MAKKAR_DIXON, holding("level_rise", 40.0), &RELEASES[2..]);
 }
 
 const MAKKAR_DIXON: [f64; 6] = [0.25, 100.0, 10.0, 0.1, 40.0, 0.1];

@@ -78,6 +78,6 @@ fn functions_of_time_are_lines() {
 
 #[test]
 fn laws_of_ones_own_can_say_what_is_wrong() {
-    let error = LawError::Condition { law: "sticky", condition: "a < b, but a = 2 and b = 1".to_owned() };
-    assert_eq!(error.to_string(), "the parameters of the law sticky must satisfy a < b, but a = 2 and b = 1");
+    let error = LawError::Contradiction { what: "sticky needs a < b, but a = 2 and b = 1".to_owned() };
+    assert_eq!(error.to_string(), "sticky needs a < b, but a = 2 and b = 1");
 }

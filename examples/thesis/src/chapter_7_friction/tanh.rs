@@ -1,7 +1,7 @@
 //! Section 7.5: the continuously differentiable law, raw and shifted, Figs 25 to 28.
 
 use fmm_fit::{Options, solve};
-use fmm_friction::{LawFamily, MakkarDixon, Shifted, SlidingLaw};
+use fmm_friction::{LawFamily, MakkarDixon, ShiftedMakkarDixon, SlidingLaw};
 use fmm_record::Record;
 use fmm_sim::{Engine, Sampling, Thesis};
 
@@ -33,8 +33,8 @@ fn law([difference, rise, fall, level, level_rise, viscous]: [f64; 6]) -> Found<
     Ok(MakkarDixon::six(difference, rise, fall, level, level_rise, viscous)?)
 }
 
-fn shifted(values: [f64; 6]) -> Found<Shifted<MakkarDixon>> {
-    Ok(Shifted::new(law(values)?))
+fn shifted(values: [f64; 6]) -> Found<ShiftedMakkarDixon> {
+    Ok(ShiftedMakkarDixon::new(law(values)?))
 }
 
 /// Static and dynamic level of the illustration.
@@ -135,9 +135,9 @@ fn unshifted(chapter: &mut Chapter) -> Found<()> {
     let sampling = Sampling::uniform(INTERVAL, 5000)?;
     let raw = scenario::<MakkarDixon>(machine, &COMPARED, LOAD_5, (0.0, START))?;
     let raw = motion::<MakkarDixon>(&raw, &sampling)?;
-    let moved = scenario::<Shifted<MakkarDixon>>(machine, &COMPARED, LOAD_5, (0.0, START))?;
+    let moved = scenario::<ShiftedMakkarDixon>(machine, &COMPARED, LOAD_5, (0.0, START))?;
     let coded = Thesis::A6.run(&scenario::<MakkarDixon>(machine, &COMPARED, LOAD_5, (0.0, START))?, &sampling)?;
-    let moved = motion::<Shifted<MakkarDixon>>(&moved, &sampling)?;
+    let moved = motion::<ShiftedMakkarDixon>(&moved, &sampling)?;
     let rest = moved.rest().ok_or("the shifted law does not stop the motion")?;
     // A6 compares 1840 samples.
     let end = 1840;
@@ -232,9 +232,9 @@ fn fitted(chapter: &mut Chapter, settings: &Settings<'_>) -> Found<()> {
     const NOISE: f64 = 5e-4;
     let truth = ILLUSTRATIONS[0];
     let release = Release { viscous: Viscous::Line, law: &truth, load: LOAD_5, displacement: 22.0 };
-    let record = release.record::<Shifted<MakkarDixon>>(NOISE, seed(settings, 6, 0, 0))?;
+    let record = release.record::<ShiftedMakkarDixon>(NOISE, seed(settings, 6, 0, 0))?;
     let start = [0.39, 500.0, 5.5, 0.22, 500.0, 0.0];
-    let (shifted_fit, shifted_values) = by::<Shifted<MakkarDixon>>(&record, start)?;
+    let (shifted_fit, shifted_values) = by::<ShiftedMakkarDixon>(&record, start)?;
     let (raw_fit, raw_values) = by::<MakkarDixon>(&record, start)?;
     let deviation = |fit: &fmm_fit::Fit| 1e3 * rms(fit.residuals());
     let (with_shift, without) = (deviation(&shifted_fit), deviation(&raw_fit));

@@ -1,11 +1,33 @@
 //! Elements in parallel, each a spring that slides at its level.
 
+use alloc::format;
 use alloc::vec::Vec;
 
-use fmm_model::Scalar;
+use fmm_model::{Bounds, Parameter, Scalar};
 
-use crate::elements::{check, direction};
-use crate::{Affine, BristleLaw, Element, LawError, PiecewiseLinearLaw, Regime};
+use crate::law::functions::direction;
+use crate::law::parameter::all_checked;
+use crate::law::{
+    Affine, BristleLaw, Element, LawError, LawFamily, LawParameter, LawVisitor, PiecewiseLinearLaw, Regime, Role,
+    SearchRole, SpecialCase,
+};
+
+/// Checks pairs of a stiffness κᵢ (1/m) and a second number, called `name` and `symbol`: all positive and finite, and
+/// no more pairs than a regime can tell apart.
+pub(crate) fn check<D: Scalar>(elements: &[(D, D)], name: &str, symbol: &str) -> Result<(), LawError> {
+    if elements.is_empty() || elements.len() > Regime::CAPACITY {
+        let (got, most) = (elements.len(), Regime::CAPACITY);
+        let what = format!("a law of elements has 1 to {most} of them, but {got} were given");
+        return Err(LawError::WrongCount { what, got });
+    }
+    for (number, (stiffness, second)) in (1..).zip(elements) {
+        for (name, symbol, unit, value) in [("stiffness", "κ", "1/m", stiffness), (name, symbol, "1", second)] {
+            let parameter = Parameter::named(format!("{name}_{number}"), format!("{symbol}_{number}"), unit);
+            LawParameter::new(parameter.bounded(Bounds::POSITIVE), Role::Level).check(*value)?;
+        }
+    }
+    Ok(())
+}
 
 /// The Maxwell slip model, also called Iwan's or Jenkins' model.
 ///
@@ -47,7 +69,7 @@ impl<D: Scalar> MaxwellSlip<D> {
     /// Elements of (stiffness κᵢ (1/m), level wᵢ (1)).
     ///
     /// # Errors
-    /// [`LawError::ElementCount`] for no elements or more than [`Regime::CAPACITY`], [`LawError::OutOfBounds`] if a
+    /// [`LawError::WrongCount`] for no elements or more than [`Regime::CAPACITY`], [`LawError::OutOfBounds`] if a
     /// number is not positive or not finite.
     pub fn new(elements: &[(D, D)]) -> Result<Self, LawError> {
         check(elements, "level", "w")?;
@@ -121,6 +143,78 @@ impl<D: Scalar> BristleLaw<D> for MaxwellSlip<D> {
     fn reserve(&self, index: usize, velocity: D, state: &[D]) -> Option<D> {
         let element = self.elements.get(index)?;
         Some(element.level - element.stiffness * state[index] * direction(velocity))
+    }
+}
+
+/// The family of [`MaxwellSlip`] laws of `N` elements, from 1 to 8. It makes their levels and stiffnesses parameters of
+/// a fit.
+///
+/// Elements of one law can change places; those listed first are meant to be the stiff ones that slide at most of the
+/// force.
+///
+/// ```
+/// use fmm_friction::{LawFamily, MaxwellSlip, MaxwellSlipOf};
+///
+/// let law = MaxwellSlipOf::<2>::at(&[0.15, 4.0e4, 0.1, 1.0e4])?;
+/// assert_eq!(law, MaxwellSlip::new(&[(4.0e4, 0.15), (1.0e4, 0.1)])?);
+/// assert_eq!(MaxwellSlipOf::<2>::PARAMETERS[3].parameter().name(), "stiffness_2");
+/// # Ok::<(), fmm_friction::LawError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MaxwellSlipOf<const N: usize>;
+
+const fn positive(name: &'static str, symbol: &'static str, unit: &'static str, typical: f64) -> LawParameter {
+    LawParameter::positive(name, symbol, unit, Role::Level).typically(typical)
+}
+
+const NAMES: [&str; 8] = [
+    "maxwell_slip_1",
+    "maxwell_slip_2",
+    "maxwell_slip_3",
+    "maxwell_slip_4",
+    "maxwell_slip_5",
+    "maxwell_slip_6",
+    "maxwell_slip_7",
+    "maxwell_slip_8",
+];
+
+/// Level and stiffness of every element.
+const PARAMETERS: &[LawParameter] = &[
+    positive("level_1", "w₁", "1", 0.6),
+    positive("stiffness_1", "κ₁", "1/m", 100.0),
+    positive("level_2", "w₂", "1", 0.4),
+    positive("stiffness_2", "κ₂", "1/m", 20.0),
+    positive("level_3", "w₃", "1", 0.2),
+    positive("stiffness_3", "κ₃", "1/m", 5.0),
+    positive("level_4", "w₄", "1", 0.2),
+    positive("stiffness_4", "κ₄", "1/m", 200.0),
+    positive("level_5", "w₅", "1", 0.2),
+    positive("stiffness_5", "κ₅", "1/m", 50.0),
+    positive("level_6", "w₆", "1", 0.2),
+    positive("stiffness_6", "κ₆", "1/m", 10.0),
+    positive("level_7", "w₇", "1", 0.2),
+    positive("stiffness_7", "κ₇", "1/m", 2.0),
+    positive("level_8", "w₈", "1", 0.2),
+    positive("stiffness_8", "κ₈", "1/m", 1.0),
+];
+
+impl<const N: usize> LawFamily for MaxwellSlipOf<N> {
+    const NAME: &'static str = NAMES[N - 1];
+    const PARAMETERS: &'static [LawParameter] = PARAMETERS.split_at(2 * N).0;
+    const SPECIAL_CASES: &'static [SpecialCase] =
+        &[SpecialCase::of(if N == 1 { "coulomb" } else { NAMES[N.saturating_sub(2)] })];
+    const SEARCH: SearchRole =
+        SearchRole::NotTried("a sum of elements is fitted to records of force, which show its corners");
+    type At<D: Scalar> = MaxwellSlip<D>;
+
+    fn at<D: Scalar>(values: &[D]) -> Result<MaxwellSlip<D>, LawError> {
+        all_checked(Self::NAME, Self::PARAMETERS, values)?;
+        let elements: Vec<_> = values.chunks(2).map(|element| (element[1], element[0])).collect();
+        MaxwellSlip::new(&elements)
+    }
+
+    fn visit<D: Scalar, V: LawVisitor<D, MaxwellSlip<D>>>(visitor: V) -> V::Output {
+        visitor.elements()
     }
 }
 

@@ -2,18 +2,18 @@
 
 use fmm_model::Scalar;
 
-use crate::{BristleLaw, PiecewiseLinearLaw, SlidingLaw};
+use crate::law::{BristleLaw, PiecewiseLinearLaw, SlidingLaw};
 
 /// Action on a law `L` of number type `D` according to its kind. It has one method for each kind;
 /// [`LawFamily::visit`](crate::LawFamily::visit) calls the one of the family.
 ///
-/// Within a method the law has the trait of its kind. So whoever must treat kinds differently (an engine, a plot, a
-/// report) writes each case once, for all families and all number types, laws of one's own among them.
+/// Within a method the law has the trait of its kind. An engine, a plot or a report that must treat kinds differently
+/// writes each case once, for all families and all number types, users' laws among them.
 ///
 /// ```
 /// use fmm_friction::{BristleLaw, LawFamily, LawVisitor, LuGre, SlidingLaw, Stribeck};
 ///
-/// /// How many numbers a law remembers.
+/// /// Number of values that a law remembers.
 /// struct Memory<'a, L>(&'a L);
 ///
 /// impl<L> LawVisitor<f64, L> for Memory<'_, L> {
@@ -45,7 +45,7 @@ pub trait LawVisitor<D: Scalar, L>: Sized {
     where
         L: SlidingLaw<D>;
 
-    /// For a law of the sliding speed that is a level plus a slope; like any law of the speed unless said otherwise.
+    /// For a law of the sliding speed that is a level plus a slope; by default like any law of the speed.
     fn piecewise_linear(self) -> Self::Output
     where
         L: PiecewiseLinearLaw<D> + SlidingLaw<D>,
@@ -58,8 +58,8 @@ pub trait LawVisitor<D: Scalar, L>: Sized {
     where
         L: BristleLaw<D>;
 
-    /// For a law whose internal state is that of elements which hold or slide; like any law with internal state unless
-    /// said otherwise.
+    /// For a law whose internal state is that of elements which hold or slide; by default like any law with internal
+    /// state.
     fn elements(self) -> Self::Output
     where
         L: PiecewiseLinearLaw<D> + BristleLaw<D>,

@@ -2,15 +2,15 @@
 
 use fmm_model::Scalar;
 
-use crate::power::power;
+use crate::law::functions::power;
 
 /// One Taylor coefficient an order, from 0 on.
 pub(crate) type Terms<D> = [D; Expansion::<f64>::TERMS];
 
 /// Taylor coefficients, in any unit of time, of a [`BristleLaw`](crate::BristleLaw) of one state along a motion.
 ///
-/// [`BristleLaw::expand`](crate::BristleLaw::expand) works out those of one order after the other, as the coefficients
-/// of the motion of one order need those of the law of the order before.
+/// [`BristleLaw::expand`](crate::BristleLaw::expand) computes one order after the other: the motion at one order needs
+/// the law at the order before.
 ///
 /// ```text
 /// (a b)ₖ = Σⱼ aⱼ bₖ₋ⱼ,     k a₀ (aᵉ)ₖ = Σⱼ (e (k − j) − j) aₖ₋ⱼ (aᵉ)ⱼ (j < k),     k (eᵃ)ₖ = Σⱼ j aⱼ (eᵃ)ₖ₋ⱼ
@@ -28,14 +28,14 @@ pub struct Expansion<D> {
     pub rate: Terms<D>,
     /// Coefficients of the friction coefficient (1).
     pub coefficient: Terms<D>,
-    /// Whether the state stays where it is, as one does that has reached its bound.
+    /// True for a state that stays constant because it has reached its bound.
     pub held: bool,
-    /// What laws need on the way.
+    /// Intermediate series of a law.
     pub(crate) room: [Terms<D>; 6],
 }
 
 impl<D: Scalar> Expansion<D> {
-    /// How many coefficients there are: orders 0 to 24.
+    /// Number of coefficients: orders 0 to 24.
     pub const TERMS: usize = 25;
 
     /// Room for the coefficients, all zero.
@@ -74,18 +74,18 @@ pub(crate) fn convolve<D: Scalar>(a: &[D], b: &[D]) -> D {
     (sums[0] + sums[2]) + (sums[1] + sums[3])
 }
 
-/// Whether an exponent is 1 or 2 and a parameter with derivatives all the same: at a base of zero, the coefficients of
-/// these exist and those of their derivatives do not.
+/// True for an exponent of 1 or 2 that has derivatives. At a base of zero such a power has a series, but the
+/// derivatives of the series do not exist.
 pub(crate) fn is_whole_with_derivatives<D: Scalar>(exponent: D) -> bool {
     is_whole(exponent) && (0..D::DIRECTIONS).any(|direction| exponent.partial(direction) != 0.0)
 }
 
-/// Whether an exponent is 1 or 2, whose powers have a series at a base of zero as well.
+/// True for an exponent of 1 or 2. Such a power has a series at a base of zero as well.
 pub(crate) fn is_whole<D: Scalar>(exponent: D) -> bool {
     exponent.value() == 1.0 || exponent.value() == 2.0
 }
 
-/// Writes the coefficient of `order` of `base` to the power `exponent` into `power_of`; `room` is for this alone.
+/// Writes the coefficient of `order` of `base` to the power `exponent` into `power_of`; `room` is used by this power alone.
 ///
 /// The base must not begin at zero, unless the exponent [is whole](is_whole) and without derivatives.
 pub(crate) fn raise<D: Scalar>(
@@ -134,15 +134,16 @@ pub(crate) fn decay<D: Scalar>(of: &Terms<D>, exponential: &mut Terms<D>, slope:
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use fmm_model::Dual;
 
-    use super::*;
-    use crate::{BoucWen, BristleLaw, Dahl, LuGre, Regime};
+    use crate::law::{BristleLaw, Regime};
+    use crate::laws::{BoucWen, Dahl, LuGre};
 
     type Number = Dual<2>;
 
-    /// On a motion of which the velocity is a polynomial, the series of the rate is what the law says of velocity and
-    /// state later on, with its derivatives in a level and in an exponent.
+    /// The velocity is a polynomial in time. The series of the rate then agrees with the law at a later velocity and
+    /// state, with derivatives in a level and in an exponent.
     fn check<L: BristleLaw<Number>>(name: &str, law: &L, velocity: [f64; 3], state: f64, time: f64) {
         let mut series = Expansion::new();
         for (term, velocity) in series.velocity.iter_mut().zip(velocity) {

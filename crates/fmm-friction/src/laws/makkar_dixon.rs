@@ -1,10 +1,14 @@
-//! The continuously differentiable law of Makkar and Dixon.
+//! The continuously differentiable law of Makkar and Dixon, and a version with a static level.
+
+use alloc::format;
 
 use fmm_model::Scalar;
 
-use crate::family::law_family;
-use crate::shifted::Inflected;
-use crate::{LawError, LawFamily, LawParameter, Role, SlidingLaw};
+use crate::law::family::law_family;
+use crate::law::{
+    FamilyMember, LawError, LawFamily, LawParameter, LawVisitor, Role, SearchRole, SearchStage, SlidingLaw,
+    SpecialCase, digits,
+};
 
 law_family! {
     /// Makkar and Dixon's law: a difference of two hyperbolic tangents for the Stribeck peak, a third for the level and
@@ -23,9 +27,9 @@ law_family! {
     /// | γ₅ | `level_rise` | s/m | inverse speed over which the level is reached |
     /// | γ₆ | `viscous` | s/m | increase of the coefficient with speed |
     ///
-    /// The coefficient is zero at zero speed, so this contact never sticks, it creeps; [`Shifted`](crate::Shifted)
+    /// The coefficient is zero at zero speed, so this contact never sticks, it creeps; [`ShiftedMakkarDixon`]
     /// gives it a static level. The thesis prints −γ₄ but computes with +γ₄, as Makkar does, and so does this law. Nor
-    /// is γ₁ + γ₄ the height of the peak, unless γ₂ and γ₅ are infinite and γ₃ zero: [`peak`](Self::peak) tells it.
+    /// is γ₁ + γ₄ the height of the peak, unless γ₂ and γ₅ are infinite and γ₃ zero: [`peak`](Self::peak) has the height.
     ///
     /// With γ₁ = γ₆ = 0 this is [`Coulomb`](crate::Coulomb) [`Smoothed`](crate::Smoothed) over 1/γ₅.
     ///
@@ -55,27 +59,24 @@ law_family! {
     /// `level_rise` γ₅ (s/m) and `viscous` γ₆ (s/m).
     ///
     /// # Errors
-    /// [`LawError::OutOfBounds`] if a parameter lies outside its bounds or is not finite, [`LawError::NotOrdered`]
+    /// [`LawError::OutOfBounds`] if a parameter lies outside its bounds or is not finite, [`LawError::Contradiction`]
     /// unless γ₂ > γ₃, without which the coefficient could be negative.
     pub fn six {
         if rise.value() <= fall.value() {
-            return Err(LawError::NotOrdered {
-                greater: "γ₂",
-                greater_value: rise.value(),
-                lesser: "γ₃",
-                lesser_value: fall.value(),
-            });
+            let [rise, fall] = [rise, fall].map(|value| digits(value.value()));
+            let what = format!("γ₂ must be greater than γ₃, but γ₂ = {rise} and γ₃ = {fall}");
+            return Err(LawError::Contradiction { what });
         }
     }
-    special cases [crate::SpecialCase::of("coulomb")]
-    tried [crate::SearchStage::FurtherOfSpeed.trial()]
+    special cases [SpecialCase::of("coulomb")]
+    tried [SearchStage::FurtherOfSpeed.trial()]
 }
 
 impl<D: Scalar> MakkarDixon<D> {
     /// The law without a viscous part, γ₆ = 0; parameters as in [`six`](Self::six).
     ///
     /// # Errors
-    /// As [`six`](Self::six).
+    /// [`LawError`] in the same cases as [`six`](Self::six).
     pub fn five(difference: D, rise: D, fall: D, level: D, level_rise: D) -> Result<Self, LawError> {
         Self::six(difference, rise, fall, level, level_rise, D::from(0.0))
     }
@@ -83,13 +84,24 @@ impl<D: Scalar> MakkarDixon<D> {
     /// Speed (m/s) and coefficient (1) of the Stribeck peak, the first maximum over the speed. `None` if the
     /// coefficient only grows.
     ///
-    /// It is sought up to 20/γ₃, where the fall is complete to rounding, and found if the coefficient falls over more
-    /// than a twentieth of the speed.
+    /// The search ends at 20/γ₃, beyond which the fall is complete to rounding. It finds a peak whose fall extends over
+    /// more than a twentieth of the speed.
     pub fn peak(&self) -> Option<(D, D)> {
         let plain = self.plain();
         let bracket = plain.first(plain.start(), |slopes| slopes[0] < 0.0)?;
         let speed = self.zero(0, bracket);
         Some((speed, self.coefficient(speed)))
+    }
+
+    /// Speed of the inflection after the peak (m/s), at which d²μ/dv² passes from − to +; zero for a curve without one.
+    ///
+    /// It is searched as [`peak`](Self::peak) is.
+    fn inflection(&self) -> D {
+        let plain = self.plain();
+        let bracket = plain
+            .first(plain.start(), |slopes| slopes[0] < 0.0)
+            .and_then(|(before_peak, _)| plain.first(before_peak, |slopes| slopes[0] < 0.0 && slopes[1] > 0.0));
+        bracket.map_or(D::from(0.0), |bracket| self.zero(1, bracket))
     }
 
     /// First to third derivative of the coefficient with respect to the speed.
@@ -170,21 +182,8 @@ impl<D: Scalar> SlidingLaw<D> for MakkarDixon<D> {
     }
 }
 
-impl<D: Scalar> Inflected for MakkarDixon<D> {
-    type Number = D;
-
-    /// Speed at which d²μ/dv² passes from − to + after the peak (m/s); searched as [`peak`](Self::peak) is.
-    fn inflection(&self) -> D {
-        let plain = self.plain();
-        let bracket = plain
-            .first(plain.start(), |slopes| slopes[0] < 0.0)
-            .and_then(|(before_peak, _)| plain.first(before_peak, |slopes| slopes[0] < 0.0 && slopes[1] > 0.0));
-        bracket.map_or(D::from(0.0), |bracket| self.zero(1, bracket))
-    }
-}
-
-/// tanh a − tanh b for a ≥ b ≥ 0, as a product of what is positive: the difference itself loses its digits where both
-/// are close to 1.
+/// tanh a − tanh b for a ≥ b ≥ 0, as a product of positive numbers: the difference itself loses its digits if both are
+/// close to 1.
 fn tanh_difference<D: Scalar>(a: D, b: D) -> D {
     let (small, large) = ((a * -2.0).exp(), (b * -2.0).exp());
     (a - b).tanh() * (small + large) * 2.0 / ((small + 1.0) * (large + 1.0))
@@ -198,6 +197,85 @@ fn tanh_slopes<D: Scalar>(gamma: D, speed: D) -> [D; 3] {
     let first = gamma * sech_squared;
     let second = -(gamma * first * tanh * 2.0);
     [first, second, gamma * gamma * first * (tanh * tanh * 4.0 - sech_squared * 2.0)]
+}
+
+/// Makkar and Dixon's law made to stick: its curve from the inflection after the Stribeck peak on.
+///
+/// ```text
+/// F = N μ(v + v*),    d²μ/dv²(v*) = 0 with μ falling             (thesis section 7.5)
+/// ```
+///
+/// | symbol | method | unit | meaning |
+/// |---|---|---|---|
+/// | μ | - | 1 | coefficient of [`MakkarDixon`] |
+/// | v* | [`inflection`](Self::inflection) | m/s | speed of the steepest fall |
+/// | μ(v*) | `breakaway` | 1 | static level |
+///
+/// A curve without an inflection is not shifted, v* = 0. The parameters are those of the law; v* follows from them, and
+/// at dual numbers so do its derivatives of first order.
+///
+/// ```
+/// use fmm_friction::{MakkarDixon, ShiftedMakkarDixon, SlidingLaw};
+///
+/// let law = ShiftedMakkarDixon::new(MakkarDixon::five(0.25, 100.0, 10.0, 0.1, 100.0)?);
+/// assert!((law.inflection() - 0.037_451_077_446_664_115_f64).abs() < 1e-16);
+/// assert!((law.breakaway() - 0.260_126_521_317_483_43_f64).abs() < 1e-15);
+/// # Ok::<(), fmm_friction::LawError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShiftedMakkarDixon<D = f64> {
+    law: MakkarDixon<D>,
+    inflection: D,
+}
+
+impl<D: Scalar> ShiftedMakkarDixon<D> {
+    /// `law` from its inflection on.
+    pub fn new(law: MakkarDixon<D>) -> Self {
+        Self { law, inflection: law.inflection() }
+    }
+
+    /// The law before the shift.
+    pub fn law(&self) -> &MakkarDixon<D> {
+        &self.law
+    }
+
+    /// v*, the shift (m/s).
+    pub fn inflection(&self) -> D {
+        self.inflection
+    }
+}
+
+impl<D: Scalar> SlidingLaw<D> for ShiftedMakkarDixon<D> {
+    fn coefficient(&self, speed: D) -> D {
+        self.law.coefficient(speed + self.inflection)
+    }
+
+    fn breakaway(&self) -> D {
+        self.coefficient(D::from(0.0))
+    }
+}
+
+impl<D: Scalar> FamilyMember for ShiftedMakkarDixon<D> {
+    type Number = D;
+    type Family = ShiftedMakkarDixon;
+}
+
+impl LawFamily for ShiftedMakkarDixon {
+    const NAME: &'static str = "makkar_dixon_shifted";
+    const PARAMETERS: &'static [LawParameter] = MakkarDixon::PARAMETERS;
+    const SPECIAL_CASES: &'static [SpecialCase] = MakkarDixon::SPECIAL_CASES;
+    const SEARCH: SearchRole = SearchRole::NotTried(
+        "its curve beyond the inflection is nearly that of a Stribeck law, which has fewer parameters",
+    );
+    type At<D: Scalar> = ShiftedMakkarDixon<D>;
+
+    fn at<D: Scalar>(values: &[D]) -> Result<ShiftedMakkarDixon<D>, LawError> {
+        MakkarDixon::at(values).map(Self::At::new)
+    }
+
+    fn visit<D: Scalar, V: LawVisitor<D, Self::At<D>>>(visitor: V) -> V::Output {
+        visitor.sliding()
+    }
 }
 
 #[cfg(test)]
@@ -276,5 +354,43 @@ mod tests {
     fn a_fall_quicker_than_the_rise_is_refused() {
         let refused = MakkarDixon::five(0.25, 10.0, 10.0, 0.1, 100.0).unwrap_err();
         assert_eq!(refused.to_string(), "γ₂ must be greater than γ₃, but γ₂ = 10 and γ₃ = 10");
+    }
+
+    const THESIS: [f64; 6] = [0.25, 100.0, 10.0, 0.1, 100.0, 0.0];
+
+    #[test]
+    fn starts_at_its_static_level_and_falls() {
+        let law = ShiftedMakkarDixon::at(&THESIS).unwrap();
+        assert_eq!(law.coefficient(0.0), law.breakaway());
+        assert_eq!(law.coefficient(0.1), law.law.coefficient(0.1 + law.inflection()));
+        assert!(law.coefficient(0.01) < law.breakaway());
+    }
+
+    /// v* was found by no derivative of itself: its own must be those of differences. Steps of 1e-6 leave 1e-12 times
+    /// third derivatives and 1e-16/1e-6 of rounding, over sensitivities near 1e-3.
+    #[test]
+    fn the_shift_has_its_derivatives() {
+        let seeded: Vec<_> = THESIS.iter().enumerate().map(|(i, value)| Dual::<6>::variable(*value, i)).collect();
+        let dual = ShiftedMakkarDixon::at(&seeded).unwrap();
+        for direction in 0..6 {
+            let step = 1e-6 * THESIS[direction].max(1.0);
+            let shift = |change: f64| {
+                let mut values = THESIS;
+                values[direction] += change;
+                ShiftedMakkarDixon::at(&values).map(|law| law.inflection())
+            };
+            let forward = |step: f64| shift(step).unwrap() - shift(0.0).unwrap();
+            // One-sided to second order, as γ₆ must not be negative.
+            let difference = (4.0 * forward(step) - forward(2.0 * step)) / (2.0 * step);
+            let exact = dual.inflection().partial(direction);
+            let bound = 1e-9 + 1e-6 * exact.abs();
+            assert!((exact - difference).abs() < bound, "γ{}: {exact} against {difference}", direction + 1);
+        }
+    }
+
+    #[test]
+    fn a_curve_without_inflection_is_not_shifted() {
+        let law = ShiftedMakkarDixon::at(&[0.0, 100.0, 10.0, 0.1, 100.0, 0.0]).unwrap();
+        assert_eq!((law.inflection(), law.breakaway()), (0.0, 0.0));
     }
 }

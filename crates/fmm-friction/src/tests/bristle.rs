@@ -1,11 +1,12 @@
-//! Properties of every law with internal states, at random parameters.
+//! Properties of every bristle law, at random parameters.
 
 use fmm_model::Scalar;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use crate::sliding_properties::{log_uniform, random, rounding, values};
-use crate::{BoucWen, BristleLaw, Dahl, Gms, LawFamily, LuGre, MaxwellSlip, Regime, SlidingLaw, Stribeck};
+use super::sliding::{log_uniform, random, rounding, values};
+use crate::law::{BristleLaw, LawFamily, Regime, SlidingLaw};
+use crate::laws::{BoucWen, Dahl, Gms, LuGre, MaxwellSlip, Stribeck};
 
 fn rate<L: BristleLaw<f64>>(law: &L, velocity: f64, state: &[f64], regime: Regime) -> Vec<f64> {
     let mut rate = vec![0.0; law.states()];

@@ -4,10 +4,10 @@ use fmm_model::{Dual, Scalar};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::{
+use crate::law::{LawFamily, LawParameter, SlidingLaw};
+use crate::laws::{
     AccelerationCoulomb, Berger, Coulomb, CoulombStatic, CoulombViscous, ExponentialPair, Hyperbolic, Karnopp,
-    LawFamily, LawParameter, MakkarDixon, PowerLaw, RegularisedStribeck, Shifted, SlidingLaw, Smoothed, Stribeck,
-    StribeckLorentzian, Viscous,
+    MakkarDixon, PowerLaw, RegularisedStribeck, ShiftedMakkarDixon, Smoothed, Stribeck, StribeckLorentzian, Viscous,
 };
 
 /// Up to six parameters and the speed.
@@ -134,7 +134,7 @@ fn laws_with_a_static_level_start_from_it() {
     keeps_promises::<AccelerationCoulomb>(true);
     keeps_promises::<ExponentialPair>(true);
     keeps_promises::<Karnopp>(true);
-    keeps_promises::<Shifted<MakkarDixon>>(true);
+    keeps_promises::<ShiftedMakkarDixon>(true);
     keeps_promises::<CoulombStatic>(false);
 }
 

@@ -1,8 +1,22 @@
-//! Traits of laws: the questions that an engine asks.
+//! Traits of laws, the questions of an engine, and the vocabulary of a law as a family.
+
+mod error;
+pub(crate) mod expansion;
+pub(crate) mod family;
+pub(crate) mod functions;
+mod kind;
+pub(crate) mod parameter;
+mod search;
 
 use fmm_model::Scalar;
 
-use crate::Expansion;
+pub use error::LawError;
+pub(crate) use error::digits;
+pub use expansion::Expansion;
+pub use family::{FamilyMember, FamilyVisitor, LawFamily, Reparametrisation, SpecialCase};
+pub use kind::{LawKind, LawVisitor};
+pub use parameter::{LawParameter, Role};
+pub use search::{SearchRole, SearchStage, SearchTrial};
 
 /// A law of the sliding speed alone, with a level to exceed before sliding begins.
 ///
@@ -46,21 +60,22 @@ pub trait SlidingLaw<D: Scalar> {
     /// Static level: the coefficient (1) that the load must exceed to break away from rest.
     fn breakaway(&self) -> D;
 
-    /// Whether friction is different while the speed falls: then [`coefficient`](Self::coefficient) holds while the
-    /// speed grows and [`coefficient_losing_speed`](Self::coefficient_losing_speed) while it falls. While the speed
-    /// is constant any value between the two is possible.
+    /// True for a law that differs while the speed falls: [`coefficient`](Self::coefficient) holds while the speed grows,
+    /// [`coefficient_losing_speed`](Self::coefficient_losing_speed) while it falls, and any value between the two at
+    /// constant speed.
     fn depends_on_acceleration(&self) -> bool {
         false
     }
 
-    /// Friction coefficient (1) while sliding at `speed` ≥ 0 (m/s) that falls; the same as while it grows unless the
-    /// law [depends on the acceleration](Self::depends_on_acceleration).
+    /// Friction coefficient (1) while sliding at `speed` ≥ 0 (m/s) that falls. It differs from
+    /// [`coefficient`](Self::coefficient) only if the law
+    /// [depends on the acceleration](Self::depends_on_acceleration).
     fn coefficient_losing_speed(&self, speed: D) -> D {
         self.coefficient(speed)
     }
 
-    /// The speed (m/s) at and below which a contact is taken to be at rest if the load lets it. Zero, but for laws that
-    /// have a dead zone by definition ([`Karnopp`](crate::Karnopp)).
+    /// The speed (m/s) at and below which a contact counts as resting if the load permits. Zero, except for laws with a
+    /// dead zone by definition ([`Karnopp`](crate::Karnopp)).
     fn capture_speed(&self) -> D {
         D::from(0.0)
     }
@@ -80,7 +95,7 @@ impl Regime {
     /// The most elements that a law can have.
     pub const CAPACITY: usize = 64;
 
-    /// Whether the element of this `index` slides.
+    /// True if the element of this `index` slides.
     pub const fn slides(self, index: usize) -> bool {
         index < Self::CAPACITY && self.0 >> index & 1 == 1
     }
@@ -110,22 +125,21 @@ pub trait BristleLaw<D: Scalar> {
     /// slices hold [`states`](Self::states) values.
     fn rate(&self, velocity: D, state: &[D], regime: Regime, rate: &mut [D]);
 
-    /// Friction coefficient (1), with the sign of the force that opposes a positive velocity. `rate` is what
-    /// [`rate`](Self::rate) gave at the same arguments.
+    /// Friction coefficient (1), with the sign of the force that opposes a positive velocity. `rate` is
+    /// the result of [`rate`](Self::rate) at the same arguments.
     fn coefficient(&self, velocity: D, state: &[D], rate: &[D]) -> D;
 
     /// Half width of the invariant interval of state `index`.
     fn bound(&self, index: usize) -> D;
 
-    /// Friction coefficient (1) of steady sliding at `speed` ≥ 0 (m/s); `None` for laws that have no closed form for
-    /// it, or state none.
+    /// Friction coefficient (1) of steady sliding at `speed` ≥ 0 (m/s); `None` for laws without a closed form.
     fn steady_coefficient(&self, speed: D) -> Option<D> {
         let _ = speed;
         None
     }
 
-    /// Carries the state along a motion of constant `velocity` (m/s, not zero) that lasts `duration` (s), in closed
-    /// form; whether there is one. Without, the state stays as it is.
+    /// Carries the state along a motion of constant `velocity` (m/s, not zero) that lasts `duration` (s), and returns
+    /// true; false, without a change of the state, for a law without a closed form.
     ///
     /// Elements that switch are taken to hold at the beginning, unless they are at their bound.
     ///
@@ -143,9 +157,9 @@ pub trait BristleLaw<D: Scalar> {
         false
     }
 
-    /// Works out the coefficients of this `order` of rate and friction coefficient, those of the velocity and the state
-    /// up to this order and those of lower orders being known; whether the law of one state has such series there. An
-    /// engine then takes long steps of high order.
+    /// Computes the Taylor coefficients of this `order` of rate and friction coefficient; known are those of lower orders,
+    /// and velocity and state up to this order. Returns false if the law has no such series there, or several states.
+    /// With a series an engine takes long steps of high order.
     ///
     /// ```
     /// use fmm_friction::{BristleLaw, Dahl, Expansion};
@@ -166,10 +180,89 @@ pub trait BristleLaw<D: Scalar> {
         false
     }
 
-    /// For an element that holds and moves with `velocity`, how far it is from sliding: positive while it holds. None
-    /// for laws without elements that switch.
+    /// Distance of an element from sliding (its unit is that of its state or coefficient) at this `velocity`: positive
+    /// while the element holds. `None` for laws without elements that switch.
     fn reserve(&self, index: usize, velocity: D, state: &[D]) -> Option<D> {
         let _ = (index, velocity, state);
         None
     }
 }
+
+/// The numbers of an affine law, and the law itself: coefficient(v) = `level` + `slope` v.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Affine<D = f64> {
+    /// Coefficient in the limit of zero speed while sliding (1).
+    pub level: D,
+    /// Increase of the coefficient with speed (s/m).
+    pub slope: D,
+    /// Coefficient to exceed to leave rest (1).
+    pub breakaway: D,
+}
+
+impl<D: Scalar> SlidingLaw<D> for Affine<D> {
+    fn coefficient(&self, speed: D) -> D {
+        self.level + self.slope * speed
+    }
+
+    fn breakaway(&self) -> D {
+        self.breakaway
+    }
+}
+
+/// An elastic element that yields: a spring of `stiffness` which slides at `level`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Element<D = f64> {
+    /// Increase of the coefficient with the displacement while the element holds (1/m).
+    pub stiffness: D,
+    /// Coefficient at which it slides (1).
+    pub level: D,
+}
+
+/// A law under which a linear oscillator moves in closed form between events.
+///
+/// ```text
+/// F/N = level + slope |v|  +  Σ clamp(κᵢ zᵢ, ±levelᵢ),    κᵢ = stiffnessᵢ
+/// ```
+///
+/// A law of the sliding speed alone has no elements. An implementor that is a [`SlidingLaw`] too promises that its
+/// coefficients are those of [`affine`](Self::affine) and [`affine_losing_speed`](Self::affine_losing_speed). A blanket
+/// implementation of [`SlidingLaw`] would forbid users to implement it for laws that are not affine.
+pub trait PiecewiseLinearLaw<D: Scalar> {
+    /// Level, slope and static level while the speed grows.
+    fn affine(&self) -> Affine<D>;
+
+    /// The same while the speed falls, if it differs.
+    fn affine_losing_speed(&self) -> Option<Affine<D>> {
+        None
+    }
+
+    /// Elements that deflect before they slide; at the start of a motion none is deflected.
+    fn elements(&self) -> &[Element<D>] {
+        &[]
+    }
+}
+
+/// Makes piecewise linear laws sliding laws.
+macro_rules! slides_as_affine {
+    ($($law:ident),+) => {$(
+        impl<D: Scalar> $crate::law::SlidingLaw<D> for $law<D> {
+            fn coefficient(&self, speed: D) -> D {
+                self.affine().coefficient(speed)
+            }
+
+            fn breakaway(&self) -> D {
+                self.affine().breakaway
+            }
+
+            fn depends_on_acceleration(&self) -> bool {
+                self.affine_losing_speed().is_some()
+            }
+
+            fn coefficient_losing_speed(&self, speed: D) -> D {
+                self.affine_losing_speed().unwrap_or_else(|| self.affine()).coefficient(speed)
+            }
+        }
+    )+};
+}
+
+pub(crate) use slides_as_affine;

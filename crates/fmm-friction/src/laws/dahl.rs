@@ -2,11 +2,10 @@
 
 use fmm_model::Scalar;
 
-use crate::elements::direction;
-use crate::expansion::{Expansion, product, raise};
-use crate::family::law_family;
-use crate::power::power;
-use crate::{BristleLaw, LawError, LawFamily, LawParameter, Regime, Role};
+use crate::law::expansion::{product, raise};
+use crate::law::family::law_family;
+use crate::law::functions::{direction, power};
+use crate::law::{BristleLaw, Expansion, LawError, LawFamily, LawParameter, Regime, Role, SearchStage, SpecialCase};
 
 law_family! {
     /// Dahl's presliding model.
@@ -38,8 +37,8 @@ law_family! {
     /// # Errors
     /// [`LawError::OutOfBounds`] if a parameter is not positive or not finite.
     pub fn new {}
-    special cases [crate::SpecialCase::of("coulomb")]
-    tried [crate::SearchStage::Presliding.trial().damped().fixing(&[("exponent", 1.0)])]
+    special cases [SpecialCase::of("coulomb")]
+    tried [SearchStage::Presliding.trial().damped().fixing(&[("exponent", 1.0)])]
 }
 
 impl<D: Scalar> BristleLaw<D> for Dahl<D> {
@@ -120,9 +119,8 @@ fn falling_logarithm<D: Scalar>(y: D) -> D {
 
 #[cfg(test)]
 mod tests {
-    use fmm_model::Dual;
-
     use super::*;
+    use fmm_model::Dual;
 
     fn rate(law: &Dahl, velocity: f64, state: f64) -> f64 {
         let mut rate = [0.0];
@@ -131,7 +129,7 @@ mod tests {
     }
 
     /// On a monotone path from rest the law with i = 1 has the closed form F = μ (1 − exp(−σ x/μ)); its slope
-    /// over x is what `rate` must give at unit velocity.
+    /// over x equals `rate` at unit velocity.
     #[test]
     fn follows_the_closed_form_of_exponent_one() {
         let law = Dahl::new(0.25, 1.0e4, 1.0).unwrap();

@@ -2,11 +2,15 @@
 
 use fmm_model::Scalar;
 
-use crate::elements::direction;
-use crate::expansion::{Expansion, convolve, decay, is_whole, is_whole_with_derivatives, product, raise};
-use crate::family::{law_family, static_not_below};
-use crate::stribeck::EXPONENT;
-use crate::{BristleLaw, LawError, LawFamily, LawParameter, Regime, Role, SlidingLaw, Stribeck};
+use crate::law::expansion::{convolve, decay, is_whole, is_whole_with_derivatives, product, raise};
+use crate::law::family::law_family;
+use crate::law::functions::direction;
+use crate::law::parameter::static_not_below;
+use crate::law::{
+    BristleLaw, Expansion, LawError, LawFamily, LawParameter, Regime, Role, SearchStage, SlidingLaw, SpecialCase,
+};
+use crate::laws::Stribeck;
+use crate::laws::stribeck::EXPONENT;
 
 /// Speed, in units of the Stribeck speed, below which the series of a power that is not whole is no good, and above
 /// which nothing falls.
@@ -52,12 +56,12 @@ law_family! {
     ///
     /// # Errors
     /// [`LawError::OutOfBounds`] if a parameter lies outside its bounds or is not finite,
-    /// [`LawError::StaticBelowSliding`] if μ_s < μ_c.
+    /// [`LawError::Contradiction`] if μ_s < μ_c.
     pub fn new {
         static_not_below(sliding, breakaway)?;
     }
-    special cases [crate::SpecialCase::only("dahl", &[("exponent", 1.0)]), crate::SpecialCase::of("stribeck")]
-    tried [crate::SearchStage::FurtherPresliding.trial().fixing(&[("exponent", 2.0)])]
+    special cases [SpecialCase::only("dahl", &[("exponent", 1.0)]), SpecialCase::of("stribeck")]
+    tried [SearchStage::FurtherPresliding.trial().fixing(&[("exponent", 2.0)])]
 }
 
 impl<D: Scalar> LuGre<D> {
@@ -72,7 +76,7 @@ impl<D: Scalar> LuGre<D> {
         }
     }
 
-    /// Whether the contact is sure never to give back more energy than its bristles store: a sufficient condition.
+    /// A sufficient condition that the contact never gives back more energy than its bristles store.
     ///
     /// ```text
     /// σ₂ ≥ σ₁ (μ_s − μ_c)/μ_c

@@ -1,0 +1,4 @@
+//! Properties of all laws, at random parameters.
+
+mod bristle;
+mod sliding;
