@@ -181,7 +181,7 @@ pub use solver::{
 pub use starts::{Minima, Minimum, MultiStart, StartFailure, solve_best};
 pub use uncertainty::{
     CorrelatedCovariance, Prediction, ProfileEnd, ProfileError, ProfileInterval, PropagatedCovariance, Refit,
-    RefitError, ResidualVariance, Sensitivity, SensitivityError, coverage_factor, profile_interval,
+    RefitError, ResidualVariance, Sensitivity, SensitivityError, profile_interval,
 };
 
 /// The README's example, run as a test.

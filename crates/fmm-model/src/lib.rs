@@ -33,6 +33,7 @@
 //! | units that multiply and print, and their dimensions | [`Unit`], [`Dimension`] |
 //! | a formula with exact derivatives | write it over [`Scalar`], evaluate it at [`Dual`] |
 //! | a value with its standard uncertainty, and its form in a report | [`Estimated`], [`Rounded`] |
+//! | an interval that covers a value, and its factor k | [`Interval`], `coverage_factor` (feature `student`) |
 //!
 //! # Units and conventions
 //!
@@ -64,6 +65,8 @@
 //! |---|---|
 //! | `std` | on by default: elementary functions of the standard library |
 //! | `libm` | those of the crate libm where `std` is off, as on a controller; an allocator is needed all the same |
+//! | `serde` | intervals as text |
+//! | `student` | coverage factors and quantiles of Student's t, by statrs |
 
 #![cfg_attr(not(feature = "std"), no_std)]
 
@@ -86,6 +89,8 @@ mod parameter;
 mod restoring;
 mod rounded;
 mod scalar;
+#[cfg(feature = "student")]
+mod student;
 mod tilt;
 mod unit;
 
@@ -94,7 +99,7 @@ pub use damping::Damping;
 pub use dimension::Dimension;
 pub use dual::Dual;
 pub use error::ModelError;
-pub use estimated::Estimated;
+pub use estimated::{Estimated, Interval};
 pub use flexure::Flexure;
 pub use leaf_spring::LeafSpring;
 pub use oscillator::Oscillator;
@@ -102,6 +107,8 @@ pub use parameter::Parameter;
 pub use restoring::Restoring;
 pub use rounded::Rounded;
 pub use scalar::Scalar;
+#[cfg(feature = "student")]
+pub use student::{coverage_factor, student_quantile};
 pub use tilt::Tilt;
 pub use unit::Unit;
 

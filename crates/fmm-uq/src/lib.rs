@@ -91,7 +91,6 @@ mod error;
 mod groups;
 mod gum;
 mod inputs;
-mod interval;
 mod model;
 mod monte_carlo;
 mod random;
@@ -99,14 +98,12 @@ mod report;
 
 pub use distributions::Distribution;
 pub use error::UncertaintyError;
-pub use fmm_model::Scalar;
+pub use fmm_model::{Interval, Scalar, coverage_factor};
 pub use groups::{AnalysisOfVariance, Consensus, Influence, Outlier, OutlyingPair, Precision, RandomEffects};
 pub use gum::{
-    Budget, Contribution, Expanded, Gum, Linearisation, Propagation, SecondOrder, Validation, coverage_factor,
-    propagate, validate,
+    Budget, Contribution, Expanded, Gum, Linearisation, Propagation, SecondOrder, Validation, propagate, validate,
 };
 pub use inputs::{Evaluation, Input, Inputs, Observations};
-pub use interval::Interval;
 #[cfg(feature = "formula")]
 pub use model::Formula;
 pub use model::{ModelOutput, Taylor, at_values};

@@ -6,10 +6,10 @@ mod profiles;
 
 use std::error::Error;
 
-use fmm_fit::{EstimateStatus, autocorrelation, coverage_factor};
+use fmm_fit::{EstimateStatus, autocorrelation};
 use fmm_frf::{Backbone, BackboneOptions};
 use fmm_identify::{Finding, FittedMotion, Identification, Origin};
-use fmm_model::Rounded;
+use fmm_model::{Rounded, coverage_factor};
 use sha2::{Digest, Sha256};
 
 use self::budget::{budget, of_size};

@@ -2,13 +2,13 @@
 
 use std::fmt;
 
-use fmm_model::Rounded;
+use fmm_model::{Rounded, coverage_factor};
 
 use crate::regression::refined_least_squares::refined_least_squares;
 use crate::regression::twofold::Twofold;
 use crate::regression::weighting::check_finite;
 use crate::result::null_direction::null_directions;
-use crate::{NullDirection, Prediction, RegressionError, Weighting, coverage_factor};
+use crate::{NullDirection, Prediction, RegressionError, Weighting};
 
 /// Regression of observations on given columns.
 ///

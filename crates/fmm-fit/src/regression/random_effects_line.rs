@@ -1,8 +1,9 @@
 //! The straight line through results that differ by more than their uncertainties.
 
+use fmm_model::coverage_factor;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use crate::{RegressionError, UncertainPoint, YorkLine, coverage_factor};
+use crate::{RegressionError, UncertainPoint, YorkLine};
 
 /// The straight line through results with uncertainties, each of which may have an effect of its own beside the line: a
 /// random-effects meta-regression on one covariate.

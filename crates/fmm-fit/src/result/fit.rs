@@ -1,6 +1,6 @@
 //! The result of a fit.
 
-use fmm_model::Parameter;
+use fmm_model::{Parameter, coverage_factor};
 
 use crate::result::estimate::{Estimate, EstimateStatus};
 use crate::result::null_direction::{NullDirection, null_directions};
@@ -8,7 +8,7 @@ use crate::solver::evaluation::Scheme;
 use crate::solver::minimizer::Minimizer;
 use crate::solver::spectrum::Spectrum;
 use crate::solver::triangle::Triangle;
-use crate::{JacobianMismatch, NonFinite, Outcome, coverage_factor};
+use crate::{JacobianMismatch, NonFinite, Outcome};
 
 /// The result of a fit: estimates, their uncertainty, and what the residuals could not tell.
 ///

@@ -2,8 +2,10 @@
 
 use std::time::Instant;
 
+use fmm_model::coverage_factor;
+
 use crate::robust::m_covariance::m_covariance;
-use crate::{Fit, FitError, Loss, Options, Residuals, Robust, coverage_factor, solve};
+use crate::{Fit, FitError, Loss, Options, Residuals, Robust, solve};
 
 /// The median of |r| of normal residuals of unit variance is 1/1.4826.
 const NORMAL: f64 = 1.482_602_218_505_602;

@@ -1,44 +1,10 @@
-//! Coverage factor: the number of standard uncertainties that an interval reaches.
+//! Coverage factor of several estimates at once.
 
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
-/// Above these many degrees of freedom the expansions about the normal and the χ² distribution are the more accurate;
-/// from 10⁷ on the inverses of statrs are wrong in the first digits, and from 10⁸ on they do not end.
-const MANY_FOR_STUDENT: f64 = 1e3;
+/// Degrees of freedom above which the expansion about the χ² distribution is the more accurate (1). From 10⁷ on the
+/// inverse of statrs is wrong in the first digits, and from 10⁸ on it does not end.
 const MANY_FOR_FISHER: f64 = 1e4;
-
-/// The coverage factor k (1): an estimate with standard uncertainty u and `degrees_of_freedom` ν > 0 lies within ± k u
-/// with probability `level`, by Student's t (JCGM 100:2008, G.3.2); by the normal distribution if ν is infinite.
-///
-/// `None` for a level outside (0, 1), or degrees of freedom that are not positive.
-///
-/// ```
-/// use fmm_fit::coverage_factor;
-///
-/// assert!((coverage_factor(0.95, 10.0).unwrap() - 2.228_139).abs() < 1e-6);
-/// assert!((coverage_factor(0.95, 1e7).unwrap() - 1.959_964).abs() < 1e-6);
-/// assert_eq!(coverage_factor(1.0, 10.0), None);
-/// ```
-///
-/// # References
-/// M. Abramowitz, I. A. Stegun, *Handbook of Mathematical Functions*, 26.7.5 (many degrees of freedom).
-pub fn coverage_factor(level: f64, degrees_of_freedom: f64) -> Option<f64> {
-    if !(is_probability(level) && degrees_of_freedom > 0.0) {
-        return None;
-    }
-    let upper = 0.5 * (1.0 + level);
-    if degrees_of_freedom <= MANY_FOR_STUDENT {
-        return StudentsT::new(0.0, 1.0, degrees_of_freedom).ok().map(|student| student.inverse_cdf(upper));
-    }
-    let z = Normal::standard().inverse_cdf(upper);
-    let s = z * z;
-    let terms = [
-        z * (s + 1.0) / 4.0,
-        z * ((5.0 * s + 16.0) * s + 3.0) / 96.0,
-        z * (((3.0 * s + 19.0) * s + 17.0) * s - 15.0) / 384.0,
-    ];
-    Some(z + terms.iter().rev().fold(0.0, |sum, term| (sum + term) / degrees_of_freedom))
-}
 
 /// The factor for `order` estimates, and all that depends on them linearly, at once (Scheffé).
 pub(crate) fn simultaneous_coverage_factor(level: f64, order: usize, degrees_of_freedom: f64) -> Option<f64> {
@@ -61,6 +27,8 @@ pub(crate) fn is_probability(level: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use fmm_model::coverage_factor;
+
     use super::*;
 
     /// One estimate at once is one estimate: F of (1, ν) is the square of t of ν. Tables: t and χ² of Abramowitz and

@@ -14,7 +14,6 @@ mod refit_error;
 mod sensitivity;
 
 pub use correlated::CorrelatedCovariance;
-pub use coverage::coverage_factor;
 pub use prediction::Prediction;
 pub use profile::profile_interval;
 pub use profile_interval::{ProfileEnd, ProfileError, ProfileInterval, ResidualVariance};

@@ -1,6 +1,8 @@
 //! Prediction of a new observation by a fitted model, with its uncertainty.
 
-use crate::uncertainty::coverage::{coverage_factor, simultaneous_coverage_factor};
+use fmm_model::coverage_factor;
+
+use crate::uncertainty::coverage::simultaneous_coverage_factor;
 use crate::{Estimate, EstimateStatus, Fit};
 
 /// The value of a fitted model at a new point with its uncertainty, by the law of propagation.

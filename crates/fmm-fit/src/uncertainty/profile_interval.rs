@@ -1,7 +1,7 @@
 //! Intervals from the profile of the sum of squares.
 
-use crate::{Fit, FitError, Outcome, coverage_factor};
-use fmm_model::Rounded;
+use crate::{Fit, FitError, Outcome};
+use fmm_model::{Rounded, coverage_factor};
 
 /// What is known of the variance of the residuals.
 #[derive(Debug, Clone, Copy, PartialEq)]

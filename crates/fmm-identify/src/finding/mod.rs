@@ -4,8 +4,8 @@ mod contribution;
 
 use std::fmt;
 
-use fmm_fit::{EstimateStatus, coverage_factor};
-use fmm_model::{Parameter, Rounded};
+use fmm_fit::EstimateStatus;
+use fmm_model::{Parameter, Rounded, coverage_factor};
 
 pub use contribution::{Contribution, Source};
 

@@ -1,9 +1,9 @@
 //! How often 95 % intervals contain the truth.
 
-use fmm_fit::{Fit, Options, Residuals, coverage_factor, solve};
+use fmm_fit::{Fit, Options, Residuals, solve};
 use fmm_friction::{AccelerationCoulomb, Berger, Coulomb, LawFamily, Stribeck};
 use fmm_identify::{Candidate, Experiment, Identification, Known, Machine, Problem, Terms, compare, identify};
-use fmm_model::{Damping, Oscillator, Parameter};
+use fmm_model::{Damping, Oscillator, Parameter, coverage_factor};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};

@@ -1,8 +1,9 @@
 //! Profiles of fitted quantities, against fits with the quantity held and against what is known of their noise.
 
-use fmm_fit::{ProfileEnd, coverage_factor};
+use fmm_fit::ProfileEnd;
 use fmm_friction::{Berger, Coulomb, CoulombViscous};
 use fmm_identify::{Experiment, Identification, Machine, Profile, Profiles, Terms, identify, identify_with};
+use fmm_model::coverage_factor;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};

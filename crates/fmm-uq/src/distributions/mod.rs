@@ -5,7 +5,6 @@ pub(crate) mod beta;
 mod curvilinear_trapezoid;
 mod empirical;
 pub(crate) mod gamma;
-pub(crate) mod student;
 mod trapezoid;
 mod triangle;
 mod truncated_normal;

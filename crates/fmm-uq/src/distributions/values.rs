@@ -1,5 +1,6 @@
 //! Quantiles and random values of all distributions.
 
+use fmm_model::student_quantile;
 use rand::Rng;
 use rand_distr::{Distribution as _, Exp1, StandardNormal};
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -8,7 +9,6 @@ use statrs::function::gamma::gamma_ur;
 use super::{Distribution, Shape};
 use crate::UncertaintyError;
 use crate::distributions::gamma::gamma_quantile;
-use crate::distributions::student;
 
 impl Distribution {
     /// The value that the quantity does not exceed with the given probability.
@@ -16,7 +16,7 @@ impl Distribution {
     /// # Errors
     /// [`UncertaintyError::OutOfRange`] unless the probability lies between 0 and 1.
     pub fn quantile(&self, probability: f64) -> Result<f64, UncertaintyError> {
-        Ok(self.quantile_at(crate::gum::coverage::valid_level(probability)?))
+        Ok(self.quantile_at(UncertaintyError::require_level(probability)?))
     }
 
     /// The quantile of a probability in (0, 1).
@@ -31,7 +31,7 @@ impl Distribution {
                 mean + standard_deviation * Normal::standard().inverse_cdf(probability)
             }
             Shape::StudentT { mean, scale, degrees_of_freedom, .. } => {
-                mean + scale * student::quantile(probability, *degrees_of_freedom)
+                mean + scale * t_quantile(probability, *degrees_of_freedom)
             }
             Shape::Exponential { mean } => -mean * (-probability).ln_1p(),
             Shape::Gamma { shape, scale, .. } => scale * gamma_quantile(*shape, probability),
@@ -124,6 +124,17 @@ fn many<const N: usize, R: Rng + ?Sized>(
 #[inline]
 fn uniform(word: [u8; 8]) -> f64 {
     (u64::from_le_bytes(word) >> 11) as f64 * (0.5 * f64::EPSILON)
+}
+
+/// The quantile of Student's t for a probability in (0, 1).
+fn t_quantile(probability: f64, degrees_of_freedom: f64) -> f64 {
+    if probability == 0.5 {
+        0.0
+    } else if probability < 0.5 {
+        -student_quantile(probability, degrees_of_freedom)
+    } else {
+        student_quantile(1.0 - probability, degrees_of_freedom)
+    }
 }
 
 /// The smallest number of events of which as many or fewer have at least the given probability, Q(k + 1, λ).

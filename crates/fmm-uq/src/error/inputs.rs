@@ -56,6 +56,11 @@ impl UncertaintyError {
         }
     }
 
+    /// Passes a coverage probability through if it lies strictly between 0 and 1.
+    pub(crate) fn require_level(level: f64) -> Result<f64, Self> {
+        if level > 0.0 && level < 1.0 { Ok(level) } else { Err(Self::level_out_of_range(level)) }
+    }
+
     /// A coverage probability that is not strictly between 0 and 1.
     pub(crate) fn level_out_of_range(level: f64) -> Self {
         Self::OutOfRange {

@@ -226,7 +226,8 @@ impl Consensus {
     /// # Errors
     /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1.
     pub fn interval(&self, level: f64) -> Result<Interval, UncertaintyError> {
-        let reach = self.mean().uncertainty * coverage_factor(level, self.degrees_of_freedom())?;
+        let factor = coverage_factor(level, self.degrees_of_freedom());
+        let reach = self.mean().uncertainty * factor.ok_or_else(|| UncertaintyError::level_out_of_range(level))?;
         Ok(Interval { low: self.mean - reach, high: self.mean + reach, level })
     }
 

@@ -5,7 +5,6 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use crate::distributions::beta::Beta;
 use crate::groups::analysis_of_variance::tail_of_f;
 use crate::groups::outlying_pair;
-use crate::gum::coverage::valid_level;
 use crate::{AnalysisOfVariance, Moments, UncertaintyError, coverage_factor};
 
 /// Precision of a method by observations in groups (laboratories, operators, days, releases), after ISO 5725-2:1994,
@@ -145,7 +144,7 @@ impl Precision {
             return Err(UncertaintyError::too_few_groups(groups, 3));
         }
         let count = groups as f64;
-        let t = coverage_factor(level, count - 2.0)?;
+        let t = coverage_factor(level, count - 2.0).ok_or_else(|| UncertaintyError::level_out_of_range(level))?;
         // The quotient first: t of a level near 1 has no square in f64.
         Ok((count - 1.0) / (count * (1.0 + (count - 2.0) / t / t)).sqrt())
     }
@@ -178,7 +177,7 @@ impl Precision {
     /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1; [`UncertaintyError::TooFewObservations`] for fewer than
     /// two; [`UncertaintyError::NoAnswer`] if fewer than two groups have a spread.
     pub fn k_limit(&self, observations: usize, level: f64) -> Result<f64, UncertaintyError> {
-        let level = valid_level(level)?;
+        let level = UncertaintyError::require_level(level)?;
         if observations < 2 {
             return Err(UncertaintyError::TooFewObservations { found: observations, needed: 2 });
         }

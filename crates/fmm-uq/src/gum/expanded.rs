@@ -118,7 +118,8 @@ impl Budget {
     fn expand(&self, level: f64, standard_uncertainty: f64, effective: f64) -> Result<Expanded, UncertaintyError> {
         // A whole ν_eff may come out of the sum a rounding error too low, and must not lose a whole one for it.
         let degrees_of_freedom = (effective * (1.0 + 1e-12)).floor().max(1.0);
-        let coverage_factor = coverage_factor(level, degrees_of_freedom)?;
+        let coverage_factor =
+            coverage_factor(level, degrees_of_freedom).ok_or_else(|| UncertaintyError::level_out_of_range(level))?;
         let uncertainty = coverage_factor * standard_uncertainty;
         Ok(Expanded { level, coverage_factor, uncertainty, degrees_of_freedom, estimate: self.estimate() })
     }

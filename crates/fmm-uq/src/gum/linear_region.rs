@@ -3,7 +3,6 @@
 use nalgebra::{Cholesky, DMatrix};
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
-use crate::gum::coverage::valid_level;
 use crate::{Budget, Propagation, Region, UncertaintyError, coverage_factor};
 
 impl Propagation {
@@ -31,8 +30,9 @@ impl Propagation {
         }
         let dimensions = m as f64;
         let undefined = |_| UncertaintyError::degrees_of_freedom_undefined();
+        let out_of_range = || UncertaintyError::level_out_of_range(level);
         let square = if m == 1 {
-            coverage_factor(level, nu)?.powi(2)
+            coverage_factor(level, nu).ok_or_else(out_of_range)?.powi(2)
         } else if nu.is_infinite() {
             ChiSquared::new(dimensions)
                 .map_err(|_| UncertaintyError::degrees_of_freedom_undefined())?
@@ -53,13 +53,15 @@ impl Propagation {
     /// Those of [`Propagation::ellipsoid`]; outputs may be fully correlated here.
     pub fn rectangle(&self, level: f64) -> Result<Region, UncertaintyError> {
         let (mut region, nu) = self.region(level)?;
-        region.coverage_factor = coverage_factor(1.0 - (1.0 - level) / self.outputs().len() as f64, nu)?;
+        let of_side = 1.0 - (1.0 - level) / self.outputs().len() as f64;
+        region.coverage_factor =
+            coverage_factor(of_side, nu).ok_or_else(|| UncertaintyError::level_out_of_range(of_side))?;
         Ok(region)
     }
 
     /// The region without its factor, and the smallest ν_eff.
     fn region(&self, level: f64) -> Result<(Region, f64), UncertaintyError> {
-        let (level, outputs) = (valid_level(level)?, self.outputs());
+        let (level, outputs) = (UncertaintyError::require_level(level)?, self.outputs());
         let mut nu = f64::INFINITY;
         for output in outputs {
             nu = nu.min(output.expanded(level)?.degrees_of_freedom);

@@ -1,7 +1,6 @@
 //! The law of propagation of uncertainty, the budget that it gives, and the intervals that follow (JCGM 100:2008).
 
 mod budget;
-pub(crate) mod coverage;
 mod expanded;
 mod linear_region;
 pub(crate) mod linearisation;
@@ -11,7 +10,6 @@ mod second_order;
 mod validation;
 
 pub use budget::{Budget, Contribution};
-pub use coverage::coverage_factor;
 pub use expanded::Expanded;
 pub use linearisation::Linearisation;
 pub use propagate::{Gum, propagate};

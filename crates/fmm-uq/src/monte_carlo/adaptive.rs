@@ -1,11 +1,10 @@
 //! Adaptive number of trials.
 
-use crate::gum::coverage::{coverage_factor, valid_level};
 use crate::monte_carlo::block::BLOCK_TRIALS;
 use crate::monte_carlo::output_sample::symmetric;
 use crate::monte_carlo::settling::Settling;
 use crate::monte_carlo::tolerance::{numerical_tolerance, valid_digits};
-use crate::{Moments, UncertaintyError};
+use crate::{Moments, UncertaintyError, coverage_factor};
 
 /// Sequences of trials before the first decision: with fewer, chance may make them agree.
 const FEWEST_SEQUENCES: usize = 10;
@@ -93,7 +92,7 @@ impl Adaptive {
     /// # Errors
     /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1.
     pub fn with_interval(mut self, kind: IntervalKind, level: f64) -> Result<Self, UncertaintyError> {
-        (self.kind, self.level) = (kind, valid_level(level)?);
+        (self.kind, self.level) = (kind, UncertaintyError::require_level(level)?);
         Ok(self)
     }
 
@@ -234,7 +233,7 @@ impl Stability {
         let count = self.outputs.first().map_or(0, |figures| figures.averaged[0].len());
         let averages_stand = if let Some(first) = self.rule.first_stage {
             if count == first {
-                let factor = coverage_factor(0.95, (first - 1) as f64)?;
+                let factor = coverage_factor(0.95, (first - 1) as f64).unwrap_or(f64::INFINITY);
                 self.planned = Some(self.needed(factor)?.max(first as f64) as usize);
             }
             self.planned.is_some_and(|planned| count >= planned)

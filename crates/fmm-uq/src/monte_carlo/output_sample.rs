@@ -135,7 +135,7 @@ impl OutputSample {
 
 /// q and M − q: how many ranks an interval spans, and how many places it has to begin at.
 fn span(count: usize, level: f64) -> Result<(usize, usize), UncertaintyError> {
-    let level = crate::gum::coverage::valid_level(level)?;
+    let level = UncertaintyError::require_level(level)?;
     let needed = ((2.0 / (1.0 - level)).ceil() as usize).max(2);
     // p M is whole where it is so to rounding: 0.95 of a million is.
     let q = (level * count as f64 + 0.5).floor() as usize;

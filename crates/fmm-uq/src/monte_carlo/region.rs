@@ -97,7 +97,7 @@ impl OutputSample {
     }
 
     fn region(&self, level: f64) -> Result<Region, UncertaintyError> {
-        let level = crate::gum::coverage::valid_level(level)?;
+        let level = UncertaintyError::require_level(level)?;
         let indices = 0..self.outputs();
         let centre = indices.clone().map(|j| self.estimate(j)).collect::<Result<Vec<_>, _>>()?;
         let standard_uncertainties = indices.map(|j| self.standard_uncertainty(j)).collect::<Result<Vec<_>, _>>()?;

@@ -65,7 +65,7 @@ impl Settling {
         if count < FEWEST_BATCHES {
             return Ok(f64::INFINITY);
         }
-        let factor = coverage_factor(0.95, (count - 1) as f64)?;
+        let factor = coverage_factor(0.95, (count - 1) as f64).unwrap_or(f64::INFINITY);
         let ends = self.sequences.iter().zip(&self.batches);
         Ok(ends.map(|(sequences, batches)| factor * self.scatter(sequences, batches)).fold(0.0, f64::max))
     }

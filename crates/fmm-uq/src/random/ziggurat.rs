@@ -2,15 +2,16 @@
 
 use std::sync::{Arc, LazyLock};
 
+use fmm_model::student_quantile;
 use rand::{Rng, RngExt};
 use statrs::distribution::{Continuous, ContinuousCDF, Normal, StudentsT};
-
-use crate::distributions::student;
 
 /// Layers, all of the same area.
 const LAYERS: usize = 256;
 /// Values that are drawn together.
 const TOGETHER: usize = 100;
+/// Degrees of freedom above which the tail of Student's t is not known exactly enough for a ziggurat (1).
+const MOST_DEGREES_OF_FREEDOM: f64 = 1000.0;
 /// Steps of the search for the edge of the lowest layer; it needs some fifteen.
 const STEPS: usize = 100;
 
@@ -53,9 +54,9 @@ impl Ziggurat {
         Arc::clone(&NORMAL)
     }
 
-    /// Student's t of ν ≤ [`student::EXPANSION_ABOVE`]; none above, where its tail is not known exactly enough.
+    /// Student's t of ν ≤ 1000.
     pub(crate) fn student_t(degrees_of_freedom: f64) -> Option<Arc<Self>> {
-        (degrees_of_freedom <= student::EXPANSION_ABOVE).then(|| Arc::new(Self::new(degrees_of_freedom)))
+        (degrees_of_freedom <= MOST_DEGREES_OF_FREEDOM).then(|| Arc::new(Self::new(degrees_of_freedom)))
     }
 
     fn new(nu: f64) -> Self {
@@ -136,7 +137,7 @@ impl Ziggurat {
             let uniform: f64 = rng.random();
             if layer == 0 {
                 // 1 − u is never zero, which has no quantile.
-                return student::upper_quantile(self.tail * (1.0 - uniform), self.degrees_of_freedom).copysign(place);
+                return student_quantile(self.tail * (1.0 - uniform), self.degrees_of_freedom).copysign(place);
             }
             let x = place * self.edges[layer];
             let (bottom, top) = (self.heights[layer], self.heights[layer + 1]);

@@ -2,7 +2,7 @@
 
 use fmm_uq::{
     Adaptive, Distribution, FailureKind, Input, Inputs, IntervalKind, MonteCarlo, QuasiMonteCarlo, UncertaintyError,
-    coverage_factor, propagate, variance_shares,
+    propagate, variance_shares,
 };
 
 fn one() -> Inputs {
@@ -111,7 +111,6 @@ fn coverage_probabilities_outside_of_0_and_1() {
             sample.rectangle(level).err(),
             points.standard_errors_of_ends(0, level).err(),
             budget.expanded(level).err(),
-            coverage_factor(level, 5.0).err(),
             Distribution::normal(0.0, 1.0).unwrap().quantile(level).err(),
             Adaptive::to_digits(2).unwrap().with_interval(IntervalKind::Shortest, level).err(),
         ];
