@@ -1,4 +1,4 @@
-//! Dimension of a unit: which powers of length, time, mass and angle it is, and how much of the SI unit.
+//! Dimension of a unit: its powers of length, time, mass and angle, and its size in the SI unit.
 
 use crate::math;
 
@@ -22,13 +22,18 @@ use crate::math;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dimension {
     factor: f64,
-    /// Length, time, mass, angle.
-    powers: [f64; 4],
+    /// Length, time, mass, angle, voltage, current, counts.
+    powers: [f64; 7],
 }
 
 impl Dimension {
     /// A pure number.
-    pub(crate) const NONE: Self = Self { factor: 1.0, powers: [0.0; 4] };
+    pub(crate) const NONE: Self = Self { factor: 1.0, powers: [0.0; 7] };
+
+    /// A `factor` of the SI unit of these powers.
+    pub(crate) const fn new(factor: f64, powers: [f64; 7]) -> Self {
+        Self { factor, powers }
+    }
 
     /// Size of the unit in the SI unit (1).
     pub const fn factor(&self) -> f64 {
@@ -55,6 +60,11 @@ impl Dimension {
         self.powers[3]
     }
 
+    /// True if both have the same powers: units of different size of one quantity, such as m/s and km/h.
+    pub fn is_alike(&self, other: &Self) -> bool {
+        self.powers == other.powers
+    }
+
     /// This dimension times a power of another.
     pub(crate) fn times(self, other: Self, power: f64) -> Self {
         let mut powers = self.powers;
@@ -63,47 +73,13 @@ impl Dimension {
     }
 }
 
-/// Dimension of one symbol; `None` for one that is not known.
-pub(crate) fn of_symbol(symbol: &str) -> Option<Dimension> {
-    const BASE: [(&str, [f64; 4]); 7] = [
-        ("m", [1.0, 0.0, 0.0, 0.0]),
-        ("s", [0.0, 1.0, 0.0, 0.0]),
-        ("kg", [0.0, 0.0, 1.0, 0.0]),
-        ("rad", [0.0, 0.0, 0.0, 1.0]),
-        ("N", [1.0, -2.0, 1.0, 0.0]),
-        ("J", [2.0, -2.0, 1.0, 0.0]),
-        ("Hz", [0.0, -1.0, 0.0, 0.0]),
-    ];
-    const PREFIX: [(&str, f64); 8] =
-        [("", 1.0), ("m", 1e-3), ("c", 1e-2), ("µ", 1e-6), ("μ", 1e-6), ("u", 1e-6), ("n", 1e-9), ("k", 1e3)];
-    const OTHER: [(&str, f64, [f64; 4]); 5] = [
-        ("1", 1.0, [0.0; 4]),
-        ("%", 1e-2, [0.0; 4]),
-        ("g", 1e-3, [0.0, 0.0, 1.0, 0.0]),
-        ("deg", core::f64::consts::PI / 180.0, [0.0, 0.0, 0.0, 1.0]),
-        ("°", core::f64::consts::PI / 180.0, [0.0, 0.0, 0.0, 1.0]),
-    ];
-    let of_base = |name: &str| BASE.iter().find(|(base, _)| *base == name);
-    let prefixed = PREFIX.iter().find_map(|(prefix, factor)| {
-        let (_, powers) = of_base(symbol.strip_prefix(prefix)?)?;
-        // A kilogram has its prefix.
-        (prefix.is_empty() || !symbol.ends_with("kg")).then_some(Dimension { factor: *factor, powers: *powers })
-    });
-    let other = || OTHER.iter().find(|(name, ..)| *name == symbol);
-    prefixed.or_else(|| other().map(|(_, factor, powers)| Dimension { factor: *factor, powers: *powers }))
-}
-
-/// The digit that is written as a power.
-pub(crate) fn superscript(c: char) -> Option<u32> {
-    "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().position(|digit| digit == c).map(|digit| digit as u32)
-}
-
 #[cfg(test)]
 mod tests {
-    use crate::Unit;
+    use crate::unit::Unit;
 
     fn of(unit: &str) -> Option<(f64, [f64; 4])> {
-        Unit::of(unit).dimension(|symbol| (symbol == "n").then_some(3.0)).map(|found| (found.factor, found.powers))
+        let found = Unit::of(unit).dimension(|symbol| (symbol == "n").then_some(3.0));
+        found.map(|found| (found.factor, [found.length(), found.time(), found.mass(), found.angle()]))
     }
 
     #[test]
@@ -124,6 +100,7 @@ mod tests {
             ("N s²/m", 1.0, [0.0, 0.0, 1.0, 0.0]),
             ("µN m", 1e-6, [2.0, -2.0, 1.0, 0.0]),
             ("%", 1e-2, [0.0; 4]),
+            ("mV", 1e-3, [0.0; 4]),
         ] {
             let (found, dimension) = of(unit).unwrap();
             assert!((found / factor - 1.0).abs() < 1e-14 && dimension == powers, "{unit}: {found} {dimension:?}");
@@ -132,8 +109,15 @@ mod tests {
 
     #[test]
     fn what_is_no_unit_is_none() {
-        for text in ["", "/", "m/", "m^", "m^k", "(m", "m)", "()", "furlong", "V", "m⁻", "kkg", "^2", "()^2"] {
+        for text in ["", "/", "m/", "m^", "m^k", "(m", "m)", "()", "furlong", "m⁻", "kkg", "^2", "()^2"] {
             assert_eq!(of(text), None, "{text}");
         }
+    }
+
+    #[test]
+    fn alike_are_units_of_one_quantity() {
+        let dimension = |unit: &str| Unit::of(unit).dimension(|_| None).unwrap();
+        assert!(dimension("km/h").is_alike(&dimension("m/s")) && dimension("J").is_alike(&dimension("N m")));
+        assert!(!dimension("V").is_alike(&dimension("A")) && !dimension("V").is_alike(&dimension("%")));
     }
 }

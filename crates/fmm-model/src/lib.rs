@@ -30,7 +30,7 @@
 //! | stiffness, stress, allowed deflection, parasitic motion of a guide | [`Flexure`], [`LeafSpring`] |
 //! | the lean of a shaft from two displacements | [`Tilt`] |
 //! | name, symbol, unit and limits of an unknown number | [`Parameter`], [`Bounds`] |
-//! | units that multiply and print, and their dimensions | [`Unit`], [`Dimension`] |
+//! | units that are read, multiply and print, and their dimensions | [`Unit`], [`Dimension`] |
 //! | a formula with exact derivatives | write it over [`Scalar`], evaluate it at [`Dual`] |
 //! | a value with its standard uncertainty, and its form in a report | [`Estimated`], [`Rounded`] |
 //! | an interval that covers a value, and its factor k | [`Interval`], `coverage_factor` (feature `student`) |
@@ -91,6 +91,7 @@ mod rounded;
 mod scalar;
 #[cfg(feature = "student")]
 mod student;
+mod symbol;
 mod tilt;
 mod unit;
 

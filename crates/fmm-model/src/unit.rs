@@ -5,8 +5,8 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt::{self, Display, Formatter};
 
-use crate::Dimension;
-use crate::dimension::{of_symbol, superscript};
+use crate::dimension::Dimension;
+use crate::symbol;
 
 /// A unit: symbols with powers, in the order in which it was written. Symbols are whatever a record states: `m`, `mm`,
 /// `V`, `counts`.
@@ -45,6 +45,50 @@ impl Unit {
         let mut rest = text.trim();
         let whole = || Self { factors: [Factor::of(text.trim())].into() };
         product(&mut rest, DEEPEST).filter(|_| rest.is_empty()).unwrap_or_else(whole)
+    }
+
+    /// Unit as a person or an instrument writes it, in the symbols of this crate; `None` if one of its symbols is not
+    /// known, or if it has two different units of time.
+    ///
+    /// Beside the notation of [`Unit::of`]: `m s-1`, `ms^-1`, `m/s2`, `m/s**2`, `m.s-2`, `metres per second`; names such
+    /// as `deg`, `rev`, `micron`, `lbf`, `ticks` with their plurals; `u` for µ; `g` for free fall. Capitals matter only
+    /// where the text would be another unit without them.
+    ///
+    /// ```
+    /// use fmm_model::Unit;
+    ///
+    /// assert_eq!(Unit::written("MM/Sec"), Some(Unit::of("mm/s")));
+    /// assert_eq!(Unit::written("degrees per second"), Some(Unit::of("deg/s")));
+    /// assert_eq!(Unit::written("mN"), Some(Unit::of("mN")));
+    /// assert_eq!((Unit::written("furlong"), Unit::written("m/s/min")), (None, None));
+    /// ```
+    pub fn written(text: &str) -> Option<Self> {
+        /// Small letters that mean another unit in capitals: gauss, megagram, newton metre.
+        const SMALL_ONLY: [&str; 4] = ["g", "gn", "mg", "nm"];
+        let text = plain(text);
+        let lower = text.to_lowercase();
+        let read = |mut text: &str| {
+            let unit = product(&mut text, DEEPEST).filter(|_| text.is_empty())?;
+            unit.in_symbols()
+        };
+        read(&text).or_else(|| if SMALL_ONLY.contains(&&*lower) { None } else { read(&lower) })
+    }
+
+    /// This unit with the symbol of the table for each of its names, which may have a power behind them, as in `s2`.
+    fn in_symbols(self) -> Option<Self> {
+        let mut unit = Self::default();
+        for Factor { symbol, power, exponent } in self.factors {
+            let (stem, number) = symbol.split_at(symbol.trim_end_matches(|c: char| c.is_ascii_digit()).len());
+            let (stem, sign) = stem.strip_suffix('-').map_or((stem, 1.0), |stem| (stem, -1.0));
+            let (name, number) = match (symbol::named(&symbol), exponent) {
+                (_, Some(_)) => return None,
+                (Some(name), None) => (name, 1.0),
+                (None, None) => (symbol::named(stem)?, sign * number.parse::<f64>().ok()?),
+            };
+            unit.multiply(Factor { symbol: [name.0, name.1].concat(), power: power * number, exponent: None });
+        }
+        let has_time = |factor: &&Factor| symbol::dimension(&factor.symbol).is_some_and(|found| found.time() != 0.0);
+        (unit.factors.iter().filter(has_time).count() < 2).then_some(unit)
     }
 
     /// Product of this unit and `other`.
@@ -93,7 +137,7 @@ impl Unit {
                 None => factor.power,
                 Some(symbol) => factor.power * exponent(symbol)?,
             };
-            Some(dimension.times(of_symbol(&factor.symbol)?, power))
+            Some(dimension.times(symbol::dimension(&factor.symbol)?, power))
         })
     }
 
@@ -193,6 +237,17 @@ fn powered(f: &mut Formatter<'_>, symbol: &str, power: f64) -> fmt::Result {
     }
 }
 
+/// A written unit with one sign for each operation, and a space before a power of s that belongs to s alone: `ms-1`.
+fn plain(text: &str) -> String {
+    let text = text.replace("**", "^").replace(" per ", "/").replace('−', "-").replace(['∕', '⁄'], "/");
+    let text = text.replace(['.', '⋅'], " ");
+    let text = text.trim();
+    let powers = ["s-1", "s^-1", "s⁻¹", "s-2", "s^-2", "s⁻²"];
+    let stem =
+        powers.iter().find_map(|power| text.strip_suffix(power)).filter(|stem| stem.ends_with(char::is_alphabetic));
+    stem.map_or_else(|| text.to_owned(), |stem| [stem, " ", &text[stem.len()..]].concat())
+}
+
 /// Parentheses within each other that are read: units come from files, where there may be any number.
 const DEEPEST: usize = 8;
 
@@ -262,6 +317,11 @@ fn power<'a>(rest: &mut &'a str) -> Option<(f64, Option<&'a str>)> {
         Some(value) => f64::is_finite(value).then_some((if negative { -value } else { value }, None)),
         None => (!negative).then_some((1.0, None)),
     }
+}
+
+/// The digit that is written as a power.
+fn superscript(c: char) -> Option<u32> {
+    "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().position(|digit| digit == c).map(|digit| digit as u32)
 }
 
 #[cfg(test)]
