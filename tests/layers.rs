@@ -8,7 +8,7 @@ use serde_json::Value;
 /// What each crate takes from others when nobody asks for a feature, and for what.
 const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
     ("fmm-model", &[]),
-    ("fmm-record", &[("libflate", "inflates MATLAB files up to a limit"), MATFILE, REALFFT, THISERROR]),
+    ("fmm-record", &[("flate2", "inflates MATLAB files up to a limit"), REALFFT, THISERROR]),
     ("fmm-friction", &[]),
     (
         "fmm-fit",
@@ -54,7 +54,6 @@ const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
     ),
 ];
 
-const MATFILE: (&str, &str) = ("matfile", "decodes the arrays of MATLAB files");
 const PULP: (&str, &str) = ("pulp", "vectors as wide as the processor has, without unsafe code here");
 const RAND_CHACHA: (&str, &str) = ("rand_chacha", "streams of the same bits on every machine");
 const REALFFT: (&str, &str) = ("realfft", "Fourier transforms of any length");

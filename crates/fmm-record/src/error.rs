@@ -4,8 +4,6 @@ use std::error::Error;
 use std::io;
 use std::sync::Arc;
 
-use crate::MeaningError;
-
 /// A file that is not read, a record that cannot be, or an operation that it does not allow; each variant is something
 /// else that the caller can do about it.
 ///
@@ -28,14 +26,10 @@ pub enum RecordError {
         what: String,
     },
     /// A file of a format whose reader was not compiled: add the feature.
-    #[error("{format} is read with the feature \"{feature}\" of fmm-record, which is off{remedy}")]
+    #[error("{what}")]
     MissingFeature {
-        /// The format of the file.
-        format: &'static str,
-        /// The feature that reads it.
-        feature: &'static str,
-        /// Remedy without the feature.
-        remedy: &'static str,
+        /// The format of the file, and the feature that reads it.
+        what: String,
     },
     /// A file, or a variable of one, that contradicts itself or its format: repair it, or leave the variable alone.
     #[error("{what}")]
@@ -53,16 +47,10 @@ pub enum RecordError {
         /// Content that was found, and content that is supported.
         what: String,
     },
-    /// The file does not have the channel: choose one that it has.
+    /// The file does not have the channel, or has several that may be meant: choose one that it has.
     #[error("{what}")]
-    NoSuchChannel {
+    Channel {
         /// Channel that was asked for, and those that exist.
-        what: String,
-    },
-    /// It is not clear which channel is meant: choose one.
-    #[error("{what}")]
-    WhichChannel {
-        /// Reason of the doubt, and the channels to choose from.
         what: String,
     },
     /// The sampling is not known or not uniform: give the rate, name the time, or resample.
@@ -73,9 +61,23 @@ pub enum RecordError {
         /// Fault, and what would be right.
         what: String,
     },
-    /// It is not known what a channel measured, or in which unit: say it.
-    #[error(transparent)]
-    Units(#[from] MeaningError),
+    /// Channel, quantity or unit are not clear: state them by a [`Request`](crate::Request).
+    #[error("{what}")]
+    Unclear {
+        /// The channel, and the missing statement.
+        what: String,
+        /// The statements of a request that help, their names between backquotes: "give `unit`, such as m/s".
+        remedy: String,
+    },
+    /// Two statements about quantity or unit exclude each other, of the file or of a [`Request`](crate::Request): take
+    /// one back, or choose another channel.
+    #[error("{what}")]
+    Contradiction {
+        /// Both statements.
+        what: String,
+        /// The statements of a request that help, their names between backquotes: "leave out `unit` m/s".
+        remedy: String,
+    },
     /// Values that are missing, infinite or too large: look at the data.
     #[error("{what}")]
     Values {
@@ -144,6 +146,21 @@ impl RecordError {
     /// A sampling rate (Hz) that is zero, negative or not finite.
     pub(crate) fn rate(rate: f64) -> Self {
         Self::options(format!("the sampling rate must be positive and finite, but is {rate} Hz"))
+    }
+
+    /// A channel that is not there, or is not the only one.
+    pub(crate) fn channel(what: impl Into<String>) -> Self {
+        Self::Channel { what: what.into() }
+    }
+
+    /// Channel, quantity or unit that are not clear.
+    pub(crate) fn unclear(what: String, remedy: impl Into<String>) -> Self {
+        Self::Unclear { what, remedy: remedy.into() }
+    }
+
+    /// Statements about quantity or unit that exclude each other.
+    pub(crate) fn contradiction(what: String, remedy: String) -> Self {
+        Self::Contradiction { what, remedy }
     }
 
     /// An option that cannot be.

@@ -34,7 +34,7 @@
 //! | how does it swing? | [`Swings`]: peaks, crossings, frequency |
 //! | how good is the record? | [`noise`], [`quantisation_step`], [`saturation`], [`spikes`], [`OffsetStep`], [`hum()`] |
 //! | is it one free vibration of a linear spring? | [`further_releases`], [`Interruption`], [`SecondMode`], [`period_change`] |
-//! | another form of it? | [`Record::crop`], [`Record::scaled`], [`Record::shifted`], [`Record::smoothed_by`], [`Record::integrate`], [`Record::differentiate`]; at a uniform or another rate [`Resampling`] |
+//! | another form of it? | [`Record::crop`], [`Record::scaled`], [`Record::shifted`], [`Record::smoothed_by`], [`Record::integrate`], [`Record::differentiate`] |
 //! | which smoothing? | none for a fit, as it correlates the noise; for a derivative [`savitzky_golay_derivative`]; [`moving_average`] to repeat what MATLAB's `smooth` or `movmean` did |
 //!
 //! # Units and conventions
@@ -75,46 +75,38 @@ mod error;
 mod examination;
 mod files;
 mod numerics;
-mod quantity;
 mod record;
 mod sampling;
 #[cfg(test)]
-mod synthetic;
+mod tests;
 mod units;
 
-pub use calculus::resampling::{Resampled, Resampling};
 pub use calculus::savitzky_golay::{savitzky_golay, savitzky_golay_derivative};
-pub use calculus::smooth::{EndRule, moving_average};
-pub use calculus::smoothing::Smoothing;
+pub use calculus::{EndRule, Smoothing, moving_average};
 pub use error::RecordError;
 pub use examination::further_release::{FurtherRelease, further_releases};
 pub use examination::hum::{Hum, hum, without_lines};
 pub use examination::interruption::Interruption;
 pub use examination::noise::noise;
 pub use examination::offset_step::OffsetStep;
-pub use examination::period_change::period_change;
 pub use examination::quantisation::quantisation_step;
 pub use examination::release::Release;
 pub use examination::saturation::{Saturation, saturation};
 pub use examination::second_mode::SecondMode;
 pub use examination::spikes::{Spike, spikes};
-pub use examination::swings::{Crossing, Peak, Swings};
+pub use examination::swings::{Crossing, Peak, Swings, period_change};
 pub use examination::upsampling::Upsampling;
 #[cfg(any(feature = "mat", feature = "npy"))]
 pub use files::arrays::Array;
 pub use files::reading::{Column, Reading};
-pub use files::uff;
-pub use files::{Channel, DataFile, Format, Reader, open};
-pub use numerics::fourier::{Spectrum, blackman_harris};
-pub use numerics::real_transform::RealTransform;
-pub use quantity::Quantity;
+pub use files::{Channel, DataFile, Format, Reader, open, uff};
+pub use numerics::spectrum::{RealTransform, Spectrum, blackman_harris};
 pub use realfft::num_complex::Complex64;
 pub use record::Record;
 pub use sampling::{JITTER, RATE_ROUNDING, Sampling, UniformTimes};
 pub use units::label::Label;
-pub use units::meaning::{Meaning, MeaningError};
-pub use units::request::Request;
-pub use units::written_unit::{UnknownUnit, WrittenUnit};
+pub use units::request::{Meaning, Request};
+pub use units::{Quantity, WrittenUnit};
 
 /// Runs the example of the README.
 #[cfg(doctest)]

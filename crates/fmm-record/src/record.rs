@@ -3,7 +3,10 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use crate::{Quantity, RecordError, UniformTimes};
+use crate::error::RecordError;
+use crate::numerics::mean;
+use crate::sampling::UniformTimes;
+use crate::units::Quantity;
 
 /// The times (s) between which samples are taken, to the end of the record where none is given.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -309,13 +312,6 @@ impl Record {
     pub(crate) fn derived(&self, start: f64, values: Vec<f64>) -> Self {
         Self { start, interval: self.interval, values, quantity: self.quantity, unit: self.unit.clone() }
     }
-}
-
-/// Arithmetic mean of `values`, 0 if there are none. Deviations from the first value are summed, so that a large
-/// offset costs no digits.
-pub(crate) fn mean(values: &[f64]) -> f64 {
-    let first = values.first().copied().unwrap_or(0.0);
-    first + values.iter().map(|value| value - first).sum::<f64>() / values.len().max(1) as f64
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The sampling of a record: the uniform grid behind its time stamps, and how the rate was found.
 
-use crate::RecordError;
+use crate::error::RecordError;
 
 /// Largest distance of a time stamp from the uniform grid, as a fraction of the interval.
 pub const JITTER: f64 = 0.01;
@@ -114,7 +114,7 @@ fn not_uniform(index: usize, time: f64, expected: f64, interval: f64) -> RecordE
     let what = format!(
         "sampling is not uniform: time stamp {index} is {stamp} s, but a uniform interval of {step} s puts it at \
          {place} s ({deviation} s off); give the rate if the samples are uniform and only their stamps are not, or else resample \
-         them (`Reader::resampling`)"
+         them first"
     );
     RecordError::time(Some(index), what)
 }
@@ -170,17 +170,6 @@ pub enum Sampling {
         /// Its name.
         name: String,
     },
-    /// From time stamps that were resampled.
-    Resampled {
-        /// Name of their column or variable.
-        name: String,
-        /// The rate asked for (Hz).
-        rate: f64,
-        /// The frequency above which nothing of the motion lies (Hz).
-        band: f64,
-        /// Relative error of a motion of this band ([`Resampled::error`](crate::Resampled::error)).
-        error: f64,
-    },
     /// From a scalar variable in the file that holds the rate (Hz).
     RateVariable {
         /// Its name.
@@ -210,11 +199,6 @@ impl std::fmt::Display for Sampling {
         match self {
             Self::Given { rate } => write!(f, "given as {rate} Hz"),
             Self::Times { name } => write!(f, "found from the time stamps in \"{name}\""),
-            Self::Resampled { name, rate, band, error } => write!(
-                f,
-                "brought to {rate} Hz by the time stamps in \"{name}\", for a motion of up to {band} Hz with a relative \
-                 error of {error:.1e}"
-            ),
             Self::RateVariable { name, rate } => write!(f, "read as {rate} Hz from the variable \"{name}\""),
             Self::IntervalVariable { name, interval } => {
                 write!(f, "found from the interval of {interval} s in the variable \"{name}\"")
@@ -305,7 +289,7 @@ mod tests {
             UniformTimes::of(&times).unwrap_err().to_string(),
             "sampling is not uniform: time stamp 700 is 0.8235 s, but a uniform interval of 0.001 s puts it at 0.823457 s \
              (0.0000428571 s off); give the rate if the samples are uniform and only their stamps are not, or else resample \
-             them (`Reader::resampling`)"
+             them first"
         );
     }
 

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use fmm_record::{Column, DataFile, Label, MeaningError, Quantity, Reader, Reading, Record, RecordError, Request};
+use fmm_record::{Column, DataFile, Label, Quantity, Reader, Reading, Record, RecordError, Request};
 
 /// The record to identify, and how it was read.
 pub(crate) struct Input {
@@ -100,12 +100,8 @@ impl Choice {
             None => file.choose(&self.request),
         };
         let reading = reading.map_err(|error| match error {
-            RecordError::Units(error) => self.with_remedy(error),
-            RecordError::TimeAxis { .. } => format!(
-                "{error}; here the rate is --rate and the time is --time, and what must be resampled is resampled before it is given"
-            )
-            .into(),
-            error => error.into(),
+            RecordError::TimeAxis { .. } => format!("{error}; here the rate is --rate and the time is --time").into(),
+            error => self.with_remedy(error),
         })?;
         Ok((reading, file))
     }
@@ -137,50 +133,21 @@ impl Choice {
         Ok(Input { record, origin, warnings })
     }
 
-    /// The error, and what helps.
-    fn with_remedy(&self, error: MeaningError) -> Box<dyn Error> {
+    /// The error with its remedy, in the words of the options.
+    fn with_remedy(&self, error: RecordError) -> Box<dyn Error> {
+        let (RecordError::Unclear { remedy, .. } | RecordError::Contradiction { remedy, .. }) = &error else {
+            return error.into();
+        };
         match &error {
-            _ if !self.is_drive => with_options(error),
+            _ if !self.is_drive => {
+                // A statement of a request is an option here: `unit` is --unit.
+                let parts = remedy.split('`').enumerate();
+                let remedy: String = parts.flat_map(|(i, part)| [if i % 2 == 0 { "" } else { "--" }, part]).collect();
+                format!("{error}; {remedy}").into()
+            }
             // The options speak of the motion.
-            MeaningError::OtherQuantity { .. } => format!("{error}; name another channel").into(),
+            RecordError::Contradiction { .. } => format!("{error}; name another channel").into(),
             _ => format!("{error}; write the unit into the name of the channel, as in \"base [m/s^2]\"").into(),
         }
     }
-}
-
-/// The error, and the options that help.
-fn with_options(error: MeaningError) -> Box<dyn Error> {
-    let remedy = match &error {
-        MeaningError::UnknownUnit { .. } => {
-            "give --unit, such as m/s, and --scale, the factor that turns the numbers into it".to_owned()
-        }
-        MeaningError::Counts { unit, .. } => {
-            format!("give --scale and --unit, as in --scale 1.57e-4 --unit rad, or stay with --unit {unit}")
-        }
-        MeaningError::NoUnit { likely, .. } => {
-            format!("give --unit, such as {likely}, and --scale if the numbers are not in it")
-        }
-        MeaningError::NoQuantity { .. } => "give --quantity velocity, --quantity displacement or --quantity acceleration".to_owned(),
-        MeaningError::Nothing { .. } => {
-            "give --quantity velocity, displacement or acceleration, and --unit, with --scale if the numbers are not in it"
-                .to_owned()
-        }
-        MeaningError::OtherQuantity { said, .. } => {
-            format!("leave out --quantity {said}, choose another --channel, or give both --scale and --unit")
-        }
-        MeaningError::Contradiction { unit: Some(_), other, .. } => {
-            format!("give --quantity {other} if the unit is right, or else both --scale and --unit")
-        }
-        MeaningError::Contradiction { other, .. } => {
-            format!("leave out what says {other}, or choose another --channel")
-        }
-        MeaningError::OtherUnit { said, .. } => {
-            format!("leave out --unit {said}, or give --scale as well, the factor that turns the numbers into {said}")
-        }
-        MeaningError::ScaleAlone { .. } => "give --unit as well, or leave out --scale".to_owned(),
-        MeaningError::Said { measured, .. } => format!("give --quantity {measured}, or another --unit"),
-        MeaningError::WhichChannel { .. } => "choose one by --channel".to_owned(),
-        _ => return error.into(),
-    };
-    format!("{error}; {remedy}").into()
 }

@@ -1,7 +1,8 @@
 //! Integral and derivative of a record.
 
-use crate::calculus::smooth::Sum;
-use crate::{Record, RecordError};
+use crate::error::RecordError;
+use crate::numerics::Sum;
+use crate::record::Record;
 
 impl Record {
     /// The integral over time by the trapezoidal rule, beginning at `initial`: acceleration becomes velocity,
@@ -112,7 +113,7 @@ fn unit_of_derivative(unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Quantity;
+    use crate::units::Quantity;
 
     fn sampled(quantity: Quantity, unit: &str, f: impl Fn(f64) -> f64) -> Record {
         Record::new(1.0, 1e-3, (0..2001).map(|i| f(1.0 + 1e-3 * f64::from(i))).collect(), quantity, unit).unwrap()

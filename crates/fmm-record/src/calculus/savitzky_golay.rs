@@ -1,7 +1,7 @@
 //! Smoothing by sliding polynomials.
 
-use crate::RecordError;
-use crate::calculus::smooth::even_span;
+use crate::calculus::even_span;
+use crate::error::RecordError;
 
 /// Highest degree: beyond it the polynomials follow noise, and their products lose the digits of a double.
 const HIGHEST_DEGREE: usize = 8;

@@ -1,10 +1,13 @@
 //! Further releases, which set a machine in motion again that was vibrating freely.
 
-use crate::calculus::smooth::{EndRule, averaged};
+use crate::calculus::{EndRule, averaged};
+use crate::examination::noise::noise;
+use crate::examination::quantisation::quantisation_step;
 use crate::examination::second_mode::beats;
 use crate::examination::spikes::without_spikes;
-use crate::numerics::order::{median, range};
-use crate::{Record, Swings, noise, quantisation_step};
+use crate::examination::swings::Swings;
+use crate::numerics::{median, range};
+use crate::record::Record;
 
 /// A second release, or a push, in a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -166,8 +169,10 @@ fn rang(record: &Record, begin: usize, end: usize, whole: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{CoulombDecay, Recorded, measured_records, released_twice, sampled, with_hum};
-    use crate::{Quantity, hum, without_lines};
+    use crate::examination::hum::hum;
+    use crate::tests::synthetic::{CoulombDecay, Recorded, measured_records, released_twice, sampled, with_hum};
+    use crate::units::Quantity;
+    use crate::without_lines;
 
     #[test]
     fn single_ring_downs_have_none() {

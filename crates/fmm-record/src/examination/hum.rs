@@ -2,10 +2,11 @@
 
 use std::f64::consts::TAU;
 
+use crate::examination::quantisation::quantisation_step;
 use crate::examination::steadiness::{Steady, steady};
 use crate::numerics::line_search::{Candidate, fundamental, lines};
-use crate::numerics::order::range;
-use crate::{Record, quantisation_step};
+use crate::numerics::range;
+use crate::record::Record;
 
 /// A line of constant amplitude in a record.
 ///
@@ -150,8 +151,9 @@ pub fn without_lines(record: &Record, lines: &[Hum]) -> Record {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{CoulombDecay, Noise, Recorded, measured_records, released_twice, sampled, with_hum};
-    use crate::{Quantity, Swings};
+    use crate::examination::swings::Swings;
+    use crate::tests::synthetic::{CoulombDecay, Noise, Recorded, measured_records, released_twice, sampled, with_hum};
+    use crate::units::Quantity;
 
     /// `record` and lines of these frequencies (Hz), amplitudes and phases.
     fn humming(record: &Record, lines: &[(f64, f64, f64)]) -> Record {

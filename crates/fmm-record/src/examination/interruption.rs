@@ -1,7 +1,9 @@
 //! Interruption of a decay: a hand, a touch, a stop, that takes more than the machine's own friction.
 
-use crate::numerics::order::{median, range};
-use crate::{Record, Swings, noise};
+use crate::examination::noise::noise;
+use crate::examination::swings::Swings;
+use crate::numerics::{median, range};
+use crate::record::Record;
 
 /// Point of a decay at which something other than the machine's own friction and damping takes its motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,8 +99,8 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
-    use crate::Quantity;
-    use crate::synthetic::Noise;
+    use crate::tests::synthetic::Noise;
+    use crate::units::Quantity;
 
     fn record(values: impl Fn(f64) -> f64, noise: f64) -> Record {
         let mut random = Noise::new(4);

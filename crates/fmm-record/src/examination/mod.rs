@@ -6,7 +6,6 @@ pub(crate) mod hum;
 pub(crate) mod interruption;
 pub(crate) mod noise;
 pub(crate) mod offset_step;
-pub(crate) mod period_change;
 pub(crate) mod quantisation;
 pub(crate) mod release;
 pub(crate) mod saturation;

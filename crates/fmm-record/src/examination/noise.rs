@@ -1,6 +1,6 @@
 //! The noise in a record.
 
-use crate::numerics::order::median;
+use crate::numerics::median;
 
 /// Standard deviation of the white noise in `values`, whatever the motion below it; 0 for fewer than five samples.
 ///
@@ -94,7 +94,7 @@ fn signed_binomials(order: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{Noise, pendulum};
+    use crate::tests::synthetic::{Noise, pendulum};
 
     #[test]
     fn white_noise_is_found_below_motion_spikes_and_quantisation() {
@@ -124,7 +124,7 @@ mod tests {
     #[test]
     fn fork_has_the_noise_that_others_found() {
         // 3.5 mV is the scatter of its samples about a smooth curve, which contains slow errors as well.
-        let volts = noise(crate::synthetic::fork().values());
+        let volts = noise(crate::tests::synthetic::fork().values());
         assert!((2.5e-3..3.7e-3).contains(&volts), "{volts} V");
     }
 

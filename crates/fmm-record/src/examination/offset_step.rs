@@ -1,7 +1,10 @@
 //! A sudden change of the offset while the record oscillates.
 
-use crate::numerics::order::median;
-use crate::{Record, Swings, noise, quantisation_step};
+use crate::examination::noise::noise;
+use crate::examination::quantisation::quantisation_step;
+use crate::examination::swings::Swings;
+use crate::numerics::median;
+use crate::record::Record;
 
 /// A jump of the centre of an oscillation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -101,13 +104,13 @@ fn sharpest(values: &[f64], first: usize, last: usize, width: usize, side: f64) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Quantity;
-    use crate::synthetic::{CoulombDecay, pendulum, pendulum_velocity, sampled, wheel};
+    use crate::tests::synthetic::{CoulombDecay, pendulum, pendulum_velocity, sampled, wheel};
+    use crate::units::Quantity;
 
     #[test]
     fn sound_records_have_none() {
         #[cfg(feature = "mat")]
-        assert_eq!(OffsetStep::of(&crate::synthetic::fork()), None);
+        assert_eq!(OffsetStep::of(&crate::tests::synthetic::fork()), None);
         for record in [wheel(), pendulum(), pendulum_velocity()] {
             assert_eq!(OffsetStep::of(&record), None);
         }

@@ -59,12 +59,12 @@ fn lattice(sorted: &[f64], step: f64, rounding: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::Noise;
+    use crate::tests::synthetic::Noise;
 
     #[cfg(feature = "mat")]
     #[test]
     fn fork_has_the_step_of_its_converter() {
-        let step = quantisation_step(crate::synthetic::fork().values()).unwrap();
+        let step = quantisation_step(crate::tests::synthetic::fork().values()).unwrap();
         assert!((step - 5.083_2e-3).abs() < 1e-7, "{step} V");
     }
 

@@ -2,10 +2,12 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use crate::examination::noise::noise;
+use crate::examination::quantisation::quantisation_step;
 use crate::examination::spikes::without_spikes;
-use crate::numerics::order::range;
-use crate::record::mean;
-use crate::{Quantity, Record, noise, quantisation_step};
+use crate::numerics::{mean, range};
+use crate::record::Record;
+use crate::units::Quantity;
 
 /// A record that begins at rest and then moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -234,7 +236,7 @@ fn deviation(values: &[f64], mean: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{CoulombDecay, Recorded, pendulum, pendulum_velocity, quantised, sampled, wheel};
+    use crate::tests::synthetic::{CoulombDecay, Recorded, pendulum, pendulum_velocity, quantised, sampled, wheel};
 
     fn decay(release: f64) -> CoulombDecay {
         CoulombDecay { frequency: 2.2, amplitude: 10.0, deadband: 0.5, release }
@@ -288,7 +290,7 @@ mod tests {
     #[test]
     fn records_that_begin_in_motion_have_no_release() {
         #[cfg(feature = "mat")]
-        assert_eq!(Release::of(&crate::synthetic::fork()), None);
+        assert_eq!(Release::of(&crate::tests::synthetic::fork()), None);
         for record in [wheel(), pendulum(), pendulum_velocity()] {
             assert_eq!(Release::of(&record), None);
         }
@@ -332,7 +334,7 @@ mod tests {
         // A displacement is at its extremum while it is held.
         let is_velocity = |recorded: &Recorded| recorded.record.quantity() == Quantity::Velocity;
         for recorded in (0..600).map(Recorded::random).filter(is_velocity) {
-            let swings = crate::Swings::of(&recorded.record);
+            let swings = crate::examination::swings::Swings::of(&recorded.record);
             let early = swings.peaks().first().filter(|peak| peak.time < recorded.rest - 0.06);
             assert_eq!(early, None, "released at {} s", recorded.rest);
         }

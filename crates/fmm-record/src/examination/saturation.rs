@@ -1,7 +1,8 @@
 //! Samples cut off at the limits of the converter.
 
-use crate::numerics::order::range;
-use crate::{noise, quantisation_step};
+use crate::examination::noise::noise;
+use crate::examination::quantisation::quantisation_step;
+use crate::numerics::range;
 
 /// Samples that lie on a limit of the measuring range, with the motion beyond it lost.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -120,8 +121,8 @@ impl Tops {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Quantity;
-    use crate::synthetic::{CoulombDecay, pendulum, pendulum_velocity, quantised, sampled, wheel};
+    use crate::tests::synthetic::{CoulombDecay, pendulum, pendulum_velocity, quantised, sampled, wheel};
+    use crate::units::Quantity;
 
     #[test]
     fn cut_sines_are_found_with_noise_and_converter() {
@@ -188,7 +189,7 @@ mod tests {
     #[test]
     fn sound_records_are_not_saturated() {
         #[cfg(feature = "mat")]
-        assert_eq!(saturation(crate::synthetic::fork().values()), None);
+        assert_eq!(saturation(crate::tests::synthetic::fork().values()), None);
         for record in [wheel(), pendulum(), pendulum_velocity()] {
             assert_eq!(saturation(record.values()), None);
         }

@@ -4,10 +4,11 @@ use std::f64::consts::TAU;
 
 use crate::examination::hum::MOST_SAMPLES;
 use crate::examination::spikes::without_spikes;
-use crate::numerics::fourier::component;
+use crate::examination::swings::{Swings, period_change};
 use crate::numerics::least_squares::LeastSquares;
 use crate::numerics::line_search::lines;
-use crate::{Record, Swings, period_change};
+use crate::numerics::spectrum::component;
+use crate::record::Record;
 
 /// A second vibration beside the one that moves most.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -307,8 +308,11 @@ fn in_half_swings(values: &[f64], knots: &[f64]) -> (Vec<f64>, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{Noise, Recorded, measured_records, released_twice, sampled, with_hum};
-    use crate::{Quantity, further_releases, hum, without_lines};
+    use crate::examination::further_release::further_releases;
+    use crate::examination::hum::hum;
+    use crate::tests::synthetic::{Noise, Recorded, measured_records, released_twice, sampled, with_hum};
+    use crate::units::Quantity;
+    use crate::without_lines;
 
     /// Two modes that decay, the second of a frequency and amplitude relative to the first.
     fn two_modes(half_swings: f64, factor: f64, share: f64, noise: f64) -> Record {

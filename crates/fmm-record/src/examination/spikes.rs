@@ -3,8 +3,10 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use crate::numerics::order::{quantile, range};
-use crate::{Record, noise, quantisation_step};
+use crate::examination::noise::noise;
+use crate::examination::quantisation::quantisation_step;
+use crate::numerics::{quantile, range};
+use crate::record::Record;
 
 /// Up to three samples in a row that stand off the motion around them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -147,8 +149,8 @@ fn median_around(values: &[f64], i: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Quantity;
-    use crate::synthetic::{CoulombDecay, pendulum, pendulum_velocity, sampled, wheel};
+    use crate::tests::synthetic::{CoulombDecay, pendulum, pendulum_velocity, sampled, wheel};
+    use crate::units::Quantity;
 
     #[test]
     fn a_stop_an_onset_or_a_peak_is_no_spike() {
@@ -158,7 +160,7 @@ mod tests {
         // A smooth peak in a record that is at rest nearly always.
         let peak: Vec<f64> = (0..5000).map(|i| if i < 30 { (f64::from(i) * 0.1).sin() } else { 0.0 }).collect();
         for values in [stop, onset, peak] {
-            let record = Record::sampled(100.0, values, crate::Quantity::Velocity, "m/s").unwrap();
+            let record = Record::sampled(100.0, values, crate::units::Quantity::Velocity, "m/s").unwrap();
             assert_eq!(spikes(&record), []);
         }
     }
@@ -166,7 +168,7 @@ mod tests {
     #[test]
     fn measured_records_have_none() {
         #[cfg(feature = "mat")]
-        assert_eq!(spikes(&crate::synthetic::fork()), []);
+        assert_eq!(spikes(&crate::tests::synthetic::fork()), []);
         for record in [wheel(), pendulum()] {
             assert_eq!(spikes(&record), []);
         }

@@ -2,9 +2,9 @@
 
 use std::f64::consts::{LN_2, PI, TAU};
 
-use crate::numerics::fourier::{LOBE, blackman_harris, component};
 use crate::numerics::line_search::Candidate;
-use crate::numerics::order::median;
+use crate::numerics::median;
+use crate::numerics::spectrum::{LOBE, blackman_harris, component};
 
 /// A line that is as large and has the same phase wherever it can be seen.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! The turning points of an oscillation, to the sample.
 
-use crate::calculus::smooth::{EndRule, averaged};
-use crate::numerics::order::{median, range};
+use crate::calculus::{EndRule, averaged};
+use crate::numerics::{median, range};
 
 /// Least height of a swing from turning point to turning point, in standard deviations of the noise. The extremes of
 /// noise alone lie within ±5 in ten million samples.

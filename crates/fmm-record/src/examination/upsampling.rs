@@ -1,6 +1,6 @@
 //! Upsampling: values that stand several times, or lie on straight lines between others.
 
-use crate::Record;
+use crate::record::Record;
 
 /// Increase of the sampling rate of a record above the rate of its measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,7 +53,7 @@ impl Upsampling {
     ///
     /// # Errors
     /// [`RecordError`](crate::RecordError) if the record has too few of them to be another one's.
-    pub fn measured(&self, record: &Record) -> Result<Record, crate::RecordError> {
+    pub fn measured(&self, record: &Record) -> Result<Record, crate::error::RecordError> {
         let values = record.values().iter().skip(self.first).step_by(self.factor).copied().collect();
         let interval = self.factor as f64 * record.interval();
         Record::new(record.time(self.first), interval, values, record.quantity(), record.unit())
@@ -85,8 +85,8 @@ fn factor(end: usize, changes: impl Fn(usize) -> f64) -> Option<(usize, usize)> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Quantity;
-    use crate::synthetic::Noise;
+    use crate::tests::synthetic::Noise;
+    use crate::units::Quantity;
 
     fn record(values: Vec<f64>) -> Record {
         Record::sampled(2000.0, values, Quantity::Displacement, "m").unwrap()
@@ -138,6 +138,6 @@ mod tests {
     #[cfg(feature = "mat")]
     #[test]
     fn fork_was_not_resampled() {
-        assert_eq!(Upsampling::of(&crate::synthetic::fork()), None);
+        assert_eq!(Upsampling::of(&crate::tests::synthetic::fork()), None);
     }
 }

@@ -1,9 +1,11 @@
-//! Clock: the unit of time in the name of a column or variable.
+//! Time of a series by its name, and the sampling rate by scalars beside the data.
 
-use crate::files::reading::seconds_in;
+use crate::error::RecordError;
+use crate::files::reading::Reading;
+use crate::sampling::Sampling;
 use crate::units::label::{is_remark, without_groups};
+use crate::units::seconds_in;
 use crate::units::word::words;
-use crate::{Reading, RecordError};
 
 /// Statement of a name about time.
 #[derive(Debug, Clone, PartialEq)]
@@ -198,6 +200,66 @@ fn unit_of_time(name: &str) -> (String, Written, bool) {
         }
     }
     (bare, Written::Nothing, false)
+}
+
+/// Names of scalars that hold a rate (Hz), in lower case and without underscores.
+const RATES: [&str; 9] = [
+    "fs",
+    "rate",
+    "actualrate",
+    "samplerate",
+    "samplingrate",
+    "samplefrequency",
+    "samplingfrequency",
+    "fsample",
+    "fsampling",
+];
+
+/// Names of scalars that hold an interval (s), in lower case and without underscores.
+const INTERVALS: [&str; 10] = [
+    "dt",
+    "ts",
+    "deltat",
+    "deltax",
+    "xincrement",
+    "tsample",
+    "sampletime",
+    "samplingtime",
+    "sampleinterval",
+    "samplinginterval",
+];
+
+/// Largest difference of two statements of the rate, relative.
+const AGREEMENT: f64 = 1e-3;
+
+/// Sampling rate by scalars with their names (Hz); `None` if none of them states a rate.
+pub(crate) fn stated<'a>(
+    scalars: impl Iterator<Item = (&'a str, f64)>,
+) -> Result<Option<(f64, Sampling)>, RecordError> {
+    let mut found: Option<(f64, Sampling, &str)> = None;
+    for (name, value) in scalars {
+        // A field is called as its structure is, with its own name behind a point.
+        let own = name.rsplit('.').next().unwrap_or(name);
+        let plain = own.replace(['_', ' '], "").to_lowercase();
+        let is_interval = INTERVALS.contains(&&plain[..]);
+        if !is_interval && !RATES.contains(&&plain[..]) {
+            continue;
+        }
+        let (rate, sampling) = if is_interval {
+            (value.recip(), Sampling::IntervalVariable { name: name.into(), interval: value })
+        } else {
+            (value, Sampling::RateVariable { name: name.into(), rate: value })
+        };
+        match &found {
+            Some((first_rate, _, first)) if (rate - first_rate).abs() > AGREEMENT * first_rate.abs() => {
+                let what = format!("\"{first}\" says {first_rate} Hz, but \"{name}\" says {rate} Hz; give the rate");
+                return Err(RecordError::time(None, what));
+            }
+            Some(_) => {}
+            None => found = Some((rate, sampling, name)),
+        }
+    }
+    Ok(found.map(|(rate, sampling, _)| (rate, sampling)))
 }
 
 #[cfg(test)]

@@ -5,11 +5,13 @@ use std::io::Read;
 use std::path::Path;
 
 use super::{Format, Reader};
+use crate::error::RecordError;
 #[cfg(any(feature = "mat", feature = "npy"))]
-use crate::Array;
-#[cfg(any(feature = "mat", feature = "npy"))]
-use crate::files::arrays::{ArrayFile, Slice};
-use crate::{Column, Label, Reading, RecordError, Request};
+use crate::files::arrays::{Array, ArrayFile, Slice};
+use crate::files::reading::{Column, Reading};
+use crate::files::uff;
+use crate::units::label::Label;
+use crate::units::request::Request;
 
 /// Length of the part of a file that tells its format (bytes).
 const HEAD: usize = 1 << 16;
@@ -43,7 +45,7 @@ enum Content {
     Text(Source),
     #[cfg(any(feature = "mat", feature = "npy"))]
     Arrays(ArrayFile),
-    Universal(crate::files::uff::UffFile),
+    Universal(uff::UffFile),
 }
 
 /// Place of the text of a file.
@@ -97,7 +99,7 @@ impl DataFile {
             Format::Hdf5 => Content::Arrays(crate::files::mat::parse_hdf5(&bytes)?),
             #[cfg(feature = "npy")]
             Format::Numpy => Content::Arrays(crate::files::npy::parse(&bytes)?),
-            Format::Universal => Content::Universal(crate::files::uff::UffFile::parse(&bytes)?),
+            Format::Universal => Content::Universal(uff::UffFile::parse(&bytes)?),
             #[cfg(not(all(feature = "hdf5", feature = "npy")))]
             _ => return Err(format.missing()),
         };
@@ -106,9 +108,9 @@ impl DataFile {
 
     /// Refuses options that the format itself decides.
     fn checked(self) -> Result<Self, RecordError> {
-        let Reader { separator, skip, time, rate, resampling, .. } = &self.reader;
+        let Reader { separator, skip, time, rate, .. } = &self.reader;
         let is_universal = self.format == Format::Universal;
-        if is_universal && (time.is_some() || rate.is_some() || resampling.is_some()) {
+        if is_universal && (time.is_some() || rate.is_some()) {
             return Err(RecordError::options(
                 "a Universal File states its own sampling; leave out the rate and the time",
             ));
@@ -156,15 +158,14 @@ impl DataFile {
     /// The array called `name` in a MATLAB, HDF5 or NumPy file, with or without its unit.
     ///
     /// # Errors
-    /// [`RecordError::NoSuchChannel`] without such an array, [`RecordError::WhichChannel`] if several are called so,
-    /// [`RecordError::Unsupported`] if it is not a real numeric array, [`RecordError::Damaged`] if it cannot be read.
+    /// [`RecordError::Channel`] without such an array or with several, [`RecordError::Unsupported`] if it is not a real numeric array, [`RecordError::Damaged`] if it cannot be read.
     #[cfg(any(feature = "mat", feature = "npy"))]
     pub fn array(&self, name: &str) -> Result<&Array, RecordError> {
         match &self.content {
             Content::Arrays(file) => file.array(name),
             _ => {
                 let what = format!("there is no variable \"{name}\"; the file is of format {}", self.format);
-                Err(RecordError::NoSuchChannel { what })
+                Err(RecordError::channel(what))
             }
         }
     }
@@ -200,7 +201,7 @@ impl DataFile {
                 Ok(offers.iter().zip(&readings).enumerate().filter_map(channel).collect())
             }
             Content::Universal(file) => {
-                let channel = |(position, set): (usize, &crate::files::uff::DataSet)| {
+                let channel = |(position, set): (usize, &uff::DataSet)| {
                     let axis = &set.header.ordinate;
                     let label = Label::of(&set.name()).with_unit(&axis.unit).with_quantity(axis.data_type.quantity());
                     let rate = self.channel(position).ok().map(|reading| reading.record.rate());
@@ -214,8 +215,8 @@ impl DataFile {
     /// The record of a channel, by name or by position.
     ///
     /// # Errors
-    /// [`RecordError::NoSuchChannel`] if no channel has the name or position, [`RecordError::WhichChannel`] if several
-    /// have the name, and the errors of the channel or its time.
+    /// [`RecordError::Channel`] if no channel has the name or position, or several have the name; the errors of the
+    /// channel or its time.
     pub fn channel(&self, channel: impl Into<Column>) -> Result<Reading, RecordError> {
         self.read(&self.reader.clone().channel(channel))
     }
@@ -232,7 +233,7 @@ impl DataFile {
     /// and unit ([`Request::choose`]).
     ///
     /// # Errors
-    /// [`RecordError::Units`] if it is not clear which channel is meant, otherwise as [`DataFile::channel`].
+    /// [`RecordError::Unclear`] if it is not clear which channel is meant, otherwise as [`DataFile::channel`].
     pub fn choose(&self, request: &Request) -> Result<Reading, RecordError> {
         let mut channels = self.channels()?;
         if channels.iter().any(|channel| channel.rate.is_some()) {
@@ -252,7 +253,7 @@ impl DataFile {
             Content::Arrays(file) => file.read(reader)?,
             Content::Universal(file) => file.part(reader.channel.as_ref(), reader.span)?,
         };
-        if reading.record.quantity() == crate::Quantity::Other {
+        if reading.record.quantity() == crate::units::Quantity::Other {
             reading.record = reading.record.with_quantity(reader.quantity);
         }
         if reading.record.unit().is_empty() {

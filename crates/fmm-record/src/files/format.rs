@@ -1,6 +1,6 @@
 //! The format of a file, told by its first bytes.
 
-use crate::RecordError;
+use crate::error::RecordError;
 
 /// A format of files that hold records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -35,7 +35,8 @@ impl Format {
             _ => ("a MATLAB file", "mat"),
         };
         let remedy = if self == Self::Hdf5 { "; or load it in MATLAB and save it with -v7" } else { "" };
-        RecordError::MissingFeature { format, feature, remedy }
+        let what = format!("{format} is read with the feature \"{feature}\" of fmm-record, which is off{remedy}");
+        RecordError::MissingFeature { what }
     }
 
     /// The format, or what else it is.
@@ -134,12 +135,12 @@ mod tests {
     #[cfg(not(feature = "npy"))]
     #[test]
     fn a_format_that_is_off_is_refused_with_its_feature() {
-        let error = crate::Reader::default().parse(*b"\x93NUMPY").unwrap_err();
-        assert!(matches!(error, RecordError::MissingFeature { feature: "npy", .. }), "{error}");
+        let error = crate::files::Reader::default().parse(*b"\x93NUMPY").unwrap_err();
+        assert!(matches!(error, RecordError::MissingFeature { .. }), "{error}");
         assert_eq!(error.to_string(), "a file of NumPy is read with the feature \"npy\" of fmm-record, which is off");
         #[cfg(not(feature = "hdf5"))]
         {
-            let error = crate::Reader::default().parse(*b"\x89HDF\r\n\x1a\n").unwrap_err().to_string();
+            let error = crate::files::Reader::default().parse(*b"\x89HDF\r\n\x1a\n").unwrap_err().to_string();
             assert!(error.contains("the feature \"hdf5\"") && error.ends_with("save it with -v7"), "{error}");
         }
     }

@@ -3,11 +3,10 @@
 use std::convert::Infallible;
 use std::str::FromStr;
 
-use crate::RecordError;
-use crate::record::Span;
-use crate::units::label::without_groups;
-use crate::{Quantity, Resampling};
-use crate::{Record, Sampling};
+use crate::error::RecordError;
+use crate::record::Record;
+use crate::sampling::Sampling;
+use crate::units::label::{Label, without_groups};
 
 /// A record as read from a file, with the choices that led to it, so that a report can name them.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,23 +24,11 @@ pub struct Reading {
     pub sampling: Sampling,
 }
 
-/// The part within `span` of the record of `values` at `times` (s) in the series called `name`, resampled if asked for.
-pub(crate) fn timed(
-    name: String,
-    times: &[f64],
-    values: Vec<f64>,
-    resampling: Option<Resampling>,
-    span: Span,
-) -> Result<(Record, Sampling), RecordError> {
-    let Some(resampling) = resampling else {
-        return Ok((span.timed(times, values, Quantity::Other, "")?, Sampling::Times { name }));
-    };
-    let resampled = resampling.of(times, &values)?;
-    let sampling =
-        Sampling::Resampled { name, rate: resampling.rate(), band: resampling.band(), error: resampled.error };
-    let record = resampled.record(Quantity::Other, "")?;
-    let (from, to) = (span.from.unwrap_or(record.start()), span.to.unwrap_or(record.end()));
-    Ok((record.crop(from, to)?, sampling))
+/// Label of the channel that was read.
+impl From<&Reading> for Label {
+    fn from(reading: &Reading) -> Self {
+        Self::of(&reading.channel).with_unit(reading.record.unit()).with_quantity(reading.record.quantity())
+    }
 }
 
 /// Largest size of the expanded data of one file, all together (bytes): 33 million numbers. A small file can
@@ -83,7 +70,7 @@ pub(crate) fn only(found: &[usize], column: &Column, kind: &str, written: &[Stri
         [index] => Ok(*index),
         [] => {
             let what = format!("there is no {kind} {column}; the file has: {}", quoted(written));
-            Err(RecordError::NoSuchChannel { what })
+            Err(RecordError::channel(what))
         }
         _ => {
             let candidate = |index: &usize| format!("\"{}\" at position {index}", written[*index]);
@@ -92,7 +79,7 @@ pub(crate) fn only(found: &[usize], column: &Column, kind: &str, written: &[Stri
             let what = format!(
                 "{count} {kind}s are called {column}: {candidates}; choose one by its whole name or by its position, counted from 0"
             );
-            Err(RecordError::WhichChannel { what })
+            Err(RecordError::channel(what))
         }
     }
 }
@@ -153,21 +140,6 @@ impl std::fmt::Display for Column {
             Self::Index(index) => write!(f, "{index}"),
         }
     }
-}
-
-/// Number of seconds in a unit of time; no unit means seconds.
-pub(crate) fn seconds_in(unit: &str) -> Option<f64> {
-    const UNITS: [(&[&str], f64); 7] = [
-        (&["", "s", "sec", "secs", "second", "seconds", "sekunde", "sekunden"], 1.0),
-        (&["ms", "msec", "msecs", "milli", "millis", "millisec", "millisecs", "millisecond", "milliseconds"], 1e-3),
-        (&["us", "usec", "usecs", "micro", "micros", "microsec", "microsecs", "microsecond", "microseconds"], 1e-6),
-        (&["ns", "nsec", "nsecs", "nano", "nanos", "nanosec", "nanosecond", "nanoseconds"], 1e-9),
-        (&["min", "mins", "minute", "minutes", "minuten"], 60.0),
-        (&["h", "hr", "hrs", "hour", "hours", "std", "stunden"], 3600.0),
-        (&["d", "day", "days", "tage"], 86_400.0),
-    ];
-    let plain = unit.trim().trim_end_matches('.').to_lowercase().replace(['µ', 'μ'], "u");
-    UNITS.iter().find(|(spellings, _)| spellings.contains(&&*plain)).map(|(_, seconds)| *seconds)
 }
 
 /// Names for an error that lists them.

@@ -4,7 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::*;
 use crate::error::says;
-use crate::{Column, Quantity, Request, Sampling};
+use crate::files::reading::Column;
+use crate::sampling::Sampling;
+use crate::units::Quantity;
+use crate::units::request::Request;
 
 fn bundled(name: &str) -> PathBuf {
     let folder = if name.starts_with("../") { "" } else { "tests/data/" };

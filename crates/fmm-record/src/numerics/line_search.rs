@@ -3,8 +3,8 @@
 use std::f64::consts::LN_2;
 use std::ops::Range;
 
-use crate::numerics::fourier::{LOBE, Spectrum, blackman_harris};
-use crate::numerics::order::median;
+use crate::numerics::median;
+use crate::numerics::spectrum::{LOBE, Spectrum, blackman_harris};
 
 /// A line as a part of a record shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]

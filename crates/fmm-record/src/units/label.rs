@@ -1,7 +1,7 @@
 //! The label of a channel: what a file tells in its name, and where the format has a place for it.
 
 use crate::units::word::Word;
-use crate::{Quantity, WrittenUnit};
+use crate::units::{Quantity, WrittenUnit};
 
 /// Statement of a file about a channel: the unit, and a word for the quantity.
 ///
@@ -96,7 +96,7 @@ impl Label {
 
     /// The quantity that the unit measures, if it tells one.
     pub fn quantity_of_unit(&self) -> Option<Quantity> {
-        self.unit().map(WrittenUnit::quantity).filter(|quantity| *quantity != Quantity::Other)
+        self.unit().and_then(WrittenUnit::shown_quantity)
     }
 
     /// The quantity that the file states beside the name.
@@ -133,13 +133,6 @@ impl std::fmt::Display for Label {
             Written::Unknown(text) => write!(f, ", unit \"{text}\" not known)"),
             Written::Nothing => f.write_str(", no unit)"),
         }
-    }
-}
-
-/// Label by the file that was read.
-impl From<&crate::Reading> for Label {
-    fn from(reading: &crate::Reading) -> Self {
-        Self::of(&reading.channel).with_unit(reading.record.unit()).with_quantity(reading.record.quantity())
     }
 }
 
@@ -408,7 +401,7 @@ mod tests {
 
     #[test]
     fn names_of_any_signs_never_panic() {
-        let mut random = crate::synthetic::Noise::new(7);
+        let mut random = crate::tests::synthetic::Noise::new(7);
         let alphabet: Vec<char> = "[]()/_ ,:;°²⁻µms2radVgN^*-.1é\u{0}".chars().collect();
         for _ in 0..20_000 {
             let length = random.next() % 16;

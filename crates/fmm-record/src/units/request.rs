@@ -1,19 +1,44 @@
-//! Request: quantity and unit of a channel as the caller states them, and those that follow with the file.
+//! Request: quantity and unit of a channel as the caller declares them, and the meaning that follows with the file.
 
-use crate::{Label, Meaning, MeaningError, Quantity, WrittenUnit};
+use crate::error::RecordError;
+use crate::units::label::Label;
+use crate::units::{Quantity, WrittenUnit, unit_of_motion};
 
-/// Quantity and unit of a channel as the caller states them, beside the file. It may be empty where the file tells
+/// Meaning of the numbers of a channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Meaning {
+    /// Measured quantity; never [`Quantity::Other`].
+    pub quantity: Quantity,
+    /// Factor from its numbers to the unit below (that unit per unit of the file).
+    pub factor: f64,
+    /// The unit of the numbers times the factor: the SI unit, or `counts`.
+    pub unit: &'static str,
+    /// True if this unit is written nowhere, but taken as the SI unit of the declared quantity.
+    pub is_assumed: bool,
+}
+
+/// Text such as `velocity in m/s`.
+impl std::fmt::Display for Meaning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let taken = if self.is_assumed { ", taken to be" } else { "" };
+        write!(f, "{}{taken} in {}", self.quantity, self.unit)?;
+        if self.factor == 1.0 { Ok(()) } else { write!(f, " after a factor of {}", self.factor) }
+    }
+}
+
+/// Quantity and unit of a channel as the caller declares them, beside the file. It may be empty if the file states
 /// enough.
 ///
-/// | said | counts |
+/// | declared | counts |
 /// |---|---|
-/// | quantity | unless the unit in use, or the file, says another |
+/// | quantity | unless the unit in use, or the file, contradicts |
 /// | unit | if the file writes none, or the same |
 /// | scale | with the unit of the scaled numbers, instead of the unit in the file |
 ///
 /// Without a quantity, that of the unit is taken, else that of a word in the name. Without a unit, SI units are taken
-/// only if a quantity was said, and never where the name tells of rotation or of a sensor; [`Meaning::is_assumed`]
-/// tells of it.
+/// only for a declared quantity, and never if the name has a word for rotation or for a sensor;
+/// [`Meaning::is_assumed`] is true then.
 ///
 /// ```
 /// use fmm_record::{Label, Quantity, Request};
@@ -22,7 +47,7 @@ use crate::{Label, Meaning, MeaningError, Quantity, WrittenUnit};
 /// assert_eq!((meaning.quantity, meaning.factor, meaning.unit), (Quantity::Velocity, 1e-3, "m/s"));
 /// let refused = Request::default().quantity(Quantity::Velocity).meaning(&Label::of("a [m/s^2]")).unwrap_err();
 /// assert_eq!(refused.to_string(), "channel \"a [m/s^2]\" is in m/s^2, which is a unit of acceleration, not of velocity");
-/// # Ok::<(), fmm_record::MeaningError>(())
+/// # Ok::<(), fmm_record::RecordError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Request {
@@ -31,113 +56,131 @@ pub struct Request {
     scale: Option<f64>,
 }
 
-/// Two factors that differ by less are the same but for their digits.
+/// Largest relative difference of two factors that differ by their last digits only (1).
 const SAME_FACTOR: f64 = 1e-9;
 
 impl Request {
-    /// Says what the channel measured; [`Quantity::Other`] says nothing.
+    /// Declares the measured quantity; [`Quantity::Other`] declares none.
     #[must_use]
     pub fn quantity(mut self, quantity: Quantity) -> Self {
         self.quantity = (quantity != Quantity::Other).then_some(quantity);
         self
     }
 
-    /// Says the unit of the numbers, or of the scaled numbers if a scale is said as well.
+    /// Declares the unit of the numbers, or of the scaled numbers if there is a scale.
     #[must_use]
     pub fn unit(mut self, unit: WrittenUnit) -> Self {
         self.unit = Some(unit);
         self
     }
 
-    /// Says what the numbers are to be multiplied by to be in the unit said, or in SI units if none is.
+    /// Declares the factor that turns the numbers into the declared unit, or into SI units if there is none.
     #[must_use]
     pub fn scale(mut self, scale: f64) -> Self {
         self.scale = Some(scale);
         self
     }
 
-    /// The quantity said: by itself, or as that of the unit.
-    fn said_quantity(&self) -> Option<Quantity> {
-        let of_unit = self.unit.as_ref().map(WrittenUnit::quantity).filter(|quantity| *quantity != Quantity::Other);
-        self.quantity.or(of_unit)
+    /// The declared quantity: by itself, or by the unit.
+    fn declared_quantity(&self) -> Option<Quantity> {
+        self.quantity.or(self.unit.as_ref().and_then(WrittenUnit::shown_quantity))
     }
 
     /// Meaning of a channel.
     ///
     /// # Errors
-    /// Any [`MeaningError`] but [`MeaningError::WhichChannel`].
-    pub fn meaning(&self, label: &Label) -> Result<Meaning, MeaningError> {
-        if let (Some(said), Some(unit)) = (self.quantity, &self.unit)
-            && unit.quantity() != Quantity::Other
-            && unit.quantity() != said
+    /// [`RecordError::Unclear`] if a statement is missing or not known, [`RecordError::Contradiction`] if two exclude
+    /// each other. Both come with their remedy.
+    pub fn meaning(&self, label: &Label) -> Result<Meaning, RecordError> {
+        if let (Some(declared), Some(unit)) = (self.quantity, &self.unit)
+            && let Some(measured) = unit.shown_quantity().filter(|measured| *measured != declared)
         {
-            return Err(MeaningError::Said { unit: unit.to_string(), measured: unit.quantity(), said });
+            let what = format!("{unit} is a unit of {measured}, not of {declared}");
+            return Err(RecordError::contradiction(what, format!("give `quantity` {measured}, or another `unit`")));
         }
-        let channel = || label.name().to_owned();
+        let channel = label.name();
         let Some((factor, unit)) = self.unit_in_use(label)? else {
             return self.assumed(label);
         };
-        let of_unit = Some(unit.quantity()).filter(|quantity| *quantity != Quantity::Other);
+        let of_unit = unit.shown_quantity();
         let Some(quantity) = self.quantity.or(of_unit).or_else(|| label.quantity()) else {
-            return Err(MeaningError::NoQuantity { channel: channel(), unit: unit.to_string() });
+            let what = format!("channel \"{channel}\" is in {unit}, which does not tell what it measured");
+            let remedy = "give `quantity` velocity, `quantity` displacement or `quantity` acceleration";
+            return Err(RecordError::unclear(what, remedy));
         };
-        if let (Some(said), Some(measured)) = (self.quantity, of_unit)
-            && said != measured
-        {
-            return Err(MeaningError::OtherQuantity { channel: channel(), unit: unit.to_string(), measured, said });
+        if let Some(measured) = of_unit.filter(|measured| *measured != quantity) {
+            let what = format!("channel \"{channel}\" is in {unit}, which is a unit of {measured}, not of {quantity}");
+            let remedy =
+                format!("leave out `quantity` {quantity}, choose another `channel`, or give both `scale` and `unit`");
+            return Err(RecordError::contradiction(what, remedy));
         }
-        // What the user says stands above a word in a name, but not above what the format states.
-        let told =
-            label.stated_quantity().or_else(|| label.named_quantity().filter(|_| self.said_quantity().is_none()));
-        if let Some(told) = told.filter(|told| *told != quantity) {
-            let unit = (self.quantity.is_none() && of_unit.is_some()).then(|| unit.to_string());
-            return Err(MeaningError::Contradiction { channel: channel(), told, unit, other: quantity });
+        // A declared quantity stands above a word in a name, but not above the statement of the format.
+        let named = || label.named_quantity().filter(|_| self.declared_quantity().is_none());
+        let stated = label.stated_quantity().or_else(named);
+        if let Some(stated) = stated.filter(|stated| *stated != quantity) {
+            let unit = (self.quantity.is_none() && of_unit.is_some()).then_some(unit);
+            return Err(other_statement(label, stated, unit, quantity));
         }
         Ok(Meaning { quantity, factor, unit: unit.si(), is_assumed: false })
     }
 
-    /// The unit that was said or is written, and the factor to its SI unit; `None` if there is no unit at all.
-    fn unit_in_use<'a>(&'a self, label: &'a Label) -> Result<Option<(f64, &'a WrittenUnit)>, MeaningError> {
-        let channel = || label.name().to_owned();
+    /// The declared or the written unit, and the factor to its SI unit; `None` if there is no unit at all.
+    fn unit_in_use<'a>(&'a self, label: &'a Label) -> Result<Option<(f64, &'a WrittenUnit)>, RecordError> {
+        let channel = label.name();
         if let (Some(unit), Some(scale)) = (&self.unit, self.scale) {
             return Ok(Some((scale * unit.factor(), unit)));
         }
         if let Some(unit) = label.unknown_unit() {
-            return Err(MeaningError::UnknownUnit { channel: channel(), unit: unit.to_owned() });
+            let what = format!("the unit \"{unit}\" of channel \"{channel}\" is not known");
+            let remedy = "give `unit`, such as m/s, and `scale`, the factor that turns the numbers into it";
+            return Err(RecordError::unclear(what, remedy));
         }
         match (&self.unit, self.scale, label.unit()) {
-            (Some(said), _, Some(written)) if !said.is_same_as(written) => Err(MeaningError::OtherUnit {
-                channel: channel(),
-                written: written.to_string(),
-                said: said.to_string(),
-            }),
-            (Some(said), ..) => Ok(Some((said.factor(), said))),
+            (Some(declared), _, Some(written)) if !declared.is_same_as(written) => {
+                let what = format!("channel \"{channel}\" is in {written}, not in {declared}");
+                let remedy = format!(
+                    "leave out `unit` {declared}, or give `scale` as well, the factor that turns the numbers into {declared}"
+                );
+                Err(RecordError::contradiction(what, remedy))
+            }
+            (Some(declared), ..) => Ok(Some((declared.factor(), declared))),
             (None, _, None) => Ok(None),
             (None, _, Some(written)) if written.is_counts() => {
-                Err(MeaningError::Counts { channel: channel(), unit: written.to_string() })
+                let what = format!("channel \"{channel}\" is in {written}, whose size is not known");
+                let remedy =
+                    format!("give `scale` and `unit`, as in `scale` 1.57e-4 `unit` rad, or stay with `unit` {written}");
+                Err(RecordError::unclear(what, remedy))
             }
             // Volts are the SI unit of no motion: a factor for them is a gain, which leads to another unit.
             (None, Some(scale), Some(written))
                 if written.quantity() == Quantity::Other || !((scale / written.factor() - 1.0).abs() < SAME_FACTOR) =>
             {
-                Err(MeaningError::ScaleAlone { channel: channel(), written: written.to_string(), scale })
+                let what = format!(
+                    "channel \"{channel}\" is in {written}; a factor of {scale} leads to a unit that was not said"
+                );
+                Err(RecordError::contradiction(what, "give `unit` as well, or leave out `scale`".into()))
             }
             (None, _, Some(written)) => Ok(Some((written.factor(), written))),
         }
     }
 
-    /// The meaning of a channel without any unit: in SI units, if the user said what it measured.
-    fn assumed(&self, label: &Label) -> Result<Meaning, MeaningError> {
-        let channel = label.name().to_owned();
+    /// The meaning of a channel without any unit: in SI units, if its quantity is declared.
+    fn assumed(&self, label: &Label) -> Result<Meaning, RecordError> {
+        let channel = label.name();
         let Some(quantity) = self.quantity.or_else(|| label.quantity()) else {
-            return Err(MeaningError::Nothing { channel });
+            let what = format!("channel \"{channel}\" has neither a unit nor a name that tells what it measured");
+            let remedy = "give `quantity` velocity, displacement or acceleration, and `unit`, with `scale` if the numbers \
+                          are not in it";
+            return Err(RecordError::unclear(what, remedy));
         };
-        if let Some(told) = label.stated_quantity().filter(|told| *told != quantity) {
-            return Err(MeaningError::Contradiction { channel, told, unit: None, other: quantity });
+        if let Some(stated) = label.stated_quantity().filter(|stated| *stated != quantity) {
+            return Err(other_statement(label, stated, None, quantity));
         }
-        let likely = WrittenUnit::of_motion(quantity, label.is_angular()).unwrap_or("N");
+        let likely = unit_of_motion(quantity, label.is_angular()).unwrap_or("N");
         if self.quantity.is_none() || label.needs_unit() {
-            return Err(MeaningError::NoUnit { channel, quantity, likely });
+            let what = format!("channel \"{channel}\" is a record of {quantity}, but its unit is written nowhere");
+            let remedy = format!("give `unit`, such as {likely}, and `scale` if the numbers are not in it");
+            return Err(RecordError::unclear(what, remedy));
         }
         Ok(Meaning { quantity, factor: self.scale.unwrap_or(1.0), unit: likely, is_assumed: true })
     }
@@ -145,20 +188,20 @@ impl Request {
     /// Position of the channel that is meant among all channels but the time: the only one, or the one that stands
     /// alone by its unit, else by a word in its name, else by being the only one of which nothing is known.
     ///
-    /// With a quantity or a unit said, that is looked for; otherwise a velocity, then a displacement.
+    /// A declared quantity or unit is looked for; otherwise a velocity, then a displacement.
     ///
     /// # Errors
-    /// [`MeaningError::WhichChannel`] if several are alike, or none of several is one.
-    pub fn choose(&self, labels: &[Label]) -> Result<usize, MeaningError> {
-        let said = self.said_quantity();
+    /// [`RecordError::Unclear`] if several are alike, or none of several is one.
+    pub fn choose(&self, labels: &[Label]) -> Result<usize, RecordError> {
+        let declared = self.declared_quantity();
         let alike = |is_meant: &dyn Fn(&Label) -> bool| -> Vec<usize> {
             labels.iter().enumerate().filter(|(_, label)| is_meant(label)).map(|(index, _)| index).collect()
         };
         let by_unit = |quantity| alike(&|label: &Label| label.quantity_of_unit() == Some(quantity));
         let by_word = |quantity| alike(&|label: &Label| label.quantity() == Some(quantity));
-        // With a scale, the unit said is not that of the file.
+        // With a scale, the declared unit is not that of the file.
         let same_unit = || match (&self.unit, self.scale) {
-            (Some(said), None) => alike(&|label: &Label| label.unit().is_some_and(|unit| unit.is_same_as(said))),
+            (Some(wanted), None) => alike(&|label: &Label| label.unit().is_some_and(|unit| unit.is_same_as(wanted))),
             _ => Vec::new(),
         };
         let is_open = |label: &Label| label.quantity().is_none();
@@ -166,8 +209,8 @@ impl Request {
         if found.len() > 1 {
             found.clear();
         }
-        let wanted = match said {
-            Some(said) => vec![said],
+        let wanted = match declared {
+            Some(declared) => vec![declared],
             None => vec![Quantity::Velocity, Quantity::Displacement],
         };
         for by in [&by_unit as &dyn Fn(Quantity) -> Vec<usize>, &by_word] {
@@ -177,19 +220,42 @@ impl Request {
                 }
             }
         }
-        if found.is_empty() && said.is_some() {
+        if found.is_empty() && declared.is_some() {
             found = alike(&is_open);
         }
-        match found[..] {
-            [index] => Ok(index),
-            _ => Err(MeaningError::WhichChannel { said, channels: labels.iter().map(Label::to_string).collect() }),
-        }
+        let [index] = found[..] else {
+            let wanted = declared.map_or("motion".into(), |declared| declared.to_string());
+            let channels = labels.iter().map(Label::to_string).collect::<Vec<_>>().join(", ");
+            let what = format!("it is not clear which channel is the {wanted}; there are: {channels}");
+            return Err(RecordError::unclear(what, "choose one by `channel`"));
+        };
+        Ok(index)
     }
+}
+
+/// The name or the format states another quantity than the unit in use, or than the declared `quantity`.
+fn other_statement(label: &Label, stated: Quantity, unit: Option<&WrittenUnit>, quantity: Quantity) -> RecordError {
+    let (basis, remedy) = match unit {
+        Some(unit) => (
+            format!("{unit} is a unit of {quantity}"),
+            format!("give `quantity` {quantity} if the unit is right, or else both `scale` and `unit`"),
+        ),
+        None => (
+            format!("it was said to be one of {quantity}"),
+            format!("leave out what says {quantity}, or choose another `channel`"),
+        ),
+    };
+    let name = label.name();
+    RecordError::contradiction(
+        format!("the file says that channel \"{name}\" is a record of {stated}, but {basis}"),
+        remedy,
+    )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::RecordError::{Contradiction, Unclear};
     use Quantity::{Acceleration, Displacement, Velocity};
 
     fn nothing() -> Request {
@@ -205,7 +271,7 @@ mod tests {
         (meaning.quantity, meaning.factor, meaning.unit, meaning.is_assumed)
     }
 
-    fn refusal(request: &Request, name: &str) -> MeaningError {
+    fn refusal(request: &Request, name: &str) -> RecordError {
         let meaning = request.meaning(&Label::of(name));
         meaning.err().unwrap_or_else(|| panic!("{name} was taken as {}", request.meaning(&Label::of(name)).unwrap()))
     }
@@ -244,15 +310,20 @@ mod tests {
 
     #[test]
     fn a_scale_and_a_unit_stand_above_those_of_the_file() {
+        let alone = "give `unit` as well, or leave out `scale`";
         let small = unit("rad").scale(1.570_796_3e-4).quantity(Displacement);
         assert_eq!(of(&small, "encoder_counts"), (Displacement, 1.570_796_3e-4, "rad", false));
         assert_eq!(of(&unit("m/s").scale(0.5), "a [m/s^2]"), (Velocity, 0.5, "m/s", false));
         assert_eq!(of(&unit("m/s").scale(0.5), "disp [mm]"), (Velocity, 0.5, "m/s", false));
         assert_eq!(of(&unit("m/s").scale(0.5), "v [knots]"), (Velocity, 0.5, "m/s", false));
         assert_eq!(of(&nothing().scale(1e-3), "v [mm/s]"), (Velocity, 1e-3, "m/s", false));
-        assert!(matches!(refusal(&nothing().scale(1.0), "v [mm/s]"), MeaningError::ScaleAlone { .. }));
-        assert!(matches!(refusal(&nothing().scale(f64::NAN), "v [mm/s]"), MeaningError::ScaleAlone { .. }));
-        assert!(matches!(refusal(&nothing().scale(1.0).quantity(Velocity), "v [V]"), MeaningError::ScaleAlone { .. }));
+        assert!(matches!(refusal(&nothing().scale(1.0), "v [mm/s]"), Contradiction { remedy, .. } if remedy == alone));
+        assert!(
+            matches!(refusal(&nothing().scale(f64::NAN), "v [mm/s]"), Contradiction { remedy, .. } if remedy == alone)
+        );
+        assert!(
+            matches!(refusal(&nothing().scale(1.0).quantity(Velocity), "v [V]"), Contradiction { remedy, .. } if remedy == alone)
+        );
     }
 
     #[test]
@@ -263,10 +334,10 @@ mod tests {
             said(&velocity, "x [mm]"),
             "channel \"x [mm]\" is in mm, which is a unit of displacement, not of velocity"
         );
-        assert!(matches!(refusal(&velocity, "a [g]"), MeaningError::OtherQuantity { measured: Acceleration, .. }));
+        assert!(said(&velocity, "a [g]").ends_with("is in g, which is a unit of acceleration, not of velocity"));
         assert_eq!(said(&unit("rad"), "theta [deg]"), "channel \"theta [deg]\" is in deg, not in rad");
         assert_eq!(said(&unit("m/s"), "v [mm/s]"), "channel \"v [mm/s]\" is in mm/s, not in m/s");
-        assert!(matches!(refusal(&unit("m/s"), "gyro [V]"), MeaningError::OtherUnit { .. }));
+        assert_eq!(said(&unit("m/s"), "gyro [V]"), "channel \"gyro [V]\" is in V, not in m/s");
         assert_eq!(
             said(&velocity.clone().unit("mm".parse().unwrap()), "v"),
             "mm is a unit of displacement, not of velocity"
@@ -277,41 +348,50 @@ mod tests {
         );
         assert_eq!(of(&nothing().quantity(Displacement), "velocity [mm]").0, Displacement, "the user has decided");
         let stated = Label::of("3+Z").with_unit("m/s^2").with_quantity(Acceleration);
-        assert!(matches!(velocity.meaning(&stated), Err(MeaningError::OtherQuantity { .. })));
+        let error = velocity.meaning(&stated).unwrap_err();
+        assert!(error.to_string().ends_with("is a unit of acceleration, not of velocity"), "{error}");
+        let remedy = "leave out `quantity` velocity, choose another `channel`, or give both `scale` and `unit`";
+        assert!(matches!(error, Contradiction { remedy: found, .. } if found == remedy));
         let stated = Label::of("3+Z").with_quantity(Acceleration);
         assert_eq!(
             velocity.meaning(&stated).unwrap_err().to_string(),
             "the file says that channel \"3+Z\" is a record of acceleration, but it was said to be one of velocity"
         );
-        let scaled = unit("m/s").scale(2.0).meaning(&stated);
-        assert!(matches!(scaled, Err(MeaningError::Contradiction { told: Acceleration, other: Velocity, .. })));
+        let scaled = unit("m/s").scale(2.0).meaning(&stated).unwrap_err();
+        assert!(scaled.to_string().ends_with("a record of acceleration, but m/s is a unit of velocity"), "{scaled}");
     }
 
     #[test]
     fn what_would_be_a_guess_is_refused() {
         let velocity = nothing().quantity(Velocity);
-        assert!(matches!(refusal(&nothing(), "data"), MeaningError::Nothing { .. }));
-        assert!(matches!(refusal(&nothing().scale(2.0), "v"), MeaningError::Nothing { .. }));
-        let no_unit = |request: &Request, name: &str| match refusal(request, name) {
-            MeaningError::NoUnit { quantity, likely, .. } => (quantity, likely),
-            other => panic!("{other}"),
+        let is_unclear = |request: &Request, name: &str, end: &str| {
+            let error = refusal(request, name);
+            assert!(matches!(error, Unclear { .. }) && error.to_string().ends_with(end), "{error}");
         };
-        assert_eq!(no_unit(&nothing(), "velocity"), (Velocity, "m/s"));
-        assert_eq!(no_unit(&nothing(), "angular_velocity"), (Velocity, "rad/s"));
-        assert_eq!(no_unit(&velocity, "angular_velocity"), (Velocity, "rad/s"));
-        assert_eq!(no_unit(&nothing().scale(1e-3), "velocity"), (Velocity, "m/s"));
-        assert_eq!(no_unit(&nothing(), "theta"), (Displacement, "rad"));
-        assert_eq!(no_unit(&nothing().quantity(Displacement), "encoder"), (Displacement, "m"));
-        assert_eq!(no_unit(&nothing(), "force"), (Quantity::Force, "N"));
-        assert!(matches!(refusal(&nothing(), "ch1 [V]"), MeaningError::NoQuantity { .. }));
-        assert!(matches!(refusal(&unit("V"), "ch1"), MeaningError::NoQuantity { .. }));
-        assert!(matches!(refusal(&nothing(), "encoder_counts"), MeaningError::Counts { .. }));
-        assert!(matches!(
-            refusal(&nothing().quantity(Displacement).scale(2.0), "encoder_counts"),
-            MeaningError::Counts { .. }
-        ));
+        let nothing_known = "has neither a unit nor a name that tells what it measured";
+        is_unclear(&nothing(), "data", nothing_known);
+        is_unclear(&nothing().scale(2.0), "v", nothing_known);
+        let no_unit = |request: &Request, name: &str| {
+            let Unclear { what, remedy } = refusal(request, name) else { panic!("{name}") };
+            let quantity = [Velocity, Displacement, Acceleration, Quantity::Force];
+            let quantity = quantity.into_iter().find(|quantity| what.contains(&format!("record of {quantity}, but")));
+            let unit = remedy.strip_prefix("give `unit`, such as ").and_then(|rest| rest.split_once(", and `scale`"));
+            (quantity.unwrap(), unit.unwrap().0.to_owned())
+        };
+        assert_eq!(no_unit(&nothing(), "velocity"), (Velocity, "m/s".to_owned()));
+        assert_eq!(no_unit(&nothing(), "angular_velocity"), (Velocity, "rad/s".to_owned()));
+        assert_eq!(no_unit(&velocity, "angular_velocity"), (Velocity, "rad/s".to_owned()));
+        assert_eq!(no_unit(&nothing().scale(1e-3), "velocity"), (Velocity, "m/s".to_owned()));
+        assert_eq!(no_unit(&nothing(), "theta"), (Displacement, "rad".to_owned()));
+        assert_eq!(no_unit(&nothing().quantity(Displacement), "encoder"), (Displacement, "m".to_owned()));
+        assert_eq!(no_unit(&nothing(), "force"), (Quantity::Force, "N".to_owned()));
+        is_unclear(&nothing(), "ch1 [V]", "is in V, which does not tell what it measured");
+        is_unclear(&unit("V"), "ch1", "is in V, which does not tell what it measured");
+        is_unclear(&nothing(), "encoder_counts", "is in counts, whose size is not known");
+        let scaled = nothing().quantity(Displacement).scale(2.0);
+        is_unclear(&scaled, "encoder_counts", "is in counts, whose size is not known");
         for request in [nothing(), velocity, unit("m/s"), nothing().scale(0.5)] {
-            assert!(matches!(refusal(&request, "v [knots]"), MeaningError::UnknownUnit { .. }));
+            is_unclear(&request, "v [knots]", "the unit \"knots\" of channel \"v [knots]\" is not known");
         }
     }
 

@@ -1,6 +1,6 @@
 //! Words in the name of a channel that tell what it measured.
 
-use crate::Quantity;
+use crate::units::Quantity;
 
 /// Meaning of the words of a name.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

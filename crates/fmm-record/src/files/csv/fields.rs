@@ -1,9 +1,12 @@
-//! The fields of a line.
+//! Fields of a line, and the numbers in them.
 //!
-//! Taken apart here and not by the crate `csv`, as that one takes what follows a quote that is never closed for one
-//! field, whatever its size (520 MB of memory for such a file), and knows no columns that are aligned by blanks.
+//! Taken apart here and not by the crate `csv`: that one takes all that follows an open quote for one field, whatever its
+//! size (520 MB of memory for such a file), and knows no columns that are aligned by blanks.
 
 use std::ops::Range;
+
+use super::lines::Line;
+use crate::error::RecordError;
 
 /// Separator between the fields of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,6 +81,111 @@ pub(super) fn text(field: &[u8]) -> String {
     decoded.replace("\"\"", "\"")
 }
 
+/// Content of a column, by the last rows that are known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Number,
+    Text,
+    Blank,
+}
+
+/// A line and its fields.
+pub(super) struct Row<'a> {
+    line: &'a Line,
+    fields: Vec<Range<usize>>,
+}
+
+impl<'a> Row<'a> {
+    pub(super) fn of(line: &'a Line, separator: Separator) -> Self {
+        let mut fields = Vec::new();
+        split(&line.text, separator, &mut fields);
+        Self { line, fields }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.fields.len()
+    }
+
+    pub(super) fn field(&self, column: usize) -> &'a [u8] {
+        self.fields.get(column).map_or(&[], |range| &self.line.text[range.clone()])
+    }
+}
+
+/// Decimal mark of a number; `None` if it has no fraction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Mark {
+    Point,
+    Comma,
+}
+
+/// The number in `field`, if it is one. A decimal comma counts only where commas do not separate columns.
+pub(super) fn number(field: &[u8], separator: Separator) -> Option<(f64, Option<Mark>)> {
+    let text = std::str::from_utf8(field).ok()?;
+    if let Ok(value) = text.parse::<f64>() {
+        return Some((value, text.contains('.').then_some(Mark::Point)));
+    }
+    if !separator.leaves_comma() || text.contains('.') || text.ends_with(',') {
+        return None;
+    }
+    text.replacen(',', ".", 1).parse().ok().map(|value| (value, Some(Mark::Comma)))
+}
+
+/// Length of a written number: digits behind the decimal mark, and characters of its exponent and of the rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Digits {
+    fraction: usize,
+    exponent: usize,
+    whole: usize,
+}
+
+impl Digits {
+    pub(super) fn of(field: &[u8]) -> Self {
+        let exponent = field.iter().position(|byte| matches!(byte, b'e' | b'E'));
+        let mantissa = &field[..exponent.unwrap_or(field.len())];
+        let mark = mantissa.iter().position(|byte| matches!(byte, b'.' | b','));
+        Self {
+            fraction: mark.map_or(0, |mark| mantissa.len() - mark - 1),
+            exponent: exponent.map_or(0, |at| field.len() - at),
+            whole: mark.unwrap_or(mantissa.len()),
+        }
+    }
+
+    /// The least of both of two numbers.
+    pub(super) fn least(self, other: Self) -> Self {
+        Self {
+            fraction: self.fraction.min(other.fraction),
+            exponent: self.exponent.min(other.exponent),
+            whole: self.whole.min(other.whole),
+        }
+    }
+
+    /// Whether fewer are written than in the `least` of others.
+    pub(super) fn are_fewer_than(self, least: Self) -> bool {
+        // Numbers that all have a fraction or an exponent end with it.
+        let is_whole = least.fraction == 0 && least.exponent == 0;
+        self.fraction < least.fraction || self.exponent < least.exponent || (is_whole && self.whole < least.whole)
+    }
+}
+
+/// A header without a table.
+pub(super) const NO_ROWS: &str = "the file has a header but no rows of data below it";
+
+/// A row with more or fewer fields than the first.
+pub(super) fn ragged(line: u64, expected: usize, found: usize, separator: Separator) -> RecordError {
+    let remedy = if separator.leaves_comma() {
+        ""
+    } else {
+        "; if the numbers have decimal commas, save the file with semicolons or tabs between the columns; if lines stand above \
+         the table, skip them"
+    };
+    RecordError::on_line(line, format!("line {line} has {found} fields, but the first row has {expected}{remedy}"))
+}
+
+/// A field that is not a number.
+pub(super) fn not_a_number(line: u64, column: &str, text: &str) -> RecordError {
+    RecordError::on_line(line, format!("line {line}, column \"{column}\": \"{text}\" is not a number"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -97,5 +205,23 @@ mod tests {
         assert_eq!(fields("a\t b\t", Separator::Sign(b'\t')), ["a", "b", ""]);
         assert_eq!(fields("  1.0   2.0\t3 ", Separator::Blanks), ["1.0", "2.0", "3"]);
         assert_eq!(fields("", comma), [""]);
+    }
+
+    #[test]
+    fn both_decimal_marks() {
+        let (comma, semicolon) = (Separator::Sign(b','), Separator::Sign(b';'));
+        assert_eq!(number(b"1.5", comma), Some((1.5, Some(Mark::Point))));
+        assert_eq!(number(b"-1,5e-3", semicolon), Some((-1.5e-3, Some(Mark::Comma))));
+        assert_eq!(number(b"+15", semicolon), Some((15.0, None)));
+        assert_eq!(number(b"1,5", comma), None);
+        for text in ["", "1.234,5", "1,234,5", "abc", ",", "0x10", "1 5", "1,"] {
+            assert_eq!(number(text.as_bytes(), semicolon), None, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn digits_that_are_written() {
+        let digits = |text: &str| (Digits::of(text.as_bytes()).fraction, Digits::of(text.as_bytes()).exponent);
+        assert_eq!([digits("1"), digits("-1.25"), digits("1,5e-05"), digits("2.e")], [(0, 0), (2, 0), (1, 4), (0, 1)]);
     }
 }

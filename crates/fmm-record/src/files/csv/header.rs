@@ -1,13 +1,10 @@
 //! Header of a table: names of the columns, their units, statements about the sampling.
 
-use super::faults::{not_a_number, ragged};
-use super::fields::{Separator, split, text};
 use super::lines::Line;
-use super::number;
-use super::row::{Kind, Row};
+use crate::error::RecordError;
 use crate::files::clock::Clock;
-use crate::files::reading::seconds_in;
-use crate::{RecordError, WrittenUnit};
+use crate::files::csv::fields::{Kind, Row, Separator, not_a_number, number, ragged, split, text};
+use crate::units::{WrittenUnit, seconds_in};
 
 /// Lines above a table.
 #[derive(Debug, Default)]
@@ -50,7 +47,7 @@ pub(super) fn header(
         found.names.clone_from(&found.bare);
         return Ok(found);
     };
-    let is_number = |column: &usize| number::parse(names[*column].as_bytes(), separator).is_some();
+    let is_number = |column: &usize| number(names[*column].as_bytes(), separator).is_some();
     let mut numbers = (0..width).filter(|column| columns[*column] == Kind::Number);
     let first = numbers.next();
     if first.into_iter().chain(numbers).any(|column| is_number(&column)) {
@@ -71,7 +68,7 @@ pub(super) fn header(
     }
     for (name, unit) in found.bare.iter().zip(&names) {
         // An oscilloscope states the increment of its first column there.
-        if let Some((value, _)) = number::parse(unit.as_bytes(), separator) {
+        if let Some((value, _)) = number(unit.as_bytes(), separator) {
             found.stated.push((format!("{} {name}", found.bare[0]), value));
         }
     }
@@ -86,12 +83,12 @@ fn positions(width: usize) -> Vec<String> {
 /// A name and the number behind it on the same line.
 fn statement(line: &Line, separator: Separator) -> Option<(String, f64)> {
     let row = Row::of(line, separator);
-    let (value, _) = (1..row.len()).find_map(|column| number::parse(row.field(column), separator))?;
+    let (value, _) = (1..row.len()).find_map(|column| number(row.field(column), separator))?;
     let name = text(row.field(0)).trim_end_matches([':', '=']).trim().to_owned();
     // A third field may be a unit, which must be that of a time or a rate.
     let units = (1..row.len())
         .map(|column| row.field(column))
-        .filter(|field| !field.is_empty() && number::parse(field, separator).is_none());
+        .filter(|field| !field.is_empty() && number(field, separator).is_none());
     let plain = units.map(text).all(|unit| matches!(&*unit, "s" | "Hz" | "S/s" | "Sa/s"));
     plain.then_some((name, value))
 }
@@ -170,7 +167,7 @@ fn are_units(fields: &[String]) -> bool {
 /// Whether fields may be the names above a row of units: some are filled, none is a number.
 fn are_names(fields: &[String], separator: Separator) -> bool {
     let filled: Vec<&String> = fields.iter().filter(|field| !field.is_empty()).collect();
-    !filled.is_empty() && filled.iter().all(|name| number::parse(name.as_bytes(), separator).is_none())
+    !filled.is_empty() && filled.iter().all(|name| number(name.as_bytes(), separator).is_none())
 }
 
 /// A unit without the brackets around it.

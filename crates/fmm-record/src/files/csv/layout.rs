@@ -1,12 +1,9 @@
 //! Layout of a text file: beginning of the table, separator, names of the columns.
 
-use super::faults::NO_ROWS;
-use super::fields::{Separator, text};
 use super::header::{Header, header};
 use super::lines::Line;
-use super::number;
-use super::row::{Kind, Row};
-use crate::RecordError;
+use crate::error::RecordError;
+use crate::files::csv::fields::{Kind, NO_ROWS, Row, Separator, number, text};
 
 /// The layout of a table.
 pub(super) struct Layout {
@@ -67,7 +64,7 @@ fn usual_width(rows: &[Row]) -> usize {
 fn kinds(rows: &[Row], width: usize, separator: Separator) -> Vec<Kind> {
     let last: Vec<&Row> = rows.iter().rev().filter(|row| row.len() == width).take(2).collect();
     let kind = |column: usize| {
-        if last.iter().any(|row| number::parse(row.field(column), separator).is_some()) {
+        if last.iter().any(|row| number(row.field(column), separator).is_some()) {
             Kind::Number
         } else if last.iter().all(|row| row.field(column).is_empty()) {
             Kind::Blank
@@ -83,7 +80,7 @@ fn kinds(rows: &[Row], width: usize, separator: Separator) -> Vec<Kind> {
 fn first_row(rows: &[Row], columns: &[Kind], separator: Separator) -> usize {
     let numbers: Vec<usize> = (0..columns.len()).filter(|column| columns[*column] == Kind::Number).collect();
     let is_row = |row: &Row| {
-        let is_number = |column: &&usize| number::parse(row.field(**column), separator).is_some();
+        let is_number = |column: &&usize| number(row.field(**column), separator).is_some();
         let found = numbers.iter().filter(is_number).count();
         row.len() == columns.len() && numbers.first().iter().any(is_number) && 2 * found >= numbers.len()
     };
@@ -102,7 +99,7 @@ fn likely_separator(lines: &[Line]) -> Result<Separator, RecordError> {
     }
     let are_aligned = |line: &Line| {
         let row = Row::of(line, Separator::Blanks);
-        row.len() > 1 && (0..row.len()).all(|column| number::parse(row.field(column), Separator::Blanks).is_some())
+        row.len() > 1 && (0..row.len()).all(|column| number(row.field(column), Separator::Blanks).is_some())
     };
     if last().all(are_aligned) {
         return Ok(Separator::Blanks);

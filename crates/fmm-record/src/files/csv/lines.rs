@@ -3,7 +3,7 @@
 use std::io::{BufRead, ErrorKind};
 use std::sync::Arc;
 
-use crate::RecordError;
+use crate::error::RecordError;
 
 /// The longest line that is read (bytes). A file without line ends is refused instead of filling the memory.
 pub(crate) const LONGEST_LINE: usize = 1 << 20;

@@ -10,14 +10,186 @@
 //! Memory goes to the two columns in use only, so that a file may be larger than the memory. A quote is closed on its
 //! own line or is a sign like others.
 
-mod faults;
 mod fields;
 mod header;
 mod layout;
 mod lines;
-mod number;
-mod reader;
-mod row;
 mod table;
 #[cfg(test)]
 mod tests;
+
+use std::io::Read;
+
+use crate::error::RecordError;
+use crate::files::Reader;
+use crate::files::clock::{Clock, counter, stated};
+use crate::files::csv::table::Table;
+use crate::files::reading::{Reading, quoted};
+use crate::sampling::{Sampling, UniformTimes};
+use crate::units::Quantity;
+
+impl Reader {
+    /// Reads one channel of the text in `input`, which is buffered here.
+    pub(crate) fn read_text(&self, input: impl Read) -> Result<Reading, RecordError> {
+        let table = Table::open(input, self.separator, self.skip)?;
+        let columns = table.names().to_vec();
+        let channel = self.channel.as_ref().map(|column| table.find(column)).transpose()?;
+        let time = match &self.time {
+            Some(column) => Some(table.find(column)?),
+            None => time_by_name(&columns, channel),
+        };
+        if let (Some(time), true) = (time, time == channel) {
+            let column = &columns[time];
+            return Err(RecordError::options(format!("column \"{column}\" cannot be both the time and the channel")));
+        }
+        let rate = match self.rate {
+            Some(rate) => Some((rate, Sampling::Given { rate })),
+            None if time.is_some() => None,
+            None => stated(table.stated().iter().map(|(name, value)| (&name[..], *value)))?,
+        };
+        let first = time.unwrap_or(table.first());
+        let is_other =
+            |index: &usize| *index != first && !table.is_blank(*index) && !Clock::of(&columns[*index]).is_counter;
+        let other = channel.or_else(|| (0..columns.len()).find(is_other));
+        let may_be_time = Clock::of(&columns[first]).may_be_time();
+        let is_settled = channel.is_some() && self.rate.is_some();
+        let series = match (time, other, rate) {
+            (Some(time), None, _) => {
+                let time = &columns[time];
+                let what = format!("the file has only the time column \"{time}\", and no other to read");
+                return Err(RecordError::channel(what));
+            }
+            (Some(time), Some(channel), Some(rate)) => {
+                Series::of(channel, table.read_columns([channel])?).at(rate).beside(time)
+            }
+            (Some(time), Some(channel), None) => {
+                let [times, values] = table.read_columns([time, channel])?;
+                Series::of(channel, [values]).timed(time, false, times)
+            }
+            (None, Some(second), rate) if may_be_time && !is_settled && second != first => {
+                let both = table.read_columns([first, second])?;
+                by_nature(&columns, [first, second], both, rate, channel.is_some())?
+            }
+            (None, _, Some(rate)) => {
+                let channel = channel.unwrap_or(first);
+                Series::of(channel, table.read_columns([channel])?).at(rate)
+            }
+            (None, _, None) => return Err(no_rate(&columns)),
+        };
+        self.reading(series, columns)
+    }
+
+    /// The columns of text that can be the channel, by position counted from 0 and name: all but the time. Beyond the
+    /// header, only what is needed to find the time is read.
+    pub(crate) fn text_channels(&self, input: impl Read) -> Result<Vec<(usize, String)>, RecordError> {
+        let table = Table::open(input, self.separator, self.skip)?;
+        let columns = table.names().to_vec();
+        let first = table.first();
+        let blank: Vec<bool> = (0..columns.len()).map(|column| table.is_blank(column)).collect();
+        let named = match &self.time {
+            Some(column) => Some(table.find(column)?),
+            None => time_by_name(&columns, None),
+        };
+        let time = match named {
+            Some(time) => Some(time),
+            None if columns.len() > 1 && Clock::of(&columns[first]).may_be_time() => {
+                // Text or gaps are no time either.
+                table.read_columns([first]).ok().filter(|[times]| UniformTimes::of(times).is_ok()).map(|_| first)
+            }
+            _ => None,
+        };
+        let is_channel =
+            |(index, name): &(usize, String)| Some(*index) != time && !blank[*index] && !Clock::of(name).is_counter;
+        Ok(columns.into_iter().enumerate().filter(is_channel).collect())
+    }
+
+    fn reading(&self, series: Series, columns: Vec<String>) -> Result<Reading, RecordError> {
+        let Series { time, channel, values, scale } = series;
+        let (time, channel) = (time.map(|index| columns[index].clone()), columns[channel].clone());
+        let (record, sampling) = match (scale, &time) {
+            (Some(Scale::Rate(rate, sampling)), _) => (self.span.sampled(rate, values, Quantity::Other, "")?, sampling),
+            (Some(Scale::Times(by_nature, mut times)), Some(name)) => {
+                Clock::of(name).to_seconds(name, by_nature, &mut times)?;
+                let record = self.span.timed(&times, values, Quantity::Other, "")?;
+                (record, Sampling::Times { name: name.clone() })
+            }
+            _ => return Err(no_rate(&columns)),
+        };
+        Ok(Reading { record, channel, time, columns, sampling })
+    }
+}
+
+/// Neither a time column nor a rate.
+fn no_rate(columns: &[String]) -> RecordError {
+    let what =
+        format!("the sampling rate is not known: give a time column or a rate; the file has: {}", quoted(columns));
+    RecordError::time(None, what)
+}
+
+/// The first column that is called time, other than the channel; one in a known unit before others.
+fn time_by_name(columns: &[String], channel: Option<usize>) -> Option<usize> {
+    let first = |is_time: fn(&Clock) -> bool| {
+        let mut others = columns.iter().enumerate().filter(|(index, _)| Some(*index) != channel);
+        others.find(|(_, name)| is_time(&Clock::of(name))).map(|(index, _)| index)
+    };
+    first(Clock::is_known_time).or_else(|| first(|clock| clock.is_time))
+}
+
+/// The series of a table in which no column says that it is time: the first one is, if it increases uniformly and does
+/// not count. `rate` is that which is given or stated above the table; `is_chosen` tells whether the second column is
+/// the channel in any case.
+fn by_nature(
+    columns: &[String],
+    [first, second]: [usize; 2],
+    [times, values]: [Vec<f64>; 2],
+    rate: Option<(f64, Sampling)>,
+    is_chosen: bool,
+) -> Result<Series, RecordError> {
+    let clock = Clock::of(&columns[first]);
+    let is_uniform = UniformTimes::of(&times).is_ok();
+    let counts = clock.is_counter || (is_uniform && clock.counts(&times));
+    let is_time = is_uniform && !counts;
+    let is_given = matches!(rate, Some((_, Sampling::Given { .. })));
+    match rate {
+        Some(rate) if is_given || !is_time => Ok(match is_time || counts || is_chosen {
+            true if is_time => Series::of(second, [values]).at(rate).beside(first),
+            true => Series::of(second, [values]).at(rate),
+            false => Series::of(first, [times]).at(rate),
+        }),
+        _ if is_time => Ok(Series::of(second, [values]).timed(first, true, times)),
+        _ if counts => Err(counter(&columns[first])),
+        _ => Err(no_rate(columns)),
+    }
+}
+
+/// The columns in use, the numbers of the channel, and what scales its time.
+struct Series {
+    time: Option<usize>,
+    channel: usize,
+    values: Vec<f64>,
+    scale: Option<Scale>,
+}
+
+enum Scale {
+    Rate(f64, Sampling),
+    /// Time stamps, and whether they are such by nature only.
+    Times(bool, Vec<f64>),
+}
+
+impl Series {
+    fn of(channel: usize, [values]: [Vec<f64>; 1]) -> Self {
+        Self { time: None, channel, values, scale: None }
+    }
+
+    fn at(self, (rate, sampling): (f64, Sampling)) -> Self {
+        Self { scale: Some(Scale::Rate(rate, sampling)), ..self }
+    }
+
+    fn timed(self, time: usize, by_nature: bool, times: Vec<f64>) -> Self {
+        Self { time: Some(time), scale: Some(Scale::Times(by_nature, times)), ..self }
+    }
+
+    fn beside(self, time: usize) -> Self {
+        Self { time: Some(time), ..self }
+    }
+}

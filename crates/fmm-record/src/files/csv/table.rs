@@ -4,15 +4,12 @@ use std::collections::VecDeque;
 use std::io::{BufReader, Read};
 use std::ops::Range;
 
-use super::faults::{NO_ROWS, not_a_number, ragged};
-use super::fields::{Separator, split};
 use super::header::Header;
 use super::layout::Layout;
 use super::lines::{Line, Lines};
-use super::number::{self, Digits, Mark};
-use super::row::Kind;
-use crate::files::reading::only;
-use crate::{Column, RecordError};
+use crate::error::RecordError;
+use crate::files::csv::fields::{Digits, Kind, Mark, NO_ROWS, Separator, not_a_number, number, ragged, split};
+use crate::files::reading::{Column, only};
 
 /// Length of the part of the file by which its layout is judged (bytes).
 const HEAD: usize = 1 << 16;
@@ -154,7 +151,7 @@ impl<R: Read> Table<R> {
     /// The number in a field of the current row.
     fn number(&mut self, column: usize) -> Result<f64, RecordError> {
         let line = self.line.number;
-        let Some((value, mark)) = number::parse(self.field(column), self.separator) else {
+        let Some((value, mark)) = number(self.field(column), self.separator) else {
             return Err(not_a_number(line, &self.header.names[column], &self.shown(column)));
         };
         match (self.mark, mark) {

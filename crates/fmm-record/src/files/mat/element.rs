@@ -3,52 +3,23 @@
 use std::borrow::Cow;
 use std::io::Read;
 
-use libflate::zlib::Decoder;
+use flate2::read::ZlibDecoder;
 
-use crate::RecordError;
-use crate::files::is_matlab_4;
+use crate::error::RecordError;
+use crate::files::format::is_matlab_4;
+use crate::files::number::ByteOrder;
 use crate::files::reading::{MOST_INFLATED, too_large};
 
 const HEADER: usize = 128;
 pub(super) const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 
-/// Order of the bytes in a number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Endian {
-    Little,
-    Big,
-}
-
-impl Endian {
-    pub(super) fn u16(self, bytes: [u8; 2]) -> u16 {
-        match self {
-            Self::Little => u16::from_le_bytes(bytes),
-            Self::Big => u16::from_be_bytes(bytes),
-        }
-    }
-
-    pub(super) fn u32(self, bytes: [u8; 4]) -> u32 {
-        match self {
-            Self::Little => u32::from_le_bytes(bytes),
-            Self::Big => u32::from_be_bytes(bytes),
-        }
-    }
-
-    pub(super) fn bytes_of(self, number: u32) -> [u8; 4] {
-        match self {
-            Self::Little => number.to_le_bytes(),
-            Self::Big => number.to_be_bytes(),
-        }
-    }
-}
-
 /// The order of bytes in a file of version 5 to 7, by its header.
-pub(super) fn endian(file: &[u8]) -> Result<Endian, RecordError> {
+pub(super) fn byte_order(file: &[u8]) -> Result<ByteOrder, RecordError> {
     let length = file.len();
-    let endian = match file.get(HEADER - 2..HEADER) {
-        Some(b"IM") => Endian::Little,
-        Some(b"MI") => Endian::Big,
+    let order = match file.get(HEADER - 2..HEADER) {
+        Some(b"IM") => ByteOrder::Little,
+        Some(b"MI") => ByteOrder::Big,
         _ if is_matlab_4(file) => {
             let what = "a MATLAB version 4 file; load it in MATLAB and save it with -v7";
             return Err(RecordError::unsupported(what));
@@ -58,8 +29,8 @@ pub(super) fn endian(file: &[u8]) -> Result<Endian, RecordError> {
             return Err(RecordError::UnknownFormat { what });
         }
     };
-    match endian.u16([file[HEADER - 4], file[HEADER - 3]]) {
-        0x0100 => Ok(endian),
+    match order.unsigned(&file[HEADER - 4..HEADER - 2]) {
+        0x0100 => Ok(order),
         version => {
             let what = format!("a MATLAB file of unknown version {version:#06x}; save it with -v7");
             Err(RecordError::unsupported(what))
@@ -79,15 +50,15 @@ pub(super) fn place(offset: usize) -> String {
 /// Goes through the variables of a file.
 pub(super) struct Variables<'a> {
     file: &'a [u8],
-    endian: Endian,
+    order: ByteOrder,
     at: usize,
     budget: usize,
 }
 
 impl<'a> Variables<'a> {
-    /// The variables of a file whose header has been checked by [`endian`].
-    pub(super) fn new(file: &'a [u8], endian: Endian) -> Self {
-        Self { file, endian, at: HEADER, budget: MOST_INFLATED }
+    /// The variables of a file whose header has been checked by [`byte_order`].
+    pub(super) fn new(file: &'a [u8], order: ByteOrder) -> Self {
+        Self { file, order, at: HEADER, budget: MOST_INFLATED }
     }
 
     /// The next variable; `None` at the end of the file.
@@ -103,7 +74,7 @@ impl<'a> Variables<'a> {
         let Some((tag, rest)) = rest.split_first_chunk::<8>() else {
             return Err(truncated(offset, 8, rest.len()));
         };
-        let (code, length) = long_tag(*tag, self.endian);
+        let (code, length) = long_tag(*tag, self.order);
         if code != MATRIX && code != COMPRESSED {
             return Err(unknown_element(offset, code));
         }
@@ -124,10 +95,10 @@ impl<'a> Variables<'a> {
     fn inflate(&mut self, offset: usize, content: &[u8]) -> Result<Vec<u8>, RecordError> {
         let place = format!("the compressed variable at byte {offset} is damaged");
         let damaged = |error| RecordError::undecoded(&place, error);
-        let mut decoder = Decoder::new(content).map_err(damaged)?;
+        let mut decoder = ZlibDecoder::new(content);
         let mut tag = [0; 8];
         decoder.read_exact(&mut tag).map_err(damaged)?;
-        let (code, length) = long_tag(tag, self.endian);
+        let (code, length) = long_tag(tag, self.order);
         if code != MATRIX {
             return Err(unknown_element(offset, code));
         }
@@ -162,6 +133,6 @@ fn unknown_element(offset: usize, code: u32) -> RecordError {
     ))
 }
 
-fn long_tag([a, b, c, d, e, f, g, h]: [u8; 8], endian: Endian) -> (u32, u32) {
-    (endian.u32([a, b, c, d]), endian.u32([e, f, g, h]))
+fn long_tag(tag: [u8; 8], order: ByteOrder) -> (u32, u32) {
+    (order.unsigned(&tag[..4]) as u32, order.unsigned(&tag[4..]) as u32)
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use hdf5_pure::{AttrValue, DType, Dataset, Error, File, FormatError, Group, Layout};
 
-use super::Kind;
-use crate::RecordError;
+use super::Class;
+use crate::error::RecordError;
 use crate::files::arrays::{ArrayFile, Notation};
 use crate::files::reading::{MOST_INFLATED, too_large};
 
@@ -22,11 +22,7 @@ const DEEPEST: usize = 32;
 pub(crate) fn parse(bytes: &[u8]) -> Result<ArrayFile, RecordError> {
     let mut variables = Variables { file: ArrayFile::new(Notation::Matlab), bytes, budget: MOST_INFLATED as u64 };
     let damaged = |error| RecordError::undecoded("the version 7.3 file (HDF5) cannot be read", error);
-    let mut opened = File::from_bytes(bytes.to_vec()).map_err(damaged)?;
-    if members(&opened.root(), bytes).is_err() {
-        // The decoder follows symbolic links to where they do not lead, and then gives the whole group up.
-        opened = File::from_bytes(without_symbolic_links(bytes)).map_err(damaged)?;
-    }
+    let opened = File::from_bytes(bytes.to_vec()).map_err(damaged)?;
     variables.add(&opened.root(), "", 0).map_err(damaged)?;
     Ok(variables.file)
 }
@@ -59,13 +55,13 @@ impl Variables<'_> {
             let name = format!("{prefix}{name}");
             match group.attrs() {
                 Ok(attributes) if attributes.contains_key("MATLAB_sparse") => {
-                    self.file.others.push((name, Kind::Sparse.to_string()));
+                    self.file.others.push((name, Class::Sparse.to_string()));
                 }
                 Ok(_) if depth == DEEPEST => {
                     self.file.damaged.push((name, RecordError::damaged("its groups are too deep")));
                 }
                 Ok(_) => match self.add(&group, &format!("{name}."), depth + 1) {
-                    Ok(()) => self.file.others.push((name, Kind::Structure.to_string())),
+                    Ok(()) => self.file.others.push((name, Class::Structure.to_string())),
                     Err(error) => self.file.damaged.push((name, decoder(error))),
                 },
                 Err(error) => self.file.damaged.push((name, decoder(error))),
@@ -78,8 +74,8 @@ impl Variables<'_> {
 /// Data sets, or why they cannot be read, and groups, with their names.
 type Members = (Vec<(String, Result<Dataset, Error>)>, Vec<(String, Group)>);
 
-/// Members of a group. The decoder does not list a group in which one object header is damaged; each of its objects is
-/// then looked for by the names in the bytes of the file.
+/// Members of a group. The decoder does not list a group with a symbolic link, or with one damaged object header; each
+/// of its objects is then looked for by the names in the bytes of the file.
 fn members(group: &Group, bytes: &[u8]) -> Result<Members, Error> {
     let listed = group.iter_datasets().and_then(|datasets| Ok((datasets, group.iter_groups()?)));
     let unlisted = match listed {
@@ -122,33 +118,9 @@ fn names(bytes: &[u8]) -> BTreeSet<String> {
     names.filter_map(|name| std::str::from_utf8(name).ok().map(str::to_owned)).collect()
 }
 
-/// The bytes of a file whose symbol tables (version 1 of the format of groups) have no symbolic links any more.
-///
-/// ```text
-/// node  = "SNOD", version 1, 0, count (2 bytes), entries of 40 bytes
-/// entry = name (8 bytes), address of the object (8), kind (4; 2 is a symbolic link), 20 others
-/// ```
-fn without_symbolic_links(bytes: &[u8]) -> Vec<u8> {
-    const HEAD: usize = 8;
-    const ENTRY: usize = 40;
-    let mut file = bytes.to_vec();
-    let nodes: Vec<usize> =
-        (0..file.len().saturating_sub(HEAD)).filter(|at| file[*at..].starts_with(b"SNOD\x01\0")).collect();
-    for node in nodes {
-        let count = usize::from(u16::from_le_bytes([file[node + 6], file[node + 7]]));
-        let Some(entries) = file.get(node + HEAD..node + HEAD + count * ENTRY) else { continue };
-        let is_link = |entry: &&[u8]| entry[16..20] == [2, 0, 0, 0] && entry[8..16].iter().all(|byte| *byte == 0xFF);
-        let kept: Vec<u8> = entries.chunks_exact(ENTRY).filter(|entry| !is_link(entry)).flatten().copied().collect();
-        let left = (kept.len() / ENTRY) as u16;
-        file[node + 6..node + 8].copy_from_slice(&left.to_le_bytes());
-        file[node + HEAD..node + HEAD + kept.len()].copy_from_slice(&kept);
-    }
-    file
-}
-
 enum Variable {
     Array { dimensions: Vec<usize>, values: Vec<f64> },
-    Other(Kind),
+    Other(Class),
 }
 
 /// Error of the decoder about a variable.
@@ -220,26 +192,26 @@ fn check_storage(dataset: &Dataset, sizes: &[u64], bytes: u64, length: u64) -> R
     Ok(())
 }
 
-/// Kind of a variable by its MATLAB class, or, in a file of another program, by its stored type; `None` if
+/// Class of a variable by its MATLAB class, or, in a file of another program, by its stored type; `None` if
 /// it is real and numeric.
-fn kind(class: Option<&str>, stored: &DType) -> Option<Kind> {
+fn kind(class: Option<&str>, stored: &DType) -> Option<Class> {
     use DType::{
         Compound, F32, F64, I8, I16, I32, I64, ObjectReference, String, U8, U16, U32, U64, VariableLengthString,
     };
     match class {
-        Some("char") => return Some(Kind::Text),
-        Some("cell") => return Some(Kind::Cell),
-        Some("struct") => return Some(Kind::Structure),
+        Some("char") => return Some(Class::Text),
+        Some("cell") => return Some(Class::Cell),
+        Some("struct") => return Some(Class::Structure),
         None | Some("double" | "single" | "logical") => {}
         Some(class) if class.strip_prefix('u').unwrap_or(class).starts_with("int") => {}
-        Some(_) => return Some(Kind::Object),
+        Some(_) => return Some(Class::Object),
     }
     match stored {
         F32 | F64 | I8 | I16 | I32 | I64 | U8 | U16 | U32 | U64 => None,
-        Compound(fields) if fields.iter().map(|(name, _)| &name[..]).eq(["real", "imag"]) => Some(Kind::Complex),
-        Compound(_) => Some(Kind::Structure),
-        String | VariableLengthString => Some(Kind::Text),
-        ObjectReference => Some(Kind::Cell),
-        _ => Some(Kind::Object),
+        Compound(fields) if fields.iter().map(|(name, _)| &name[..]).eq(["real", "imag"]) => Some(Class::Complex),
+        Compound(_) => Some(Class::Structure),
+        String | VariableLengthString => Some(Class::Text),
+        ObjectReference => Some(Class::Cell),
+        _ => Some(Class::Object),
     }
 }

@@ -4,40 +4,75 @@
 //! (text, cells, complex or sparse arrays) are not read, but they are listed, as is what cannot be read. HDF5 files of
 //! other programs are read as MATLAB shows them, with the order of dimensions reversed.
 //!
-//! Numbers are decoded by the crate matfile. It is handed one array at a time, whose structure has been checked
-//! here: by itself it stops at damage without a word, drops what it does not know, and refuses a whole file for one
-//! array of 32-bit integers. HDF5 is read by the crate hdf5-pure, behind checks that the file can hold what it
-//! promises.
+//! Versions 5 to 7 are read here and not by the crate matfile, which stops at damage without a word, drops unknown
+//! arrays, inflates without a limit, and refuses a whole file for one array of 32-bit integers. HDF5 is read by the
+//! crate hdf5-pure, behind checks that the file can hold what it promises.
 
 mod element;
 #[cfg(feature = "hdf5")]
 mod hdf5;
-mod kind;
 mod numbers;
 #[cfg(test)]
 mod tests;
-#[cfg(all(test, feature = "hdf5"))]
-mod tests_hdf5;
 
-use crate::RecordError;
+use crate::error::RecordError;
 use crate::files::arrays::{ArrayFile, Notation};
-use element::{Variables, endian, place};
+use crate::files::mat::element::{Variables, byte_order, place};
+use crate::files::mat::numbers::add;
+
 #[cfg(feature = "hdf5")]
 pub(crate) use hdf5::parse as parse_hdf5;
-use kind::Kind;
-use numbers::add;
 
 /// The arrays in the bytes of a file of version 5 to 7. A variable that is damaged by itself is an error only where it
 /// is asked for. A file that is cut off exactly between two variables is a valid file with fewer variables.
 pub(crate) fn parse(bytes: &[u8]) -> Result<ArrayFile, RecordError> {
-    let endian = endian(bytes)?;
-    let mut variables = Variables::new(bytes, endian);
+    let order = byte_order(bytes)?;
+    let mut variables = Variables::new(bytes, order);
     let mut file = ArrayFile::new(Notation::Matlab);
     while let Some((offset, body)) = variables.next()? {
         match body {
-            Ok(body) => add(&mut file, offset, &body, endian),
+            Ok(body) => add(&mut file, offset, &body, order),
             Err(error) => file.damaged.push((place(offset), error)),
         }
     }
     Ok(file)
+}
+
+/// Class of a variable that is not a real numeric array.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Class {
+    Cell,
+    Structure,
+    /// An object, a function or another thing of MATLAB's own.
+    Object,
+    Text,
+    Sparse,
+    Complex,
+}
+
+impl Class {
+    /// The kind of a class of arrays by its number; `None` for the numeric classes, 6 to 15.
+    pub(super) fn of(class: u32) -> Option<Self> {
+        match class {
+            1 => Some(Self::Cell),
+            2 => Some(Self::Structure),
+            4 => Some(Self::Text),
+            5 => Some(Self::Sparse),
+            6..=15 => None,
+            _ => Some(Self::Object),
+        }
+    }
+}
+
+impl std::fmt::Display for Class {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Cell => "a cell array",
+            Self::Structure => "a structure",
+            Self::Object => "an object",
+            Self::Text => "text",
+            Self::Sparse => "a sparse matrix",
+            Self::Complex => "complex",
+        })
+    }
 }

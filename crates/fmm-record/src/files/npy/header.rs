@@ -2,7 +2,8 @@
 
 use std::io::Read;
 
-use crate::RecordError;
+use crate::error::RecordError;
+use crate::files::number::{ByteOrder, Kind, Number};
 
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
@@ -15,65 +16,24 @@ pub(super) struct Header {
     pub(super) count: usize,
 }
 
-/// Storage of a number.
-#[derive(Clone, Copy)]
-pub(super) struct Number {
-    kind: Kind,
-    pub(super) width: usize,
-    big: bool,
-}
-
-#[derive(Clone, Copy)]
-enum Kind {
-    Float,
-    Signed,
-    Unsigned,
-}
-
-impl Number {
-    /// The number of a NumPy type, as `<f8`; `None` if the type is not real.
-    fn of(descr: &str) -> Option<Self> {
-        let mut letters = descr.chars();
-        let order = letters.next()?;
-        let kind = match letters.next()? {
-            'f' => Kind::Float,
-            'i' => Kind::Signed,
-            'u' | 'b' => Kind::Unsigned,
-            _ => return None,
-        };
-        let width = letters.as_str().parse().ok()?;
-        let known = match kind {
-            Kind::Float => matches!(width, 4 | 8),
-            Kind::Signed | Kind::Unsigned => matches!(width, 1 | 2 | 4 | 8),
-        };
-        let big = match order {
-            '<' => false,
-            '>' => true,
-            '|' if width == 1 => false,
-            _ => return None,
-        };
-        known.then_some(Self { kind, width, big })
-    }
-
-    /// The number in `bytes`, which are as many as its width.
-    pub(super) fn value(self, bytes: &[u8]) -> f64 {
-        // In the low bytes of a word, the least significant first.
-        let mut word = [0; 8];
-        word[..self.width].copy_from_slice(bytes);
-        if self.big {
-            word[..self.width].reverse();
-        }
-        let unsigned = u64::from_le_bytes(word);
-        match self.kind {
-            Kind::Float if self.width == 4 => f64::from(f32::from_bits(unsigned as u32)),
-            Kind::Float => f64::from_bits(unsigned),
-            Kind::Unsigned => unsigned as f64,
-            Kind::Signed => {
-                let unused = 64 - 8 * self.width as u32;
-                ((unsigned << unused).cast_signed() >> unused) as f64
-            }
-        }
-    }
+/// Storage of the numbers of a NumPy type, as `<f8`; `None` if the type is not real.
+fn stored(descr: &str) -> Option<Number> {
+    let mut letters = descr.chars();
+    let order = letters.next()?;
+    let kind = match letters.next()? {
+        'f' => Kind::Real,
+        'i' => Kind::Signed,
+        'u' | 'b' => Kind::Unsigned,
+        _ => return None,
+    };
+    let width = letters.as_str().parse().ok()?;
+    let order = match order {
+        '<' => ByteOrder::Little,
+        '>' => ByteOrder::Big,
+        '|' if width == 1 => ByteOrder::Little,
+        _ => return None,
+    };
+    Number::of(kind, width, order)
 }
 
 /// Reads a header; `name` is that of the array, for errors.
@@ -92,8 +52,8 @@ pub(super) fn read(input: &mut impl Read, name: &str) -> Result<Header, RecordEr
         return Err(damaged(name, "it does not begin as an array does"));
     }
     let length = match start[6] {
-        1 => take(2)?.iter().rev().fold(0, |length, byte| length << 8 | u64::from(*byte)),
-        2 | 3 => take(4)?.iter().rev().fold(0, |length, byte| length << 8 | u64::from(*byte)),
+        1 => ByteOrder::Little.unsigned(&take(2)?),
+        2 | 3 => ByteOrder::Little.unsigned(&take(4)?),
         version => {
             let what = format!("{} is of version {version} of the format; known are 1 to 3", called(name));
             return Err(RecordError::damaged(what));
@@ -196,10 +156,10 @@ impl<'a> Literal<'a> {
         let (Some(descr), Some(fortran), Some(shape)) = (descr, fortran, shape) else {
             return Err(error("it needs descr, fortran_order and shape"));
         };
-        let number = Number::of(descr).ok_or_else(|| unsupported(&descr.chars().take(20).collect::<String>()))?;
+        let number = stored(descr).ok_or_else(|| unsupported(&descr.chars().take(20).collect::<String>()))?;
         let count = shape.iter().try_fold(1usize, |count, length| count.checked_mul(*length));
         let count = count
-            .filter(|count| count.checked_mul(number.width).is_some())
+            .filter(|count| count.checked_mul(number.width()).is_some())
             .ok_or(error("its shape is beyond all memory"))?;
         Ok(Header { number, fortran, shape, count })
     }

@@ -4,11 +4,11 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 use super::parse as parse_bytes;
-use crate::Reader;
-use crate::Sampling;
 use crate::error::says;
+use crate::files::Reader;
 use crate::files::arrays::Array;
-use crate::synthetic::Noise;
+use crate::sampling::Sampling;
+use crate::tests::synthetic::Noise;
 
 /// An array in version `version` of the format, with `data` behind a header for `shape`.
 fn npy(version: u8, descr: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u8> {

@@ -5,7 +5,8 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use super::{Abscissa, Axis, DataSet, Freedom, Ordinate, Precision};
-use crate::RecordError;
+use crate::error::RecordError;
+use crate::files::number::ByteOrder;
 
 /// Form of the points in a file that is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,16 +15,6 @@ pub enum Form {
     Ascii,
     /// Bytes, which keep all digits.
     Binary(ByteOrder),
-}
-
-/// Order of the bytes in a number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum ByteOrder {
-    /// The least significant byte first, as on most machines.
-    #[default]
-    Little,
-    /// The most significant byte first.
-    Big,
 }
 
 /// Writes data sets into the file at `path`, which is replaced if it exists; see [`write_to`].

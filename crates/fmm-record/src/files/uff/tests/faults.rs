@@ -1,9 +1,8 @@
 //! Faults of programs and damage of files.
 
 use super::*;
-use crate::RecordError;
-use crate::error::says;
-use crate::synthetic::Noise;
+use crate::error::{RecordError, says};
+use crate::tests::synthetic::Noise;
 
 /// Six real single points at 1/512 s.
 const FORM: &str = "         2         6         1  0.00000E+00  1.95312E-03  0.00000E+00";

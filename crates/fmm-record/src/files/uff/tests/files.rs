@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::error::says;
-use crate::{Quantity, Sampling};
+use crate::sampling::Sampling;
+use crate::units::Quantity;
 
 /// Half a unit of the last of `digits` digits, relative.
 fn rounding(digits: i32) -> f64 {

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::error::says;
-use crate::{Quantity, Record};
+use crate::record::Record;
+use crate::units::Quantity;
 
 const FORMS: [Form; 3] = [Form::Ascii, Form::Binary(ByteOrder::Little), Form::Binary(ByteOrder::Big)];
 

@@ -1,13 +1,12 @@
 use std::io::Write;
 
-use super::Kind;
-use super::parse as parse_bytes;
-use crate::Reader;
-use crate::error::says;
+use super::{Class, parse as parse_bytes};
+use crate::error::{RecordError, says};
+use crate::files::Reader;
 use crate::files::arrays::{Array, ArrayFile};
 use crate::files::reading::MOST_INFLATED;
-use crate::synthetic::{Noise, fork_path};
-use crate::{RecordError, Sampling};
+use crate::sampling::Sampling;
+use crate::tests::synthetic::{Noise, fork_path};
 
 /// Writes the parts of a file, in either order of bytes.
 struct Writer {
@@ -54,9 +53,9 @@ impl Writer {
 }
 
 fn compressed(variable: &[u8]) -> Vec<u8> {
-    let mut encoder = libflate::zlib::Encoder::new(Vec::new()).unwrap();
+    let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::default());
     encoder.write_all(variable).unwrap();
-    let data = encoder.finish().into_result().unwrap();
+    let data = encoder.finish().unwrap();
     let mut element = LITTLE.number(15).to_vec();
     element.extend_from_slice(&LITTLE.number(data.len() as u32));
     element.extend_from_slice(&data);
@@ -71,7 +70,7 @@ fn parse(variables: &[Vec<u8>]) -> Result<ArrayFile, RecordError> {
 fn fork_is_read_with_its_own_rate() {
     let file = parse_bytes(&std::fs::read(fork_path()).unwrap()).unwrap();
     assert_eq!(file.arrays.iter().map(Array::name).collect::<Vec<_>>(), ["duration", "ActualRate", "data"]);
-    assert!(file.others.contains(&("bicycle".into(), Kind::Text.to_string())));
+    assert!(file.others.contains(&("bicycle".into(), Class::Text.to_string())));
     let reading = file.channel("data").unwrap();
     let record = &reading.record;
     assert_eq!((record.len(), record.rate()), (30_000, 1000.0));
@@ -189,7 +188,7 @@ fn other_kinds_are_listed_and_named() {
     let file = parse(&[complex, cube, empty, cell, object]).unwrap();
     assert_eq!(
         file.others,
-        [("z", Kind::Complex), ("c", Kind::Cell), ("table", Kind::Object)]
+        [("z", Class::Complex), ("c", Class::Cell), ("table", Class::Object)]
             .map(|(name, kind)| (name.to_owned(), kind.to_string()))
     );
     assert!(says(&file.channel("z"), "is complex, not a real numeric array"));

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use crate::{Quantity, Record};
+use crate::record::Record;
+use crate::units::Quantity;
 
 /// Reproducible random numbers: a 64-bit congruential generator (Knuth's constants).
 pub(crate) struct Noise(u64);

@@ -1,0 +1,3 @@
+//! Tools of the tests.
+
+pub(crate) mod synthetic;
