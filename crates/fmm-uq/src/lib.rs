@@ -36,8 +36,8 @@
 //! | uncertainty of the result of any other model? | [`MonteCarlo`]: an [`OutputSample`] | models of a second a trial, unless many machines share the run |
 //! | how many trials? | [`Adaptive`], until the digits are stable | a cost that must be known in advance |
 //! | is the interval of the GUM valid? | [`validate`], with [`Adaptive::for_validation`] | |
-//! | which input matters? | [`Budget::contributions`]; with interactions [`variance_shares`] (Sobol'); [`MonteCarlo::run_one_at_a_time`] | [`variance_shares`]: correlated inputs |
-//! | what if a trial takes a second? | [`QuasiMonteCarlo`]; or many machines and [`PartialRun`]s | [`QuasiMonteCarlo`]: more than 64 dimensions, models with kinks |
+//! | which input matters? | [`Budget::contributions`]; with interactions [`variance_shares`] (Sobol') | [`variance_shares`]: correlated inputs |
+//! | what if a trial takes a second? | many machines and [`PartialRun`]s | |
 //! | what if the model is a text, known at run time only? | `Formula` (feature `formula`) | models with conditions or loops |
 //! | how is a result stated? | a [`Budget`] prints; [`Budget::statement`], [`MonteCarlo::statement`], [`Budget::to_csv`] | |
 //! | what differs between runs, laboratories or specimens? | [`AnalysisOfVariance`], [`Precision`] | |
@@ -88,30 +88,35 @@
 
 mod distributions;
 mod error;
+mod failure;
 mod groups;
 mod gum;
 mod inputs;
 mod model;
+mod moments;
 mod monte_carlo;
-mod random;
-mod report;
+mod region;
+mod rounding;
+mod stream;
+mod validation;
 
 pub use distributions::Distribution;
 pub use error::UncertaintyError;
+pub use failure::{Failure, FailureKind, Failures};
 pub use fmm_model::{Interval, Scalar, coverage_factor};
 pub use groups::{AnalysisOfVariance, Consensus, Influence, Outlier, OutlyingPair, Precision, RandomEffects};
-pub use gum::{
-    Budget, Contribution, Expanded, Gum, Linearisation, Propagation, SecondOrder, Validation, propagate, validate,
-};
+pub use gum::{Budget, Contribution, Expanded, Gum, Linearisation, Propagation, SecondOrder, Statement, propagate};
 pub use inputs::{Evaluation, Input, Inputs, Observations};
 #[cfg(feature = "formula")]
 pub use model::Formula;
 pub use model::{ModelOutput, Taylor, at_values};
+pub use moments::Moments;
 pub use monte_carlo::{
-    Adaptive, Failure, FailureKind, Failures, Histogram, IntervalKind, Moments, MonteCarlo, OutputSample, PartialRun,
-    Progress, QuasiMonteCarlo, QuasiSample, Region, VarianceShare, numerical_tolerance, variance_shares,
+    Adaptive, Histogram, IntervalKind, MonteCarlo, OutputSample, PartialRun, Progress, TrialStatement, VarianceShare,
+    variance_shares,
 };
-pub use report::{Statement, TrialStatement};
+pub use region::Region;
+pub use validation::{Validation, numerical_tolerance, validate};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

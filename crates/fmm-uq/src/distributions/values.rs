@@ -1,48 +1,68 @@
 //! Quantiles and random values of all distributions.
 
+use std::f64::consts::PI;
+
 use fmm_model::student_quantile;
-use rand::Rng;
+use rand::{Rng, RngExt};
 use rand_distr::{Distribution as _, Exp1, StandardNormal};
 use statrs::distribution::{ContinuousCDF, Normal};
-use statrs::function::gamma::gamma_ur;
+use statrs::function::beta::beta_reg;
 
-use super::{Distribution, Shape};
-use crate::UncertaintyError;
-use crate::distributions::gamma::gamma_quantile;
+use crate::distributions::{Distribution, Shape, quantiles};
+use crate::error::UncertaintyError;
 
 impl Distribution {
     /// The value that the quantity does not exceed with the given probability.
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless the probability lies between 0 and 1.
+    /// [`UncertaintyError::Invalid`] unless the probability lies between 0 and 1.
     pub fn quantile(&self, probability: f64) -> Result<f64, UncertaintyError> {
         Ok(self.quantile_at(UncertaintyError::require_level(probability)?))
     }
 
     /// The quantile of a probability in (0, 1).
     pub(crate) fn quantile_at(&self, probability: f64) -> f64 {
+        let (mean, (low, high)) = (self.mean, self.limits);
+        // From the centre of a symmetric distribution, by the distance of the smaller tail.
+        let symmetric = |distance: f64| if probability < 0.5 { mean - distance } else { mean + distance };
+        let tail = probability.min(1.0 - probability);
         match &self.shape {
-            Shape::Constant(value) => *value,
-            Shape::Rectangular { lower, upper } => lower + (upper - lower) * probability,
-            Shape::CurvilinearTrapezoid(shape) => shape.quantile(probability),
-            Shape::Trapezoid(shape) => shape.quantile(probability),
-            Shape::ArcSine(shape) => shape.quantile(probability),
-            Shape::Normal { mean, standard_deviation } => {
-                mean + standard_deviation * Normal::standard().inverse_cdf(probability)
+            Shape::Constant => mean,
+            Shape::Rectangular => low + (high - low) * probability,
+            Shape::CurvilinearTrapezoid { half_width, inexactness } => {
+                symmetric(quantiles::curvilinear_trapezoid(*half_width, *inexactness, tail))
             }
-            Shape::StudentT { mean, scale, degrees_of_freedom, .. } => {
-                mean + scale * t_quantile(probability, *degrees_of_freedom)
+            Shape::Trapezoid { base, top } => {
+                let (slope_width, plateau) = (base - top, base + top);
+                symmetric(if tail < 0.5 * slope_width / plateau {
+                    base - (2.0 * tail * slope_width * plateau).sqrt()
+                } else {
+                    (0.5 - tail) * plateau
+                })
             }
-            Shape::Exponential { mean } => -mean * (-probability).ln_1p(),
-            Shape::Gamma { shape, scale, .. } => scale * gamma_quantile(*shape, probability),
-            Shape::Triangle(shape) => shape.quantile(probability),
-            Shape::Beta(shape) => shape.quantile(probability),
-            Shape::TruncatedNormal(shape) => shape.quantile(probability),
+            // The sine keeps the centre exact, where the cosine of π/2 would not be zero.
+            Shape::ArcSine { amplitude } => mean + amplitude * (PI * (probability - 0.5)).sin(),
+            Shape::Normal => mean + self.standard_deviation * Normal::standard().inverse_cdf(probability),
+            Shape::StudentT { scale, degrees_of_freedom, .. } if probability != 0.5 => {
+                symmetric(scale * student_quantile(tail, *degrees_of_freedom))
+            }
+            Shape::StudentT { .. } => mean,
+            Shape::Exponential => -mean * (-probability).ln_1p(),
+            Shape::Gamma { shape, scale, .. } => scale * quantiles::gamma(*shape, probability),
+            Shape::Triangle { mode } => triangle(low, *mode, high, probability),
+            // From the nearer limit, where the distance keeps its digits.
+            Shape::Beta { shapes: (a, b), .. } if probability <= beta_reg(*a, *b, 0.5) => {
+                low + (high - low) * quantiles::beta(*a, *b, probability)
+            }
+            Shape::Beta { shapes: (a, b), .. } => high - (high - low) * quantiles::beta(*b, *a, 1.0 - probability),
             Shape::LogNormal { median, deviation } => {
                 median * (deviation * Normal::standard().inverse_cdf(probability)).exp()
             }
-            Shape::Poisson { mean, .. } => poisson_quantile(*mean, probability),
-            Shape::Empirical(shape) => shape.quantile(probability),
+            // The smallest value of which a share of at least `probability` is not larger.
+            Shape::Empirical(sorted) => {
+                let rank = (probability * sorted.len() as f64).ceil() as usize;
+                sorted[rank.clamp(1, sorted.len()) - 1]
+            }
         }
     }
 
@@ -55,34 +75,52 @@ impl Distribution {
 
     /// Random values for every `stride`th element, the first included. One choice of distribution serves them all.
     pub(crate) fn fill<R: Rng + ?Sized>(&self, rng: &mut R, values: &mut [f64], stride: usize) {
+        let (mean, deviation, (low, high)) = (self.mean, self.standard_deviation, self.limits);
         match &self.shape {
-            Shape::Constant(value) => each(values, stride, || *value),
-            Shape::Rectangular { lower, upper } => {
-                many(values, stride, rng, |[u]| (lower + (upper - lower) * u, true));
-            }
-            Shape::CurvilinearTrapezoid(shape) => many(values, stride, rng, |u| (shape.of(u), true)),
-            Shape::Trapezoid(shape) => many(values, stride, rng, |u| (shape.of(u), true)),
-            Shape::ArcSine(shape) => many(values, stride, rng, |u| shape.of(u)),
-            Shape::Normal { mean, standard_deviation } => each(values, stride, || {
-                let z: f64 = StandardNormal.sample(rng);
-                mean + standard_deviation * z
+            Shape::Constant => each(values, stride, || mean),
+            Shape::Rectangular => many(values, stride, rng, |[u]| (low + (high - low) * u, true)),
+            // The half width is drawn first, then the place within it (JCGM 101:2008, 6.4.3.4).
+            Shape::CurvilinearTrapezoid { half_width, inexactness } => many(values, stride, rng, |[first, second]| {
+                let half_width = half_width + inexactness * (2.0 * first - 1.0);
+                (mean + half_width * (2.0 * second - 1.0), true)
             }),
-            Shape::StudentT { mean, scale, unit, .. } => each(values, stride, || mean + scale * unit.sample(rng)),
-            Shape::Exponential { mean } => each(values, stride, || {
+            Shape::Trapezoid { base, top } => many(values, stride, rng, |[first, second]| {
+                (mean + (base + top) * (first - 0.5) + (base - top) * (second - 0.5), true)
+            }),
+            // A point of the unit disc has a random phase, and the cosine of twice that needs no cosine.
+            Shape::ArcSine { amplitude } => many(values, stride, rng, |[x, y]| {
+                let (xx, yy) = (x * x, y * y);
+                let square = xx + yy;
+                (mean + amplitude * ((xx - yy) / square), square <= 1.0 && square > 0.0)
+            }),
+            Shape::Normal => each(values, stride, || {
+                let z: f64 = StandardNormal.sample(rng);
+                mean + deviation * z
+            }),
+            Shape::StudentT { scale, unit, .. } => each(values, stride, || mean + scale * unit.sample(rng)),
+            Shape::Exponential => each(values, stride, || {
                 let e: f64 = Exp1.sample(rng);
                 mean * e
             }),
             Shape::Gamma { sampler, .. } => each(values, stride, || sampler.sample(rng)),
-            Shape::Triangle(shape) => many(values, stride, rng, |[u]| (shape.quantile(u), true)),
-            Shape::Beta(shape) => each(values, stride, || shape.sample(rng)),
-            Shape::TruncatedNormal(shape) => each(values, stride, || shape.sample(rng)),
+            Shape::Triangle { mode } => many(values, stride, rng, |[u]| (triangle(low, *mode, high, u), true)),
+            Shape::Beta { sampler, .. } => each(values, stride, || low + (high - low) * sampler.sample(rng)),
             Shape::LogNormal { median, deviation } => each(values, stride, || {
                 let z: f64 = StandardNormal.sample(rng);
                 median * (deviation * z).exp()
             }),
-            Shape::Poisson { sampler, .. } => each(values, stride, || sampler.sample(rng)),
-            Shape::Empirical(shape) => each(values, stride, || shape.sample(rng)),
+            Shape::Empirical(sorted) => each(values, stride, || sorted[rng.random_range(0..sorted.len())]),
         }
+    }
+}
+
+/// Quantile of the triangle with its top at `mode`.
+fn triangle(low: f64, mode: f64, high: f64, probability: f64) -> f64 {
+    let (p, q) = (mode - low, high - mode);
+    if probability * (p + q) < p {
+        low + (probability * (p + q) * p).sqrt()
+    } else {
+        high - ((1.0 - probability) * (p + q) * q).sqrt()
     }
 }
 
@@ -126,46 +164,10 @@ fn uniform(word: [u8; 8]) -> f64 {
     (u64::from_le_bytes(word) >> 11) as f64 * (0.5 * f64::EPSILON)
 }
 
-/// The quantile of Student's t for a probability in (0, 1).
-fn t_quantile(probability: f64, degrees_of_freedom: f64) -> f64 {
-    if probability == 0.5 {
-        0.0
-    } else if probability < 0.5 {
-        -student_quantile(probability, degrees_of_freedom)
-    } else {
-        student_quantile(1.0 - probability, degrees_of_freedom)
-    }
-}
-
-/// The smallest number of events of which as many or fewer have at least the given probability, Q(k + 1, λ).
-fn poisson_quantile(mean: f64, probability: f64) -> f64 {
-    let reaches = |count: f64| gamma_ur(count + 1.0, mean) >= probability;
-    // Twice as far from the mean each time, until it is between, and then halves.
-    let (mut below, mut above, mut step) = (mean.floor(), mean.floor(), mean.sqrt().ceil());
-    while !reaches(above) {
-        (below, above, step) = (above, above + step, 2.0 * step);
-    }
-    while below >= 0.0 && reaches(below) {
-        (above, below, step) = (below, below - step, 2.0 * step);
-    }
-    let mut below = below.max(-1.0);
-    while above - below > 1.0 {
-        let middle = (0.5 * (below + above)).floor();
-        if reaches(middle) {
-            above = middle;
-        } else {
-            below = middle;
-        }
-    }
-    above
-}
-
 #[cfg(test)]
 mod tests {
-    use rand::RngExt;
-
     use super::*;
-    use crate::random::stream::Stream;
+    use crate::stream::Stream;
 
     /// Values of a sampler that takes a number at a time, and numbers left in the stream as it leaves them.
     #[test]

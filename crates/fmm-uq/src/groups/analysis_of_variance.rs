@@ -2,7 +2,8 @@
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use crate::{Moments, UncertaintyError};
+use crate::error::UncertaintyError;
+use crate::moments::Moments;
 
 /// Analysis of variance of observations in groups, of equal or unequal numbers.
 ///
@@ -41,12 +42,15 @@ impl AnalysisOfVariance {
     /// Analysis of at least two groups, each with one observation or more, and one of them with two or more.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooFewObservations`] if no group has two; [`UncertaintyError::Inputs`] for fewer than two
-    /// groups or an empty one; [`UncertaintyError::OutOfRange`] if an observation or the squares are not finite;
+    /// [`UncertaintyError::Invalid`] if no group has two, for fewer than two groups or an empty one, or if an observation
+    /// or the squares are not finite;
     /// [`UncertaintyError::NoAnswer`] if the observations differ by so little that their squares are lost.
     pub fn of<G: AsRef<[f64]>>(groups: &[G]) -> Result<Self, UncertaintyError> {
         if groups.len() < 2 || groups.iter().any(|group| group.as_ref().is_empty()) {
-            return Err(UncertaintyError::no_groups(groups.len()));
+            return Err(UncertaintyError::invalid(format!(
+                "two groups or more are needed, each with an observation at least, but {} were given, or one is empty",
+                groups.len()
+            )));
         }
         let all = || groups.iter().flat_map(|group| group.as_ref().iter().copied());
         if let Some((index, value)) = all().enumerate().find(|(_, value)| !value.is_finite()) {
@@ -54,7 +58,7 @@ impl AnalysisOfVariance {
         }
         let count = all().count();
         if count <= groups.len() {
-            return Err(UncertaintyError::TooFewObservations { found: count, needed: groups.len() + 1 });
+            return Err(UncertaintyError::too_few_observations(count, groups.len() + 1));
         }
         let reference = groups[0].as_ref()[0];
         let about = |group: &G| group.as_ref().iter().map(|value| value - reference).collect::<Vec<f64>>();

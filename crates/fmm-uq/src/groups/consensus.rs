@@ -1,9 +1,9 @@
 //! Consensus of results that are known differently well and may differ by more than that.
 
-use fmm_model::Estimated;
+use fmm_model::{Estimated, Interval, coverage_factor};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::{Interval, UncertaintyError, coverage_factor};
+use crate::error::UncertaintyError;
 
 /// Estimator of the variance between results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -52,7 +52,8 @@ pub struct Influence {
 /// Friede 2015). The price is an interval that covers more than it says where the results do not differ (τ = 0): 99 %
 /// of six results and more of fewer, instead of 95 %.
 ///
-/// What several results share, such as the mass of one machine, does not average out: see [`Consensus::with_shared`].
+/// An input that several results share, such as the mass of one machine, does not average out: see
+/// [`Consensus::with_shared`].
 ///
 /// ```
 /// use fmm_model::Estimated;
@@ -93,11 +94,10 @@ impl Consensus {
     /// The consensus of at least two results.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooFewObservations`] for fewer than two results; [`UncertaintyError::OutOfRange`] if a
-    /// result is not finite, or its uncertainty, or the square of it, is not positive and finite.
+    /// [`UncertaintyError::Invalid`] for fewer than two results, or if a result is not finite, or its uncertainty, or the square of it, is not positive and finite.
     pub fn of(results: &[Estimated], effects: RandomEffects) -> Result<Self, UncertaintyError> {
         if results.len() < 2 {
-            return Err(UncertaintyError::TooFewObservations { found: results.len(), needed: 2 });
+            return Err(UncertaintyError::too_few_observations(results.len(), 2));
         }
         for (index, result) in results.iter().enumerate() {
             if !result.value.is_finite() {
@@ -154,12 +154,15 @@ impl Consensus {
     /// ```
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`] for an input with another number of contributions than results;
-    /// [`UncertaintyError::OutOfRange`] if a contribution, or the uncertainty with all of them, is not finite.
+    /// [`UncertaintyError::Invalid`] for an input with another number of contributions than results, or if a contribution, or the uncertainty with all of them, is not finite.
     pub fn with_shared(self, inputs: &[Vec<f64>]) -> Result<Self, UncertaintyError> {
         for (input, contributions) in inputs.iter().enumerate() {
             if contributions.len() != self.results.len() {
-                return Err(UncertaintyError::unequal_contributions(input, contributions.len(), self.results.len()));
+                let (found, results) = (contributions.len(), self.results.len());
+                return Err(UncertaintyError::invalid(format!(
+                    "a shared input contributes to each of the {results} results, by 0 where it has no part, but for \
+                     input {input} there are {found} contributions"
+                )));
             }
             if let Some(wrong) = contributions.iter().find(|contribution| !contribution.is_finite()) {
                 let name = format!("contribution of shared input {input}");
@@ -195,7 +198,7 @@ impl Consensus {
         self.shared_at(self.variance)
     }
 
-    /// √Σ u_s², what the shared inputs together make of u (unit of the results).
+    /// √Σ u_s², the part of the shared inputs in u (unit of the results).
     pub fn shared_uncertainty(&self) -> f64 {
         self.shared().into_iter().fold(0.0, f64::hypot)
     }
@@ -224,10 +227,10 @@ impl Consensus {
     /// The interval that covers μ with probability `level` (unit of the results).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1.
+    /// [`UncertaintyError::Invalid`] unless 0 < level < 1.
     pub fn interval(&self, level: f64) -> Result<Interval, UncertaintyError> {
         let factor = coverage_factor(level, self.degrees_of_freedom());
-        let reach = self.mean().uncertainty * factor.ok_or_else(|| UncertaintyError::level_out_of_range(level))?;
+        let reach = self.mean().uncertainty * factor.ok_or_else(|| UncertaintyError::level(level))?;
         Ok(Interval { low: self.mean - reach, high: self.mean + reach, level })
     }
 
@@ -270,11 +273,12 @@ impl Consensus {
     /// ```
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] if there is no result `index`, counted from 0;
-    /// [`UncertaintyError::TooFewObservations`] if there is only one other.
+    /// [`UncertaintyError::Invalid`] if there is no result `index`, counted from 0, or only one other.
     pub fn without(&self, index: usize) -> Result<Self, UncertaintyError> {
         if index >= self.results.len() {
-            return Err(UncertaintyError::no_such_group(index, self.results.len()));
+            let results = self.results.len();
+            let what = format!("there is no result {index}; {results} were given, counted from 0");
+            return Err(UncertaintyError::invalid(what));
         }
         let mut others = self.results.clone();
         others.remove(index);

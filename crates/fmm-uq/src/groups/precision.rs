@@ -1,11 +1,13 @@
 //! Repeatability and reproducibility.
 
+use fmm_model::coverage_factor;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use crate::distributions::beta::Beta;
-use crate::groups::analysis_of_variance::tail_of_f;
+use crate::distributions::Distribution;
+use crate::error::UncertaintyError;
+use crate::groups::analysis_of_variance::{AnalysisOfVariance, tail_of_f};
 use crate::groups::outlying_pair;
-use crate::{AnalysisOfVariance, Moments, UncertaintyError, coverage_factor};
+use crate::moments::Moments;
 
 /// Precision of a method by observations in groups (laboratories, operators, days, releases), after ISO 5725-2:1994,
 /// clause 7.4.
@@ -136,15 +138,15 @@ impl Precision {
     /// ```
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1; [`UncertaintyError::NoAnswer`] for two groups, whose h
+    /// [`UncertaintyError::Invalid`] unless 0 < level < 1; [`UncertaintyError::NoAnswer`] for two groups, whose h
     /// are ±1/√2 always.
     pub fn h_limit(&self, level: f64) -> Result<f64, UncertaintyError> {
         let groups = self.analysis.counts.len();
         if groups < 3 {
-            return Err(UncertaintyError::too_few_groups(groups, 3));
+            return Err(too_few_groups(groups, 3));
         }
         let count = groups as f64;
-        let t = coverage_factor(level, count - 2.0).ok_or_else(|| UncertaintyError::level_out_of_range(level))?;
+        let t = coverage_factor(level, count - 2.0).ok_or_else(|| UncertaintyError::level(level))?;
         // The quotient first: t of a level near 1 has no square in f64.
         Ok((count - 1.0) / (count * (1.0 + (count - 2.0) / t / t)).sqrt())
     }
@@ -174,21 +176,18 @@ impl Precision {
     /// ```
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1; [`UncertaintyError::TooFewObservations`] for fewer than
-    /// two; [`UncertaintyError::NoAnswer`] if fewer than two groups have a spread.
+    /// [`UncertaintyError::Invalid`] unless 0 < level < 1 and there are two or more; [`UncertaintyError::NoAnswer`] if fewer than two groups have a spread.
     pub fn k_limit(&self, observations: usize, level: f64) -> Result<f64, UncertaintyError> {
-        let level = UncertaintyError::require_level(level)?;
         if observations < 2 {
-            return Err(UncertaintyError::TooFewObservations { found: observations, needed: 2 });
+            return Err(UncertaintyError::too_few_observations(observations, 2));
         }
         let groups = self.variances().iter().flatten().count();
-        let too_few = || UncertaintyError::too_few_groups(groups, 2);
         if groups < 2 {
-            return Err(too_few());
+            return Err(too_few_groups(groups, 2));
         }
         let (count, freedom) = (groups as f64, (observations - 1) as f64);
-        let share = Beta::new((0.5 * freedom, 0.5 * freedom * (count - 1.0)), (0.0, 1.0)).ok_or_else(too_few)?;
-        Ok((count * share.quantile(level)).sqrt())
+        let share = Distribution::beta(0.5 * freedom, 0.5 * freedom * (count - 1.0), 0.0, 1.0)?;
+        Ok((count * share.quantile(level)?).sqrt())
     }
 
     /// Cochran's test of the group with the largest spread, C = s_max²/Σ s²; `None` if fewer than two groups have a
@@ -295,4 +294,11 @@ impl Precision {
         let moments = Moments::of_values(means);
         (moments.mean(), moments.standard_deviation().unwrap_or(0.0), means)
     }
+}
+
+/// Error of too few groups for a limit of their spread by chance.
+fn too_few_groups(found: usize, needed: usize) -> UncertaintyError {
+    UncertaintyError::no_answer(format!(
+        "{found} groups differ in one way only; a limit by chance needs {needed} or more of them"
+    ))
 }

@@ -1,11 +1,12 @@
 //! The law of propagation of uncertainty.
 
-use crate::gum::linearisation::Linearisation;
-use crate::gum::second_order::second_order;
-use crate::model::derivatives::Derivatives;
-use crate::model::differences::Differences;
-use crate::model::exact_derivatives::Exact;
-use crate::{Budget, Inputs, ModelOutput, Propagation, Taylor, UncertaintyError};
+use crate::error::UncertaintyError;
+use crate::gum::budget::Budget;
+use crate::gum::derivatives::{Derivatives, Differences, Exact};
+use crate::gum::propagation::{Propagation, output_count};
+use crate::gum::second_order::{Linearisation, second_order};
+use crate::inputs::Inputs;
+use crate::model::{ModelOutput, Taylor};
 
 /// Propagates the uncertainty of `inputs` through a `model` of one output, with exact derivatives.
 ///
@@ -19,7 +20,7 @@ use crate::{Budget, Inputs, ModelOutput, Propagation, Taylor, UncertaintyError};
 /// ```
 /// use fmm_uq::{Input, Inputs, Linearisation, propagate};
 ///
-/// // Friction coefficient from the amplitude loss per half swing: μ = k ΔA / (2 N).
+/// // Friction coefficient from the half cycle loss: μ = k ΔA / (2 N).
 /// let inputs = Inputs::new([
 ///     Input::new("stiffness", 1982.0, 12.0, "N/m")?,
 ///     Input::new("amplitude_loss", 1.77e-3, 2.0e-5, "m")?,
@@ -92,7 +93,7 @@ impl<'a> Gum<'a> {
     /// # Errors
     /// [`UncertaintyError::Model`] if the model fails (with its own error as the source), gives a result or a
     /// sensitivity that is not finite (with the values of the inputs), gives other results for the same inputs, has no
-    /// output, or changes their number. [`UncertaintyError::OutOfRange`] if the sum of finite contributions overflows;
+    /// output, or changes their number. [`UncertaintyError::Invalid`] if the sum of finite contributions overflows;
     /// [`UncertaintyError::NoAnswer`] if all contributions vanish by underflow.
     ///
     /// # Panics
@@ -126,7 +127,7 @@ impl<'a> Gum<'a> {
         let slopes = model.slopes()?;
         let count = slopes.values.len();
         if count == 0 {
-            return Err(UncertaintyError::output_count(1, 0));
+            return Err(output_count(0));
         }
         let mut budgets = Vec::with_capacity(count);
         for (&value, sensitivities) in slopes.values.iter().zip(&slopes.sensitivities) {
@@ -150,8 +151,10 @@ mod tests {
     use std::cell::Cell;
     use std::error::Error;
 
+    use fmm_model::Scalar;
+
     use super::*;
-    use crate::{Input, Scalar};
+    use crate::inputs::Input;
 
     fn one(value: f64, uncertainty: f64) -> Inputs {
         Inputs::new([Input::new("x", value, uncertainty, "m").unwrap()]).unwrap()

@@ -1,13 +1,14 @@
-//! Second order: effect of the curvature of a model on its result.
+//! Second order: effect of the curvature of a model on its result, and validity of the first order.
 
-use crate::inputs::factor::correlation_root;
-use crate::model::derivatives::{Derivatives, Expansion};
-use crate::model::excursion::{Departure, Excursion};
-use crate::{Budget, Input, Inputs, UncertaintyError};
+use crate::error::UncertaintyError;
+use crate::gum::budget::Budget;
+use crate::gum::derivatives::{Derivatives, Expansion};
+use crate::gum::excursion::{Departure, Excursion};
+use crate::inputs::{Input, Inputs};
 
 /// Largest effect of the curvature, relative to u(y), at which the linear approximation is still accepted (1). An
 /// uncertainty is stated to two digits, so that rounding changes it by up to 5 % as well.
-pub(crate) const TOLERATED: f64 = 0.05;
+const TOLERATED: f64 = 0.05;
 
 /// The second-order terms of the GUM.
 ///
@@ -24,7 +25,7 @@ pub(crate) const TOLERATED: f64 = 0.05;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SecondOrder {
-    /// ½ tr(H U), what the curvature adds to the estimate (unit of the result). It is reported, not applied.
+    /// ½ tr(H U), shift of the estimate by the curvature (unit of the result). It is reported, not applied.
     pub correction: f64,
     /// u(y), standard uncertainty to second order (unit of the result).
     pub standard_uncertainty: f64,
@@ -36,7 +37,7 @@ pub(crate) struct Curvature {
     /// The second-order terms; `None` where they are not finite, make a variance negative, or are not those of the
     /// model within the uncertainties of its inputs.
     pub(crate) terms: Option<SecondOrder>,
-    /// Whether the output stands still though its inputs move and its slopes do not vanish: what they do cancels.
+    /// True if the output stands still though its inputs move and its slopes do not vanish: their effects cancel.
     pub(crate) cancels: bool,
 }
 
@@ -84,7 +85,7 @@ pub(crate) fn second_order(
 fn directions(inputs: &Inputs) -> Vec<Vec<f64>> {
     let uncertainties: Vec<f64> = inputs.as_slice().iter().map(Input::standard_uncertainty).collect();
     let all: Vec<usize> = (0..uncertainties.len()).collect();
-    let root = correlation_root(inputs, &all);
+    let root = inputs.correlation_root(&all);
     let column = |m: usize| -> Vec<f64> { all.iter().map(|&i| uncertainties[i] * root[i][m]).collect() };
     all.iter().map(|&m| column(m)).filter(|column| column.iter().any(|&step| step != 0.0)).collect()
 }
@@ -142,9 +143,64 @@ impl Sums {
     }
 }
 
+/// The verdict on the linear approximation of a model within the uncertainties of its inputs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Linearisation {
+    /// Curvature changes neither u(y) nor y by as much as 5 % of u(y), and neither do the values of the model √3
+    /// standard uncertainties away along each of its inputs (or at their limits). It holds also for a result that cannot
+    /// vary, such as the difference of two fully correlated inputs of the same uncertainty.
+    ///
+    /// The model was evaluated at points: effects between them, or of several inputs far away together, are not seen.
+    Adequate,
+    /// u(y) is zero to first order although inputs are uncertain: the model is flat at the estimates or its slopes
+    /// cancel, and a linear approximation cannot see their effect. x² at x = 0 is the plainest case.
+    ZeroUncertainty,
+    /// The second-order terms change u(y) by 5 % or more.
+    UncertaintyDiffers(SecondOrder),
+    /// The second-order terms move the estimate by 5 % of u(y) or more.
+    EstimateShifts(SecondOrder),
+    /// The model departs from its expansion within the uncertainties of its inputs: a kink, a high power or a range
+    /// that ends there; or the second-order terms are not finite, or so large that they make the variance negative.
+    NotExpandable,
+    /// The second-order terms were not asked for.
+    Unchecked,
+}
+
+impl Linearisation {
+    /// True if a Monte Carlo should confirm the uncertainty before it is reported.
+    pub const fn is_suspect(self) -> bool {
+        !matches!(self, Self::Adequate | Self::Unchecked)
+    }
+
+    /// The verdict; the curvature is known if it was asked for.
+    pub(crate) fn judge(first_order: f64, inputs_vary: bool, curvature: Option<Curvature>) -> Self {
+        if first_order == 0.0 && inputs_vary && !curvature.is_some_and(|curvature| curvature.cancels) {
+            return Self::ZeroUncertainty;
+        }
+        match curvature.map(|curvature| curvature.terms) {
+            None => Self::Unchecked,
+            Some(None) => Self::NotExpandable,
+            Some(Some(_)) if first_order == 0.0 => Self::Adequate,
+            Some(Some(terms)) => {
+                let tolerated = TOLERATED * first_order;
+                if (terms.standard_uncertainty - first_order).abs() > tolerated {
+                    Self::UncertaintyDiffers(terms)
+                } else if terms.correction.abs() > tolerated {
+                    Self::EstimateShifts(terms)
+                } else {
+                    Self::Adequate
+                }
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use crate::{Gum, Input, Inputs, ModelOutput, Propagation, Taylor};
+    use crate::gum::{Gum, Propagation};
+    use crate::inputs::{Input, Inputs};
+    use crate::model::{ModelOutput, Taylor};
 
     fn inputs() -> Inputs {
         let (a, b) = (Input::new("a", 2.0, 0.5, "").unwrap(), Input::new("b", 3.0, 0.1, "").unwrap());

@@ -1,7 +1,32 @@
 //! One input quantity of a measurement.
 
-use crate::distributions::Shape;
-use crate::{Distribution, Evaluation, Observations, UncertaintyError};
+use std::fmt;
+
+use fmm_model::Rounded;
+
+use crate::distributions::Distribution;
+use crate::error::UncertaintyError;
+use crate::inputs::observations::Observations;
+
+/// Type A or type B evaluation (JCGM 100:2008, 4.2 and 4.3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Evaluation {
+    /// From a series of observations.
+    TypeA,
+    /// From anything else: a certificate, limits, experience.
+    #[default]
+    TypeB,
+}
+
+impl fmt::Display for Evaluation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::TypeA => "A",
+            Self::TypeB => "B",
+        })
+    }
+}
 
 /// An input quantity: its estimate, the standard uncertainty of that, and how well the uncertainty is known.
 ///
@@ -10,7 +35,7 @@ use crate::{Distribution, Evaluation, Observations, UncertaintyError};
 /// | x | `value` | `unit` | estimate |
 /// | u | `standard_uncertainty` | `unit` | standard deviation attributed to the estimate |
 /// | ν | `degrees_of_freedom` | 1 | n − 1 for the mean of n observations; infinite if u is known exactly |
-/// | | `distribution` | `unit` | what the trials of a Monte Carlo are drawn from |
+/// | | `distribution` | `unit` | source of the trials of a Monte Carlo |
 ///
 /// The unit is a label and is not converted: the model sees the bare values, so that all must belong to one
 /// coherent system. Uncertainty exactly zero is allowed and describes a constant.
@@ -38,8 +63,8 @@ impl Input {
     /// A normally distributed input of infinite degrees of freedom; `unit` is `"1"` for a pure number.
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`] for an empty name; [`UncertaintyError::OutOfRange`] if the value is not finite, or
-    /// the uncertainty negative or not finite.
+    /// [`UncertaintyError::Invalid`] for an empty name, a value that is not finite, or an uncertainty that is negative
+    /// or not finite.
     pub fn new(
         name: impl Into<String>,
         value: f64,
@@ -48,18 +73,23 @@ impl Input {
     ) -> Result<Self, UncertaintyError> {
         let (name, unit) = (name.into(), unit.into());
         if name.trim().is_empty() {
-            return Err(UncertaintyError::unnamed(value, &unit));
+            let value = Rounded::every_digit(value);
+            let what = format!("an input needs a name, but the one of value {value} {unit} has none");
+            return Err(UncertaintyError::invalid(what));
         }
         if !value.is_finite() {
-            return Err(UncertaintyError::value_not_finite(&name, value, &unit));
+            let value = Rounded::every_digit(value);
+            return Err(UncertaintyError::invalid(format!(
+                "the value of {name} must be finite, but is {value} {unit}"
+            )));
         }
         if !(standard_uncertainty >= 0.0 && standard_uncertainty.is_finite()) {
             return Err(UncertaintyError::uncertainty_out_of_range(&name, standard_uncertainty, &unit));
         }
         let distribution = if standard_uncertainty == 0.0 {
-            Shape::Constant(value).into()
+            Distribution::of_constant(value)
         } else {
-            Shape::Normal { mean: value, standard_deviation: standard_uncertainty }.into()
+            Distribution::of_normal(value, standard_uncertainty)
         };
         let (degrees_of_freedom, evaluation) = (f64::INFINITY, Evaluation::TypeB);
         Ok(Self { name, value, standard_uncertainty, unit, degrees_of_freedom, distribution, evaluation })
@@ -76,7 +106,7 @@ impl Input {
     /// ```
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`] for an empty name.
+    /// [`UncertaintyError::Invalid`] for an empty name.
     pub fn of(
         name: impl Into<String>,
         distribution: Distribution,
@@ -91,7 +121,7 @@ impl Input {
     /// The mean of repeated observations, an uncertainty of type A: u = s/√n, ν = n − 1, Student's t.
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`] for an empty name.
+    /// [`UncertaintyError::Invalid`] for an empty name.
     pub fn mean_of(
         name: impl Into<String>,
         observations: &Observations,
@@ -116,26 +146,13 @@ impl Input {
     /// exactly leaves heavier tails. Inputs of other distributions keep theirs, and ν only counts in ν_eff.
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] if they are below 1 or NaN.
+    /// [`UncertaintyError::Invalid`] if they are below 1 or NaN.
     pub fn with_degrees_of_freedom(mut self, degrees_of_freedom: f64) -> Result<Self, UncertaintyError> {
         self.degrees_of_freedom = UncertaintyError::require_degrees_of_freedom(&self.name, degrees_of_freedom)?;
-        if self.is_normal_or_t() {
+        if self.distribution.is_normal_or_t() {
             self.distribution = Distribution::student_t(self.value, self.standard_uncertainty, degrees_of_freedom)?;
         }
         Ok(self)
-    }
-
-    /// The same input known exactly: its estimate as a constant.
-    #[must_use]
-    pub(crate) fn held(&self) -> Self {
-        let (name, unit) = (self.name.clone(), self.unit.clone());
-        let (distribution, degrees_of_freedom) = (Shape::Constant(self.value).into(), f64::INFINITY);
-        let evaluation = self.evaluation;
-        Self { name, value: self.value, standard_uncertainty: 0.0, unit, degrees_of_freedom, distribution, evaluation }
-    }
-
-    pub(crate) fn is_normal_or_t(&self) -> bool {
-        matches!(self.distribution.shape, Shape::Normal { .. } | Shape::StudentT { .. })
     }
 
     /// Name, unique in its set.
@@ -163,7 +180,7 @@ impl Input {
         self.degrees_of_freedom
     }
 
-    /// Whether the uncertainty comes from observations (type A) or from elsewhere (type B).
+    /// Evaluation of the uncertainty: from observations (type A) or from elsewhere (type B).
     pub const fn evaluation(&self) -> Evaluation {
         self.evaluation
     }

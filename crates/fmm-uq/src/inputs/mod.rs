@@ -1,17 +1,14 @@
 //! The set of input quantities of a measurement and how they are correlated.
 
-mod evaluation;
-pub(crate) mod factor;
 mod input;
 mod observations;
 
-pub use evaluation::Evaluation;
-pub use input::Input;
+pub use input::{Evaluation, Input};
 pub use observations::Observations;
 
 use nalgebra::DMatrix;
 
-use crate::UncertaintyError;
+use crate::error::UncertaintyError;
 
 /// A non-empty set of inputs of different names, with their correlation matrix.
 ///
@@ -53,11 +50,11 @@ impl Inputs {
     /// Uncorrelated inputs, in the order in which a model receives them.
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`] without an input, or for a name given twice.
+    /// [`UncertaintyError::Invalid`] without an input, or for a name given twice.
     pub fn new(inputs: impl IntoIterator<Item = Input>) -> Result<Self, UncertaintyError> {
         let inputs: Vec<Input> = inputs.into_iter().collect();
         if inputs.is_empty() {
-            return Err(UncertaintyError::no_inputs());
+            return Err(UncertaintyError::invalid("at least one input is needed, but none was given"));
         }
         for (i, input) in inputs.iter().enumerate() {
             if inputs[..i].iter().any(|earlier| earlier.name() == input.name()) {
@@ -77,21 +74,24 @@ impl Inputs {
     /// by which they miss; take them from the observations instead.
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`] for an unknown name, an input with itself, a pair given twice, or coefficients that
-    /// are impossible together; [`UncertaintyError::OutOfRange`] for a coefficient outside [−1, 1].
+    /// [`UncertaintyError::Invalid`] for an unknown name, an input with itself, a pair given twice, a coefficient outside
+    /// [−1, 1], or coefficients that are impossible together.
     pub fn with_correlations(mut self, coefficients: &[(&str, &str, f64)]) -> Result<Self, UncertaintyError> {
         let mut seen = Vec::with_capacity(coefficients.len());
         for &(first, second, value) in coefficients {
             let (i, j) = (self.position(first)?, self.position(second)?);
             let pair = (i.min(j), i.max(j));
             if i == j {
-                return Err(UncertaintyError::self_correlation(first));
+                let what = format!("the correlation of `{first}` with itself is 1 and cannot be set");
+                return Err(UncertaintyError::invalid(what));
             }
             if seen.contains(&pair) {
-                return Err(UncertaintyError::repeated_pair(first, second));
+                let what = format!("the correlation of `{first}` and `{second}` is given twice");
+                return Err(UncertaintyError::invalid(what));
             }
             if !(-1.0..=1.0).contains(&value) {
-                return Err(UncertaintyError::correlation_out_of_range(first, second, value));
+                let correlation = format!("correlation of `{first}` and `{second}`");
+                return Err(UncertaintyError::out_of_range(&correlation, value, "in [-1, 1]"));
             }
             seen.push(pair);
             self.correlation[(i, j)] = value;
@@ -99,7 +99,10 @@ impl Inputs {
         }
         let smallest_eigenvalue = self.correlation.symmetric_eigenvalues().min();
         if smallest_eigenvalue < -self.rounding() {
-            return Err(UncertaintyError::not_positive_semidefinite(smallest_eigenvalue));
+            return Err(UncertaintyError::invalid(format!(
+                "no quantities can be correlated like this: the smallest eigenvalue of the correlation matrix is \
+                 {smallest_eigenvalue:.3e}, and it must not be negative"
+            )));
         }
         Ok(self)
     }
@@ -124,7 +127,8 @@ impl Inputs {
                 coefficients.push((quantities[i].0, quantities[j].0, observed[i].correlation(&observed[j])?));
             }
         }
-        let varying: Vec<&str> = inputs.all.iter().filter(|i| i.is_normal_or_t()).map(Input::name).collect();
+        let varying: Vec<&str> =
+            inputs.all.iter().filter(|i| i.distribution().is_normal_or_t()).map(Input::name).collect();
         let degrees_of_freedom = observed.first().map_or(f64::INFINITY, Observations::degrees_of_freedom);
         let inputs = inputs.clone().with_correlations(&coefficients)?;
         if varying.is_empty() { Ok(inputs) } else { inputs.with_ensemble(&varying, degrees_of_freedom) }
@@ -138,17 +142,20 @@ impl Inputs {
     /// they are correlated with each other.
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`] for an input that is neither normal nor t;
-    /// [`UncertaintyError::OutOfRange`] if ν is below 1 or NaN.
+    /// [`UncertaintyError::Invalid`] for an input that is neither normal nor t, or if ν is below 1 or NaN.
     pub fn with_ensemble(mut self, names: &[&str], degrees_of_freedom: f64) -> Result<Self, UncertaintyError> {
         let mut members = Vec::with_capacity(names.len());
         for &name in names {
             let at = self.position(name)?;
             if members.contains(&at) || self.ensembles.iter().any(|other| other.members.contains(&at)) {
-                return Err(UncertaintyError::already_in_ensemble(name));
+                return Err(UncertaintyError::invalid(format!(
+                    "`{name}` is in an ensemble already; an uncertainty comes from one set of observations"
+                )));
             }
-            if !self.all[at].is_normal_or_t() {
-                return Err(UncertaintyError::not_normal(name));
+            if !self.all[at].distribution().is_normal_or_t() {
+                return Err(UncertaintyError::invalid(format!(
+                    "`{name}` is neither normal nor t-distributed, and cannot be part of a multivariate t-distribution"
+                )));
             }
             self.all[at] = self.all[at].clone().with_degrees_of_freedom(degrees_of_freedom)?;
             members.push(at);
@@ -157,14 +164,6 @@ impl Inputs {
             self.ensembles.push(Ensemble { members, degrees_of_freedom });
         }
         Ok(self)
-    }
-
-    /// The same inputs with all but one held at their estimates; with none left uncertain if there is no such position.
-    pub(crate) fn only(&self, position: usize) -> Self {
-        let inputs = self.all.iter().enumerate();
-        let inputs: Vec<Input> = inputs.map(|(i, x)| if i == position { x.clone() } else { x.held() }).collect();
-        let correlation = DMatrix::identity(inputs.len(), inputs.len());
-        Self { all: inputs, correlation, ensembles: Vec::new() }
     }
 
     /// The names of two inputs that do not vary independently, if there are any.
@@ -176,7 +175,7 @@ impl Inputs {
 
     /// A number that changes with any name, parameter or correlation, though not between runs of one build.
     pub(crate) fn fingerprint(&self) -> u64 {
-        // FNV-1a of what tells two sets apart; the standard hasher promises no value.
+        // FNV-1a of all that distinguishes two sets; the standard hasher promises no value.
         format!("{self:?}")
             .bytes()
             .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
@@ -214,10 +213,31 @@ impl Inputs {
         16.0 * f64::EPSILON * self.all.len() as f64
     }
 
+    /// L with L Lᵀ = R for the correlation matrix R of some `members`, lower triangular, row by row.
+    ///
+    /// R may be singular: a column whose pivot is zero to rounding is left zero, as Cholesky's method would have it in
+    /// exact numbers. nalgebra's refuses such a matrix.
+    pub(crate) fn correlation_root(&self, members: &[usize]) -> Vec<Vec<f64>> {
+        let n = members.len();
+        let mut root = vec![vec![0.0; n]; n];
+        for j in 0..n {
+            let pivot = 1.0 - root[j][..j].iter().map(|l| l * l).sum::<f64>();
+            if pivot <= self.rounding() {
+                continue;
+            }
+            root[j][j] = pivot.sqrt();
+            for i in j + 1..n {
+                let known: f64 = root[i][..j].iter().zip(&root[j][..j]).map(|(a, b)| a * b).sum();
+                root[i][j] = (self.correlation_at(members[i], members[j]) - known) / root[j][j];
+            }
+        }
+        root
+    }
+
     fn position(&self, name: &str) -> Result<usize, UncertaintyError> {
         self.all.iter().position(|input| input.name() == name).ok_or_else(|| {
             let known: Vec<&str> = self.all.iter().map(Input::name).collect();
-            UncertaintyError::unknown_name(name, &known.join(", "))
+            UncertaintyError::invalid(format!("there is no input `{name}`; the inputs are {}", known.join(", ")))
         })
     }
 }
@@ -232,7 +252,7 @@ mod tests {
 
     #[test]
     fn names_must_be_there_and_differ() {
-        assert!(matches!(Inputs::new([]), Err(UncertaintyError::Inputs { .. })));
+        assert!(matches!(Inputs::new([]), Err(UncertaintyError::Invalid { .. })));
         let twice = ["a", "a"].map(|name| Input::new(name, 1.0, 0.1, "m").unwrap());
         assert_eq!(
             Inputs::new(twice).unwrap_err().to_string(),
@@ -248,12 +268,12 @@ mod tests {
     fn coefficients_are_checked_one_by_one() {
         for bad in [1.000_001, -2.0, f64::NAN, f64::INFINITY] {
             let error = three().with_correlations(&[("a", "b", bad)]).unwrap_err();
-            assert!(matches!(error, UncertaintyError::OutOfRange { .. }), "r = {bad}: {error}");
+            assert!(matches!(error, UncertaintyError::Invalid { .. }), "r = {bad}: {error}");
         }
         let itself = three().with_correlations(&[("a", "a", 1.0)]);
-        assert!(matches!(itself, Err(UncertaintyError::Inputs { what }) if what.contains("with itself")));
+        assert!(matches!(itself, Err(UncertaintyError::Invalid { what }) if what.contains("with itself")));
         let twice = three().with_correlations(&[("a", "b", 0.1), ("b", "a", 0.1)]);
-        assert!(matches!(twice, Err(UncertaintyError::Inputs { what }) if what.contains("given twice")));
+        assert!(matches!(twice, Err(UncertaintyError::Invalid { what }) if what.contains("given twice")));
     }
 
     #[test]
@@ -261,7 +281,7 @@ mod tests {
         // Eigenvalues 1, 1 ± 0.9 √2 without the third pair; 0.1, 0.1, 2.8 with it.
         let half = [("a", "b", 0.9), ("a", "c", 0.9)];
         match three().with_correlations(&half) {
-            Err(UncertaintyError::Inputs { what }) => {
+            Err(UncertaintyError::Invalid { what }) => {
                 assert!(what.contains(&format!("matrix is {:.3e}", 1.0 - 0.9 * 2f64.sqrt())), "{what}");
             }
             other => panic!("accepted or refused for the wrong reason: {other:?}"),
@@ -275,5 +295,23 @@ mod tests {
         let inputs = three().with_correlations(&full).unwrap();
         assert_eq!((inputs.correlation("c", "a"), inputs.correlation("c", "c")), (Some(-1.0), Some(1.0)));
         assert!(three().with_correlations(&[full[0], full[1], ("b", "c", 1.0)]).is_err());
+    }
+
+    #[test]
+    fn roots_of_regular_and_singular_matrices() {
+        let inputs = Inputs::new(["a", "b", "c"].map(|name| Input::new(name, 0.0, 1.0, "m").unwrap())).unwrap();
+        for coefficients in [[0.9, 0.3, 0.5], [1.0, -1.0, -1.0], [1.0, 0.2, 0.2], [0.0, 0.0, 0.0]] {
+            let pairs = [("a", "b", coefficients[0]), ("a", "c", coefficients[1]), ("b", "c", coefficients[2])];
+            let correlated = inputs.clone().with_correlations(&pairs).unwrap();
+            let root = correlated.correlation_root(&[0, 1, 2]);
+            for i in 0..3 {
+                for j in 0..3 {
+                    let product: f64 = (0..3).map(|k| root[i][k] * root[j][k]).sum();
+                    // A pivot dropped at 1e-14 may leave its root, 1e-7, in the matrix; these leave nothing.
+                    let error = product - correlated.correlation_at(i, j);
+                    assert!(error.abs() < 1e-15, "{coefficients:?}: {error} at {i}, {j}");
+                }
+            }
+        }
     }
 }

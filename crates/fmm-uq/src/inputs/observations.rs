@@ -1,6 +1,7 @@
-//! Type A evaluation: what repeated observations say.
+//! Repeated observations, the evaluation of type A.
 
-use crate::{Moments, UncertaintyError};
+use crate::error::UncertaintyError;
+use crate::moments::Moments;
 
 /// Repeated independent observations of one quantity (JCGM 100:2008, 4.2).
 ///
@@ -32,14 +33,13 @@ impl Observations {
     /// At least two finite values.
     ///
     /// # Errors
-    /// [`UncertaintyError::TooFewObservations`] for fewer than two values; [`UncertaintyError::OutOfRange`] if a value
-    /// or the squares are not finite; [`UncertaintyError::NoAnswer`] if the values differ by so little that their
-    /// squares are lost.
+    /// [`UncertaintyError::Invalid`] for fewer than two values, or if a value or the squares are not finite;
+    /// [`UncertaintyError::NoAnswer`] if the values differ by so little that their squares are lost.
     pub fn new(values: &[f64]) -> Result<Self, UncertaintyError> {
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
             return Err(UncertaintyError::observation_not_finite(index, values[index]));
         }
-        let too_few = || UncertaintyError::TooFewObservations { found: values.len(), needed: 2 };
+        let too_few = || UncertaintyError::too_few_observations(values.len(), 2);
         if values.len() < 2 {
             return Err(too_few());
         }
@@ -87,11 +87,12 @@ impl Observations {
     /// not vary.
     ///
     /// # Errors
-    /// [`UncertaintyError::Inputs`] if the numbers of observations differ.
+    /// [`UncertaintyError::Invalid`] if the numbers of observations differ.
     pub fn correlation(&self, other: &Self) -> Result<f64, UncertaintyError> {
         let (first, second) = (self.values.len(), other.values.len());
         if first != second {
-            return Err(UncertaintyError::unequal_observations(first, second));
+            let what = format!("simultaneous observations come in equal numbers, but there are {first} and {second}");
+            return Err(UncertaintyError::invalid(what));
         }
         let scale = self.standard_deviation * other.standard_deviation * (first - 1) as f64;
         if scale == 0.0 {

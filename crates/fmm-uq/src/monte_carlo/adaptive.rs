@@ -1,10 +1,11 @@
 //! Adaptive number of trials.
 
+use crate::error::UncertaintyError;
+use crate::moments::Moments;
 use crate::monte_carlo::block::BLOCK_TRIALS;
 use crate::monte_carlo::output_sample::symmetric;
 use crate::monte_carlo::settling::Settling;
-use crate::monte_carlo::tolerance::{numerical_tolerance, valid_digits};
-use crate::{Moments, UncertaintyError, coverage_factor};
+use crate::validation::{numerical_tolerance, valid_digits};
 
 /// Sequences of trials before the first decision: with fewer, chance may make them agree.
 const FEWEST_SEQUENCES: usize = 10;
@@ -30,26 +31,19 @@ pub enum IntervalKind {
 /// s_z² = Σ (z_h − z̄)²/(h (h − 1)),   stop when 2 s_z ≤ δ for all four z      (JCGM 101:2008, 7.9.4)
 /// ```
 ///
-/// What is stated are the ends of the interval of all trials. Those of a symmetric interval scatter as s_z says; those
+/// The ends stated are those of the interval of all trials. Those of a symmetric interval scatter as s_z says; those
 /// of a shortest interval settle only as M^(−1/3), and are judged by the scatter of batches that grow with the run.
 /// They take more trials, eight times as many in the guide's examples, and a flat density, of which
-/// all intervals are equally short, ends in [`UncertaintyError::NotStable`].
+/// all intervals are equally short, ends in [`UncertaintyError::TooFewTrials`].
 ///
 /// At least ten sequences are made: two may agree by chance. The stop succeeds in about nine of ten runs, since it
-/// waits for a favourable estimate of s_z; [`Adaptive::two_stage`] takes s_z from the first sequences alone and
-/// succeeds more often, for some more trials.
-///
-/// # References
-/// G. Wübbeler, P. M. Harris, M. G. Cox, C. Elster, "A two-stage procedure for determining the number of trials in
-/// the application of a Monte Carlo method for uncertainty evaluation", Metrologia 47 (2010) 317,
-/// doi:10.1088/0026-1394/47/3/023.
+/// waits for a favourable estimate of s_z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adaptive {
     target: Target,
     share: f64,
     level: f64,
     kind: IntervalKind,
-    first_stage: Option<usize>,
     most_trials: u64,
 }
 
@@ -64,7 +58,7 @@ impl Adaptive {
     /// trials.
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless there are 1 to 15 digits.
+    /// [`UncertaintyError::Invalid`] unless there are 1 to 15 digits.
     pub fn to_digits(digits: u32) -> Result<Self, UncertaintyError> {
         Ok(Self::new(Target::Digits(valid_digits(digits)?)))
     }
@@ -72,7 +66,7 @@ impl Adaptive {
     /// Results stable to `tolerance` δ (unit of the outputs, which share it).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless it is positive and finite.
+    /// [`UncertaintyError::Invalid`] unless it is positive and finite.
     pub fn to_tolerance(tolerance: f64) -> Result<Self, UncertaintyError> {
         if tolerance > 0.0 && tolerance.is_finite() {
             Ok(Self::new(Target::Tolerance(tolerance)))
@@ -83,14 +77,13 @@ impl Adaptive {
     }
 
     const fn new(target: Target) -> Self {
-        let (kind, first_stage, most_trials) = (IntervalKind::Symmetric, None, 100_000_000);
-        Self { target, share: 1.0, level: 0.95, kind, first_stage, most_trials }
+        Self { target, share: 1.0, level: 0.95, kind: IntervalKind::Symmetric, most_trials: 100_000_000 }
     }
 
     /// The same with an interval of the given kind and coverage probability.
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless 0 < level < 1.
+    /// [`UncertaintyError::Invalid`] unless 0 < level < 1.
     pub fn with_interval(mut self, kind: IntervalKind, level: f64) -> Result<Self, UncertaintyError> {
         (self.kind, self.level) = (kind, UncertaintyError::require_level(level)?);
         Ok(self)
@@ -100,13 +93,6 @@ impl Adaptive {
     #[must_use]
     pub const fn for_validation(mut self) -> Self {
         self.share = VALIDATION;
-        self
-    }
-
-    /// The same in two stages: s_z from the first `sequences`, at least ten, then as many as Student's t asks for.
-    #[must_use]
-    pub fn two_stage(mut self, sequences: usize) -> Self {
-        self.first_stage = Some(sequences.max(FEWEST_SEQUENCES));
         self
     }
 
@@ -128,7 +114,7 @@ impl Adaptive {
 
     /// Trials before the first decision.
     pub(crate) fn fewest_trials(&self) -> u64 {
-        self.trials_of_sequence().saturating_mul(self.first_stage.unwrap_or(FEWEST_SEQUENCES) as u64)
+        self.trials_of_sequence().saturating_mul(FEWEST_SEQUENCES as u64)
     }
 
     /// Tolerance of all figures of an output with this uncertainty (unit of the output).
@@ -154,8 +140,6 @@ pub(crate) struct Stability {
     /// Number of values after all sequences so far.
     values: usize,
     outputs: Vec<Figures>,
-    /// Sequences to be made in all, once the first of two stages has shown it.
-    planned: Option<usize>,
 }
 
 /// The figures of one output.
@@ -212,7 +196,7 @@ impl Figures {
 
 impl Stability {
     pub(crate) const fn new(rule: Adaptive) -> Self {
-        Self { rule, values: 0, outputs: Vec::new(), planned: None }
+        Self { rule, values: 0, outputs: Vec::new() }
     }
 
     /// Takes in the next sequence, given all values so far by output, and says whether it is the last one.
@@ -229,26 +213,17 @@ impl Stability {
         self.decide()
     }
 
-    fn decide(&mut self) -> Result<bool, UncertaintyError> {
+    fn decide(&self) -> Result<bool, UncertaintyError> {
         let count = self.outputs.first().map_or(0, |figures| figures.averaged[0].len());
-        let averages_stand = if let Some(first) = self.rule.first_stage {
-            if count == first {
-                let factor = coverage_factor(0.95, (first - 1) as f64).unwrap_or(f64::INFINITY);
-                self.planned = Some(self.needed(factor)?.max(first as f64) as usize);
-            }
-            self.planned.is_some_and(|planned| count >= planned)
-        } else {
-            count >= FEWEST_SEQUENCES && self.needed(2.0)? <= count as f64
-        };
-        Ok(averages_stand && self.settled()?)
+        Ok(count >= FEWEST_SEQUENCES && self.needed()? <= count as f64 && self.settled()?)
     }
 
-    /// Whether the ends of all shortest intervals stand.
+    /// True if the ends of all shortest intervals are stable.
     fn settled(&self) -> Result<bool, UncertaintyError> {
         for figures in &self.outputs {
             let u = figures.uncertainty();
             if let Some(settling) = figures.settling.as_ref().filter(|_| u > 0.0)
-                && !(settling.doubt()? <= self.rule.tolerance(u)?)
+                && !(settling.doubt() <= self.rule.tolerance(u)?)
             {
                 return Ok(false);
             }
@@ -256,9 +231,9 @@ impl Stability {
         Ok(true)
     }
 
-    /// Sequences after which k s_z ≤ δ, if the spread between sequences stays what it is: whole, and the most for any
-    /// averaged figure of any output.
-    fn needed(&self, factor: f64) -> Result<f64, UncertaintyError> {
+    /// Sequences after which 2 s_z ≤ δ for the spread between sequences so far: whole, and the most for any averaged
+    /// figure of any output.
+    fn needed(&self) -> Result<f64, UncertaintyError> {
         let mut most = 0.0_f64;
         for figures in &self.outputs {
             let u = figures.uncertainty();
@@ -268,7 +243,7 @@ impl Stability {
             let tolerance = self.rule.tolerance(u)?;
             for figure in &figures.averaged {
                 let spread = Moments::of_values(figure).standard_deviation().unwrap_or(f64::INFINITY);
-                most = most.max((factor * spread / tolerance).powi(2));
+                most = most.max((2.0 * spread / tolerance).powi(2));
             }
         }
         // A shade more than whole is whole: rounding must not cost a sequence.

@@ -1,45 +1,34 @@
 //! Propagation of distributions by a Monte Carlo method.
 
 mod adaptive;
-mod allowed_failures;
-#[cfg(feature = "serde")]
-mod bits;
 mod block;
-mod failure;
-mod heavy_tail;
-mod histogram;
-mod moments;
 mod order_statistics;
 mod output_sample;
 mod partial_run;
 mod pool;
-mod quasi_monte_carlo;
+mod refusal;
 mod region;
 mod run;
 mod sampler;
 mod sensitivity;
 mod settling;
-mod tolerance;
+mod statement;
 
 pub use adaptive::{Adaptive, IntervalKind};
-pub use failure::{Failure, FailureKind, Failures};
-pub use histogram::Histogram;
-pub use moments::Moments;
-pub use output_sample::OutputSample;
+pub use output_sample::{Histogram, OutputSample};
 pub use partial_run::PartialRun;
-pub use quasi_monte_carlo::{QuasiMonteCarlo, QuasiSample};
-pub use region::Region;
 pub use sensitivity::{VarianceShare, variance_shares};
-pub use tolerance::numerical_tolerance;
+pub use statement::TrialStatement;
 
 use std::ops::{ControlFlow, Range};
 
-use crate::monte_carlo::allowed_failures::AllowedFailures;
+use crate::error::UncertaintyError;
+use crate::inputs::Inputs;
+use crate::model::ModelOutput;
 use crate::monte_carlo::block::{BLOCK_TRIALS, Block};
-use crate::monte_carlo::heavy_tail::HeavyTail;
+use crate::monte_carlo::refusal::{AllowedFailures, HeavyTail};
 use crate::monte_carlo::run::Plan;
 use crate::monte_carlo::sampler::Sampler;
-use crate::{Inputs, ModelOutput, UncertaintyError};
 
 /// A run of JCGM 101:2008 (one output) or JCGM 102:2011 (several): the distributions of the inputs propagated through
 /// the model by random trials.
@@ -69,7 +58,6 @@ use crate::{Inputs, ModelOutput, UncertaintyError};
 /// ```
 #[derive(Clone)]
 pub struct MonteCarlo<'a> {
-    pub(crate) inputs: Inputs,
     pub(crate) sampler: Sampler,
     pub(crate) heavy_tail: Option<HeavyTail>,
     pub(crate) fingerprint: u64,
@@ -104,25 +92,25 @@ impl<'a> MonteCarlo<'a> {
     /// A fixed number of trials, with seed 0.
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] for zero trials or more than 2⁵³.
+    /// [`UncertaintyError::Invalid`] for zero trials or more than 2⁵³.
     pub fn new(inputs: &Inputs, trials: u64) -> Result<Self, UncertaintyError> {
         const MOST: u64 = 1 << 53;
         match trials {
-            0 => Err(UncertaintyError::no_trials()),
-            1..=MOST => Ok(Self::with_plan(inputs.clone(), Plan::Fixed(trials))),
+            0 => Err(UncertaintyError::invalid("at least one trial is needed, but none was asked for")),
+            1..=MOST => Ok(Self::with_plan(inputs, Plan::Fixed(trials))),
             _ => Err(UncertaintyError::too_many_trials(trials, MOST)),
         }
     }
 
     /// A number of trials that makes the results stable by `rule`, with seed 0.
     pub fn adaptive(inputs: &Inputs, rule: Adaptive) -> Self {
-        Self::with_plan(inputs.clone(), Plan::Adaptive(rule))
+        Self::with_plan(inputs, Plan::Adaptive(rule))
     }
 
-    fn with_plan(inputs: Inputs, plan: Plan) -> Self {
-        let (sampler, heavy_tail, fingerprint) = (Sampler::new(&inputs), HeavyTail::of(&inputs), inputs.fingerprint());
+    fn with_plan(inputs: &Inputs, plan: Plan) -> Self {
+        let (sampler, heavy_tail, fingerprint) = (Sampler::new(inputs), HeavyTail::of(inputs), inputs.fingerprint());
         let (allowed_failures, watch) = (AllowedFailures::default(), None);
-        Self { inputs, sampler, heavy_tail, fingerprint, seed: 0, plan, allowed_failures, watch }
+        Self { sampler, heavy_tail, fingerprint, seed: 0, plan, allowed_failures, watch }
     }
 
     /// Rule by which an adaptive run stops.
@@ -131,12 +119,6 @@ impl<'a> MonteCarlo<'a> {
             Plan::Adaptive(rule) => Some(rule),
             Plan::Fixed(_) => None,
         }
-    }
-
-    /// The same run of other inputs.
-    pub(crate) fn with_inputs(&self, inputs: Inputs) -> Self {
-        let (seed, allowed_failures, watch) = (self.seed, self.allowed_failures, self.watch);
-        Self { seed, allowed_failures, watch, ..Self::with_plan(inputs, self.plan) }
     }
 
     /// The same with another seed, and so with other random numbers.
@@ -149,14 +131,14 @@ impl<'a> MonteCarlo<'a> {
     /// The same with a share of trials that may fail, 0 unless set.
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless it lies in [0, 1).
+    /// [`UncertaintyError::Invalid`] unless it lies in [0, 1).
     pub fn with_allowed_failures(mut self, share: f64) -> Result<Self, UncertaintyError> {
         self.allowed_failures = AllowedFailures::new(share)?;
         Ok(self)
     }
 
-    /// The same with a function that is told of the progress every 100 trials of a thread, and ends the run by
-    /// giving back [`ControlFlow::Break`].
+    /// The same with a function that receives the progress every 100 trials of a thread, and ends the run by returning
+    /// [`ControlFlow::Break`].
     #[must_use]
     pub const fn with_progress(mut self, watch: &'a (dyn Fn(Progress) -> ControlFlow<()> + Sync + 'a)) -> Self {
         self.watch = Some(watch);
@@ -168,13 +150,13 @@ impl<'a> MonteCarlo<'a> {
     /// # Errors
     /// [`UncertaintyError::TooManyFailures`] if more trials fail than allowed; where none may fail, at the first
     /// failure. [`UncertaintyError::Model`] if no trial succeeds, or the number of outputs changes.
-    /// [`UncertaintyError::Cancelled`] if the observer of the progress ends the run. [`UncertaintyError::OutOfRange`]
-    /// if the squares of the values overflow. For an adaptive run also [`UncertaintyError::NotStable`] at its largest
-    /// number of trials, [`UncertaintyError::TooFewTrials`] if that number is too small for the rule, and
-    /// [`UncertaintyError::NoAnswer`] if an input has Student's t of ν ≤ 2.
+    /// [`UncertaintyError::Cancelled`] if the observer of the progress ends the run. [`UncertaintyError::Invalid`]
+    /// if the squares of the values overflow. For an adaptive run also [`UncertaintyError::TooFewTrials`] if its largest
+    /// number of trials is too small for the rule, and [`UncertaintyError::NoAnswer`] if an input has Student's t of
+    /// ν ≤ 2.
     ///
     /// # Panics
-    /// If the model does: a panic ends the run and passes through. What may fail should give back an error.
+    /// If the model does: a panic ends the run and passes through. A model that may fail should return an error.
     pub fn run<R: ModelOutput<f64>>(
         &self,
         model: impl Fn(&[f64]) -> R + Sync,
@@ -185,8 +167,8 @@ impl<'a> MonteCarlo<'a> {
     /// Runs some blocks of trials; [`MonteCarlo::shard`] divides the blocks of a fixed number of trials.
     ///
     /// # Errors
-    /// Those of [`MonteCarlo::run`] but for what only the whole can tell: no success, and too many failures
-    /// where some are allowed.
+    /// Those of [`MonteCarlo::run`], except those of the whole run: no success, and too many failures where some are
+    /// allowed.
     ///
     /// # Panics
     /// If the model does.
@@ -228,7 +210,7 @@ impl<'a> MonteCarlo<'a> {
         self.finish_plan(partial)
     }
 
-    /// The values of the inputs in one trial, such as that of a [`Failure`](crate::Failure); `None` if the block has no
+    /// The values of the inputs in one trial, such as that of a [`Failure`](crate::failure::Failure); `None` if the block has no
     /// such trial.
     pub fn trial_inputs(&self, block: u64, trial: usize) -> Option<Vec<f64>> {
         (trial < BLOCK_TRIALS).then(|| Block::inputs(self.seed, block, trial, &self.sampler))

@@ -1,8 +1,12 @@
 //! Sample of outputs of the trials of a Monte Carlo.
 
-use crate::monte_carlo::heavy_tail::HeavyTail;
+use fmm_model::Interval;
+
+use crate::error::UncertaintyError;
+use crate::failure::Failures;
+use crate::moments::Moments;
 use crate::monte_carlo::order_statistics::{largest, ranked, smallest};
-use crate::{Failures, Interval, Moments, UncertaintyError};
+use crate::monte_carlo::refusal::HeavyTail;
 
 /// The values of all outputs over the successful trials of a run, in the order of the trials.
 ///
@@ -24,6 +28,32 @@ pub struct OutputSample {
     trials: u64,
     failures: Failures,
     heavy_tail: Option<HeavyTail>,
+}
+
+/// Bars of equal width from the smallest to the largest value.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Histogram {
+    /// Left edge of the first bar (unit of the output).
+    pub start: f64,
+    /// Width of a bar (unit of the output).
+    pub width: f64,
+    /// Values in each bar.
+    pub counts: Vec<u64>,
+}
+
+impl Histogram {
+    /// Probability density of each bar (reciprocal of the unit of the output); the bars have the area 1 together.
+    pub fn density(&self) -> Vec<f64> {
+        let all: u64 = self.counts.iter().sum();
+        self.counts.iter().map(|&count| count as f64 / (all as f64 * self.width)).collect()
+    }
+
+    /// Centres of the bars (unit of the output).
+    pub fn centres(&self) -> Vec<f64> {
+        (0..self.counts.len()).map(|bar| self.start + self.width * (bar as f64 + 0.5)).collect()
+    }
 }
 
 impl OutputSample {
@@ -64,7 +94,7 @@ impl OutputSample {
     /// The values of an output over the successful trials (its unit).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] for an output that does not exist.
+    /// [`UncertaintyError::Invalid`] for an output that does not exist.
     pub fn values(&self, output: usize) -> Result<&[f64], UncertaintyError> {
         let outputs = self.columns.len();
         self.columns.get(output).map(Vec::as_slice).ok_or_else(|| UncertaintyError::no_such_output(output, outputs))
@@ -73,7 +103,7 @@ impl OutputSample {
     /// Mean and spread of an output (its unit).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] for an output that does not exist.
+    /// [`UncertaintyError::Invalid`] for an output that does not exist.
     pub fn moments(&self, output: usize) -> Result<&Moments, UncertaintyError> {
         let outputs = self.columns.len();
         self.moments.get(output).ok_or_else(|| UncertaintyError::no_such_output(output, outputs))
@@ -82,7 +112,7 @@ impl OutputSample {
     /// y, mean of the values (unit of the output).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] for an output that does not exist; [`UncertaintyError::NoAnswer`] if an input
+    /// [`UncertaintyError::Invalid`] for an output that does not exist; [`UncertaintyError::NoAnswer`] if an input
     /// has Student's t of ν = 1, which has no mean.
     pub fn estimate(&self, output: usize) -> Result<f64, UncertaintyError> {
         HeavyTail::require_mean(self.heavy_tail.as_ref())?;
@@ -92,15 +122,15 @@ impl OutputSample {
     /// u(y), standard deviation of the values (unit of the output).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] for an output that does not exist; [`UncertaintyError::TooFewObservations`] for
-    /// a single trial; [`UncertaintyError::NoAnswer`] for values whose squares vanish, or if an input has Student's t
+    /// [`UncertaintyError::Invalid`] for an output that does not exist, and for a single trial;
+    /// [`UncertaintyError::NoAnswer`] for values whose squares vanish, or if an input has Student's t
     /// of ν ≤ 2, such as the mean of two or three observations. If the model bounds such an input,
     /// [`OutputSample::moments`] has the deviation nevertheless.
     pub fn standard_uncertainty(&self, output: usize) -> Result<f64, UncertaintyError> {
         let moments = self.moments(output)?;
         HeavyTail::require_variance(self.heavy_tail.as_ref())?;
         moments.require_squares(self.values(output)?, "the result")?;
-        let too_few = || UncertaintyError::TooFewObservations { found: moments.count(), needed: 2 };
+        let too_few = || UncertaintyError::too_few_observations(moments.count(), 2);
         moments.standard_deviation().ok_or_else(too_few)
     }
 
@@ -117,7 +147,7 @@ impl OutputSample {
     /// The interval that leaves equal probabilities (1 − p)/2 on both sides (JCGM 101:2008, 7.7.2).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`] unless 0 < p < 1;
+    /// [`UncertaintyError::Invalid`] unless 0 < p < 1;
     /// [`UncertaintyError::TooFewTrials`] if the interval would reach beyond the values.
     pub fn symmetric_interval(&self, output: usize, level: f64) -> Result<Interval, UncertaintyError> {
         symmetric(self.values(output)?, level)
@@ -131,9 +161,33 @@ impl OutputSample {
     pub fn shortest_interval(&self, output: usize, level: f64) -> Result<Interval, UncertaintyError> {
         shortest(self.values(output)?, level)
     }
+
+    /// The histogram of an output with this number of `bars`.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::Invalid`] unless there are 1 to 1 000 000 bars and
+    /// the values differ.
+    pub fn histogram(&self, output: usize, bars: usize) -> Result<Histogram, UncertaintyError> {
+        let refuse = |option, value, must_be| Err(UncertaintyError::out_of_range(option, value, must_be));
+        if !(1..=1_000_000).contains(&bars) {
+            return refuse("number of bars", bars as f64, "between 1 and 1000000");
+        }
+        let values = self.values(output)?;
+        let range = |(low, high): (f64, f64), &value: &f64| (low.min(value), high.max(value));
+        let (start, end) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), range);
+        let width = (end - start) / bars as f64;
+        if !(width > 0.0 && width.is_finite()) {
+            return refuse("range of the values", end - start, "positive and finite");
+        }
+        let mut counts = vec![0; bars];
+        for value in values {
+            counts[(((value - start) / width) as usize).min(bars - 1)] += 1;
+        }
+        Ok(Histogram { start, width, counts })
+    }
 }
 
-/// q and M − q: how many ranks an interval spans, and how many places it has to begin at.
+/// q and M − q: the ranks that an interval spans, and the places that it may begin at.
 fn span(count: usize, level: f64) -> Result<(usize, usize), UncertaintyError> {
     let level = UncertaintyError::require_level(level)?;
     let needed = ((2.0 / (1.0 - level)).ceil() as usize).max(2);

@@ -1,6 +1,6 @@
 //! A part of a Monte Carlo run, made anywhere.
 
-use crate::UncertaintyError;
+use crate::error::UncertaintyError;
 use crate::monte_carlo::block::{BLOCK_TRIALS, Block};
 
 /// The results of some blocks of a run, in the order of the blocks.
@@ -46,7 +46,7 @@ pub struct PartialRun {
 mod unchecked {
     //! A part as it stands in a file.
 
-    use crate::UncertaintyError;
+    use crate::error::UncertaintyError;
     use crate::monte_carlo::block::Block;
 
     #[derive(serde::Deserialize)]
@@ -74,12 +74,14 @@ impl PartialRun {
     pub(crate) fn assemble(seed: u64, inputs: u64, mut blocks: Vec<Block>) -> Result<Self, UncertaintyError> {
         blocks.sort_by_key(|block| block.index);
         if let Some(pair) = blocks.windows(2).find(|pair| pair[0].index == pair[1].index) {
-            return Err(UncertaintyError::duplicate_block(pair[0].index));
+            let block = pair[0].index;
+            let what = format!("block {block} is in both partial results; a shard must not be counted twice");
+            return Err(UncertaintyError::part(what, block));
         }
         let mut outputs = blocks.iter().map(|block| block.outputs as u64).filter(|&n| n != 0);
         let first = outputs.next().unwrap_or(0);
         if let Some(second) = outputs.find(|&n| n != first) {
-            return Err(UncertaintyError::layout_mismatch("numbers of outputs", first, second));
+            return Err(mismatch("numbers of outputs", first, second));
         }
         Ok(Self { seed, inputs, blocks })
     }
@@ -89,13 +91,7 @@ impl PartialRun {
     /// # Errors
     /// [`UncertaintyError::PartialRun`] if seed, inputs or number of outputs differ, or a block is in both.
     pub fn merge(mut self, other: Self) -> Result<Self, UncertaintyError> {
-        for (what, first, second) in
-            [("seeds", self.seed, other.seed), ("inputs (by fingerprint)", self.inputs, other.inputs)]
-        {
-            if first != second {
-                return Err(UncertaintyError::layout_mismatch(what, first, second));
-            }
-        }
+        self.require(other.seed, other.inputs)?;
         self.blocks.extend(other.blocks);
         Self::assemble(self.seed, self.inputs, self.blocks)
     }
@@ -110,12 +106,15 @@ impl PartialRun {
         self.blocks.iter().map(|block| block.index)
     }
 
-    pub(crate) const fn seed(&self) -> u64 {
-        self.seed
-    }
-
-    pub(crate) const fn inputs(&self) -> u64 {
-        self.inputs
+    /// Refuses another seed or other inputs, by their fingerprint.
+    pub(crate) fn require(&self, seed: u64, inputs: u64) -> Result<(), UncertaintyError> {
+        if self.seed != seed {
+            return Err(mismatch("seeds", self.seed, seed));
+        }
+        if self.inputs != inputs {
+            return Err(mismatch("inputs (by fingerprint)", self.inputs, inputs));
+        }
+        Ok(())
     }
 
     pub(crate) fn into_blocks(self) -> Vec<Block> {
@@ -123,7 +122,7 @@ impl PartialRun {
     }
 }
 
-/// Whether a block could have come out of a run.
+/// Refuses a block that no run can have given.
 #[cfg_attr(not(feature = "serde"), allow(dead_code, reason = "only files can be damaged"))]
 fn check(block: &Block) -> Result<(), UncertaintyError> {
     let failed = block.failures.by_kind().iter().try_fold(0_u64, |sum, (_, count)| sum.checked_add(*count));
@@ -140,5 +139,12 @@ fn check(block: &Block) -> Result<(), UncertaintyError> {
     } else {
         return Ok(());
     };
-    Err(UncertaintyError::damaged_partial(block.index, what))
+    let block = block.index;
+    Err(UncertaintyError::part(format!("block {block} of the partial result is damaged: {what}"), block))
+}
+
+/// Error of parts of different runs.
+fn mismatch(what: &str, first: u64, second: u64) -> UncertaintyError {
+    let but = format!("but one has {first} and another {second}");
+    UncertaintyError::part(format!("partial results belong together only if their {what} agree, {but}"), None)
 }

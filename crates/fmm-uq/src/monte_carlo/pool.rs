@@ -1,10 +1,12 @@
 //! Blocks of trials put together.
 
+use crate::error::UncertaintyError;
+use crate::failure::Failures;
 use crate::monte_carlo::block::Block;
-use crate::monte_carlo::heavy_tail::HeavyTail;
-use crate::{Failures, OutputSample, UncertaintyError};
+use crate::monte_carlo::output_sample::OutputSample;
+use crate::monte_carlo::refusal::HeavyTail;
 
-/// Values of an output that room is made for at once; more of them are given room as they come.
+/// Values of an output for which memory is reserved at once.
 const ROOM: u64 = 1 << 27;
 
 /// The values of blocks that came so far, in their order: one column for each output.
@@ -16,7 +18,7 @@ pub(crate) struct Pool {
 }
 
 impl Pool {
-    /// An empty pool with room for so many trials.
+    /// An empty pool with room for the `expected` number of trials.
     pub(crate) fn new(expected: u64) -> Self {
         Self { columns: Vec::new(), expected, trials: 0, failures: Failures::default() }
     }

@@ -1,29 +1,12 @@
-//! Coverage regions of several outputs.
+//! Covariance and coverage regions of a sample of outputs.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::DVector;
 
+use crate::error::UncertaintyError;
+use crate::moments::Moments;
 use crate::monte_carlo::order_statistics::ranked;
-use crate::{Moments, OutputSample, UncertaintyError};
-
-/// A region of given coverage probability for all outputs together (JCGM 102:2011, 7.7).
-///
-/// ```text
-/// ellipsoid  (η − y)ᵀ U⁻¹ (η − y) ≤ k²,      rectangle  |η_j − y_j| ≤ k u_j for all j
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct Region {
-    /// y, estimates of the outputs (their units).
-    pub centre: Vec<f64>,
-    /// u_j, standard uncertainties (units of the outputs).
-    pub standard_uncertainties: Vec<f64>,
-    /// U, covariance matrix of the outputs row by row (products of their units).
-    pub covariance: Vec<Vec<f64>>,
-    /// k, coverage factor (1).
-    pub coverage_factor: f64,
-    /// p, coverage probability (1).
-    pub level: f64,
-}
+use crate::monte_carlo::output_sample::OutputSample;
+use crate::region::Region;
 
 impl OutputSample {
     /// u(y_i, y_j), covariance of two outputs (product of their units).
@@ -57,22 +40,15 @@ impl OutputSample {
     /// The ellipsoid of the covariance matrix that holds a share p of the trials (JCGM 102:2011, 7.7.2).
     ///
     /// # Errors
-    /// [`UncertaintyError::OutOfRange`]; [`UncertaintyError::TooFewTrials`];
+    /// [`UncertaintyError::Invalid`]; [`UncertaintyError::TooFewTrials`];
     /// [`UncertaintyError::NoAnswer`] if the outputs are fully correlated or one does not vary.
     pub fn ellipsoid(&self, level: f64) -> Result<Region, UncertaintyError> {
         let mut region = self.region(level)?;
-        let (u, outputs) = (&region.standard_uncertainties, self.outputs());
-        // In units of the uncertainties, so that outputs of very different size do not look singular.
-        let scaled = DMatrix::from_fn(outputs, outputs, |i, j| region.covariance[i][j] / u[i] / u[j]);
-        let rounding = 1e-12 * outputs as f64;
-        let root = Cholesky::new(scaled).map(Cholesky::unpack).ok_or_else(UncertaintyError::singular_covariance)?;
-        if root.diagonal().iter().any(|&pivot| !(pivot * pivot > rounding)) {
-            return Err(UncertaintyError::singular_covariance());
-        }
+        let (root, outputs) = (region.root()?, self.outputs());
         let mut distance = DVector::zeros(outputs);
         let squares = self.distances(|row| {
             for (j, d) in distance.iter_mut().enumerate() {
-                *d = (row[j] - region.centre[j]) / u[j];
+                *d = (row[j] - region.centre[j]) / region.standard_uncertainties[j];
             }
             root.solve_lower_triangular_mut(&mut distance);
             distance.norm_squared()
@@ -97,17 +73,10 @@ impl OutputSample {
     }
 
     fn region(&self, level: f64) -> Result<Region, UncertaintyError> {
-        let level = UncertaintyError::require_level(level)?;
         let indices = 0..self.outputs();
         let centre = indices.clone().map(|j| self.estimate(j)).collect::<Result<Vec<_>, _>>()?;
-        let standard_uncertainties = indices.map(|j| self.standard_uncertainty(j)).collect::<Result<Vec<_>, _>>()?;
-        if standard_uncertainties.contains(&0.0) {
-            return Err(UncertaintyError::singular_covariance());
-        }
-        // Each pair once, so that the matrix is symmetric to the last bit.
-        let row = |i: usize| (0..self.outputs()).map(move |j| self.covariance(i.max(j), i.min(j))).collect();
-        let covariance = (0..self.outputs()).map(row).collect::<Result<Vec<Vec<f64>>, _>>()?;
-        Ok(Region { centre, standard_uncertainties, covariance, coverage_factor: 0.0, level })
+        let uncertainties = indices.map(|j| self.standard_uncertainty(j)).collect::<Result<Vec<_>, _>>()?;
+        Region::new(centre, uncertainties, |i, j| self.covariance(i, j), level)
     }
 
     /// A figure of every trial.

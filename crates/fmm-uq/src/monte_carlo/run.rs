@@ -6,11 +6,16 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
+use crate::error::UncertaintyError;
+use crate::failure::Failures;
+use crate::model::ModelOutput;
 use crate::monte_carlo::adaptive::{Adaptive, Stability};
 use crate::monte_carlo::block::{BLOCK_TRIALS, Block};
-use crate::monte_carlo::heavy_tail::HeavyTail;
+use crate::monte_carlo::output_sample::OutputSample;
+use crate::monte_carlo::partial_run::PartialRun;
 use crate::monte_carlo::pool::Pool;
-use crate::{Failures, ModelOutput, MonteCarlo, OutputSample, PartialRun, Progress, UncertaintyError};
+use crate::monte_carlo::refusal::HeavyTail;
+use crate::monte_carlo::{MonteCarlo, Progress};
 
 /// Planned number of trials.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +48,11 @@ impl Sequences {
         HeavyTail::require_variance(heavy_tail)?;
         let (allowed, needed) = (rule.most_trials(), rule.fewest_trials());
         if allowed < needed {
-            return Err(UncertaintyError::too_few_trials_allowed(allowed, needed));
+            let what = format!(
+                "the first decision takes {needed} trials, but at most {allowed} are allowed; lower the level, or \
+                 allow more"
+            );
+            return Err(UncertaintyError::TooFewTrials { what, trials: allowed });
         }
         Ok(Self { rule, stability: Stability::new(rule), pool: Pool::new(0) })
     }
@@ -54,7 +63,13 @@ impl Sequences {
         if self.stability.add(self.pool.columns())? {
             return Ok(true);
         }
-        if self.left() == 0 { Err(UncertaintyError::NotStable { trials: self.pool.trials() }) } else { Ok(false) }
+        if self.left() > 0 {
+            return Ok(false);
+        }
+        let trials = self.pool.trials();
+        let advice = "allow more, or ask for fewer digits";
+        let what = format!("the results are not stable to the tolerance after {trials} trials; {advice}");
+        Err(UncertaintyError::TooFewTrials { what, trials })
     }
 
     /// Sequences that may still be made.
@@ -93,19 +108,15 @@ impl MonteCarlo<'_> {
     }
 
     pub(crate) fn finish_plan(&self, partial: PartialRun) -> Result<OutputSample, UncertaintyError> {
-        for (what, first, second) in
-            [("seeds", self.seed, partial.seed()), ("inputs (by fingerprint)", self.fingerprint, partial.inputs())]
-        {
-            if first != second {
-                return Err(UncertaintyError::layout_mismatch(what, first, second));
-            }
-        }
+        partial.require(self.seed, self.fingerprint)?;
         let complete = |block: &Block| block.trials == self.trials_of(block.index);
         let mut blocks = partial.into_blocks();
         let present = blocks.iter().zip(0..).position(|(block, index)| block.index != index || !complete(block));
         blocks.truncate(present.unwrap_or(blocks.len()));
         let present = blocks.as_slice();
-        let missing = Err(UncertaintyError::missing_block(present.len() as u64));
+        let block = present.len() as u64;
+        let what = format!("block {block} is missing; merge the shard that holds it, or run it");
+        let missing = Err(UncertaintyError::part(what, block));
         match self.plan {
             Plan::Fixed(trials) => {
                 let Some(needed) = usize::try_from(blocks_of(trials)).ok().and_then(|count| present.get(..count))
@@ -151,7 +162,7 @@ impl MonteCarlo<'_> {
         PartialRun::assemble(self.seed, self.fingerprint, all)
     }
 
-    /// Runs blocks in groups that are taken in by `take`, in their order.
+    /// Runs blocks in groups and hands each group to `take`, in their order.
     ///
     /// A group is no more than keeps all threads busy, so that its memory is used again for the next one.
     fn run_groups<R: ModelOutput<f64>>(
@@ -182,7 +193,7 @@ impl MonteCarlo<'_> {
         };
         let one = |index: u64| {
             // Where none may fail, blocks after a failed one are not worth running. Those before it are: the first
-            // failure in order is the one that is told, whoever met it first.
+            // failure in order is the one reported, whichever thread met it first.
             let wanted =
                 || index <= state.failed_block.load(Ordering::Relaxed) && !state.cancelled.load(Ordering::Relaxed);
             if !wanted() {

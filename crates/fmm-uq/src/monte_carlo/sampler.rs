@@ -6,11 +6,8 @@ use rand::Rng;
 use rand_distr::{ChiSquared, Distribution as _, StandardNormal};
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use crate::distributions::Shape;
-use crate::distributions::gamma::gamma_quantile;
-use crate::inputs::factor::correlation_root;
-use crate::random::ziggurat::Ziggurat;
-use crate::{Distribution, Inputs};
+use crate::distributions::{Distribution, Ziggurat};
+use crate::inputs::{Ensemble, Inputs};
 
 /// Sampler of the inputs of a trial: independent inputs one by one, the others through a common set of normal scores.
 #[derive(Debug, Clone)]
@@ -47,13 +44,14 @@ enum MarginKind {
 
 impl Independent {
     fn new(input: usize, distribution: &Distribution) -> Self {
-        let bell = match distribution.shape {
-            Shape::Normal { mean, standard_deviation } => Some((Ziggurat::normal(), (mean, standard_deviation))),
-            Shape::StudentT { mean, scale, degrees_of_freedom, .. } => {
-                Ziggurat::student_t(degrees_of_freedom).map(|unit| (unit, (mean, scale)))
-            }
-            _ => None,
+        let unit = if distribution.is_normal() {
+            Some(Ziggurat::normal())
+        } else if distribution.is_normal_or_t() {
+            Ziggurat::student_t(distribution.degrees_of_freedom())
+        } else {
+            None
         };
+        let bell = unit.map(|unit| (unit, (distribution.mean(), distribution.standard_uncertainty())));
         Self { input, distribution: distribution.clone(), bell }
     }
 }
@@ -62,8 +60,7 @@ impl Sampler {
     pub(crate) fn new(inputs: &Inputs) -> Self {
         let all = inputs.as_slice();
         // A chi-squared distribution exists for every ν ≥ 1, so that no ensemble is lost here.
-        let chi =
-            |e: &crate::inputs::Ensemble| ChiSquared::new(e.degrees_of_freedom).map(|c| (e.degrees_of_freedom, c));
+        let chi = |e: &Ensemble| ChiSquared::new(e.degrees_of_freedom).map(|c| (e.degrees_of_freedom, c));
         let ensembles: Vec<_> = inputs.ensembles().iter().filter_map(|e| chi(e).ok()).collect();
         let ensemble_of = |i: usize| inputs.ensembles().iter().position(|e| e.members.contains(&i));
         let correlated = |i: usize| inputs.correlated_pairs().any(|(a, b)| a == i || b == i);
@@ -71,20 +68,19 @@ impl Sampler {
         for (input, quantity) in all.iter().enumerate() {
             let distribution = quantity.distribution();
             let (mean, scale) = (quantity.value(), quantity.standard_uncertainty());
-            let varies = !matches!(distribution.shape, Shape::Constant(_));
-            let kind = match (ensemble_of(input), &distribution.shape) {
-                (Some(ensemble), _) => MarginKind::Ensemble { mean, scale, ensemble },
-                (None, Shape::Normal { .. }) => MarginKind::Normal { mean, standard_deviation: scale },
-                (None, _) => MarginKind::Copula(distribution.clone()),
+            let kind = match ensemble_of(input) {
+                Some(ensemble) => MarginKind::Ensemble { mean, scale, ensemble },
+                None if distribution.is_normal() => MarginKind::Normal { mean, standard_deviation: scale },
+                None => MarginKind::Copula(distribution.clone()),
             };
-            if varies && (correlated(input) || ensemble_of(input).is_some()) {
+            if !distribution.is_constant() && (correlated(input) || ensemble_of(input).is_some()) {
                 dependent.push(Margin { input, kind });
             } else {
                 independent.push(Independent::new(input, distribution));
             }
         }
         let members: Vec<usize> = dependent.iter().map(|margin| margin.input).collect();
-        let root = correlation_root(inputs, &members);
+        let root = inputs.correlation_root(&members);
         Self { width: all.len(), independent, dependent, root, ensembles }
     }
 
@@ -118,28 +114,6 @@ impl Sampler {
             }
             self.combine(&scores, &stretches, row);
         }
-    }
-
-    /// Number of uniform numbers that a row takes by [`Sampler::map`].
-    pub(crate) fn dimensions(&self) -> usize {
-        self.independent.len() + self.dependent.len() + self.ensembles.len()
-    }
-
-    /// One row from uniform numbers in (0, 1), by quantiles.
-    pub(crate) fn map(&self, uniform: &[f64], row: &mut [f64]) {
-        let (alone, rest) = uniform.split_at(self.independent.len());
-        for (Independent { input, distribution, .. }, &u) in self.independent.iter().zip(alone) {
-            row[*input] = distribution.quantile_at(u);
-        }
-        if self.dependent.is_empty() {
-            return;
-        }
-        let (normal, chi) = rest.split_at(self.dependent.len());
-        let scores: Vec<f64> = normal.iter().map(|&u| Normal::standard().inverse_cdf(u)).collect();
-        // Chi-squared is twice a gamma variate of half the degrees of freedom.
-        let stretch = |(&(nu, _), &u): (&(f64, ChiSquared<f64>), &f64)| (0.5 * nu / gamma_quantile(0.5 * nu, u)).sqrt();
-        let stretches: Vec<f64> = self.ensembles.iter().zip(chi).map(stretch).collect();
-        self.combine(&scores, &stretches, row);
     }
 
     fn combine(&self, scores: &[f64], stretches: &[f64], row: &mut [f64]) {

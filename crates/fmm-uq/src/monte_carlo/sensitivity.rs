@@ -3,12 +3,14 @@
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
-use crate::monte_carlo::allowed_failures::AllowedFailures;
+use crate::error::UncertaintyError;
+use crate::inputs::{Input, Inputs};
+use crate::model::ModelOutput;
+use crate::moments::Moments;
 use crate::monte_carlo::block::BLOCK_TRIALS;
-use crate::monte_carlo::heavy_tail::HeavyTail;
+use crate::monte_carlo::refusal::{AllowedFailures, HeavyTail};
 use crate::monte_carlo::sampler::Sampler;
-use crate::random::stream::Stream;
-use crate::{Inputs, ModelOutput, Moments, MonteCarlo, OutputSample, UncertaintyError};
+use crate::stream::Stream;
 
 /// Streams of the second, independent set of inputs: those with the top bit set, which no run of trials reaches.
 const SECOND: u64 = 1 << 63;
@@ -45,7 +47,7 @@ pub struct VarianceShare {
 ///
 /// # Errors
 /// [`UncertaintyError::NoAnswer`] if inputs are correlated, an input has Student's t of ν ≤ 2, the output does not
-/// vary, or the squares of the values vanish. [`UncertaintyError::OutOfRange`] for fewer than 10 blocks of 1000 trials,
+/// vary, or the squares of the values vanish. [`UncertaintyError::Invalid`] for fewer than 10 blocks of 1000 trials,
 /// from which the errors come, for more than 2⁴⁰ trials, for a share outside [0, 1), or if the squares of the values
 /// overflow. [`UncertaintyError::Model`] if more rows fail than allowed, or all.
 ///
@@ -64,7 +66,8 @@ pub fn variance_shares<R: ModelOutput<f64>>(
 ) -> Result<Vec<VarianceShare>, UncertaintyError> {
     let refuse = |option, value, must_be| Err(UncertaintyError::out_of_range(option, value, must_be));
     if let Some((first, second)) = inputs.dependent_pair() {
-        return Err(UncertaintyError::correlated_inputs(&first, &second));
+        let what = format!("variance shares need independent inputs, but `{first}` and `{second}` are not");
+        return Err(UncertaintyError::no_answer(what));
     }
     HeavyTail::require_variance(HeavyTail::of(inputs).as_ref())?;
     let blocks = trials.div_ceil(BLOCK_TRIALS as u64);
@@ -83,7 +86,9 @@ pub fn variance_shares<R: ModelOutput<f64>>(
     let rows: Vec<Rows> = (0..count).map(one).collect();
     let (failed, all) = (rows.iter().map(|r| r.failed).sum::<u64>(), blocks * BLOCK_TRIALS as u64);
     if !allowed_failures.allow(failed, all) {
-        return Err(UncertaintyError::rows_failed(failed, all, allowed_failures.share()));
+        let share = allowed_failures.share();
+        let what = format!("the model failed in {failed} of {all} rows, more than the allowed share of {share}");
+        return Err(UncertaintyError::model(what));
     }
     let base: Vec<f64> = rows.iter().flat_map(|r| r.a.iter().chain(&r.b)).copied().collect();
     if base.is_empty() {
@@ -94,11 +99,12 @@ pub fn variance_shares<R: ModelOutput<f64>>(
     let overflow = || UncertaintyError::uncertainty_out_of_range("the output", f64::INFINITY, "(its unit)");
     let moments = moments.if_finite().ok_or_else(overflow)?;
     if moments.sum_of_squares() == 0.0 {
-        return Err(UncertaintyError::constant_output());
+        let what = "the output does not vary, so that there is no variance to share among the inputs";
+        return Err(UncertaintyError::no_answer(what));
     }
     let variance = moments.sum_of_squares() / base.len() as f64;
     let names = inputs.as_slice().iter().enumerate();
-    let share = |(i, input): (usize, &crate::Input)| {
+    let share = |(i, input): (usize, &Input)| {
         let of = |figure: fn(&Rows, usize, f64) -> Option<f64>| {
             let figures: Vec<f64> = rows.iter().filter_map(|r| figure(r, i, moments.mean())).collect();
             let over = Moments::of_values(&figures);
@@ -165,29 +171,5 @@ impl Rows {
         let triples = self.a.iter().zip(&self.b).zip(&self.exchanged[i]);
         let values: Vec<f64> = triples.map(|((&a, &b), &exchanged)| of(a, b, exchanged)).collect();
         Moments::of(&values).map(|moments| moments.mean())
-    }
-}
-
-impl MonteCarlo<'_> {
-    /// The run repeated with one of its inputs uncertain at a time and all others held at their estimates, in the order
-    /// of the inputs, each with its name.
-    ///
-    /// What an input does together with others is not in it; [`variance_shares`] has that.
-    ///
-    /// # Errors
-    /// Those of [`MonteCarlo::run`].
-    ///
-    /// # Panics
-    /// If the model does.
-    pub fn run_one_at_a_time<R: ModelOutput<f64>>(
-        &self,
-        model: impl Fn(&[f64]) -> R + Sync,
-    ) -> Result<Vec<(String, OutputSample)>, UncertaintyError> {
-        let names = self.inputs.as_slice().iter().enumerate();
-        let run = |(i, input): (usize, &crate::Input)| {
-            let alone = self.with_inputs(self.inputs.only(i));
-            Ok((input.name().to_owned(), alone.run_plan(&model)?))
-        };
-        names.map(run).collect()
     }
 }

@@ -1,9 +1,12 @@
 //! Settling of the ends of the shortest interval.
 
-use crate::monte_carlo::output_sample::shortest;
-use crate::{Moments, UncertaintyError, coverage_factor};
+use fmm_model::coverage_factor;
 
-/// Batches of equal length that the sequences are divided into: at least so many, at most twice as many.
+use crate::error::UncertaintyError;
+use crate::moments::Moments;
+use crate::monte_carlo::output_sample::shortest;
+
+/// Fewest batches of equal length that the sequences are divided into; the most are twice as many.
 const FEWEST_BATCHES: usize = 10;
 /// Exponent at which the ends settle where the density crosses the level of the interval with a slope.
 const REGULAR_RATE: f64 = 1.0 / 3.0;
@@ -59,15 +62,15 @@ impl Settling {
         Ok(())
     }
 
-    /// By how much either end may still be wrong at 95 %; infinite before there are enough batches.
-    pub(crate) fn doubt(&self) -> Result<f64, UncertaintyError> {
+    /// Largest error of either end at 95 %; infinite before there are enough batches.
+    pub(crate) fn doubt(&self) -> f64 {
         let count = self.batches[0].len();
         if count < FEWEST_BATCHES {
-            return Ok(f64::INFINITY);
+            return f64::INFINITY;
         }
         let factor = coverage_factor(0.95, (count - 1) as f64).unwrap_or(f64::INFINITY);
         let ends = self.sequences.iter().zip(&self.batches);
-        Ok(ends.map(|(sequences, batches)| factor * self.scatter(sequences, batches)).fold(0.0, f64::max))
+        ends.map(|(sequences, batches)| factor * self.scatter(sequences, batches)).fold(0.0, f64::max)
     }
 
     /// s(M) of one end.

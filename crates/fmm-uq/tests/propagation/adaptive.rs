@@ -48,6 +48,6 @@ fn an_interval_that_never_settles_is_not_stated() {
     let flat = one(Distribution::rectangular(0.0, 1.0));
     for seed in 0..10 {
         let found = run(&flat, rule.with_most_trials(2_000_000), seed);
-        assert!(matches!(found, Err(UncertaintyError::NotStable { trials: 2_000_000 })), "{seed}: {found:?}");
+        assert!(matches!(found, Err(UncertaintyError::TooFewTrials { trials: 2_000_000, .. })), "{seed}: {found:?}");
     }
 }

@@ -80,7 +80,7 @@ fn simultaneous_observations() {
     assert!(expected > 0.9 && inputs.correlation("a", "c") == Some(0.0));
     assert!((run(&inputs).correlation(0, 1).unwrap() - expected).abs() < 0.02);
     let unequal = Inputs::from_observations(&[("a", "m", &[1.0, 2.0]), ("b", "m", &[1.0, 2.0, 3.0])]);
-    assert!(matches!(unequal, Err(UncertaintyError::Inputs { what }) if what.contains("there are 2 and 3")));
+    assert!(matches!(unequal, Err(UncertaintyError::Invalid { what }) if what.contains("there are 2 and 3")));
     assert!(Inputs::from_observations(&[("a", "m", &[1.0])]).is_err());
     assert!(Inputs::from_observations(&[("a", "m", &[1.0, f64::NAN])]).is_err());
 }
@@ -92,12 +92,12 @@ fn ensembles_are_of_normal_inputs_and_do_not_overlap() {
     let inputs = Inputs::new(inputs.into_iter().chain([limits])).unwrap();
     let ensemble = |names: &[&str], nu| inputs.clone().with_ensemble(names, nu);
     assert!(
-        matches!(ensemble(&["a", "c"], 5.0), Err(UncertaintyError::Inputs { what }) if what.contains("neither normal"))
+        matches!(ensemble(&["a", "c"], 5.0), Err(UncertaintyError::Invalid { what }) if what.contains("neither normal"))
     );
     assert!(
-        matches!(ensemble(&["a", "a"], 5.0), Err(UncertaintyError::Inputs { what }) if what.contains("in an ensemble already"))
+        matches!(ensemble(&["a", "a"], 5.0), Err(UncertaintyError::Invalid { what }) if what.contains("in an ensemble already"))
     );
     let again = ensemble(&["a"], 5.0).unwrap().with_ensemble(&["b", "a"], 5.0);
-    assert!(matches!(again, Err(UncertaintyError::Inputs { what }) if what.contains("in an ensemble already")));
+    assert!(matches!(again, Err(UncertaintyError::Invalid { what }) if what.contains("in an ensemble already")));
     assert!(ensemble(&["a"], 0.5).is_err() && ensemble(&["d"], 5.0).is_err());
 }

@@ -3,8 +3,8 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use fmm_uq::{
-    Adaptive, Distribution, Gum, Input, Inputs, IntervalKind, Linearisation, MonteCarlo, Observations, QuasiMonteCarlo,
-    Scalar, UncertaintyError, coverage_factor, propagate, variance_shares,
+    Adaptive, Distribution, Gum, Input, Inputs, IntervalKind, Linearisation, MonteCarlo, Observations, Scalar,
+    UncertaintyError, coverage_factor, propagate, variance_shares,
 };
 
 fn normal(value: f64, u: f64) -> Inputs {
@@ -24,10 +24,13 @@ fn an_adaptive_run_keeps_its_cap() {
         let error = MonteCarlo::adaptive(&inputs, rule.with_most_trials(cap)).run(counted).unwrap_err();
         assert_eq!(calls.load(Ordering::Relaxed), done, "level {level}, at most {cap}: {error}");
         match error {
-            UncertaintyError::NotStable { trials } => assert_eq!(trials, done),
-            UncertaintyError::TooFewTrials { found: allowed, needed, .. } => {
-                assert_eq!((allowed, done), (cap, 0));
-                assert_eq!(needed, if level > 0.99 { 1_000_000_000 } else { 100_000 });
+            UncertaintyError::TooFewTrials { what, trials } if done > 0 => {
+                assert!(trials == done && what.contains("not stable"), "{what}");
+            }
+            UncertaintyError::TooFewTrials { what, trials } => {
+                assert_eq!(trials, cap);
+                let needed = if level > 0.99 { "takes 1000000000 trials" } else { "takes 100000 trials" };
+                assert!(what.contains(needed), "{what}");
             }
             other => panic!("{other}"),
         }
@@ -59,14 +62,8 @@ fn a_variance_that_is_infinite_is_not_stated() {
 
         let adaptive = MonteCarlo::adaptive(&inputs, Adaptive::to_tolerance(0.1).unwrap()).run(|x| x[0]);
         assert!(matches!(adaptive, Err(UncertaintyError::NoAnswer { .. })), "{adaptive:?}");
-        let quasi = QuasiMonteCarlo::new(&inputs, 64, 8).unwrap().run(|x| x[0]).unwrap();
-        assert!(quasi.sample().standard_uncertainty(0).is_err() && quasi.standard_errors(0).is_err());
         let shares = variance_shares(&inputs, 10_000, 0, 0.0, |x: &[f64]| x[0] + x[1]);
         assert!(matches!(shares, Err(UncertaintyError::NoAnswer { .. })), "{shares:?}");
-        // Alone, the other input has its variance.
-        let alone = run.run_one_at_a_time(|x| x[0] + x[1]).unwrap();
-        assert!(alone[0].1.standard_uncertainty(0).is_err());
-        assert!((alone[1].1.standard_uncertainty(0).unwrap() - 0.1).abs() < 0.003);
     }
     let three = Input::mean_of("few", &Observations::new(&[1.0, 2.0, 3.0, 3.5]).unwrap(), "m").unwrap();
     let sample = MonteCarlo::new(&Inputs::new([three]).unwrap(), 20_000).unwrap().run(|x| x[0]).unwrap();

@@ -232,8 +232,8 @@ fn progress_is_told_and_can_end_a_run() {
 #[test]
 fn impossible_runs_are_refused() {
     let inputs = inputs();
-    assert!(matches!(MonteCarlo::new(&inputs, 0), Err(UncertaintyError::OutOfRange { value: 0.0, .. })));
-    assert!(matches!(MonteCarlo::new(&inputs, u64::MAX), Err(UncertaintyError::OutOfRange { .. })));
+    assert!(matches!(MonteCarlo::new(&inputs, 0), Err(UncertaintyError::Invalid { .. })));
+    assert!(matches!(MonteCarlo::new(&inputs, u64::MAX), Err(UncertaintyError::Invalid { .. })));
     let run = MonteCarlo::new(&inputs, 100).unwrap();
     for share in [-0.1, 1.0, f64::NAN] {
         assert!(run.clone().with_allowed_failures(share).is_err(), "{share}");
@@ -241,14 +241,16 @@ fn impossible_runs_are_refused() {
     let sample = run.run(model).unwrap();
     for level in [0.0, 1.0, -1.0, f64::NAN] {
         let error = sample.symmetric_interval(0, level).unwrap_err();
-        assert!(matches!(error, UncertaintyError::OutOfRange { .. }), "{error}");
+        assert!(matches!(error, UncertaintyError::Invalid { .. }), "{error}");
         assert!(sample.shortest_interval(0, level).is_err() && sample.ellipsoid(level).is_err());
     }
     assert!(matches!(
         sample.symmetric_interval(0, 0.99),
-        Err(UncertaintyError::TooFewTrials { found: 100, needed: 200, .. })
+        Err(UncertaintyError::TooFewTrials { ref what, trials: 100 }) if what.ends_with("at least 200 are needed")
     ));
-    assert!(matches!(sample.estimate(2), Err(UncertaintyError::OutOfRange { value: 2.0, .. })));
+    assert!(
+        matches!(sample.estimate(2), Err(UncertaintyError::Invalid { what }) if what.starts_with("there is no output 2;"))
+    );
     assert!(Adaptive::to_digits(0).is_err() && Adaptive::to_tolerance(f64::NAN).is_err());
     assert!(MonteCarlo::new(&inputs, 1).unwrap().run(model).unwrap().standard_uncertainty(0).is_err());
     assert!(run.run(|_| [1e300, 0.0]).is_ok());

@@ -4,8 +4,8 @@ mod parser;
 
 use fmm_model::Scalar;
 
-use crate::UncertaintyError;
-use parser::Step;
+use crate::error::UncertaintyError;
+use crate::model::formula::parser::Step;
 
 /// A formula over named quantities, read from text and evaluated in any [`Scalar`]: in plain numbers for trials, in
 /// [`Taylor`](crate::Taylor) numbers for exact derivatives.
@@ -38,8 +38,8 @@ use parser::Step;
 pub struct Formula {
     text: String,
     quantities: usize,
-    /// In the order of evaluation, operands before what works on them.
-    steps: Vec<Step<usize>>,
+    /// In the order of evaluation, operands before their operator.
+    steps: Vec<Step>,
 }
 
 impl Formula {
@@ -48,29 +48,27 @@ impl Formula {
     ///
     /// # Errors
     /// [`UncertaintyError::Model`] if the text is no formula, has more than 200 parentheses, powers and signs, or has a
-    /// name that is not among `names`; [`UncertaintyError::Inputs`] for a name given twice, for one that no formula can
+    /// name that is not among `names`; [`UncertaintyError::Invalid`] for a name given twice, for one that no formula can
     /// contain, and for that of a constant or function.
     pub fn new(text: &str, names: &[&str]) -> Result<Self, UncertaintyError> {
         for (place, name) in names.iter().enumerate() {
             if !parser::is_name(name) {
-                return Err(UncertaintyError::not_a_name(name));
+                return Err(UncertaintyError::invalid(format!(
+                    "a formula cannot contain a quantity `{name}`; a name is made of letters, digits and underscores, \
+                     begins with no digit, and is no constant or function"
+                )));
             }
             if names[..place].contains(name) {
                 return Err(UncertaintyError::duplicate_name(name));
             }
         }
-        let place = |name: String| {
-            let place = names.iter().position(|other| *other == name);
-            place.map(Step::Quantity).ok_or_else(|| UncertaintyError::unknown_in_formula(&name, names))
-        };
-        let resolved = parser::parse(text)?.into_iter().map(|step| match step {
-            Step::Quantity(name) => place(name),
-            Step::Number(value) => Ok(Step::Number(value)),
-            Step::OfOne(function) => Ok(Step::OfOne(function)),
-            Step::OfTwo(operator) => Ok(Step::OfTwo(operator)),
-            Step::Power(exponent) => Ok(Step::Power(exponent)),
+        let steps = parser::parse(text)?.into_iter().map(|step| {
+            let Step::Name(name) = step else { return Ok(step) };
+            let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+            let unknown = || UncertaintyError::model(format!("there is no quantity {name}; there is {known}"));
+            names.iter().position(|other| *other == name).map(Step::Quantity).ok_or_else(unknown)
         });
-        Ok(Self { text: text.trim().to_owned(), quantities: names.len(), steps: resolved.collect::<Result<_, _>>()? })
+        Ok(Self { text: text.trim().to_owned(), quantities: names.len(), steps: steps.collect::<Result<_, _>>()? })
     }
 
     /// The text that was read.
@@ -84,7 +82,9 @@ impl Formula {
     /// [`UncertaintyError::Model`] unless there is one value for each name.
     pub fn evaluate<D: Scalar>(&self, values: &[D]) -> Result<D, UncertaintyError> {
         if values.len() != self.quantities {
-            return Err(UncertaintyError::wrong_number_of_values(self.quantities, values.len()));
+            let (needed, found) = (self.quantities, values.len());
+            let what = format!("the formula has {needed} quantities, but {found} values were given");
+            return Err(UncertaintyError::model(what));
         }
         let mut stack: Vec<D> = Vec::with_capacity(self.steps.len());
         for step in &self.steps {
@@ -94,6 +94,7 @@ impl Formula {
                 Step::Quantity(place) => values.get(*place).copied(),
                 Step::OfOne(function) => stack.pop().map(|x| function.of(x)),
                 Step::Power(exponent) => stack.pop().map(|x| x.powi(*exponent)),
+                Step::Name(_) => None,
                 Step::OfTwo(operator) => {
                     let second = stack.pop();
                     stack.pop().zip(second).map(|(first, second)| operator.of(first, second))
@@ -101,14 +102,14 @@ impl Formula {
             };
             stack.extend(value);
         }
-        stack.pop().ok_or_else(|| UncertaintyError::not_a_formula(&self.text, ""))
+        stack.pop().ok_or_else(|| parser::not_a_formula(&self.text, ""))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Taylor;
+    use crate::model::taylor::Taylor;
 
     fn value(text: &str) -> f64 {
         let (names, values) = (["x", "μ_0", "N", "F₀"], [3.0, 0.25, 14.0, 5.0]);

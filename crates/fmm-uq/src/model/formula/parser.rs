@@ -10,16 +10,19 @@ use winnow::error::{ContextError, ErrMode};
 use winnow::prelude::*;
 use winnow::token::{any, one_of, take_while};
 
-use crate::UncertaintyError;
+use crate::error::UncertaintyError;
 
 /// Parentheses, powers and signs that a formula may have: each may take the parser one level deeper.
 const DEEPEST: usize = 200;
 
-/// One step of an evaluation, on a stack of values, with a quantity by its name or by its place.
+/// One step of an evaluation, on a stack of values.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Step<Q> {
+pub(super) enum Step {
     Number(f64),
-    Quantity(Q),
+    /// A quantity by its name, as the parser leaves it.
+    Name(String),
+    /// A quantity by its place.
+    Quantity(usize),
     OfOne(Function),
     OfTwo(Operator),
     /// A whole power, of a base of either sign.
@@ -119,27 +122,38 @@ fn goes_on(letter: char) -> bool {
     (letter.is_alphanumeric() || letter == '_') && !matches!(letter, '²' | '³')
 }
 
-/// Whether a quantity may be called this.
+/// True for a text that may be the name of a quantity.
 pub(super) fn is_name(text: &str) -> bool {
     let is_taken = matches!(text, "pi" | "π" | "atan2") || FUNCTIONS.iter().any(|(name, _)| *name == text);
     text.chars().next().is_some_and(begins_name) && text.chars().all(goes_on) && !is_taken
 }
 
-type Steps = Vec<Step<String>>;
+type Steps = Vec<Step>;
 
-/// The steps of a formula, with quantities as they are called in it.
+/// The steps of a formula, with quantities by their names.
 pub(super) fn parse(text: &str) -> Result<Steps, UncertaintyError> {
     if text.matches(['(', '^', '-', '+']).count() > DEEPEST {
-        return Err(UncertaintyError::formula_too_deep(DEEPEST));
+        let what = format!("a formula may have at most {DEEPEST} parentheses, powers and signs");
+        return Err(UncertaintyError::model(what));
     }
     let steps = preceded(multispace0, sum).parse(text).map_err(|error| {
         let rest = text.get(error.offset()..).unwrap_or_default();
-        UncertaintyError::not_a_formula(text, rest)
+        not_a_formula(text, rest)
     })?;
-    match steps.iter().find_map(|step| if let Step::Quantity(name) = step { name.strip_suffix('(') } else { None }) {
-        Some(name) => Err(UncertaintyError::unknown_function(name, &FUNCTIONS.map(|(name, _)| name))),
+    match steps.iter().find_map(|step| if let Step::Name(name) = step { name.strip_suffix('(') } else { None }) {
+        Some(name) => {
+            let known = FUNCTIONS.map(|(name, _)| name).join(", ");
+            Err(UncertaintyError::model(format!("there is no function {name}; there are {known} and atan2")))
+        }
         None => Ok(steps),
     }
+}
+
+/// Error of a text that is no formula from `rest` on.
+pub(super) fn not_a_formula(text: &str, rest: &str) -> UncertaintyError {
+    let place = if rest.is_empty() { "at its end".to_owned() } else { format!("from {rest:?} on") };
+    let advice = "write products with *, powers with ^";
+    UncertaintyError::model(format!("{text:?} cannot be read as a formula {place}; {advice}"))
 }
 
 type Parsed<T> = ModalResult<T, ContextError>;
@@ -173,7 +187,7 @@ fn whole(exponent: f64) -> Option<i32> {
     (exponent.fract() == 0.0 && exponent.abs() <= 64.0).then_some(exponent as i32)
 }
 
-fn then(mut steps: Steps, step: Step<String>) -> Steps {
+fn then(mut steps: Steps, step: Step) -> Steps {
     steps.push(step);
     steps
 }
@@ -205,7 +219,7 @@ fn operand(input: &mut &str) -> Parsed<Steps> {
     alt((in_parentheses, number.map(|value| vec![Step::Number(value)]), of_name)).parse_next(input)
 }
 
-/// What an opening parenthesis begins can be nothing else, so that a mistake is told where it is.
+/// An opening parenthesis begins nothing else, so that the error names the place of a mistake.
 fn in_parentheses(input: &mut &str) -> Parsed<Steps> {
     delimited(spaced('('), cut_err(sum), cut_err(spaced(')'))).parse_next(input)
 }
@@ -222,10 +236,10 @@ fn of_name(input: &mut &str) -> Parsed<Steps> {
     let function = FUNCTIONS.iter().find(|(known, _)| *known == name);
     match (opt(in_parentheses).parse_next(input)?, function) {
         (Some(argument), Some((_, function))) => Ok(then(argument, Step::OfOne(*function))),
-        // No name has a parenthesis: this one is told as a function that does not exist.
-        (Some(argument), None) => Ok(then(argument, Step::Quantity(format!("{name}(")))),
+        // No name has a parenthesis: the error calls this one a function that does not exist.
+        (Some(argument), None) => Ok(then(argument, Step::Name(format!("{name}(")))),
         (None, None) if matches!(name, "pi" | "π") => Ok(vec![Step::Number(std::f64::consts::PI)]),
-        (None, None) => Ok(vec![Step::Quantity(name.to_owned())]),
+        (None, None) => Ok(vec![Step::Name(name.to_owned())]),
         (None, Some(_)) => cut_err(fail).parse_next(input),
     }
 }

@@ -1,6 +1,6 @@
 //! Mean and spread of many values, to the digits that they carry.
 
-use crate::UncertaintyError;
+use crate::error::UncertaintyError;
 
 /// Values that are summed before their sums are: rounding then grows with the root of the number of blocks.
 const BLOCK: usize = 1000;
@@ -42,7 +42,7 @@ impl Moments {
         (self.mean.is_finite() && self.sum_of_squares.is_finite()).then_some(self)
     }
 
-    /// Whether the values differ, but by so little that their squares have lost digits.
+    /// True if the values differ, but by so little that their squares have lost digits.
     fn lost(&self, values: &[f64]) -> bool {
         // A square keeps its digits above this, and a mean of them does.
         let smallest = f64::MIN_POSITIVE / f64::EPSILON * self.count as f64;

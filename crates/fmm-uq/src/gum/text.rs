@@ -1,9 +1,11 @@
-//! A budget as text.
+//! Text of a budget: table, statement, comma-separated values.
 
 use std::fmt;
 
-use crate::report::rounding::{Rounding, degrees, significant, suffix};
-use crate::{Budget, Contribution, Linearisation};
+use crate::error::UncertaintyError;
+use crate::gum::budget::{Budget, Contribution};
+use crate::gum::second_order::Linearisation;
+use crate::rounding::{Rounding, degrees, percent, significant, suffix};
 
 /// Significant digits of uncertainties and shares, and of a value down to its uncertainty.
 const DIGITS: i32 = 3;
@@ -17,6 +19,56 @@ const WORDS: [usize; 5] = [0, 2, 3, 4, 9];
 /// Headings of the columns.
 const HEADER: [&str; 12] =
     ["quantity", "estimate", "unit", "distribution", "type", "divisor", "u", "ν", "c", "unit of c", "|c| u", "share"];
+
+/// The result of a budget with its expanded uncertainty.
+///
+/// It prints with all figures rounded to the second digit of u, and k and ν_eff beside them.
+///
+/// ```
+/// use fmm_uq::{Input, Inputs, propagate};
+///
+/// let inputs = Inputs::new([
+///     Input::new("force", 1.75, 0.03, "N")?.with_degrees_of_freedom(8.0)?,
+///     Input::new("load", 7.0, 0.07, "N")?,
+/// ])?;
+/// let budget = propagate(&inputs, |x| x[0] / x[1])?.named("friction_coefficient", "1");
+/// assert_eq!(budget.statement(0.95)?.to_string(), "\
+/// friction_coefficient = 0.2500, u = 0.0050
+/// U = 0.0106 (k = 2.14, 95 %, ν_eff = 14.4)");
+/// # Ok::<(), fmm_uq::UncertaintyError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Statement {
+    /// Name of the result.
+    pub name: String,
+    /// Unit of the result.
+    pub unit: String,
+    /// y (unit of the result).
+    pub estimate: f64,
+    /// u(y) (unit of the result).
+    pub standard_uncertainty: f64,
+    /// k (1).
+    pub coverage_factor: f64,
+    /// p, coverage probability (1).
+    pub level: f64,
+    /// ν_eff (1), `None` where it is infinite.
+    pub effective_degrees_of_freedom: Option<f64>,
+    /// U = k u(y) (unit of the result).
+    pub expanded_uncertainty: f64,
+}
+
+impl fmt::Display for Statement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (rounding, unit) = (Rounding::of(self.standard_uncertainty), suffix(&self.unit));
+        let [y, u, expanded] =
+            [self.estimate, self.standard_uncertainty, self.expanded_uncertainty].map(|value| rounding.number(value));
+        let nu = degrees(self.effective_degrees_of_freedom.unwrap_or(f64::INFINITY));
+        let (k, level) = (self.coverage_factor, percent(self.level));
+        write!(f, "{} = {y}{unit}, u = {u}{unit}\nU = {expanded}{unit} (k = {k:.2}, {level}, ν_eff = {nu})", self.name)
+    }
+}
 
 impl fmt::Display for Budget {
     /// The inputs as an aligned table, their correlations, the result with its expanded uncertainty at 95 %, and any
@@ -44,7 +96,7 @@ impl fmt::Display for Budget {
             Linearisation::Adequate | Linearisation::Unchecked => Ok(()),
             Linearisation::ZeroUncertainty => writeln!(
                 f,
-                "warning: u is zero although inputs are uncertain; the linear approximation cannot see what they do"
+                "warning: u is zero although inputs are uncertain; the linear approximation cannot see their effect"
             ),
             Linearisation::UncertaintyDiffers(terms) => {
                 writeln!(
@@ -57,13 +109,31 @@ impl fmt::Display for Budget {
                 writeln!(f, "warning: the model is curved and moves the estimate by {}{unit}", digits(terms.correction))
             }
             Linearisation::NotExpandable => {
-                writeln!(f, "warning: within the uncertainties of its inputs the model is not what its derivatives say")
+                writeln!(f, "warning: within the uncertainties of its inputs the model departs from its derivatives")
             }
         }
     }
 }
 
 impl Budget {
+    /// The result with its expanded uncertainty for a coverage probability.
+    ///
+    /// # Errors
+    /// Those of [`Budget::expanded`].
+    pub fn statement(&self, level: f64) -> Result<Statement, UncertaintyError> {
+        let expanded = self.expanded(level)?;
+        Ok(Statement {
+            name: self.name().to_owned(),
+            unit: self.unit().to_owned(),
+            estimate: self.estimate(),
+            standard_uncertainty: self.standard_uncertainty(),
+            coverage_factor: expanded.coverage_factor,
+            level,
+            effective_degrees_of_freedom: self.effective_degrees_of_freedom().filter(|nu| nu.is_finite()),
+            expanded_uncertainty: expanded.uncertainty,
+        })
+    }
+
     /// The budget as comma-separated values, with a row of headings, one row for each input and one for the result.
     ///
     /// Numbers have all their digits and shares are parts of 1; infinite degrees of freedom are `inf`. Names and units
@@ -190,7 +260,8 @@ fn rounded_by(value: f64, uncertainty: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Input, Inputs, propagate};
+    use crate::gum::propagate;
+    use crate::inputs::{Input, Inputs};
 
     #[test]
     fn numbers_are_rounded_by_their_uncertainty() {

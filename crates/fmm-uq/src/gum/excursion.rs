@@ -1,7 +1,8 @@
 //! Excursion of a model: its values as far from the estimates as the inputs may be.
 
-use crate::model::derivatives::{Derivatives, Expansion};
-use crate::{Distribution, Input, Inputs};
+use crate::distributions::Distribution;
+use crate::gum::derivatives::{Derivatives, Expansion};
+use crate::inputs::{Input, Inputs};
 
 /// Half distance of three points with the weights 1/6, 2/3, 1/6, which have the mean and the variance of a normal
 /// quantity.
@@ -21,7 +22,7 @@ pub(crate) struct Departure {
 }
 
 impl Departure {
-    /// Whether it changes an uncertainty and an estimate by no more than the share `tolerated` (1) of the uncertainty.
+    /// True if it changes an uncertainty and an estimate by no more than the share `tolerated` (1) of the uncertainty.
     pub(crate) fn is_tolerable(self, standard_uncertainty: f64, tolerated: f64) -> bool {
         let tolerated = tolerated * standard_uncertainty;
         // 2 u Δu.
@@ -65,7 +66,7 @@ impl<'a, M: Derivatives> Excursion<'a, M> {
         self.roundings[output]
     }
 
-    /// Adds what is found along a direction, by output; gives back whether the model could be asked there.
+    /// Adds the departures along a direction, by output; false if the model has no value there.
     pub(crate) fn along(&self, direction: &[f64], own: &[Expansion], departures: &mut [Departure]) -> bool {
         let distance = self.distance(direction);
         let (Some(above), Some(below)) = (self.at(direction, distance), self.at(direction, -distance)) else {
@@ -87,7 +88,7 @@ impl<'a, M: Derivatives> Excursion<'a, M> {
         true
     }
 
-    /// The same for all directions at once, to unequal distances: what the inputs only do together.
+    /// The same for all directions at once, to unequal distances: effects of several inputs together.
     pub(crate) fn together(&self, directions: &[Vec<f64>], departures: &mut [Departure]) -> bool {
         for turn in [1.0, -1.0] {
             let mut all = vec![0.0; self.inputs.as_slice().len()];

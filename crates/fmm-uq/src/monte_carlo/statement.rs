@@ -1,79 +1,14 @@
-//! A result in one or two lines, as a certificate states it.
+//! Statement of a result found by trials.
 
 use std::fmt;
 
-use crate::report::rounding::{Rounding, degrees, percent, significant, suffix};
-use crate::{Budget, Interval, IntervalKind, MonteCarlo, OutputSample, UncertaintyError};
+use fmm_model::Interval;
 
-/// The result of a budget with its expanded uncertainty.
-///
-/// It prints with all figures rounded to the second digit of u, and k and ν_eff beside them.
-///
-/// ```
-/// use fmm_uq::{Input, Inputs, propagate};
-///
-/// let inputs = Inputs::new([
-///     Input::new("force", 1.75, 0.03, "N")?.with_degrees_of_freedom(8.0)?,
-///     Input::new("load", 7.0, 0.07, "N")?,
-/// ])?;
-/// let budget = propagate(&inputs, |x| x[0] / x[1])?.named("friction_coefficient", "1");
-/// assert_eq!(budget.statement(0.95)?.to_string(), "\
-/// friction_coefficient = 0.2500, u = 0.0050
-/// U = 0.0106 (k = 2.14, 95 %, ν_eff = 14.4)");
-/// # Ok::<(), fmm_uq::UncertaintyError>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct Statement {
-    /// Name of the result.
-    pub name: String,
-    /// Unit of the result.
-    pub unit: String,
-    /// y (unit of the result).
-    pub estimate: f64,
-    /// u(y) (unit of the result).
-    pub standard_uncertainty: f64,
-    /// k (1).
-    pub coverage_factor: f64,
-    /// p, coverage probability (1).
-    pub level: f64,
-    /// ν_eff (1), `None` where it is infinite.
-    pub effective_degrees_of_freedom: Option<f64>,
-    /// U = k u(y) (unit of the result).
-    pub expanded_uncertainty: f64,
-}
-
-impl Budget {
-    /// The result with its expanded uncertainty for a coverage probability.
-    ///
-    /// # Errors
-    /// Those of [`Budget::expanded`].
-    pub fn statement(&self, level: f64) -> Result<Statement, UncertaintyError> {
-        let expanded = self.expanded(level)?;
-        Ok(Statement {
-            name: self.name().to_owned(),
-            unit: self.unit().to_owned(),
-            estimate: self.estimate(),
-            standard_uncertainty: self.standard_uncertainty(),
-            coverage_factor: expanded.coverage_factor,
-            level,
-            effective_degrees_of_freedom: self.effective_degrees_of_freedom().filter(|nu| nu.is_finite()),
-            expanded_uncertainty: expanded.uncertainty,
-        })
-    }
-}
-
-impl fmt::Display for Statement {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (rounding, unit) = (Rounding::of(self.standard_uncertainty), suffix(&self.unit));
-        let [y, u, expanded] =
-            [self.estimate, self.standard_uncertainty, self.expanded_uncertainty].map(|value| rounding.number(value));
-        let nu = degrees(self.effective_degrees_of_freedom.unwrap_or(f64::INFINITY));
-        let (k, level) = (self.coverage_factor, percent(self.level));
-        write!(f, "{} = {y}{unit}, u = {u}{unit}\nU = {expanded}{unit} (k = {k:.2}, {level}, ν_eff = {nu})", self.name)
-    }
-}
+use crate::error::UncertaintyError;
+use crate::monte_carlo::MonteCarlo;
+use crate::monte_carlo::adaptive::IntervalKind;
+use crate::monte_carlo::output_sample::OutputSample;
+use crate::rounding::{Rounding, percent, significant, suffix};
 
 /// The result of a Monte Carlo for one of its outputs.
 ///

@@ -126,7 +126,7 @@ impl Ziggurat {
         (x.abs() < self.edges[layer + 1]).then_some(x)
     }
 
-    /// The value that a random number stands for, with more of them where that takes more.
+    /// Slow path: the value, for which further random numbers are drawn.
     #[cold]
     fn finish<R: Rng + ?Sized>(&self, rng: &mut R, mut word: u64) -> f64 {
         loop {
@@ -219,7 +219,7 @@ impl Curve {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::stream::Stream;
+    use crate::stream::Stream;
 
     #[test]
     fn layers_of_the_normal_distribution_are_those_of_the_literature() {

@@ -3,8 +3,8 @@
 use std::fmt;
 
 /// Failures that a block keeps one by one; the rest are only counted.
-pub(crate) const KEPT_PER_BLOCK: usize = 16;
-/// Messages that are told apart; a model that words each failure differently must not fill the memory with them.
+const KEPT_PER_BLOCK: usize = 16;
+/// Messages that are counted separately: a model that words each failure differently must not fill the memory.
 const KINDS: usize = 32;
 
 /// Reason why a trial gave no result.

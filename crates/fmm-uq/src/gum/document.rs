@@ -2,8 +2,8 @@
 
 use serde::{Serialize, Serializer};
 
-use super::{Budget, Contribution};
-use crate::Input;
+use crate::gum::budget::{Budget, Contribution};
+use crate::inputs::Input;
 
 /// A budget as it is written; what is infinite or unknown is none.
 #[derive(Serialize)]
