@@ -1,4 +1,4 @@
-//! Who uses whom: what the README says against what cargo knows.
+//! Crates: who uses whom, by the README and by cargo.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
@@ -124,7 +124,7 @@ fn packages() -> Vec<Package> {
 /// The README's section on the crates.
 fn section() -> &'static str {
     let (_, section) =
-        include_str!("../README.md").split_once("\n## Crates\n").expect("README has a section on the crates");
+        include_str!("../../README.md").split_once("\n## Crates\n").expect("README has a section on the crates");
     section.split("\n## ").next().unwrap_or(section)
 }
 
@@ -234,6 +234,6 @@ fn no_crate_takes_more_from_others_than_is_stated() {
 /// Who cites a version finds it.
 #[test]
 fn the_citation_is_of_this_version() {
-    let citation = include_str!("../CITATION.cff");
+    let citation = include_str!("../../CITATION.cff");
     assert!(citation.lines().any(|line| line == concat!("version: ", env!("CARGO_PKG_VERSION"))), "{citation}");
 }

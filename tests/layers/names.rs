@@ -1,0 +1,139 @@
+//! Names at the root of a crate: each is used by somebody else.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::source::{crates, files, first_names, text, words};
+
+/// Names at a crate's root that nobody else names; the list only shrinks.
+const UNUSED: &[&str] = &[
+    "fmm_fit::ClosureProblem",
+    "fmm_fit::ComparisonError",
+    "fmm_fit::Disagreement",
+    "fmm_fit::Doubt",
+    "fmm_fit::FTest",
+    "fmm_fit::GradientFreeCheck",
+    "fmm_fit::JacobianMismatch",
+    "fmm_fit::JointError",
+    "fmm_fit::JointPart",
+    "fmm_fit::Minimum",
+    "fmm_fit::ModelRow",
+    "fmm_fit::NestedComparison",
+    "fmm_fit::NonFinite",
+    "fmm_fit::NormalityTest",
+    "fmm_fit::PosteriorWarning",
+    "fmm_fit::RefitError",
+    "fmm_fit::RobustFit",
+    "fmm_fit::RunsTest",
+    "fmm_fit::SensitivityError",
+    "fmm_fit::StartFailure",
+    "fmm_fit::anderson_darling",
+    "fmm_frf::Averaging",
+    "fmm_frf::DampingTerm",
+    "fmm_frf::Mode",
+    "fmm_frf::friction_force_of_slope",
+    "fmm_frf::impulse_of_record",
+    "fmm_identify::Addition",
+    "fmm_identify::Decrement",
+    "fmm_identify::ForceComparison",
+    "fmm_identify::HalfSwing",
+    "fmm_identify::ImpactProblem",
+    "fmm_identify::ImpactSummary",
+    "fmm_identify::NestedTest",
+    "fmm_identify::PredictiveCheck",
+    "fmm_identify::RecordSummary",
+    "fmm_identify::Scale",
+    "fmm_identify::WeakFormEstimate",
+    "fmm_record::Crossing",
+    "fmm_record::JITTER",
+    "fmm_record::Meaning",
+    "fmm_record::RATE_ROUNDING",
+    "fmm_record::Spike",
+    "fmm_uq::Contribution",
+    "fmm_uq::Evaluation",
+    "fmm_uq::Failure",
+    "fmm_uq::FailureKind",
+    "fmm_uq::Failures",
+    "fmm_uq::Histogram",
+    "fmm_uq::Influence",
+    "fmm_uq::OutlyingPair",
+    "fmm_uq::Region",
+    "fmm_uq::SecondOrder",
+    "fmm_uq::VarianceShare",
+];
+
+/// Folders of those who use the crates beside other crates.
+const USERS: [&str; 5] = ["examples", "benches", "tests", ".ci/downstream", "fuzz"];
+
+/// The names that `lib.rs` gives out.
+fn exported(name: &str) -> BTreeSet<String> {
+    let text = text(format!("crates/{name}/src/lib.rs").as_ref());
+    let text: String = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+    let mut names = BTreeSet::new();
+    for statement in text.split("pub use ").skip(1) {
+        let statement = statement.split(';').next().unwrap();
+        let list = statement.rsplit_once('{').map_or(statement, |(_, list)| list).trim_end_matches('}');
+        for item in list.split(',') {
+            // The name after `as`, or the last one of the path.
+            names.extend(words(item).last().filter(|name| *name != "self").map(str::to_owned));
+        }
+    }
+    names.extend(first_names(&text, "pub mod ").into_iter().map(str::to_owned));
+    names
+}
+
+/// The code blocks of the documentation of a crate.
+fn doc_examples(name: &str) -> String {
+    let mut blocks = String::new();
+    let mut add = |text: &str, prefixes: &[&str]| {
+        let mut is_inside = false;
+        for line in text.lines() {
+            let line = line.trim_start();
+            let Some(line) = prefixes.iter().find_map(|prefix| line.strip_prefix(prefix)) else { continue };
+            if line.trim_start().starts_with("```") {
+                is_inside = !is_inside;
+            } else if is_inside {
+                blocks.push_str(line);
+                blocks.push('\n');
+            }
+        }
+    };
+    for path in files(&format!("crates/{name}/src"), &["rs"]) {
+        add(&text(&path), &["///", "//!"]);
+    }
+    add(&text(format!("crates/{name}/README.md").as_ref()), &[""]);
+    blocks
+}
+
+#[test]
+fn every_exported_name_is_used() {
+    let crates = crates();
+    let mut texts: Vec<(String, String)> = Vec::new();
+    for folder in USERS.iter().map(ToString::to_string).chain(crates.iter().map(|name| format!("crates/{name}"))) {
+        let files = files(&folder, &["rs"]).into_iter();
+        let files = files.filter(|path| !path.starts_with("tests/layers"));
+        texts.extend(files.map(|path| (path.to_str().unwrap().to_owned(), text(&path))));
+    }
+    texts.push(("README.md".to_owned(), text("README.md".as_ref())));
+    let texts: Vec<(&str, BTreeSet<&str>)> =
+        texts.iter().map(|(path, text)| (path.as_str(), words(text).collect())).collect();
+    let mut unused = BTreeMap::new();
+    for name in &crates {
+        let (examples, own, ident) = (doc_examples(name), format!("crates/{name}/"), name.replace('-', "_"));
+        let examples: BTreeSet<&str> = words(&examples).collect();
+        let users = || texts.iter().filter(|(path, words)| !path.starts_with(&own) && words.contains(ident.as_str()));
+        for exported in exported(name) {
+            let is_used =
+                examples.contains(exported.as_str()) || users().any(|user| user.1.contains(exported.as_str()));
+            if !is_used {
+                unused.insert(format!("{ident}::{exported}"), ());
+            }
+        }
+    }
+    let unused: BTreeSet<&str> = unused.keys().map(String::as_str).collect();
+    let known: BTreeSet<&str> = UNUSED.iter().copied().collect();
+    let new: Vec<_> = unused.difference(&known).collect();
+    assert!(new.is_empty(), "nobody names {new:?}: make them private, or show them in an example");
+    let gone: Vec<_> = known.difference(&unused).collect();
+    assert!(gone.is_empty(), "{gone:?} are used or gone: take them out of UNUSED");
+    assert!(UNUSED.is_sorted(), "UNUSED is not in order");
+}
