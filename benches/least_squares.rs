@@ -12,7 +12,7 @@ use std::hint::black_box;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, criterion_group};
-use fmm_fit::{EvaluationError, Minimizer, MultiStart, Options, Outcome, Refit, Residuals, solve};
+use fmm_fit::{Derivatives, EvaluationError, Minimizer, MultiStart, Options, Outcome, Refit, Residuals, solve};
 use fmm_friction::{Berger, Coulomb, LawFamily};
 use fmm_identify::MachineProblem;
 use fmm_model::{Bounds, Damping, Dual, Oscillator, Parameter, Scalar};
@@ -52,6 +52,13 @@ impl Experiment {
     }
 }
 
+/// Model less data.
+fn write_differences(model: &[f64], data: &[f64], residuals: &mut [f64]) {
+    for ((r, model), data) in residuals.iter_mut().zip(model).zip(data) {
+        *r = model - data;
+    }
+}
+
 impl Residuals for Experiment {
     fn parameters(&self) -> &[Parameter] {
         &self.parameters
@@ -59,22 +66,25 @@ impl Residuals for Experiment {
     fn len(&self) -> usize {
         self.data.len()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        let mut trajectory = self.plain.borrow_mut();
-        Exact.run_into(&scenario(&[p[0], p[1], p[2]])?, &self.sampling, &mut trajectory)?;
-        for ((r, model), data) in residuals.iter_mut().zip(trajectory.velocity().values()).zip(&self.data) {
-            *r = model - data;
-        }
-        Ok(())
-    }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        let data = &self.data;
+        let Some(jacobian) = jacobian else {
+            let mut trajectory = self.plain.borrow_mut();
+            Exact.run_into(&scenario(&[p[0], p[1], p[2]])?, &self.sampling, &mut trajectory)?;
+            write_differences(trajectory.velocity().values(), data, residuals);
+            return Ok(());
+        };
         let mut trajectory = self.carrying.borrow_mut();
         let variables = [0, 1, 2].map(|j| Dual::variable(p[j], j));
         Exact.run_into(&scenario(&variables)?, &self.sampling, &mut trajectory)?;
-        for (j, column) in jacobian.chunks_exact_mut(self.data.len()).enumerate() {
+        write_differences(trajectory.velocity().values(), data, residuals);
+        for (j, column) in jacobian.chunks_exact_mut(data.len()).enumerate() {
             column.copy_from_slice(trajectory.velocity().partial(j).expect("three directions are carried"));
         }
-        Ok(true)
+        Ok(())
+    }
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
 }
 
@@ -91,13 +101,12 @@ impl Residuals for Recorded<'_> {
     fn len(&self) -> usize {
         self.problem.len()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        self.calls.borrow_mut().push((p.to_vec(), false));
-        self.problem.residuals(p, residuals)
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        self.calls.borrow_mut().push((p.to_vec(), jacobian.is_some()));
+        self.problem.evaluate(p, residuals, jacobian)
     }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        self.calls.borrow_mut().push((p.to_vec(), true));
-        self.problem.jacobian(p, jacobian)
+    fn derivatives(&self) -> Derivatives {
+        self.problem.derivatives()
     }
 }
 
@@ -117,11 +126,8 @@ fn solver(criterion: &mut Criterion) {
     group.bench_function("evaluations", |bencher| {
         bencher.iter(|| {
             for (p, is_jacobian) in black_box(&calls) {
-                if *is_jacobian {
-                    problem.jacobian(p, &mut jacobian).expect("valid before");
-                } else {
-                    problem.residuals(p, &mut residuals).expect("valid before");
-                }
+                let jacobian = is_jacobian.then_some(jacobian.as_mut_slice());
+                problem.evaluate(p, &mut residuals, jacobian).expect("valid before");
             }
         });
     });
@@ -170,35 +176,25 @@ impl<E: Engine<f64, Coulomb>> Residuals for Repeated<E> {
     fn len(&self) -> usize {
         self.data.len()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        let mut trajectory = self.plain.borrow_mut();
-        self.engine.run_into(&scenario(&[p[0], p[1], VELOCITY])?, &self.sampling, &mut trajectory)?;
-        for ((r, model), data) in residuals.iter_mut().zip(trajectory.velocity().values()).zip(&self.data) {
-            *r = model - data;
-        }
-        Ok(())
-    }
-    fn residuals_and_jacobian(
-        &self,
-        p: &[f64],
-        residuals: &mut [f64],
-        jacobian: &mut [f64],
-    ) -> Result<bool, EvaluationError> {
-        if !self.is_exact {
-            self.residuals(p, residuals)?;
-            return Ok(false);
-        }
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        let Some(jacobian) = jacobian else {
+            let mut trajectory = self.plain.borrow_mut();
+            self.engine.run_into(&scenario(&[p[0], p[1], VELOCITY])?, &self.sampling, &mut trajectory)?;
+            write_differences(trajectory.velocity().values(), &self.data, residuals);
+            return Ok(());
+        };
         let mut trajectory = self.carrying.borrow_mut();
         let variables = [Dual::variable(p[0], 0), Dual::variable(p[1], 1), Dual::from(VELOCITY)];
         Exact.run_into(&scenario(&variables)?, &self.sampling, &mut trajectory)?;
         let velocity = trajectory.velocity();
-        for ((r, model), data) in residuals.iter_mut().zip(velocity.values()).zip(&self.data) {
-            *r = model - data;
-        }
+        write_differences(velocity.values(), &self.data, residuals);
         for (j, column) in jacobian.chunks_exact_mut(self.data.len()).enumerate() {
             column.copy_from_slice(velocity.partial(j).expect("two directions are carried"));
         }
-        Ok(true)
+        Ok(())
+    }
+    fn derivatives(&self) -> Derivatives {
+        if self.is_exact { Derivatives::Free } else { Derivatives::None }
     }
     fn is_cheaper_combined(&self) -> bool {
         self.is_exact

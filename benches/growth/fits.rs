@@ -1,6 +1,6 @@
 //! Fits: samples, parameters, records and laws.
 
-use fmm_fit::{EvaluationError, Minimizer, Options, Residuals};
+use fmm_fit::{Derivatives, EvaluationError, Minimizer, Options, Residuals};
 use fmm_friction::{AccelerationCoulomb, Berger, Coulomb, CoulombViscous, Hyperbolic, LawFamily};
 use fmm_identify::{Experiment, Machine, Preparation, identify};
 use fmm_model::{Damping, Oscillator, Parameter};
@@ -41,7 +41,7 @@ impl Residuals for Linear {
     fn len(&self) -> usize {
         self.data.len()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         for (residual, data) in residuals.iter_mut().zip(&self.data) {
             *residual = -data;
         }
@@ -50,11 +50,13 @@ impl Residuals for Linear {
                 *residual += p * x;
             }
         }
+        if let Some(jacobian) = jacobian {
+            jacobian.copy_from_slice(&self.columns);
+        }
         Ok(())
     }
-    fn jacobian(&self, _: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        jacobian.copy_from_slice(&self.columns);
-        Ok(true)
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
 }
 

@@ -30,7 +30,7 @@
 //!     fn len(&self) -> usize {
 //!         self.amplitudes.len()
 //!     }
-//!     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+//!     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
 //!         for ((t, r), amplitude) in (0_u32..).zip(residuals).zip(self.amplitudes) {
 //!             *r = p[0] * (-p[1] * f64::from(t)).exp() - amplitude;
 //!         }
@@ -165,8 +165,8 @@ pub use posterior::{
     Calibration, Disagreement, GradientFreeCheck, Marginal, Posterior, PosteriorError, PosteriorWarning, Prior, Sampler,
 };
 pub use problem::{
-    Automatic, Block, ClosureProblem, EvaluationError, Held, Joint, JointError, JointPart, Model, Residuals, Weighted,
-    curve, curve_fit, fit,
+    Automatic, Block, ClosureProblem, Derivatives, EvaluationError, Held, Joint, JointError, JointPart, Model,
+    Residuals, Weighted, curve, curve_fit, fit,
 };
 pub use regression::{
     LinearRegression, Polynomial, PowerLaw, RandomEffectsLine, RegressionError, StraightLine, UncertainPoint,

@@ -2,7 +2,7 @@
 
 use std::array;
 
-use fmm_fit::{EvaluationError, LinearRegression, Options, Residuals, Weighting, solve};
+use fmm_fit::{Derivatives, EvaluationError, LinearRegression, Options, Residuals, Weighting, solve};
 use fmm_model::Parameter;
 
 /// Equations `row` · x = right side, one for each observation.
@@ -102,16 +102,20 @@ impl<F: Fn(&[f64; P]) -> Option<Equations<P>>, const P: usize> Residuals for Lin
         self.count
     }
 
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         let equations = self.at(p)?;
         residuals.iter_mut().zip(&equations.right).for_each(|(out, right)| *out = -right);
+        if let Some(jacobian) = jacobian {
+            jacobian
+                .chunks_exact_mut(self.count)
+                .zip(&equations.columns)
+                .for_each(|(to, from)| to.copy_from_slice(from));
+        }
         Ok(())
     }
 
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        let equations = self.at(p)?;
-        jacobian.chunks_exact_mut(self.count).zip(&equations.columns).for_each(|(to, from)| to.copy_from_slice(from));
-        Ok(true)
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
 }
 

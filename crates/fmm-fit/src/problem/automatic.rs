@@ -2,7 +2,7 @@
 
 use fmm_model::{Dual, Parameter, Scalar};
 
-use crate::{EvaluationError, Residuals};
+use crate::{Derivatives, EvaluationError, Residuals};
 
 /// Residuals as a formula that is generic in its number type; [`Automatic`] makes a problem of it.
 pub trait Model {
@@ -17,7 +17,7 @@ pub trait Model {
         self.len() == 0
     }
 
-    /// The `n` residuals at `p`, as [`Residuals::residuals`] wants them.
+    /// Writes the `n` residuals at `p`, as [`Residuals::evaluate`] does.
     ///
     /// # Errors
     /// Whatever keeps the model from having a value at `p`.
@@ -79,9 +79,19 @@ impl<M: Model, const N: usize> Automatic<M, N> {
     pub const fn model(&self) -> &M {
         &self.model
     }
+}
 
-    /// Fills the Jacobian and, if there is room for them, the residuals.
-    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: &mut [f64]) -> Result<(), EvaluationError> {
+impl<M: Model, const N: usize> Residuals for Automatic<M, N> {
+    fn parameters(&self) -> &[Parameter] {
+        self.model.parameters()
+    }
+
+    fn len(&self) -> usize {
+        self.model.len()
+    }
+
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        let Some(jacobian) = jacobian else { return self.model.residuals(p, residuals) };
         let rows = self.model.len();
         let mut carried = vec![Dual::<N>::from(0.0); rows];
         for first in (0..p.len()).step_by(N) {
@@ -100,38 +110,9 @@ impl<M: Model, const N: usize> Automatic<M, N> {
         }
         Ok(())
     }
-}
 
-impl<M: Model, const N: usize> Residuals for Automatic<M, N> {
-    fn parameters(&self) -> &[Parameter] {
-        self.model.parameters()
-    }
-
-    fn len(&self) -> usize {
-        self.model.len()
-    }
-
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        self.model.residuals(p, residuals)
-    }
-
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        self.evaluate(p, &mut [], jacobian)?;
-        Ok(true)
-    }
-
-    fn residuals_and_jacobian(
-        &self,
-        p: &[f64],
-        residuals: &mut [f64],
-        jacobian: &mut [f64],
-    ) -> Result<bool, EvaluationError> {
-        self.evaluate(p, residuals, jacobian)?;
-        Ok(true)
-    }
-
-    fn fills_fixed_columns(&self) -> bool {
-        true
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::All
     }
 }
 
@@ -188,10 +169,10 @@ mod tests {
         let problem = Automatic::<_, 3>::new(decay());
         let (p, h) = ([1.5, 0.8, 1.2, 0.2], 1e-6);
         let (mut residuals, mut jacobian) = (vec![0.0; 40], vec![0.0; 160]);
-        assert!(problem.residuals_and_jacobian(&p, &mut residuals, &mut jacobian).unwrap());
+        problem.evaluate(&p, &mut residuals, Some(&mut jacobian)).unwrap();
         let at = |p: &[f64]| {
             let mut r = vec![0.0; 40];
-            problem.residuals(p, &mut r).unwrap();
+            problem.evaluate(p, &mut r, None).unwrap();
             r
         };
         assert_eq!(residuals, at(&p));
@@ -207,7 +188,7 @@ mod tests {
                 assert!((jacobian[j * 40 + i] - slope).abs() < 1e-8, "∂r{i}/∂p{j}: {}", jacobian[j * 40 + i]);
             }
         }
-        let error = problem.jacobian(&[1.0, -1.0, 1.0, 0.0], &mut jacobian).unwrap_err();
+        let error = problem.evaluate(&[1.0, -1.0, 1.0, 0.0], &mut residuals, Some(&mut jacobian)).unwrap_err();
         assert_eq!(error.to_string(), "the rate is negative");
     }
 }

@@ -239,7 +239,7 @@ mod tests {
         fn len(&self) -> usize {
             7
         }
-        fn residuals(&self, _p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        fn evaluate(&self, _p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
             residuals.iter_mut().enumerate().for_each(|(i, r)| *r = i as f64);
             Ok(())
         }

@@ -2,7 +2,7 @@
 
 use fmm_model::{Dual, Parameter, Scalar};
 
-use crate::{EvaluationError, Fit, FitError, Options, Residuals, solve};
+use crate::{Derivatives, EvaluationError, Fit, FitError, Options, Residuals, solve};
 
 /// Residuals that a closure gives in numbers that carry the derivatives by all `N` parameters along.
 ///
@@ -22,13 +22,6 @@ impl<F: Fn([Dual<N>; N], &mut [Dual<N>]), const N: usize> ClosureProblem<F, N> {
     pub fn new(parameters: [impl Into<Parameter>; N], count: usize, residuals: F) -> Self {
         Self { parameters: parameters.map(Into::into), count, residuals }
     }
-
-    fn evaluate(&self, p: &[f64], variable: impl Fn(f64, usize) -> Dual<N>) -> Vec<Dual<N>> {
-        let variables = std::array::from_fn(|j| variable(p[j], j));
-        let mut carried = vec![Dual::from(0.0); self.count];
-        (self.residuals)(variables, &mut carried);
-        carried
-    }
 }
 
 impl<F: Fn([Dual<N>; N], &mut [Dual<N>]), const N: usize> Residuals for ClosureProblem<F, N> {
@@ -38,35 +31,23 @@ impl<F: Fn([Dual<N>; N], &mut [Dual<N>]), const N: usize> Residuals for ClosureP
     fn len(&self) -> usize {
         self.count
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        let carried = self.evaluate(p, |value, _| Dual::from(value));
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        let mut carried = vec![Dual::from(0.0); self.count];
+        (self.residuals)(std::array::from_fn(|j| Dual::variable(p[j], j)), &mut carried);
         residuals.iter_mut().zip(&carried).for_each(|(out, r)| *out = r.value());
-        Ok(())
-    }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        self.residuals_and_jacobian(p, &mut [], jacobian)
-    }
-    fn residuals_and_jacobian(
-        &self,
-        p: &[f64],
-        residuals: &mut [f64],
-        jacobian: &mut [f64],
-    ) -> Result<bool, EvaluationError> {
-        let carried = self.evaluate(p, Dual::variable);
-        residuals.iter_mut().zip(&carried).for_each(|(out, r)| *out = r.value());
-        if self.count > 0 {
+        if let Some(jacobian) = jacobian.filter(|_| self.count > 0) {
             for (j, column) in jacobian.chunks_exact_mut(self.count).enumerate() {
                 column.iter_mut().zip(&carried).for_each(|(element, r)| *element = r.partial(j));
             }
         }
-        Ok(true)
+        Ok(())
     }
     /// A closure over one number type costs the same with and without derivatives.
     fn is_cheaper_combined(&self) -> bool {
         true
     }
-    fn fills_fixed_columns(&self) -> bool {
-        true
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::All
     }
 }
 

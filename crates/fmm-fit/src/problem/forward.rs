@@ -12,8 +12,8 @@ macro_rules! forward_shape {
         fn blocks(&$self) -> &[$crate::Block] {
             $inner.blocks()
         }
-        fn fills_fixed_columns(&$self) -> bool {
-            $inner.fills_fixed_columns()
+        fn derivatives(&$self) -> $crate::Derivatives {
+            $inner.derivatives()
         }
     };
 }
@@ -21,19 +21,13 @@ macro_rules! forward_shape {
 /// Hands on the values of a problem and their derivatives.
 macro_rules! forward_values {
     ($self:ident => $inner:expr) => {
-        fn residuals(&$self, p: &[f64], residuals: &mut [f64]) -> Result<(), $crate::EvaluationError> {
-            $inner.residuals(p, residuals)
-        }
-        fn jacobian(&$self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, $crate::EvaluationError> {
-            $inner.jacobian(p, jacobian)
-        }
-        fn residuals_and_jacobian(
+        fn evaluate(
             &$self,
             p: &[f64],
             residuals: &mut [f64],
-            jacobian: &mut [f64],
-        ) -> Result<bool, $crate::EvaluationError> {
-            $inner.residuals_and_jacobian(p, residuals, jacobian)
+            jacobian: Option<&mut [f64]>,
+        ) -> Result<(), $crate::EvaluationError> {
+            $inner.evaluate(p, residuals, jacobian)
         }
         fn block_residuals(
             &$self,

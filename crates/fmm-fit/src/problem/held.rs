@@ -16,7 +16,7 @@ use crate::problem::forward::{forward_shape, forward_values};
 /// # impl Residuals for Line {
 /// #     fn parameters(&self) -> &[Parameter] { &self.0 }
 /// #     fn len(&self) -> usize { 3 }
-/// #     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+/// #     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
 /// #         for (i, (r, data)) in residuals.iter_mut().zip([1.0, 3.0, 5.0]).enumerate() {
 /// #             *r = p[0] + p[1] * i as f64 - data;
 /// #         }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use fmm_model::{Bounds, Parameter};
 
-use crate::{Block, EvaluationError, Fit, JointError, Residuals};
+use crate::{Block, Derivatives, EvaluationError, Fit, JointError, Residuals};
 
 /// Several problems as one, some of their parameters being the same in all: five repeats with one friction coefficient
 /// and each its own initial state.
@@ -35,7 +35,7 @@ use crate::{Block, EvaluationError, Fit, JointError, Residuals};
 /// # impl Residuals for Heating {
 /// #     fn parameters(&self) -> &[Parameter] { &self.parameters }
 /// #     fn len(&self) -> usize { self.temperatures.len() }
-/// #     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+/// #     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
 /// #         for (i, (r, y)) in residuals.iter_mut().zip(&self.temperatures).enumerate() {
 /// #             *r = p[0] + p[1] * i as f64 - y;
 /// #         }
@@ -204,39 +204,21 @@ impl<P: Residuals> Residuals for Joint<P> {
         self.members.last().map_or(0, |member| member.rows.end)
     }
 
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(
+        &self,
+        p: &[f64],
+        residuals: &mut [f64],
+        mut jacobian: Option<&mut [f64]>,
+    ) -> Result<(), EvaluationError> {
         for (problem, member) in self.problems.iter().zip(&self.members) {
-            problem.residuals(&member.values(p), &mut residuals[member.rows.clone()])?;
+            let own = jacobian.as_deref_mut().map(|jacobian| &mut jacobian[member.elements.clone()]);
+            problem.evaluate(&member.values(p), &mut residuals[member.rows.clone()], own)?;
         }
         Ok(())
     }
 
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        for (problem, member) in self.problems.iter().zip(&self.members) {
-            if !problem.jacobian(&member.values(p), &mut jacobian[member.elements.clone()])? {
-                return Ok(false);
-            }
-        }
-        Ok(true)
-    }
-
-    fn residuals_and_jacobian(
-        &self,
-        p: &[f64],
-        residuals: &mut [f64],
-        jacobian: &mut [f64],
-    ) -> Result<bool, EvaluationError> {
-        let mut has_jacobian = true;
-        for (problem, member) in self.problems.iter().zip(&self.members) {
-            let (values, residuals) = (member.values(p), &mut residuals[member.rows.clone()]);
-            if has_jacobian {
-                let jacobian = &mut jacobian[member.elements.clone()];
-                has_jacobian = problem.residuals_and_jacobian(&values, residuals, jacobian)?;
-            } else {
-                problem.residuals(&values, residuals)?;
-            }
-        }
-        Ok(has_jacobian)
+    fn derivatives(&self) -> Derivatives {
+        self.problems.iter().map(Residuals::derivatives).min().unwrap_or(Derivatives::None)
     }
 
     fn is_cheaper_combined(&self) -> bool {
@@ -251,15 +233,11 @@ impl<P: Residuals> Residuals for Joint<P> {
         let (number, index) = self.origins[block];
         let (problem, values) = (&self.problems[number], self.members[number].values(p));
         if problem.blocks().is_empty() {
-            problem.residuals(&values, residuals)?;
+            problem.evaluate(&values, residuals, None)?;
             Ok(true)
         } else {
             problem.block_residuals(index, &values, residuals)
         }
-    }
-
-    fn fills_fixed_columns(&self) -> bool {
-        self.problems.iter().all(Residuals::fills_fixed_columns)
     }
 }
 
@@ -314,21 +292,28 @@ mod tests {
         fn len(&self) -> usize {
             ROWS
         }
-        fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        fn evaluate(
+            &self,
+            p: &[f64],
+            residuals: &mut [f64],
+            jacobian: Option<&mut [f64]>,
+        ) -> Result<(), EvaluationError> {
             for (i, r) in residuals.iter_mut().enumerate() {
                 let (sin, cos) = (1e-3 * i as f64).sin_cos();
                 *r = p[0] * sin + p[1] * cos + p[2] * sin * cos + p[3] - 1.0 - sin;
             }
-            Ok(())
-        }
-        fn jacobian(&self, _p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-            for (j, column) in jacobian.chunks_exact_mut(ROWS).enumerate() {
-                for (i, element) in column.iter_mut().enumerate() {
-                    let (sin, cos) = (1e-3 * i as f64).sin_cos();
-                    *element = [sin, cos, sin * cos, 1.0][j];
+            if let Some(jacobian) = jacobian {
+                for (j, column) in jacobian.chunks_exact_mut(ROWS).enumerate() {
+                    for (i, element) in column.iter_mut().enumerate() {
+                        let (sin, cos) = (1e-3 * i as f64).sin_cos();
+                        *element = [sin, cos, sin * cos, 1.0][j];
+                    }
                 }
             }
-            Ok(self.is_exact)
+            Ok(())
+        }
+        fn derivatives(&self) -> Derivatives {
+            if self.is_exact { Derivatives::Free } else { Derivatives::None }
         }
     }
 
@@ -342,9 +327,9 @@ mod tests {
             assert!(minimizer.minimize(&joint, &[0.5; 12]).unwrap().is_success());
             let residuals = minimizer.current.residuals.capacity() + minimizer.trial.residuals.capacity();
             let used = minimizer.evaluator.buffered() + residuals;
-            // Four columns, the residuals here and at a trial point, and for differences those at a neighbour; not the
-            // twelve columns of the whole. A block of the factorisation is small beside.
-            let expected = 5 * ROWS * if is_exact { 4 + 2 } else { 4 + 3 };
+            // Four columns and three times the residuals: here, at a trial point, and those that come with derivatives
+            // or at a neighbour; not the twelve columns of the whole. A block of the factorisation is small beside.
+            let expected = 5 * ROWS * (4 + 3);
             assert!((expected..expected + 10_000).contains(&used), "{used} numbers instead of {expected}");
         }
     }

@@ -16,5 +16,5 @@ pub use closure::{ClosureProblem, curve, curve_fit, fit};
 pub use held::Held;
 pub use joint::{Joint, JointPart};
 pub use joint_error::JointError;
-pub use residuals::{EvaluationError, Residuals};
+pub use residuals::{Derivatives, EvaluationError, Residuals};
 pub use weighted::Weighted;

@@ -17,17 +17,18 @@ use crate::problem::forward::{forward_shape, forward_values};
 /// An implementor promises:
 ///
 /// 1. **Shapes.** `parameters().len()` and `len()` do not change during a fit. Every `p` has one value per
-///    parameter, in that order and in the unit of the parameter; `residuals` gets `n` elements and fills them all;
-///    `jacobian` gets `n × p` elements, column after column: `∂rᵢ/∂θⱼ` belongs at `jacobian[j * n + i]`. A problem
-///    of [`blocks`](Self::blocks) gets those of each block instead, block after block.
+///    parameter, in that order and in the unit of the parameter. [`evaluate`](Self::evaluate) fills all `n` elements
+///    of `residuals` and, if it gets one, the `n × p` elements of `jacobian`, column after column: `∂rᵢ/∂θⱼ` belongs
+///    at `jacobian[j * n + i]`. A problem of [`blocks`](Self::blocks) gets those of each block instead, block after
+///    block.
 /// 2. **A pure function.** Equal `p` give equal bits, whatever was asked before.
 /// 3. **Signed residuals**, model minus data or the reverse, divided by their standard uncertainty where this
 ///    differs, for which there is [`Weighted`](crate::Weighted). Absolute values have a kink where the fit is best and
 ///    spoil every derivative.
 /// 4. **Non-finite values mean "no value here".** At a trial point the solver then goes less far; only at the
 ///    start are they an error. The same holds for an `Err`, whose message is kept.
-/// 5. **One answer about the Jacobian**: always `Ok(true)` with all columns filled, or always `Ok(false)`. The
-///    columns of fixed parameters are read only if [`fills_fixed_columns`](Self::fills_fixed_columns) says so.
+/// 5. **One answer about derivatives**: [`derivatives`](Self::derivatives) says which columns `evaluate` fills. By
+///    default it fills none, gets no `jacobian`, and the solver takes differences.
 ///
 /// It may rely on:
 ///
@@ -40,7 +41,8 @@ use crate::problem::forward::{forward_shape, forward_values};
 /// Methods take `&self`, so that one problem serves many fits at once and needs no interior mutability; the
 /// solver owns the parameters and all large buffers. Slices instead of matrices keep every linear algebra crate
 /// out of the signature. The names, units and bounds are part of the problem because an error, a report and a
-/// null direction have to speak of them.
+/// null direction have to speak of them. One method computes residuals and derivatives because both come from one
+/// simulation.
 ///
 /// ```
 /// use fmm_fit::{EvaluationError, Options, Residuals, solve};
@@ -59,7 +61,7 @@ use crate::problem::forward::{forward_shape, forward_values};
 ///     fn len(&self) -> usize {
 ///         self.data.len()
 ///     }
-///     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+///     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
 ///         for (r, (t, temperature)) in residuals.iter_mut().zip(self.data) {
 ///             *r = p[0] * (-p[1] * t).exp() - temperature;
 ///         }
@@ -93,39 +95,20 @@ pub trait Residuals {
         self.len() == 0
     }
 
-    /// The `n` residuals at `p`.
+    /// Writes the `n` residuals at `p`, and with a `jacobian` also the derivatives `∂rᵢ/∂θⱼ`, column after column.
     ///
     /// # Errors
-    /// Whatever keeps the model from having a value at `p`.
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError>;
+    /// Any reason why the model has no value, or no derivatives, at `p`.
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError>;
 
-    /// The derivatives `∂rᵢ/∂θⱼ` at `p`, column after column, `n × p` of them; `Ok(false)`, the default, asks the
-    /// solver to take differences.
-    ///
-    /// # Errors
-    /// Whatever keeps the model from having derivatives at `p`.
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        let _ = (p, jacobian);
-        Ok(false)
+    /// The derivatives that [`evaluate`](Self::evaluate) computes; it gets a `jacobian` only if there are any.
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::None
     }
 
-    /// Residuals and derivatives in one pass; the default makes the two calls.
-    ///
-    /// # Errors
-    /// As for the two.
-    fn residuals_and_jacobian(
-        &self,
-        p: &[f64],
-        residuals: &mut [f64],
-        jacobian: &mut [f64],
-    ) -> Result<bool, EvaluationError> {
-        self.residuals(p, residuals)?;
-        self.jacobian(p, jacobian)
-    }
-
-    /// Whether [`residuals_and_jacobian`](Self::residuals_and_jacobian) costs less than about twice
-    /// [`residuals`](Self::residuals). If so the solver calls it at every trial point, of which about one in
-    /// eight is rejected, instead of coming back for the derivatives of the accepted ones.
+    /// Whether residuals and derivatives together cost less than about twice the residuals. If so the solver asks for
+    /// both at every trial point, of which about one in eight is rejected, instead of coming back for the derivatives
+    /// of the accepted ones.
     fn is_cheaper_combined(&self) -> bool {
         false
     }
@@ -149,12 +132,17 @@ pub trait Residuals {
         let _ = (block, p, residuals);
         Ok(false)
     }
+}
 
-    /// Whether [`jacobian`](Self::jacobian) fills the columns of fixed parameters as well. If not, the default,
-    /// [`Sensitivity`](crate::Sensitivity) takes differences by them.
-    fn fills_fixed_columns(&self) -> bool {
-        false
-    }
+/// Derivatives that a problem computes itself, fewest first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Derivatives {
+    /// None: the solver takes differences.
+    None,
+    /// By the parameters that are not fixed. [`Sensitivity`](crate::Sensitivity) takes differences by the fixed ones.
+    Free,
+    /// By all parameters, fixed ones included.
+    All,
 }
 
 impl<T: Residuals + ?Sized> Residuals for &T {

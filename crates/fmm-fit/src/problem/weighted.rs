@@ -28,7 +28,7 @@ use crate::{Block, EvaluationError, FitError, Residuals};
 /// # impl Residuals for Mean<'_> {
 /// #     fn parameters(&self) -> &[Parameter] { &self.1 }
 /// #     fn len(&self) -> usize { self.0.len() }
-/// #     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+/// #     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
 /// #         residuals.iter_mut().zip(self.0).for_each(|(r, y)| *r = p[0] - y);
 /// #         Ok(())
 /// #     }
@@ -82,11 +82,6 @@ impl<P: Residuals> Weighted<P> {
             *residual /= uncertainty;
         }
     }
-
-    fn divide_rows(&self, jacobian: &mut [f64]) {
-        let factors: Vec<f64> = self.uncertainties.iter().map(|uncertainty| uncertainty.recip()).collect();
-        scale_rows(&self.problem, jacobian, &factors);
-    }
 }
 
 impl<P: Residuals> Residuals for Weighted<P> {
@@ -94,30 +89,19 @@ impl<P: Residuals> Residuals for Weighted<P> {
     fn parameters(&self) -> &[Parameter] {
         self.problem.parameters()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        self.problem.residuals(p, residuals)?;
-        self.divide(0, residuals);
-        Ok(())
-    }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        let is_exact = self.problem.jacobian(p, jacobian)?;
-        if is_exact {
-            self.divide_rows(jacobian);
-        }
-        Ok(is_exact)
-    }
-    fn residuals_and_jacobian(
+    fn evaluate(
         &self,
         p: &[f64],
         residuals: &mut [f64],
-        jacobian: &mut [f64],
-    ) -> Result<bool, EvaluationError> {
-        let is_exact = self.problem.residuals_and_jacobian(p, residuals, jacobian)?;
+        mut jacobian: Option<&mut [f64]>,
+    ) -> Result<(), EvaluationError> {
+        self.problem.evaluate(p, residuals, jacobian.as_deref_mut())?;
         self.divide(0, residuals);
-        if is_exact {
-            self.divide_rows(jacobian);
+        if let Some(jacobian) = jacobian {
+            let factors: Vec<f64> = self.uncertainties.iter().map(|uncertainty| uncertainty.recip()).collect();
+            scale_rows(&self.problem, jacobian, &factors);
         }
-        Ok(is_exact)
+        Ok(())
     }
     fn block_residuals(&self, block: usize, p: &[f64], residuals: &mut [f64]) -> Result<bool, EvaluationError> {
         let has_blocks = self.problem.block_residuals(block, p, residuals)?;

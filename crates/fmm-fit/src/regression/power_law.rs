@@ -7,7 +7,8 @@ use fmm_model::{Bounds, Parameter};
 use crate::regression::polynomial::count_distinct;
 use crate::regression::weighting::check_finite;
 use crate::{
-    EvaluationError, Fit, LinearRegression, Options, Prediction, RegressionError, Residuals, Weighting, solve,
+    Derivatives, EvaluationError, Fit, LinearRegression, Options, Prediction, RegressionError, Residuals, Weighting,
+    solve,
 };
 
 /// A power law with an offset through observations.
@@ -214,21 +215,23 @@ impl Residuals for Problem<'_> {
         self.y.len()
     }
 
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         for (i, ((r, x), y)) in residuals.iter_mut().zip(self.x).zip(self.y).enumerate() {
             *r = (p[0] * x.powf(p[1]) + p[2] - y) * self.factor(i);
+        }
+        if let Some(jacobian) = jacobian {
+            let count = self.len();
+            for (i, x) in self.x.iter().enumerate() {
+                for (j, derivative) in gradient(*x, p).into_iter().enumerate() {
+                    jacobian[j * count + i] = derivative * self.factor(i);
+                }
+            }
         }
         Ok(())
     }
 
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        let count = self.len();
-        for (i, x) in self.x.iter().enumerate() {
-            for (j, derivative) in gradient(*x, p).into_iter().enumerate() {
-                jacobian[j * count + i] = derivative * self.factor(i);
-            }
-        }
-        Ok(true)
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
 }
 

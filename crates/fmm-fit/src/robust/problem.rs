@@ -32,7 +32,7 @@ const FAR: f64 = 1e150;
 /// # impl Residuals for Mean<'_> {
 /// #     fn parameters(&self) -> &[Parameter] { &self.1 }
 /// #     fn len(&self) -> usize { self.0.len() }
-/// #     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+/// #     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
 /// #         residuals.iter_mut().zip(self.0).for_each(|(r, y)| *r = p[0] - y);
 /// #         Ok(())
 /// #     }
@@ -117,23 +117,15 @@ impl<P: Residuals> Residuals for Robust<P> {
     fn parameters(&self) -> &[Parameter] {
         self.problem.parameters()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        self.problem.residuals(p, residuals)?;
-        self.replace(residuals, None);
-        Ok(())
-    }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        self.residuals_and_jacobian(p, &mut vec![0.0; self.len()], jacobian)
-    }
-    fn residuals_and_jacobian(
+    fn evaluate(
         &self,
         p: &[f64],
         residuals: &mut [f64],
-        jacobian: &mut [f64],
-    ) -> Result<bool, EvaluationError> {
-        let is_exact = self.problem.residuals_and_jacobian(p, residuals, jacobian)?;
-        self.replace(residuals, is_exact.then_some(jacobian));
-        Ok(is_exact)
+        mut jacobian: Option<&mut [f64]>,
+    ) -> Result<(), EvaluationError> {
+        self.problem.evaluate(p, residuals, jacobian.as_deref_mut())?;
+        self.replace(residuals, jacobian);
+        Ok(())
     }
     fn block_residuals(&self, block: usize, p: &[f64], residuals: &mut [f64]) -> Result<bool, EvaluationError> {
         let has_blocks = self.problem.block_residuals(block, p, residuals)?;

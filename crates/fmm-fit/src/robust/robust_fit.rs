@@ -55,7 +55,7 @@ pub fn median_deviation(residuals: &[f64], fitted: usize) -> Option<f64> {
 /// # impl Residuals for Mean<'_> {
 /// #     fn parameters(&self) -> &[Parameter] { &self.1 }
 /// #     fn len(&self) -> usize { self.0.len() }
-/// #     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+/// #     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
 /// #         residuals.iter_mut().zip(self.0).for_each(|(r, y)| *r = p[0] - y);
 /// #         Ok(())
 /// #     }
@@ -91,7 +91,8 @@ pub fn solve_robust<P: Residuals + ?Sized>(
         Scale::Estimated => {
             let mut residuals = vec![0.0; problem.len()];
             // A start without values is refused by name when the fit begins.
-            let first = problem.residuals(start, &mut residuals).ok().and_then(|()| median_deviation(&residuals, 0));
+            let first =
+                problem.evaluate(start, &mut residuals, None).ok().and_then(|()| median_deviation(&residuals, 0));
             let first = first.filter(|deviation| *deviation > 0.0 && deviation.is_finite()).unwrap_or(1.0);
             let convex = if forgets { Loss::SoftL1 } else { loss };
             let mut fit = search.repeated(start, convex, first)?;
@@ -183,7 +184,7 @@ pub struct RobustFit {
 impl RobustFit {
     fn new<P: Residuals>(problem: &Robust<P>, fit: Fit) -> Result<Self, FitError> {
         let mut residuals = vec![0.0; problem.len()];
-        let asked = problem.problem().residuals(fit.values(), &mut residuals);
+        let asked = problem.problem().evaluate(fit.values(), &mut residuals, None);
         asked.map_err(|error| FitError::model_failed(error.into_boxed()))?;
         let weights = residuals.iter().map(|r| problem.loss().weight(problem.square(*r))).collect();
         let covariance = m_covariance(problem, &fit);

@@ -29,7 +29,7 @@ const JACOBIANS: &str = "jacobian_count";
 /// # impl Residuals for Rosenbrock {
 /// #     fn parameters(&self) -> &[Parameter] { &self.0 }
 /// #     fn len(&self) -> usize { 2 }
-/// #     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+/// #     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
 /// #         residuals.copy_from_slice(&[10.0 * (p[1] - p[0] * p[0]), 1.0 - p[0]]);
 /// #         Ok(())
 /// #     }

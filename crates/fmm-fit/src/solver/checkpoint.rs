@@ -141,8 +141,13 @@ mod tests {
         fn len(&self) -> usize {
             self.0.len()
         }
-        fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), crate::EvaluationError> {
-            self.0.residuals(p, residuals)
+        fn evaluate(
+            &self,
+            p: &[f64],
+            residuals: &mut [f64],
+            _: Option<&mut [f64]>,
+        ) -> Result<(), crate::EvaluationError> {
+            self.0.evaluate(p, residuals, None)
         }
     }
 

@@ -249,7 +249,7 @@ impl Evaluator {
         if self.structure.is_dense() {
             self.residual_evaluations += 1;
             let rows = self.scratch.len();
-            return problem.residuals(&self.probe, &mut self.jacobian[j * rows..(j + 1) * rows]);
+            return problem.evaluate(&self.probe, &mut self.jacobian[j * rows..(j + 1) * rows], None);
         }
         self.probe_scratch(problem, j)?;
         for column in self.structure.columns_of(j) {
@@ -278,7 +278,7 @@ impl Evaluator {
             }
         }
         self.residual_evaluations += 1;
-        problem.residuals(&self.probe, &mut self.scratch)
+        problem.evaluate(&self.probe, &mut self.scratch, None)
     }
 }
 
@@ -315,7 +315,7 @@ mod tests {
         fn len(&self) -> usize {
             1
         }
-        fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
             self.asked.borrow_mut().push(p[0]);
             residuals[0] = if p[0] > self.edge { f64::NAN } else { p[0].exp() };
             Ok(())

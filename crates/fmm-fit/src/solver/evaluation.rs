@@ -4,7 +4,7 @@ use crate::problem::block::{Scratch, Structure};
 use crate::solver::non_finite::worst;
 use crate::solver::sums::sum_of_squares;
 use crate::solver::triangle::Triangle;
-use crate::{FitError, NonFinite, Residuals};
+use crate::{Derivatives, FitError, NonFinite, Residuals};
 
 /// Where the derivatives come from.
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -113,7 +113,7 @@ impl Evaluator {
         self.free.clear();
         self.free.extend((0..start.len()).filter(|&j| self.lower[j] < self.upper[j]));
         self.unfilled.clear();
-        self.scheme = Scheme::Exact;
+        self.scheme = if problem.derivatives() == Derivatives::None { Scheme::Forward } else { Scheme::Exact };
         (self.residual_evaluations, self.jacobian_evaluations, self.evaluated_rows) = (0, 0, 0);
         self.model_error = None;
         self.non_finite = None;
@@ -134,26 +134,32 @@ impl Evaluator {
         }
     }
 
-    /// Evaluates the residuals at `point.values`; false if the model has no finite value there.
+    /// Evaluates the residuals at `point.values`, and the derivatives with them where that is cheap; false if the model
+    /// has no finite value there.
     pub(crate) fn residuals<P: Residuals + ?Sized>(&mut self, problem: &P, point: &mut Point) -> bool {
+        self.evaluate(problem, point, problem.is_cheaper_combined())
+    }
+
+    /// Evaluates residuals and derivatives at `point.values`, in one pass if the problem has its own; false if the
+    /// model has no finite value there.
+    #[cfg(feature = "sampler")]
+    pub(crate) fn residuals_and_derivatives<P: Residuals + ?Sized>(&mut self, problem: &P, point: &mut Point) -> bool {
+        self.evaluate(problem, point, true) && self.differentiate(problem, point)
+    }
+
+    fn evaluate<P: Residuals + ?Sized>(&mut self, problem: &P, point: &mut Point, is_combined: bool) -> bool {
+        let has_jacobian = is_combined && self.scheme == Scheme::Exact && !self.free.is_empty();
         self.residual_evaluations += 1;
+        self.jacobian_evaluations += usize::from(has_jacobian);
         self.is_jacobian_current = false;
         point.residuals.resize(problem.len(), 0.0);
-        let combined = self.scheme == Scheme::Exact && !self.free.is_empty() && problem.is_cheaper_combined();
-        let result = if combined {
-            self.jacobian_evaluations += 1;
-            problem.residuals_and_jacobian(&point.values, &mut point.residuals, &mut self.jacobian)
-        } else {
-            problem.residuals(&point.values, &mut point.residuals).map(|()| false)
-        };
-        match result {
-            Ok(is_jacobian_current) => self.is_jacobian_current = is_jacobian_current,
-            Err(error) => {
-                self.remember_model_error(error.to_string());
-                point.sum_of_squares = f64::NAN;
-                return false;
-            }
+        let jacobian = has_jacobian.then_some(self.jacobian.as_mut_slice());
+        if let Err(error) = problem.evaluate(&point.values, &mut point.residuals, jacobian) {
+            self.remember_model_error(error.to_string());
+            point.sum_of_squares = f64::NAN;
+            return false;
         }
+        self.is_jacobian_current = has_jacobian;
         point.sum_of_squares = sum_of_squares(&point.residuals);
         let is_finite = point.sum_of_squares.is_finite();
         if !is_finite {
@@ -161,33 +167,6 @@ impl Evaluator {
             self.non_finite = Some(NonFinite::Residual { index, value });
         }
         is_finite
-    }
-
-    /// Evaluates residuals and derivatives at `point.values`, in one pass if the problem has its own; false if the
-    /// model has no finite value there.
-    #[cfg(feature = "sampler")]
-    pub(crate) fn residuals_and_derivatives<P: Residuals + ?Sized>(&mut self, problem: &P, point: &mut Point) -> bool {
-        if self.scheme != Scheme::Exact || self.free.is_empty() {
-            return self.residuals(problem, point) && self.differentiate(problem, point);
-        }
-        self.residual_evaluations += 1;
-        self.jacobian_evaluations += 1;
-        point.residuals.resize(problem.len(), 0.0);
-        match problem.residuals_and_jacobian(&point.values, &mut point.residuals, &mut self.jacobian) {
-            Ok(is_exact) => {
-                point.sum_of_squares = sum_of_squares(&point.residuals);
-                if !is_exact {
-                    self.jacobian_evaluations = 0;
-                    self.scheme = Scheme::Forward;
-                    return point.sum_of_squares.is_finite() && self.differentiate(problem, point);
-                }
-                point.sum_of_squares.is_finite()
-            }
-            Err(error) => {
-                self.remember_model_error(error.to_string());
-                false
-            }
-        }
     }
 
     /// Evaluates the Jacobian at a point that has its residuals, and factors it; false if it is not finite.
@@ -210,16 +189,11 @@ impl Evaluator {
     pub(crate) fn differentiate<P: Residuals + ?Sized>(&mut self, problem: &P, point: &Point) -> bool {
         if !self.is_jacobian_current && self.scheme == Scheme::Exact {
             self.jacobian_evaluations += 1;
-            match problem.jacobian(&point.values, &mut self.jacobian) {
-                Ok(true) => {}
-                Ok(false) => {
-                    self.jacobian_evaluations = 0;
-                    self.scheme = Scheme::Forward;
-                }
-                Err(error) => {
-                    self.remember_model_error(error.to_string());
-                    return false;
-                }
+            self.scratch.resize(problem.len(), 0.0);
+            // The residuals of the point stay: they may come of another pass, with other rounding.
+            if let Err(error) = problem.evaluate(&point.values, &mut self.scratch, Some(&mut self.jacobian)) {
+                self.remember_model_error(error.to_string());
+                return false;
             }
         }
         self.is_jacobian_current = false;
@@ -248,11 +222,10 @@ impl Evaluator {
             problem.parameters().iter().map(|parameter| (parameter.bounds().lower(), parameter.bounds().upper()));
         evaluator.begin(problem, bounds, values).ok()?;
         let mut point = Point { values: values.to_vec(), ..Point::default() };
-        let mut is_finite = evaluator.residuals(problem, &mut point) && evaluator.factor(problem, &mut point);
         if evaluator.scheme == Scheme::Forward {
             evaluator.scheme = Scheme::Central;
-            is_finite = evaluator.factor(problem, &mut point);
         }
+        let is_finite = evaluator.residuals(problem, &mut point) && evaluator.factor(problem, &mut point);
         let Self { structure, jacobian, scheme, .. } = evaluator;
         is_finite.then_some(Linearised { residuals: point.residuals, structure, jacobian, scheme })
     }

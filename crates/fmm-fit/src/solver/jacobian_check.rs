@@ -51,21 +51,23 @@ impl fmt::Display for JacobianMismatch {
 /// without derivatives has none to doubt.
 ///
 /// ```
-/// use fmm_fit::{EvaluationError, Residuals, check_jacobian};
+/// use fmm_fit::{Derivatives, EvaluationError, Residuals, check_jacobian};
 /// use fmm_model::Parameter;
 ///
 /// struct Square([Parameter; 2]);
 /// impl Residuals for Square {
 ///     fn parameters(&self) -> &[Parameter] { &self.0 }
 ///     fn len(&self) -> usize { 2 }
-///     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+///     fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
 ///         residuals.copy_from_slice(&[p[0] * p[0] - 2.0, p[0] - p[1]]);
+///         if let Some(jacobian) = jacobian {
+///             // The factor of two is forgotten.
+///             jacobian.copy_from_slice(&[p[0], 1.0, 0.0, -1.0]);
+///         }
 ///         Ok(())
 ///     }
-///     fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-///         // The factor of two is forgotten.
-///         jacobian.copy_from_slice(&[p[0], 1.0, 0.0, -1.0]);
-///         Ok(true)
+///     fn derivatives(&self) -> Derivatives {
+///         Derivatives::Free
 ///     }
 /// }
 /// let problem = Square(["x", "y"].map(|name| Parameter::new(name, name, "1")));

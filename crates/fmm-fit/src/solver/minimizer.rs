@@ -10,7 +10,7 @@ use crate::solver::evaluation::{Evaluator, Point, Scheme};
 use crate::solver::non_finite::worst;
 use crate::solver::triangle::Triangle;
 use crate::solver::trust_region::TrustRegion;
-use crate::{Fit, FitError, JacobianMismatch, NonFinite, Options, Outcome, Residuals};
+use crate::{Derivatives, Fit, FitError, JacobianMismatch, NonFinite, Options, Outcome, Residuals};
 
 /// The square of the rounding of a smaller residual, √10⁻³⁰⁸/ε, is no normal number.
 const SMALLEST_RESIDUAL: f64 = 1e-138;
@@ -37,7 +37,7 @@ const SMALLEST_RESIDUAL: f64 = 1e-138;
 ///     fn len(&self) -> usize {
 ///         self.0.len()
 ///     }
-///     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+///     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
 ///         for (i, r) in residuals.iter_mut().enumerate() {
 ///             *r = p[0] + p[1] * i as f64 - self.0[i];
 ///         }
@@ -263,7 +263,8 @@ impl Minimizer {
             // Ask again for the error itself: a pure function fails in the same way.
             let mut residuals = vec![0.0; problem.len()];
             let mut jacobian = vec![0.0; self.evaluator.structure.len()];
-            if let Err(error) = problem.residuals_and_jacobian(&self.start, &mut residuals, &mut jacobian) {
+            let jacobian = (problem.derivatives() != Derivatives::None).then_some(jacobian.as_mut_slice());
+            if let Err(error) = problem.evaluate(&self.start, &mut residuals, jacobian) {
                 return FitError::model_failed(error.into_boxed());
             }
         }

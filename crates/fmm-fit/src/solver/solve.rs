@@ -15,7 +15,7 @@ use crate::{Fit, FitError, Minimizer, Options, Outcome, Residuals, check_jacobia
 /// # impl Residuals for Decay {
 /// #     fn parameters(&self) -> &[Parameter] { &self.parameters }
 /// #     fn len(&self) -> usize { self.t.len() }
-/// #     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+/// #     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
 /// #         for ((r, t), y) in residuals.iter_mut().zip(&self.t).zip(&self.y) {
 /// #             *r = p[0] * (-p[1] * t).exp() - y;
 /// #         }

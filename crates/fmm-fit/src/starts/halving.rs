@@ -36,7 +36,7 @@ const SAME: f64 = 0.1;
 ///     fn len(&self) -> usize {
 ///         100
 ///     }
-///     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+///     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
 ///         for (i, residual) in residuals.iter_mut().enumerate() {
 ///             let t = 0.1 * i as f64;
 ///             *residual = (p[0] * t).sin() - (3.3 * t).sin();

@@ -34,7 +34,7 @@ const BATCH: usize = 32;
 ///     fn len(&self) -> usize {
 ///         2
 ///     }
-///     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+///     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
 ///         residuals.copy_from_slice(&[p[0] * p[0] + p[1] - 11.0, p[0] + p[1] * p[1] - 7.0]);
 ///         Ok(())
 ///     }

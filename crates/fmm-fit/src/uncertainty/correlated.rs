@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::problem::block::Structure;
 use crate::uncertainty::definite::{self, add_square, factor, inverse};
-use crate::{EvaluationError, Fit, Residuals};
+use crate::{Derivatives, EvaluationError, Fit, Residuals};
 
 /// Covariance of the estimates of a fit whose residuals are correlated with their neighbours.
 ///
@@ -118,9 +118,10 @@ impl CorrelatedCovariance {
         let (rows, count) = (problem.len(), fit.values().len());
         let structure = Structure::of(problem)?;
         let mut jacobian = vec![0.0; structure.len()];
-        if span == 0 || !problem.jacobian(fit.values(), &mut jacobian)? {
+        if span == 0 || problem.derivatives() == Derivatives::None {
             return Ok(None);
         }
+        problem.evaluate(fit.values(), &mut vec![0.0; rows], Some(&mut jacobian))?;
         let derivatives = structure.by_row(count);
         let covariance = |a: usize, b: usize| fit.unit_covariance(a, b);
         let determined: Vec<usize> = (0..count).filter(|&j| covariance(j, j).is_some()).collect();
@@ -213,19 +214,26 @@ mod tests {
         fn len(&self) -> usize {
             self.data.len()
         }
-        fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        fn evaluate(
+            &self,
+            p: &[f64],
+            residuals: &mut [f64],
+            jacobian: Option<&mut [f64]>,
+        ) -> Result<(), EvaluationError> {
             let scale = 1.0 / self.len() as f64;
             for (i, (r, y)) in residuals.iter_mut().zip(&self.data).enumerate() {
                 *r = p[0] + p[1] * i as f64 * scale - y;
             }
+            if let Some(jacobian) = jacobian {
+                let (ones, times) = jacobian.split_at_mut(self.len());
+                let scale = 1.0 / ones.len() as f64;
+                ones.fill(1.0);
+                times.iter_mut().enumerate().for_each(|(i, t)| *t = i as f64 * scale);
+            }
             Ok(())
         }
-        fn jacobian(&self, _p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-            let (ones, times) = jacobian.split_at_mut(self.len());
-            let scale = 1.0 / ones.len() as f64;
-            ones.fill(1.0);
-            times.iter_mut().enumerate().for_each(|(i, t)| *t = i as f64 * scale);
-            Ok(true)
+        fn derivatives(&self) -> Derivatives {
+            Derivatives::Free
         }
     }
 
@@ -272,7 +280,7 @@ mod tests {
         let problem = Line { data: line(0.5).data[..12].to_vec(), ..line(0.0) };
         let fit = solve(&problem, &[0.1, 0.1], &Options::default()).unwrap();
         let mut jacobian = vec![0.0; 24];
-        assert!(problem.jacobian(fit.values(), &mut jacobian).unwrap());
+        problem.evaluate(fit.values(), &mut vec![0.0; problem.len()], Some(&mut jacobian)).unwrap();
         let unit = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(a, b)| fit.unit_covariance(a, b).unwrap());
         let mut whole = Whole::new(unit.to_vec(), 2);
         for start in [0, 4, 8] {

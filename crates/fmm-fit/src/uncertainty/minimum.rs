@@ -8,7 +8,7 @@ use crate::solver::spectrum::Spectrum;
 use crate::solver::sums::dot;
 use crate::solver::triangle::Triangle;
 use crate::uncertainty::definite;
-use crate::{Estimate, EstimateStatus, Fit, Residuals, Sensitivity, SensitivityError};
+use crate::{Derivatives, Estimate, EstimateStatus, Fit, Residuals, Sensitivity, SensitivityError};
 
 /// A minimum with its derivatives, from which the response follows.
 pub(crate) struct Minimum<'a, P: ?Sized> {
@@ -55,7 +55,7 @@ impl<'a, P: Residuals + ?Sized> Minimum<'a, P> {
         evaluator.free = select(|status| !status.is_at_bound());
         if !fit.has_exact_jacobian() {
             evaluator.scheme = Scheme::Central;
-        } else if !problem.fills_fixed_columns() {
+        } else if problem.derivatives() != Derivatives::All {
             evaluator.unfilled.clone_from(&inputs);
         }
         let point = Point {

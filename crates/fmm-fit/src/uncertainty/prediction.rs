@@ -103,7 +103,7 @@ impl Fit {
     /// # impl Residuals for Mean {
     /// #     fn parameters(&self) -> &[Parameter] { &self.parameters }
     /// #     fn len(&self) -> usize { 4 }
-    /// #     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    /// #     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
     /// #         residuals.iter_mut().zip(&self.data).for_each(|(r, y)| *r = p[0] - y);
     /// #         Ok(())
     /// #     }

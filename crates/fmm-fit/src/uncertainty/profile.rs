@@ -40,7 +40,7 @@ const ACCURACY: f64 = 1e-10;
 /// # impl Residuals for Rise<'_> {
 /// #     fn parameters(&self) -> &[Parameter] { &self.1 }
 /// #     fn len(&self) -> usize { self.0.len() }
-/// #     fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+/// #     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
 /// #         residuals.iter_mut().zip(self.0).for_each(|(r, (t, y))| *r = p[0] * (1.0 - (-p[1] * t).exp()) - y);
 /// #         Ok(())
 /// #     }

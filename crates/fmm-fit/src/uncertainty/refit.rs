@@ -8,7 +8,9 @@ use super::forecast::Forecast;
 use crate::problem::block::{Scratch, Structure};
 use crate::solver::spectrum::is_surely_of_full_rank;
 use crate::solver::triangle::Triangle;
-use crate::{EstimateStatus, Fit, Held, Minimizer, Options, RefitError, Residuals, Sensitivity, SensitivityError};
+use crate::{
+    Derivatives, EstimateStatus, Fit, Held, Minimizer, Options, RefitError, Residuals, Sensitivity, SensitivityError,
+};
 
 /// A step that moves the residuals by less than this share of what the parameters themselves make of them is no step.
 const NEGLIGIBLE: f64 = 1e-10;
@@ -165,7 +167,7 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
         let at = |places: &[usize]| places.iter().map(|&j| fit.values()[j]).collect();
         let forecast = Forecast::straight(at(&free), at(&inputs), &slopes);
         let is_determined = |&j: &usize| fit.estimates()[j].status() == EstimateStatus::Determined;
-        let is_direct = fit.has_exact_jacobian() && free.iter().all(is_determined);
+        let is_direct = problem.derivatives() != Derivatives::None && free.iter().all(is_determined);
         Ok(Self {
             problem,
             values: fit.values().to_vec(),
@@ -302,7 +304,7 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
         step.resize(self.free.len(), 0.0);
         let mut previous = None;
         for count in 0..STEPS {
-            if !matches!(self.problem.residuals_and_jacobian(values, residuals, jacobian), Ok(true)) {
+            if self.problem.evaluate(values, residuals, Some(jacobian)).is_err() {
                 return Arrival::Lost;
             }
             self.structure.factor(jacobian, &self.free, residuals, triangle, scratch);

@@ -1,6 +1,6 @@
 //! Where the sum of squares bends otherwise than the linear model of the residuals.
 
-use fmm_fit::{Automatic, EvaluationError, Model, Options, Residuals, check_jacobian, solve};
+use fmm_fit::{Automatic, Derivatives, EvaluationError, Model, Options, Residuals, check_jacobian, solve};
 use fmm_model::{Parameter, Scalar};
 
 /// Residuals from a function, of so many parameters.
@@ -56,8 +56,8 @@ impl<P: Residuals> Residuals for Plain<P> {
     fn len(&self) -> usize {
         self.0.len()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        self.0.residuals(p, residuals)
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        self.0.evaluate(p, residuals, None)
     }
 }
 
@@ -127,20 +127,22 @@ impl Residuals for Kinked {
     fn len(&self) -> usize {
         10
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         for (i, r) in residuals.iter_mut().enumerate() {
             let t = 0.3 * i as f64;
             *r = p[0] * (-p[1] * t).exp() + (p[1] - 1.0).abs() - 2.0 * (-0.5 * t).exp();
         }
+        if let Some(jacobian) = jacobian {
+            for i in 0..10 {
+                let t = 0.3 * i as f64;
+                jacobian[i] = (-p[1] * t).exp();
+                jacobian[10 + i] = self.wrong * (-t * p[0] * jacobian[i] + if p[1] < 1.0 { -1.0 } else { 1.0 });
+            }
+        }
         Ok(())
     }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        for i in 0..10 {
-            let t = 0.3 * i as f64;
-            jacobian[i] = (-p[1] * t).exp();
-            jacobian[10 + i] = self.wrong * (-t * p[0] * jacobian[i] + if p[1] < 1.0 { -1.0 } else { 1.0 });
-        }
-        Ok(true)
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
 }
 

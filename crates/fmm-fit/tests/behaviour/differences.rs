@@ -1,6 +1,6 @@
 //! What differences may claim where the model jumps, where a start is tiny, and where squares underflow.
 
-use fmm_fit::{EvaluationError, FitError, Options, Outcome, Residuals, solve};
+use fmm_fit::{Derivatives, EvaluationError, FitError, Options, Outcome, Residuals, solve};
 use fmm_model::{Bounds, Parameter};
 
 /// A decay with an offset, whose model is `beyond` where the rate exceeds `wall`.
@@ -29,7 +29,7 @@ impl Residuals for Walled {
     fn len(&self) -> usize {
         40
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         for (i, r) in residuals.iter_mut().enumerate() {
             let t = 0.1 * i as f64;
             let data = 3.0 * (-1.5 * t).exp() + 0.2 + 0.05 * ((i * 37 % 11) as f64 - 5.0) / 5.0;
@@ -84,21 +84,23 @@ impl Residuals for Decay {
     fn len(&self) -> usize {
         50
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         for (i, r) in residuals.iter_mut().enumerate() {
             let t = 0.1 * i as f64;
             let data = 2.0 * (-0.7 * t).exp() + 0.01 * ((i * 37 % 11) as f64 - 5.0);
             *r = p[0] * (-p[1] * t).exp() - self.size * data;
         }
+        if let Some(jacobian) = jacobian {
+            for i in 0..50 {
+                let t = 0.1 * i as f64;
+                jacobian[i] = (-p[1] * t).exp();
+                jacobian[50 + i] = -t * p[0] * jacobian[i];
+            }
+        }
         Ok(())
     }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        for i in 0..50 {
-            let t = 0.1 * i as f64;
-            jacobian[i] = (-p[1] * t).exp();
-            jacobian[50 + i] = -t * p[0] * jacobian[i];
-        }
-        Ok(self.is_exact)
+    fn derivatives(&self) -> Derivatives {
+        if self.is_exact { Derivatives::Free } else { Derivatives::None }
     }
 }
 
@@ -126,7 +128,7 @@ impl Residuals for Zero {
     fn len(&self) -> usize {
         2
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         residuals.fill(p[0] - 1.0);
         Ok(())
     }

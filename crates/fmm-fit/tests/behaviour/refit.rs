@@ -1,6 +1,6 @@
 //! Fits repeated with other inputs, against fits from scratch.
 
-use fmm_fit::{Automatic, EvaluationError, Model, Options, Refit, RefitError, Residuals, solve};
+use fmm_fit::{Automatic, Derivatives, EvaluationError, Model, Options, Refit, RefitError, Residuals, solve};
 use fmm_model::{Bounds, Parameter, Scalar};
 
 /// A cooling cup, T = T₀ + a exp(−b t) + d t, in a room of temperature T₀ that drifts by d.
@@ -69,12 +69,12 @@ impl Residuals for Counted {
     fn len(&self) -> usize {
         self.0.len()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        self.0.residuals(p, residuals)
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        self.1.fetch_add(jacobian.is_some().into(), std::sync::atomic::Ordering::Relaxed);
+        self.0.evaluate(p, residuals, jacobian)
     }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        self.1.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        self.0.jacobian(p, jacobian)
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
 }
 

@@ -1,7 +1,8 @@
 //! Robust and weighted fits of simulated data.
 
 use fmm_fit::{
-    EvaluationError, FitError, Loss, Options, Residuals, Robust, Scale, Weighted, median_deviation, solve, solve_robust,
+    Derivatives, EvaluationError, FitError, Loss, Options, Residuals, Robust, Scale, Weighted, median_deviation, solve,
+    solve_robust,
 };
 use fmm_model::{Bounds, Parameter};
 use rand::{RngExt, SeedableRng};
@@ -27,21 +28,23 @@ impl Residuals for Decay {
     fn len(&self) -> usize {
         self.y.len()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         for (i, (r, y)) in residuals.iter_mut().zip(&self.y).enumerate() {
             *r = p[0] + p[1] * (-p[2] * time(i)).exp() - y;
         }
+        if let Some(jacobian) = jacobian {
+            let n = self.len();
+            for i in 0..n {
+                let decay = (-p[2] * time(i)).exp();
+                jacobian[i] = 1.0;
+                jacobian[n + i] = decay;
+                jacobian[2 * n + i] = -p[1] * time(i) * decay;
+            }
+        }
         Ok(())
     }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        let n = self.len();
-        for i in 0..n {
-            let decay = (-p[2] * time(i)).exp();
-            jacobian[i] = 1.0;
-            jacobian[n + i] = decay;
-            jacobian[2 * n + i] = -p[1] * time(i) * decay;
-        }
-        Ok(true)
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
 }
 
@@ -189,7 +192,7 @@ fn what_has_no_value_does_not_get_one_from_a_loss() {
         problem.y[4] = 1e200;
         let robust = Robust::new(&problem, loss, 0.1).unwrap();
         let mut residuals = vec![0.0; 10];
-        robust.residuals(&TRUE, &mut residuals).unwrap();
+        robust.evaluate(&TRUE, &mut residuals, None).unwrap();
         assert!(residuals[4] < 0.0 && residuals[4].is_finite(), "{loss:?}: {}", residuals[4]);
     }
 }
@@ -205,7 +208,7 @@ fn weights_are_those_of_the_uncertainties() {
     assert!((fit.sum_of_squares() - 87.0).abs() < 40.0, "S = {}", fit.sum_of_squares());
     // The normal equations with weights, and their inverse.
     let mut jacobian = vec![0.0; 270];
-    assert!(problem.jacobian(fit.values(), &mut jacobian).unwrap());
+    problem.evaluate(fit.values(), &mut vec![0.0; 90], Some(&mut jacobian)).unwrap();
     let matrix = nalgebra::DMatrix::from_fn(90, 3, |i, j| jacobian[90 * j + i] / uncertainties[i]);
     let covariance = (matrix.transpose() * matrix).try_inverse().unwrap();
     for i in 0..3 {

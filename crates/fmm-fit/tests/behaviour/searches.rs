@@ -25,7 +25,7 @@ impl<F: Fn(&[f64], usize) -> f64> Residuals for Problem<F> {
     fn len(&self) -> usize {
         self.count
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         residuals.iter_mut().enumerate().for_each(|(i, r)| *r = (self.residual)(p, i));
         Ok(())
     }

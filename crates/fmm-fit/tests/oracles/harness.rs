@@ -1,6 +1,6 @@
 //! Reading oracle files, residuals from formulas, and the measure of agreement.
 
-use fmm_fit::{EvaluationError, Residuals};
+use fmm_fit::{Derivatives, EvaluationError, Residuals};
 use fmm_model::{Bounds, Dual, Parameter, Scalar};
 use serde_json::Value;
 
@@ -27,7 +27,7 @@ impl<F: Formula> Residuals for FormulaProblem<F> {
     fn len(&self) -> usize {
         self.count
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         for (value, parameter) in p.iter().zip(&self.parameters) {
             // Fixed ones are moved when a test asks for the sensitivity to them.
             let is_inside = parameter.bounds().is_fixed() || parameter.bounds().contains(*value);
@@ -36,10 +36,7 @@ impl<F: Formula> Residuals for FormulaProblem<F> {
         for (i, r) in residuals.iter_mut().enumerate() {
             *r = self.formula.residual(i, p);
         }
-        Ok(())
-    }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        if self.is_exact {
+        if let Some(jacobian) = jacobian {
             let p: Vec<Gradient> = p.iter().enumerate().map(|(j, value)| Gradient::variable(*value, j)).collect();
             for i in 0..self.count {
                 let r = self.formula.residual(i, &p);
@@ -48,10 +45,10 @@ impl<F: Formula> Residuals for FormulaProblem<F> {
                 }
             }
         }
-        Ok(self.is_exact)
+        Ok(())
     }
-    fn fills_fixed_columns(&self) -> bool {
-        self.is_exact
+    fn derivatives(&self) -> Derivatives {
+        if self.is_exact { Derivatives::All } else { Derivatives::None }
     }
 }
 

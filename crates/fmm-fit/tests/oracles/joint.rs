@@ -3,7 +3,8 @@
 use std::cell::Cell;
 
 use fmm_fit::{
-    Block, CorrelatedCovariance, EvaluationError, Fit, Joint, JointError, Minimizer, Options, Residuals, solve,
+    Block, CorrelatedCovariance, Derivatives, EvaluationError, Fit, Joint, JointError, Minimizer, Options, Residuals,
+    solve,
 };
 use fmm_model::{Bounds, Parameter, Scalar};
 use serde_json::Value;
@@ -58,13 +59,11 @@ impl<P: Residuals> Residuals for Dense<'_, P> {
     fn len(&self) -> usize {
         self.0.len()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        self.0.residuals(p, residuals)
-    }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        let Some(jacobian) = jacobian else { return self.0.evaluate(p, residuals, None) };
         let blocks = self.0.blocks();
         let mut packed = vec![0.0; blocks.iter().map(|block| block.rows() * block.parameters().len()).sum()];
-        let is_exact = self.0.jacobian(p, &mut packed)?;
+        self.0.evaluate(p, residuals, Some(&mut packed))?;
         jacobian.fill(0.0);
         let (mut row, mut element) = (0, 0);
         for block in blocks {
@@ -75,7 +74,10 @@ impl<P: Residuals> Residuals for Dense<'_, P> {
             }
             row += block.rows();
         }
-        Ok(is_exact)
+        Ok(())
+    }
+    fn derivatives(&self) -> Derivatives {
+        self.0.derivatives()
     }
 }
 
@@ -117,7 +119,7 @@ fn values_and_uncertainties_are_those_of_sixty_digits() {
             let own: Vec<f64> = part.indices().iter().map(|&index| fit.values()[index]).collect();
             assert_eq!(part.values(), own);
             let mut residuals = vec![0.0; 60];
-            joint.problems()[record].residuals(part.values(), &mut residuals).unwrap();
+            joint.problems()[record].evaluate(part.values(), &mut residuals, None).unwrap();
             assert_eq!(part.residuals(), residuals);
         }
         let square: f64 = parts.iter().map(|part| 60.0 * part.rms_residual().powi(2)).sum();
@@ -166,9 +168,9 @@ impl Residuals for Together<'_> {
     fn len(&self) -> usize {
         self.0.len()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         self.1.set(self.1.get() + 1);
-        self.0.residuals(p, residuals)
+        self.0.evaluate(p, residuals, None)
     }
     fn blocks(&self) -> &[Block] {
         self.0.blocks()
@@ -218,7 +220,7 @@ impl Residuals for Simple {
     fn len(&self) -> usize {
         3
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         residuals.iter_mut().enumerate().for_each(|(i, r)| *r = p.iter().sum::<f64>() - i as f64);
         Ok(())
     }
@@ -274,20 +276,22 @@ impl Residuals for Long {
     fn len(&self) -> usize {
         self.0.data.len()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         residuals.iter_mut().enumerate().for_each(|(i, r)| *r = self.0.residual(i, p));
-        Ok(())
-    }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        assert_eq!(jacobian.len(), 4 * self.len(), "four columns of 45 000 samples are stored for a record");
-        let p: Vec<_> = p.iter().enumerate().map(|(j, value)| fmm_model::Dual::<4>::variable(*value, j)).collect();
-        for i in 0..self.len() {
-            let r = self.0.residual(i, &p);
-            for j in 0..4 {
-                jacobian[j * self.len() + i] = r.partial(j);
+        if let Some(jacobian) = jacobian {
+            assert_eq!(jacobian.len(), 4 * self.len(), "four columns of 45 000 samples are stored for a record");
+            let p: Vec<_> = p.iter().enumerate().map(|(j, value)| fmm_model::Dual::<4>::variable(*value, j)).collect();
+            for i in 0..self.len() {
+                let r = self.0.residual(i, &p);
+                for j in 0..4 {
+                    jacobian[j * self.len() + i] = r.partial(j);
+                }
             }
         }
-        Ok(true)
+        Ok(())
+    }
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
 }
 

@@ -28,7 +28,7 @@ impl Residuals for StickSlip {
         self.velocity.len()
     }
     /// In mm/s.
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         let friction = p[0] * LOAD;
         let (mut x, mut v, mut before) = (p[1], INITIAL_VELOCITY, 1.0);
         for (r, velocity) in residuals.iter_mut().zip(&self.velocity) {

@@ -1,6 +1,6 @@
 //! NIST's linear reference data, some of which are nearly singular on purpose.
 
-use fmm_fit::{EvaluationError, Options, Residuals, solve};
+use fmm_fit::{Derivatives, EvaluationError, Options, Residuals, solve};
 use fmm_model::Parameter;
 use serde_json::Value;
 
@@ -20,19 +20,21 @@ impl Residuals for Linear {
     fn len(&self) -> usize {
         self.y.len()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         for ((r, row), y) in residuals.iter_mut().zip(&self.design).zip(&self.y) {
             *r = row.iter().zip(p).map(|(x, p)| x * p).sum::<f64>() - y;
         }
-        Ok(())
-    }
-    fn jacobian(&self, _p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        for (j, column) in jacobian.chunks_exact_mut(self.y.len()).enumerate() {
-            for (element, row) in column.iter_mut().zip(&self.design) {
-                *element = row[j];
+        if let Some(jacobian) = jacobian {
+            for (j, column) in jacobian.chunks_exact_mut(self.y.len()).enumerate() {
+                for (element, row) in column.iter_mut().zip(&self.design) {
+                    *element = row[j];
+                }
             }
         }
-        Ok(true)
+        Ok(())
+    }
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
 }
 

@@ -1,6 +1,6 @@
 //! What fixed values do to estimates, against fits repeated with the fixed values moved.
 
-use fmm_fit::{EvaluationError, Options, Residuals, Sensitivity, SensitivityError, solve};
+use fmm_fit::{Derivatives, EvaluationError, Options, Residuals, Sensitivity, SensitivityError, solve};
 use fmm_model::{Bounds, Parameter, Scalar};
 use serde_json::Value;
 
@@ -108,17 +108,24 @@ impl<P: Residuals> Residuals for Unfilled<'_, P> {
     fn len(&self) -> usize {
         self.0.len()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        self.0.residuals(p, residuals)
-    }
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        let is_exact = self.0.jacobian(p, jacobian)?;
-        for (parameter, column) in self.parameters().iter().zip(jacobian.chunks_exact_mut(self.len())) {
-            if parameter.bounds().is_fixed() {
-                column.fill(f64::NAN);
+    fn evaluate(
+        &self,
+        p: &[f64],
+        residuals: &mut [f64],
+        mut jacobian: Option<&mut [f64]>,
+    ) -> Result<(), EvaluationError> {
+        self.0.evaluate(p, residuals, jacobian.as_deref_mut())?;
+        if let Some(jacobian) = jacobian {
+            for (parameter, column) in self.parameters().iter().zip(jacobian.chunks_exact_mut(self.len())) {
+                if parameter.bounds().is_fixed() {
+                    column.fill(f64::NAN);
+                }
             }
         }
-        Ok(is_exact)
+        Ok(())
+    }
+    fn derivatives(&self) -> Derivatives {
+        self.0.derivatives().min(Derivatives::Free)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Correlated residuals, against quadrature.
 
-use fmm_fit::{Block, EvaluationError, Parameter, Residuals, Sampler};
+use fmm_fit::{Block, Derivatives, EvaluationError, Parameter, Residuals, Sampler};
 
 use crate::problems::{assert_moments, fitted, moments_by_quadrature};
 
@@ -18,13 +18,15 @@ impl Residuals for Level {
     fn len(&self) -> usize {
         self.data.len()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         residuals.iter_mut().zip(&self.data).for_each(|(r, y)| *r = p[0] - y);
+        if let Some(jacobian) = jacobian {
+            jacobian.fill(1.0);
+        }
         Ok(())
     }
-    fn jacobian(&self, _: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        jacobian.fill(1.0);
-        Ok(true)
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
     fn blocks(&self) -> &[Block] {
         &self.blocks

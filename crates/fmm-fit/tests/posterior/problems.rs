@@ -1,6 +1,6 @@
 //! Linear problems, and moments by quadrature.
 
-use fmm_fit::{EvaluationError, Fit, Marginal, Options, Parameter, Residuals, solve};
+use fmm_fit::{Derivatives, EvaluationError, Fit, Marginal, Options, Parameter, Residuals, solve};
 
 /// Residuals Σⱼ aᵢⱼ θⱼ − yᵢ.
 pub(crate) struct Linear {
@@ -16,15 +16,17 @@ impl Residuals for Linear {
     fn len(&self) -> usize {
         self.data.len()
     }
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         for (i, r) in residuals.iter_mut().enumerate() {
             *r = self.columns.iter().zip(p).map(|(column, p)| column[i] * p).sum::<f64>() - self.data[i];
         }
+        if let Some(jacobian) = jacobian {
+            jacobian.copy_from_slice(&self.columns.concat());
+        }
         Ok(())
     }
-    fn jacobian(&self, _: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        jacobian.copy_from_slice(&self.columns.concat());
-        Ok(true)
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
 }
 

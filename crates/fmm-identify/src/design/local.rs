@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fmm_fit::{DesignError, EvaluationError, Information, Residuals};
+use fmm_fit::{Derivatives, DesignError, EvaluationError, Information, Residuals};
 use fmm_friction::Role;
 use fmm_model::{Dual, Parameter, Scalar, Unit};
 use fmm_record::{Quantity, Record};
@@ -217,7 +217,7 @@ impl Local<'_> {
             let mut series = [vec![0.0; own.len()], vec![0.0; own.len()]];
             for ((_, machine), series) in ends.iter().zip(&mut series) {
                 let moved = problem(machine)?;
-                moved.residuals(&values, series).map_err(|error| IdentifyError::simulation(name, error))?;
+                moved.evaluate(&values, series, None).map_err(|error| IdentifyError::simulation(name, error))?;
             }
             let [below, above] = series;
             let per_uncertainty = u / (ends[1].0 - ends[0].0);
@@ -275,14 +275,17 @@ impl Residuals for BesideInputs<'_> {
         self.problem.len()
     }
 
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        self.problem.residuals(&p[self.columns.len()..], residuals)
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        let own = jacobian.map(|jacobian| {
+            let (by_input, own) = jacobian.split_at_mut(self.columns.len() * self.len());
+            by_input.copy_from_slice(&self.columns.concat());
+            // Of one experiment there is one block, which has all parameters in their order.
+            own
+        });
+        self.problem.evaluate(&p[self.columns.len()..], residuals, own)
     }
 
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        let (by_input, own) = jacobian.split_at_mut(self.columns.len() * self.len());
-        by_input.copy_from_slice(&self.columns.concat());
-        // Of one experiment there is one block, which has all parameters in their order.
-        self.problem.jacobian(&p[self.columns.len()..], own)
+    fn derivatives(&self) -> Derivatives {
+        self.problem.derivatives()
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fmm_fit::{EvaluationError, Fit, Options, Residuals, solve};
+use fmm_fit::{Derivatives, EvaluationError, Fit, Options, Residuals, solve};
 use fmm_model::{Bounds, ModelError, Parameter};
 use fmm_record::{Quantity, Record, noise, quantisation_step};
 
@@ -308,7 +308,7 @@ impl Residuals for WeakSystem {
         self.equations.inertia.len()
     }
 
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         let e = &self.equations;
         for (i, out) in residuals.iter_mut().enumerate() {
             *out = e.inertia[i]
@@ -317,19 +317,21 @@ impl Residuals for WeakSystem {
                 + p[FRICTION] * e.friction[i]
                 + p[QUADRATIC] * e.quadratic[i];
         }
+        if let Some(jacobian) = jacobian {
+            let e = &self.equations;
+            let rows = self.len();
+            for i in 0..rows {
+                jacobian[DAMPING * rows + i] = e.damping[i];
+                jacobian[STIFFNESS * rows + i] = e.position[i] - p[OFFSET] * e.constant[i];
+                jacobian[FRICTION * rows + i] = e.friction[i];
+                jacobian[QUADRATIC * rows + i] = e.quadratic[i];
+                jacobian[OFFSET * rows + i] = -p[STIFFNESS] * e.constant[i];
+            }
+        }
         Ok(())
     }
 
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        let e = &self.equations;
-        let rows = self.len();
-        for i in 0..rows {
-            jacobian[DAMPING * rows + i] = e.damping[i];
-            jacobian[STIFFNESS * rows + i] = e.position[i] - p[OFFSET] * e.constant[i];
-            jacobian[FRICTION * rows + i] = e.friction[i];
-            jacobian[QUADRATIC * rows + i] = e.quadratic[i];
-            jacobian[OFFSET * rows + i] = -p[STIFFNESS] * e.constant[i];
-        }
-        Ok(true)
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
 }

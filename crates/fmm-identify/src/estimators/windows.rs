@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use fmm_fit::{EvaluationError, Fit, Options, Residuals, autocorrelation_time, solve};
+use fmm_fit::{Derivatives, EvaluationError, Fit, Options, Residuals, autocorrelation_time, solve};
 use fmm_model::{Bounds, Dual, Parameter, Scalar};
 use fmm_record::Quantity;
 
@@ -302,18 +302,21 @@ impl Residuals for WindowProblem<'_> {
         self.kept.len()
     }
 
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        self.each(p, |row, model, measured| residuals[row] = model - measured)
-    }
-
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        let Some(jacobian) = jacobian else {
+            return self.each(p, |row, model, measured| residuals[row] = model - measured);
+        };
         let variables: Vec<Dual<COUNT>> = p.iter().enumerate().map(|(j, value)| Dual::variable(*value, j)).collect();
         let rows = self.len();
-        self.each(&variables, |row, model, _| {
+        self.each(&variables, |row, model, measured| {
+            residuals[row] = model.value() - measured;
             for j in 0..COUNT {
                 jacobian[j * rows + row] = model.partial(j);
             }
-        })?;
-        Ok(true)
+        })
+    }
+
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
 }

@@ -102,7 +102,7 @@ impl<'a> Response<'a> {
         let beside: Vec<usize> = std::iter::once(0).chain(first..values.len()).collect();
         let whole = simple.columns(values, &beside).ok()?;
         let mut left = vec![0.0; simple.len()];
-        simple.residuals(values, &mut left).ok()?;
+        simple.evaluate(values, &mut left, None).ok()?;
         let kept = decay.kept().iter().cloned().flatten().enumerate();
         let compared: Vec<(usize, usize)> =
             kept.filter(|(_, sample)| sample % stride == 0 && sample / stride < end).collect();
@@ -236,7 +236,7 @@ impl Residuals for Response<'_> {
         self.rows.len()
     }
 
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         let changed = self.changed(p)?;
         residuals.copy_from_slice(&changed);
         for (step, column) in self.steps(&changed).iter().zip(&self.columns) {

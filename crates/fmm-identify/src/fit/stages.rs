@@ -197,7 +197,7 @@ fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec
         return starts;
     }
     let mut residuals = vec![0.0; problem.len()];
-    let mut sum = |start: &Vec<f64>| match problem.residuals(start, &mut residuals) {
+    let mut sum = |start: &Vec<f64>| match problem.evaluate(start, &mut residuals, None) {
         Ok(()) => residuals.iter().map(|residual| residual * residual).sum(),
         Err(_) => f64::INFINITY,
     };

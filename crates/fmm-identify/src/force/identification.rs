@@ -192,7 +192,7 @@ fn covariance(
 ) -> Result<Covariance, EvaluationError> {
     let rows = problem.len();
     let mut jacobian = vec![0.0; rows * fit.values().len()];
-    problem.jacobian(fit.values(), &mut jacobian)?;
+    problem.evaluate(fit.values(), &mut vec![0.0; rows], Some(&mut jacobian))?;
     let columns: Vec<Vec<f64>> =
         Covariance::known(fit).into_iter().map(|j| jacobian[j * rows..][..rows].to_vec()).collect();
     let weights = inverse_of_products(&columns);

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use fmm_fit::{EvaluationError, Residuals};
+use fmm_fit::{Derivatives, EvaluationError, Residuals};
 use fmm_model::{Dual, Parameter, Scalar};
 
 use crate::error::IdentifyError;
@@ -252,7 +252,7 @@ impl<'a> ForceProblem<'a> {
     /// says nothing.
     pub(crate) fn predicted(&self, record: usize, p: &[f64]) -> Result<Vec<Option<f64>>, EvaluationError> {
         let mut residuals = vec![0.0; self.len()];
-        self.residuals(p, &mut residuals)?;
+        self.evaluate(p, &mut residuals, None)?;
         let (data, rows) = (&self.records[record], &self.rows[record]);
         let mut at = Vec::new();
         places(&data.motion, rows.clone(), Self::value(p, self.layout.delay), &mut at);
@@ -301,18 +301,9 @@ impl<'a> ForceProblem<'a> {
         let guide = self.guide(record, delay, deflection, &buffers.places);
         (self.law.along_with_derivatives)(&self.law.values(&fitted), guide, &mut buffers.seeded)
     }
-}
 
-impl Residuals for ForceProblem<'_> {
-    fn parameters(&self) -> &[Parameter] {
-        &self.parameters
-    }
-
-    fn len(&self) -> usize {
-        self.series.last().map_or(0, |series| series.end)
-    }
-
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    /// Fills the residuals, without derivatives.
+    fn simulate_residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
         let leaps = self.leaps(p);
         self.idle.lend(|buffers| {
             for (record, series) in self.series.iter().enumerate() {
@@ -327,17 +318,19 @@ impl Residuals for ForceProblem<'_> {
             Ok(())
         })
     }
+}
 
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        self.residuals_and_jacobian(p, &mut [], jacobian)
+impl Residuals for ForceProblem<'_> {
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
     }
 
-    fn residuals_and_jacobian(
-        &self,
-        p: &[f64],
-        residuals: &mut [f64],
-        jacobian: &mut [f64],
-    ) -> Result<bool, EvaluationError> {
+    fn len(&self) -> usize {
+        self.series.last().map_or(0, |series| series.end)
+    }
+
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        let Some(jacobian) = jacobian else { return self.simulate_residuals(p, residuals) };
         let rows = self.len();
         let is_free = |j: &usize| !self.parameters[*j].bounds().is_fixed();
         jacobian.fill(0.0);
@@ -371,9 +364,7 @@ impl Residuals for ForceProblem<'_> {
                         if pass > 0 {
                             continue;
                         }
-                        if let Some(out) = residuals.get_mut(at) {
-                            *out = residual;
-                        }
+                        residuals[at] = residual;
                         if by_rest == 0.0 {
                             continue;
                         }
@@ -392,8 +383,12 @@ impl Residuals for ForceProblem<'_> {
                     }
                 }
             }
-            Ok(true)
+            Ok(())
         })
+    }
+
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
 
     fn is_cheaper_combined(&self) -> bool {

@@ -177,7 +177,7 @@ fn of_both(problem: &ImpactProblem<'_>, fit: &Fit) -> Result<Vec<Option<f64>>, E
     let count = fit.values().len();
     let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
     let mut jacobian = vec![0.0; elements];
-    problem.jacobian(fit.values(), &mut jacobian)?;
+    problem.evaluate(fit.values(), &mut vec![0.0; problem.len()], Some(&mut jacobian))?;
     let mut middle = vec![0.0; count * count];
     let mut scratch = Scratch::default();
     let (mut rest, mut row) = (jacobian.as_slice(), 0);

@@ -54,12 +54,12 @@ fn compare_with_differences<F: LawFamily>(law: &[f64]) {
         let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
         let mut jacobian = vec![0.0; elements];
         let mut together = vec![0.0; problem.len()];
-        assert!(problem.residuals_and_jacobian(&p, &mut together, &mut jacobian).unwrap());
+        problem.evaluate(&p, &mut together, Some(&mut jacobian)).unwrap();
         let at = |j: usize, by: f64| {
             let mut moved = p.clone();
             moved[j] += by;
             let mut residuals = vec![0.0; problem.len()];
-            problem.residuals(&moved, &mut residuals).unwrap();
+            problem.evaluate(&moved, &mut residuals, None).unwrap();
             residuals
         };
         let alone = at(0, 0.0);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use fmm_fit::{Block, EvaluationError, Residuals};
+use fmm_fit::{Block, Derivatives, EvaluationError, Residuals};
 use fmm_frf::RealTransform;
 use fmm_friction::LawFamily;
 use fmm_model::Parameter;
@@ -258,42 +258,42 @@ impl Residuals for ImpactProblem<'_> {
         self.blocks.iter().map(Block::rows).sum()
     }
 
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        self.idle.lend(|memory| {
-            let mut rest = residuals;
-            for (trial, block) in (0..self.trials.len()).zip(&self.blocks) {
-                let (own, others) = rest.split_at_mut(block.rows());
-                self.evaluate(trial, p, memory, own)?;
-                rest = others;
-            }
-            self.prior.write_residuals(p, self.scale_of_prior(), rest);
-            Ok(())
-        })
-    }
-
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        self.residuals_and_jacobian(p, &mut vec![0.0; self.len()], jacobian)
-    }
-
-    fn residuals_and_jacobian(
+    fn evaluate(
         &self,
         p: &[f64],
         residuals: &mut [f64],
-        jacobian: &mut [f64],
-    ) -> Result<bool, EvaluationError> {
-        jacobian.fill(0.0);
+        mut jacobian: Option<&mut [f64]>,
+    ) -> Result<(), EvaluationError> {
+        if let Some(jacobian) = &mut jacobian {
+            jacobian.fill(0.0);
+        }
         self.idle.lend(|memory| {
             let (mut rest, mut elements) = (residuals, jacobian);
             for (trial, block) in (0..self.trials.len()).zip(&self.blocks) {
                 let (own, others) = rest.split_at_mut(block.rows());
-                let (columns, further) = elements.split_at_mut(block.rows() * block.parameters().len());
-                self.differentiate(trial, p, memory, own, columns)?;
-                (rest, elements) = (others, further);
+                rest = others;
+                elements = match elements {
+                    Some(elements) => {
+                        let (columns, further) = elements.split_at_mut(block.rows() * block.parameters().len());
+                        self.differentiate(trial, p, memory, own, columns)?;
+                        Some(further)
+                    }
+                    None => {
+                        self.simulate_residuals(trial, p, memory, own)?;
+                        None
+                    }
+                };
             }
             self.prior.write_residuals(p, self.scale_of_prior(), rest);
-            self.prior.write_jacobian(self.scale_of_prior(), elements);
-            Ok(true)
+            if let Some(elements) = elements {
+                self.prior.write_jacobian(self.scale_of_prior(), elements);
+            }
+            Ok(())
         })
+    }
+
+    fn derivatives(&self) -> Derivatives {
+        if self.is_complete { Derivatives::All } else { Derivatives::Free }
     }
 
     fn blocks(&self) -> &[Block] {
@@ -303,9 +303,5 @@ impl Residuals for ImpactProblem<'_> {
     fn is_cheaper_combined(&self) -> bool {
         // Two directions cost about as much as none, more of them several times as much.
         self.directions(0).len() <= FEW
-    }
-
-    fn fills_fixed_columns(&self) -> bool {
-        self.is_complete
     }
 }

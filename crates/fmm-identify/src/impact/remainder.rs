@@ -127,7 +127,7 @@ impl Derivatives {
     fn of(problem: &ImpactProblem<'_>, fit: &Fit) -> Result<Self, EvaluationError> {
         let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
         let mut jacobian = vec![0.0; elements];
-        problem.jacobian(fit.values(), &mut jacobian)?;
+        problem.evaluate(fit.values(), &mut vec![0.0; problem.len()], Some(&mut jacobian))?;
         Ok(Self(jacobian))
     }
 

@@ -177,7 +177,7 @@ impl ImpactProblem<'_> {
     }
 
     /// Writes the residuals of `trial`.
-    pub(crate) fn evaluate(
+    pub(crate) fn simulate_residuals(
         &self,
         trial: usize,
         p: &[f64],

@@ -109,7 +109,7 @@ pub(crate) fn signs(base: &Identification, decays: &[Experiment]) -> Result<Vec<
     let residuals = |problem: &Problem<'_>, shared: &[f64]| -> Result<Vec<f64>, EvaluationError> {
         let values: Vec<f64> = shared.iter().chain(own).copied().collect();
         let mut residuals = vec![0.0; problem.len()];
-        problem.residuals(&values, &mut residuals)?;
+        problem.evaluate(&values, &mut residuals, None)?;
         Ok(residuals)
     };
     let mut changes: Vec<(Addition, Vec<f64>)> = Vec::new();

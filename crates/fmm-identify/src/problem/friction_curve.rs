@@ -88,7 +88,7 @@ impl Residuals for Following<'_> {
         self.curve.points.len()
     }
 
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         let mut values = self.all.to_vec();
         values[self.layout.oscillator..self.layout.shared].copy_from_slice(p);
         for (residual, point) in residuals.iter_mut().zip(&self.curve.points) {

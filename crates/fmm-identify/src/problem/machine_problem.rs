@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use fmm_fit::{EvaluationError, Residuals};
+use fmm_fit::{Derivatives, EvaluationError, Residuals};
 use fmm_friction::{LawFamily, SlidingLaw};
 use fmm_model::{Bounds, Damping, Dual, Oscillator, Parameter, Scalar};
 use fmm_record::{Quantity, Record};
@@ -290,44 +290,34 @@ impl<F: LawFamily> Residuals for MachineProblem<F> {
         self.data.len()
     }
 
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        let scenario = Self::scenario(p)?;
-        self.idle.lend(|buffers| {
-            match self.euler {
-                Some(run) => run(&scenario, &self.sampling, &mut buffers.plain)?,
-                None => self.simulate(&scenario, &mut buffers.plain)?,
-            }
-            self.write_residuals(p, &buffers.plain, residuals);
-            Ok(())
-        })
-    }
-
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        self.residuals_and_jacobian(p, &mut [], jacobian)
-    }
-
-    fn residuals_and_jacobian(
-        &self,
-        p: &[f64],
-        residuals: &mut [f64],
-        jacobian: &mut [f64],
-    ) -> Result<bool, EvaluationError> {
-        if self.euler.is_some() || self.free.is_empty() {
-            self.residuals(p, residuals)?;
-            return Ok(self.euler.is_none());
-        }
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        let Some(jacobian) = jacobian.filter(|_| !self.free.is_empty()) else {
+            let scenario = Self::scenario(p)?;
+            return self.idle.lend(|buffers| {
+                match self.euler {
+                    Some(run) => run(&scenario, &self.sampling, &mut buffers.plain)?,
+                    None => self.simulate(&scenario, &mut buffers.plain)?,
+                }
+                self.write_residuals(p, &buffers.plain, residuals);
+                Ok(())
+            });
+        };
         self.idle.lend(|buffers| {
             if self.free.len() <= FEW {
                 self.differentiate(p, &self.free, &mut buffers.few, jacobian)?;
                 self.write_residuals(p, &buffers.few, residuals);
-                return Ok(true);
+                return Ok(());
             }
             for columns in self.free.chunks(MANY) {
                 self.differentiate(p, columns, &mut buffers.many, jacobian)?;
             }
             self.write_residuals(p, &buffers.many, residuals);
-            Ok(true)
+            Ok(())
         })
+    }
+
+    fn derivatives(&self) -> Derivatives {
+        if self.euler.is_none() { Derivatives::Free } else { Derivatives::None }
     }
 
     fn is_cheaper_combined(&self) -> bool {

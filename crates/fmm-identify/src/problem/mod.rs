@@ -272,7 +272,7 @@ impl<'a> Problem<'a> {
     pub(crate) fn columns(&self, p: &[f64], wanted: &[usize]) -> Result<Vec<Vec<f64>>, EvaluationError> {
         let elements = self.blocks.iter().map(|block| block.rows() * block.parameters().len()).sum();
         let mut jacobian = vec![0.0; elements];
-        self.jacobian(p, &mut jacobian)?;
+        self.evaluate(p, &mut vec![0.0; self.len()], Some(&mut jacobian))?;
         let mut columns = vec![Vec::new(); wanted.len()];
         let mut end = self.len();
         // From the end on, so that what is in a column is given back at once.
@@ -369,12 +369,12 @@ mod tests {
     pub(super) fn require_derivatives(problem: &Problem<'_>, p: &[f64]) {
         let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
         let mut jacobian = vec![0.0; elements];
-        assert!(problem.jacobian(p, &mut jacobian).unwrap());
+        problem.evaluate(p, &mut vec![0.0; problem.len()], Some(&mut jacobian)).unwrap();
         let at = |j: usize, by: f64| {
             let mut moved = p.to_vec();
             moved[j] += by;
             let mut residuals = vec![0.0; problem.len()];
-            problem.residuals(&moved, &mut residuals).unwrap();
+            problem.evaluate(&moved, &mut residuals, None).unwrap();
             residuals
         };
         let mut columns = jacobian.as_slice();

@@ -181,7 +181,7 @@ mod tests {
         assert_eq!(values[1..6], BoucWenByLevel::at(&law).unwrap().values());
         let residuals = |problem: &Problem<'_>, p: &[f64]| {
             let mut residuals = vec![0.0; problem.len()];
-            problem.residuals(p, &mut residuals).unwrap();
+            problem.evaluate(p, &mut residuals, None).unwrap();
             residuals
         };
         assert_eq!(residuals(&problem, &values), residuals(&recast, &found));

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use fmm_fit::{Block, EvaluationError, Residuals};
+use fmm_fit::{Block, Derivatives, EvaluationError, Residuals};
 use fmm_model::Parameter;
 
 use super::Problem;
@@ -96,6 +96,23 @@ impl Problem<'_> {
         Ok(())
     }
 
+    /// Fills all residuals by simulations without derivatives.
+    fn simulate_residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        for (record, base) in self.bases() {
+            self.simulate(
+                self.law().plain,
+                record,
+                p,
+                0,
+                self.decays[record].kept(),
+                |before, samples, inside, simulated| {
+                    self.write_residuals(record, base + before, p, samples, &simulated.values()[inside], residuals);
+                },
+            )?;
+        }
+        Ok(())
+    }
+
     /// Writes the residuals of `record`, which begin at `base`.
     fn write_residuals(
         &self,
@@ -131,50 +148,28 @@ impl Residuals for Problem<'_> {
         self.decays.iter().map(|decay| decay.summary().samples).sum()
     }
 
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        for (record, base) in self.bases() {
-            self.simulate(
-                self.law().plain,
-                record,
-                p,
-                0,
-                self.decays[record].kept(),
-                |before, samples, inside, simulated| {
-                    self.write_residuals(record, base + before, p, samples, &simulated.values()[inside], residuals);
-                },
-            )?;
-        }
-        Ok(())
-    }
-
-    fn jacobian(&self, p: &[f64], jacobian: &mut [f64]) -> Result<bool, EvaluationError> {
-        self.residuals_and_jacobian(p, &mut [], jacobian)
-    }
-
-    fn residuals_and_jacobian(
-        &self,
-        p: &[f64],
-        residuals: &mut [f64],
-        jacobian: &mut [f64],
-    ) -> Result<bool, EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        let Some(jacobian) = jacobian else { return self.simulate_residuals(p, residuals) };
         jacobian.fill(0.0);
         let (mut columns, mut values) = (jacobian, residuals);
         let mut parts = Vec::new();
         for (record, decay) in self.decays.iter().enumerate() {
             let rows = decay.summary().samples;
             let (own, others) = columns.split_at_mut(rows * self.blocks[record].parameters().len());
-            let (of_record, of_others) = values.split_at_mut(rows.min(values.len()));
+            let (of_record, of_others) = values.split_at_mut(rows);
             (columns, values) = (others, of_others);
             let (of_motion, beside) = own.split_at_mut(rows * self.layout.directions(record));
-            let by_corner = self.fill_beside(record, beside);
-            let (mut of_record, mut by_corner) = (Some(of_record).filter(|values| !values.is_empty()), by_corner);
+            let (mut of_record, mut by_corner) = (Some(of_record), self.fill_beside(record, beside));
             for (number, columns) in of_motion.chunks_mut(DIRECTIONS * rows).enumerate() {
                 let (residuals, by_corner) = (of_record.take(), by_corner.take());
                 parts.push(Part { record, first: number * DIRECTIONS, columns, residuals, by_corner });
             }
         }
-        self.differentiate(p, parts)?;
-        Ok(true)
+        self.differentiate(p, parts)
+    }
+
+    fn derivatives(&self) -> Derivatives {
+        Derivatives::Free
     }
 
     fn blocks(&self) -> &[Block] {
@@ -247,7 +242,7 @@ mod tests {
         let problem = Problem::new::<Stribeck>(Machine::per_unit_mass(), &decays).unwrap();
         let p = values(&problem);
         let mut residuals = vec![f64::NAN; problem.len()];
-        problem.residuals(&p, &mut residuals).unwrap();
+        problem.evaluate(&p, &mut residuals, None).unwrap();
         let mut left = residuals.as_slice();
         for (record, decay) in decays.iter().enumerate() {
             let model = problem.model(record, &p).unwrap();
@@ -260,7 +255,7 @@ mod tests {
         assert!(left.is_empty());
         let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
         let mut beside = vec![f64::NAN; problem.len()];
-        assert!(problem.residuals_and_jacobian(&p, &mut beside, &mut vec![f64::NAN; elements]).unwrap());
+        problem.evaluate(&p, &mut beside, Some(&mut vec![f64::NAN; elements])).unwrap();
         assert_eq!(beside, residuals);
     }
 

@@ -57,7 +57,7 @@ fn moments_are_those_of_quadrature() {
             let share = |i: usize| (i as f64 + 0.5) / POINTS as f64;
             p[mu] = centre.mean() + reach * (2.0 * share(i) - 1.0);
             p[viscous] = highest * share(j);
-            problem.residuals(&p, &mut residuals).unwrap();
+            problem.evaluate(&p, &mut residuals, None).unwrap();
             let square: f64 = residuals.iter().map(|r| r * r).sum();
             let weight = (-0.5 * residuals.len() as f64 * (square / fit.sum_of_squares()).ln()).exp();
             let [x, y] = [p[mu], p[viscous]];

@@ -57,11 +57,11 @@ fn rank(chapter: &mut Chapter) -> Found<()> {
     );
     let mut changes: f64 = 0.0;
     let mut residuals = [vec![0.0; problem.len()], vec![0.0; problem.len()]];
-    problem.residuals(problem.values(), &mut residuals[0]).map_err(|error| error.to_string())?;
+    problem.evaluate(problem.values(), &mut residuals[0], None).map_err(|error| error.to_string())?;
     for factor in [0.5, 2.0] {
         let mut scaled = problem.values().to_vec();
         scaled[..3].iter_mut().for_each(|value| *value *= factor);
-        problem.residuals(&scaled, &mut residuals[1]).map_err(|error| error.to_string())?;
+        problem.evaluate(&scaled, &mut residuals[1], None).map_err(|error| error.to_string())?;
         let [before, after] = &residuals;
         changes = before.iter().zip(after).fold(changes, |most, (a, b)| most.max((a - b).abs()));
     }

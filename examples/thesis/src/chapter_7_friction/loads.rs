@@ -61,7 +61,7 @@ impl Residue {
         };
         let at = |load: f64| -> Found<Vec<f64>> {
             let mut left = vec![0.0; rows.len()];
-            problem.residuals(&[load], &mut left).map_err(EvaluationError::into_boxed)?;
+            problem.evaluate(&[load], &mut left, None).map_err(EvaluationError::into_boxed)?;
             Ok(left)
         };
         let fit = solve(&problem, &[10.0], &Options::default())?;
@@ -91,7 +91,7 @@ impl<F: LawFamily> Residuals for PeakVelocities<'_, F> {
         self.rows.len()
     }
 
-    fn residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
         for (left, row) in residuals.iter_mut().zip(self.rows) {
             let release = Release { viscous: self.viscous, law: &row.law, load: p[0], displacement: row.displacement };
             *left = 1e3 * (release.peak::<F>().map_err(EvaluationError::from_boxed)? - row.peak);
