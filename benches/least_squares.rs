@@ -14,7 +14,7 @@ use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, criterion_group};
 use fmm_fit::{Derivatives, EvaluationError, Minimizer, MultiStart, Options, Outcome, Refit, Residuals, solve};
 use fmm_friction::{Berger, Coulomb, LawFamily};
-use fmm_identify::MachineProblem;
+use fmm_identify::Problem;
 use fmm_model::{Bounds, Damping, Dual, Oscillator, Parameter, Scalar};
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Channels, Engine, Exact, RungeKutta, Sampling, Scenario, Thesis, Trajectory};
@@ -235,7 +235,7 @@ fn thesis_fit(criterion: &mut Criterion) {
 }
 
 /// Fits of `problem` on other machines, as a Monte Carlo calculation repeats them.
-fn repeat<F: LawFamily>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, problem: &MachineProblem<F>) {
+fn repeat(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, problem: &Problem<'_>) {
     let fit = solve(problem, problem.values(), &Options::default()).expect("valid");
     let varying = [("mass", 10.391, 0.0049), ("stiffness", 1982.0, 1.3), ("damping", 0.275, 0.0341)];
     let refit = Refit::prepare(problem, &fit).expect("a minimum");
@@ -268,7 +268,7 @@ fn refits(criterion: &mut Criterion) {
     let machine = [("mass", 10.391), ("stiffness", 1982.0), ("damping", 0.275), ("normal_load", 7.2)];
     let unknown = [("coefficient", START[0]), ("initial_position", START[1]), ("initial_velocity", VELOCITY)];
     let problem =
-        MachineProblem::<Coulomb>::new(&record(&motion), &[machine.as_slice(), &unknown].concat()).expect("valid");
+        Problem::declared::<Coulomb>(&record(&motion), &[machine.as_slice(), &unknown].concat()).expect("valid");
     let problem = problem.free("coefficient").and_then(|problem| problem.free("initial_position")).expect("valid");
     repeat(&mut group, "exact", &problem);
 
@@ -283,7 +283,7 @@ fn refits(criterion: &mut Criterion) {
     let mut values: Vec<(&str, f64)> = names.clone().zip(law).collect();
     values.extend(machine);
     values.push(("initial_position", 0.016));
-    let mut problem = MachineProblem::<Berger>::new(&record(&motion), &values).expect("valid");
+    let mut problem = Problem::declared::<Berger>(&record(&motion), &values).expect("valid");
     for name in names.chain(["initial_position"]) {
         problem = problem.free(name).expect("a parameter");
     }

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use fmm_fit::{Calibration, Options, Posterior, Prior, ResidualVariance, Residuals, Sampler, Weighted, solve};
 use fmm_friction::{Berger, CoulombViscous, LawFamily};
-use fmm_identify::MachineProblem;
+use fmm_identify::Problem;
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Sampling, Scenario, Trajectory, simulate_into};
@@ -47,8 +47,8 @@ fn problem<F: LawFamily>(
     record: &Record,
     law: &[(&'static str, f64)],
     others: &[(&'static str, f64)],
-) -> Result<MachineProblem<F>, Box<dyn Error + Send + Sync>> {
-    let mut problem = MachineProblem::new(record, &[&MACHINE, law, others].concat())?;
+) -> Result<Problem<'static>, Box<dyn Error + Send + Sync>> {
+    let mut problem = Problem::declared::<F>(record, &[&MACHINE, law, others].concat())?;
     for (name, _) in law.iter().chain(others) {
         problem = problem.free(name)?;
     }

@@ -33,33 +33,9 @@ fn named(comparison: &Comparison) -> Vec<String> {
     comparison.not_excluded().map(|found| plain(found.law())).collect()
 }
 
-/// Whether one of `warnings` says that the law is not right or not settled, or names what disturbs the record. New
-/// variants that say so belong here.
+/// Whether one of `warnings` says that the law is not right or not settled, or names what disturbs the record.
 fn is_loud(warnings: &[Warning]) -> bool {
-    warnings.iter().any(|warning| {
-        matches!(
-            warning,
-            Warning::StructuredResiduals { .. }
-                | Warning::PeriodDependsOnAmplitude { .. }
-                | Warning::NotConverged { .. }
-                | Warning::DependsOnLaw { .. }
-                | Warning::OtherLaw { .. }
-                | Warning::NegativeDamping { .. }
-                | Warning::Misled { .. }
-                | Warning::Undecided
-                | Warning::FurtherRelease { .. }
-                | Warning::Interrupted { .. }
-                | Warning::SecondMode { .. }
-                | Warning::Hum { .. }
-                | Warning::Rounded { .. }
-                | Warning::Drift
-                | Warning::GrowingNoise { .. }
-                | Warning::ColouredNoise { .. }
-                | Warning::FilteringSensor { .. }
-                | Warning::Beginning { .. }
-                | Warning::TimeLimit
-        )
-    })
+    warnings.iter().any(|warning| warning.severity() >= Severity::Caution)
 }
 
 /// A quantity as it is stated.

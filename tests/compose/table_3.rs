@@ -2,7 +2,7 @@
 
 use fmm_fit::{Held, Minimizer, Options, Refit, Residuals, Sensitivity, solve};
 use fmm_friction::{Berger, Coulomb, LawFamily};
-use fmm_identify::MachineProblem;
+use fmm_identify::Problem;
 use fmm_model::{Bounds, Damping, Oscillator};
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, RungeKutta, Sampling, Scenario, Thesis};
@@ -15,7 +15,7 @@ const MACHINE: [(&str, f64, f64); 3] =
 /// u(μ) of each row, from 256-bit derivatives of the fit and the printed uncertainties; the last row is all three.
 const EXACT: [f64; 4] = [6.752e-5, 5.732e-6, 2.3764e-4, 2.4712e-4];
 
-fn problem(engine: &impl Engine<f64, Coulomb>) -> MachineProblem<Coulomb> {
+fn problem(engine: &impl Engine<f64, Coulomb>) -> Problem<'static> {
     let [mass, stiffness, damping] = MACHINE.map(|(_, value, _)| value);
     let machine = Oscillator::new(mass, stiffness).unwrap().with_damping(Damping::linear(damping).unwrap());
     let scenario = Scenario::new(machine, Coulomb::new(0.15).unwrap(), LOAD).unwrap().starting_at(0.0, 0.101).unwrap();
@@ -24,13 +24,13 @@ fn problem(engine: &impl Engine<f64, Coulomb>) -> MachineProblem<Coulomb> {
     let mut values = MACHINE.map(|(name, value, _)| (name, value)).to_vec();
     values.extend([("normal_load", LOAD), ("coefficient", 0.15)]);
     values.extend([("initial_position", 1e-4), ("initial_velocity", 0.101)]);
-    let problem = MachineProblem::new(&record, &values).unwrap();
+    let problem = Problem::declared::<Coulomb>(&record, &values).unwrap();
     let problem = problem.free_within("coefficient", Bounds::new(0.1, 1.0).unwrap()).unwrap();
     problem.free_within("initial_position", Bounds::new(-3e-3, 3e-3).unwrap()).unwrap()
 }
 
 /// The fit prepared for other masses, stiffnesses and dampings.
-fn refit(problem: &MachineProblem<Coulomb>) -> Refit<'_, MachineProblem<Coulomb>> {
+fn refit(problem: &Problem<'static>) -> Refit<'_, Problem<'static>> {
     let fit = solve(problem, problem.values(), &Options::default()).unwrap();
     Refit::prepare(problem, &fit).unwrap().varying(&MACHINE.map(|(name, ..)| name)).unwrap()
 }
@@ -108,7 +108,7 @@ fn a_refit_ends_where_a_fit_does_whoever_asked_before() {
 
 #[test]
 fn the_thesis_motion_is_refitted_without_derivatives() {
-    let problem = problem(&Thesis::A3).by_thesis();
+    let problem = problem(&Thesis::A3).by_thesis::<Coulomb>();
     let fit = solve(&problem, problem.values(), &Options::default()).unwrap();
     assert!(!fit.has_exact_jacobian());
     // From its start the thesis ends within 1e-4 of the truth: the sum of squares jumps.
@@ -118,7 +118,7 @@ fn the_thesis_motion_is_refitted_without_derivatives() {
 #[test]
 fn what_a_problem_cannot_have_is_said() {
     let record = Record::new(0.0, 1e-3, vec![0.0; 100], Quantity::Velocity, "m/s").unwrap();
-    let problem = |values: &[(&str, f64)]| MachineProblem::<Coulomb>::new(&record, values).map_err(|e| e.to_string());
+    let problem = |values: &[(&str, f64)]| Problem::declared::<Coulomb>(&record, values).map_err(|e| e.to_string());
     let complete = [("mass", 1.0), ("stiffness", 100.0), ("coefficient", 0.1)];
     assert!(problem(&complete).is_ok());
     assert_eq!(problem(&complete[..2]).unwrap_err(), "coefficient must be given a value");
@@ -129,7 +129,7 @@ fn what_a_problem_cannot_have_is_said() {
     assert!(problem(&complete).unwrap().free("friction").is_err());
     assert!(problem(&complete).unwrap().free_within("mass", Bounds::new(2.0, 3.0).unwrap()).is_err());
     let force = Record::new(0.0, 1e-3, vec![0.0; 100], Quantity::Force, "N").unwrap();
-    assert!(MachineProblem::<Coulomb>::new(&force, &complete).is_err());
+    assert!(Problem::declared::<Coulomb>(&force, &complete).is_err());
 }
 
 /// Refits of the Berger law: foreseen or not they end at the same place, and a coarser motion moves them by far less
@@ -146,10 +146,10 @@ fn berger_refits_are_the_same_foreseen_and_coarser() {
     let record = Record::new(0.0, 1e-3, motion.velocity().values().to_vec(), Quantity::Velocity, "m/s").unwrap();
     let problem = || {
         let free = ["coefficient", "excess_coefficient", "decay", "initial_position"];
-        let problem = MachineProblem::<Berger>::new(&record, &values).unwrap();
+        let problem = Problem::declared::<Berger>(&record, &values).unwrap();
         free.iter().fold(problem, |problem, name| problem.free(name).unwrap())
     };
-    let estimates = |problem: MachineProblem<Berger>, expecting: bool| {
+    let estimates = |problem: Problem<'static>, expecting: bool| {
         let fit = solve(&problem, problem.values(), &Options::default()).unwrap();
         let refit = Refit::prepare(&problem, &fit).unwrap().varying(&["mass", "damping"]).unwrap();
         let refit = if expecting { refit.expecting(&[0.0049, 0.0341]).unwrap() } else { refit };

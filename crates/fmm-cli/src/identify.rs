@@ -17,7 +17,7 @@ use crate::posterior::Posterior;
 use crate::report::{self, Found};
 use clap::Args;
 use fmm_fit::Progress;
-use fmm_identify::{Candidate, Comparison, Drive, Experiment, Preparation};
+use fmm_identify::{Candidate, Comparison, Drive, Experiment, ImpactTrial, Preparation};
 use fmm_record::{Column, Quantity, Record, Request};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
@@ -36,6 +36,13 @@ pub(crate) struct Arguments {
     /// The channel with the measured motion of the base that drives the machine, best its acceleration
     #[arg(long, value_name = "NAME|INDEX")]
     base: Option<Column>,
+    /// The channel with the force (N) of a hammer whose impact the machine answers. With --mass and --stiffness
+    /// friction is found, without them mass and stiffness as well
+    #[arg(long, value_name = "NAME|INDEX", conflicts_with_all = ["force", "base"])]
+    impact: Option<Column>,
+    /// Fit the lines of the mobility between two frequencies (Hz) in place of the motion after the impact
+    #[arg(long, value_name = "LOW,HIGH", requires = "impact", value_parser = band)]
+    mobility: Option<(f64, f64)>,
     /// Draw from the posterior of the preferred law: its intervals beside the others, and records that it predicts
     /// beside the measured one; in builds with the feature `posterior`
     #[arg(long)]
@@ -48,6 +55,24 @@ pub(crate) struct Arguments {
     report: Option<PathBuf>,
 }
 
+/// Two frequencies (Hz), the lower one first.
+fn band(text: &str) -> Result<(f64, f64), String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some([low, high]) if low < high && *low >= 0.0 => Ok((*low, *high)),
+        _ => Err(format!("a band is two frequencies in Hz, the lower one first, such as 1,4, but this is {text:?}")),
+    }
+}
+
+/// The force that was measured in `channel` of the file.
+fn measured(arguments: &Arguments, channel: &Column, quantity: Option<Quantity>) -> Result<Record, Box<dyn Error>> {
+    let file = arguments.given.file.as_ref().ok_or("the bundled record is one of a free vibration; give a file")?;
+    let request = quantity.map_or_else(Request::default, |quantity| Request::default().quantity(quantity));
+    let (time, rate) = (arguments.given.time.clone(), arguments.given.rate);
+    let choice = Choice { channel: Some(channel.clone()), time, rate, request, is_drive: true, ..Choice::default() };
+    Ok(choice.read(file)?.record)
+}
+
 /// What drives the machine, if something does.
 fn drive(arguments: &Arguments) -> Result<Option<Drive>, Box<dyn Error>> {
     let (channel, quantity) = match (&arguments.force, &arguments.base) {
@@ -55,19 +80,23 @@ fn drive(arguments: &Arguments) -> Result<Option<Drive>, Box<dyn Error>> {
         (None, Some(channel)) => (channel, None),
         (None, None) => return Ok(None),
     };
-    let file = arguments.given.file.as_ref().ok_or("the bundled record is one of a free vibration; give a file")?;
-    let request = quantity.map_or_else(Request::default, |quantity| Request::default().quantity(quantity));
-    let (time, rate) = (arguments.given.time.clone(), arguments.given.rate);
-    let choice = Choice { channel: Some(channel.clone()), time, rate, request, is_drive: true, ..Choice::default() };
-    let record = choice.read(file)?.record;
+    let record = measured(arguments, channel, quantity)?;
     Ok(Some(if quantity.is_some() { Drive::force(&record)? } else { Drive::base(&record)? }))
 }
 
 /// The experiment of the record, with its drive and its sensor.
 fn experiment(arguments: &Arguments, record: &Record, preparation: &Preparation) -> Result<Experiment, Box<dyn Error>> {
-    let experiment = match drive(arguments)? {
-        Some(drive) => Experiment::driven(record, drive, preparation)?,
-        None => Experiment::ring_down(record, preparation)?,
+    let experiment = match (&arguments.impact, drive(arguments)?) {
+        (Some(channel), _) => {
+            let force = measured(arguments, channel, Some(Quantity::Force))?;
+            let trial = ImpactTrial::prepare(&force, record)?;
+            match arguments.mobility {
+                Some(_) => Experiment::mobility(&trial, arguments.mobility)?,
+                None => Experiment::impact(&trial)?,
+            }
+        }
+        (None, Some(drive)) => Experiment::driven(record, drive, preparation)?,
+        (None, None) => Experiment::ring_down(record, preparation)?,
     };
     arguments.question.seen(experiment)
 }

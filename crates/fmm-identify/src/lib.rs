@@ -49,10 +49,10 @@
 //! | A static level? | a slow force through the breakaway, [`Experiment::driven`]; a ring-down does not tell it |
 //! | How does damping depend on velocity? | [`decrements`] cycle by cycle, [`Windows`] a few cycles at a time |
 //! | Friction without a simulation? | [`WeakForm`]; [`EnergyMethod`] for its curve, [`half_swing_losses`] per half swing |
-//! | Friction out of hammer blows? | [`ImpactTrial`], [`identify_impact`], to the mobility, the time record or both; beside ring-downs and compared by law, [`Experiment::impact`] |
+//! | Friction out of impacts of a hammer? | [`ImpactTrial`], and [`Experiment::impact`] for the motion or [`Experiment::mobility`] for its spectrum |
 //! | A force measured along a motion: a joint, a tribometer, a damper? | [`ForceRecord`], [`identify_force`]; [`ForceModel`] says what acts beside friction, [`compare_force`] which model the records prefer |
 //! | The same without a law? | [`ForceRecord::friction_over_speed`] and [`friction_over_speed_and_load`](ForceRecord::friction_over_speed_and_load), [`ForceRecord::loops`], [`ForceRecord::onsets`] |
-//! | What if mass, stiffness or damping were others? | [`MachineProblem`] with [`Sensitivity`](fmm_fit::Sensitivity) or [`Refit`](fmm_fit::Refit) |
+//! | What if mass, stiffness or damping were others? | [`Problem::declared`] with [`Sensitivity`](fmm_fit::Sensitivity) or [`Refit`](fmm_fit::Refit) |
 //! | Which test next? | [`Plan`]: what [`PlannedTest`]s would tell beside what is known, and which set of them is best |
 //! | Between which values does it lie? | [`Finding::interval`], by Student's t with the degrees of freedom of all that is uncertain |
 //! | Does value ± k u mislead? | [`Identification::profiles`] |
@@ -111,7 +111,6 @@ mod finding;
 mod fit;
 mod force;
 mod identification;
-mod impact;
 mod judgement;
 mod law;
 mod linear_algebra;
@@ -140,7 +139,6 @@ pub use force::{
     compare_force, identify_force,
 };
 pub use identification::{FittedMotion, Identification, Profile, Profiles, identify, identify_observed, identify_with};
-pub use impact::{ImpactDomain, ImpactIdentification, ImpactMachine, ImpactOptions, ImpactProblem, identify_impact};
 pub use judgement::{
     Addition, Comparison, FrictionOverLoad, LoadVerdict, NestedTest, Search, Sign, compare, compare_observed, search,
     search_observed,
@@ -148,8 +146,8 @@ pub use judgement::{
 pub use machine::{Known, Machine, Scale, Terms};
 #[cfg(feature = "sampler")]
 pub use posterior::{IdentificationPosterior, IntervalComparison, PredictiveCheck};
-pub use problem::{MachineProblem, Problem};
-pub use warning::Warning;
+pub use problem::Problem;
+pub use warning::{Severity, Warning};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

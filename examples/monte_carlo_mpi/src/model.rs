@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use fmm_fit::{Options, Refit, solve};
 use fmm_friction::Coulomb;
-use fmm_identify::MachineProblem;
+use fmm_identify::Problem;
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -24,18 +24,18 @@ pub(crate) fn inputs() -> Result<Inputs, UncertaintyError> {
 }
 
 /// The fit of a simulated ring-down: coefficient of friction 0.15 at 7.2 N, and initial position.
-static PROBLEM: LazyLock<Result<MachineProblem<Coulomb>, String>> =
+static PROBLEM: LazyLock<Result<Problem<'static>, String>> =
     LazyLock::new(|| problem().map_err(|error| error.to_string()));
 
 /// The same, prepared to be repeated with other machines.
-static REFIT: LazyLock<Result<Refit<'static, MachineProblem<Coulomb>>, String>> = LazyLock::new(|| {
+static REFIT: LazyLock<Result<Refit<'static, Problem<'static>>, String>> = LazyLock::new(|| {
     let problem = PROBLEM.as_ref().map_err(String::clone)?;
     let fit = solve(problem, problem.values(), &Options::default()).map_err(|error| error.to_string())?;
     let refit = Refit::prepare(problem, &fit).map_err(|error| error.to_string())?;
     refit.varying(&["mass", "stiffness", "damping"]).map_err(|error| error.to_string())
 });
 
-fn problem() -> Result<MachineProblem<Coulomb>, Box<dyn Error>> {
+fn problem() -> Result<Problem<'static>, Box<dyn Error>> {
     let machine = Oscillator::new(10.391, 1982.0)?.with_damping(Damping::linear(0.275)?);
     let scenario = Scenario::new(machine, Coulomb::new(0.15)?, 7.2)?.starting_at(0.0, 0.101)?;
     let velocity = Exact.run(&scenario, &Sampling::uniform(1e-3, 1501)?)?.velocity().values().to_vec();
@@ -48,7 +48,7 @@ fn problem() -> Result<MachineProblem<Coulomb>, Box<dyn Error>> {
         ("coefficient", 0.15),
         ("initial_velocity", 0.101),
     ];
-    Ok(MachineProblem::new(&record, &values)?.free("coefficient")?.free("initial_position")?)
+    Ok(Problem::declared::<Coulomb>(&record, &values)?.free("coefficient")?.free("initial_position")?)
 }
 
 /// Coefficient and position that the record gives on a machine of this mass, stiffness and damping.

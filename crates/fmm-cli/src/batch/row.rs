@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use fmm_fit::EstimateStatus;
-use fmm_identify::{Finding, Identification, Origin, Source, Warning};
+use fmm_identify::{Finding, Identification, Origin, Severity, Source};
 use fmm_record::Record;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -162,7 +162,7 @@ fn found(record: &RecordOptions) -> Result<Found, Box<dyn Error>> {
     let gain =
         Some((Source::Gain, record.given.scale.unwrap_or(1.0), record.question.scale_u)).filter(|gain| gain.2 > 0.0);
     let stated = record.question.stated().chain(gain);
-    let doubts = comparison.warnings().iter().filter(|warning| is_doubt(warning)).map(ToString::to_string).collect();
+    let doubts = comparison.warnings().iter().filter(|warning| warning.severity() == Severity::Doubt).map(ToString::to_string).collect();
     let samples = fingerprint(&input.record);
     let warnings = input.warnings.into_iter().chain(comparison.warnings().iter().map(ToString::to_string));
     Ok(Found {
@@ -179,26 +179,6 @@ fn found(record: &RecordOptions) -> Result<Found, Box<dyn Error>> {
         doubts,
         samples,
     })
-}
-
-/// Whether a warning says that the fit does not describe the record.
-fn is_doubt(warning: &Warning) -> bool {
-    matches!(
-        warning,
-        Warning::StructuredResiduals { .. }
-            | Warning::PeriodDependsOnAmplitude { .. }
-            | Warning::NoDecay
-            | Warning::Saturated { .. }
-            | Warning::OffsetStep { .. }
-            | Warning::SecondMode { .. }
-            | Warning::NotConverged { .. }
-            | Warning::NegativeDamping { .. }
-            | Warning::Undecided
-            | Warning::Drift
-            | Warning::GrowingNoise { .. }
-            | Warning::FilteringSensor { .. }
-            | Warning::Beginning { .. }
-    )
 }
 
 /// SHA-256 of the samples and their interval.

@@ -35,7 +35,7 @@ pub(crate) struct Question {
     #[arg(long, value_name = "LENGTH", num_args = 0..=1, default_missing_value = "1")]
     pendulum: Option<f64>,
     /// The moving mass
-    #[arg(long, value_name = "KG", conflicts_with = "stiffness")]
+    #[arg(long, value_name = "KG")]
     mass: Option<f64>,
     /// Standard uncertainty of the mass
     #[arg(long, value_name = "KG", requires = "mass", default_value_t = 0.0)]
@@ -91,7 +91,14 @@ impl Question {
     /// The machine; of one whose driving force is measured, mass and stiffness may be unknown.
     fn machine(&self, force_is_measured: bool) -> Result<Machine, Box<dyn Error>> {
         let mut machine = match (self.mass, self.stiffness) {
-            (Some(mass), _) => Machine::of_mass(known("--mass", mass, self.mass_u)?)?,
+            (Some(_), Some(_)) if !force_is_measured => {
+                return Err("give --mass or --stiffness: a vibration shows the other one".into());
+            }
+            (Some(mass), Some(stiffness)) => Machine::of_mass_and_stiffness(
+                known("--mass", mass, self.mass_u)?,
+                known("--stiffness", stiffness, self.stiffness_u)?,
+            )?,
+            (Some(mass), None) => Machine::of_mass(known("--mass", mass, self.mass_u)?)?,
             (None, Some(stiffness)) => Machine::of_stiffness(known("--stiffness", stiffness, self.stiffness_u)?)?,
             (None, None) if force_is_measured => Machine::unknown(),
             (None, None) => Machine::per_unit_mass(),

@@ -140,7 +140,7 @@ impl Guess {
     pub fn of_pilot(found: &Identification, records: &[Experiment]) -> Result<Self, IdentifyError> {
         let (machine, terms) = (*found.machine(), found.terms().clone());
         let problem = crate::problem::Problem::of(found.family(), machine, terms.clone(), records)?;
-        let layout = problem.layout();
+        let layout = problem.table();
         let position = layout.units.position.clone();
         let shared = layout.shared;
         let of_fit: Vec<(&str, f64)> =

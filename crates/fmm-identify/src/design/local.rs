@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fmm_fit::{Derivatives, DesignError, EvaluationError, Information, Residuals};
+use fmm_fit::{DesignError, Information, Residuals};
 use fmm_friction::Role;
 use fmm_model::{Dual, Parameter, Scalar, Unit};
 use fmm_record::{Quantity, Record};
@@ -12,14 +12,13 @@ use crate::design::planned_test::{Load, Motion};
 use crate::design::{Guess, PlannedTest};
 use crate::error::IdentifyError;
 use crate::experiment::{Drive, Experiment};
-use crate::finding::Source;
 use crate::law::dimension::is_force;
 use crate::law::{DIRECTIONS, Law};
 use crate::machine::Scale;
 use crate::machine::terms::Term;
 use crate::machine::{Known, Machine, Terms};
 use crate::problem::Problem;
-use crate::quantities::layout::{Layout, mass, mass_of_stiffness};
+use crate::quantities::table::{Knowledge, Place, Row, Table, mass_of_stiffness};
 
 /// Layout and parameters that all tests share, static levels among them.
 pub(crate) fn layout(
@@ -28,17 +27,22 @@ pub(crate) fn layout(
     terms: &Terms,
     position: &Unit,
     frequency: f64,
-) -> Result<(Layout, Vec<Parameter>), IdentifyError> {
+) -> Result<(Table, Vec<Parameter>), IdentifyError> {
     let blank = Record::new(0.0, 1.0, vec![0.0; 2], Quantity::Displacement, position.to_string())?;
     let blank = Experiment::planned(blank, None, false, frequency, 1.0, None);
-    let (layout, mut parameters) = Layout::of(law.with_breakaway(), machine, terms, &[blank])?;
+    // What is known to an uncertainty is an input of a plan.
+    let (layout, mut parameters) = Table::of(law.with_breakaway(), &machine.exactly(), terms, &[blank])?;
     parameters.truncate(layout.shared);
     Ok((layout, parameters))
 }
 
 /// The mass (kg) of a machine that vibrates at `frequency` (Hz), if a scale is known.
 pub(crate) fn mass_of(machine: &Machine, frequency: f64) -> Option<f64> {
-    mass(machine.scale(), frequency)
+    match machine.scale() {
+        Scale::Mass(mass) | Scale::MassAndStiffness(mass, _) => Some(mass.value()),
+        Scale::Stiffness(stiffness) => Some(mass_of_stiffness(stiffness.value(), frequency)),
+        Scale::PerUnitMass | Scale::Unknown => None,
+    }
 }
 
 /// The derivatives of parameters of these `names` by `parameters`, row by row: 1 where the name is the same.
@@ -56,7 +60,7 @@ pub(crate) fn design_error(law: &'static str, source: DesignError) -> IdentifyEr
 #[derive(Clone, Copy)]
 pub(crate) struct Local<'a> {
     pub(crate) guess: &'a Guess,
-    pub(crate) layout: &'a Layout,
+    pub(crate) layout: &'a Table,
     pub(crate) inputs: &'a Inputs,
     pub(crate) values: &'a [f64],
 }
@@ -92,11 +96,11 @@ impl Local<'_> {
             let alone = match guess.machine.scale() {
                 Scale::Mass(known) => error(Input::Scale) + known.value(),
                 Scale::Stiffness(known) => mass_of_stiffness(error(Input::Scale) + known.value(), own[0]),
-                Scale::PerUnitMass | Scale::Unknown => own[0],
+                _ => own[0],
             };
             let whole = alone + added_mass;
             of_mass = alone / whole;
-            if guess.machine.scale() == Scale::Unknown {
+            if !layout.is_per_mass() {
                 of_stiffness = own[1] / (own[1] + added_stiffness);
                 (own[0], own[1]) = (whole, own[1] + added_stiffness);
             } else {
@@ -125,7 +129,7 @@ impl Local<'_> {
             }
         }
         let gain = (error(Input::Gain(test.sensor)) + 1.0).ln();
-        for (index, value) in own.iter_mut().enumerate().skip(layout.oscillator) {
+        for (index, value) in own.iter_mut().enumerate() {
             *value *= (gain * layout.power_of_gain(index, values)).exp();
         }
         own
@@ -145,7 +149,7 @@ impl Local<'_> {
                     test.name()
                 )));
             }
-            Scale::PerUnitMass | Scale::Unknown => *machine,
+            _ => *machine,
         };
         let is_linear = machine.restoring() == fmm_model::Restoring::Linear && !self.layout.terms.has(Term::Gap);
         if test.added_stiffness.is_some() && !is_linear {
@@ -173,6 +177,8 @@ impl Local<'_> {
         let record = self.guess.blank(test.sensor.quantity(), test.rate(), test.samples())?;
         let drive = match &test.motion {
             Motion::Released(_) => None,
+            // The channel of a force that sets the scale is an input that all tests share.
+            Motion::Pushed(force, _) if self.guess.machine.scale() == Scale::Unknown => Some(Drive::force(force)?),
             Motion::Pushed(force, uncertainty) => Some(Drive::force(force)?.with_gain_uncertainty(*uncertainty)?),
             Motion::Struck(force) => Some(Drive::force(force)?.with_free_delay(record.interval())?),
             Motion::Carried(base) => Some(Drive::base(base)?),
@@ -187,105 +193,54 @@ impl Local<'_> {
         let name = self.guess.law.name;
         let failed = |source| design_error(name, source);
         let shared: Vec<f64> = self.of_test(test, 0);
-        let frequency = match self.guess.machine.scale() {
-            Scale::Unknown => (shared[1] / shared[0]).sqrt() / (2.0 * PI),
-            _ => shared[0],
+        let frequency = match self.layout.is_per_mass() {
+            true => shared[0],
+            false => (shared[1] / shared[0]).sqrt() / (2.0 * PI),
         };
         let experiments = [self.experiment(test, frequency)?];
         let law = self.guess.law.with_held_breakaway();
-        let problem =
-            |machine: &Machine| Problem::of(law, self.machine(test, machine)?, self.guess.terms.clone(), &experiments);
-        let own = problem(&self.guess.machine)?;
-        let of_problem = own.layout().shared;
+        let machine = self.machine(test, &self.guess.machine)?;
+        let own = Problem::of(law, machine, self.guess.terms.clone(), &experiments)?.without_prior();
+        let of_problem = own.table().shared;
         let place = |parameter: &Parameter| self.guess.parameters.iter().position(|one| one.name() == parameter.name());
-        let places: Vec<usize> = own.parameters()[..of_problem].iter().filter_map(place).collect();
+        // Each shared row of the problem is one of the guess, or something known of the machine.
+        let input = |row: &Row| match row.place {
+            Place::MachineDamping => self.inputs.find(Input::Damping),
+            _ => self.inputs.find(Input::Scale),
+        };
+        let rows: Vec<(Option<usize>, &Row)> =
+            own.parameters()[..of_problem].iter().map(place).zip(&own.table().rows).collect();
         let state = |parameter: &Parameter| match (parameter.name(), &test.motion) {
             ("initial_position", Motion::Released(position)) => *position,
             ("force_gain" | "base_gain", _) => 1.0,
             _ => 0.0,
         };
-        let values: Vec<f64> =
-            places.iter().map(|place| shared[*place]).chain(own.parameters()[of_problem..].iter().map(state)).collect();
-
-        // Errors of the machine on which the motion depends directly.
-        let has_force = matches!(test.motion, Motion::Pushed(..) | Motion::Struck(_));
-        let is_damped = self.guess.machine.damping().is_some_and(|damping| damping.value() > 0.0);
-        let mut direct = Vec::new();
-        for (source, ends) in self.guess.machine.inputs_moved(has_force || is_damped) {
-            let input = if source == Source::Damping { Input::Damping } else { Input::Scale };
-            let Some((place, u)) = self.inputs.find(input) else { continue };
-            let mut series = [vec![0.0; own.len()], vec![0.0; own.len()]];
-            for ((_, machine), series) in ends.iter().zip(&mut series) {
-                let moved = problem(machine)?;
-                moved.evaluate(&values, series, None).map_err(|error| IdentifyError::simulation(name, error))?;
-            }
-            let [below, above] = series;
-            let per_uncertainty = u / (ends[1].0 - ends[0].0);
-            let column = above.iter().zip(&below).map(|(above, below)| (above - below) * per_uncertainty).collect();
-            direct.push((self.values.len() + place, column));
-        }
-        let (of_direct, columns): (Vec<usize>, Vec<Vec<f64>>) = direct.into_iter().unzip();
-        let told = if columns.is_empty() {
-            Information::of_problem(&own, &values, of_problem)
-        } else {
-            let beside = BesideInputs::new(own, columns);
-            let all = [vec![0.0; of_direct.len()], values].concat();
-            Information::of_problem(&beside, &all, of_direct.len() + of_problem)
+        let of_row = |(place, row): &(Option<usize>, &Row)| match (place, row.knowledge) {
+            (Some(place), _) => shared[*place],
+            (None, Knowledge::Prior { value, .. } | Knowledge::Fixed(value)) => value,
+            (None, Knowledge::Free) => 0.0,
         };
+        let values: Vec<f64> =
+            rows.iter().map(of_row).chain(own.parameters()[of_problem..].iter().map(state)).collect();
+        let told = Information::of_problem(&own, &values, of_problem);
         let told = told.and_then(|told| told.scaled(test.sensor.noise().powi(-2))).map_err(failed)?;
 
         let directions = self.directions();
-        let mut derivatives = vec![0.0; (of_direct.len() + places.len()) * directions];
-        let (by_input, by_shared) = derivatives.split_at_mut(of_direct.len() * directions);
-        for (row, place) in by_input.chunks_exact_mut(directions).zip(&of_direct) {
-            row[*place] = 1.0;
+        let mut derivatives = vec![0.0; rows.len() * directions];
+        for (row, (_, known)) in derivatives.chunks_exact_mut(directions).zip(&rows).filter(|(_, (at, _))| at.is_none())
+        {
+            if let Some((place, u)) = input(known) {
+                row[self.values.len() + place] = u;
+            }
         }
         for first in (0..directions).step_by(DIRECTIONS) {
             let seeded: Vec<Dual<DIRECTIONS>> = self.of_test(test, first);
-            for (row, place) in by_shared.chunks_exact_mut(directions).zip(&places) {
+            for (row, (place, _)) in derivatives.chunks_exact_mut(directions).zip(&rows) {
+                let Some(place) = place else { continue };
                 let slopes = row[first..].iter_mut().enumerate().take(DIRECTIONS);
                 slopes.for_each(|(direction, slope)| *slope = seeded[*place].partial(direction));
             }
         }
         told.transformed(&derivatives).map_err(failed)
-    }
-}
-
-/// A problem with inputs as further parameters before its own.
-struct BesideInputs<'a> {
-    problem: Problem<'a>,
-    parameters: Vec<Parameter>,
-    columns: Vec<Vec<f64>>,
-}
-
-impl<'a> BesideInputs<'a> {
-    fn new(problem: Problem<'a>, columns: Vec<Vec<f64>>) -> Self {
-        let inputs = (0..columns.len()).map(|_| Parameter::new("error of an input", "ξ", "1"));
-        let parameters = inputs.chain(problem.parameters().iter().cloned()).collect();
-        Self { problem, parameters, columns }
-    }
-}
-
-impl Residuals for BesideInputs<'_> {
-    fn parameters(&self) -> &[Parameter] {
-        &self.parameters
-    }
-
-    fn len(&self) -> usize {
-        self.problem.len()
-    }
-
-    fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
-        let own = jacobian.map(|jacobian| {
-            let (by_input, own) = jacobian.split_at_mut(self.columns.len() * self.len());
-            by_input.copy_from_slice(&self.columns.concat());
-            // Of one experiment there is one block, which has all parameters in their order.
-            own
-        });
-        self.problem.evaluate(&p[self.columns.len()..], residuals, own)
-    }
-
-    fn derivatives(&self) -> Derivatives {
-        self.problem.derivatives()
     }
 }

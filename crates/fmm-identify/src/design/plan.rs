@@ -8,7 +8,7 @@ use crate::design::prediction::Quantity;
 use crate::design::{DesignPrediction, Guess, PlannedTest};
 use crate::error::IdentifyError;
 use crate::quantities::derived::derived;
-use crate::quantities::layout::Layout;
+use crate::quantities::table::Table;
 
 /// The tests that may be made on a machine, and what each of them would tell.
 ///
@@ -38,7 +38,7 @@ pub struct Plan {
     guess: Guess,
     tests: Vec<PlannedTest>,
     inputs: Inputs,
-    layout: Layout,
+    layout: Table,
     known: Information,
     told: Vec<Information>,
 }

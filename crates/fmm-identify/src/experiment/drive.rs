@@ -8,7 +8,6 @@ use fmm_record::{Quantity, Record};
 use fmm_sim::Excitation;
 
 use crate::error::IdentifyError;
-use crate::machine::Scale;
 
 /// What drives a machine during a record, measured on the same time axis.
 ///
@@ -19,7 +18,9 @@ pub struct Drive {
     record: Record,
     kind: Kind,
     gain_uncertainty: f64,
+    calibration_uncertainty: f64,
     longest_delay: f64,
+    delay_uncertainty: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,7 +39,7 @@ impl Drive {
             let found = format!("{} in {}", record.quantity(), record.unit());
             return Err(IdentifyError::drive("a force in N", &found));
         }
-        Ok(Self { record: record.clone(), kind: Kind::Force, gain_uncertainty: 0.0, longest_delay: 0.0 })
+        Ok(Self { kind: Kind::Force, ..Self::base_of(record.clone()) })
     }
 
     /// The measured motion of a base to which spring and counterface are fixed; best its acceleration. A velocity is
@@ -58,12 +59,18 @@ impl Drive {
                 return Err(IdentifyError::drive("an acceleration, a velocity or a displacement", &found));
             }
         };
-        Ok(Self { record, kind: Kind::Base, gain_uncertainty: 0.0, longest_delay: 0.0 })
+        Ok(Self::base_of(record))
+    }
+
+    /// The motion of a base that is read without error.
+    fn base_of(record: Record) -> Self {
+        let (gain_uncertainty, calibration_uncertainty) = (0.0, 0.0);
+        let (longest_delay, delay_uncertainty) = (0.0, None);
+        Self { record, kind: Kind::Base, gain_uncertainty, calibration_uncertainty, longest_delay, delay_uncertainty }
     }
 
     /// The same read by a channel of this relative standard uncertainty (1). Its gain, what it reads by what acts, is
-    /// fitted if the machine tells it: of a force beside a mass or a stiffness that is known, of a base always. A force
-    /// on a machine of unknown mass tells that mass, and all forces are as uncertain as its channel.
+    /// fitted with that knowledge: a force beside a mass or a stiffness that is known, and a base always, tell more.
     ///
     /// # Errors
     /// [`IdentifyError::InvalidInput`] for one that is negative or not finite.
@@ -71,6 +78,17 @@ impl Drive {
         let gain_uncertainty =
             ModelError::require_not_negative("uncertainty of the gain of a drive", uncertainty, "1")?;
         Ok(Self { gain_uncertainty, ..self })
+    }
+
+    /// The same with a calibration of this relative standard uncertainty (1) that it shares with the drives of all other
+    /// experiments, as the impacts of one hammer do.
+    ///
+    /// # Errors
+    /// [`IdentifyError::InvalidInput`] for one that is negative or not finite.
+    pub fn with_calibration_uncertainty(self, uncertainty: f64) -> Result<Self, IdentifyError> {
+        let calibration_uncertainty =
+            ModelError::require_not_negative("uncertainty of the calibration of a drive", uncertainty, "1")?;
+        Ok(Self { calibration_uncertainty, ..self })
     }
 
     /// The same with a response that is up to `longest` (s) late or early, by a delay that is fitted. One that is known
@@ -85,6 +103,11 @@ impl Drive {
         Ok(Self { longest_delay, ..self })
     }
 
+    /// The same with a delay of this standard uncertainty (s) about none, where one is fitted.
+    pub(crate) fn with_delay_uncertainty(self, uncertainty: f64) -> Self {
+        Self { delay_uncertainty: Some(uncertainty).filter(|u| *u > 0.0), ..self }
+    }
+
     /// That a response may be late by `delay` (s): not by more than the drive lasts.
     pub(crate) fn require_delay(&self, delay: f64) -> Result<(), IdentifyError> {
         if delay <= self.record.duration() {
@@ -94,14 +117,19 @@ impl Drive {
         Err(IdentifyError::not_allowed(subject, delay, "no longer than the record of the drive"))
     }
 
-    /// Relative standard uncertainty of the gain of its channel (1).
+    /// Relative standard uncertainty of the gain of its channel (1), its calibration included.
     pub fn gain_uncertainty(&self) -> f64 {
-        self.gain_uncertainty
+        self.gain_uncertainty.hypot(self.calibration_uncertainty)
     }
 
-    /// Whether its gain is fitted on a machine of this `scale`.
-    pub(crate) fn fits_gain(&self, scale: Scale) -> bool {
-        self.gain_uncertainty > 0.0 && !(self.is_force() && scale == Scale::Unknown)
+    /// The part of it that all experiments share (1).
+    pub(crate) fn calibration_uncertainty(&self) -> f64 {
+        self.calibration_uncertainty
+    }
+
+    /// Standard uncertainty of its delay (s); `None` if nothing is known of it.
+    pub(crate) fn delay_uncertainty(&self) -> Option<f64> {
+        self.delay_uncertainty
     }
 
     /// The longest delay (s) that is fitted; 0 if none is.
@@ -122,7 +150,9 @@ impl Drive {
     /// That the drive is known from `start` to `end` (s).
     pub(crate) fn require_within(&self, start: f64, end: f64) -> Result<(), IdentifyError> {
         let slack = 1e-6 * self.record.interval();
-        if self.record.start() > start + slack || self.record.end() < end - slack {
+        // A drive that has come to zero stays there.
+        let has_ended = self.record.values().last().is_some_and(|value| *value == 0.0);
+        if self.record.start() > start + slack || self.record.end() < end - slack && !has_ended {
             let (known_from, known_to) = (self.record.start(), self.record.end());
             return Err(IdentifyError::not_seen(format!(
                 "the drive is known from {known_from} s to {known_to} s, but the response lasts from {start} s to {end} s; crop the response"

@@ -68,7 +68,8 @@ impl Experiment {
         // A ramp does not oscillate; its whole duration stands for half a period.
         let frequency = swings.frequency().unwrap_or(0.5 / record.duration());
         let noise = noise(record.values());
-        let values = drive.values_from(record.start(), 0.0);
+        let mut values = drive.values_from(record.start(), 0.0);
+        values.resize(values.len().max(record.len()), 0.0);
         let guess = DrivenGuess::of(&record, &drive, &values, frequency, noise);
         let summary = RecordSummary {
             samples: kept.iter().map(Range::len).sum(),
@@ -94,6 +95,8 @@ impl Experiment {
             sensor: super::Sensor::default(),
             load_factor: 1.0,
             driven: Some(Driven { drive, guess, is_at_rest: false }),
+            impact: None,
+            lines: None,
         })
     }
 }

@@ -1,21 +1,29 @@
-//! Impact: the free motion after a measured blow of a hammer, as one of several experiments.
+//! Impact: the free motion after a measured impact of a hammer.
 
+use std::f64::consts::TAU;
+use std::ops::Range;
+use std::sync::Arc;
+
+use fmm_frf::{SingleDegreeOfFreedom, friction_force_of_coulomb_impact, friction_force_of_viscous_coulomb_impact};
 use fmm_record::{Quantity, Record};
 
 use super::{Experiment, FEWEST_SAMPLES};
 use crate::error::IdentifyError;
-use crate::experiment::ImpactTrial;
+use crate::experiment::lines::Lines;
 use crate::experiment::ring_down;
-use crate::experiment::{Drive, Offset, Preparation};
+use crate::experiment::{Drive, ImpactTrial, Offset, Preparation};
+use crate::machine::{Machine, Scale};
+
+/// Band of a mobility unless one is given, in natural frequencies.
+const BAND: (f64, f64) = (0.5, 2.0);
 
 impl Experiment {
-    /// A hammer blow: the velocity from the beginning of the blow until a while after rest, driven by the measured
+    /// The impact of a hammer: the velocity from the beginning of the impact until a while after rest, driven by the measured
     /// force. The machine is at rest before; samples during contact are left out, as the force between its samples is
-    /// not known. What these leave open of the impulse and of its time is fitted, or, on a machine of unknown mass, an
-    /// uncertainty of all forces.
+    /// not known. What the samples of the force leave
+    /// open of the impulse and of its time is fitted with that knowledge.
     ///
-    /// [`identify_impact`](crate::identify_impact) fits blows alone, on a machine of which everything is known, and as
-    /// mobility too.
+    /// [`mobility`](Self::mobility) compares the lines of a spectrum instead.
     ///
     /// ```
     /// use fmm_friction::Coulomb;
@@ -24,7 +32,7 @@ impl Experiment {
     /// # use fmm_model::{Damping, Oscillator};
     /// # use fmm_sim::{Engine, Exact, Excitation, Sampling, Scenario};
     ///
-    /// // A blow on the machine of the thesis, F = 0.75 N, and a ring-down of it; here both are simulated.
+    /// // An impact on the machine of the thesis, F = 0.75 N, and a ring-down of it; here both are simulated.
     /// # let machine = Oscillator::new(10.391, 1982.0)?.with_damping(Damping::linear(0.275)?);
     /// # let scenario = Scenario::new(machine, Coulomb::new(0.75)?, 1.0)?;
     /// # let force: Vec<f64> = (0..6000).map(|i| if (200..240).contains(&i) { 400.0 * (f64::from(i - 200) / 40.0 * std::f64::consts::PI).sin() } else { 0.0 }).collect();
@@ -35,10 +43,10 @@ impl Experiment {
     /// let velocity = Record::new(0.0, 5e-4, velocity, Quantity::Velocity, "m/s")?;
     /// let free = Record::new(0.0, 1e-3, free, Quantity::Velocity, "m/s")?;
     ///
-    /// let blow = Experiment::impact(&ImpactTrial::prepare(&force, &velocity)?)?;
+    /// let impact = Experiment::impact(&ImpactTrial::prepare(&force, &velocity)?)?;
     /// let ring_down = Experiment::ring_down(&free, &Preparation::default())?;
     /// // The force tells the mass, both tell friction.
-    /// let found = identify::<Coulomb>(&Machine::unknown().with_damping(fmm_identify::Known::exact(0.275)?)?, &[ring_down, blow])?;
+    /// let found = identify::<Coulomb>(&Machine::unknown().with_damping(fmm_identify::Known::exact(0.275)?)?, &[ring_down, impact])?;
     /// assert!((found.finding("mass").unwrap().value() / 10.391 - 1.0).abs() < 1e-3);
     /// assert!((found.finding("friction_force").unwrap().value() / 0.75 - 1.0).abs() < 1e-3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -47,28 +55,98 @@ impl Experiment {
     /// # Errors
     /// [`IdentifyError::TooFew`] if contact leaves too little of the motion.
     pub fn impact(trial: &ImpactTrial) -> Result<Self, IdentifyError> {
+        let hits = trial.hits().iter().map(|hit| hit.start..hit.end + 1);
+        Self::of_trial(trial, Offset::Fitted)?.using(ring_down::without(trial.motion().len(), hits))
+    }
+
+    /// The impact of a hammer by its mobility: the lines of the velocity's spectrum within `band` (Hz), or from half to
+    /// twice the frequency of the motion. Samples during contact are part of a spectrum; the pulse that they make is
+    /// fitted with what is known of it, as by [`impact`](Self::impact).
+    ///
+    /// # Errors
+    /// [`IdentifyError::NotSeen`] for a band without a line, and as for [`impact`](Self::impact).
+    pub fn mobility(trial: &ImpactTrial, band: Option<(f64, f64)>) -> Result<Self, IdentifyError> {
+        // An offset has no part in lines above zero frequency.
+        let experiment = Self::of_trial(trial, Offset::Fixed(0.0))?;
+        let frequency = experiment.guess.frequency();
+        let lines = trial.lines(band.unwrap_or((BAND.0 * frequency, BAND.1 * frequency)))?;
+        Ok(Self { lines: Some(Arc::new(lines)), ..experiment })
+    }
+
+    /// The whole motion of `trial` with this `offset`, driven by its force.
+    fn of_trial(trial: &ImpactTrial, offset: Offset) -> Result<Self, IdentifyError> {
         let (motion, interval) = (trial.motion(), trial.interval());
         let start = trial.summary().begin;
         let velocity = trial.velocity()[motion.clone()].to_vec();
-        let mut force = trial.force().to_vec();
-        force.resize(force.len().max(velocity.len()), 0.0);
+        let force = trial.force().to_vec();
         let velocity = Record::new(start, interval, velocity, Quantity::Velocity, "m/s")?;
         let force = Record::new(start, interval, force, Quantity::Force, "N")?;
         let summary = trial.summary();
         let drive = Drive::force(&force)?
             .with_gain_uncertainty((summary.impulse.uncertainty / summary.impulse.value).abs())?
-            .with_free_delay(interval)?;
-        let preparation = Preparation { offset: Offset::Fixed(0.0), ..Preparation::default() };
-        let mut experiment = Self::driven(&velocity, drive, &preparation)?;
-        let hits = trial.hits().iter().map(|hit| hit.start..hit.end + 1);
-        experiment.kept = ring_down::without(motion.len(), hits);
-        experiment.summary.samples = experiment.kept.iter().map(std::ops::Range::len).sum();
-        if experiment.summary.samples < FEWEST_SAMPLES {
-            return Err(IdentifyError::too_short(experiment.summary.samples, FEWEST_SAMPLES));
-        }
+            .with_calibration_uncertainty(trial.calibration_uncertainty())?
+            .with_free_delay(interval)?
+            .with_delay_uncertainty(summary.time_uncertainty);
+        let preparation = Preparation { offset, ..Preparation::default() };
+        let mut experiment =
+            Self::driven(&velocity, drive, &preparation)?.using(std::iter::once(0..motion.len()).collect())?;
         if let Some(driven) = &mut experiment.driven {
             driven.is_at_rest = true;
         }
+        experiment.impact = Some(summary.clone());
         Ok(experiment)
+    }
+
+    /// The same of which these ranges of samples are used.
+    fn using(mut self, used: Vec<Range<usize>>) -> Result<Self, IdentifyError> {
+        self.summary.samples = used.iter().map(Range::len).sum();
+        self.kept = used;
+        if self.summary.samples < FEWEST_SAMPLES {
+            return Err(IdentifyError::too_short(self.summary.samples, FEWEST_SAMPLES));
+        }
+        Ok(self)
+    }
+}
+
+impl ImpactTrial {
+    /// The lines of its spectrum within `band` (Hz).
+    fn lines(&self, band: (f64, f64)) -> Result<Lines, IdentifyError> {
+        Lines::new(self.velocity().len(), self.summary().rate, band)
+    }
+
+    /// Height (m/N) of the peak of its receptance within `band` (Hz). Of a record that ends before the motion it is too
+    /// low.
+    ///
+    /// # Errors
+    /// [`IdentifyError::NotSeen`] for a band without a line.
+    pub fn peak_receptance(&self, band: (f64, f64)) -> Result<f64, IdentifyError> {
+        let lines = self.lines(band)?;
+        let force = lines.transform_short(self.force());
+        let mut velocity = vec![0.0; lines.rows()];
+        let failed = |error| IdentifyError::simulation("the receptance", error);
+        lines.transform(&self.velocity()[self.begin()..], &mut velocity).map_err(failed)?;
+        let size = |pair: &[f64]| pair[0].hypot(pair[1]);
+        let mobilities = velocity.chunks_exact(2).zip(force.chunks_exact(2));
+        let receptances = mobilities.zip(lines.frequencies()).map(|((v, f), at)| size(v) / (size(f) * TAU * at));
+        Ok(receptances.filter(|receptance| receptance.is_finite()).fold(0.0, f64::max))
+    }
+
+    /// Friction force (N) that the closed form of [`friction_force_of_viscous_coulomb_impact`] makes of the receptance
+    /// peak on a `machine` of known mass and stiffness, within half to twice its frequency; `None` for another machine,
+    /// or a peak that is higher than the damping alone allows.
+    ///
+    /// It takes friction as independent of velocity, and the record as long enough for the motion to end. With that it
+    /// is good to 0.5 % and some more between lines that miss the peak.
+    pub fn closed_form(&self, machine: &Machine) -> Option<f64> {
+        let Scale::MassAndStiffness(mass, stiffness) = machine.scale() else { return None };
+        let impulse = self.summary().impulse.value.abs();
+        let damping = machine.damping().map_or(0.0, |damping| damping.value());
+        let machine = SingleDegreeOfFreedom::new(mass.value(), damping, stiffness.value()).ok()?;
+        let omega = machine.natural_angular_frequency();
+        let peak = self.peak_receptance((BAND.0 * omega / TAU, BAND.1 * omega / TAU)).ok()?;
+        match damping {
+            0.0 => friction_force_of_coulomb_impact(impulse, mass.value(), omega, peak).ok(),
+            _ => friction_force_of_viscous_coulomb_impact(impulse, &machine, peak).ok(),
+        }
     }
 }

@@ -9,7 +9,7 @@ use fmm_record::{Quantity, Record, noise, quantisation_step, saturation};
 use crate::error::IdentifyError;
 use crate::experiment::impact_motion::{FEWEST_QUIET, Motion, bridged, mean};
 use crate::experiment::sampled_pulse::SampledPulse;
-use fmm_model::Estimated;
+use fmm_model::{Estimated, ModelError};
 
 /// A pulse stands this far above the noise (standard deviations),
 const SIGNIFICANT: f64 = 20.0;
@@ -51,6 +51,7 @@ pub struct ImpactTrial {
     hits: Vec<Range<usize>>,
     begin: usize,
     end: usize,
+    calibration_uncertainty: f64,
     summary: ImpactSummary,
 }
 
@@ -122,6 +123,8 @@ impl ImpactTrial {
         // A converter step counts as the noise of its rounding.
         let of_force = force_noise.hypot(quantisation_step(force.values()).unwrap_or(0.0) / 12f64.sqrt());
         let sampled = SampledPulse::of(&blow.force, &blow.hits, interval, of_force);
+        let mut further_hits = blow.pulse.further_hits;
+        further_hits.iter_mut().for_each(|hit| hit.time += velocity.start());
         let summary = ImpactSummary {
             samples: velocity.len(),
             rate: velocity.rate(),
@@ -134,7 +137,7 @@ impl ImpactTrial {
             level: blow.pulse.level,
             duration: interval * (blow.force.len() - 1) as f64,
             intervals: blow.pulse.samples.len().saturating_sub(1),
-            further_hits: blow.pulse.further_hits,
+            further_hits,
             overloads: (
                 blow.pulse.overload.map_or(0, |overload| overload.samples),
                 saturation(velocity.values()).map_or(0, |overload| overload.samples),
@@ -148,7 +151,32 @@ impl ImpactTrial {
             rest: motion.last.map(|last| velocity.time(last)),
         };
         let (velocity, end) = (motion.velocity, motion.end);
-        Ok(Self { interval, velocity, force: blow.force.into(), hits: blow.hits, begin: blow.begin, end, summary })
+        Ok(Self {
+            interval,
+            velocity,
+            force: blow.force.into(),
+            hits: blow.hits,
+            begin: blow.begin,
+            end,
+            calibration_uncertainty: 0.0,
+            summary,
+        })
+    }
+
+    /// The same measured by a hammer of which the calibration has this relative standard uncertainty (1). Impacts that are
+    /// fitted together share it.
+    ///
+    /// # Errors
+    /// [`IdentifyError::InvalidInput`] for one that is negative or not finite.
+    pub fn with_calibration_uncertainty(self, uncertainty: f64) -> Result<Self, IdentifyError> {
+        let calibration_uncertainty =
+            ModelError::require_not_negative("uncertainty of the calibration of a hammer", uncertainty, "1")?;
+        Ok(Self { calibration_uncertainty, ..self })
+    }
+
+    /// Relative standard uncertainty of the calibration of the hammer (1).
+    pub fn calibration_uncertainty(&self) -> f64 {
+        self.calibration_uncertainty
     }
 
     /// What the blow is and what was done to it.

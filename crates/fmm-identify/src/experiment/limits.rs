@@ -1,10 +1,17 @@
 //! Limits of a record, found as warnings before anything is fitted.
 
-use crate::experiment::RecordSummary;
+use std::f64::consts::PI;
+
+use fmm_frf::{Channel, coulomb_impact_duration};
+
+use crate::experiment::{ImpactSummary, RecordSummary};
 use crate::warning::Warning;
 
 /// Fewer half swings than this are few.
 const ENOUGH_HALF_SWINGS: usize = 4;
+/// Relative error of an impulse from which on a pulse is coarse (1).
+const COARSE: f64 = 5e-3;
+
 impl Warning {
     /// What limits what a record tells of a machine, whose spring `is_bent` or a straight line.
     pub(crate) fn of_record(summary: &RecordSummary, is_bent: bool, warnings: &mut Vec<Self>) {
@@ -48,5 +55,42 @@ impl Warning {
             is_interpolated: upsampling.is_interpolated,
         });
         upsampled.into_iter().chain(further).chain(taken).chain(second).chain(hum).chain(rounded)
+    }
+
+    /// Limits of record number `number`, an impact of which the record lasts `recorded` (s) from its beginning on, with
+    /// friction of about `friction` (N).
+    pub(crate) fn of_impact(
+        number: usize,
+        summary: &ImpactSummary,
+        recorded: f64,
+        friction: Option<f64>,
+        warnings: &mut Vec<Self>,
+    ) {
+        warnings.extend(summary.further_hits.iter().map(|hit| Self::FurtherHit {
+            trial: number,
+            time: hit.time,
+            share: hit.level / summary.level,
+        }));
+        let (force, response) = summary.overloads;
+        for (channel, samples) in [(Channel::Force, force), (Channel::Response, response)] {
+            if samples > 0 {
+                warnings.push(Self::Overload { trial: number, channel, samples });
+            }
+        }
+        // Of a half sine that is joined by straight lines.
+        let error = (PI / summary.intervals as f64).powi(2) / 12.0;
+        if error > COARSE {
+            warnings.push(Self::CoarsePulse { trial: number, intervals: summary.intervals, error });
+        }
+        if summary.spikes > 0 {
+            warnings.push(Self::SpikesBridged { trial: number, samples: summary.spikes });
+        }
+        if summary.rest.is_none() {
+            let whole =
+                friction.and_then(|friction| coulomb_impact_duration(summary.impulse.value.abs(), friction).ok());
+            // Half the area under a ramp that is cut off, which is the height of its peak in the spectrum.
+            let lost = whole.map_or(0.0, |whole| (1.0 - recorded / whole).max(0.0).powi(2));
+            warnings.push(Self::NotAtRest { trial: number, recorded, lost });
+        }
     }
 }

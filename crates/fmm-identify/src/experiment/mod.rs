@@ -8,6 +8,7 @@ mod impact;
 pub(crate) mod impact_motion;
 mod impact_trial;
 mod limits;
+mod lines;
 pub(crate) mod nuisance;
 mod planned;
 mod preparation;
@@ -18,6 +19,7 @@ pub(crate) mod sight;
 
 use std::f64::consts::PI;
 use std::ops::Range;
+use std::sync::Arc;
 
 use fmm_model::{Bounds, ModelError, Restoring};
 use fmm_record::{Quantity, Record};
@@ -31,6 +33,7 @@ pub use sensor::Sensor;
 
 use crate::error::IdentifyError;
 use crate::experiment::first_guess::{Dissipation, FirstGuess};
+use crate::experiment::lines::Lines;
 use crate::experiment::nuisance::Nuisance;
 use crate::machine::Machine;
 use crate::warning::Warning;
@@ -55,6 +58,10 @@ pub struct Experiment {
     /// Normal load over that of the machine.
     load_factor: f64,
     driven: Option<Driven>,
+    /// The impact that it begins with.
+    impact: Option<ImpactSummary>,
+    /// The lines of its spectrum that are compared in place of its samples.
+    lines: Option<Arc<Lines>>,
 }
 
 /// What drives an experiment, and where a fit of it may begin.
@@ -131,6 +138,32 @@ impl Experiment {
     /// What drives it; `None` if it vibrates freely.
     pub fn drive(&self) -> Option<&Drive> {
         self.driven.as_ref().map(|driven| &driven.drive)
+    }
+
+    /// Whether a measured force drives it.
+    pub(crate) fn is_forced(&self) -> bool {
+        self.drive().is_some_and(Drive::is_force)
+    }
+
+    /// The impact that it begins with.
+    pub fn impact_summary(&self) -> Option<&ImpactSummary> {
+        self.impact.as_ref()
+    }
+
+    /// The lines of its spectrum that are compared; `None` where its samples are.
+    pub(crate) fn lines(&self) -> Option<&Lines> {
+        self.lines.as_deref()
+    }
+
+    /// Residuals that it makes: one for each sample that is used, or two for each line.
+    pub(crate) fn rows(&self) -> usize {
+        self.lines.as_ref().map_or(self.summary.samples, |lines| lines.rows())
+    }
+
+    /// Standard deviation of what cannot be fitted: white noise and the rounding of the converter, at least that of
+    /// doubles, in the unit of the record.
+    pub(crate) fn least_noise(&self) -> f64 {
+        self.white_noise().max(1e-9 * self.summary.amplitudes.0)
     }
 
     /// Whether it begins at rest where the spring is free of force.
@@ -286,6 +319,10 @@ impl Experiment {
 
     /// The part up to `end` (s); `None` if that leaves nothing out or too little.
     fn up_to(&self, end: f64) -> Option<Self> {
+        // The lines of a spectrum are those of the whole record.
+        if self.lines.is_some() {
+            return None;
+        }
         let record = self.record.crop(self.record.start(), end).ok()?;
         let count = record.len();
         if count < FEWEST_SAMPLES || count == self.record.len() {
@@ -300,6 +337,9 @@ impl Experiment {
 
     /// Every `stride`-th sample, for a search that need not see them all.
     pub(crate) fn thinned(&self, stride: usize) -> Option<Self> {
+        if self.lines.is_some() {
+            return None;
+        }
         let values: Vec<f64> = self.record.values().iter().copied().step_by(stride).collect();
         let interval = self.record.interval() * stride as f64;
         let record =
@@ -367,13 +407,11 @@ pub(crate) fn reference(experiments: &[Experiment]) -> &Experiment {
 /// Each experiment with the factor by which its residuals are multiplied (1): the noise of the first over its own, if
 /// they are not all of one quantity and kind, else 1.
 pub(crate) fn scaled(experiments: &[Experiment]) -> impl Iterator<Item = (&Experiment, f64)> {
-    let kind = |experiment: &Experiment| (experiment.record.quantity(), experiment.driven.is_some());
-    // Rounding of doubles is the least noise there is.
-    let noise = |experiment: &Experiment| experiment.white_noise().max(1e-9 * experiment.summary.amplitudes.0);
+    let kind = |one: &Experiment| (one.record.quantity(), one.driven.is_some(), one.lines.is_some());
     let first = experiments.first();
     let is_one_kind = experiments.iter().all(|experiment| first.is_some_and(|first| kind(first) == kind(experiment)));
     let weight = move |experiment: &Experiment| match first {
-        Some(first) if !is_one_kind => noise(first) / noise(experiment),
+        Some(first) if !is_one_kind => first.least_noise() / experiment.least_noise(),
         _ => 1.0,
     };
     experiments.iter().map(move |experiment| (experiment, weight(experiment)))

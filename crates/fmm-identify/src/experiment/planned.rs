@@ -38,6 +38,8 @@ impl Experiment {
             sensor: Sensor::default(),
             load_factor: 1.0,
             driven: drive.map(of_drive),
+            impact: None,
+            lines: None,
         }
     }
 }

@@ -150,6 +150,8 @@ impl Experiment {
             sensor: Sensor::default(),
             load_factor: 1.0,
             driven: None,
+            impact: None,
+            lines: None,
         };
         Ok(experiment.beside(nuisances))
     }

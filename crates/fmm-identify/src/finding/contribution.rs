@@ -20,8 +20,8 @@ pub enum Source {
     Gain,
     /// The gain of the instrument that measured the force.
     ForceGain,
-    /// All that is held of the machine and the instruments, where the parts are not told apart.
-    Held,
+    /// The time at which a pulse acts.
+    Timing,
     /// Laws that the records do not exclude, and that would give another value.
     OtherLaws,
 }
@@ -36,7 +36,7 @@ impl fmt::Display for Source {
             Self::NormalLoad => "normal load",
             Self::Gain => "gain of the record",
             Self::ForceGain => "gain of the force",
-            Self::Held => "what is held of machine and instruments",
+            Self::Timing => "time of the pulse",
             Self::OtherLaws => "laws that are not excluded",
         })
     }

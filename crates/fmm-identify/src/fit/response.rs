@@ -54,8 +54,8 @@ pub(crate) struct Response<'a> {
 impl<'a> Response<'a> {
     /// Whether there is one: of one free vibration on a linear spring under a constant load.
     pub(crate) fn exists(problem: &Problem<'_>) -> bool {
-        let [decay] = problem.decays() else { return false };
-        problem.layout().oscillator == 1
+        let [decay] = problem.experiments() else { return false };
+        problem.table().oscillator == 1
             && problem.machine().restoring() == Restoring::Linear
             && !problem.has_spring()
             && decay.drive().is_none()
@@ -66,7 +66,7 @@ impl<'a> Response<'a> {
     /// That of the record of `problem` about the fit of `simple`, by Coulomb and viscous friction, with these `values`;
     /// `None` where none [exists](Self::exists), or the motion is too short.
     pub(crate) fn of(problem: &'a Problem<'a>, simple: &Problem<'_>, values: &[f64]) -> Option<Self> {
-        let decay = problem.decays().first().filter(|_| Self::exists(problem))?;
+        let decay = problem.experiments().first().filter(|_| Self::exists(problem))?;
         let record = decay.record();
         let interval = record.interval();
         let stride = ((values[0] * interval * SAMPLES_PER_SWING).recip() as usize).max(1);
@@ -98,7 +98,7 @@ impl<'a> Response<'a> {
         let turns = motion.velocities.windows(2).zip(&motion.positions).map(turn).collect();
         let (step, by_force) = transition(stiffness, damping, stride as f64 * interval);
 
-        let first = simple.layout().shared;
+        let first = simple.table().shared;
         let beside: Vec<usize> = std::iter::once(0).chain(first..values.len()).collect();
         let whole = simple.columns(values, &beside).ok()?;
         let mut left = vec![0.0; simple.len()];
@@ -137,7 +137,7 @@ impl<'a> Response<'a> {
             .with_polish_steps(0)
             .with_restarts(0)
             .with_jacobian_check(false);
-        let layout = self.problem.layout();
+        let layout = self.problem.table();
         let of_law = layout.oscillator..layout.shared;
         let fits = on_all_threads(starts.iter().collect(), |start| solve(self, &start[of_law.clone()], &options).ok());
         let mut ends: Vec<(f64, Vec<f64>)> = Vec::with_capacity(starts.len());
@@ -170,7 +170,7 @@ impl<'a> Response<'a> {
 
     /// Residuals that the record is expected to have, what is beside the law unchanged.
     fn changed(&self, of_law: &[f64]) -> Result<Vec<f64>, EvaluationError> {
-        let layout = self.problem.layout();
+        let layout = self.problem.table();
         let law = &layout.family;
         let guide = Guide {
             motion: &self.motion,
@@ -210,7 +210,7 @@ impl<'a> Response<'a> {
 
     /// What the record shows of a change of the state under a change of the friction per mass.
     fn seen(&self, state: [f64; 2], change: f64) -> f64 {
-        match self.problem.decays()[0].record().quantity() {
+        match self.problem.experiments()[0].record().quantity() {
             Quantity::Displacement => state[0],
             Quantity::Acceleration => -self.stiffness * state[0] - self.damping * state[1] - change,
             _ => state[1],
@@ -228,7 +228,7 @@ impl<'a> Response<'a> {
 
 impl Residuals for Response<'_> {
     fn parameters(&self) -> &[Parameter] {
-        let layout = self.problem.layout();
+        let layout = self.problem.table();
         &self.problem.parameters()[layout.oscillator..layout.shared]
     }
 

@@ -114,7 +114,7 @@ fn fit_in_stages(problem: &Problem<'_>, options: &Options, observer: &mut Observ
     let few = thinned.as_ref().map(|thinned| problem.with_records(thinned));
     let search = few.as_ref().unwrap_or(problem);
     let found = if problem.is_elaborate() && !problem.has_spring() {
-        let simple = Problem::new::<CoulombViscous>(*search.machine(), search.decays())?;
+        let simple = Problem::new::<CoulombViscous>(*search.machine(), search.experiments())?;
         let known = fit_simple(&simple, options, observer)?;
         let mut starts = search.continued(&simple, known.values());
         starts.extend(search.starts().into_iter().next());
@@ -141,7 +141,7 @@ fn fit_near(
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
-    let simple = Problem::new::<CoulombViscous>(*problem.machine(), problem.decays())?;
+    let simple = Problem::new::<CoulombViscous>(*problem.machine(), problem.experiments())?;
     let mut starts = problem.near(&simple, near.simple.fit.values(), near.falls);
     let beside: Vec<Vec<f64>> =
         near.others.iter().filter_map(|other| problem.beside(other, &near.others, &starts)).collect();
@@ -225,7 +225,7 @@ fn fit_with_shapes(
     let fit = best_fit(&problem, problem.name(), &[start], options, observer);
     // Beside residuals that look like noise, no other minimum is lower by more than chance.
     let is_noise = |fit: &Fit| {
-        fit.outcome() == Outcome::AtNoiseFloor || !ResidualStructure::of(fit, problem.decays()).is_correlated()
+        fit.outcome() == Outcome::AtNoiseFloor || !ResidualStructure::of(fit, problem.experiments()).is_correlated()
     };
     if fit.as_ref().is_ok_and(is_noise) {
         return fit;

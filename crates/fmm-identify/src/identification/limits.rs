@@ -8,12 +8,25 @@ use crate::identification::{FittedMotion, Identification};
 use crate::law::naming::LINEAR;
 use crate::machine::Scale;
 use crate::machine::terms::QUADRATIC;
+use crate::problem::Problem;
 use crate::warning::Warning;
 
 /// A decision between stop and reversal closer than this is narrow.
 const NARROW: f64 = 5e-3;
 
+/// Standard uncertainties between a known value and its estimate that chance exceeds once in 370 cases (1).
+const CONTRADICTED: f64 = 3.0;
+
 impl Warning {
+    /// Quantities that the records contradict, of those that were known before a `fit` to `problem`.
+    pub(crate) fn of_knowledge<'a>(problem: &'a Problem<'_>, fit: &'a Fit) -> impl Iterator<Item = Self> + 'a {
+        let far = problem.prior().tensions(fit.values()).filter(|(_, distance)| distance.abs() > CONTRADICTED);
+        far.map(|(index, distance)| Self::KnowledgeContradicted {
+            parameter: fit.estimates()[index].name().to_owned(),
+            distance: distance.abs(),
+        })
+    }
+
     /// Everything that limits `identification` of `decays`.
     pub(crate) fn of(identification: &Identification, decays: &[Experiment]) -> Vec<Self> {
         let mut warnings = Vec::new();
@@ -26,6 +39,12 @@ impl Warning {
         for decay in decays {
             let is_bent = machine.restoring() != Restoring::Linear || identification.terms().has_spring();
             Self::of_record(decay.summary(), is_bent, &mut warnings);
+        }
+        for (number, experiment) in (1..).zip(decays) {
+            let Some(impact) = experiment.impact_summary() else { continue };
+            let friction = identification.finding("friction_force").map(|finding| finding.value());
+            let recorded = experiment.record().duration();
+            Self::of_impact(number, impact, recorded, friction.filter(|friction| *friction > 0.0), &mut warnings);
         }
         Self::of_fit(identification.fit(), &mut warnings);
         Self::of_damping(identification, &mut warnings);

@@ -8,17 +8,16 @@ mod profile;
 
 use std::ops::ControlFlow;
 
-use fmm_fit::{Estimate, EvaluationError, Fit, Options, Progress, solve_observed};
+use fmm_fit::{Estimate, EvaluationError, Fit, Options, Progress};
 use fmm_friction::{LawFamily, Role};
 use fmm_sim::{Event, EventKind, Trajectory};
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
+use crate::experiment::Experiment;
 use crate::experiment::nuisance::Nuisance;
 use crate::experiment::scaled;
-use crate::experiment::{Drive, Experiment};
 use crate::finding::Finding;
-use crate::finding::Source;
 use crate::fit::stages::{Begin, Near, Observer, fit_begun};
 use crate::identification::drift::{as_fitted, with_drift};
 use crate::identification::findings::findings;
@@ -29,7 +28,7 @@ use crate::machine::{Machine, Terms};
 use crate::problem::Problem;
 use crate::problem::fitted::Fitted;
 use crate::problem::tangent::Tangent;
-use crate::quantities::layout::Layout;
+use crate::quantities::table::Table;
 use crate::residuals::noise::ResidualNoise;
 use crate::residuals::structure::{Covariance, ResidualStructure};
 use crate::warning::Warning;
@@ -182,22 +181,7 @@ pub(crate) fn identify_by(
     let failure = |error: EvaluationError| IdentifyError::simulation(law.name, error);
     let structure = ResidualStructure::of(&fit, decays);
     let covariance = Covariance::of(&problem, &fit, &structure).map_err(failure)?;
-    // What a force does depends on the mass: its uncertainty is propagated by fits, not by the scale of the results.
-    let has_force = decays.iter().any(|decay| decay.drive().is_some_and(Drive::is_force));
-    let stated = |machine: &Machine| if has_force { machine.with_exact_scale() } else { *machine };
-    let mut found = findings(&stated(machine), problem.layout(), &fit, &covariance, gain);
-    for (source, moved) in machine.inputs_moved(has_force) {
-        let moved = moved.map(|(_, machine)| machine);
-        let mut ends = Vec::new();
-        for machine in moved {
-            let problem = Problem::of(law, machine, terms.clone(), decays)?;
-            let fit = solve_observed(&problem, fit.values(), options, |progress| observer(progress))
-                .map_err(|source| IdentifyError::Fit { law: law.name, source })?;
-            let covariance = Covariance::of(&problem, &fit, &structure).map_err(failure)?;
-            ends.push(findings(&stated(&machine), problem.layout(), &fit, &covariance, gain));
-        }
-        add_in_quadrature(&mut found, source, &ends[0], &ends[1]);
-    }
+    let found = findings(machine, problem.table(), &fit, &covariance, gain);
     if let Some(finding) = found.iter().find(|finding| !finding.is_representable()) {
         return Err(IdentifyError::beyond_numbers(finding.parameter(), finding.value()));
     }
@@ -208,22 +192,24 @@ pub(crate) fn identify_by(
         let start = decay.record().start() - decay.sensor().delay();
         motions.push(FittedMotion::of_events(start, decay.record().interval(), &trajectory));
     }
+    let contradicted: Vec<Warning> = Warning::of_knowledge(&problem, &fit).collect();
     let mut identification = Identification {
         law: terms.name(law.name),
-        friction_at_rest: friction_at_rest(problem.layout(), fit.values()),
+        friction_at_rest: friction_at_rest(problem.table(), fit.values()),
         machine: *machine,
         structure,
         disturbances: decays.iter().map(|decay| decay.nuisances().to_vec()).collect(),
         pull_at_bound: pull_at_bound(&problem, &fit, &covariance),
         covariance,
         amplitude: scaled(decays).map(|(decay, weight)| weight * decay.summary().amplitudes.0).fold(0.0, f64::max),
-        fitted: Fitted { law: problem.layout().family, terms: terms.clone(), fit },
+        fitted: Fitted { law: problem.table().family, terms: terms.clone(), fit },
         findings: found,
         motions,
         warnings: Vec::new(),
     };
     identification.warnings = Warning::of(&identification, decays);
-    let held = problem.layout().family.held_breakaway();
+    identification.warnings.extend(contradicted);
+    let held = problem.table().family.held_breakaway();
     identification
         .warnings
         .extend(held.map(|held| Warning::StaticLevelHeld { parameter: held.parameter().name().to_owned() }));
@@ -262,7 +248,7 @@ impl Candidate {
         if decays.is_empty() {
             return Err(IdentifyError::no_record());
         }
-        let (_, parameters) = Layout::of(*self.law(), machine, self.terms(), decays)?;
+        let (_, parameters) = Table::of(*self.law(), machine, self.terms(), decays)?;
         Ok(parameters.iter().map(|parameter| parameter.name().to_owned()).collect())
     }
 }
@@ -278,18 +264,11 @@ fn pull_at_bound(problem: &Problem<'_>, fit: &Fit, covariance: &Covariance) -> O
 
 /// F/m at rest that fitted `values` stand for: the sliding level of the law with what lies above it; `None` for laws
 /// without.
-fn friction_at_rest(layout: &Layout, values: &[f64]) -> Option<f64> {
-    let parameters = || layout.family.fitted().zip(&values[layout.law..]);
-    let (_, level) = parameters().nth(layout.family.level()?)?;
+fn friction_at_rest(table: &Table, values: &[f64]) -> Option<f64> {
+    let parameters = || table.family.fitted().zip(&values[table.of_law()]);
+    let (_, level) = parameters().nth(table.family.level()?)?;
     let above = parameters().filter(|(parameter, _)| matches!(parameter.role(), Role::Excess | Role::LevelAbove));
     Some(level + above.map(|(_, excess)| excess).sum::<f64>())
-}
-
-/// Adds half the difference that moving an input by ± its uncertainty makes (JCGM 100:2008, 5.1.3 note 2).
-fn add_in_quadrature(findings: &mut [Finding], source: Source, below: &[Finding], above: &[Finding]) {
-    for ((finding, below), above) in findings.iter_mut().zip(below).zip(above) {
-        finding.add(source, 0.5 * (above.value - below.value));
-    }
 }
 
 impl Identification {

@@ -139,7 +139,7 @@ impl Identification {
         if !self.structure().is_noisy() {
             return Ok(found);
         }
-        for (index, estimate) in self.fit().estimates().iter().enumerate().take(problem.layout().shared) {
+        for (index, estimate) in self.fit().estimates().iter().enumerate().take(problem.table().shared) {
             // Beside what is not determined a value on its bound has no variance either.
             let is_known = self.covariance().relaxed(index).is_some();
             if !is_known || matches!(estimate.status(), EstimateStatus::Fixed | EstimateStatus::Undetermined) {

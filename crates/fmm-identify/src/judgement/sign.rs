@@ -95,7 +95,7 @@ const STEP: f64 = 0.01;
 pub(crate) fn signs(base: &Identification, decays: &[Experiment]) -> Result<Vec<Sign>, IdentifyError> {
     let machine = *base.machine();
     let problem = Problem::with_terms::<CoulombViscous>(machine, base.terms().clone(), decays)?;
-    let layout = problem.layout();
+    let layout = problem.table();
     if layout.oscillator != 1 || !base.terms().is_plain() {
         return Ok(Vec::new());
     }

@@ -6,15 +6,17 @@ pub(crate) mod dimension;
 pub(crate) mod naming;
 
 use fmm_fit::EvaluationError;
-use fmm_friction::{FamilyVisitor, LawFamily, LawKind, LawParameter, Reparametrisation, Role, SpecialCase};
+use fmm_friction::{FamilyVisitor, LawFamily, LawKind, LawParameter, Reparametrisation, Role, SlidingLaw, SpecialCase};
 use fmm_model::{Dual, Oscillator, Scalar};
-use fmm_sim::{Excitation, Sampling, Scenario, Trajectory, simulate_into};
+use fmm_sim::{Engine, Excitation, Sampling, Scenario, Thesis, Trajectory, simulate_into};
 
 use along::{Along, along};
 use dimension::is_coefficient;
 
 /// Directions of derivative that one simulation carries; a law with more parameters takes several.
 pub(crate) const DIRECTIONS: usize = 6;
+/// Directions of derivative that cost hardly more than none.
+pub(crate) const FEW: usize = 2;
 
 /// Inputs of a simulation: machine, load and initial state as they are, the law as plain parameter values.
 #[derive(Debug, Clone)]
@@ -31,18 +33,37 @@ pub(crate) struct Motion<D> {
 }
 
 impl<D: Scalar> Motion<D> {
+    /// The scenario of it by family `F`.
+    fn scenario<F: LawFamily>(&self) -> Result<Scenario<D, F::At<D>>, EvaluationError> {
+        let scenario = Scenario::new(self.oscillator, F::at(&self.law)?, self.normal_load)?;
+        let scenario = scenario.starting_at(self.initial[0], self.initial[1])?;
+        Ok(match &self.force {
+            Some(force) => scenario.driven_by(force.clone()),
+            None => scenario,
+        })
+    }
+
     /// Simulates it by family `F`.
     pub(crate) fn simulate<F: LawFamily>(
         &self,
         sampling: &Sampling,
         trajectory: &mut Trajectory<D>,
     ) -> Result<(), EvaluationError> {
-        let scenario = Scenario::new(self.oscillator, F::at(&self.law)?, self.normal_load)?;
-        let mut scenario = scenario.starting_at(self.initial[0], self.initial[1])?;
-        if let Some(force) = &self.force {
-            scenario = scenario.driven_by(force.clone());
-        }
-        Ok(simulate_into::<F, _>(&scenario, sampling, self.tolerance, trajectory)?)
+        Ok(simulate_into::<F, _>(&self.scenario::<F>()?, sampling, self.tolerance, trajectory)?)
+    }
+}
+
+impl Motion<f64> {
+    /// Simulates it by family `F` and the Euler method of the thesis.
+    pub(crate) fn simulate_by_thesis<F: LawFamily>(
+        &self,
+        sampling: &Sampling,
+        trajectory: &mut Trajectory<f64>,
+    ) -> Result<(), EvaluationError>
+    where
+        F::At<f64>: SlidingLaw<f64>,
+    {
+        Ok(Thesis::A3.run_into(&self.scenario::<F>()?, sampling, trajectory)?)
     }
 }
 
@@ -62,6 +83,7 @@ pub(crate) struct Law {
     pub(crate) parameters: &'static [LawParameter],
     pub(crate) special_cases: &'static [SpecialCase],
     pub(crate) plain: Simulate<f64>,
+    pub(crate) few: Simulate<Dual<FEW>>,
     pub(crate) with_derivatives: Simulate<Dual<DIRECTIONS>>,
     pub(crate) along: Along<f64>,
     pub(crate) along_with_derivatives: Along<Dual<DIRECTIONS>>,
@@ -92,6 +114,7 @@ impl Law {
             parameters: F::PARAMETERS,
             special_cases: F::SPECIAL_CASES,
             plain: Motion::simulate::<F>,
+            few: Motion::simulate::<F>,
             with_derivatives: Motion::simulate::<F>,
             along: along::<F, f64>,
             along_with_derivatives: along::<F, Dual<DIRECTIONS>>,

@@ -8,8 +8,6 @@ pub use terms::Terms;
 
 use fmm_model::{ModelError, Restoring};
 
-use crate::finding::Source;
-
 /// What is known about the machine besides the record of its motion.
 ///
 /// A free vibration shows the natural frequency, damping per mass and friction per mass; multiplying mass,
@@ -48,6 +46,8 @@ pub enum Scale {
     Mass(Known),
     /// The stiffness is known (N/m).
     Stiffness(Known),
+    /// Mass (kg) and stiffness (N/m) are both known.
+    MassAndStiffness(Known, Known),
     /// Mass and stiffness are both to be found, which no free vibration can do; a fit says so.
     Unknown,
 }
@@ -74,6 +74,17 @@ impl Machine {
     pub fn of_stiffness(stiffness: Known) -> Result<Self, ModelError> {
         ModelError::require_positive("stiffness", stiffness.value(), "N/m")?;
         Ok(Self { scale: Scale::Stiffness(stiffness), ..Self::per_unit_mass() })
+    }
+
+    /// A machine of known `mass` (kg) and `stiffness` (N/m), such as one that is hit by a hammer: a measured force gives
+    /// its motion a scale.
+    ///
+    /// # Errors
+    /// [`ModelError::NotPositive`] if one of them is zero or negative.
+    pub fn of_mass_and_stiffness(mass: Known, stiffness: Known) -> Result<Self, ModelError> {
+        ModelError::require_positive("mass", mass.value(), "kg")?;
+        ModelError::require_positive("stiffness", stiffness.value(), "N/m")?;
+        Ok(Self { scale: Scale::MassAndStiffness(mass, stiffness), ..Self::per_unit_mass() })
     }
 
     /// A machine whose mass *and* stiffness are to be found, which takes a measured force:
@@ -134,29 +145,6 @@ impl Machine {
         self.normal_load
     }
 
-    /// The same machine with each known input on which a fit depends moved to the ends of its standard uncertainty,
-    /// with the value there: its damping, the lower end cut at zero, and its scale if the motion depends on it. Inputs
-    /// without an uncertainty are left out.
-    pub(crate) fn inputs_moved(&self, depends_on_scale: bool) -> Vec<(Source, [(f64, Self); 2])> {
-        let ends = |known: Known| [(known.value() - known.uncertainty()).max(0.0), known.value() + known.uncertainty()];
-        let uncertain = |known: &Known| known.uncertainty() > 0.0;
-        let damping = self.damping.filter(uncertain).map(|damping| {
-            let moved = |value| (value, Self { damping: Some(damping.moved_to(value)), ..*self });
-            (Source::Damping, ends(damping).map(moved))
-        });
-        let scale = match self.scale {
-            Scale::Mass(mass) if depends_on_scale && uncertain(&mass) => {
-                Some((Source::Mass, ends(mass).map(|value| (value, self.scaled(Scale::Mass(mass.moved_to(value)))))))
-            }
-            Scale::Stiffness(stiffness) if depends_on_scale && uncertain(&stiffness) => {
-                let moved = |value| (value, self.scaled(Scale::Stiffness(stiffness.moved_to(value))));
-                Some((Source::Stiffness, ends(stiffness).map(moved)))
-            }
-            _ => None,
-        };
-        damping.into_iter().chain(scale).collect()
-    }
-
     /// The same machine with another scale.
     pub(crate) const fn scaled(&self, scale: Scale) -> Self {
         Self { scale, ..*self }
@@ -177,14 +165,15 @@ impl Machine {
         Self { scale, normal_load: self.normal_load.map(|known| moved(known, load)), ..*self }
     }
 
-    /// The same machine with a scale without uncertainty.
-    pub(crate) fn with_exact_scale(&self) -> Self {
-        let exact = |known: Known| known.exactly();
+    /// The same machine with everything that is known of it taken as exact.
+    pub(crate) fn exactly(&self) -> Self {
         let scale = match self.scale {
-            Scale::Mass(mass) => Scale::Mass(exact(mass)),
-            Scale::Stiffness(stiffness) => Scale::Stiffness(exact(stiffness)),
+            Scale::Mass(mass) => Scale::Mass(mass.exactly()),
+            Scale::Stiffness(stiffness) => Scale::Stiffness(stiffness.exactly()),
+            Scale::MassAndStiffness(mass, stiffness) => Scale::MassAndStiffness(mass.exactly(), stiffness.exactly()),
             other => other,
         };
-        Self { scale, ..*self }
+        let (damping, normal_load) = (self.damping.map(Known::exactly), self.normal_load.map(Known::exactly));
+        Self { scale, damping, normal_load, ..*self }
     }
 }

@@ -114,7 +114,7 @@ impl Identification {
         let problem = Problem::of(self.family(), *self.machine(), self.terms().clone(), &experiments)?;
         let failed = |source: PosteriorError| IdentifyError::Posterior { law: self.law().to_owned(), source };
         let posterior = sampler.sample(&problem, self.fit()).map_err(failed)?;
-        let known = KnownInputs::of(self, &problem, &experiments)?;
+        let known = KnownInputs::of(self, &problem, &experiments);
         let mut random = ChaCha8Rng::seed_from_u64(sampler.seed());
         // Behind the streams of the chains.
         random.set_stream(u64::MAX);

@@ -124,7 +124,7 @@ pub(super) fn predicted(
 ) -> Result<Vec<PredictiveCheck>, EvaluationError> {
     let mut checks = Vec::new();
     let step = (posterior.len() / REPLICATES).max(1);
-    for (number, experiment) in problem.decays().iter().enumerate().filter(|(_, one)| one.drive().is_none()) {
+    for (number, experiment) in problem.experiments().iter().enumerate().filter(|(_, one)| one.drive().is_none()) {
         let Some(measured) = Features::of(experiment.record()) else { continue };
         let mut replicated = Vec::with_capacity(REPLICATES);
         for (draw, (deviation, correlation)) in posterior.draws().zip(posterior.noise()).step_by(step) {

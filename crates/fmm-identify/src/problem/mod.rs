@@ -1,5 +1,6 @@
-//! The least-squares problem of an identification: these records by that law.
+//! The least-squares problem of an identification: these experiments by that law.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use fmm_fit::{Block, EvaluationError, Fit, Residuals};
@@ -8,60 +9,70 @@ use fmm_model::{Parameter, Scalar};
 use fmm_sim::{Channels, Sampling, Trajectory};
 
 use crate::error::IdentifyError;
-use crate::experiment::Experiment;
 use crate::experiment::sight::{Seen, Sight};
-use crate::experiment::{Drive, scaled};
+use crate::experiment::{Drive, Experiment, scaled};
 use crate::law::naming::Units;
 use crate::law::{Law, Motion, Simulate};
-use crate::machine::Scale;
 use crate::machine::terms::Term;
-use crate::machine::{Machine, Terms};
-use crate::quantities::layout::Layout;
+use crate::machine::{Machine, Scale, Terms};
+use crate::quantities::prior::Prior;
+use crate::quantities::table::{Place, Table};
 
+mod declared;
 pub(crate) mod fitted;
 pub(crate) mod friction_curve;
-mod machine_problem;
+mod motion;
 mod parts;
 mod residuals;
 mod starts;
 pub(crate) mod tangent;
 
-pub use machine_problem::MachineProblem;
-
-/// The residuals "model less record" of one or several ring-downs by a law, with exact derivatives.
+/// The residuals "model less record" of one or several experiments by a law, with exact derivatives.
 ///
-/// Oscillator and law are shared by all records; initial position, initial velocity and offset are each
-/// record's own. The initial velocity is never taken from the data: fixing it at a noisy maximum biases the
-/// friction by up to 0.8 %.
+/// Machine and law are shared by all experiments; initial state, drive, offset and sensor are each record's own. The
+/// initial velocity is never taken from the data: fixing it at a noisy maximum biases the friction by up to 0.8 %.
+/// What is known of mass, stiffness, damping or a drive to an uncertainty is a parameter as well, and its knowledge a
+/// residual in the unit of the noise.
 ///
 /// Anything that takes [`Residuals`] can be applied to it; [`identify`](crate::identify) is what most want.
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
     machine: Machine,
-    terms: Terms,
-    decays: &'a [Experiment],
+    experiments: Cow<'a, [Experiment]>,
     parameters: Vec<Parameter>,
-    layout: Layout,
+    table: Table,
+    prior: Prior,
     blocks: Vec<Block>,
     /// By what the residuals of each record are multiplied.
     weights: Vec<f64>,
+    /// Standard deviation of the noise in the unit of the residuals.
+    noise: f64,
     /// Relative tolerance (1) of simulations that integrate, if not the engine's own.
     tolerance: Option<f64>,
+    /// Simulation without derivatives in place of that of the law.
+    euler: Option<Simulate<f64>>,
+    /// Whether derivatives by fixed parameters are computed as well.
+    is_complete: bool,
+    /// Values with which a fit begins, where they are declared.
+    declared: Vec<f64>,
 }
 
 /// Samples simulated at a time: memory beyond the solver's own stays below 4 MB however long the record.
 const WINDOW: usize = 1 << 16;
 
+/// A direction that no number carries, which makes a value a constant.
+const NO_DIRECTION: usize = usize::MAX;
+
 impl<'a> Problem<'a> {
-    /// The problem of `decays` on `machine` by a law of family `F`.
+    /// The problem of `experiments` on `machine` by a law of family `F`.
     ///
     /// # Errors
     /// [`IdentifyError::Missing`] and [`IdentifyError::WrongRecord`].
-    pub fn new<F: LawFamily>(machine: Machine, decays: &'a [Experiment]) -> Result<Self, IdentifyError> {
-        Self::with_terms::<F>(machine, Terms::NONE, decays)
+    pub fn new<F: LawFamily>(machine: Machine, experiments: &'a [Experiment]) -> Result<Self, IdentifyError> {
+        Self::with_terms::<F>(machine, Terms::NONE, experiments)
     }
 
-    /// The problem of `decays` on `machine`, with `terms` beside the law.
+    /// The problem of `experiments` on `machine`, with `terms` beside the law.
     ///
     /// # Errors
     /// As for [`new`](Self::new), and [`IdentifyError::Contradiction`], [`IdentifyError::UnknownName`] and
@@ -69,46 +80,63 @@ impl<'a> Problem<'a> {
     pub fn with_terms<F: LawFamily>(
         machine: Machine,
         terms: Terms,
-        decays: &'a [Experiment],
+        experiments: &'a [Experiment],
     ) -> Result<Self, IdentifyError> {
-        Self::of(Law::of::<F>(), machine, terms, decays)
+        Self::of(Law::of::<F>(), machine, terms, experiments)
     }
 
     pub(crate) fn of(
         law: Law,
         machine: Machine,
         terms: Terms,
-        decays: &'a [Experiment],
+        experiments: &'a [Experiment],
     ) -> Result<Self, IdentifyError> {
-        let describe = |decay: &Experiment| format!("{} in {}", decay.record().quantity(), decay.record().unit());
-        let first = decays.first().ok_or(IdentifyError::no_record())?;
-        let length = |decay: &Experiment| Units::of(decay.record()).position;
-        if let Some(other) = decays.iter().find(|decay| length(decay) != length(first)) {
-            return Err(IdentifyError::wrong_record(format!(
-                "records fitted together must agree in quantity and unit: one is {}, another {}",
-                describe(first),
-                describe(other)
-            )));
-        }
-        let is_metric = Units::of(first.record()).is_metric();
-        let has_force = decays.iter().any(|decay| decay.drive().is_some_and(Drive::is_force));
-        if has_force && machine.scale() == Scale::PerUnitMass {
-            return Err(IdentifyError::contradiction(
-                "a measured force tells the mass: give Machine::unknown() to find mass and stiffness, or a mass or a stiffness that is known",
-            ));
-        }
-        if has_force && !is_metric {
-            let expected = "a force in N beside responses in m, m/s or m/s²";
-            return Err(IdentifyError::drive(expected, &format!("beside a {}", describe(first))));
-        }
-        let (layout, parameters) = Layout::of(law, &machine, &terms, decays)?;
-        let blocks = blocks(&layout, decays);
-        let weights = scaled(decays).map(|(_, weight)| weight).collect();
-        Ok(Self { machine, terms, decays, parameters, layout, blocks, weights, tolerance: None })
+        require_together(&machine, experiments)?;
+        let (table, parameters) = Table::of(law, &machine, &terms, experiments)?;
+        Ok(Self::by(machine, Cow::Borrowed(experiments), table, parameters))
+    }
+
+    /// The problem of `experiments` by a `table`.
+    fn by(machine: Machine, experiments: Cow<'a, [Experiment]>, table: Table, parameters: Vec<Parameter>) -> Self {
+        // Forces that one hammer measures share its calibration.
+        let calibration = |index: usize| {
+            let row = table.rows[index];
+            let drive = row.record.and_then(|record| experiments[record].drive());
+            drive.filter(|_| row.place == Place::DriveGain).map_or(0.0, Drive::calibration_uncertainty)
+        };
+        let prior = Prior::of(&table.rows, |i, j| calibration(i) * calibration(j));
+        let weights: Vec<f64> = scaled(&experiments).map(|(_, weight)| weight).collect();
+        let noise = scaled(&experiments).map(|(experiment, weight)| weight * experiment.least_noise());
+        let noise = noise.filter(|noise| noise.is_finite()).fold(0.0, f64::max);
+        let mut problem = Self {
+            machine,
+            experiments,
+            parameters,
+            table,
+            prior,
+            blocks: Vec::new(),
+            weights,
+            noise,
+            tolerance: None,
+            euler: None,
+            is_complete: false,
+            declared: Vec::new(),
+        };
+        problem.blocks = problem.blocks_of_records();
+        problem
+    }
+
+    /// One block per record, and one of what is known beforehand.
+    fn blocks_of_records(&self) -> Vec<Block> {
+        let of_record = |(record, experiment): (usize, &Experiment)| {
+            Block::new(experiment.rows(), self.table.of_record(record).collect::<Vec<_>>())
+        };
+        let known = (self.prior.len() > 0).then(|| Block::new(self.prior.len(), self.prior.indices()));
+        self.experiments.iter().enumerate().map(of_record).chain(known).collect()
     }
 
     fn law(&self) -> &Law {
-        &self.layout.family
+        &self.table.family
     }
 
     /// Name of the law.
@@ -118,20 +146,24 @@ impl<'a> Problem<'a> {
 
     /// Whether the spring is fitted as one with a stop or a gap.
     pub(crate) fn has_corners(&self) -> bool {
-        self.terms.has(Term::Stop) || self.terms.has(Term::Gap)
+        self.terms().has(Term::Stop) || self.terms().has(Term::Gap)
     }
 
     /// Whether terms of the spring are fitted.
     pub(crate) fn has_spring(&self) -> bool {
-        self.terms.has_spring()
+        self.terms().has_spring()
+    }
+
+    fn terms(&self) -> &Terms {
+        &self.table.terms
     }
 
     pub(crate) fn machine(&self) -> &Machine {
         &self.machine
     }
 
-    pub(crate) fn decays(&self) -> &'a [Experiment] {
-        self.decays
+    pub(crate) fn experiments(&self) -> &[Experiment] {
+        &self.experiments
     }
 
     /// By what the residuals of `record` are multiplied.
@@ -140,21 +172,54 @@ impl<'a> Problem<'a> {
         self.weights[record]
     }
 
-    pub(crate) fn layout(&self) -> &Layout {
-        &self.layout
+    pub(crate) fn table(&self) -> &Table {
+        &self.table
     }
 
-    /// The motion of `record` in numbers of type `D`, direction `first` being direction 0.
-    fn motion<D: Scalar>(&self, record: usize, p: &[f64], first: usize) -> Result<Motion<D>, EvaluationError> {
-        let values: Vec<D> = (0..self.layout.directions(record))
-            .map(|direction| {
-                let value = p[self.layout.index(record, direction)];
-                // A direction below `first` wraps to one that no number carries, which makes it a constant.
-                D::variable(value, direction.wrapping_sub(first))
-            })
-            .collect();
-        let motion = self.layout.motion(&self.machine, &self.terms, &self.decays[record], &values)?;
+    /// What is known of parameters before the records are looked at.
+    pub(crate) fn prior(&self) -> &Prior {
+        &self.prior
+    }
+
+    /// Standard deviation of the noise in the unit of the residuals.
+    pub(crate) fn noise(&self) -> f64 {
+        self.noise
+    }
+
+    /// How many residuals are those of records; those of what is known follow.
+    pub(crate) fn measured(&self) -> usize {
+        self.experiments.iter().map(Experiment::rows).sum()
+    }
+
+    /// The same problem without residuals of what is known beforehand.
+    pub(crate) fn without_prior(mut self) -> Self {
+        self.prior = Prior::default();
+        self.blocks = self.blocks_of_records();
+        self
+    }
+
+    /// The same problem with derivatives by fixed parameters as well, for [`Sensitivity`](fmm_fit::Sensitivity). A fit
+    /// of it would take longer.
+    #[must_use]
+    pub fn with_derivatives_by_inputs(mut self) -> Self {
+        self.is_complete = true;
+        self
+    }
+
+    /// The motion of `record` in numbers of type `D`, of which each of `directions` is one parameter.
+    fn motion<D: Scalar>(&self, record: usize, p: &[f64], directions: &[usize]) -> Result<Motion<D>, EvaluationError> {
+        let value = |direction: usize| {
+            let index = self.table.index(record, direction);
+            D::variable(p[index], directions.iter().position(|one| *one == index).unwrap_or(NO_DIRECTION))
+        };
+        let values: Vec<D> = (0..self.table.directions(record)).map(value).collect();
+        let motion = self.table.motion(&self.machine, record, &self.experiments[record], &values)?;
         Ok(Motion { tolerance: self.tolerance, ..motion })
+    }
+
+    /// The simulation without derivatives.
+    fn plain(&self) -> Simulate<f64> {
+        self.euler.unwrap_or(self.law().plain)
     }
 
     /// Simulates `record` by `simulate` once, window by window; `visit` gets, for each of `ranges` in a window, the
@@ -165,15 +230,16 @@ impl<'a> Problem<'a> {
         simulate: Simulate<D>,
         record: usize,
         p: &[f64],
-        first: usize,
+        directions: &[usize],
         ranges: &[Range<usize>],
         mut visit: impl FnMut(usize, Range<usize>, Range<usize>, &Seen<'_, D>),
     ) -> Result<(), EvaluationError> {
         let (Some(first_range), Some(last_range)) = (ranges.first(), ranges.last()) else { return Ok(()) };
-        let decay = &self.decays[record];
-        let motion = self.motion::<D>(record, p, first)?;
-        let mut sight = Sight::of(decay, self.corner(record, p));
-        let sampling = Sampling::uniform(decay.record().interval(), decay.record().len())?.keeping(sight.channels());
+        let experiment = &self.experiments[record];
+        let motion = self.motion::<D>(record, p, directions)?;
+        let mut sight = Sight::of(experiment, self.corner(record, p));
+        let series = experiment.record();
+        let sampling = Sampling::uniform(series.interval(), series.len())?.keeping(sight.channels());
         let mut trajectory = Trajectory::new();
         let mut before = 0;
         // A filter sees all samples in turn.
@@ -183,13 +249,12 @@ impl<'a> Problem<'a> {
             let Some(window) = sampling.window(start..end) else { break };
             simulate(&motion, &window, &mut trajectory)?;
             let seen = sight.see(&trajectory);
-            let simulated = &seen;
             while let Some(range) = ranges.get(next) {
                 let samples = range.start.max(start)..range.end.min(end);
                 if !samples.is_empty() {
                     let count = samples.len();
                     let inside = samples.start - start..samples.end - start;
-                    visit(before, samples, inside, simulated);
+                    visit(before, samples, inside, &seen);
                     before += count;
                 }
                 if range.end > end {
@@ -209,34 +274,28 @@ impl<'a> Problem<'a> {
         sampling: &Sampling,
         trajectory: &mut Trajectory,
     ) -> Result<(), EvaluationError> {
-        (self.law().plain)(&self.motion(0, p, 0)?, sampling, trajectory)
+        (self.law().plain)(&self.motion(0, p, &[])?, sampling, trajectory)
     }
 
     /// The events of `record` up to its end.
     pub(crate) fn events(&self, record: usize, p: &[f64]) -> Result<Trajectory, EvaluationError> {
         let mut trajectory = Trajectory::new();
-        let ends = Sampling::uniform(self.decays[record].record().duration(), 2)?.keeping(Channels::Position);
-        (self.law().plain)(&self.motion(record, p, 0)?, &ends, &mut trajectory)?;
+        let ends = Sampling::uniform(self.experiments[record].record().duration(), 2)?.keeping(Channels::Position);
+        (self.law().plain)(&self.motion(record, p, &[])?, &ends, &mut trajectory)?;
         Ok(trajectory)
     }
 
     /// What the model says for every sample of `record`, its offset included.
     pub(crate) fn model(&self, record: usize, p: &[f64]) -> Result<Vec<f64>, EvaluationError> {
-        let count = self.decays[record].record().len();
+        let count = self.experiments[record].record().len();
         let offset = self.offset(record, p);
         let mut model = vec![0.0; count];
-        self.simulate(
-            self.law().plain,
-            record,
-            p,
-            0,
-            std::slice::from_ref(&(0..count)),
-            |_, samples, inside, simulated| {
-                for (out, value) in model[samples].iter_mut().zip(&simulated.values()[inside]) {
-                    *out = value + offset;
-                }
-            },
-        )?;
+        let all = 0..count;
+        self.simulate(self.law().plain, record, p, &[], std::slice::from_ref(&all), |_, samples, inside, seen| {
+            for (out, value) in model[samples].iter_mut().zip(&seen.values()[inside]) {
+                *out = value + offset;
+            }
+        })?;
         for (size, shape) in self.disturbances(record, p) {
             model.iter_mut().zip(shape).for_each(|(out, shape)| *out += size * shape);
         }
@@ -245,27 +304,30 @@ impl<'a> Problem<'a> {
 
     /// Corner frequency (Hz) of the sensor of `record`, if it has a filter.
     fn corner(&self, record: usize, p: &[f64]) -> Option<f64> {
-        let decay = &self.decays[record];
-        match self.layout.corner(record, decay) {
-            Some(index) => Some(p[index]),
-            None => decay.first_corner(),
-        }
+        let fitted = self.table.own(record, Place::Corner).map(|index| p[index]);
+        fitted.or_else(|| self.experiments[record].first_corner())
     }
 
     fn offset(&self, record: usize, p: &[f64]) -> f64 {
-        self.decays[record].fixed_offset().unwrap_or_else(|| p[self.layout.offset(record)])
+        let fitted = self.table.own(record, Place::Offset).map(|index| p[index]);
+        fitted.or_else(|| self.experiments[record].fixed_offset()).unwrap_or(0.0)
     }
 
     /// Size and shape of the disturbances of `record`.
     fn disturbances<'s>(&'s self, record: usize, p: &'s [f64]) -> impl Iterator<Item = (f64, &'s [f64])> {
-        let decay = &self.decays[record];
-        let first = self.layout.nuisance(record, decay);
-        decay.shapes().iter().enumerate().map(move |(at, shape)| (p[first + at], shape.as_slice()))
+        let first = self.table.first_disturbance(record);
+        let shapes = self.experiments[record].shapes();
+        shapes.iter().enumerate().map(move |(at, shape)| (p[first + at], shape.as_slice()))
     }
 
     /// The rows of each record among the residuals.
     pub(crate) fn row_ranges(&self) -> impl Iterator<Item = Range<usize>> {
-        self.bases().map(|(record, base)| base..base + self.decays[record].summary().samples)
+        let mut end = 0;
+        self.experiments.iter().map(move |experiment| {
+            let begin = end;
+            end += experiment.rows();
+            begin..end
+        })
     }
 
     /// The derivatives of all residuals by each of the `wanted` parameters.
@@ -294,48 +356,54 @@ impl<'a> Problem<'a> {
         Ok(columns)
     }
 
-    /// The signal of `record` without its offset at each of its rows, as `fit` has it.
+    /// The signal of `record` without its offset at each of its rows, as `fit` has it; empty for lines of a spectrum.
     pub(crate) fn signal(&self, record: usize, fit: &Fit) -> Vec<f64> {
-        let Some(rows) = self.row_ranges().nth(record) else { return Vec::new() };
+        let experiment = &self.experiments[record];
+        let Some(rows) = self.row_ranges().nth(record).filter(|_| experiment.lines().is_none()) else {
+            return Vec::new();
+        };
         let offset = self.offset(record, fit.values());
-        let decay = &self.decays[record];
-        let measured = decay.kept().iter().flat_map(|range| &decay.record().values()[range.clone()]);
+        let measured = experiment.kept().iter().flat_map(|range| &experiment.record().values()[range.clone()]);
         let mut signal: Vec<f64> = fit.residuals()[rows]
             .iter()
             .zip(measured)
             .map(|(residual, measured)| residual / self.weights[record] + measured - offset)
             .collect();
         for (size, shape) in self.disturbances(record, fit.values()) {
-            let kept = decay.kept().iter().flat_map(|range| &shape[range.clone()]);
+            let kept = experiment.kept().iter().flat_map(|range| &shape[range.clone()]);
             signal.iter_mut().zip(kept).for_each(|(value, shape)| *value -= size * shape);
         }
         signal
     }
-
-    /// Each record with the number of residuals before its own.
-    fn bases(&self) -> impl Iterator<Item = (usize, usize)> {
-        let mut base = 0;
-        self.decays.iter().enumerate().map(move |(record, decay)| {
-            let this = base;
-            base += decay.summary().samples;
-            (record, this)
-        })
-    }
 }
 
-/// One block per record: the parameters of its motion and its offset.
-fn blocks(layout: &Layout, decays: &[Experiment]) -> Vec<Block> {
-    let block = |(record, decay): (usize, &Experiment)| {
-        let mut parameters: Vec<usize> = (0..layout.directions(record)).map(|j| layout.index(record, j)).collect();
-        if decay.fixed_offset().is_none() {
-            parameters.push(layout.offset(record));
-        }
-        let first = layout.nuisance(record, decay);
-        parameters.extend(first..first + decay.nuisances().len());
-        parameters.extend(layout.corner(record, decay));
-        Block::new(decay.summary().samples, parameters)
+/// Refuses experiments that cannot be fitted together, or not on this machine.
+fn require_together(machine: &Machine, experiments: &[Experiment]) -> Result<(), IdentifyError> {
+    let describe = |experiment: &Experiment| {
+        let record = experiment.record();
+        format!("{} in {}", record.quantity(), record.unit())
     };
-    decays.iter().enumerate().map(block).collect()
+    let first = experiments.first().ok_or(IdentifyError::no_record())?;
+    let length = |experiment: &Experiment| Units::of(experiment.record()).position;
+    if let Some(other) = experiments.iter().find(|experiment| length(experiment) != length(first)) {
+        return Err(IdentifyError::wrong_record(format!(
+            "records fitted together must agree in quantity and unit: one is {}, another {}",
+            describe(first),
+            describe(other)
+        )));
+    }
+    let is_forced = experiments.iter().any(Experiment::is_forced);
+    if is_forced && machine.scale() == Scale::PerUnitMass {
+        return Err(IdentifyError::contradiction(
+            "a measured force tells the mass: give Machine::unknown() to find mass and stiffness, or a mass or a \
+             stiffness that is known",
+        ));
+    }
+    if is_forced && !Units::of(first.record()).is_metric() {
+        let expected = "a force in N beside responses in m, m/s or m/s²";
+        return Err(IdentifyError::drive(expected, &format!("beside a {}", describe(first))));
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -415,7 +483,7 @@ mod tests {
         let machine = Machine::per_unit_mass();
         let problem = Problem::new::<Stribeck>(machine, decays).unwrap();
         let start = problem.beside(other.fitted(), &[other.fitted()], &problem.starts()).unwrap();
-        let law = problem.layout().law..problem.layout().shared;
+        let law = problem.table().of_law();
         let steady = |speed: f64| problem.law().steady(&start[law.clone()], speed, true).unwrap();
         let known = |name: &str| other.finding(name).unwrap().value();
         let speed = decays[0].scales().1;

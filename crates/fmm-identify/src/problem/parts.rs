@@ -1,12 +1,13 @@
 //! The same problem with a part of its records, or within narrower bounds: what a search begins with.
 
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use fmm_friction::{Reparametrisation, Role};
 use fmm_model::Bounds;
 use fmm_record::Quantity;
 
-use super::{Problem, blocks};
+use super::Problem;
 use crate::experiment::Experiment;
 use crate::experiment::reference;
 
@@ -19,7 +20,7 @@ impl Problem<'_> {
     /// The ring-downs up to a `share` of their duration (1), for a fit in which a small error of the period does not
     /// yet add up.
     pub(crate) fn beginnings(&self, share: f64) -> Vec<Experiment> {
-        self.decays.iter().map(|decay| decay.beginning(share)).collect()
+        self.experiments.iter().map(|experiment| experiment.beginning(share)).collect()
     }
 
     /// The ring-downs with so few of their samples that a search among many starts is quick and yet sees every swing;
@@ -30,19 +31,21 @@ impl Problem<'_> {
             let enough = ENOUGH_SAMPLES.max((SAMPLES_PER_SWING * swings) as usize);
             decay.record().len() / enough
         };
-        let stride = self.decays.iter().map(stride).min().filter(|stride| *stride > 1)?;
-        self.decays.iter().map(|decay| decay.thinned(stride)).collect()
+        let stride = self.experiments.iter().map(stride).min().filter(|stride| *stride > 1)?;
+        self.experiments.iter().map(|decay| decay.thinned(stride)).collect()
     }
 
     /// The ring-downs up to their last peaks, if they are displacements and that leaves something out.
     pub(crate) fn up_to_last_peaks(&self) -> Option<Vec<Experiment>> {
-        if reference(self.decays).record().quantity() != Quantity::Displacement {
+        if reference(&self.experiments).record().quantity() != Quantity::Displacement {
             return None;
         }
-        let shortened = self.decays.iter().map(Experiment::up_to_last_peak).collect::<Vec<_>>();
+        let shortened = self.experiments.iter().map(Experiment::up_to_last_peak).collect::<Vec<_>>();
         let any = shortened.iter().any(Option::is_some);
-        let complete =
-            shortened.into_iter().zip(self.decays).map(|(short, whole)| short.unwrap_or_else(|| whole.clone()));
+        let complete = shortened
+            .into_iter()
+            .zip(self.experiments.iter())
+            .map(|(short, whole)| short.unwrap_or_else(|| whole.clone()));
         any.then(|| complete.collect())
     }
 
@@ -52,12 +55,12 @@ impl Problem<'_> {
     pub(crate) fn bending_in_sight(mut self) -> Self {
         const SLOWEST: f64 = 1e-4;
         const STIFFEST: f64 = 1e5;
-        let slowest = SLOWEST * reference(self.decays).scales().1;
-        let stiffest = STIFFEST * (2.0 * PI * reference(self.decays).guess().frequency()).powi(2);
-        let is_per_mass = self.layout.oscillator == 1;
+        let slowest = SLOWEST * reference(&self.experiments).scales().1;
+        let stiffest = STIFFEST * (2.0 * PI * reference(&self.experiments).guess().frequency()).powi(2);
+        let is_per_mass = self.table.is_per_mass();
         for (index, law) in self.law().fitted().enumerate() {
             let powers = self.law().powers(law);
-            let parameter = &mut self.parameters[self.layout.law + index];
+            let parameter = &mut self.parameters[self.table.law + index];
             let bounds = parameter.bounds();
             let value = powers.at_speed(slowest);
             let bounds = match powers.of_speed().filter(|_| law.role() == Role::Shape) {
@@ -83,30 +86,36 @@ impl Problem<'_> {
     }
 
     /// The same problem with other records of the same kind and number.
-    pub(crate) fn with_records<'b>(&self, decays: &'b [Experiment]) -> Problem<'b> {
-        Problem {
+    pub(crate) fn with_records<'b>(&self, experiments: &'b [Experiment]) -> Problem<'b> {
+        let mut problem = Problem {
             machine: self.machine,
-            terms: self.terms.clone(),
-            decays,
+            experiments: Cow::Borrowed(experiments),
             parameters: self.parameters.clone(),
-            layout: self.layout.clone(),
-            blocks: blocks(&self.layout, decays),
+            table: self.table.clone(),
+            prior: self.prior.clone(),
+            blocks: Vec::new(),
             weights: self.weights.clone(),
+            noise: self.noise,
             tolerance: self.tolerance,
-        }
+            euler: self.euler,
+            is_complete: self.is_complete,
+            declared: self.declared.clone(),
+        };
+        problem.blocks = problem.blocks_of_records();
+        problem
     }
 
     /// The same problem by parameters that a fit finds in fewer steps; `None` for a law without such parameters, and
     /// where one that only this problem has is held.
-    pub(crate) fn recast(&self) -> Option<Self> {
+    pub(crate) fn recast(&self) -> Option<Problem<'_>> {
         let recast = (self.law().recast)()?;
-        Self::of(recast.family, self.machine, self.terms.clone(), self.decays).ok()
+        Problem::of(recast.family, self.machine, self.terms().clone(), &self.experiments).ok()
     }
 
     /// The values of this problem where those of the [recast](Self::recast) one have been `found`.
     pub(crate) fn of_recast(&self, found: &[f64]) -> Option<Vec<f64>> {
         let Reparametrisation { family, values } = (self.law().recast)()?;
-        let (before, rest) = found.split_at(self.layout.law);
+        let (before, rest) = found.split_at(self.table.law);
         let (of_law, own) = rest.split_at(family.fitted().count());
         Some([before, &values(of_law).ok()?, own].concat())
     }

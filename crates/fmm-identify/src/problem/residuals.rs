@@ -3,24 +3,26 @@
 use std::ops::Range;
 
 use fmm_fit::{Block, Derivatives, EvaluationError, Residuals};
-use fmm_model::Parameter;
+use fmm_model::{Dual, Parameter};
 
 use super::Problem;
-use crate::law::DIRECTIONS;
+use crate::law::{DIRECTIONS, FEW, Simulate};
+use crate::quantities::table::Place;
 use crate::threads::on_all_threads;
 
-/// What one simulation with derivatives fills: the columns of a few directions of one record, and with the first of
+/// Columns that one simulation with derivatives fills: those of a few parameters of one record, and with the first of
 /// them its residuals and the column of its sensor's corner.
 struct Part<'o> {
     record: usize,
-    first: usize,
-    columns: &'o mut [f64],
+    directions: Vec<usize>,
+    columns: Vec<&'o mut [f64]>,
     residuals: Option<&'o mut [f64]>,
     by_corner: Option<&'o mut [f64]>,
 }
 
 impl Problem<'_> {
-    /// That the motion follows the parameter at `index`, of this `value`, less steeply than any that can be fitted.
+    /// Refuses a motion that follows the parameter at `index`, of this `value`, more steeply than any that can be
+    /// fitted.
     fn require_smooth(
         &self,
         record: usize,
@@ -31,7 +33,7 @@ impl Problem<'_> {
         /// Amplitudes by which a relative change of one would move the motion. The phase of ten million periods moves
         /// by as much.
         const STEEP: f64 = 1e8;
-        let most = STEEP * self.decays[record].summary().amplitudes.0;
+        let most = STEEP * self.experiments[record].summary().amplitudes.0;
         if derivatives.iter().all(|derivative| (derivative * value).abs() <= most) {
             return Ok(());
         }
@@ -39,23 +41,63 @@ impl Problem<'_> {
         Err(EvaluationError::message(format!("the motion changes with {name} by leaps near {value:e}")))
     }
 
-    /// Fills the columns of `record` that no simulation is needed for: those of the offset and of the disturbances. The
-    /// one of the sensor's corner, which is the last, is returned.
-    fn fill_beside<'o>(&self, record: usize, mut columns: &'o mut [f64]) -> Option<&'o mut [f64]> {
-        let decay = &self.decays[record];
-        let (rows, weight) = (decay.summary().samples, self.weights[record]);
-        if decay.fixed_offset().is_none() {
-            let column;
-            (column, columns) = columns.split_at_mut(rows);
-            column.fill(weight);
+    /// Whether derivatives by the parameter at `index` are asked for.
+    fn is_wanted(&self, index: usize) -> bool {
+        self.is_complete || !self.parameters[index].bounds().is_fixed()
+    }
+
+    /// Writes what the rows of `record` see of `samples`, one for each sample that is used.
+    fn map(&self, record: usize, samples: &[f64], rows: &mut [f64]) -> Result<(), EvaluationError> {
+        match self.experiments[record].lines() {
+            Some(lines) => lines.transform(samples, rows),
+            None => {
+                rows.copy_from_slice(samples);
+                Ok(())
+            }
         }
-        for shape in decay.shapes() {
-            let column;
-            (column, columns) = columns.split_at_mut(rows);
-            let kept = decay.kept().iter().flat_map(|range| &shape[range.clone()]);
-            column.iter_mut().zip(kept).for_each(|(out, shape)| *out = weight * shape);
+    }
+
+    /// Fills the `columns` of `record` that need no simulation, those of the offset and of the disturbances, and gives
+    /// the others to `parts`, so many to each.
+    fn divide<'o>(
+        &self,
+        record: usize,
+        columns: &'o mut [f64],
+        residuals: &'o mut [f64],
+        parts: &mut Vec<Part<'o>>,
+    ) -> Result<(), EvaluationError> {
+        let experiment = &self.experiments[record];
+        let weight = self.weights[record];
+        let (mut residuals, mut by_corner) = (Some(residuals), None);
+        let (mut directions, mut wanted) = (Vec::new(), Vec::new());
+        let columns = columns.chunks_exact_mut(experiment.rows().max(1));
+        for (column, &index) in columns.zip(self.blocks[record].parameters()) {
+            match self.table.rows[index].place {
+                Place::Offset if experiment.lines().is_none() => column.fill(weight),
+                Place::Offset => self.map(record, &vec![weight; experiment.summary().samples], column)?,
+                Place::Disturbance(at) => {
+                    let shape = &experiment.shapes()[at];
+                    let kept = experiment.kept().iter().flat_map(|range| &shape[range.clone()]);
+                    self.map(record, &kept.map(|shape| weight * shape).collect::<Vec<_>>(), column)?;
+                }
+                Place::Corner => by_corner = Some(column),
+                _ if self.is_wanted(index) => {
+                    directions.push(index);
+                    wanted.push(column);
+                }
+                _ => {}
+            }
         }
-        Some(columns).filter(|columns| !columns.is_empty())
+        let most = if directions.len() <= FEW { FEW } else { DIRECTIONS };
+        let mut wanted = wanted.into_iter();
+        // A record of which no parameter is free has residuals all the same.
+        let groups = if directions.is_empty() { vec![&[][..]] } else { directions.chunks(most).collect() };
+        for directions in groups {
+            let (residuals, by_corner) = (residuals.take(), by_corner.take());
+            let columns = wanted.by_ref().take(directions.len()).collect();
+            parts.push(Part { record, directions: directions.to_vec(), columns, residuals, by_corner });
+        }
+        Ok(())
     }
 
     /// Fills all `parts`. What has no closed form takes long enough to be spread over threads; the result is the same.
@@ -68,74 +110,102 @@ impl Problem<'_> {
 
     /// Fills one part by a simulation.
     fn fill(&self, p: &[f64], part: Part<'_>) -> Result<(), EvaluationError> {
-        let Part { record, first, columns, mut residuals, mut by_corner } = part;
-        let rows = self.decays[record].summary().samples;
-        let simulate = self.law().with_derivatives;
-        self.simulate(simulate, record, p, first, self.decays[record].kept(), |before, samples, inside, simulated| {
+        let experiment = &self.experiments[part.record];
+        if experiment.lines().is_none() {
+            return self.fill_samples(p, part);
+        }
+        let samples = experiment.summary().samples;
+        let mut values = vec![vec![0.0; samples]; part.columns.len() + 1];
+        let (residuals, columns) = values.split_at_mut(1);
+        let of_samples = Part {
+            record: part.record,
+            directions: part.directions,
+            columns: columns.iter_mut().map(Vec::as_mut_slice).collect(),
+            residuals: Some(&mut residuals[0]),
+            by_corner: None,
+        };
+        self.fill_samples(p, of_samples)?;
+        if let Some(rows) = part.residuals {
+            self.map(part.record, &values[0], rows)?;
+        }
+        part.columns.into_iter().zip(&values[1..]).try_for_each(|(rows, column)| self.map(part.record, column, rows))
+    }
+
+    /// Fills one part with what each used sample shows.
+    fn fill_samples(&self, p: &[f64], part: Part<'_>) -> Result<(), EvaluationError> {
+        match part.directions.len() {
+            0..=FEW => self.fill_by(self.law().few, p, part),
+            _ => self.fill_by(self.law().with_derivatives, p, part),
+        }
+    }
+
+    fn fill_by<const N: usize>(
+        &self,
+        simulate: Simulate<Dual<N>>,
+        p: &[f64],
+        part: Part<'_>,
+    ) -> Result<(), EvaluationError> {
+        let Part { record, directions, mut columns, mut residuals, mut by_corner } = part;
+        let kept = self.experiments[record].kept();
+        self.simulate(simulate, record, p, &directions, kept, |before, samples, inside, seen| {
+            let rows = before..before + inside.len();
             if let Some(residuals) = &mut residuals {
-                self.write_residuals(record, before, p, samples, &simulated.values()[inside.clone()], residuals);
+                self.write_residuals(record, p, samples, &seen.values()[inside.clone()], &mut residuals[rows.clone()]);
             }
-            if let (Some(out), Some(by_corner)) = (&mut by_corner, simulated.by_corner()) {
-                out[before..before + inside.len()].copy_from_slice(&by_corner[inside.clone()]);
+            if let (Some(out), Some(by_corner)) = (&mut by_corner, seen.by_corner()) {
+                out[rows.clone()].copy_from_slice(&by_corner[inside.clone()]);
             }
-            for (direction, column) in columns.chunks_exact_mut(rows).enumerate() {
-                let Some(partial) = simulated.partial(direction) else { continue };
-                column[before..before + inside.len()].copy_from_slice(&partial[inside.clone()]);
+            for (direction, column) in columns.iter_mut().enumerate() {
+                let Some(partial) = seen.partial(direction) else { continue };
+                column[rows.clone()].copy_from_slice(&partial[inside.clone()]);
             }
         })?;
-        for (direction, column) in (first..).zip(columns.chunks_exact(rows)) {
-            let index = self.layout.index(record, direction);
-            self.require_smooth(record, index, p[index], column)?;
+        for (index, column) in directions.iter().zip(&columns) {
+            self.require_smooth(record, *index, p[*index], column)?;
         }
         let weight = self.weights[record];
         if weight != 1.0 {
-            for element in columns.iter_mut().chain(by_corner.into_iter().flatten()) {
+            for element in columns.into_iter().chain(by_corner).flatten() {
                 *element *= weight;
             }
         }
         Ok(())
     }
 
-    /// Fills all residuals by simulations without derivatives.
-    fn simulate_residuals(&self, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
-        for (record, base) in self.bases() {
-            self.simulate(
-                self.law().plain,
-                record,
-                p,
-                0,
-                self.decays[record].kept(),
-                |before, samples, inside, simulated| {
-                    self.write_residuals(record, base + before, p, samples, &simulated.values()[inside], residuals);
-                },
-            )?;
-        }
-        Ok(())
-    }
-
-    /// Writes the residuals of `record`, which begin at `base`.
+    /// Writes the residuals of `samples` of `record`.
     fn write_residuals(
         &self,
         record: usize,
-        base: usize,
         p: &[f64],
         samples: Range<usize>,
         simulated: &[f64],
         residuals: &mut [f64],
     ) {
         let offset = self.offset(record, p);
-        let measured = &self.decays[record].record().values()[samples.clone()];
-        for ((out, model), measured) in residuals[base..].iter_mut().zip(simulated).zip(measured) {
+        let measured = &self.experiments[record].record().values()[samples.clone()];
+        for ((out, model), measured) in residuals.iter_mut().zip(simulated).zip(measured) {
             *out = model + offset - measured;
         }
         for (size, shape) in self.disturbances(record, p) {
             let shape = &shape[samples.clone()];
-            residuals[base..].iter_mut().zip(shape).for_each(|(out, shape)| *out += size * shape);
+            residuals.iter_mut().zip(shape).for_each(|(out, shape)| *out += size * shape);
         }
         let weight = self.weights[record];
         if weight != 1.0 {
-            residuals[base..base + simulated.len()].iter_mut().for_each(|out| *out *= weight);
+            residuals.iter_mut().for_each(|out| *out *= weight);
         }
+    }
+
+    /// Fills the residuals of `record` by a simulation without derivatives.
+    fn simulate_residuals(&self, record: usize, p: &[f64], residuals: &mut [f64]) -> Result<(), EvaluationError> {
+        let experiment = &self.experiments[record];
+        let mut samples = vec![0.0; if experiment.lines().is_some() { experiment.summary().samples } else { 0 }];
+        let out = if samples.is_empty() { &mut *residuals } else { &mut samples };
+        self.simulate(self.plain(), record, p, &[], experiment.kept(), |before, samples, inside, seen| {
+            let out = &mut out[before..before + inside.len()];
+            self.write_residuals(record, p, samples, &seen.values()[inside], out);
+        })?;
+        if samples.is_empty() { Ok(()) } else { self.map(record, &samples, residuals) }
     }
 }
 
@@ -145,31 +215,45 @@ impl Residuals for Problem<'_> {
     }
 
     fn len(&self) -> usize {
-        self.decays.iter().map(|decay| decay.summary().samples).sum()
+        self.blocks.iter().map(Block::rows).sum()
     }
 
     fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
-        let Some(jacobian) = jacobian else { return self.simulate_residuals(p, residuals) };
-        jacobian.fill(0.0);
-        let (mut columns, mut values) = (jacobian, residuals);
-        let mut parts = Vec::new();
-        for (record, decay) in self.decays.iter().enumerate() {
-            let rows = decay.summary().samples;
-            let (own, others) = columns.split_at_mut(rows * self.blocks[record].parameters().len());
-            let (of_record, of_others) = values.split_at_mut(rows);
-            (columns, values) = (others, of_others);
-            let (of_motion, beside) = own.split_at_mut(rows * self.layout.directions(record));
-            let (mut of_record, mut by_corner) = (Some(of_record), self.fill_beside(record, beside));
-            for (number, columns) in of_motion.chunks_mut(DIRECTIONS * rows).enumerate() {
-                let (residuals, by_corner) = (of_record.take(), by_corner.take());
-                parts.push(Part { record, first: number * DIRECTIONS, columns, residuals, by_corner });
+        let (measured, known) = residuals.split_at_mut(self.measured());
+        self.prior.write_residuals(p, self.noise, known);
+        let mut rest = measured;
+        let Some(jacobian) = jacobian else {
+            for (record, block) in (0..self.experiments.len()).zip(&self.blocks) {
+                let (own, others) = rest.split_at_mut(block.rows());
+                self.simulate_residuals(record, p, own)?;
+                rest = others;
             }
+            return Ok(());
+        };
+        jacobian.fill(0.0);
+        let mut elements = jacobian;
+        let mut parts = Vec::new();
+        for (record, block) in (0..self.experiments.len()).zip(&self.blocks) {
+            let (own, others) = rest.split_at_mut(block.rows());
+            let (columns, further) = elements.split_at_mut(block.rows() * block.parameters().len());
+            self.divide(record, columns, own, &mut parts)?;
+            (rest, elements) = (others, further);
         }
+        self.prior.write_jacobian(self.noise, elements);
         self.differentiate(p, parts)
     }
 
     fn derivatives(&self) -> Derivatives {
-        Derivatives::Free
+        match (self.euler, self.is_complete) {
+            (Some(_), _) => Derivatives::None,
+            (None, true) => Derivatives::All,
+            (None, false) => Derivatives::Free,
+        }
+    }
+
+    fn is_cheaper_combined(&self) -> bool {
+        // Two directions cost about as much as none, more of them several times as much.
+        self.euler.is_none() && (0..self.parameters.len()).filter(|index| self.is_wanted(*index)).count() <= FEW
     }
 
     fn blocks(&self) -> &[Block] {
@@ -232,7 +316,7 @@ mod tests {
     fn derivatives_behind_sensors_and_beside_drift_are_those_of_differences() {
         let decays = decays();
         let problem = Problem::new::<Stribeck>(Machine::per_unit_mass(), &decays).unwrap();
-        assert!(problem.weights[1] != 1.0 && problem.layout().directions(0) > DIRECTIONS);
+        assert!(problem.weights[1] != 1.0 && problem.table().directions(0) > DIRECTIONS);
         require_derivatives(&problem, &values(&problem));
     }
 

@@ -7,15 +7,14 @@ use fmm_friction::Role;
 use fmm_model::Parameter;
 
 use super::Problem;
+use crate::experiment::Experiment;
 use crate::experiment::first_guess::Dissipation;
-use crate::experiment::nuisance::Nuisance;
 use crate::experiment::reference;
-use crate::experiment::{Drive, Experiment};
 use crate::law::dimension::{Scales, is_coefficient, is_force};
 use crate::machine::terms::Term;
 use crate::problem::fitted::{Fall, Fitted};
 use crate::problem::friction_curve::FrictionCurve;
-use crate::quantities::layout::{Layout, mass_of_stiffness};
+use crate::quantities::table::{Knowledge, Place, Row, Table, mass_of_stiffness};
 
 /// What a static level lies above the sliding one by, to begin with (1).
 const FIRST_STATIC_EXCESS: f64 = 0.2;
@@ -23,12 +22,12 @@ const FIRST_STATIC_EXCESS: f64 = 0.2;
 impl Problem<'_> {
     /// Whether a measured force or motion drives one of the records.
     pub(crate) fn is_driven(&self) -> bool {
-        self.decays.iter().any(|decay| decay.drive().is_some())
+        self.experiments.iter().any(|experiment| experiment.drive().is_some())
     }
 
     /// Whether the law or the terms beside it have more to find than levels and a viscous part.
     pub(crate) fn is_elaborate(&self) -> bool {
-        self.layout.law > self.layout.oscillator
+        self.table.law > self.table.oscillator
             || self.law().fitted().filter(|parameter| is_force(parameter.role())).count() > 1
             || self.law().fitted().any(|parameter| self.law().bends(parameter))
     }
@@ -37,7 +36,7 @@ impl Problem<'_> {
     pub(crate) fn starts(&self) -> Vec<Vec<f64>> {
         let has_level = self.law().fitted().any(|parameter| is_force(parameter.role()));
         let has_slope = self.has_linear_damping();
-        let reference = reference(self.decays);
+        let reference = reference(&self.experiments);
         let hypotheses = match reference.driven_guess() {
             Some(guess) => guess.hypotheses(),
             None => reference.guess().hypotheses(),
@@ -48,7 +47,8 @@ impl Problem<'_> {
         let mut starts: Vec<_> =
             hypotheses.iter().filter(expressible).map(|hypothesis| self.start(*hypothesis)).collect();
         if self.is_driven() {
-            let neutral: Vec<Experiment> = self.decays.iter().map(|decay| decay.clone().begun_neutral()).collect();
+            let neutral: Vec<Experiment> =
+                self.experiments.iter().map(|experiment| experiment.clone().begun_neutral()).collect();
             let problem = self.with_records(&neutral);
             starts.extend(hypotheses.iter().filter(expressible).map(|hypothesis| problem.start(*hypothesis)));
         }
@@ -61,8 +61,8 @@ impl Problem<'_> {
     /// The `starts` with corners of the spring where there may be some: a distance that no motion shows, and a spring
     /// that does not change there, say nothing of where to go.
     fn with_corners(&self, starts: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-        let length = reference(self.decays).scales().0;
-        let at = |term: Term| self.terms.place(term).map(|place| self.layout.oscillator + place);
+        let length = reference(&self.experiments).scales().0;
+        let at = |term: Term| self.table.shared(Place::Term(term));
         let corners: Vec<Vec<(usize, f64)>> = match (at(Term::Stop), at(Term::StopRatio), at(Term::Gap)) {
             (Some(distance), Some(ratio), _) => {
                 let pairs = [0.3, 0.6, 0.85].into_iter().flat_map(|share| [(share, 0.5), (share, 2.0)]);
@@ -82,65 +82,72 @@ impl Problem<'_> {
     }
 
     fn has_linear_damping(&self) -> bool {
-        self.terms.has_linear_damping() || self.law().has_slope()
+        self.terms().has_linear_damping() || self.law().has_slope()
     }
 
     /// Start values under one hypothesis.
     fn start(&self, dissipation: Dissipation) -> Vec<f64> {
-        let reference = reference(self.decays);
+        let reference = reference(&self.experiments);
         let frequency = reference
             .driven_guess()
             .map_or_else(|| reference.natural_frequency(dissipation, &self.machine), |guess| guess.frequency);
         // An unknown mass starts at 1 kg unless a force tells it; nothing in a free vibration says better.
-        let told = || self.decays.iter().filter(|decay| decay.drive().is_some_and(Drive::is_force));
-        let mass = told().find_map(|decay| decay.driven_guess()).map_or(1.0, |guess| guess.mass);
-        let (mut start, force_per_mass) = match self.layout.oscillator {
-            1 => (vec![frequency], 1.0),
-            _ => (vec![mass, mass / mass_of_stiffness(1.0, frequency)], mass),
+        let mut forced = self.experiments.iter().filter(|experiment| experiment.is_forced());
+        let guess = forced.find_map(Experiment::driven_guess).map_or(1.0, |guess| guess.mass);
+        let known = |row: &Row| match row.knowledge {
+            Knowledge::Prior { value, .. } | Knowledge::Fixed(value) => Some(value),
+            Knowledge::Free => None,
         };
+        let rows = &self.table.rows;
+        let mass = rows.iter().find(|row| row.place == Place::Mass).and_then(known).unwrap_or(guess);
+        let of_oscillator = |row: &Row| match row.place {
+            Place::Frequency => frequency,
+            Place::Mass => mass,
+            Place::Stiffness => mass / mass_of_stiffness(1.0, frequency),
+            _ => 0.0,
+        };
+        let mut start: Vec<f64> =
+            rows[..self.table.oscillator].iter().map(|row| known(row).unwrap_or_else(|| of_oscillator(row))).collect();
+        let force_per_mass = if self.table.is_per_mass() { 1.0 } else { mass };
         let of_law = Dissipation {
             friction: dissipation.friction * force_per_mass,
             damping: dissipation.damping * force_per_mass,
         };
         self.push_dissipation(of_law, 1.0, &mut start);
-        for decay in self.decays {
-            let (position, velocity) = decay.first_state(dissipation);
-            start.extend([position, velocity]);
-            if let Some(drive) = decay.drive() {
-                start.extend(drive.fits_gain(self.machine.scale()).then_some(1.0));
-                start.extend((drive.longest_delay() > 0.0).then_some(0.0));
-            }
-            if decay.fixed_offset().is_none() {
-                start.push(decay.first_offset(dissipation));
-            }
-            start.extend(decay.nuisances().iter().map(Nuisance::start));
-            start.extend(decay.first_corner().filter(|_| decay.sensor().has_free_corner()));
+        for row in &rows[self.table.shared..] {
+            let experiment = &self.experiments[row.record.unwrap_or(0)];
+            let (position, velocity) = experiment.first_state(dissipation);
+            start.push(known(row).unwrap_or_else(|| match row.place {
+                Place::Position => position,
+                Place::Velocity => velocity,
+                Place::Offset => experiment.first_offset(dissipation),
+                Place::Disturbance(at) => experiment.nuisances()[at].start(),
+                Place::Corner => experiment.first_corner().unwrap_or(0.0),
+                _ => 0.0,
+            }));
         }
         self.clamped(&start)
     }
 
     /// The `values` of a fit to the same records by sensors that do not filter, with corners to begin with.
     pub(crate) fn behind_sensors(&self, values: &[f64]) -> Vec<f64> {
-        let (shared, mut own) = values.split_at(self.layout.shared);
-        let mut start = shared.to_vec();
-        for (record, decay) in self.decays.iter().enumerate() {
-            let (of_record, others) =
-                own.split_at(self.layout.nuisance(record, decay) - self.layout.own[record] + decay.nuisances().len());
-            start.extend_from_slice(of_record);
-            start.extend(decay.first_corner().filter(|_| decay.sensor().has_free_corner()));
-            own = others;
-        }
+        let mut values = values.iter().copied();
+        let start = self.table.rows.iter().map(|row| match (row.place, row.record) {
+            (Place::Corner, Some(record)) => self.experiments[record].first_corner().unwrap_or(0.0),
+            _ => values.next().unwrap_or(0.0),
+        });
+        let start: Vec<f64> = start.collect();
         self.clamped(&start)
     }
 
     /// Start values that continue a fit of `simple`, which has a level and a viscous part: the same losses, put into
     /// the law in as many ways as it offers.
     pub(crate) fn continued(&self, simple: &Problem<'_>, values: &[f64]) -> Vec<Vec<f64>> {
-        let (oscillator, rest) = values.split_at(simple.layout.oscillator);
+        let (oscillator, rest) = values.split_at(simple.table.oscillator);
         let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
         // A damper and Coulomb friction lose the same in a swing if F = π/4 c V.
         let as_friction =
-            dissipation.friction + 0.25 * PI * dissipation.damping * 0.5 * reference(self.decays).scales().1;
+            dissipation.friction + 0.25 * PI * dissipation.damping * 0.5 * reference(&self.experiments).scales().1;
         let all_friction = Dissipation { friction: as_friction, damping: 0.0 };
         let half = Dissipation { friction: as_friction, damping: 0.5 * dissipation.damping };
         let mut starts = Vec::new();
@@ -151,7 +158,7 @@ impl Problem<'_> {
             for share in shares {
                 let mut start = oscillator.to_vec();
                 self.push_dissipation(share, *sharpness, &mut start);
-                start.extend_from_slice(&values[simple.layout.shared..]);
+                start.extend_from_slice(&values[simple.table.shared..]);
                 starts.extend(self.apart(&start));
             }
         }
@@ -161,12 +168,12 @@ impl Problem<'_> {
     /// Start values near a fit of `simple`, with what its residuals ask for: the most significant `falls` of friction
     /// with the speed; and the same losses without it.
     pub(crate) fn near(&self, simple: &Problem<'_>, values: &[f64], falls: &[Fall]) -> Vec<Vec<f64>> {
-        if simple.layout.oscillator != 1 || !self.is_elaborate() {
+        if !simple.table.is_per_mass() || !self.is_elaborate() {
             return self.starts();
         }
-        let (oscillator, rest) = values.split_at(simple.layout.oscillator);
+        let (oscillator, rest) = values.split_at(simple.table.oscillator);
         let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
-        let own = &values[simple.layout.shared..];
+        let own = &values[simple.table.shared..];
         let mut falls = falls.to_vec();
         falls.sort_by(|a, b| b.significance.total_cmp(&a.significance));
         falls.truncate(2);
@@ -191,28 +198,28 @@ impl Problem<'_> {
     /// and what else has the same name there or in one of `others`; `None` if one of the two laws states no friction
     /// over the speed.
     pub(crate) fn beside(&self, other: &Fitted, others: &[&Fitted], starts: &[Vec<f64>]) -> Option<Vec<f64>> {
-        if self.layout.oscillator != 1 {
+        if !self.table.is_per_mass() {
             return None;
         }
         let fitted = &other.fit;
-        let (layout, _) = Layout::of(other.law, &self.machine, &other.terms, self.decays).ok()?;
-        let curve = FrictionCurve::of(&layout, &other.terms, fitted.values(), reference(self.decays).scales().1)?;
-        let own = &fitted.values()[layout.shared..];
+        let (table, _) = Table::of(other.law, &self.machine, &other.terms, &self.experiments).ok()?;
+        let curve = FrictionCurve::of(&table, &other.terms, fitted.values(), reference(&self.experiments).scales().1)?;
+        let own = &fitted.values()[table.shared..];
         let of_that_name = |(value, parameter): (&f64, &Parameter)| {
             let mut estimates = std::iter::once(&other).chain(others).flat_map(|other| other.fit.estimates());
             estimates.find(|estimate| estimate.name() == parameter.name()).map_or(*value, Estimate::value)
         };
         let continued = |start: &Vec<f64>| {
-            let shared = start.iter().zip(&self.parameters).take(self.layout.shared).map(of_that_name);
+            let shared = start.iter().zip(&self.parameters).take(self.table.shared).map(of_that_name);
             self.clamped(&shared.chain(own.iter().copied()).collect::<Vec<_>>())
         };
         let starts: Vec<Vec<f64>> = starts.iter().map(continued).collect();
-        curve.followed(&self.layout, &self.terms, &self.parameters, &starts)
+        curve.followed(&self.table, self.terms(), &self.parameters, &starts)
     }
 
     /// The `start` with values of the law that lie [apart](crate::law::Law::apart), each within its bounds.
     fn apart(&self, start: &[f64]) -> Vec<Vec<f64>> {
-        let of_law = self.layout.law..self.layout.shared;
+        let of_law = self.table.of_law();
         let moved = |law: Vec<f64>| [&start[..of_law.start], &law, &start[of_law.end..]].concat();
         let starts = self.law().apart(&start[of_law.clone()]).into_iter().map(moved);
         starts.map(|start| self.clamped(&start)).collect()
@@ -232,9 +239,9 @@ impl Problem<'_> {
         excess: Option<f64>,
         start: &mut Vec<f64>,
     ) {
-        let (length, speed) = reference(self.decays).scales();
+        let (length, speed) = reference(&self.experiments).scales();
         let Dissipation { friction, damping } = dissipation;
-        start.extend(self.terms.iter().map(|term| match term {
+        start.extend(self.terms().iter().map(|term| match term {
             Term::LinearDamping => damping,
             Term::QuadraticDamping | Term::PowerDamping => 0.1 * (damping + friction / speed) / speed,
             Term::CubicDamping => 0.1 * (damping + friction / speed) / (speed * speed),

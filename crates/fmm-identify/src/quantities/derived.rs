@@ -8,13 +8,13 @@ use crate::law::DIRECTIONS;
 use crate::law::dimension::{is_coefficient, is_force};
 use crate::law::naming::{Level, Units};
 use crate::machine::{Machine, Scale};
-use crate::quantities::layout::{Layout, mass_of_stiffness};
+use crate::quantities::table::{Place, Table, mass_of_stiffness};
 
 /// Shared values of one fit and what is known from elsewhere, from which the derived quantities follow.
 pub(crate) struct Inputs<'a> {
     pub(crate) machine: &'a Machine,
     pub(crate) shared: &'a [f64],
-    pub(crate) layout: &'a Layout,
+    pub(crate) table: &'a Table,
     /// Relative errors of the gains of the instrument and of a measured force, as factors (1).
     pub(crate) gains: [f64; 2],
     pub(crate) gain_uncertainty: f64,
@@ -29,11 +29,11 @@ impl Inputs<'_> {
         let scale = match self.machine.scale() {
             Scale::Stiffness(known) => (Source::Stiffness, known.uncertainty()),
             Scale::Mass(known) => (Source::Mass, known.uncertainty()),
-            Scale::PerUnitMass | Scale::Unknown => (Source::Mass, 0.0),
+            _ => (Source::Mass, 0.0),
         };
         let load = self.machine.normal_load().map_or(0.0, |load| load.uncertainty());
-        let force = self.layout.force_uncertainty;
-        [scale, (Source::NormalLoad, load), (Source::Gain, self.gain_uncertainty), (Source::ForceGain, force)]
+        // Gains of forces are fitted, each with what is known of it.
+        [scale, (Source::NormalLoad, load), (Source::Gain, self.gain_uncertainty), (Source::ForceGain, 0.0)]
     }
 
     /// The derived quantities with their derivatives.
@@ -54,7 +54,7 @@ impl Inputs<'_> {
 
     /// Whether forces per mass are accelerations in SI, so that a mass makes forces of them.
     fn is_si(&self) -> bool {
-        self.machine.scale() == Scale::Unknown || self.layout.units.is_metric()
+        !self.table.is_per_mass() || self.table.units.is_metric()
     }
 
     /// The derived quantities, as numbers whose directions from `first` on are the shared values, then the inputs.
@@ -62,36 +62,40 @@ impl Inputs<'_> {
         let variable = |value: f64, direction: usize| D::variable(value, direction.wrapping_sub(first));
         let natural_frequency = variable(self.shared[0], 0);
         let mut derived = Vec::new();
+        // A scale on which the motion depends is fitted with what is known of it.
+        let scale = |place, known: f64| match self.table.shared(place) {
+            Some(index) => variable(self.shared[index], index),
+            None => variable(known, self.shared.len()),
+        };
         let mass = match self.machine.scale() {
-            Scale::PerUnitMass | Scale::Unknown => None,
             Scale::Mass(known) => {
-                let mass = variable(known.value(), self.shared.len());
+                let mass = scale(Place::Mass, known.value());
                 let stiffness = mass / mass_of_stiffness(D::from(1.0), natural_frequency);
                 derived.push((Parameter::new("stiffness", "k", "N/m").bounded(Bounds::POSITIVE), stiffness));
                 Some(mass)
             }
             Scale::Stiffness(known) => {
-                let mass = mass_of_stiffness(variable(known.value(), self.shared.len()), natural_frequency);
+                let mass = mass_of_stiffness(scale(Place::Stiffness, known.value()), natural_frequency);
                 derived.push((Parameter::new("mass", "m", "kg").bounded(Bounds::POSITIVE), mass));
                 Some(mass)
             }
+            _ => None,
         };
-        if self.machine.scale() != Scale::Unknown {
-            for (place, term) in self.layout.terms.iter().enumerate() {
-                let Some(parameter) = term.stiffness_per_mass(&self.layout.units.position) else { continue };
-                let value = variable(self.shared[1 + place], 1 + place);
+        if self.table.is_per_mass() {
+            for (place, term) in self.table.terms.iter().enumerate() {
+                let Some(parameter) = term.stiffness_per_mass(&self.table.units.position) else { continue };
+                let index = self.table.oscillator + place;
+                let value = variable(self.shared[index], index);
                 derived.push((parameter, value / mass_of_stiffness(D::from(1.0), natural_frequency)));
             }
         }
         // With an unknown scale the fitted values are forces already, by the channel of a measured one if there is one.
         let by_force = variable(self.gains[1], self.shared.len() + 3);
-        let to_force = match self.machine.scale() {
-            Scale::Unknown => Some(by_force),
-            _ => mass,
-        };
+        let to_force = if self.table.is_per_mass() { mass } else { Some(by_force) };
         let load = self.machine.normal_load().map(|load| variable(load.value(), self.shared.len() + 1));
-        let gain = variable(self.gains[0], self.shared.len() + 2);
-        let Layout { family, units, law, .. } = self.layout;
+        // A record that reads too much shows too large a force per mass, and nothing of a force.
+        let gain = if self.table.is_per_mass() { variable(self.gains[0], self.shared.len() + 2) } else { D::from(1.0) };
+        let Table { family, units, law, .. } = self.table;
         let law_value = |index: usize| variable(self.shared[law + index], law + index);
         let level = family.level().map(law_value);
         // Forces that a mass makes of forces per mass.
@@ -101,9 +105,9 @@ impl Inputs<'_> {
             let mut value = law_value(i);
             if let (Role::LevelAbove | Role::Breakaway, Some(level)) = (role, level) {
                 value += level;
-                derived.push(match self.machine.scale() {
-                    Scale::Unknown => (units.stated(law_parameter, Level::Force), value * by_force),
-                    _ => (units.stated(law_parameter, Level::PerMass), value / gain),
+                derived.push(match self.table.is_per_mass() {
+                    true => (units.stated(law_parameter, Level::PerMass), value / gain),
+                    false => (units.stated(law_parameter, Level::Force), value * by_force),
                 });
             }
             let Some(force) = to_force.map(|to_force| value * to_force) else { continue };
@@ -131,18 +135,18 @@ pub(crate) struct Derived {
 }
 
 /// What follows from the `shared` values of a fit and from what is known of the `machine`.
-pub(crate) fn derived(machine: &Machine, layout: &Layout, shared: &[f64]) -> Vec<Derived> {
-    Inputs { machine, shared, layout, gains: [1.0; 2], gain_uncertainty: 0.0 }.with_gradients()
+pub(crate) fn derived(machine: &Machine, table: &Table, shared: &[f64]) -> Vec<Derived> {
+    Inputs { machine, shared, table, gains: [1.0; 2], gain_uncertainty: 0.0 }.with_gradients()
 }
 
 /// The values of all findings, in the order of [`findings`], for one draw of the fitted `values`, of what is known of
 /// the machine, and of the errors of the `gains` of the instrument and of a measured force, as factors (1).
 #[cfg(feature = "sampler")]
-pub(crate) fn values_of_findings(machine: &Machine, layout: &Layout, values: &[f64], gains: [f64; 2]) -> Vec<f64> {
+pub(crate) fn values_of_findings(machine: &Machine, table: &Table, values: &[f64], gains: [f64; 2]) -> Vec<f64> {
     let fitted = values.iter().enumerate().map(|(index, value)| {
-        let by_force = if layout.is_scaled_by_force(index) { gains[1] } else { 1.0 };
-        value * gains[0].powf(-layout.power_of_gain(index, values)) * by_force
+        let by_force = if table.is_scaled_by_force(index) { gains[1] } else { 1.0 };
+        value * gains[0].powf(-table.power_of_gain(index, values)) * by_force
     });
-    let inputs = Inputs { machine, shared: &values[..layout.shared], layout, gains, gain_uncertainty: 0.0 };
+    let inputs = Inputs { machine, shared: &values[..table.shared], table, gains, gain_uncertainty: 0.0 };
     fitted.chain(inputs.derived::<f64>(0).into_iter().map(|(_, value)| value)).collect()
 }

@@ -1,4 +1,5 @@
 //! Table of quantities: each number of machine, law, experiment and sensor, and the findings that follow from them.
 
 pub(crate) mod derived;
-pub(crate) mod layout;
+pub(crate) mod prior;
+pub(crate) mod table;

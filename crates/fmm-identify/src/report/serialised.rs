@@ -9,7 +9,6 @@ use crate::experiment::ImpactSummary;
 use crate::experiment::RecordSummary;
 use crate::finding::{Contribution, Finding, Origin};
 use crate::identification::Identification;
-use crate::impact::ImpactIdentification;
 use crate::judgement::{Comparison, Sign};
 
 impl Serialize for Finding {
@@ -70,31 +69,6 @@ impl Serialize for Identification {
         document.serialize_field("aicc", &self.fit().corrected_akaike())?;
         document.serialize_field("outcome", &self.fit().outcome().to_string())?;
         document.serialize_field("autocorrelation_time", &self.autocorrelation_time())?;
-        document.serialize_field("warnings", &warnings)?;
-        document.end()
-    }
-}
-
-/// `law`, `fitted_to`, `parameters` (by name), `rms_residual` (m/s), `chi`, `rank`, `outcome`, `trials`,
-/// `stop_times_s`, `closed_form_forces_n`, `warnings`.
-impl Serialize for ImpactIdentification {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let parameters: BTreeMap<_, _> =
-            self.findings().iter().map(|finding| (finding.parameter().name(), finding)).collect();
-        let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();
-        let stop_times: Vec<Option<f64>> =
-            self.motions().iter().map(crate::identification::FittedMotion::stop_time).collect();
-        let mut document = serializer.serialize_struct("ImpactIdentification", 11)?;
-        document.serialize_field("law", self.law())?;
-        document.serialize_field("fitted_to", &self.options().domain().to_string())?;
-        document.serialize_field("parameters", &parameters)?;
-        document.serialize_field("rms_residual", &self.rms_residual())?;
-        document.serialize_field("chi", &self.chi())?;
-        document.serialize_field("rank", &self.fit().rank())?;
-        document.serialize_field("outcome", &self.fit().outcome().to_string())?;
-        document.serialize_field("trials", self.trials())?;
-        document.serialize_field("stop_times_s", &stop_times)?;
-        document.serialize_field("closed_form_forces_n", self.closed_forms())?;
         document.serialize_field("warnings", &warnings)?;
         document.end()
     }

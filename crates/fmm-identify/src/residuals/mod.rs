@@ -2,6 +2,7 @@
 
 mod autoregression;
 pub(crate) mod correlation;
+pub(crate) mod knowledge;
 pub(crate) mod noise;
 mod noise_growth;
 pub(crate) mod structure;

@@ -4,9 +4,11 @@ use fmm_fit::{EvaluationError, Fit, autocorrelation_time};
 
 use crate::experiment::Experiment;
 use crate::experiment::scaled;
+use crate::finding::Source;
 use crate::linear_algebra::inverse_of_products;
 use crate::problem::Problem;
 use crate::residuals::correlation::are_correlated;
+use crate::residuals::knowledge::Knowledge;
 use crate::residuals::noise::{ResidualNoise, Series};
 use crate::warning::Warning;
 
@@ -92,13 +94,39 @@ pub(crate) struct Covariance {
     degrees_of_freedom: f64,
     inflation: f64,
     noise: ResidualNoise,
+    is_white: bool,
+    knowledge: Knowledge,
 }
 
 impl Covariance {
     pub(crate) fn of(problem: &Problem<'_>, fit: &Fit, structure: &ResidualStructure) -> Result<Self, EvaluationError> {
         let columns = problem.columns(fit.values(), &Self::known(fit))?;
         let noise = Self::noise(problem, fit, structure, &columns, &inverse_of_products(&columns));
-        Ok(Self::of_noise(fit, structure, &columns, noise))
+        Ok(Self::of_noise(fit, structure, &columns, noise).with_knowledge(problem, fit))
+    }
+
+    /// The same with what was known before the fit: the elements hold what the residuals of the records make of them,
+    /// and the share of that knowledge.
+    fn with_knowledge(mut self, problem: &Problem<'_>, fit: &Fit) -> Self {
+        let variance = fit.residual_standard_deviation().map_or(0.0, |s| s * s).max(f64::MIN_POSITIVE);
+        let unit = |i: usize, j: usize| Self::plain(fit, i, j).map_or(0.0, |covariance| covariance / variance);
+        let knowledge = Knowledge::of(problem.prior(), problem.noise(), fit, unit);
+        if !knowledge.is_empty() {
+            // White residuals of the knowledge are among those of the fit; in the noise of the records there are none.
+            let counted = if self.is_white { variance / problem.noise().powi(2) } else { 0.0 };
+            for (at, element) in self.elements.iter_mut().enumerate() {
+                let share = knowledge.pair(at / self.count, at % self.count);
+                *element = element.map(|element| element + share * (1.0 - counted));
+            }
+        }
+        self.knowledge = knowledge;
+        self
+    }
+
+    /// Share of what was known before the fit in the variance of what has this `gradient` over the first estimates, by
+    /// source.
+    pub(crate) fn of_knowledge(&self, gradient: &[f64]) -> Vec<(Source, f64)> {
+        self.knowledge.parts(gradient)
     }
 
     /// The parameters of a fit that have a variance.
@@ -129,7 +157,9 @@ impl Covariance {
         let unit: Vec<f64> = pairs.map(|at| elements[at].unwrap_or(0.0) * scale).collect();
         let independent = fit.degrees_of_freedom() as f64;
         let (mut degrees_of_freedom, mut inflation) = (independent, 1.0_f64);
+        let mut is_white = true;
         if structure.is_noisy() && !noise.is_plain() && !known.is_empty() {
+            is_white = false;
             let order = known.len();
             let middle = noise.products(columns);
             let element = |matrix: &[f64], i: usize, j: usize| matrix[i * order + j];
@@ -159,7 +189,16 @@ impl Covariance {
             degrees_of_freedom = (told - fit.rank() as f64).max(1.5).min(independent);
         }
         let is_inside = fit.estimates().iter().map(|estimate| estimate.standard_uncertainty().is_some()).collect();
-        Self { count, elements, is_inside, degrees_of_freedom, inflation, noise }
+        Self {
+            count,
+            elements,
+            is_inside,
+            degrees_of_freedom,
+            inflation,
+            noise,
+            is_white,
+            knowledge: Knowledge::default(),
+        }
     }
 
     fn noise(
@@ -169,17 +208,19 @@ impl Covariance {
         columns: &[Vec<f64>],
         weights: &[f64],
     ) -> ResidualNoise {
-        let signals: Vec<Vec<f64>> = (0..problem.decays().len()).map(|record| problem.signal(record, fit)).collect();
+        let signals: Vec<Vec<f64>> =
+            (0..problem.experiments().len()).map(|record| problem.signal(record, fit)).collect();
         let series: Vec<Series<'_>> = problem
             .row_ranges()
             .enumerate()
             .map(|(record, rows)| Series {
                 rows,
                 signal: structure.is_noisy().then_some(signals[record].as_slice()),
-                period: problem.decays()[record].record().rate() / problem.decays()[record].guess().frequency(),
+                period: problem.experiments()[record].record().rate()
+                    / problem.experiments()[record].guess().frequency(),
                 columns,
                 weights,
-                stays: problem.decays()[record].stays(),
+                stays: problem.experiments()[record].stays(),
             })
             .collect();
         ResidualNoise::of(fit.residuals(), &series)

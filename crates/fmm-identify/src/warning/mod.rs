@@ -1,8 +1,11 @@
 //! Warnings: limits of the results that a reader has to know.
 
 mod sentences;
+mod severity;
 
 use std::fmt;
+
+pub use severity::Severity;
 
 use fmm_frf::Channel;
 use fmm_model::Rounded;
@@ -114,6 +117,13 @@ pub enum Warning {
         margin: f64,
         /// When (s).
         time: f64,
+    },
+    /// The records move a quantity far from what was known of it.
+    KnowledgeContradicted {
+        /// Name of the quantity.
+        parameter: String,
+        /// Distance in standard uncertainties of what was known (1).
+        distance: f64,
     },
     /// A static level was asked for, which a motion that is not driven through the breakaway does not determine.
     StaticLevelHeld {
@@ -270,11 +280,6 @@ pub enum Warning {
         /// By what share a peak of the receptance is too low for that (1).
         lost: f64,
     },
-    /// Uncertainty of fixed inputs that could not be propagated to the findings.
-    InputsNotPropagated {
-        /// Why, as a sentence.
-        reason: String,
-    },
 }
 
 /// Three digits of a value, without an exponent where it needs none.
@@ -374,8 +379,7 @@ impl fmt::Display for Warning {
             | Self::Overload { .. }
             | Self::CoarsePulse { .. }
             | Self::SpikesBridged { .. }
-            | Self::NotAtRest { .. }
-            | Self::InputsNotPropagated { .. } => self.write_of_blows(f),
+            | Self::NotAtRest { .. } => self.write_of_blows(f),
             _ => self.write_of_disturbances(f),
         }
     }

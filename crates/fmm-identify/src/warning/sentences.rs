@@ -52,6 +52,11 @@ impl Warning {
                     "the zero of the instrument drifts slowly; a polynomial of degree 3 was fitted beside the motion"
                 )
             }
+            Self::KnowledgeContradicted { parameter, distance } => write!(
+                f,
+                "the records move {parameter} by {distance:.1} standard uncertainties from the value that was given: that value, \
+                 its uncertainty or the law is wrong"
+            ),
             Self::GrowingNoise { floor, share, unit } => write!(
                 f,
                 "the noise grows with the signal, from {floor:.1e} {unit} by {:.1} % of it; the standard uncertainties take that into \
@@ -138,12 +143,6 @@ impl Warning {
                  and only the friction of that part shows",
                 100.0 * lost
             ),
-            Warning::InputsNotPropagated { reason } => {
-                write!(
-                    f,
-                    "there are no uncertainties, as it is not known what the held values do to the findings: {reason}"
-                )
-            }
             _ => Ok(()),
         }
     }

@@ -2,7 +2,7 @@
 
 use fmm_fit::{Options, Residuals, Sampler, solve};
 use fmm_friction::CoulombViscous;
-use fmm_identify::MachineProblem;
+use fmm_identify::Problem;
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -35,7 +35,7 @@ const POINTS: usize = 90;
 fn moments_are_those_of_quadrature() {
     let record = record();
     let law = [("coefficient", 0.15), ("viscous", VISCOUS), ("initial_position", 0.015)];
-    let problem = MachineProblem::<CoulombViscous>::new(&record, &[MACHINE.as_slice(), &law].concat()).unwrap();
+    let problem = Problem::declared::<CoulombViscous>(&record, &[MACHINE.as_slice(), &law].concat()).unwrap();
     let problem = problem.free("coefficient").unwrap().free("viscous").unwrap();
     let fit = solve(&problem, problem.values(), &Options::default()).unwrap();
     let place = |name: &str| problem.parameters().iter().position(|parameter| parameter.name() == name).unwrap();

@@ -2,7 +2,7 @@
 
 use fmm_fit::{Fit, Options, solve};
 use fmm_friction::Coulomb;
-use fmm_identify::MachineProblem;
+use fmm_identify::Problem;
 
 use super::identifiability::{NOISE, WINDOW};
 use super::simulated::{a1_of_stiffness, machine, motion, place, record, rms};
@@ -26,9 +26,8 @@ impl Outcome {
         let peak = 1e-3 * TABLE_1[TABLE_1.len() - 1].velocity;
         let motion = motion(machine(INSTANTANEOUS_SLOPE)?, (0.0, peak), seconds)?;
         let record = record(motion.velocity().values(), 0.0, 0)?;
-        let fitted = |problem: &MachineProblem<Coulomb>| -> Found<Fit> {
-            Ok(solve(problem, problem.values(), &Options::default())?)
-        };
+        let fitted =
+            |problem: &Problem<'_>| -> Found<Fit> { Ok(solve(problem, problem.values(), &Options::default())?) };
         let linear = a1_of_stiffness(&record, MACHINE)?;
         let without = fitted(&linear)?;
         let damping = without.values()[place(&linear, "damping")?];

@@ -2,7 +2,7 @@
 
 use fmm_fit::Residuals as _;
 use fmm_friction::Coulomb;
-use fmm_identify::MachineProblem;
+use fmm_identify::Problem;
 use fmm_model::{Bounds, Damping, Oscillator};
 use fmm_record::Record;
 use fmm_sim::{Sampling, Trajectory};
@@ -34,12 +34,12 @@ pub(super) fn record(values: &[f64], noise: f64, seed: u64) -> Found<Record> {
 
 /// The fit of A1 to `record`: mass, stiffness, damping and initial position free in its bounds, the initial velocity
 /// that of the first sample. The start is mass (kg), stiffness (N/m) and damping (N s/m).
-pub(super) fn a1(record: &Record, start: [f64; 3]) -> Found<MachineProblem<Coulomb>> {
+pub(super) fn a1(record: &Record, start: [f64; 3]) -> Found<Problem<'static>> {
     Ok(a1_of_stiffness(record, start)?.free_within("stiffness", Bounds::new(0.0, 3000.0)?)?)
 }
 
 /// The same with the stiffness held at its start.
-pub(super) fn a1_of_stiffness(record: &Record, [mass, stiffness, damping]: [f64; 3]) -> Found<MachineProblem<Coulomb>> {
+pub(super) fn a1_of_stiffness(record: &Record, [mass, stiffness, damping]: [f64; 3]) -> Found<Problem<'static>> {
     let values = [
         ("mass", mass),
         ("stiffness", stiffness),
@@ -47,7 +47,7 @@ pub(super) fn a1_of_stiffness(record: &Record, [mass, stiffness, damping]: [f64;
         ("coefficient", 0.0),
         ("initial_velocity", record.values()[0]),
     ];
-    Ok(MachineProblem::new(record, &values)?
+    Ok(Problem::declared::<Coulomb>(record, &values)?
         .free_within("mass", Bounds::new(1.0, 100.0)?)?
         .free_within("damping", Bounds::new(0.0, 100.0)?)?
         .free_within("initial_position", Bounds::new(-12e-3, 12e-3)?)?)
@@ -59,7 +59,7 @@ pub(super) fn rms(residuals: &[f64]) -> f64 {
 }
 
 /// The place of a parameter in `problem`.
-pub(super) fn place(problem: &MachineProblem<Coulomb>, name: &str) -> Found<usize> {
+pub(super) fn place(problem: &Problem<'_>, name: &str) -> Found<usize> {
     let place = problem.parameters().iter().position(|parameter| parameter.name() == name);
     Ok(place.ok_or_else(|| format!("no parameter {name}"))?)
 }

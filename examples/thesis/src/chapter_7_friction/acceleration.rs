@@ -39,7 +39,9 @@ fn exact(record: &Record, load: f64, viscous: Viscous) -> Found<[f64; 2]> {
 /// searched from several starts.
 fn by_thesis(record: &Record, load: f64, viscous: Viscous, settings: &Settings<'_>) -> Found<[f64; 2]> {
     let names = START.map(|(name, _)| name);
-    let problem = Known { viscous, load }.problem::<AccelerationCoulomb>(record, &START, &names)?.by_thesis();
+    let problem = Known { viscous, load }
+        .problem::<AccelerationCoulomb>(record, &START, &names)?
+        .by_thesis::<AccelerationCoulomb>();
     let reach = problem.parameters().iter().map(|parameter| match parameter.name() {
         "initial_position" => 2e-4,
         name if names.contains(&name) => 0.01,

@@ -13,7 +13,7 @@ mod tanh;
 
 use fmm_fit::{Estimate, Fit, Options, solve};
 use fmm_friction::LawFamily;
-use fmm_identify::MachineProblem;
+use fmm_identify::Problem;
 use fmm_model::Bounds;
 use fmm_record::Record;
 use fmm_sim::Sampling;
@@ -105,7 +105,7 @@ struct Known {
 impl Known {
     /// Law `F` and the position at the first sample, with m, k and c of the tables, as a problem that begins at the
     /// law's values in `law`, of which those in `free` are to be found.
-    fn problem<F: LawFamily>(self, record: &Record, law: &[(&str, f64)], free: &[&str]) -> Found<MachineProblem<F>> {
+    fn problem<F: LawFamily>(self, record: &Record, law: &[(&str, f64)], free: &[&str]) -> Found<Problem<'static>> {
         let [mass, stiffness, _] = printed::MACHINE;
         let [linear, quadratic] = self.viscous.coefficients();
         let mut values = vec![
@@ -119,7 +119,7 @@ impl Known {
         ];
         values.extend(law);
         let mut problem =
-            MachineProblem::<F>::new(record, &values)?.free_within("initial_position", Bounds::new(-2e-3, 2e-3)?)?;
+            Problem::declared::<F>(record, &values)?.free_within("initial_position", Bounds::new(-2e-3, 2e-3)?)?;
         for name in free {
             problem = problem.free(name)?;
         }

@@ -1,8 +1,9 @@
 //! One coefficient for all levels: Figs 36 to 41.
 
+use fmm_fit::Options;
 use fmm_frf::{friction_force_of_coulomb_impact, friction_force_of_viscous_coulomb_impact};
 use fmm_friction::Coulomb;
-use fmm_identify::{ImpactIdentification, ImpactMachine, ImpactOptions, ImpactTrial, Known, identify_impact};
+use fmm_identify::{Experiment, Identification, ImpactTrial, Known, Machine, Terms, identify, identify_with};
 use fmm_uq::Observations;
 
 use super::blows::{Blow, INTERVAL, NOISE, Spectra, Test, peak_receptance};
@@ -22,11 +23,11 @@ pub(super) fn add(
     spectra: &mut Spectra,
     settings: &Settings<'_>,
 ) -> Found<()> {
-    let (machine, options) = (known_machine()?, as_in_the_thesis()?);
+    let machine = known_machine()?;
     let mut rows = Vec::new();
     for (index, (test, blow)) in tests.iter().zip(blows).enumerate() {
         let level = format!("{:.0} N", test.level.peak);
-        let found = identify_impact::<Coulomb>(&machine, &test.trials, &options)?;
+        let found = identify::<Coulomb>(&machine, &mobilities(&test.trials)?)?;
         let (mu, u) = coefficient(&found)?;
         chapter.target(
             Target::new(
@@ -69,7 +70,6 @@ pub(super) fn add(
         rows.push(vec![
             level,
             format!("{mu:.6} ± {u:.6}"),
-            format!("{:.2}", found.chi()),
             format!("{:.5} ± {:.5}", single.mean(), single.standard_deviation()),
             format!("{viscous:.4}"),
             format!("{dry:.4}"),
@@ -78,39 +78,60 @@ pub(super) fn add(
         settings.done(0.4 + 0.15 * (index + 1) as f64);
     }
     let trials: Vec<ImpactTrial> = tests.iter().flat_map(|test| test.trials.iter().cloned()).collect();
-    let joint = identify_impact::<Coulomb>(&machine, &trials, &options.clone().free("damping"))?;
-    joint_fit(chapter, &joint, &mut rows)?;
+    let free = known_machine_without_damping()?;
+    let joint = identify_with::<Coulomb>(
+        &free,
+        &Terms::default().with_linear_damping(),
+        &mobilities(&trials)?,
+        &Options::default(),
+    )?;
+    joint_fit(chapter, &joint, trials.len(), &mut rows)?;
     chapter.table(
         "μ of the simulated blows, truth 0.113 at 6.67 N: fits of the complex mobility, and closed forms of the highest line",
-        &["level", "fit", "χ", "closed form with c, trials (mean ± s)", "the same, no noise", "π J/(8 F m ω), no noise"],
+        &["level", "fit", "closed form with c, trials (mean ± s)", "the same, no noise", "π J/(8 F m ω), no noise"],
         rows,
     );
     uncertainty(chapter, &tests[1].trials)
 }
 
 /// The machine of Table 2 and the load, without uncertainty.
-pub(super) fn known_machine() -> Found<ImpactMachine> {
+pub(super) fn known_machine() -> Found<Machine> {
     machine_with(|value, _| Known::exact(value))
 }
 
-fn machine_with(known: impl Fn(f64, f64) -> Result<Known, fmm_model::ModelError>) -> Found<ImpactMachine> {
+fn machine_with(known: impl Fn(f64, f64) -> Result<Known, fmm_model::ModelError>) -> Found<Machine> {
     let ([mass, stiffness, damping], u) = (printed::MACHINE, printed::MACHINE_DEVIATIONS);
-    Ok(ImpactMachine::new(known(mass, u[0])?, known(stiffness, u[1])?)?
+    Ok(Machine::of_mass_and_stiffness(known(mass, u[0])?, known(stiffness, u[1])?)?
         .with_damping(known(damping, u[2])?)?
         .with_normal_load(known(LOAD, 0.0)?)?)
 }
 
-/// A fit of the complex mobility in the band that the thesis shows.
-pub(super) fn as_in_the_thesis() -> Found<ImpactOptions> {
-    Ok(ImpactOptions::default().within(SHOWN.0, SHOWN.1)?)
+/// The same machine with a damping that is to be found.
+fn known_machine_without_damping() -> Found<Machine> {
+    let [mass, stiffness, _] = printed::MACHINE;
+    let machine = Machine::of_mass_and_stiffness(Known::exact(mass)?, Known::exact(stiffness)?)?;
+    Ok(machine.with_normal_load(Known::exact(LOAD)?)?)
+}
+
+/// The complex mobilities in the band that the thesis shows.
+pub(super) fn mobilities(trials: &[ImpactTrial]) -> Found<Vec<Experiment>> {
+    Ok(trials.iter().map(|trial| Experiment::mobility(trial, Some(SHOWN))).collect::<Result<_, _>>()?)
+}
+
+/// Fitted velocity (m/s) of every sample of the first of `trials`.
+pub(super) fn fitted_velocity(found: &Identification, trials: &[ImpactTrial]) -> Found<Vec<f64>> {
+    let model = found.model(&mobilities(trials)?, 0).ok_or("the fitted motion cannot be drawn")?;
+    let mut velocity = vec![0.0; trials[0].velocity().len()];
+    velocity[trials[0].motion()].copy_from_slice(&model);
+    Ok(velocity)
 }
 
 /// μ with its standard uncertainty.
-fn coefficient(found: &ImpactIdentification) -> Found<(f64, f64)> {
-    value(found, "coefficient")
+fn coefficient(found: &Identification) -> Found<(f64, f64)> {
+    value(found, "mu")
 }
 
-fn value(found: &ImpactIdentification, name: &str) -> Found<(f64, f64)> {
+fn value(found: &Identification, name: &str) -> Found<(f64, f64)> {
     let finding = found.finding(name).ok_or_else(|| format!("no finding {name}"))?;
     Ok((finding.value(), finding.uncertainty().ok_or_else(|| format!("{name} is not determined"))?))
 }
@@ -126,8 +147,10 @@ fn closed_forms(blow: &Blow, spectra: &mut Spectra) -> Found<[f64; 2]> {
     ])
 }
 
-fn joint_fit(chapter: &mut Chapter, joint: &ImpactIdentification, rows: &mut Vec<Vec<String>>) -> Found<()> {
-    let ((mu, u), (damping, of_damping)) = (coefficient(joint)?, value(joint, "damping")?);
+fn joint_fit(chapter: &mut Chapter, joint: &Identification, trials: usize, rows: &mut Vec<Vec<String>>) -> Found<()> {
+    let [mass, ..] = printed::MACHINE;
+    let ((mu, u), (per_mass, of_per_mass)) = (coefficient(joint)?, value(joint, "damping_per_mass")?);
+    let (damping, of_damping) = (mass * per_mass, mass * of_per_mass);
     chapter.target(
         Target::new("C15", "μ of all levels together, c free", "1", mu, Criterion::within(COEFFICIENT, 1e-3))
             .printed("0.113")
@@ -139,7 +162,6 @@ fn joint_fit(chapter: &mut Chapter, joint: &ImpactIdentification, rows: &mut Vec
     rows.push(vec![
         "all, c free".to_owned(),
         format!("{mu:.6} ± {u:.6}"),
-        format!("{:.2}", joint.chi()),
         "–".to_owned(),
         "–".to_owned(),
         "–".to_owned(),
@@ -148,7 +170,7 @@ fn joint_fit(chapter: &mut Chapter, joint: &ImpactIdentification, rows: &mut Vec
         "Blows of different impulse tell dry friction from viscous damping, which one blow hardly does.",
         format!(
             "All {} trials together give μ = {mu:.5} ± {u:.5} with c = {damping:.4} ± {of_damping:.4} N s/m, both found; the thesis holds c.",
-            joint.trials().len()
+            trials
         ),
         &[],
     );
@@ -158,15 +180,14 @@ fn joint_fit(chapter: &mut Chapter, joint: &ImpactIdentification, rows: &mut Vec
 /// What μ is worth when mass, stiffness, damping and hammer are known as well as they are.
 fn uncertainty(chapter: &mut Chapter, trials: &[ImpactTrial]) -> Found<()> {
     let trials = &trials[..1];
-    let options = as_in_the_thesis()?;
-    let u = |machine: &ImpactMachine, options: &ImpactOptions| -> Found<f64> {
-        let (mu, u) = coefficient(&identify_impact::<Coulomb>(machine, trials, options)?)?;
+    let u = |machine: &Machine, trials: &[ImpactTrial]| -> Found<f64> {
+        let (mu, u) = coefficient(&identify::<Coulomb>(machine, &mobilities(trials)?)?)?;
         Ok(100.0 * u / mu)
     };
     let machine = machine_with(Known::new)?;
-    let noise = u(&known_machine()?, &options)?;
-    let inputs = u(&machine, &options)?;
-    let calibration = u(&machine, &options.with_force_gain_uncertainty(HAMMER)?)?;
+    let noise = u(&known_machine()?, trials)?;
+    let inputs = u(&machine, trials)?;
+    let calibration = u(&machine, &[trials[0].clone().with_calibration_uncertainty(HAMMER)?])?;
     chapter.finding(
         "Three digits of a coefficient need a damping that is known; the height of a peak needs a hammer that is known as well.",
         format!(
@@ -184,7 +205,7 @@ fn uncertainty(chapter: &mut Chapter, trials: &[ImpactTrial]) -> Found<()> {
 fn figures(
     chapter: &mut Chapter,
     test: &Test,
-    found: &ImpactIdentification,
+    found: &Identification,
     spectra: &mut Spectra,
     index: usize,
 ) -> Found<()> {
@@ -194,7 +215,7 @@ fn figures(
         (["figure_40", "figure_41"], [40, 41]),
     ][index];
     let trial = &test.trials[0];
-    let velocity = found.model(&test.trials, 0).ok_or("the fitted motion cannot be drawn")?;
+    let velocity = fitted_velocity(found, &test.trials)?;
     let (mu, _) = coefficient(found)?;
     let simulated = format!(
         "The record is simulated: μ = {COEFFICIENT} at {LOAD} N, white noise of {} mm/s; found from {} trials: μ = {mu:.5}.",

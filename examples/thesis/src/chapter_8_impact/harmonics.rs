@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 
 use fmm_frf::{FrequencyResponse, FrictionSpectrum, ResponseForm};
 use fmm_friction::Coulomb;
-use fmm_identify::identify_impact;
+use fmm_identify::identify;
 
 use super::blows::{Blow, Spectra, Test};
-use super::friction::{as_in_the_thesis, known_machine};
+use super::friction::{fitted_velocity, known_machine, mobilities};
 use super::{COEFFICIENT, LOAD, decibels, linear, over_frequency};
 use crate::{Chapter, Criterion, Found, Target};
 use fmm_cli::figure::{Layer, Panel, Role};
@@ -111,8 +111,8 @@ fn figure_42(
     linear: &FrequencyResponse,
 ) -> Found<()> {
     let trial = &test.trials[..1];
-    let fit = identify_impact::<Coulomb>(&known_machine()?, trial, &as_in_the_thesis()?)?;
-    let model = fit.model(trial, 0).ok_or("the fitted motion cannot be drawn")?;
+    let fit = identify::<Coulomb>(&known_machine()?, &mobilities(trial)?)?;
+    let model = fitted_velocity(&fit, trial)?;
     let record = &test.mobilities[0];
     let model = spectra.mobility_of_pulse(&trial[0], &model)?;
     let size = |response: &FrequencyResponse| over_frequency(response, |value| decibels(value.norm()));

@@ -1,7 +1,7 @@
 //! The record, and the fit that is repeated.
 
 use fmm_friction::Coulomb;
-use fmm_identify::MachineProblem;
+use fmm_identify::Problem as Declared;
 use fmm_model::{Bounds, Damping, Oscillator};
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Sampling, Scenario};
@@ -9,7 +9,7 @@ use fmm_sim::{Engine, Sampling, Scenario};
 use crate::{Found, printed};
 
 /// The fit of coefficient of friction and initial position.
-pub type Problem = MachineProblem<Coulomb>;
+pub type Problem = Declared<'static>;
 
 /// The coefficient of friction that the record is made with.
 pub const TRUTH: f64 = 0.15;
@@ -37,7 +37,7 @@ pub fn problem(engine: &impl Engine<f64, Coulomb>) -> Found<Problem> {
         ("initial_position", 1e-4),
         ("initial_velocity", VELOCITY),
     ];
-    Ok(MachineProblem::new(&record, &values)?
+    Ok(Problem::declared::<Coulomb>(&record, &values)?
         .free_within("coefficient", Bounds::new(0.1, 1.0)?)?
         .free_within("initial_position", Bounds::new(-3e-3, 3e-3)?)?)
 }

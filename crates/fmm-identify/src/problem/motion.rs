@@ -1,0 +1,85 @@
+//! Motion that the rows of a table describe.
+
+use fmm_fit::EvaluationError;
+use fmm_model::{Damping, Oscillator, Scalar};
+
+use crate::experiment::Experiment;
+use crate::law::Motion;
+use crate::machine::terms::Term;
+use crate::machine::{Machine, Scale};
+use crate::quantities::table::{Coordinates, Place, Table, mass_of_stiffness};
+
+impl Table {
+    /// The mass (kg) by the shared `values`, where the `machine` or the motion tells it.
+    pub(crate) fn mass<D: Scalar>(&self, machine: &Machine, values: &[D]) -> Option<D> {
+        let fitted = |place| self.shared(place).map(|index| values[index]);
+        match machine.scale() {
+            _ if !self.is_per_mass() => fitted(Place::Mass),
+            Scale::Mass(known) => Some(fitted(Place::Mass).unwrap_or(D::from(known.value()))),
+            Scale::Stiffness(known) => {
+                let stiffness = fitted(Place::Stiffness).unwrap_or(D::from(known.value()));
+                Some(mass_of_stiffness(stiffness, values[0]))
+            }
+            _ => None,
+        }
+    }
+
+    /// The motion of one `experiment`, of the shared `values` with its own behind them, in the order of the rows.
+    pub(crate) fn motion<D: Scalar>(
+        &self,
+        machine: &Machine,
+        record: usize,
+        experiment: &Experiment,
+        values: &[D],
+    ) -> Result<Motion<D>, EvaluationError> {
+        let fitted = |place| self.shared(place).map(|index| values[index]);
+        let mass = self.mass(machine, values);
+        let oscillator = match self.coordinates {
+            Coordinates::PerMass => Oscillator::per_unit_mass(values[0])?,
+            _ => Oscillator::new(values[0], values[1])?,
+        };
+        let known = machine.damping().map(|damping| D::from(damping.value()));
+        let damping = fitted(Place::MachineDamping).or(known).unwrap_or(D::from(0.0));
+        let damping = mass.filter(|_| self.is_per_mass()).map_or(damping, |mass| damping / mass);
+        let beside = |term: Term| fitted(Place::Term(term));
+        let per_mass = |term: Term| beside(term).map_or(D::from(0.0), |value| value * oscillator.mass());
+        let damping = beside(Term::LinearDamping).map_or(damping, |linear| damping + linear * oscillator.mass());
+        let quadratic = fitted(Place::QuadraticDamping).unwrap_or(D::from(0.0)) + per_mass(Term::QuadraticDamping);
+        let mut damping = Damping::of_any_sign(damping, quadratic)?;
+        if self.terms.has(Term::CubicDamping) {
+            damping = damping.with_cubic(per_mass(Term::CubicDamping))?;
+        }
+        if let Some(exponent) = beside(Term::PowerExponent) {
+            damping = damping.with_power(per_mass(Term::PowerDamping), exponent)?;
+        }
+        let own = |place| self.own(record, place).map(|index| values[index - self.own[record] + self.shared]);
+        let force = match experiment.drive() {
+            None => None,
+            Some(drive) => {
+                let one = D::from(1.0);
+                let mut per = match (drive.is_force(), self.is_per_mass()) {
+                    (true, true) => mass.map_or(one, |mass| one / mass),
+                    (true, false) => one,
+                    (false, _) => oscillator.mass(),
+                };
+                if let Some(gain) = own(Place::DriveGain) {
+                    per /= gain;
+                }
+                let known = D::from(experiment.sensor().delay());
+                let delay = own(Place::Delay).map_or(known, |delay| delay + known);
+                Some(drive.excitation(experiment.record().start(), delay, per)?)
+            }
+        };
+        let load = fitted(Place::NormalLoad).unwrap_or(D::from(1.0));
+        Ok(Motion {
+            oscillator: oscillator
+                .with_damping(damping)
+                .with_restoring(self.terms.spring(machine.restoring(), beside)?),
+            law: self.family.values(&values[self.of_law()]),
+            normal_load: load * experiment.load_factor(),
+            initial: [values[self.shared], values[self.shared + 1]],
+            force,
+            tolerance: None,
+        })
+    }
+}

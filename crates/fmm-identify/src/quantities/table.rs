@@ -1,0 +1,422 @@
+//! Table of quantities: each number of machine, law, experiment and sensor is a row.
+
+use std::borrow::Cow;
+use std::f64::consts::PI;
+use std::ops::Range;
+
+use fmm_friction::Role;
+use fmm_model::{Bounds, Parameter, Restoring, Rounded, Scalar};
+
+use crate::error::IdentifyError;
+use crate::experiment::{Experiment, reference};
+use crate::finding::Source;
+use crate::law::Law;
+use crate::law::dimension::is_force;
+use crate::law::naming::{Level, Units};
+use crate::machine::terms::{Term, Terms};
+use crate::machine::{Known, Machine, Scale};
+
+/// Amplitude (rad) beyond which a record is not one of a pendulum with that length: no crossing counts turns.
+const MOST_RADIANS: f64 = 4.0 * PI;
+
+/// Knowledge of a quantity before the records are looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Knowledge {
+    /// Found by the fit alone.
+    Free,
+    /// Known to a standard uncertainty: the fit takes it as one more observation.
+    Prior { value: f64, uncertainty: f64, source: Source },
+    /// A value that the fit does not change.
+    Fixed(f64),
+}
+
+impl Knowledge {
+    /// That of a quantity which is `known` by `source`.
+    fn of(known: Known, source: Source) -> Self {
+        match known.uncertainty() {
+            0.0 => Self::Fixed(known.value()),
+            uncertainty => Self::Prior { value: known.value(), uncertainty, source },
+        }
+    }
+}
+
+/// Place in the model of the number that a row holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// f₀ (Hz), where the motion does not show the mass.
+    Frequency,
+    Mass,
+    Stiffness,
+    /// Damping of the machine that is known to an uncertainty.
+    MachineDamping,
+    QuadraticDamping,
+    NormalLoad,
+    Term(Term),
+    /// A parameter of the law, by its number among the fitted ones.
+    Law(usize),
+    Position,
+    Velocity,
+    DriveGain,
+    Delay,
+    Offset,
+    Disturbance(usize),
+    Corner,
+}
+
+/// Row of the table beside its [`Parameter`], which has name, symbol, unit and bounds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) place: Place,
+    /// The record to which it belongs; `None` if all records share it.
+    pub(crate) record: Option<usize>,
+    pub(crate) knowledge: Knowledge,
+}
+
+/// Numbers by which the motion is described.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Coordinates {
+    /// Frequency, and forces per mass: all that a free vibration shows.
+    PerMass,
+    /// Mass, stiffness and forces.
+    Forces,
+    /// Mass, stiffness, damping and normal load as they are declared, and the law by its own coefficients.
+    Coefficients,
+}
+
+/// Rows of a problem in their order: oscillator, terms beside the law, law, then for each record its initial state, its
+/// drive, its offset, its disturbances and its sensor.
+#[derive(Debug, Clone)]
+pub(crate) struct Table {
+    pub(crate) family: Law,
+    /// The terms beside the law.
+    pub(crate) terms: Terms,
+    /// Units of the motion and of forces.
+    pub(crate) units: Units,
+    pub(crate) coordinates: Coordinates,
+    pub(crate) rows: Vec<Row>,
+    /// Bounds of each row by its nature.
+    pub(crate) natural: Vec<Bounds>,
+    /// Rows of the oscillator; the terms follow.
+    pub(crate) oscillator: usize,
+    /// First row of the law.
+    pub(crate) law: usize,
+    /// Rows that all records share.
+    pub(crate) shared: usize,
+    /// First row of each record.
+    pub(crate) own: Vec<usize>,
+    /// Rows of each record on which its motion depends; they come first.
+    of_motion: Vec<usize>,
+}
+
+/// Rows and parameters while they are collected.
+#[derive(Default)]
+struct Builder {
+    rows: Vec<Row>,
+    parameters: Vec<Parameter>,
+}
+
+impl Builder {
+    fn push(&mut self, place: Place, record: Option<usize>, parameter: Parameter, knowledge: Knowledge) {
+        self.rows.push(Row { place, record, knowledge });
+        self.parameters.push(parameter);
+    }
+
+    fn free(&mut self, place: Place, parameter: Parameter) {
+        self.push(place, None, parameter, Knowledge::Free);
+    }
+}
+
+/// Refuses a pendulum that would turn over and over in the record.
+fn require_swing(machine: &Machine, record: &Experiment) -> Result<(), IdentifyError> {
+    let Restoring::Sine { length } = machine.restoring() else { return Ok(()) };
+    let angle = record.scales().0 / length;
+    if angle <= MOST_RADIANS {
+        return Ok(());
+    }
+    let unit = Units::of(record.record()).position;
+    Err(IdentifyError::contradiction(format!(
+        "a pendulum that moves by {} {unit} for each radian would swing by {angle:.3e} rad in this record, beyond two \
+         whole turns; give the length in {unit} that makes one radian",
+        Rounded::every_digit(length)
+    )))
+}
+
+const MASS: Parameter = Parameter::new("mass", "m", "kg").bounded(Bounds::POSITIVE);
+const STIFFNESS: Parameter = Parameter::new("stiffness", "k", "N/m").bounded(Bounds::POSITIVE);
+
+/// The rows of the oscillator.
+fn oscillator(machine: &Machine, experiments: &[Experiment], coordinates: Coordinates, rows: &mut Builder) {
+    let is_forced = experiments.iter().any(Experiment::is_forced);
+    let known = |known: Known, source| Knowledge::of(known, source);
+    match (coordinates, machine.scale()) {
+        (Coordinates::PerMass, scale) => {
+            let bounds = reference(experiments).frequency_bounds();
+            rows.free(Place::Frequency, Parameter::new("natural_frequency_hz", "f₀", "Hz").bounded(bounds));
+            // A free vibration does not depend on it: there it makes forces of forces per mass, and nothing else.
+            match scale {
+                Scale::Mass(mass) if is_forced && mass.uncertainty() > 0.0 => {
+                    rows.push(Place::Mass, None, MASS, known(mass, Source::Mass))
+                }
+                Scale::Stiffness(stiffness) if is_forced && stiffness.uncertainty() > 0.0 => {
+                    rows.push(Place::Stiffness, None, STIFFNESS, known(stiffness, Source::Stiffness));
+                }
+                _ => {}
+            }
+        }
+        (_, Scale::MassAndStiffness(mass, stiffness)) => {
+            rows.push(Place::Mass, None, MASS, known(mass, Source::Mass));
+            rows.push(Place::Stiffness, None, STIFFNESS, known(stiffness, Source::Stiffness));
+        }
+        _ => {
+            rows.free(Place::Mass, MASS);
+            rows.free(Place::Stiffness, STIFFNESS);
+        }
+    }
+    let is_declared = coordinates == Coordinates::Coefficients;
+    if let Some(damping) = machine.damping().filter(|damping| is_declared || damping.uncertainty() > 0.0) {
+        let per_mass = machine.scale() == Scale::PerUnitMass;
+        let (name, symbol, unit) = match (is_declared, per_mass) {
+            (true, _) => ("damping", "c", "N s/m"),
+            (false, true) => ("machine_damping_per_mass", "c_m/m", "1/s"),
+            (false, false) => ("machine_damping", "c_m", "N s/m"),
+        };
+        let parameter = Parameter::new(name, symbol, unit).bounded(Bounds::NOT_NEGATIVE);
+        rows.push(Place::MachineDamping, None, parameter, known(damping, Source::Damping));
+    }
+    if is_declared {
+        let quadratic = Parameter::new("quadratic_damping", "A", "N s²/m²").bounded(Bounds::NOT_NEGATIVE);
+        rows.push(Place::QuadraticDamping, None, quadratic, Knowledge::Fixed(0.0));
+        let load = machine.normal_load().map_or(Knowledge::Fixed(1.0), |load| known(load, Source::NormalLoad));
+        let parameter = Parameter::new("normal_load", "N", "N").bounded(Bounds::POSITIVE);
+        rows.push(Place::NormalLoad, None, parameter, load);
+    }
+}
+
+/// The rows of `experiment` number `record`; returns how many of them its motion depends on.
+fn of_experiment(
+    record: usize,
+    experiments: &[Experiment],
+    units: &Units,
+    rows: &mut Builder,
+) -> Result<usize, IdentifyError> {
+    let experiment = &experiments[record];
+    let named = |name: &'static str| match experiments.len() {
+        1 => Cow::Borrowed(name),
+        _ => Cow::Owned(format!("{name}_{}", record + 1)),
+    };
+    let first = rows.rows.len();
+    let mut push = |place, parameter, knowledge| rows.push(place, Some(record), parameter, knowledge);
+    let state = if experiment.begins_at_rest() { Knowledge::Fixed(0.0) } else { Knowledge::Free };
+    push(Place::Position, Parameter::named(named("initial_position"), "x₀", units.position.to_string()), state);
+    push(Place::Velocity, Parameter::named(named("initial_velocity"), "v₀", units.velocity().to_string()), state);
+    let mut count = 2;
+    if let Some(drive) = experiment.drive() {
+        if drive.gain_uncertainty() > 0.0 {
+            let name = if drive.is_force() { "force_gain" } else { "base_gain" };
+            let known =
+                Knowledge::Prior { value: 1.0, uncertainty: drive.gain_uncertainty(), source: Source::ForceGain };
+            push(Place::DriveGain, Parameter::named(named(name), "g", "1").bounded(Bounds::POSITIVE), known);
+            count += 1;
+        }
+        let longest = drive.longest_delay();
+        if longest > 0.0 {
+            let delay = Parameter::named(named("delay"), "τ", "s").bounded(Bounds::new(-longest, longest)?);
+            let known = drive.delay_uncertainty().map_or(Knowledge::Free, |uncertainty| Knowledge::Prior {
+                value: 0.0,
+                uncertainty,
+                source: Source::Timing,
+            });
+            push(Place::Delay, delay, known);
+            count += 1;
+        }
+    }
+    let unit = experiment.record().unit();
+    if experiment.fixed_offset().is_none() {
+        push(Place::Offset, Parameter::named(named("offset"), "b", unit.to_owned()), Knowledge::Free);
+    }
+    let number = if experiments.len() == 1 { String::new() } else { format!("_{}", record + 1) };
+    for (at, disturbance) in experiment.nuisances().iter().enumerate() {
+        push(Place::Disturbance(at), disturbance.parameter(at, &number, unit), Knowledge::Free);
+    }
+    if experiment.sensor().has_free_corner() {
+        let corner = Parameter::named(named("sensor_corner_hz"), "f_c", "Hz").bounded(experiment.corner_bounds());
+        push(Place::Corner, corner, Knowledge::Free);
+    }
+    debug_assert!(rows.rows.len() >= first + count);
+    Ok(count)
+}
+
+impl Table {
+    /// Table and parameters of `family` with `terms` for these experiments.
+    pub(crate) fn of(
+        family: Law,
+        machine: &Machine,
+        terms: &Terms,
+        experiments: &[Experiment],
+    ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
+        let coordinates = match machine.scale() {
+            Scale::Unknown | Scale::MassAndStiffness(..) => Coordinates::Forces,
+            _ => Coordinates::PerMass,
+        };
+        Self::by(coordinates, family, machine, terms, experiments)
+    }
+
+    /// As [`of`](Self::of), by these `coordinates`.
+    pub(crate) fn by(
+        coordinates: Coordinates,
+        family: Law,
+        machine: &Machine,
+        terms: &Terms,
+        experiments: &[Experiment],
+    ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
+        family.require_units()?;
+        if terms.has_linear_damping() && family.has_slope() {
+            return Err(IdentifyError::two_dampings(family.name));
+        }
+        if let Some(contradiction) = terms.spring_contradiction(machine.restoring()) {
+            return Err(IdentifyError::contradiction(contradiction));
+        }
+        let reference = reference(experiments);
+        require_swing(machine, reference)?;
+        let is_driven = experiments.iter().any(|experiment| experiment.drive().is_some());
+        let is_declared = coordinates == Coordinates::Coefficients;
+        let family = if is_driven || is_declared { family.with_breakaway() } else { family };
+        let units = Units::of(reference.record());
+        let level = match coordinates {
+            Coordinates::PerMass => Level::PerMass,
+            Coordinates::Forces => Level::Force,
+            Coordinates::Coefficients => Level::Coefficient,
+        };
+        let mut rows = Builder::default();
+        oscillator(machine, experiments, coordinates, &mut rows);
+        let oscillator = rows.rows.len();
+        for (term, parameter) in terms.iter().zip(terms.parameters(&units.position)) {
+            rows.free(Place::Term(term), parameter);
+        }
+        let law = rows.rows.len();
+        for (number, parameter) in family.fitted().enumerate() {
+            let parameter = if is_declared { parameter.parameter().clone() } else { units.fitted(parameter, level) };
+            rows.free(Place::Law(number), parameter);
+        }
+        let shared = rows.rows.len();
+        let (mut own, mut of_motion) = (Vec::with_capacity(experiments.len()), Vec::with_capacity(experiments.len()));
+        for record in 0..experiments.len() {
+            own.push(rows.rows.len());
+            of_motion.push(of_experiment(record, experiments, &units, &mut rows)?);
+        }
+        let Builder { rows, parameters } = rows;
+        let natural = parameters.iter().map(Parameter::bounds).collect();
+        let terms = terms.clone();
+        let mut table =
+            Self { family, terms, units, coordinates, rows, natural, oscillator, law, shared, own, of_motion };
+        let mut parameters = parameters;
+        table.settle(&mut parameters)?;
+        Ok((table, parameters))
+    }
+
+    /// Fixes what the terms fix, and narrows the bounds of all fixed rows.
+    fn settle(&mut self, parameters: &mut [Parameter]) -> Result<(), IdentifyError> {
+        for (name, value) in self.terms.held() {
+            let known = || parameters.iter().map(Parameter::name).collect::<Vec<_>>().join(", ");
+            let Some(index) = parameters.iter().position(|parameter| parameter.name() == name) else {
+                let law = self.family.name;
+                return Err(IdentifyError::UnknownName {
+                    what: format!("{law} has no parameter called {name:?} to hold; its parameters are: {}", known()),
+                });
+            };
+            self.rows[index].knowledge = Knowledge::Fixed(value);
+        }
+        for (parameter, row) in parameters.iter_mut().zip(&self.rows) {
+            let Knowledge::Fixed(value) = row.knowledge else { continue };
+            let bounds = parameter.bounds();
+            if !bounds.contains(value) {
+                let (name, lower, upper) = (parameter.name().to_owned(), bounds.lower(), bounds.upper());
+                return Err(IdentifyError::held_out_of_bounds(&name, value, lower, upper));
+            }
+            *parameter = parameter.clone().bounded(Bounds::new(value, value)?);
+        }
+        Ok(())
+    }
+
+    /// Rows of the law.
+    pub(crate) fn of_law(&self) -> Range<usize> {
+        self.law..self.shared
+    }
+
+    /// Whether forces are per mass, as a free vibration shows them.
+    pub(crate) fn is_per_mass(&self) -> bool {
+        self.coordinates == Coordinates::PerMass
+    }
+
+    /// Index of a row that all records share.
+    pub(crate) fn shared(&self, place: Place) -> Option<usize> {
+        self.rows[..self.shared].iter().position(|row| row.place == place)
+    }
+
+    /// Index of a row of record number `record`.
+    pub(crate) fn own(&self, record: usize, place: Place) -> Option<usize> {
+        let first = self.own[record];
+        let end = self.own.get(record + 1).copied().unwrap_or(self.rows.len());
+        self.rows[first..end].iter().position(|row| row.place == place).map(|at| first + at)
+    }
+
+    /// Rows on which the motion of record number `record` depends: the shared ones, its initial state and its drive.
+    pub(crate) fn directions(&self, record: usize) -> usize {
+        self.shared + self.of_motion[record]
+    }
+
+    /// Index of row `direction` of record `record` among all rows.
+    pub(crate) fn index(&self, record: usize, direction: usize) -> usize {
+        if direction < self.shared { direction } else { self.own[record] + direction - self.shared }
+    }
+
+    /// All rows on which the residuals of record number `record` depend, in their order.
+    pub(crate) fn of_record(&self, record: usize) -> impl Iterator<Item = usize> + use<> {
+        let end = self.own.get(record + 1).copied().unwrap_or(self.rows.len());
+        (0..self.shared).chain(self.own[record]..end)
+    }
+
+    /// Index of the first disturbance of record number `record`; of none, where it would be.
+    pub(crate) fn first_disturbance(&self, record: usize) -> usize {
+        let of_motion = self.own[record] + self.of_motion[record];
+        of_motion + usize::from(self.own(record, Place::Offset).is_some())
+    }
+
+    /// Whether the row at `index` is proportional to the forces, of which a measured one sets the scale.
+    pub(crate) fn is_scaled_by_force(&self, index: usize) -> bool {
+        match self.rows[index].place {
+            Place::Mass | Place::Stiffness => true,
+            Place::Law(number) => self
+                .family
+                .fitted()
+                .nth(number)
+                .is_some_and(|parameter| is_force(parameter.role()) || parameter.role() == Role::Slope),
+            _ => false,
+        }
+    }
+
+    /// The power of the gain of the record to which the row at `index`, of these `values`, is proportional.
+    pub(crate) fn power_of_gain(&self, index: usize, values: &[f64]) -> f64 {
+        // Where a measured force sets the scale, a record that reads too much makes mass and stiffness too small.
+        let by_force = if self.is_per_mass() { 0.0 } else { -1.0 };
+        match self.rows[index].place {
+            Place::Position | Place::Velocity | Place::Offset | Place::Disturbance(_) => 1.0,
+            Place::DriveGain => -1.0,
+            Place::Mass | Place::Stiffness => by_force,
+            Place::Law(number) => self.family.fitted().nth(number).map_or(0.0, |parameter| {
+                self.family.power_of_gain(parameter) + if self.is_scaled_by_force(index) { by_force } else { 0.0 }
+            }),
+            Place::Term(term) => {
+                let exponent = self.shared(Place::Term(Term::PowerExponent)).map_or(1.0, |index| values[index]);
+                term.power_of_gain(exponent)
+            }
+            _ => 0.0,
+        }
+    }
+}
+
+/// m = k/(2π f₀)².
+pub(crate) fn mass_of_stiffness<D: Scalar>(stiffness: D, natural_frequency: D) -> D {
+    let angular = natural_frequency * (2.0 * PI);
+    stiffness / (angular * angular)
+}
