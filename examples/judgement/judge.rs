@@ -2,7 +2,7 @@
 
 use fmm_identify::search;
 use fmm_identify::{
-    Comparison, Experiment, Finding, Identification, IdentifyError, Machine, Preparation, Search, Warning,
+    Comparison, Experiment, Finding, Identification, IdentifyError, Machine, Preparation, Search, Severity, Warning,
 };
 
 use super::law::Law;

@@ -3,7 +3,6 @@
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-use fmm_fit::Options;
 use fmm_frf::{
     AverageOptions, Baseline, CoulombLine, Estimator, ForceWindow, FrictionSpectrum, ResponseForm,
     SingleDegreeOfFreedom, TrialAverage,
@@ -157,7 +156,7 @@ fn damping_is_found_with_a_hammer_that_is_trusted_or_hardly() {
     for calibration in [0.0, 0.5] {
         let trials = few_trials().into_iter().map(|trial| trial.with_calibration_uncertainty(calibration).unwrap());
         let mobilities = mobilities(&trials.collect::<Vec<_>>());
-        let found = identify_with::<Coulomb>(&machine(false), &damped, &mobilities, &Options::default()).unwrap();
+        let found = identify_with::<Coulomb>(&machine(false), &damped, &mobilities).unwrap();
         let (error, u) = relative(&found);
         assert!(error.abs() < 3.0 * u && u < 3e-3, "μ is off by {error} ± {u}\n{found}");
         let damping = found.finding("damping_per_mass").unwrap();
@@ -319,7 +318,7 @@ fn other_laws() {
     let value = found.finding("mu").unwrap().value();
     assert!((value / 0.04 - 1.0).abs() < 1e-6, "{found}");
     let damped = Terms::default().with_linear_damping();
-    let two = identify_with::<CoulombViscous>(&small::machine(), &damped, &experiments, &Options::default());
+    let two = identify_with::<CoulombViscous>(&small::machine(), &damped, &experiments);
     assert!(matches!(two, Err(IdentifyError::Contradiction { .. })));
 }
 

@@ -30,7 +30,7 @@ fn problem(engine: &impl Engine<f64, Coulomb>) -> Problem<'static> {
 }
 
 /// The fit prepared for other masses, stiffnesses and dampings.
-fn refit(problem: &Problem<'static>) -> Refit<'_, Problem<'static>> {
+fn refit<'a>(problem: &'a Problem<'static>) -> Refit<'a, Problem<'static>> {
     let fit = solve(problem, problem.values(), &Options::default()).unwrap();
     Refit::prepare(problem, &fit).unwrap().varying(&MACHINE.map(|(name, ..)| name)).unwrap()
 }

@@ -6,10 +6,7 @@ use std::f64::consts::PI;
 
 use fmm_fit::{Options, solve};
 use fmm_friction::{Berger, Coulomb, CoulombStatic, CoulombViscous, LawFamily};
-use fmm_identify::{
-    Drive, Experiment, ImpactDomain, ImpactMachine, ImpactOptions, ImpactTrial, Known, Machine, Preparation, Sensor,
-    Terms, identify_impact, identify_with,
-};
+use fmm_identify::{Drive, Experiment, ImpactTrial, Known, Machine, Preparation, Sensor, Terms, identify_with};
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Channels, Exact, Excitation, Sampling, Scenario, Trajectory, simulate_into};
@@ -152,38 +149,38 @@ fn trial([impulse, duration]: [f64; 2], samples: usize, interval: f64, seed: u64
     ImpactTrial::prepare(&force, &velocity).unwrap()
 }
 
-/// Blows of chapter 8 by their mobility, by their time record and by both.
+/// Impacts of chapter 8 by their mobility and by their motion.
 pub(crate) fn impacts() -> Vec<(String, Value)> {
     let levels = [[0.98, 34e-4], [1.42, 22e-4], [1.64, 18e-4]];
     let trials: Vec<ImpactTrial> =
         levels.into_iter().zip(21..).map(|(level, seed)| trial(level, 200_000, 1e-4, seed)).collect();
-    let machine = |u: [f64; 4]| {
-        let known = |value, u| Known::new(value, u).unwrap();
-        let machine = ImpactMachine::new(known(MASS, u[0]), known(STIFFNESS, u[1])).unwrap();
-        machine.with_damping(known(0.275, u[2])).unwrap().with_normal_load(known(6.67, u[3])).unwrap()
+    let known = |value, u| Known::new(value, u).unwrap();
+    let without_damping = |u: [f64; 4]| {
+        let machine = Machine::of_mass_and_stiffness(known(MASS, u[0]), known(STIFFNESS, u[1])).unwrap();
+        machine.with_normal_load(known(6.67, u[3])).unwrap()
     };
+    let machine = |u: [f64; 4]| without_damping(u).with_damping(known(0.275, u[2])).unwrap();
     let exact = machine([0.0; 4]);
     let uncertain = machine([0.0049, 1.3, 0.0341, 0.01]);
-    let band = ImpactOptions::default().within(1.0, 4.0).unwrap();
-    let gains = band.clone().with_force_gain_uncertainty(0.02).unwrap().with_response_gain_uncertainty(0.005).unwrap();
-    let by = |machine: &ImpactMachine, trials: &[ImpactTrial], options: &ImpactOptions| {
-        serde_json::to_value(identify_impact::<Coulomb>(machine, trials, options).unwrap()).unwrap()
+    let mobilities = |trials: &[ImpactTrial]| -> Vec<Experiment> {
+        trials.iter().map(|trial| Experiment::mobility(trial, Some((1.0, 4.0))).unwrap()).collect()
     };
-    let viscous =
-        identify_impact::<CoulombViscous>(&exact, &trials, &band.clone().fitting(ImpactDomain::Time)).unwrap();
+    let motions = |trials: &[ImpactTrial]| -> Vec<Experiment> {
+        trials.iter().map(|trial| Experiment::impact(trial).unwrap()).collect()
+    };
+    let (plain, damped) = (Terms::default(), Terms::default().with_linear_damping());
+    let by =
+        |machine: &Machine, terms: &Terms, experiments: &[Experiment]| found::<Coulomb>(machine, terms, experiments);
+    let calibrated = [trials[0].clone().with_calibration_uncertainty(0.02).unwrap()];
     [
-        ("mobility, low", by(&exact, &trials[..1], &band)),
-        ("mobility, medium", by(&exact, &trials[1..2], &band)),
-        ("mobility, high", by(&exact, &trials[2..], &band)),
-        ("mobility, all, damping free", by(&exact, &trials, &band.clone().free("damping"))),
-        ("mobility, uncertain machine and gains", by(&uncertain, &trials[..1], &gains)),
-        ("time, all", by(&exact, &trials, &band.clone().fitting(ImpactDomain::Time))),
-        ("time, uncertain machine and gains", by(&uncertain, &trials[..1], &gains.fitting(ImpactDomain::Time))),
-        (
-            "both, medium, stiffness free",
-            by(&exact, &trials[1..2], &band.fitting(ImpactDomain::Both).free("stiffness")),
-        ),
-        ("time, all, viscous as well", serde_json::to_value(viscous).unwrap()),
+        ("mobility, low", by(&exact, &plain, &mobilities(&trials[..1]))),
+        ("mobility, medium", by(&exact, &plain, &mobilities(&trials[1..2]))),
+        ("mobility, high", by(&exact, &plain, &mobilities(&trials[2..]))),
+        ("mobility, all, damping free", by(&without_damping([0.0; 4]), &damped, &mobilities(&trials))),
+        ("mobility, uncertain machine and hammer", by(&uncertain, &plain, &mobilities(&calibrated))),
+        ("time, medium", by(&exact, &plain, &motions(&trials[1..2]))),
+        ("time, uncertain machine and hammer", by(&uncertain, &plain, &motions(&calibrated))),
+        ("time, medium, viscous as well", found::<CoulombViscous>(&exact, &plain, &motions(&trials[1..2]))),
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .into()

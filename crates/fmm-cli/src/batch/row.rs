@@ -162,7 +162,12 @@ fn found(record: &RecordOptions) -> Result<Found, Box<dyn Error>> {
     let gain =
         Some((Source::Gain, record.given.scale.unwrap_or(1.0), record.question.scale_u)).filter(|gain| gain.2 > 0.0);
     let stated = record.question.stated().chain(gain);
-    let doubts = comparison.warnings().iter().filter(|warning| warning.severity() == Severity::Doubt).map(ToString::to_string).collect();
+    let doubts = comparison
+        .warnings()
+        .iter()
+        .filter(|warning| warning.severity() == Severity::Doubt)
+        .map(ToString::to_string)
+        .collect();
     let samples = fingerprint(&input.record);
     let warnings = input.warnings.into_iter().chain(comparison.warnings().iter().map(ToString::to_string));
     Ok(Found {

@@ -1,7 +1,7 @@
 //! Driven motion: the law comes back from a measured force or a measured motion of the base.
 
 use fmm_friction::CoulombViscous;
-use fmm_identify::{Drive, Experiment, IdentifyError, Known, Machine, Preparation, identify};
+use fmm_identify::{Drive, Experiment, IdentifyError, Known, Machine, Preparation, Source, Warning, identify};
 use fmm_record::{Quantity, Record};
 
 use crate::simulated::{INTERVAL, LOAD, MASS, Motion, STIFFNESS, machine, record, share_inside};
@@ -76,29 +76,37 @@ fn a_force_tells_the_scale() {
     }
 }
 
-/// Half the difference that a mass of ± u makes comes on top of the uncertainty of the fit.
+/// Beside an exact force the record tells the mass: one that is given is one more observation of it, and what it leaves
+/// open is a part of each uncertainty.
 #[test]
-fn the_mass_is_uncertain_with_the_force() {
+fn a_mass_that_is_given_is_one_more_observation() {
     let force = force_of_base(8e-3);
     let motion = motion(&force);
     let drive = Drive::force(&Record::new(0.0, INTERVAL, force, Quantity::Force, "N").unwrap()).unwrap();
     let response = record(motion.velocity().values(), 1e-3, 7, Quantity::Velocity, "m/s");
-    let experiment = Experiment::driven(&response, drive, &Preparation::default()).unwrap();
-    let of = |mass: f64, u: f64| {
-        let machine = Machine::of_mass(Known::new(mass, u).unwrap()).unwrap();
-        identify::<CoulombViscous>(&machine, std::slice::from_ref(&experiment)).unwrap()
-    };
-    let u = 0.05;
-    let [exact, uncertain] = [0.0, u].map(|u| of(MASS, u));
-    let [below, above] = [MASS - u, MASS + u].map(|mass| of(mass, 0.0));
-    for name in ["friction_force", "stiffness", "damping"] {
-        let value = |found: &fmm_identify::Identification| found.finding(name).unwrap().value();
-        let stated = |found: &fmm_identify::Identification| found.finding(name).unwrap().uncertainty().unwrap();
-        let change = 0.5 * (value(&above) - value(&below));
-        let expected = stated(&exact).hypot(change);
-        assert!((stated(&uncertain) / expected - 1.0).abs() < 1e-6, "{name}: {} for {expected}", stated(&uncertain));
-        assert!(stated(&uncertain) > 1.01 * stated(&exact), "{name} does not see the mass");
+    let experiment = [Experiment::driven(&response, drive, &Preparation::default()).unwrap()];
+    let of = |machine: &Machine| identify::<CoulombViscous>(machine, &experiment).unwrap();
+    let given = |u: f64| of(&Machine::of_mass(Known::new(MASS, u).unwrap()).unwrap());
+    let (alone, exact) = (of(&Machine::unknown()), given(0.0));
+    let u = |found: &fmm_identify::Identification, name: &str| found.finding(name).unwrap().uncertainty().unwrap();
+    // Two independent observations: 1/u² is the sum of both.
+    let of_record = u(&alone, "mass");
+    for given_u in [0.3 * of_record, of_record, 3.0 * of_record] {
+        let both = given(given_u);
+        let expected = (of_record.powi(-2) + given_u.powi(-2)).powf(-0.5);
+        assert!((u(&both, "mass") / expected - 1.0).abs() < 0.02, "{} for {expected}", u(&both, "mass"));
+        let friction = both.finding("friction_force").unwrap();
+        let by_mass = friction.contributions().find(|part| part.source == Source::Mass).unwrap();
+        assert!(by_mass.uncertainty > 0.0 && by_mass.share < 1.0, "{by_mass:?}");
+        let (least, most) = (u(&exact, "friction_force"), u(&alone, "friction_force"));
+        let found = u(&both, "friction_force");
+        assert!(least < found && found < 1.01 * most, "{least} {found} {most}");
     }
+    // A mass that is far from what the record shows is said to be.
+    let wrong = of(&Machine::of_mass(Known::new(1.1 * MASS, 0.01 * MASS).unwrap()).unwrap());
+    let is_said =
+        |warning: &Warning| matches!(warning, Warning::KnowledgeContradicted { parameter, .. } if parameter == "mass");
+    assert!(wrong.warnings().iter().any(is_said), "{wrong}");
 }
 
 #[test]

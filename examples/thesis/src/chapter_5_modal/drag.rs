@@ -1,7 +1,6 @@
 //! The drag term of section 5.2: what a record of 5 s and one of 45 s say of it.
 
 use fmm_fit::{Fit, Options, solve};
-use fmm_friction::Coulomb;
 use fmm_identify::Problem;
 
 use super::identifiability::{NOISE, WINDOW};

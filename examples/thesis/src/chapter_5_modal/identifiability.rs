@@ -176,7 +176,7 @@ fn with_stiffness_held(chapter: &mut Chapter) -> Found<()> {
         let clean = motion(linear(truth)?, (0.0, velocity), WINDOW)?;
         let record = record(clean.velocity().values(), 0.0, 0)?;
         let problem = a1_of_stiffness(&record, [1.02 * truth[0], truth[1], START_DAMPING])?;
-        let problem = if by_thesis { problem.by_thesis::<Coulomb>() } else { problem };
+        let problem = if by_thesis { problem.by_thesis::<fmm_friction::Coulomb>() } else { problem };
         let fit = solve(&problem, problem.values(), &Options::default())?;
         Ok([value(&fit, "mass")? / truth[0] - 1.0, value(&fit, "damping")? / truth[2] - 1.0])
     };

@@ -1,6 +1,5 @@
 //! One coefficient for all levels: Figs 36 to 41.
 
-use fmm_fit::Options;
 use fmm_frf::{friction_force_of_coulomb_impact, friction_force_of_viscous_coulomb_impact};
 use fmm_friction::Coulomb;
 use fmm_identify::{Experiment, Identification, ImpactTrial, Known, Machine, Terms, identify, identify_with};
@@ -79,12 +78,8 @@ pub(super) fn add(
     }
     let trials: Vec<ImpactTrial> = tests.iter().flat_map(|test| test.trials.iter().cloned()).collect();
     let free = known_machine_without_damping()?;
-    let joint = identify_with::<Coulomb>(
-        &free,
-        &Terms::default().with_linear_damping(),
-        &mobilities(&trials)?,
-        &Options::default(),
-    )?;
+    let damped = Terms::default().with_linear_damping();
+    let joint = identify_with::<Coulomb>(&free, &damped, &mobilities(&trials)?)?;
     joint_fit(chapter, &joint, trials.len(), &mut rows)?;
     chapter.table(
         "μ of the simulated blows, truth 0.113 at 6.67 N: fits of the complex mobility, and closed forms of the highest line",

@@ -46,7 +46,7 @@ pub fn exact_rows(
 /// # Errors
 /// If a fit fails.
 pub fn euler_rows(trials: [u64; 4], seed: u64, kicks: usize, watch: &(dyn Fn(u64) + Sync)) -> Found<Vec<Row>> {
-    let problem = problem(&Thesis::A3)?.by_thesis::<Coulomb>();
+    let problem = problem(&Thesis::A3)?.by_thesis::<fmm_friction::Coulomb>();
     rows(trials, seed, watch, |x| euler_fit(&problem, kicks, x))
 }
 
