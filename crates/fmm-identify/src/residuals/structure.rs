@@ -23,6 +23,8 @@ pub(crate) struct ResidualStructure {
     rounding: f64,
     /// τ (samples).
     pub(crate) autocorrelation_time: f64,
+    /// Lines of spectra are among the residuals, which do not follow each other in time.
+    has_lines: bool,
 }
 
 /// Above this ratio of residual to noise, and with neighbours that tell each other's value, a law misses something.
@@ -34,14 +36,15 @@ impl ResidualStructure {
             scaled(decays).map(|(decay, weight)| 1e-9 * weight * decay.summary().amplitudes.0).fold(0.0, f64::max);
         // A converter step counts as the noise of its rounding.
         let noise = scaled(decays).map(|(decay, weight)| weight * decay.white_noise()).fold(rounding, f64::max);
-        Self::beside(fit, noise, rounding)
+        let has_lines = decays.iter().any(|decay| decay.lines().is_some());
+        Self { has_lines, ..Self::beside(fit, noise, rounding) }
     }
 
     /// That of a fit to series of which the `noise` and the `rounding` are known, in the unit of the residuals.
     pub(crate) fn beside(fit: &Fit, noise: f64, rounding: f64) -> Self {
         let residual = (fit.sum_of_squares() / fit.residuals().len() as f64).sqrt();
         let autocorrelation_time = autocorrelation_time(fit.residuals()).unwrap_or(1.0);
-        Self { residual, noise: noise.max(rounding), rounding, autocorrelation_time }
+        Self { residual, noise: noise.max(rounding), rounding, autocorrelation_time, has_lines: false }
     }
 
     /// Whether there is more in the residuals than the rounding of doubles.
@@ -56,7 +59,7 @@ impl ResidualStructure {
 
     /// Whether the law misses something that the record shows.
     pub(crate) fn is_structured(&self) -> bool {
-        self.is_excessive() && self.is_correlated()
+        self.is_excessive() && (self.is_correlated() || self.has_lines)
     }
 
     /// What a noise that is not white has to tell, for the largest `inflation` of a standard uncertainty; nothing where
@@ -273,14 +276,21 @@ mod tests {
             (1.4, 2.9, false, false),
         ];
         for (residual, autocorrelation_time, is_structured, is_coloured) in cases {
-            let structure = ResidualStructure { residual, noise: 1.0, rounding: 1e-9, autocorrelation_time };
+            let structure =
+                ResidualStructure { residual, noise: 1.0, rounding: 1e-9, autocorrelation_time, has_lines: false };
             assert_eq!(structure.is_structured(), is_structured, "{structure:?}");
             let warning = structure.coloured_noise(2.0);
             assert_eq!(warning.is_some(), is_coloured, "{structure:?}");
             let sentence = warning.map_or(String::new(), |warning| warning.to_string());
             assert_eq!(sentence.contains("3.3 times the noise"), residual > 3.0 && is_coloured, "{sentence}");
         }
-        let exact = ResidualStructure { residual: 1e-10, noise: 1e-9, rounding: 1e-9, autocorrelation_time: 20.0 };
+        let exact = ResidualStructure {
+            residual: 1e-10,
+            noise: 1e-9,
+            rounding: 1e-9,
+            autocorrelation_time: 20.0,
+            has_lines: false,
+        };
         assert_eq!(exact.coloured_noise(1.0), None);
     }
 }
