@@ -14,13 +14,13 @@ pub enum IdentifyError {
     /// Something that has to be given was not, such as a record, a candidate, or the value of a parameter: give it.
     #[error("{what}")]
     Missing {
-        /// What is missing.
+        /// The missing input.
         what: String,
     },
     /// A record, a drive or a channel of another kind, quantity or unit than is taken: choose or convert another.
     #[error("{what}")]
     WrongRecord {
-        /// What is taken, and what was given.
+        /// Accepted and given input.
         what: String,
     },
     /// Too few samples, half swings or quiet samples: take a longer record, or ask for less of it.
@@ -28,21 +28,21 @@ pub enum IdentifyError {
     TooFew {
         /// Of what there are too few.
         what: String,
-        /// How many there are.
+        /// Number of those that there are.
         found: usize,
-        /// How many are needed.
+        /// Number of those that are needed.
         needed: usize,
     },
     /// The record does not show what is looked for in it: look at the data.
     #[error("{what}")]
     NotSeen {
-        /// What is not there, and what is there instead.
+        /// Unknown name, and the known ones.
         what: String,
     },
     /// A number that cannot be: give another.
     #[error("{what}")]
     OutOfRange {
-        /// What it was given for, its value, and what it may be.
+        /// Subject, value and allowed range.
         what: String,
         /// The value given.
         value: f64,
@@ -53,16 +53,16 @@ pub enum IdentifyError {
         /// The name given, and the names there are.
         what: String,
     },
-    /// What was given contradicts itself: leave one part of it out.
+    /// The input contradicts itself: leave one part of it out.
     #[error("{what}")]
     Contradiction {
-        /// What does not go together.
+        /// Contradicting parts.
         what: String,
     },
     /// Parameters that the record does not tell apart: hold one of them, or give a longer record.
     #[error("{estimator} cannot tell {parameters} apart in this record; hold one of them or give a longer record")]
     Undetermined {
-        /// Which estimator.
+        /// Name of the estimator.
         estimator: &'static str,
         /// Names of the parameters.
         parameters: String,
@@ -81,7 +81,7 @@ pub enum IdentifyError {
     Fit {
         /// Name of the law.
         law: &'static str,
-        /// What was wrong.
+        /// Cause.
         source: FitError,
     },
     /// There is no posterior.
@@ -90,7 +90,7 @@ pub enum IdentifyError {
     Posterior {
         /// Name of the law.
         law: String,
-        /// What was wrong.
+        /// Cause.
         source: fmm_fit::PosteriorError,
     },
     /// The fitted motion could not be simulated.
@@ -98,7 +98,7 @@ pub enum IdentifyError {
     Simulation {
         /// Name of the law.
         law: &'static str,
-        /// What was wrong.
+        /// Cause.
         source: Box<dyn Error + Send + Sync>,
     },
 }
@@ -171,7 +171,7 @@ impl IdentifyError {
         Self::TooFew { what, found: samples, needed }
     }
 
-    /// What the record does not show.
+    /// The record does not show something.
     pub(crate) fn not_seen(what: impl Into<String>) -> Self {
         Self::NotSeen { what: what.into() }
     }
@@ -228,7 +228,7 @@ impl IdentifyError {
         Self::UnknownName { what: format!("there is no parameter called {name:?}; the parameters are: {known}") }
     }
 
-    /// What does not go together.
+    /// Contradicting parts.
     pub(crate) fn contradiction(what: impl Into<String>) -> Self {
         Self::Contradiction { what: what.into() }
     }

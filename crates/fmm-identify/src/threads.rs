@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
-/// What `work` makes of each of `items`, in their order. With the feature `rayon` it goes on all threads of the current
+/// Results of `work` on each of `items`, in their order. With the feature `rayon` it goes on all threads of the current
 /// pool.
 pub(crate) fn on_all_threads<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Send + Sync) -> Vec<R> {
     #[cfg(feature = "rayon")]

@@ -1,4 +1,4 @@
-//! What an accelerometer records of a ring-down: the velocity in which its swings are seen, and the jumps where dry
+//! Ring-down recorded by an accelerometer: the velocity that shows its half cycles, and the jumps where dry
 //! friction reverses.
 
 use std::f64::consts::PI;

@@ -9,7 +9,7 @@ use fmm_sim::Excitation;
 
 use crate::error::IdentifyError;
 
-/// What drives a machine during a record, measured on the same time axis.
+/// Drive of a machine during a record, measured on the same time axis.
 ///
 /// Between its samples it is taken to be straight: sample it at ten times the highest frequency in it or more (an error
 /// of (ωh)²/12 of a sine of ω rad/s with samples every h seconds).
@@ -108,7 +108,7 @@ impl Drive {
         Self { delay_uncertainty: Some(uncertainty).filter(|u| *u > 0.0), ..self }
     }
 
-    /// That a response may be late by `delay` (s): not by more than the drive lasts.
+    /// Refuses a response that is later by `delay` (s) than the drive lasts.
     pub(crate) fn require_delay(&self, delay: f64) -> Result<(), IdentifyError> {
         if delay <= self.record.duration() {
             return Ok(());
@@ -142,12 +142,12 @@ impl Drive {
         &self.record
     }
 
-    /// Whether it is a force, which moves a mass according to how heavy it is.
+    /// True if it is a force, which moves a mass according to how heavy it is.
     pub(crate) fn is_force(&self) -> bool {
         self.kind == Kind::Force
     }
 
-    /// That the drive is known from `start` to `end` (s).
+    /// Refuses a drive that is not known from `start` to `end` (s).
     pub(crate) fn require_within(&self, start: f64, end: f64) -> Result<(), IdentifyError> {
         let slack = 1e-6 * self.record.interval();
         // A drive that has come to zero stays there.

@@ -101,7 +101,7 @@ impl Experiment {
     }
 }
 
-/// Where a fit of a driven motion may begin: the equation of motion in its weak form, by linear least squares.
+/// Start values of a driven motion: the equation of motion in its weak form, by linear least squares.
 ///
 /// ```text
 /// m ∫w x″ + c ∫w x′ + k ∫w x + F ∫w sgn x′ + κ ∫w = ∫w f        w = sin² πτ on overlapping windows
@@ -210,7 +210,7 @@ impl DrivenGuess {
         }
     }
 
-    /// That of an experiment that has no record yet.
+    /// Start values of an experiment that has no record yet.
     pub(super) fn planned(frequency: f64) -> Self {
         Self {
             mass: 1.0,

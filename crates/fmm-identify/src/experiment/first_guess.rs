@@ -80,7 +80,7 @@ impl FirstGuess {
         })
     }
 
-    /// What stands for these of a driven motion, which begins at `first` and swings about `offset` by `amplitude` at
+    /// Stand-in for these of a driven motion, which begins at `first` and swings about `offset` by `amplitude` at
     /// this `frequency` (Hz).
     pub(crate) fn of_driven(frequency: f64, offset: f64, amplitude: f64, first: f64, quantity: Quantity) -> Self {
         let (angular, amplitudes) = (2.0 * PI * frequency, vec![amplitude]);
@@ -111,7 +111,7 @@ impl FirstGuess {
         Dissipation { damping: -2.0 * ratio.ln() * self.angular / PI, friction: friction.max(0.0) }
     }
 
-    /// Whether the amplitudes depend on an offset that they cannot tell: the turning points of a displacement that
+    /// True if the amplitudes depend on an offset that they cannot tell: the turning points of a displacement that
     /// turns only a few times.
     fn is_ambiguous(&self) -> bool {
         self.quantity == Quantity::Displacement && self.amplitudes.len() < ENOUGH_TURNS

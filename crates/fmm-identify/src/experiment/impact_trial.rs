@@ -55,11 +55,11 @@ pub struct ImpactTrial {
     summary: ImpactSummary,
 }
 
-/// What a blow is and what was done to it. Times are on the time axis of the records.
+/// Description of an impact and of its preparation. Times are on the time axis of the records.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ImpactSummary {
-    /// How many samples there are of each channel.
+    /// Number of samples of each channel.
     pub samples: usize,
     /// Sampling rate (Hz).
     pub rate: f64,
@@ -73,11 +73,11 @@ pub struct ImpactSummary {
     pub time_uncertainty: f64,
     /// Largest force (N).
     pub level: f64,
-    /// How long the force of the blow lasts (s).
+    /// Duration of the force (s).
     pub duration: f64,
     /// Intervals between samples in the pulse.
     pub intervals: usize,
-    /// Where the hammer hit again; the fit takes those hits in.
+    /// Further hits of the hammer; the fit includes them.
     pub further_hits: Vec<Hit>,
     /// Samples of force and velocity cut off at the limits of the converter.
     pub overloads: (usize, usize),
@@ -179,7 +179,7 @@ impl ImpactTrial {
         self.calibration_uncertainty
     }
 
-    /// What the blow is and what was done to it.
+    /// Description of the impact and of its preparation.
     pub fn summary(&self) -> &ImpactSummary {
         &self.summary
     }
@@ -215,7 +215,7 @@ impl ImpactTrial {
     }
 }
 
-/// That the two records are a force and a velocity, in SI units, sampled at the same times.
+/// Refuses records other than a force and a velocity in SI units, sampled at the same times.
 fn require_together(force: &Record, velocity: &Record) -> Result<(), IdentifyError> {
     Channel::Force.require(force, Quantity::Force, force.rate())?;
     if velocity.quantity() != Quantity::Velocity {
@@ -238,7 +238,7 @@ struct Blow {
     /// Index of its first sample.
     begin: usize,
     force: Vec<f64>,
-    /// Where in it the hammer is in contact.
+    /// Ranges of it in which the hammer is in contact.
     hits: Vec<Range<usize>>,
     offset: Estimated,
     pulse: Pulse,

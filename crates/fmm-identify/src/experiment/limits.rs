@@ -13,7 +13,7 @@ const ENOUGH_HALF_SWINGS: usize = 4;
 const COARSE: f64 = 5e-3;
 
 impl Warning {
-    /// What limits what a record tells of a machine, whose spring `is_bent` or a straight line.
+    /// Limits of a record of a machine, whose spring `is_bent` or a straight line.
     pub(crate) fn of_record(summary: &RecordSummary, is_bent: bool, warnings: &mut Vec<Self>) {
         let (first, last) = summary.amplitudes;
         // Two turning points give one amplitude.
@@ -38,7 +38,7 @@ impl Warning {
         }
     }
 
-    /// What besides one ring-down of one mode is in a record.
+    /// Disturbances of a record besides one ring-down of one mode.
     pub(crate) fn of_disturbances(summary: &RecordSummary) -> impl Iterator<Item = Self> {
         let further = summary.further_releases.first().map(|time| Self::FurtherRelease { time: *time });
         let second = summary.second_mode.map(|mode| Self::SecondMode { frequency: mode.frequency, share: mode.share });

@@ -54,7 +54,7 @@ impl Lines {
         Ok(Self { plan: RealTransform::new(length), rate, range: lines, idle: Pool::default() })
     }
 
-    /// How many residuals the lines make: real and imaginary part of each.
+    /// Number of residuals: real and imaginary part of each line.
     pub(crate) fn rows(&self) -> usize {
         2 * self.range.len()
     }

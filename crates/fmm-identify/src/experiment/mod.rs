@@ -64,12 +64,12 @@ pub struct Experiment {
     lines: Option<Arc<Lines>>,
 }
 
-/// What drives an experiment, and where a fit of it may begin.
+/// Drive of an experiment, and start values of a fit.
 #[derive(Debug, Clone, PartialEq)]
 struct Driven {
     drive: Drive,
     guess: DrivenGuess,
-    /// Whether the machine is at rest where its spring is free of force until the drive begins.
+    /// True if the machine is at rest where its spring is free of force until the drive begins.
     is_at_rest: bool,
 }
 
@@ -135,12 +135,12 @@ impl Experiment {
         self.load_factor
     }
 
-    /// What drives it; `None` if it vibrates freely.
+    /// Its drive; `None` if it vibrates freely.
     pub fn drive(&self) -> Option<&Drive> {
         self.driven.as_ref().map(|driven| &driven.drive)
     }
 
-    /// Whether a measured force drives it.
+    /// True if a measured force drives it.
     pub(crate) fn is_forced(&self) -> bool {
         self.drive().is_some_and(Drive::is_force)
     }
@@ -166,7 +166,7 @@ impl Experiment {
         self.white_noise().max(1e-9 * self.summary.amplitudes.0)
     }
 
-    /// Whether it begins at rest where the spring is free of force.
+    /// True if it begins at rest where the spring is free of force.
     pub(crate) fn begins_at_rest(&self) -> bool {
         self.driven.as_ref().is_some_and(|driven| driven.is_at_rest)
     }
@@ -179,12 +179,12 @@ impl Experiment {
         self
     }
 
-    /// Where a fit of a driven motion may begin.
+    /// Start values of a driven motion.
     pub(crate) fn driven_guess(&self) -> Option<&DrivenGuess> {
         self.driven.as_ref().map(|driven| &driven.guess)
     }
 
-    /// That it is a free vibration whose record is one of position or velocity, as `estimator` needs.
+    /// Refuses experiments other than a free vibration by position or velocity, which `estimator` needs.
     pub(crate) fn require_free(&self, estimator: &'static str) -> Result<(), IdentifyError> {
         if self.driven.is_some() {
             return Err(IdentifyError::wrong_record(format!(
@@ -242,7 +242,7 @@ impl Experiment {
         &self.nuisances
     }
 
-    /// Whether a slow drift is among them.
+    /// True if a slow drift is among them.
     pub(crate) fn drifts(&self) -> bool {
         self.nuisances.iter().any(|part| matches!(part, Nuisance::Drift(_)))
     }
@@ -257,12 +257,12 @@ impl Experiment {
         &self.record
     }
 
-    /// What the record is and what was seen in it.
+    /// Description of the record and of everything seen in it.
     pub fn summary(&self) -> &RecordSummary {
         &self.summary
     }
 
-    /// What limits what its record tells, whatever is fitted to it: what was found at its beginning, on its way and at
+    /// Limits of its record, whatever is fitted to it: findings at its beginning, on its way and at
     /// its end.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();

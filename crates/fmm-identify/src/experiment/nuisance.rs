@@ -35,7 +35,7 @@ impl Nuisance {
         Parameter::named(format!("{name}{record}"), symbol, unit.to_owned())
     }
 
-    /// Where a fit begins, in the unit of the record.
+    /// Start value of a fit, in the unit of the record.
     pub(crate) fn start(&self) -> f64 {
         match self {
             Self::Cosine(line) => line.amplitude * line.phase.cos(),

@@ -21,7 +21,7 @@ pub struct Preparation {
     pub(crate) gain_uncertainty: f64,
 }
 
-/// What is done about the offset of a record.
+/// Treatment of the offset of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Offset {
@@ -50,7 +50,7 @@ impl Preparation {
         self
     }
 
-    /// What to do about the offset.
+    /// Treatment of the offset.
     #[must_use]
     pub fn offset(mut self, offset: Offset) -> Self {
         self.offset = offset;
@@ -69,7 +69,7 @@ impl Preparation {
     }
 }
 
-/// What a prepared record is and what was seen in it. `Display` gives one sentence.
+/// Description of a prepared record and of everything seen in it. `Display` gives one sentence.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct RecordSummary {
@@ -77,11 +77,11 @@ pub struct RecordSummary {
     pub from: f64,
     /// Time of the last sample used (s).
     pub to: f64,
-    /// How many samples are fitted.
+    /// Number of fitted samples.
     pub samples: usize,
     /// Sampling rate (Hz).
     pub rate: f64,
-    /// What was measured.
+    /// Measured quantity.
     pub quantity: Quantity,
     /// Its unit.
     pub unit: String,
@@ -116,14 +116,14 @@ pub struct RecordSummary {
     pub hum: Vec<Hum>,
     /// When the machine was released or pushed again (s). The record is used until shortly before the first of them.
     pub further_releases: Vec<f64>,
-    /// Where something else than the machine itself took the motion, after which the record was not used unless it was
+    /// Time at which something else than the machine itself took the motion, after which the record was not used unless it was
     /// asked for.
     pub interruption: Option<Interruption>,
-    /// How the samples were multiplied before they were recorded; only the measured ones are used.
+    /// Multiplication of the samples before they were recorded; only the measured ones are used.
     pub upsampling: Option<Upsampling>,
     /// Another mode that vibrates beside the one that is fitted.
     pub second_mode: Option<SecondMode>,
-    /// Whether the motion is driven; what is seen in a free vibration is then none.
+    /// True if the motion is driven; what is seen in a free vibration is then none.
     pub is_driven: bool,
 }
 
@@ -131,7 +131,7 @@ pub struct RecordSummary {
 pub(crate) const COARSE: f64 = 2.0;
 
 impl RecordSummary {
-    /// That of a `record` in which nothing was looked for but a `frequency` (Hz) and the `noise`.
+    /// Summary of a `record` in which nothing was looked for but a `frequency` (Hz) and the `noise`.
     pub(super) fn unseen(record: &Record, frequency: f64, noise: f64) -> Self {
         Self {
             from: record.start(),
@@ -162,7 +162,7 @@ impl RecordSummary {
         }
     }
 
-    /// Whether the steps of the converter exceed the noise, so that rounding is no noise of its own at every sample.
+    /// True if the steps of the converter exceed the noise, so that rounding is no noise of its own at every sample.
     pub fn is_rounded(&self) -> bool {
         self.resolution.is_some_and(|step| step > COARSE * self.noise)
     }

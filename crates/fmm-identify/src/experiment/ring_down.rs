@@ -168,7 +168,7 @@ fn measured(record: Record) -> Result<(Record, Option<Upsampling>), IdentifyErro
     Ok((record, upsampling))
 }
 
-/// What swings after a time: turning points, the times at which the velocity is zero and the heights beside them, and
+/// Oscillation after a time: turning points, the times at which the velocity is zero and the heights beside them, and
 /// the frequency (Hz).
 struct Swung {
     peaks: Vec<Peak>,
@@ -198,7 +198,7 @@ impl Swung {
     }
 }
 
-/// Where to begin in a record that is released at `rest_end`.
+/// Time (s) from which on a record that is released at `rest_end` is used.
 fn beginning(swings: &Swings, rest_end: f64, quantity: Quantity) -> f64 {
     let mut candidates: Box<dyn Iterator<Item = f64>> = if quantity == Quantity::Displacement {
         Box::new(swings.crossings().iter().map(|crossing| crossing.time))

@@ -78,7 +78,7 @@ impl Sensor {
         self.low_pass.map(|filter| (filter.order, filter.corner))
     }
 
-    /// Whether the corner of the filter is fitted.
+    /// True if the corner of the filter is fitted.
     pub(crate) fn has_free_corner(&self) -> bool {
         self.low_pass.is_some_and(|filter| filter.corner.is_none())
     }
@@ -133,11 +133,11 @@ pub(crate) struct Filter {
 #[derive(Debug, Clone, Copy)]
 struct Section {
     angular: f64,
-    /// Whether it is a pair of poles, or a real one.
+    /// True if it is a pair of poles, or a real one.
     is_pair: bool,
     /// By how much an input that grows comes out late (s): 2ζ/ω, of a real pole 1/ω.
     lag: f64,
-    /// What a free motion of [y, y′] becomes within an interval.
+    /// Transition of a free motion [y, y′] over an interval.
     step: [[f64; 2]; 2],
 }
 

@@ -7,7 +7,7 @@ use fmm_sim::{Channels, Samples, Trajectory};
 use crate::experiment::Experiment;
 use crate::experiment::Filter;
 
-/// How an experiment sees a motion that is simulated window by window.
+/// View of an experiment on a motion that is simulated window by window.
 pub(crate) struct Sight {
     quantity: Quantity,
     filtering: Option<Filtering>,
@@ -34,7 +34,7 @@ struct Beside {
 const STEP: f64 = 1e-4;
 
 impl Sight {
-    /// That of `experiment` with the `corner` (Hz) of its sensor, if that filters.
+    /// View of `experiment` with the `corner` (Hz) of its sensor, if that filters.
     pub(crate) fn of(experiment: &Experiment, corner: Option<f64>) -> Self {
         let (sensor, interval) = (experiment.sensor(), experiment.record().interval());
         let filtering = corner.map(|corner| Filtering {
@@ -50,12 +50,12 @@ impl Sight {
         Self { quantity: experiment.record().quantity(), filtering }
     }
 
-    /// Whether a filter remembers what came before a window.
+    /// True if a filter remembers what came before a window.
     pub(crate) fn is_filtered(&self) -> bool {
         self.filtering.is_some()
     }
 
-    /// What has to be simulated. The rate of a filtered velocity is the filtered acceleration, without the error that a
+    /// Channels to be simulated. The rate of a filtered velocity is the filtered acceleration, without the error that a
     /// jump between two samples makes.
     pub(crate) fn channels(&self) -> Channels {
         match self.quantity {
@@ -65,7 +65,7 @@ impl Sight {
         }
     }
 
-    /// What is seen of the next window.
+    /// View of the next window.
     pub(crate) fn see<'s, D: Scalar>(&'s mut self, trajectory: &'s Trajectory<D>) -> Seen<'s, D> {
         let samples = match self.channels() {
             Channels::Position => trajectory.position(),
@@ -99,7 +99,7 @@ impl Sight {
 
 /// A window of samples as they are seen, with their derivatives.
 pub(crate) enum Seen<'a, D> {
-    /// As they were simulated.
+    /// Samples as they were simulated.
     Plain(&'a Samples<D>),
     /// Filtered values and columns of derivatives, and the derivatives by the corner of the filter, if it is fitted.
     Filtered(&'a [Vec<f64>], Option<&'a [f64]>),

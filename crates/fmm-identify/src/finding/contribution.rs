@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-/// What a part of an uncertainty comes from.
+/// Source of a part of an uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Source {
-    /// What the fit leaves of the records: noise, and what the law misses.
+    /// Residuals of the fit: noise, and misfits of the law.
     Residuals,
     /// The mass that was given.
     Mass,
@@ -52,7 +52,7 @@ impl fmt::Display for Source {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Contribution {
-    /// What it comes from.
+    /// Its source.
     pub source: Source,
     /// uᵢ, what it alone makes of the uncertainty, in the unit of the finding.
     pub uncertainty: f64,

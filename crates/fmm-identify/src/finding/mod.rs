@@ -9,7 +9,7 @@ use fmm_model::{Parameter, Rounded, coverage_factor};
 
 pub use contribution::{Contribution, Source};
 
-/// Where the value of a finding comes from.
+/// Origin of the value of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Origin {
@@ -66,7 +66,7 @@ impl Finding {
         }
     }
 
-    /// Whether what follows from the machine has a square, as its variance needs one.
+    /// True if what follows from the machine has a square, as its variance needs one.
     pub(crate) fn is_representable(&self) -> bool {
         self.origin != Origin::Derived || self.value == 0.0 || (self.value * self.value).is_normal()
     }
@@ -163,12 +163,12 @@ impl Finding {
         Some(Rounded::new(self.value, self.uncertainty().or(self.at_bound)).interval(low, high))
     }
 
-    /// Whether it belongs to one record alone: its initial state or its offset.
+    /// True if it belongs to one record alone: its initial state or its offset.
     pub fn is_of_record(&self) -> bool {
         self.is_of_record
     }
 
-    /// Where it comes from.
+    /// Its origin.
     pub fn origin(&self) -> Origin {
         self.origin
     }
@@ -193,7 +193,7 @@ impl fmt::Display for Finding {
 }
 
 impl Finding {
-    /// What keeps it from being a measured value, if something does.
+    /// Reservation against taking it for a measured value.
     pub(crate) fn reservation(&self) -> Option<&'static str> {
         match self.origin() {
             Origin::Fitted(EstimateStatus::Undetermined) => Some("not determined"),

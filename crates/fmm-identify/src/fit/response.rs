@@ -17,7 +17,7 @@ const SAMPLES_PER_SWING: f64 = 64.0;
 const ENOUGH: f64 = 1e-4;
 const MOST_ITERATIONS: usize = 40;
 
-/// What a record is expected to be under another law, to first order about a motion by Coulomb and viscous friction.
+/// Response of a record to another law, to first order about a motion by Coulomb and viscous friction.
 ///
 /// ```text
 /// δx″ + (c/m) δx′ + ω₀² δx = −δF/m,    δx′ times (ω₀²|x| − F/m)/(ω₀²|x| + F/m) at each turning point
@@ -26,7 +26,7 @@ const MOST_ITERATIONS: usize = 40;
 /// δF is the friction of the other law along the known motion less that of the simple one. Oscillator, initial state
 /// and offset follow by their own derivatives.
 pub(crate) struct Response<'a> {
-    /// That of the other law.
+    /// Friction of the other law.
     problem: &'a Problem<'a>,
     motion: MeasuredMotion,
     places: Vec<Place>,
@@ -34,7 +34,7 @@ pub(crate) struct Response<'a> {
     friction: Vec<f64>,
     /// Factor of δx′ at the end of each step (1).
     turns: Vec<f64>,
-    /// What a step makes of the state, and of a constant force.
+    /// Transition of the state over a step, and by a constant force.
     step: [[f64; 2]; 2],
     by_force: [f64; 2],
     /// ω₀² (1/s²) and c/m (1/s).
@@ -52,7 +52,7 @@ pub(crate) struct Response<'a> {
 }
 
 impl<'a> Response<'a> {
-    /// Whether there is one: of one free vibration on a linear spring under a constant load.
+    /// True if there is one: of one free vibration on a linear spring under a constant load.
     pub(crate) fn exists(problem: &Problem<'_>) -> bool {
         let [decay] = problem.experiments() else { return false };
         problem.table().oscillator == 1
@@ -63,7 +63,7 @@ impl<'a> Response<'a> {
             && decay.load_factor() == 1.0
     }
 
-    /// That of the record of `problem` about the fit of `simple`, by Coulomb and viscous friction, with these `values`;
+    /// Response of the record of `problem` about the fit of `simple`, by Coulomb and viscous friction, with these `values`;
     /// `None` where none [exists](Self::exists), or the motion is too short.
     pub(crate) fn of(problem: &'a Problem<'a>, simple: &Problem<'_>, values: &[f64]) -> Option<Self> {
         let decay = problem.experiments().first().filter(|_| Self::exists(problem))?;
@@ -208,7 +208,7 @@ impl<'a> Response<'a> {
         Ok(residuals)
     }
 
-    /// What the record shows of a change of the state under a change of the friction per mass.
+    /// Change of the record by a change of the state and of the friction per mass.
     fn seen(&self, state: [f64; 2], change: f64) -> f64 {
         match self.problem.experiments()[0].record().quantity() {
             Quantity::Displacement => state[0],
@@ -250,7 +250,7 @@ fn sign(velocity: f64) -> f64 {
     if velocity == 0.0 { 0.0 } else { velocity.signum() }
 }
 
-/// What a time makes of position and velocity of a damped vibration (ω₀² and c/m given), and of a constant acceleration
+/// Transition of position and velocity of a damped vibration over a time (ω₀² and c/m given), and of a constant acceleration
 /// of one.
 fn transition(stiffness: f64, damping: f64, time: f64) -> ([[f64; 2]; 2], [f64; 2]) {
     let decay = 0.5 * damping;

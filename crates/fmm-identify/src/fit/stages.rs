@@ -25,18 +25,18 @@ pub(crate) struct Near<'a> {
     pub(crate) falls: &'a [Fall],
     /// Fits by other laws that describe the records better.
     pub(crate) others: Vec<&'a Fitted>,
-    /// How many of the starts beside others are fitted, the best first.
+    /// Number of starts beside others that are fitted, the best first.
     pub(crate) tries: usize,
 }
 
-/// Where a fit begins.
+/// Beginning of a fit.
 #[derive(Clone, Copy)]
 pub(crate) enum Begin<'a> {
     /// Wherever the records say.
     Anywhere,
     /// Near another fit.
     Near(&'a Near<'a>),
-    /// Where a fit by the same law to the same records has ended, of which now the sensors filter.
+    /// At the end of a fit by the same law to the same records without filters in the sensors.
     Behind(&'a Fitted),
 }
 
@@ -241,7 +241,7 @@ fn fit_with_shapes(
     }
 }
 
-/// Where the fits of a law with shapes go from `starts` and from those that the response of a `simple` fit leads to,
+/// Ends of the fits of a law with shapes from `starts` and from the response of a `simple` fit,
 /// near enough to tell which is the lowest minimum.
 fn fit_roughly(
     problem: &Problem<'_>,
@@ -300,7 +300,7 @@ fn fit_simple(problem: &Problem<'_>, options: &Options, observer: &mut Observer<
     fit(problem, &starts)
 }
 
-/// Where the fits from `starts` of a spring with corners go, near enough to begin the last one: all of them to few
+/// Ends of the fits from `starts` of a spring with corners, near enough to begin the last one: all of them to few
 /// swings, the best of these to more and more.
 fn fit_with_corners(
     problem: &Problem<'_>,
@@ -349,7 +349,7 @@ fn fit_of_best(
         .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
 }
 
-/// As [`best_fit`], with all fits at once.
+/// Like [`best_fit`], with all fits at once.
 fn best_fit_of_all(
     problem: &Problem<'_>,
     starts: &[Vec<f64>],

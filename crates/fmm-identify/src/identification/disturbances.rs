@@ -6,7 +6,7 @@ use crate::identification::Identification;
 use crate::warning::Warning;
 
 impl Warning {
-    /// What the noise of the records is like, as the residuals of `identification` show it, and whether a slow drift
+    /// Noise of the records, as the residuals of `identification` show it, and a slow drift, if one
     /// was fitted.
     pub(crate) fn of_noise(identification: &Identification, decays: &[Experiment]) -> Vec<Self> {
         let mut warnings = Vec::new();

@@ -59,13 +59,13 @@ impl Warning {
         warnings
     }
 
-    /// That a turning point of `motions` was decided narrowly.
+    /// Warning of a turning point of `motions` that was decided narrowly.
     pub(crate) fn of_narrow_stop(motions: &[FittedMotion]) -> Option<Self> {
         let narrowest = FittedMotion::narrowest_decision(motions).filter(|(margin, _)| margin.abs() < NARROW);
         narrowest.map(|(margin, time)| Self::NarrowStop { margin, time })
     }
 
-    /// What limits any `fit`.
+    /// Limits of any `fit`.
     pub(crate) fn of_fit(fit: &Fit, warnings: &mut Vec<Self>) {
         if !fit.outcome().is_success() {
             warnings.push(Self::NotConverged { sentence: format!("the fit {}", fit.outcome()) });

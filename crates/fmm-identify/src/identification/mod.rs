@@ -35,7 +35,7 @@ use crate::warning::Warning;
 
 pub use profile::{Profile, Profiles};
 
-/// How the fitted motion of one record ends.
+/// End of the fitted motion of one record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FittedMotion {
     stop_time: Option<f64>,
@@ -70,7 +70,7 @@ impl FittedMotion {
         self.stop_time
     }
 
-    /// How many times the velocity reaches zero.
+    /// Number of times at which the velocity reaches zero.
     pub fn half_swings(&self) -> usize {
         self.half_swings
     }
@@ -108,7 +108,7 @@ pub struct Identification {
 ///
 /// # Errors
 /// [`IdentifyError`] if there is no record, if records disagree in quantity or unit, or if the fit cannot begin.
-/// How the fit *ends* is in the result.
+/// The result says how the fit *ends*.
 ///
 /// ```
 /// use fmm_friction::CoulombViscous;
@@ -134,10 +134,10 @@ pub fn identify<F: LawFamily>(machine: &Machine, decays: &[Experiment]) -> Resul
     identify_with::<F>(machine, &Terms::NONE, decays)
 }
 
-/// As [`identify`], with damping of the machine beside the law, and parameters held.
+/// Like [`identify`], with `terms` beside the law and fixed parameters.
 ///
 /// # Errors
-/// As for [`identify`], and if the terms do not fit the law.
+/// Those of [`identify`], and terms that do not fit the law.
 pub fn identify_with<F: LawFamily>(
     machine: &Machine,
     terms: &Terms,
@@ -146,12 +146,12 @@ pub fn identify_with<F: LawFamily>(
     identify_observed::<F>(machine, terms, decays, &Options::default(), &mut |_| ControlFlow::Continue(()))
 }
 
-/// As [`identify_with`], with options for the solver and an observer of every trial step, which may end the fit. Where
+/// Like [`identify_with`], with options for the solver and an observer of every trial step, which may end the fit. Where
 /// fits from several starts go on several threads, it is told of their steps in any order, and must not wait for work
 /// of the pool.
 ///
 /// # Errors
-/// As for [`identify_with`].
+/// Those of [`identify_with`].
 pub fn identify_observed<F: LawFamily>(
     machine: &Machine,
     terms: &Terms,
@@ -164,7 +164,7 @@ pub fn identify_observed<F: LawFamily>(
 
 /// An observer of trial steps that may end the fit.
 
-/// As [`identify_observed`], by a law that is known at run time.
+/// Like [`identify_observed`], by a law that is known at run time.
 pub(crate) fn identify_by(
     law: Law,
     machine: &Machine,
@@ -227,7 +227,7 @@ impl Candidate {
         identify_by(*self.law(), machine, self.terms(), decays, Begin::Anywhere, options, observer)
     }
 
-    /// As [`identify`](Self::identify), begun near other fits of the same records.
+    /// Like [`identify`](Self::identify), begun near other fits of the same records.
     pub(crate) fn identify_near(
         &self,
         machine: &Machine,
@@ -286,7 +286,7 @@ impl Identification {
         self.fitted.law
     }
 
-    /// What was fitted beside the law, and what was held.
+    /// Terms beside the law, and fixed parameters.
     pub fn terms(&self) -> &Terms {
         &self.fitted.terms
     }
@@ -297,7 +297,7 @@ impl Identification {
         self.friction_at_rest
     }
 
-    /// What was known of the machine.
+    /// Declared machine.
     pub fn machine(&self) -> &Machine {
         &self.machine
     }
@@ -339,7 +339,7 @@ impl Identification {
         &self.motions
     }
 
-    /// What limits the findings.
+    /// Limits of the findings.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
@@ -354,7 +354,7 @@ impl Identification {
         self.structure.autocorrelation_time
     }
 
-    /// What the law says for every sample of record number `record` of `decays`, which must be those of the
+    /// Model at every sample of record number `record` of `decays`, which must be those of the
     /// identification; `None` for another number.
     pub fn model(&self, decays: &[Experiment], record: usize) -> Option<Vec<f64>> {
         if record >= decays.len() {
@@ -397,14 +397,14 @@ impl Identification {
         with_drift(self, &problem, decays)
     }
 
-    /// How many parameters the fit makes use of: those that the records determine, and those that ended on a bound
+    /// Number of parameters that the fit uses: those that the records determine, and those that ended on a bound
     /// other than zero, where a term is not merely left out.
     pub(crate) fn parameters_used(&self) -> usize {
         let is_used = |estimate: &&Estimate| estimate.status().is_at_bound() && estimate.value() != 0.0;
         self.fitted.fit.rank() + self.fitted.fit.estimates().iter().filter(is_used).count()
     }
 
-    /// How many places a law has to leap at: the samples of a half swing for one that comes to rest within a dead zone,
+    /// Number of places at which a law may leap: the samples of a half cycle for one that comes to rest within a dead zone,
     /// else one.
     pub(crate) fn tries(&self) -> f64 {
         if self.finding("dead_zone").is_none() {
@@ -419,18 +419,18 @@ impl Identification {
         self.covariance.noise_of_residuals()
     }
 
-    /// As how many independent residuals those of this fit count (1).
+    /// Number of independent residuals that those of this fit count for (1).
     pub(crate) fn told(&self) -> f64 {
         self.covariance.degrees_of_freedom() + self.fitted.fit.rank() as f64
     }
 
-    /// What the parameters of this fit to `problem` can follow, those on a bound included; `None` if the derivatives
+    /// Changes that the parameters of this fit to `problem` can follow, those on a bound included; `None` if the derivatives
     /// cannot be had.
     pub(crate) fn tangent(&self, problem: &Problem<'_>) -> Option<Tangent> {
         Tangent::of(problem, &self.fitted.fit)
     }
 
-    /// Whether a viscous part that ended at zero would be significantly negative without its bound, as if friction fell
+    /// True if a viscous part that ended at zero would be significantly negative without its bound, as if friction fell
     /// with the speed.
     pub(crate) fn damping_would_be_negative(&self) -> bool {
         /// Standard uncertainties by which it would be negative.
@@ -470,7 +470,7 @@ impl Identification {
         self.findings.iter().filter_map(same).collect()
     }
 
-    /// What most ask for: the friction at large speed and at rest, as coefficient, force or per mass, whichever is
+    /// Headline quantities: the friction at large speed and at rest, as coefficient, force or per mass, whichever is
     /// known; of a law without friction the damping.
     pub(crate) fn main_findings(&self) -> Vec<&Finding> {
         let sliding = self.level_names().into_iter().rev().find_map(|name| self.finding(&name));

@@ -68,7 +68,7 @@ impl Profile {
         of_end(self.interval.lower()).max(of_end(self.interval.upper()))
     }
 
-    /// Whether value ± k u misleads: the [bend](Self::bend) is above [`Profiles::BENT`].
+    /// True if value ± k u misleads: the [bend](Self::bend) is above [`Profiles::BENT`].
     pub fn is_bent(&self) -> bool {
         !(self.bend() <= BENT)
     }
@@ -154,7 +154,7 @@ impl Identification {
         Ok(found)
     }
 
-    /// That of the parameter at `index`; counts its evaluations.
+    /// Profile of the parameter at `index`; counts its evaluations.
     fn profile(
         &self,
         problem: &Problem<'_>,

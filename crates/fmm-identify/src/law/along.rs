@@ -26,7 +26,7 @@ pub(crate) struct Guide<'a, D> {
     pub(crate) motion: &'a MeasuredMotion,
     /// By how much the force comes later than the motion (s).
     pub(crate) delay: D,
-    /// Whether there is such a delay, known or to be found.
+    /// True if there is such a delay, known or to be found.
     pub(crate) has_delay: bool,
     /// Deflection of all bristles at the first sample, as a share of their bounds (1).
     pub(crate) deflection: D,
@@ -36,12 +36,12 @@ pub(crate) struct Guide<'a, D> {
     pub(crate) places: &'a [Place],
 }
 
-/// Where the motion was when the force of a sample acted.
+/// Place of the motion when the force of a sample acted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place {
     /// The sample before it, or at it.
     pub(crate) node: usize,
-    /// Whether the contact slides there for certain: it does not rest, nor turn before the next sample.
+    /// True if the contact slides there for certain: it does not rest, nor turn before the next sample.
     pub(crate) slides: bool,
 }
 
@@ -97,7 +97,7 @@ impl<D: Scalar> Guide<'_, D> {
         D::from(self.motion.times[row] - self.motion.times[place.node]) - self.delay
     }
 
-    /// What a measured `series` is between two samples.
+    /// Value of a measured `series` between two samples.
     #[inline]
     pub(crate) fn between(&self, series: &[f64], place: Place, elapsed: D) -> D {
         let (node, times) = (place.node, &self.motion.times);

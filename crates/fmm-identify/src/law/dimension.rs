@@ -6,7 +6,7 @@ use fmm_model::Unit;
 use crate::error::IdentifyError;
 use crate::law::Law;
 
-/// What two parameters that stand for the same are multiplied and divided by to begin with.
+/// Factors that part two parameters of equal meaning at the start of a fit (1).
 const APART: [f64; 5] = [3.0, 1.5, 1.0, 1.0 / 1.5, 1.0 / 3.0];
 
 /// The scales of the motion in a record, in its units.
@@ -20,17 +20,17 @@ pub(crate) struct Scales {
     pub(crate) friction: f64,
     /// c/m of the viscous part (1/s).
     pub(crate) damping: f64,
-    /// What divides speeds and lengths at which laws bend, to begin a fit in another place.
+    /// Divisor of the speeds and lengths at which laws bend, for a start in another place (1).
     pub(crate) sharpness: f64,
 }
 
-/// What the value of a parameter of a law scales with beside a force, as powers of position and time. Angles are
+/// Scaling of a parameter of a law beside a force, as powers of position and time. Angles are
 /// positions, and a power that is itself a parameter of the law has its typical value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Powers {
     position: f64,
     time: f64,
-    /// How much of the SI unit the unit of the parameter is (1).
+    /// Unit of the parameter over the SI unit (1).
     factor: f64,
 }
 
@@ -63,7 +63,7 @@ impl Powers {
 }
 
 impl Law {
-    /// What a parameter of this law scales with; a law with a unit that is not known is refused before.
+    /// Scaling of a parameter of this law; a law with a unit that is not known is refused before.
     pub(crate) fn powers(&self, parameter: &LawParameter) -> Powers {
         Powers::of(self, parameter).unwrap_or(Powers { position: 0.0, time: 0.0, factor: 1.0 })
     }
@@ -84,7 +84,7 @@ impl Law {
         })
     }
 
-    /// Whether `parameter` says where the law bends, which a fit may have to look for.
+    /// True if `parameter` says where the law bends, which a fit may have to look for.
     pub(crate) fn bends(&self, parameter: &LawParameter) -> bool {
         let Powers { position, time, .. } = self.powers(parameter);
         parameter.role() != Role::Slope && (position, time) != (0.0, 0.0)
@@ -127,7 +127,7 @@ impl Law {
 }
 
 impl Scales {
-    /// Where a fit of a `parameter` of `law` may begin.
+    /// Start value of a `parameter` of `law`.
     pub(crate) fn typical(&self, law: &Law, parameter: &LawParameter) -> f64 {
         let Powers { position, time, factor } = law.powers(parameter);
         if parameter.role() == Role::Slope {
@@ -139,12 +139,12 @@ impl Scales {
     }
 }
 
-/// Whether `role` is proportional to the friction force.
+/// True if `role` is proportional to the friction force.
 pub(crate) fn is_force(role: Role) -> bool {
     matches!(role, Role::Level | Role::Excess | Role::LevelAbove | Role::Breakaway)
 }
 
-/// Whether `parameter` is a friction coefficient, a force by the normal load.
+/// True if `parameter` is a friction coefficient, a force by the normal load.
 pub(crate) fn is_coefficient(parameter: &LawParameter) -> bool {
     is_force(parameter.role()) && Unit::of(parameter.parameter().unit()) == Unit::default()
 }

@@ -90,7 +90,7 @@ pub(crate) struct Law {
     /// The same laws by parameters that a fit finds in fewer steps.
     pub(crate) recast: fn() -> Option<Reparametrisation<Self>>,
     kind: fn() -> LawKind,
-    /// Whether static levels of their own are fitted.
+    /// True if static levels of their own are fitted.
     fits_breakaway: bool,
     steady: fn(&[f64], f64, bool) -> Option<f64>,
 }
@@ -131,12 +131,12 @@ impl Law {
         (self.steady)(&self.values(fitted), speed, losing)
     }
 
-    /// Whether it is one of the sliding speed, without internal state.
+    /// True if it is one of the sliding speed, without internal state.
     pub(crate) fn is_of_speed(&self) -> bool {
         matches!((self.kind)(), LawKind::Sliding | LawKind::PiecewiseLinear)
     }
 
-    /// Whether its motion has a closed form from event to event.
+    /// True if its motion has a closed form from event to event.
     pub(crate) fn is_piecewise_linear(&self) -> bool {
         (self.kind)() == LawKind::PiecewiseLinear
     }
@@ -194,7 +194,7 @@ impl Law {
         }
     }
 
-    /// Whether it has a viscous part.
+    /// True if it has a viscous part.
     pub(crate) fn has_slope(&self) -> bool {
         self.parameters.iter().any(|parameter| parameter.role() == Role::Slope)
     }

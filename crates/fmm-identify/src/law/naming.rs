@@ -9,7 +9,7 @@ use crate::law::dimension::{is_coefficient, is_force};
 /// Name of the linear damping per mass, of the machine or of a law.
 pub(crate) const LINEAR: &str = "damping_per_mass";
 
-/// What the level of a law is stated as.
+/// Kind of quantity in which the level of a law is stated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Level {
     /// A coefficient, where the load is part of the fit.
@@ -23,7 +23,7 @@ pub(crate) enum Level {
 }
 
 impl Level {
-    /// What stands in place of the word `coefficient` in the name of a level.
+    /// Word in place of `coefficient` in the name of a level.
     const fn word(self) -> &'static str {
         match self {
             Self::Coefficient => "coefficient",
@@ -74,7 +74,7 @@ impl Units {
         self.velocity().per(&Unit::of("s"))
     }
 
-    /// Whether positions are in m.
+    /// True if positions are in m.
     pub(crate) fn is_metric(&self) -> bool {
         self.position == Unit::of("m")
     }

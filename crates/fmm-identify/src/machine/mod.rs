@@ -8,7 +8,7 @@ pub use terms::Terms;
 
 use fmm_model::{ModelError, Restoring};
 
-/// What is known about the machine besides the record of its motion.
+/// Knowledge of the machine besides the records of its motion.
 ///
 /// A free vibration shows the natural frequency, damping per mass and friction per mass; multiplying mass,
 /// stiffness, damping and friction by one factor changes nothing in it. The *scale* (a mass or a stiffness) and
@@ -36,7 +36,7 @@ pub struct Machine {
     restoring: Restoring,
 }
 
-/// How the equation of motion is scaled.
+/// Scale of the equation of motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Scale {
@@ -130,7 +130,7 @@ impl Machine {
         self.restoring
     }
 
-    /// What is known of mass and stiffness.
+    /// Knowledge of mass and stiffness.
     pub const fn scale(&self) -> Scale {
         self.scale
     }

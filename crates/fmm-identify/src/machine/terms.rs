@@ -88,7 +88,7 @@ impl Term {
         }
     }
 
-    /// Whether it is part of the restoring force.
+    /// True if it is part of the restoring force.
     pub(crate) const fn is_spring(self) -> bool {
         matches!(self, Self::CubicSpring | Self::QuinticSpring | Self::Stop | Self::StopRatio | Self::Gap)
     }
@@ -229,7 +229,7 @@ impl Terms {
         Ok(self)
     }
 
-    /// Whether there is none, and nothing is held.
+    /// True if there is none, and nothing is held.
     pub(crate) fn is_plain(&self) -> bool {
         *self == Self::NONE
     }
@@ -239,7 +239,7 @@ impl Terms {
         Term::ALL.into_iter().filter(|term| self.has(*term))
     }
 
-    /// Whether `term` is fitted.
+    /// True if `term` is fitted.
     pub(crate) const fn has(&self, term: Term) -> bool {
         self.has[term as usize]
     }
@@ -249,7 +249,7 @@ impl Terms {
         self.iter().position(|fitted| fitted == term)
     }
 
-    /// Whether the spring is fitted as one that hardens or softens.
+    /// True if the spring is fitted as one that hardens or softens.
     pub(crate) fn has_spring(&self) -> bool {
         self.iter().any(Term::is_spring)
     }
@@ -296,12 +296,12 @@ impl Terms {
         }
     }
 
-    /// Whether damping may come out negative.
+    /// True if damping may come out negative.
     pub(crate) const fn are_of_any_sign(&self) -> bool {
         self.any_sign
     }
 
-    /// Whether a linear damping of the machine is fitted.
+    /// True if a linear damping of the machine is fitted.
     pub const fn has_linear_damping(&self) -> bool {
         self.has(Term::LinearDamping)
     }

@@ -19,7 +19,7 @@ impl Problem<'static> {
     /// number has a value by its name, and keeps it unless it is [`free`](Self::free). The motion begins with the first
     /// sample.
     ///
-    /// Where [`new`](Self::new) finds all that a record shows, this asks what a coefficient of friction becomes if mass,
+    /// [`new`](Self::new) finds all that a record shows; this asks for the coefficient of friction if mass,
     /// stiffness, damping and load are others: the fit of the thesis' chapter 5.3. Fixed numbers are inputs of its
     /// [`Sensitivity`](fmm_fit::Sensitivity) and [`Refit`](fmm_fit::Refit).
     ///

@@ -31,7 +31,7 @@ pub(crate) mod tangent;
 ///
 /// Machine and law are shared by all experiments; initial state, drive, offset and sensor are each record's own. The
 /// initial velocity is never taken from the data: fixing it at a noisy maximum biases the friction by up to 0.8 %.
-/// What is known of mass, stiffness, damping or a drive to an uncertainty is a parameter as well, and its knowledge a
+/// A mass, a stiffness, a damping or a drive known to an uncertainty is a parameter as well, and its knowledge a
 /// residual in the unit of the noise.
 ///
 /// Anything that takes [`Residuals`] can be applied to it; [`identify`](crate::identify) is what most want.
@@ -43,7 +43,7 @@ pub struct Problem<'a> {
     table: Table,
     prior: Prior,
     blocks: Vec<Block>,
-    /// By what the residuals of each record are multiplied.
+    /// Factors of the residuals of each record (1).
     weights: Vec<f64>,
     /// Standard deviation of the noise in the unit of the residuals.
     noise: f64,
@@ -51,7 +51,7 @@ pub struct Problem<'a> {
     tolerance: Option<f64>,
     /// Simulation without derivatives in place of that of the law.
     euler: Option<Simulate<f64>>,
-    /// Whether derivatives by fixed parameters are computed as well.
+    /// True if derivatives by fixed parameters are computed as well.
     is_complete: bool,
     /// Values with which a fit begins, where they are declared.
     declared: Vec<f64>,
@@ -144,12 +144,12 @@ impl<'a> Problem<'a> {
         self.law().name
     }
 
-    /// Whether the spring is fitted as one with a stop or a gap.
+    /// True if the spring is fitted as one with a stop or a gap.
     pub(crate) fn has_corners(&self) -> bool {
         self.terms().has(Term::Stop) || self.terms().has(Term::Gap)
     }
 
-    /// Whether terms of the spring are fitted.
+    /// True if terms of the spring are fitted.
     pub(crate) fn has_spring(&self) -> bool {
         self.terms().has_spring()
     }
@@ -166,7 +166,7 @@ impl<'a> Problem<'a> {
         &self.experiments
     }
 
-    /// By what the residuals of `record` are multiplied.
+    /// Factor of the residuals of `record` (1).
     #[cfg(feature = "sampler")]
     pub(crate) fn weight(&self, record: usize) -> f64 {
         self.weights[record]
@@ -176,7 +176,7 @@ impl<'a> Problem<'a> {
         &self.table
     }
 
-    /// What is known of parameters before the records are looked at.
+    /// Knowledge of parameters before the records are looked at.
     pub(crate) fn prior(&self) -> &Prior {
         &self.prior
     }
@@ -186,7 +186,7 @@ impl<'a> Problem<'a> {
         self.noise
     }
 
-    /// How many residuals are those of records; those of what is known follow.
+    /// Number of residuals of records; those of prior knowledge follow.
     pub(crate) fn measured(&self) -> usize {
         self.experiments.iter().map(Experiment::rows).sum()
     }
@@ -285,7 +285,7 @@ impl<'a> Problem<'a> {
         Ok(trajectory)
     }
 
-    /// What the model says for every sample of `record`, its offset included.
+    /// Model at every sample of `record`, its offset included.
     pub(crate) fn model(&self, record: usize, p: &[f64]) -> Result<Vec<f64>, EvaluationError> {
         let count = self.experiments[record].record().len();
         let offset = self.offset(record, p);
@@ -433,7 +433,7 @@ mod tests {
             .to_vec()
     }
 
-    /// That the derivatives at `p` are those of differences.
+    /// Requires derivatives at `p` that are those of differences.
     pub(super) fn require_derivatives(problem: &Problem<'_>, p: &[f64]) {
         let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
         let mut jacobian = vec![0.0; elements];

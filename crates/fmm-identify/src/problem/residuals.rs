@@ -41,7 +41,7 @@ impl Problem<'_> {
         Err(EvaluationError::message(format!("the motion changes with {name} by leaps near {value:e}")))
     }
 
-    /// Whether derivatives by the parameter at `index` are asked for.
+    /// True if derivatives by the parameter at `index` are asked for.
     fn is_wanted(&self, index: usize) -> bool {
         self.is_complete || !self.parameters[index].bounds().is_fixed()
     }

@@ -16,16 +16,16 @@ use crate::problem::fitted::{Fall, Fitted};
 use crate::problem::friction_curve::FrictionCurve;
 use crate::quantities::table::{Knowledge, Place, Row, Table, mass_of_stiffness};
 
-/// What a static level lies above the sliding one by, to begin with (1).
+/// Start value of the excess of a static level, as a share of the sliding one (1).
 const FIRST_STATIC_EXCESS: f64 = 0.2;
 
 impl Problem<'_> {
-    /// Whether a measured force or motion drives one of the records.
+    /// True if a measured force or motion drives one of the records.
     pub(crate) fn is_driven(&self) -> bool {
         self.experiments.iter().any(|experiment| experiment.drive().is_some())
     }
 
-    /// Whether the law or the terms beside it have more to find than levels and a viscous part.
+    /// True if the law or the terms beside it have more to find than levels and a viscous part.
     pub(crate) fn is_elaborate(&self) -> bool {
         self.table.law > self.table.oscillator
             || self.law().fitted().filter(|parameter| is_force(parameter.role())).count() > 1
@@ -230,7 +230,7 @@ impl Problem<'_> {
         self.push_dissipation_with(dissipation, sharpness, None, start);
     }
 
-    /// As [`push_dissipation`](Self::push_dissipation), with the excess of the friction at rest as a share of the
+    /// Like [`push_dissipation`](Self::push_dissipation), with the excess of the friction at rest as a share of the
     /// level, if it is given.
     fn push_dissipation_with(
         &self,

@@ -16,7 +16,7 @@ pub(crate) struct Tangent {
 }
 
 impl Tangent {
-    /// That of `fit`, which is one to `problem`; `None` if the derivatives cannot be had.
+    /// Tangent of a `fit` to `problem`; `None` if the derivatives cannot be had.
     pub(crate) fn of(problem: &Problem<'_>, fit: &Fit) -> Option<Self> {
         let known: Vec<usize> = (0..fit.values().len()).filter(|i| fit.relaxed_covariance(*i, *i).is_some()).collect();
         let columns = problem.columns(fit.values(), &known).ok()?;
@@ -32,7 +32,7 @@ impl Tangent {
         rows.map(|row| row.iter().zip(&products).map(|(weight, product)| weight * product).sum()).collect()
     }
 
-    /// That of the parameter at place `index` among all, 0 if the fit does not determine it.
+    /// Change of the parameter at place `index` among all, 0 if the fit does not determine it.
     pub(crate) fn step(&self, index: usize, direction: &[f64]) -> f64 {
         let place = self.known.iter().position(|known| *known == index);
         place.map_or(0.0, |place| self.steps(direction)[place])

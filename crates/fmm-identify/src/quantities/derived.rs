@@ -52,7 +52,7 @@ impl Inputs<'_> {
         values.into_iter().zip(gradients).map(with_gradient).collect()
     }
 
-    /// Whether forces per mass are accelerations in SI, so that a mass makes forces of them.
+    /// True if forces per mass are accelerations in SI, so that a mass makes forces of them.
     fn is_si(&self) -> bool {
         !self.table.is_per_mass() || self.table.units.is_metric()
     }
@@ -134,7 +134,7 @@ pub(crate) struct Derived {
     pub(crate) gradient: Vec<f64>,
 }
 
-/// What follows from the `shared` values of a fit and from what is known of the `machine`.
+/// Quantities that follow from the `shared` values of a fit and from the known inputs of the `machine`.
 pub(crate) fn derived(machine: &Machine, table: &Table, shared: &[f64]) -> Vec<Derived> {
     Inputs { machine, shared, table, gains: [1.0; 2], gain_uncertainty: 0.0 }.with_gradients()
 }

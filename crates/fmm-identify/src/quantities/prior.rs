@@ -24,7 +24,7 @@ pub(crate) struct Prior {
 }
 
 impl Prior {
-    /// That of a table's `rows`, of which two have the covariance `shared`.
+    /// Knowledge in a table's `rows`, of which two have the covariance `shared`.
     pub(crate) fn of(rows: &[Row], shared: impl Fn(usize, usize) -> f64) -> Self {
         let mut prior = Self::default();
         let mut deviations = Vec::new();
@@ -45,7 +45,7 @@ impl Prior {
         prior
     }
 
-    /// How many residuals there are, one a quantity.
+    /// Number of residuals, one a quantity.
     pub(crate) fn len(&self) -> usize {
         self.indices.len()
     }

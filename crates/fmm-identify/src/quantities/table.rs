@@ -31,7 +31,7 @@ pub(crate) enum Knowledge {
 }
 
 impl Knowledge {
-    /// That of a quantity which is `known` by `source`.
+    /// Knowledge of a quantity that is `known` by `source`.
     fn of(known: Known, source: Source) -> Self {
         match known.uncertainty() {
             0.0 => Self::Fixed(known.value()),
@@ -261,7 +261,7 @@ impl Table {
         Self::by(coordinates, family, machine, terms, experiments)
     }
 
-    /// As [`of`](Self::of), by these `coordinates`.
+    /// The same by these `coordinates`.
     pub(crate) fn by(
         coordinates: Coordinates,
         family: Law,
@@ -343,7 +343,7 @@ impl Table {
         self.law..self.shared
     }
 
-    /// Whether forces are per mass, as a free vibration shows them.
+    /// True if forces are per mass, as a free vibration shows them.
     pub(crate) fn is_per_mass(&self) -> bool {
         self.coordinates == Coordinates::PerMass
     }
@@ -382,7 +382,7 @@ impl Table {
         of_motion + usize::from(self.own(record, Place::Offset).is_some())
     }
 
-    /// Whether the row at `index` is proportional to the forces, of which a measured one sets the scale.
+    /// True if the row at `index` is proportional to the forces, of which a measured one sets the scale.
     pub(crate) fn is_scaled_by_force(&self, index: usize) -> bool {
         match self.rows[index].place {
             Place::Mass | Place::Stiffness => true,

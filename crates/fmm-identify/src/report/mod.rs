@@ -65,7 +65,7 @@ impl fmt::Display for Identification {
 }
 
 impl Comparison {
-    /// What was found, how sure that is, and what would make it surer: two or three sentences.
+    /// Result, its certainty, and the next step: two or three sentences.
     pub fn headline(&self) -> String {
         let preferred = self.preferred();
         let main = preferred.main_findings();

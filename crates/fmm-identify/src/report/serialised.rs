@@ -35,7 +35,7 @@ impl Serialize for Finding {
     }
 }
 
-/// Where a part of an uncertainty comes from, with u and its share of the variance.
+/// Source of a part of an uncertainty, with u and its share of the variance.
 impl Serialize for Contribution {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let freedom = Some(self.degrees_of_freedom).filter(|freedom| freedom.is_finite());
@@ -74,7 +74,7 @@ impl Serialize for Identification {
     }
 }
 
-/// What a blow is, in SI units; pairs are a value and its standard uncertainty.
+/// An impact in SI units; pairs are a value and its standard uncertainty.
 impl Serialize for ImpactSummary {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let pair = |estimated: fmm_model::Estimated| [estimated.value, estimated.uncertainty];
@@ -97,7 +97,7 @@ impl Serialize for ImpactSummary {
     }
 }
 
-/// What a record is: times in s, rates in Hz, values in `unit`.
+/// Record: times in s, rates in Hz, values in `unit`.
 impl Serialize for RecordSummary {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut document = serializer.serialize_struct("RecordSummary", 26)?;
@@ -132,7 +132,7 @@ impl Serialize for RecordSummary {
     }
 }
 
-/// What was looked for, its size and standard uncertainty.
+/// Extension that was looked for, its size and standard uncertainty.
 impl Serialize for Sign {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut document = serializer.serialize_struct("Sign", 3)?;

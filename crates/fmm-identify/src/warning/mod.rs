@@ -16,7 +16,7 @@ use fmm_model::Rounded;
 pub enum Warning {
     /// Neither mass nor stiffness is known, so everything is per unit mass.
     ScaleUnknown {
-        /// Whether a normal load was given all the same.
+        /// True if a normal load was given all the same.
         load_known: bool,
     },
     /// A scale is known but the normal load is not, so there is no friction coefficient.
@@ -41,12 +41,12 @@ pub enum Warning {
     NoDecay,
     /// Few half swings: friction and damping rest on little.
     FewHalfSwings {
-        /// How many extrema there are.
+        /// Number of extrema.
         count: usize,
     },
     /// Samples lie on the end of the range of the instrument.
     Saturated {
-        /// How many.
+        /// Number of samples.
         count: usize,
     },
     /// The baseline jumps.
@@ -55,21 +55,21 @@ pub enum Warning {
         time: f64,
         /// By how much, in the unit of the record.
         height: f64,
-        /// That unit.
+        /// Unit of the record.
         unit: String,
     },
     /// Something else than the machine, such as a hand, takes the motion; only the part before was used.
     Interrupted {
         /// The last turning point before it (s).
         time: f64,
-        /// How often as much as those before it the next half swing loses (1).
+        /// Loss of the next half cycle over the usual loss (1).
         ratio: f64,
     },
     /// Samples are held, or interpolated between others; only the measured ones were used.
     Upsampled {
         /// Samples for each measured one.
         factor: usize,
-        /// Whether those between lie on straight lines; otherwise they repeat the one before.
+        /// True if those between lie on straight lines; otherwise they repeat the one before.
         is_interpolated: bool,
     },
     /// The machine was released or pushed again; only the part before that was used.
@@ -86,7 +86,7 @@ pub enum Warning {
     },
     /// Isolated samples were left out.
     Spikes {
-        /// How many.
+        /// Number of samples.
         count: usize,
     },
     /// A parameter ended on its bound.
@@ -98,7 +98,7 @@ pub enum Warning {
     },
     /// Some parameters cannot be told apart; in words.
     Inseparable {
-        /// Which ones, as a sentence.
+        /// Names of the parameters, as a sentence.
         sentence: String,
     },
     /// A parameter has no influence on this record at all.
@@ -108,10 +108,10 @@ pub enum Warning {
     },
     /// The search did not end at a minimum.
     NotConverged {
-        /// What happened, as a sentence of advice.
+        /// Sentence of advice.
         sentence: String,
     },
-    /// Whether the contact stops or turns back once more was decided narrowly.
+    /// True if the contact stops or turns back once more was decided narrowly.
     NarrowStop {
         /// (|load| − static level)/static level at that turning point.
         margin: f64,
@@ -137,14 +137,14 @@ pub enum Warning {
         parameter: String,
         /// Name of the more general law.
         law: String,
-        /// What it finds, as text with its uncertainty and unit.
+        /// Its finding, as text with uncertainty and unit.
         finding: String,
     },
     /// Another law was not fitted to its minimum, so that the comparison does not count it in full.
     OtherLaw {
         /// Name of that law.
         law: String,
-        /// What happened.
+        /// Sentence about it.
         sentence: String,
     },
     /// Laws that the search tried, but could not fit to the end, and that were then far from what others reach.
@@ -171,7 +171,7 @@ pub enum Warning {
         friction: f64,
         /// F/m at rest that the preferred law states.
         preferred: f64,
-        /// By what factor its residuals are larger (1).
+        /// Factor by which its residuals are larger (1).
         residuals: f64,
     },
     /// The models are too close to prefer one.
@@ -182,14 +182,14 @@ pub enum Warning {
         frequency: f64,
         /// Its amplitude, in the unit of the record.
         amplitude: f64,
-        /// That unit.
+        /// Unit of the record.
         unit: String,
     },
     /// The steps of the converter exceed the noise.
     Rounded {
         /// The step, in the unit of the record.
         step: f64,
-        /// That unit.
+        /// Unit of the record.
         unit: String,
     },
     /// The zero of the instrument drifts, and a slow polynomial was fitted beside the motion.
@@ -205,7 +205,7 @@ pub enum Warning {
     },
     /// Neighbouring residuals are alike, though not larger than the noise; or they are larger, though hardly alike.
     ColouredNoise {
-        /// Whether neighbouring residuals are correlated.
+        /// True if neighbouring residuals are correlated.
         is_correlated: bool,
         /// Autocorrelation time (samples).
         time: f64,
@@ -227,7 +227,7 @@ pub enum Warning {
     Beginning {
         /// The simple law that explains the rest.
         law: String,
-        /// How long the beginning lasts that was left out (s).
+        /// Duration of the beginning that was left out (s).
         time: f64,
     },
     /// The record is in a unit of which no mass and no load makes a force or a coefficient.
@@ -243,7 +243,7 @@ pub enum Warning {
         trial: usize,
         /// When (s).
         time: f64,
-        /// How high, by the pulse (1).
+        /// Height over that of the pulse (1).
         share: f64,
     },
     /// Samples of a trial lie on the end of the range of the instrument.
@@ -252,7 +252,7 @@ pub enum Warning {
         trial: usize,
         /// Of which channel.
         channel: Channel,
-        /// How many.
+        /// Number of samples.
         samples: usize,
     },
     /// A pulse has few samples.
@@ -268,16 +268,16 @@ pub enum Warning {
     SpikesBridged {
         /// Number of the trial, from 1.
         trial: usize,
-        /// How many.
+        /// Number of samples.
         samples: usize,
     },
     /// The record of a trial ends before the motion.
     NotAtRest {
         /// Number of the trial, from 1.
         trial: usize,
-        /// How long the motion was recorded (s).
+        /// Recorded duration of the motion (s).
         recorded: f64,
-        /// By what share a peak of the receptance is too low for that (1).
+        /// Share by which a peak of the receptance is too low (1).
         lost: f64,
     },
 }

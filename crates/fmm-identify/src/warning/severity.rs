@@ -2,7 +2,7 @@
 
 use crate::warning::Warning;
 
-/// How much a warning takes from a result, least first.
+/// Weight of a warning against a result, least first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     /// Something that was done to the record, or that it cannot show.
@@ -14,7 +14,7 @@ pub enum Severity {
 }
 
 impl Warning {
-    /// How much it takes from the result.
+    /// Weight of the warning against the result.
     ///
     /// ```
     /// use fmm_identify::{Severity, Warning};
