@@ -137,9 +137,12 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+mod algebra;
 mod comparison;
 mod design;
 mod diagnostics;
+mod error;
+mod fitting;
 #[cfg(feature = "sampler")]
 mod posterior;
 mod problem;
@@ -150,39 +153,76 @@ mod solver;
 mod starts;
 mod uncertainty;
 
-pub use comparison::{
-    ComparisonError, ComparisonOptions, Contender, Criterion, Doubt, FTest, ModelRow, ModelTable, ModelTableError,
-    NestedComparison, ResidualCount, Verdict, f_tail, f_test,
-};
-pub use design::{ChosenDesign, DesignCase, DesignCriterion, DesignError, DesignSearch, Information};
-pub use diagnostics::{
-    NormalityTest, ResidualDiagnostics, RunsTest, anderson_darling, autocorrelation, autocorrelation_time,
-    durbin_watson, effective_count, runs_test,
-};
+pub use comparison::contender::Contender;
+pub use comparison::model_comparison::{ComparisonError, FTest, f_tail, f_test};
+pub use comparison::model_table::{ModelRow, ModelTable, NestedComparison};
+pub use comparison::model_table_error::ModelTableError;
+pub use comparison::options::{ComparisonOptions, Criterion, ResidualCount};
+pub use comparison::verdict::{Doubt, Verdict};
+pub use design::design_case::{DesignCase, DesignCriterion};
+pub use design::design_error::DesignError;
+pub use design::information::Information;
+pub use design::search::{ChosenDesign, DesignSearch};
+pub use diagnostics::diagnostics_summary::ResidualDiagnostics;
+pub use diagnostics::normality::{NormalityTest, anderson_darling};
+pub use diagnostics::residual_diagnostics::{autocorrelation, autocorrelation_time, durbin_watson, effective_count};
+pub use diagnostics::runs_test::{RunsTest, runs_test};
+pub use error::FitError;
+pub use fitting::argmin::BoundedLevenbergMarquardt;
+pub use fitting::curve::{ClosureProblem, curve, curve_fit, fit};
+pub use fitting::joint::{Joint, JointPart};
+pub use fitting::solve::{Progress, solve, solve_observed};
 pub use fmm_model::{Bounds, Dual, ModelError, Parameter, Scalar};
 #[cfg(feature = "sampler")]
-pub use posterior::{
-    Calibration, Disagreement, GradientFreeCheck, Marginal, Posterior, PosteriorError, PosteriorWarning, Prior, Sampler,
-};
-pub use problem::{
-    Automatic, Block, ClosureProblem, Derivatives, EvaluationError, Held, Joint, JointError, JointPart, Model,
-    Residuals, Weighted, curve, curve_fit, fit,
-};
-pub use regression::{
-    LinearRegression, Polynomial, PowerLaw, RandomEffectsLine, RegressionError, StraightLine, UncertainPoint,
-    Weighting, YorkLine,
-};
-pub use result::{Estimate, EstimateStatus, Fit, NullDirection};
-pub use robust::{Loss, Robust, RobustFit, Scale, median_deviation, solve_robust};
-pub use solver::{
-    BoundedLevenbergMarquardt, FitError, JacobianMismatch, Minimizer, NonFinite, Options, Outcome, Progress,
-    check_jacobian, solve, solve_observed,
-};
-pub use starts::{Minima, Minimum, MultiStart, StartFailure, solve_best};
-pub use uncertainty::{
-    CorrelatedCovariance, Prediction, ProfileEnd, ProfileError, ProfileInterval, PropagatedCovariance, Refit,
-    RefitError, ResidualVariance, Sensitivity, SensitivityError, profile_interval,
-};
+pub use posterior::calibration::Calibration;
+#[cfg(feature = "sampler")]
+pub use posterior::check::{Disagreement, GradientFreeCheck};
+#[cfg(feature = "sampler")]
+pub use posterior::error::PosteriorError;
+#[cfg(feature = "sampler")]
+pub use posterior::marginal::Marginal;
+#[cfg(feature = "sampler")]
+pub use posterior::prior::Prior;
+#[cfg(feature = "sampler")]
+pub use posterior::result::Posterior;
+#[cfg(feature = "sampler")]
+pub use posterior::sampler::Sampler;
+#[cfg(feature = "sampler")]
+pub use posterior::warning::PosteriorWarning;
+pub use problem::automatic::{Automatic, Model};
+pub use problem::block::Block;
+pub use problem::joint_error::JointError;
+pub use problem::knowledge::Held;
+pub use problem::residuals::{Derivatives, EvaluationError, Residuals};
+pub use problem::weighted::Weighted;
+pub use regression::linear_regression::LinearRegression;
+pub use regression::polynomial::{Polynomial, StraightLine};
+pub use regression::power_law::PowerLaw;
+pub use regression::random_effects_line::RandomEffectsLine;
+pub use regression::regression_error::RegressionError;
+pub use regression::weighting::Weighting;
+pub use regression::york::{UncertainPoint, YorkLine};
+pub use result::estimate::{Estimate, EstimateStatus};
+pub use result::fit::Fit;
+pub use result::null_direction::NullDirection;
+pub use result::prediction::Prediction;
+pub use robust::loss::Loss;
+pub use robust::problem::Robust;
+pub use robust::robust_fit::{RobustFit, Scale, median_deviation, solve_robust};
+pub use solver::jacobian_check::{JacobianMismatch, check_jacobian};
+pub use solver::minimizer::Minimizer;
+pub use solver::options::Options;
+pub use solver::outcome::{NonFinite, Outcome};
+pub use starts::halving::solve_best;
+pub use starts::minima::{Minima, Minimum, StartFailure};
+pub use starts::multi_start::MultiStart;
+pub use uncertainty::correlated::CorrelatedCovariance;
+pub use uncertainty::profile::profile_interval;
+pub use uncertainty::profile_interval::{ProfileEnd, ProfileError, ProfileInterval, ResidualVariance};
+pub use uncertainty::propagated::{PropagatedCovariance, SensitivityError};
+pub use uncertainty::refit::Refit;
+pub use uncertainty::refit_error::RefitError;
+pub use uncertainty::sensitivity::Sensitivity;
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

@@ -1,6 +1,9 @@
 //! A model that takes part in a comparison.
 
-use crate::{Fit, LinearRegression, RunsTest, autocorrelation_time, runs_test};
+use crate::diagnostics::residual_diagnostics::autocorrelation_time;
+use crate::diagnostics::runs_test::{RunsTest, runs_test};
+use crate::regression::linear_regression::LinearRegression;
+use crate::result::fit::Fit;
 
 /// A model that takes part in a comparison: its name and what its fit left.
 #[derive(Debug, Clone)]

@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use crate::Fit;
+use crate::result::fit::Fit;
 
 impl Fit {
     /// Akaike's information criterion with the correction for few residuals; the smaller the better.

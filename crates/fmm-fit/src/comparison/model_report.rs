@@ -2,7 +2,9 @@
 
 use std::fmt;
 
-use crate::{Criterion, Doubt, ModelTable, Verdict};
+use crate::comparison::model_table::ModelTable;
+use crate::comparison::options::Criterion;
+use crate::comparison::verdict::{Doubt, Verdict};
 
 impl fmt::Display for ModelTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -4,7 +4,11 @@ use std::collections::HashSet;
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use crate::{ComparisonOptions, Contender, Criterion, Doubt, ModelTableError, ResidualCount, RunsTest, Verdict};
+use crate::comparison::contender::Contender;
+use crate::comparison::model_table_error::ModelTableError;
+use crate::comparison::options::{ComparisonOptions, Criterion, ResidualCount};
+use crate::comparison::verdict::{Doubt, Verdict};
+use crate::diagnostics::runs_test::RunsTest;
 
 /// One model of a comparison.
 #[derive(Debug, Clone, PartialEq)]

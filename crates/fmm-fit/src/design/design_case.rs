@@ -1,8 +1,8 @@
 //! What candidates would tell if the parameters had certain values, and what is asked of them.
 
-use crate::Information;
-use crate::design::DesignError;
-use crate::uncertainty::definite::{factor, solve};
+use crate::algebra::definite::{factor, solve};
+use crate::design::design_error::DesignError;
+use crate::design::information::Information;
 
 /// What is to be small.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

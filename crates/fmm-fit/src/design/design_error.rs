@@ -1,6 +1,6 @@
 //! Errors of a design of measurements and of the search for one.
 
-use crate::FitError;
+use crate::error::FitError;
 
 /// Why a design cannot be judged or searched for.
 #[derive(Debug, thiserror::Error)]

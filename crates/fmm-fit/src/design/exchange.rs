@@ -3,7 +3,7 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use crate::{ChosenDesign, DesignSearch};
+use crate::design::search::{ChosenDesign, DesignSearch};
 
 /// What each candidate costs, and what there is to spend.
 #[derive(Debug, Clone, Copy)]

@@ -6,14 +6,14 @@ use fmm_model::Parameter;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::design::DesignError;
+use crate::algebra::definite::add_square;
+use crate::algebra::spectrum::orthogonalise;
+use crate::algebra::triangle::Triangle;
+use crate::design::design_error::DesignError;
 use crate::problem::block::Scratch;
-use crate::result::null_direction::null_directions;
+use crate::problem::residuals::Residuals;
+use crate::result::null_direction::{NullDirection, null_directions};
 use crate::solver::evaluation::Evaluator;
-use crate::solver::spectrum::orthogonalise;
-use crate::solver::triangle::Triangle;
-use crate::uncertainty::definite::add_square;
-use crate::{NullDirection, Residuals};
 
 /// Fisher's information of measurements about p parameters, a symmetric matrix.
 ///
@@ -358,7 +358,9 @@ impl Eigen {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Dual, Options, Scalar, solve};
+    use crate::fitting::solve::solve;
+    use crate::solver::options::Options;
+    use fmm_model::{Dual, Scalar};
 
     /// What is left of a joint problem when its own parameters are eliminated is the inverse of their part of the
     /// covariance.

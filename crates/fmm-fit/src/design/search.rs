@@ -4,8 +4,9 @@ use fmm_model::Rounded;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+use crate::design::design_case::{DesignCase, DesignCriterion};
+use crate::design::design_error::DesignError;
 use crate::design::exchange::{Exchange, Purse};
-use crate::{ChosenDesign, DesignCase, DesignCriterion, DesignError};
 
 /// Search for the measurements, out of a list of candidates, that make what is asked for least uncertain.
 ///
@@ -175,10 +176,42 @@ impl DesignSearch {
     }
 }
 
+/// A set of measurements that a [`DesignSearch`](crate::DesignSearch) chose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChosenDesign {
+    pub(crate) measurements: Vec<usize>,
+    pub(crate) score: f64,
+    pub(crate) is_exhaustive: bool,
+}
+
+impl ChosenDesign {
+    /// Places of the chosen candidates, ascending; one that is to be repeated is there as often.
+    pub fn measurements(&self) -> &[usize] {
+        &self.measurements
+    }
+
+    /// Each chosen candidate with how often it is to be measured.
+    pub fn counts(&self) -> Vec<(usize, usize)> {
+        let groups = self.measurements.chunk_by(|a, b| a == b);
+        groups.map(|group| (group[0], group.len())).collect()
+    }
+
+    /// The logarithm of the standard uncertainty that was made small, see
+    /// [`DesignSearch::score`](crate::DesignSearch::score).
+    pub fn score(&self) -> f64 {
+        self.score
+    }
+
+    /// Whether every possible set was looked at, so that there is no better one.
+    pub fn is_exhaustive(&self) -> bool {
+        self.is_exhaustive
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Information;
+    use crate::design::information::Information;
 
     fn line(places: &[f64]) -> DesignCase {
         let candidates = places.iter().map(|x| Information::of_rows(2, &[1.0, *x]).unwrap()).collect();

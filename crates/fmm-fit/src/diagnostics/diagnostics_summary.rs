@@ -2,9 +2,10 @@
 
 use std::fmt;
 
-use crate::{
-    Fit, NormalityTest, RunsTest, anderson_darling, autocorrelation_time, durbin_watson, effective_count, runs_test,
-};
+use crate::diagnostics::normality::{NormalityTest, anderson_darling};
+use crate::diagnostics::residual_diagnostics::{autocorrelation_time, durbin_watson, effective_count};
+use crate::diagnostics::runs_test::{RunsTest, runs_test};
+use crate::result::fit::Fit;
 
 /// What the residuals of a fit, in their order, say of the model that left them.
 ///

@@ -7,7 +7,12 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::{EvaluationError, Options, Posterior, PosteriorError, Residuals, Sampler, solve};
+use crate::fitting::solve::solve;
+use crate::posterior::error::PosteriorError;
+use crate::posterior::result::Posterior;
+use crate::posterior::sampler::Sampler;
+use crate::problem::residuals::{EvaluationError, Residuals};
+use crate::solver::options::Options;
 
 /// Draws of each posterior among which the truth has its rank; with the truth they fill the bins evenly.
 const DRAWS: usize = 99;

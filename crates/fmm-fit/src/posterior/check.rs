@@ -3,11 +3,13 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
+use crate::algebra::definite::{add_square, factor};
 use crate::posterior::coordinates::Whitening;
-use crate::posterior::normal::standard_normal;
+use crate::posterior::marginal::Marginal;
+use crate::posterior::prior::standard_normal;
+use crate::posterior::result::Posterior;
 use crate::posterior::target::Target;
-use crate::uncertainty::definite::{add_square, factor};
-use crate::{Marginal, Posterior, Residuals};
+use crate::problem::residuals::Residuals;
 
 /// Moments that differ by more than so many of their standard errors disagree; in 1000 comparisons 0.06 do by chance.
 const DISAGREEMENT: f64 = 4.0;

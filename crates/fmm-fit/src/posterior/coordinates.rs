@@ -1,8 +1,8 @@
 //! Coordinates of a posterior: one per free parameter, without bounds, in which the posterior is nearly standard
 //! normal.
 
+use crate::algebra::definite;
 use crate::posterior::transform::Transform;
-use crate::uncertainty::definite;
 
 /// Coordinates z about a centre, by the covariance C = A Aᵀ there.
 ///

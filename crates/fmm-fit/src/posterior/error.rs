@@ -2,7 +2,7 @@
 
 use fmm_model::{Parameter, Rounded};
 
-use crate::FitError;
+use crate::error::FitError;
 
 /// Why there is no posterior.
 #[derive(Debug, thiserror::Error)]

@@ -2,8 +2,8 @@
 
 use fmm_model::Parameter;
 
+use crate::algebra::quantiles::is_probability;
 use crate::posterior::convergence::{Convergence, quantile};
-use crate::uncertainty::coverage::is_probability;
 
 /// The posterior of one quantity by itself: its draws, moments and intervals, and how well the chains know them.
 ///

@@ -1,27 +1,17 @@
 //! Posterior of the parameters of a problem, by sampling.
 
-mod calibration;
-mod check;
-mod convergence;
-mod coordinates;
-mod error;
-mod marginal;
-mod mode;
-mod normal;
-mod nuts;
-mod prior;
-mod report;
-mod result;
-mod sampler;
-mod target;
-mod transform;
-mod warning;
-
-pub use calibration::Calibration;
-pub use check::{Disagreement, GradientFreeCheck};
-pub use error::PosteriorError;
-pub use marginal::Marginal;
-pub use prior::Prior;
-pub use result::Posterior;
-pub use sampler::Sampler;
-pub use warning::PosteriorWarning;
+pub(crate) mod calibration;
+pub(crate) mod check;
+pub(crate) mod convergence;
+pub(crate) mod coordinates;
+pub(crate) mod error;
+pub(crate) mod marginal;
+pub(crate) mod mode;
+pub(crate) mod nuts;
+pub(crate) mod prior;
+pub(crate) mod report;
+pub(crate) mod result;
+pub(crate) mod sampler;
+pub(crate) mod target;
+pub(crate) mod transform;
+pub(crate) mod warning;

@@ -1,9 +1,12 @@
 //! Mode of a posterior over coordinates, and the whitening about it.
 
+use crate::algebra::definite;
+use crate::diagnostics::residual_diagnostics::autocorrelation;
 use crate::posterior::coordinates::Whitening;
+use crate::posterior::error::PosteriorError;
 use crate::posterior::target::Target;
-use crate::uncertainty::definite;
-use crate::{Fit, PosteriorError, Residuals, autocorrelation};
+use crate::problem::residuals::Residuals;
+use crate::result::fit::Fit;
 
 /// Newton steps at most. A centre that is not quite the mode costs a sampler some steps and nothing else.
 const STEPS: usize = 40;

@@ -11,8 +11,9 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::posterior::coordinates::Whitening;
+use crate::posterior::error::PosteriorError;
 use crate::posterior::target::Target;
-use crate::{PosteriorError, Residuals};
+use crate::problem::residuals::Residuals;
 
 /// Share of points accepted at which steps are aimed where a bound cuts: towards it the density of a logarithm falls
 /// off ever more steeply, and long steps diverge there.

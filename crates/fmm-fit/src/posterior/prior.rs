@@ -3,9 +3,9 @@
 use fmm_model::{Bounds, Parameter, Rounded};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 
-use crate::PosteriorError;
-use crate::posterior::normal::standard_normal;
+use crate::posterior::error::PosteriorError;
 
 /// Values drawn in search of one within the bounds.
 const TRIES: usize = 10_000;
@@ -170,6 +170,10 @@ fn positive(what: &str, value: f64) -> Result<f64, PosteriorError> {
         PosteriorError::Prior { what: format!("a prior's {what} must be above 0, but is {value}") }
     };
     (value > 0.0 && value.is_finite()).then_some(value).ok_or_else(refused)
+}
+
+pub(super) fn standard_normal(random: &mut ChaCha8Rng) -> f64 {
+    StandardNormal.sample(random)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::fmt;
 
 use fmm_model::Rounded;
 
-use crate::Posterior;
+use crate::posterior::result::Posterior;
 
 impl fmt::Display for Posterior {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -2,8 +2,12 @@
 
 use fmm_model::{Bounds, Parameter};
 
+use crate::posterior::check::GradientFreeCheck;
+use crate::posterior::error::PosteriorError;
+use crate::posterior::marginal::Marginal;
 use crate::posterior::sampler::Chain;
-use crate::{GradientFreeCheck, Marginal, PosteriorError, PosteriorWarning, ResidualVariance};
+use crate::posterior::warning::PosteriorWarning;
+use crate::uncertainty::profile_interval::ResidualVariance;
 
 /// R̂ above this says that the chains do not agree, and fewer effective draws than that make an interval uncertain
 /// (Vehtari et al. 2021, section 4).

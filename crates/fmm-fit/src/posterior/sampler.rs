@@ -7,11 +7,15 @@ use rand_distr::{ChiSquared, Distribution};
 
 use crate::posterior::check::{self, GradientFreeCheck};
 use crate::posterior::coordinates::Whitening;
+use crate::posterior::error::PosteriorError;
 use crate::posterior::mode::{no_start, whiten};
-use crate::posterior::normal::standard_normal;
 use crate::posterior::nuts::{self, Run};
+use crate::posterior::prior::{Prior, standard_normal};
+use crate::posterior::result::Posterior;
 use crate::posterior::target::Target;
-use crate::{Fit, Posterior, PosteriorError, Prior, ResidualVariance, Residuals};
+use crate::problem::residuals::Residuals;
+use crate::result::fit::Fit;
+use crate::uncertainty::profile_interval::ResidualVariance;
 
 /// Starts of chains are so many standard deviations of the fit away from the mode, at random.
 const OVERDISPERSION: f64 = 2.0;

@@ -4,12 +4,14 @@ use std::ops::Range;
 
 use fmm_model::Parameter;
 
+use crate::algebra::sums::dot;
+use crate::error::FitError;
 use crate::posterior::prior::Prior;
 use crate::posterior::transform::{Image, Transform};
 use crate::problem::block::Structure;
+use crate::problem::residuals::Residuals;
 use crate::solver::evaluation::{Evaluator, Point};
-use crate::solver::sums::dot;
-use crate::{FitError, ResidualVariance, Residuals};
+use crate::uncertainty::profile_interval::ResidualVariance;
 
 /// The density of the parameters and of the correlation of neighbouring residuals, given the data, over coordinates
 /// without bounds.

@@ -4,7 +4,7 @@ use std::fmt;
 
 use fmm_model::Rounded;
 
-use crate::Disagreement;
+use crate::posterior::check::Disagreement;
 
 /// A reason to distrust a sampled posterior. `Display` gives it in words, with what to do.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,7 +2,7 @@
 
 use fmm_model::{Dual, Parameter, Scalar};
 
-use crate::{Derivatives, EvaluationError, Residuals};
+use crate::problem::residuals::{Derivatives, EvaluationError, Residuals};
 
 /// Residuals as a formula that is generic in its number type; [`Automatic`] makes a problem of it.
 pub trait Model {
@@ -119,7 +119,8 @@ impl<M: Model, const N: usize> Residuals for Automatic<M, N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Options, solve};
+    use crate::fitting::solve::solve;
+    use crate::solver::options::Options;
 
     /// A decay over an offset, with an exponent: four parameters.
     struct Decay([Parameter; 4]);

@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
-use crate::solver::sums::{dot, sum_of_squares};
-use crate::solver::triangle::Triangle;
-use crate::{FitError, Residuals};
+use crate::algebra::sums::{dot, sum_of_squares};
+use crate::algebra::triangle::Triangle;
+use crate::error::FitError;
+use crate::problem::residuals::Residuals;
 
 /// Neighbouring residuals that depend on some of the parameters only, such as those of one record in a joint fit.
 ///
@@ -227,7 +228,9 @@ mod tests {
     use fmm_model::Parameter;
 
     use super::*;
-    use crate::{EvaluationError, Options, solve};
+    use crate::fitting::solve::solve;
+    use crate::problem::residuals::EvaluationError;
+    use crate::solver::options::Options;
 
     /// Three parameters, residuals that are their own index.
     struct Blocks([Parameter; 3], Vec<Block>);

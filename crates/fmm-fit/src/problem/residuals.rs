@@ -5,8 +5,7 @@ use std::fmt;
 
 use fmm_model::Parameter;
 
-use crate::Block;
-use crate::problem::forward::{forward_shape, forward_values};
+use crate::problem::block::Block;
 
 /// A least-squares problem: residuals as a function of parameters, and their derivatives if they are known.
 ///
@@ -144,6 +143,48 @@ pub enum Derivatives {
     /// By all parameters, fixed ones included.
     All,
 }
+
+/// Hands on the shape of a problem, for a wrapper that changes values only: `forward_shape!(self => self.problem)`.
+macro_rules! forward_shape {
+    ($self:ident => $inner:expr) => {
+        fn len(&$self) -> usize {
+            $inner.len()
+        }
+        fn is_cheaper_combined(&$self) -> bool {
+            $inner.is_cheaper_combined()
+        }
+        fn blocks(&$self) -> &[$crate::problem::block::Block] {
+            $inner.blocks()
+        }
+        fn derivatives(&$self) -> $crate::problem::residuals::Derivatives {
+            $inner.derivatives()
+        }
+    };
+}
+
+/// Hands on the values of a problem and their derivatives.
+macro_rules! forward_values {
+    ($self:ident => $inner:expr) => {
+        fn evaluate(
+            &$self,
+            p: &[f64],
+            residuals: &mut [f64],
+            jacobian: Option<&mut [f64]>,
+        ) -> Result<(), $crate::problem::residuals::EvaluationError> {
+            $inner.evaluate(p, residuals, jacobian)
+        }
+        fn block_residuals(
+            &$self,
+            block: usize,
+            p: &[f64],
+            residuals: &mut [f64],
+        ) -> Result<bool, $crate::problem::residuals::EvaluationError> {
+            $inner.block_residuals(block, p, residuals)
+        }
+    };
+}
+
+pub(crate) use {forward_shape, forward_values};
 
 impl<T: Residuals + ?Sized> Residuals for &T {
     forward_shape!(self => (**self));

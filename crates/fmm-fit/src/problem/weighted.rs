@@ -2,9 +2,9 @@
 
 use fmm_model::Parameter;
 
-use crate::problem::block::scale_rows;
-use crate::problem::forward::forward_shape;
-use crate::{Block, EvaluationError, FitError, Residuals};
+use crate::error::FitError;
+use crate::problem::block::{Block, scale_rows};
+use crate::problem::residuals::{EvaluationError, Residuals, forward_shape};
 
 /// A problem whose residuals are divided by their standard uncertainties.
 ///

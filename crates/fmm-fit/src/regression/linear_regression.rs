@@ -5,10 +5,11 @@ use std::fmt;
 use fmm_model::{Rounded, coverage_factor};
 
 use crate::regression::refined_least_squares::refined_least_squares;
+use crate::regression::regression_error::RegressionError;
 use crate::regression::twofold::Twofold;
-use crate::regression::weighting::check_finite;
-use crate::result::null_direction::null_directions;
-use crate::{NullDirection, Prediction, RegressionError, Weighting};
+use crate::regression::weighting::{Weighting, check_finite};
+use crate::result::null_direction::{NullDirection, null_directions};
+use crate::result::prediction::Prediction;
 
 /// Regression of observations on given columns.
 ///

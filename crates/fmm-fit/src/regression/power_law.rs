@@ -4,12 +4,15 @@ use std::fmt;
 
 use fmm_model::{Bounds, Parameter};
 
+use crate::fitting::solve::solve;
+use crate::problem::residuals::{Derivatives, EvaluationError, Residuals};
+use crate::regression::linear_regression::LinearRegression;
 use crate::regression::polynomial::count_distinct;
-use crate::regression::weighting::check_finite;
-use crate::{
-    Derivatives, EvaluationError, Fit, LinearRegression, Options, Prediction, RegressionError, Residuals, Weighting,
-    solve,
-};
+use crate::regression::regression_error::RegressionError;
+use crate::regression::weighting::{Weighting, check_finite};
+use crate::result::fit::Fit;
+use crate::result::prediction::Prediction;
+use crate::solver::options::Options;
 
 /// A power law with an offset through observations.
 ///
@@ -270,7 +273,7 @@ fn starts(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::f_test;
+    use crate::comparison::model_comparison::f_test;
 
     /// Thesis, Table 4: peak velocity (m/s) and coefficient of friction by the mean and by the linear damping (1).
     const VELOCITY: [f64; 15] =

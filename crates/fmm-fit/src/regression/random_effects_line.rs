@@ -3,7 +3,8 @@
 use fmm_model::coverage_factor;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use crate::{RegressionError, UncertainPoint, YorkLine};
+use crate::regression::regression_error::RegressionError;
+use crate::regression::york::{UncertainPoint, YorkLine};
 
 /// The straight line through results with uncertainties, each of which may have an effect of its own beside the line: a
 /// random-effects meta-regression on one covariate.
@@ -175,7 +176,8 @@ impl RandomEffectsLine {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{StraightLine, Weighting};
+    use crate::regression::polynomial::StraightLine;
+    use crate::regression::weighting::Weighting;
 
     const X: [f64; 6] = [1.0, 2.0, 3.0, 4.0, 6.0, 9.0];
     const Y: [f64; 6] = [2.2, 2.8, 3.6, 4.9, 6.1, 9.7];

@@ -1,8 +1,8 @@
 //! Linear least squares to the last digit that the data allow.
 
+use crate::algebra::spectrum::Spectrum;
+use crate::algebra::triangle::Triangle;
 use crate::regression::twofold::Twofold;
-use crate::solver::spectrum::Spectrum;
-use crate::solver::triangle::Triangle;
 
 /// The solution of `min ‖y − X β‖²`.
 #[derive(Debug, Clone)]

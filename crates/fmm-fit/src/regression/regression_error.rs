@@ -1,7 +1,8 @@
 //! Errors of a request for a regression.
 
-use crate::FitError;
 use fmm_model::Rounded;
+
+use crate::error::FitError;
 
 /// A regression that is not possible with the data given.
 #[derive(Debug, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! Weights of the observations of a regression.
 
-use crate::RegressionError;
+use crate::regression::regression_error::RegressionError;
 
 /// What is known of the standard uncertainties of the observations, one per observation, in their unit.
 ///

@@ -5,7 +5,7 @@ use std::fmt;
 use fmm_model::Rounded;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::RegressionError;
+use crate::regression::regression_error::RegressionError;
 use crate::regression::weighting::check_finite;
 
 /// A point with standard uncertainties in both directions.

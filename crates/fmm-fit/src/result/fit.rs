@@ -2,13 +2,14 @@
 
 use fmm_model::{Parameter, coverage_factor};
 
+use crate::algebra::spectrum::Spectrum;
+use crate::algebra::triangle::Triangle;
 use crate::result::estimate::{Estimate, EstimateStatus};
 use crate::result::null_direction::{NullDirection, null_directions};
 use crate::solver::evaluation::Scheme;
+use crate::solver::jacobian_check::JacobianMismatch;
 use crate::solver::minimizer::Minimizer;
-use crate::solver::spectrum::Spectrum;
-use crate::solver::triangle::Triangle;
-use crate::{JacobianMismatch, NonFinite, Outcome};
+use crate::solver::outcome::{NonFinite, Outcome};
 
 /// The result of a fit: estimates, their uncertainty, and what the residuals could not tell.
 ///
@@ -50,6 +51,24 @@ pub struct Fit {
     model_error: Option<String>,
     non_finite: Option<NonFinite>,
     jacobian_mismatches: Vec<JacobianMismatch>,
+}
+
+impl Minimizer {
+    /// The result with uncertainties and rank; a fit that was interrupted counts as cancelled.
+    ///
+    /// # Errors
+    /// [`FitError::NotStarted`] before the first fit.
+    pub fn fit(&self) -> Result<Fit, FitError> {
+        if matches!(self.phase, Phase::Idle) {
+            return Err(FitError::NotStarted);
+        }
+        Ok(Fit::new(self, self.current.residuals.clone()))
+    }
+
+    pub(crate) fn into_fit(mut self) -> Fit {
+        let residuals = std::mem::take(&mut self.current.residuals);
+        Fit::new(&self, residuals)
+    }
 }
 
 impl Fit {

@@ -1,10 +1,7 @@
-//! Result of a fit: estimates with their uncertainties, and directions that the data leave free.
+//! Result of a fit: estimates, their uncertainty, and directions that the residuals do not determine.
 
-mod estimate;
-mod fit;
+pub(crate) mod estimate;
+pub(crate) mod fit;
 pub(crate) mod null_direction;
+pub(crate) mod prediction;
 mod report;
-
-pub use estimate::{Estimate, EstimateStatus};
-pub use fit::Fit;
-pub use null_direction::NullDirection;

@@ -4,8 +4,10 @@ use std::fmt;
 
 use fmm_model::Rounded;
 
+use crate::result::estimate::EstimateStatus;
+use crate::result::fit::Fit;
 use crate::result::null_direction::enumerate;
-use crate::{EstimateStatus, Fit, Outcome};
+use crate::solver::outcome::Outcome;
 
 /// Correlations weaker than this are not worth a line.
 const NOTABLE_CORRELATION: f64 = 0.1;
@@ -99,7 +101,7 @@ impl Fit {
             .estimates()
             .iter()
             .filter(|estimate| estimate.status().is_at_bound())
-            .map(crate::Estimate::name)
+            .map(crate::result::estimate::Estimate::name)
             .collect();
         let is_plain = at_bound.is_empty() && self.null_directions().is_empty() && self.model_error().is_none();
         let is_quiet = is_plain && self.jacobian_mismatches().is_empty();

@@ -1,11 +1,13 @@
 //! Covariance of robust estimates.
 
+use crate::algebra::definite::{add_square, inverse, quadratic_form};
+use crate::algebra::spectrum::Spectrum;
+use crate::algebra::triangle::Triangle;
 use crate::problem::block::{ByRow, Scratch};
+use crate::problem::residuals::Residuals;
+use crate::result::fit::Fit;
+use crate::robust::problem::Robust;
 use crate::solver::evaluation::{Evaluator, Linearised};
-use crate::solver::spectrum::Spectrum;
-use crate::solver::triangle::Triangle;
-use crate::uncertainty::definite::{add_square, inverse, quadratic_form};
-use crate::{Fit, Residuals, Robust};
 
 /// The covariance of the estimates of `fit` to `problem`, as a square matrix over all parameters; `None` where a
 /// parameter is fixed, at a bound or not determined, or where the residuals cannot tell.
@@ -47,8 +49,8 @@ impl Coordinates {
     fn of<P: Residuals>(problem: &Robust<P>, fit: &Fit, linearised: &Linearised) -> Self {
         let Linearised { residuals, structure, jacobian, scheme } = linearised;
         let estimates = fit.estimates().iter().enumerate();
-        let is_inside = |estimate: &crate::Estimate| {
-            !estimate.status().is_at_bound() && estimate.status() != crate::EstimateStatus::Fixed
+        let is_inside = |estimate: &crate::result::estimate::Estimate| {
+            !estimate.status().is_at_bound() && estimate.status() != crate::result::estimate::EstimateStatus::Fixed
         };
         let columns: Vec<usize> = estimates.filter(|(_, estimate)| is_inside(estimate)).map(|(j, _)| j).collect();
         let mut replaced = jacobian.clone();

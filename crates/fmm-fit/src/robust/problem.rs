@@ -2,9 +2,10 @@
 
 use fmm_model::Parameter;
 
+use crate::error::FitError;
 use crate::problem::block::scale_rows;
-use crate::problem::forward::forward_shape;
-use crate::{EvaluationError, FitError, Loss, Residuals};
+use crate::problem::residuals::{EvaluationError, Residuals, forward_shape};
+use crate::robust::loss::Loss;
 
 /// Residuals this many scales away and more count alike, so that their squares stay finite.
 const FAR: f64 = 1e150;

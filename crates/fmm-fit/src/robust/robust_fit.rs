@@ -4,8 +4,14 @@ use std::time::Instant;
 
 use fmm_model::coverage_factor;
 
+use crate::error::FitError;
+use crate::fitting::solve::solve;
+use crate::problem::residuals::Residuals;
+use crate::result::fit::Fit;
+use crate::robust::loss::Loss;
 use crate::robust::m_covariance::m_covariance;
-use crate::{Fit, FitError, Loss, Options, Residuals, Robust, solve};
+use crate::robust::problem::Robust;
+use crate::solver::options::Options;
 
 /// The median of |r| of normal residuals of unit variance is 1/1.4826.
 const NORMAL: f64 = 1.482_602_218_505_602;

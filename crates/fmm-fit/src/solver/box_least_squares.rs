@@ -1,6 +1,6 @@
 //! Linear least squares in a box.
 
-use crate::solver::triangle::Triangle;
+use crate::algebra::triangle::Triangle;
 
 /// Where a component of a step lies in its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

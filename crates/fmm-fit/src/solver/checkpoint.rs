@@ -2,9 +2,12 @@
 
 use std::time::Instant;
 
+use crate::error::FitError;
+use crate::problem::residuals::Residuals;
 use crate::solver::evaluation::Scheme;
 use crate::solver::minimizer::{Attempt, Minimizer, Phase, check_start};
-use crate::{FitError, Options, Outcome, Residuals};
+use crate::solver::options::Options;
+use crate::solver::outcome::Outcome;
 
 /// A fit between two steps, without what its problem can tell again: residuals and derivatives are evaluated once more,
 /// uncounted.
@@ -119,7 +122,8 @@ mod tests {
     use fmm_model::{Parameter, Scalar};
 
     use super::*;
-    use crate::{BoundedLevenbergMarquardt, ClosureProblem};
+    use crate::fitting::argmin::BoundedLevenbergMarquardt;
+    use crate::fitting::curve::ClosureProblem;
 
     fn problem() -> impl Residuals {
         let names = ["a", "b", "c"].map(Parameter::from);
@@ -146,7 +150,7 @@ mod tests {
             p: &[f64],
             residuals: &mut [f64],
             _: Option<&mut [f64]>,
-        ) -> Result<(), crate::EvaluationError> {
+        ) -> Result<(), crate::problem::residuals::EvaluationError> {
             self.0.evaluate(p, residuals, None)
         }
     }

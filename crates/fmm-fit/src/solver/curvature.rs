@@ -7,12 +7,13 @@
 //! The second part is left out by the search. Where the residuals are large and J has a weak direction, that part
 //! decides: whether a point where the gradient vanishes is a minimum or a saddle, and where exactly the minimum is.
 
-use crate::Residuals;
+use crate::algebra::definite;
+use crate::algebra::spectrum::{Spectrum, is_surely_of_full_rank};
+use crate::problem::residuals::Residuals;
+use crate::solver::evaluation::Scheme;
+use crate::solver::iteration::{largest_cosine, loose};
 use crate::solver::minimizer::{Attempt, Minimizer, Phase};
-use crate::solver::optimality::{largest_cosine, loose};
-use crate::solver::spectrum::{Spectrum, is_surely_of_full_rank};
-use crate::uncertainty::definite;
-use crate::{Outcome, solver::evaluation::Scheme};
+use crate::solver::outcome::Outcome;
 
 /// The step of a difference of gradients in units of the values: its error is the square, and noise of 1e-10 in the
 /// gradients becomes 1e-6.

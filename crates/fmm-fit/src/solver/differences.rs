@@ -5,9 +5,9 @@
 //! residuals to tell it from none, and then the derivative is rounding over the step. Both are looked for where the
 //! change of the residuals is out of proportion to them.
 
+use crate::algebra::sums::sum_of_squares;
+use crate::problem::residuals::{EvaluationError, Residuals};
 use crate::solver::evaluation::{Evaluator, Point, Scheme};
-use crate::solver::sums::sum_of_squares;
-use crate::{EvaluationError, Residuals};
 
 /// A step that moves the residuals by more than this share of them may have crossed a jump.
 const LARGE: f64 = 0.1;

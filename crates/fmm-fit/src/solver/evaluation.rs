@@ -1,10 +1,11 @@
 //! Asking the problem for residuals and derivatives, by differences where it has none.
 
+use crate::algebra::sums::sum_of_squares;
+use crate::algebra::triangle::Triangle;
+use crate::error::FitError;
 use crate::problem::block::{Scratch, Structure};
-use crate::solver::non_finite::worst;
-use crate::solver::sums::sum_of_squares;
-use crate::solver::triangle::Triangle;
-use crate::{Derivatives, FitError, NonFinite, Residuals};
+use crate::problem::residuals::{Derivatives, Residuals};
+use crate::solver::outcome::{NonFinite, worst};
 
 /// Where the derivatives come from.
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

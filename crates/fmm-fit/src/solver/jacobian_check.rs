@@ -4,9 +4,10 @@ use std::fmt;
 
 use fmm_model::Rounded;
 
+use crate::error::FitError;
+use crate::problem::residuals::Residuals;
 use crate::solver::evaluation::{Evaluator, Point, Scheme};
 use crate::solver::minimizer::{check_parameters, check_start};
-use crate::{FitError, Residuals};
 
 /// The relative difference between a column of derivatives and differences that is no error of the latter.
 const DIFFERENT: f64 = 1e-3;

@@ -4,13 +4,16 @@ use std::time::Instant;
 
 use fmm_model::Parameter;
 
+use crate::algebra::triangle::Triangle;
+use crate::error::FitError;
+use crate::problem::residuals::{Derivatives, Residuals};
 #[cfg(feature = "serde")]
 use crate::solver::checkpoint::Checkpoint;
 use crate::solver::evaluation::{Evaluator, Point, Scheme};
-use crate::solver::non_finite::worst;
-use crate::solver::triangle::Triangle;
+use crate::solver::jacobian_check::JacobianMismatch;
+use crate::solver::options::Options;
+use crate::solver::outcome::{NonFinite, Outcome, worst};
 use crate::solver::trust_region::TrustRegion;
-use crate::{Derivatives, Fit, FitError, JacobianMismatch, NonFinite, Options, Outcome, Residuals};
 
 /// The square of the rounding of a smaller residual, √10⁻³⁰⁸/ε, is no normal number.
 const SMALLEST_RESIDUAL: f64 = 1e-138;
@@ -158,22 +161,6 @@ impl Minimizer {
     /// How the fit ended; `None` before it has.
     pub fn outcome(&self) -> Option<Outcome> {
         if let Phase::Done(outcome) = self.phase { Some(outcome) } else { None }
-    }
-
-    /// The result with uncertainties and rank; a fit that was interrupted counts as cancelled.
-    ///
-    /// # Errors
-    /// [`FitError::NotStarted`] before the first fit.
-    pub fn fit(&self) -> Result<Fit, FitError> {
-        if matches!(self.phase, Phase::Idle) {
-            return Err(FitError::NotStarted);
-        }
-        Ok(Fit::new(self, self.current.residuals.clone()))
-    }
-
-    pub(crate) fn into_fit(mut self) -> Fit {
-        let residuals = std::mem::take(&mut self.current.residuals);
-        Fit::new(&self, residuals)
     }
 
     /// Σᵢ rᵢ² of the best values so far, those of earlier searches of this fit among them.

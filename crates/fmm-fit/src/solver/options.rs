@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::FitError;
+use crate::error::FitError;
 
 /// When a fit stops and how it begins. The defaults suit every problem that the crate is tested on.
 ///

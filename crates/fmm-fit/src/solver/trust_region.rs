@@ -1,8 +1,8 @@
 //! The step of a Levenberg–Marquardt method: least squares within a radius and a box.
 
+use crate::algebra::spectrum::{Spectrum, is_surely_of_full_rank};
+use crate::algebra::triangle::Triangle;
 use crate::solver::box_least_squares::BoxLeastSquares;
-use crate::solver::spectrum::{Spectrum, is_surely_of_full_rank};
-use crate::solver::triangle::Triangle;
 
 /// Values that together move the residuals by less than this share of them are lost in their rounding.
 const ROUNDING: f64 = 1e-13;

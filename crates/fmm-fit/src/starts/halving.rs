@@ -3,10 +3,15 @@
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
+use crate::error::FitError;
+use crate::fitting::solve::Progress;
+use crate::problem::residuals::Residuals;
+use crate::result::fit::Fit;
+use crate::solver::minimizer::Minimizer;
+use crate::solver::options::Options;
+use crate::solver::outcome::Outcome;
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
-
-use crate::{Fit, FitError, Minimizer, Options, Outcome, Progress, Residuals};
 
 /// Trial steps of each fit before the first are given up.
 const FIRST: usize = 6;

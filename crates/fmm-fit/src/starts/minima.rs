@@ -1,7 +1,10 @@
 //! Minima: fits of many starts, grouped by where they end.
 
-use crate::solver::triangle::Triangle;
-use crate::{EstimateStatus, Fit, FitError, Outcome};
+use crate::algebra::triangle::Triangle;
+use crate::error::FitError;
+use crate::result::estimate::EstimateStatus;
+use crate::result::fit::Fit;
+use crate::solver::outcome::Outcome;
 
 /// Fits are the same if the difference of their values moves the residuals by less than this share of all that the
 /// values move.

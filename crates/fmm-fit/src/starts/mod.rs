@@ -1,10 +1,6 @@
 //! Start values of a search, and the lowest of its minima.
 
-mod halving;
-mod minima;
-mod multi_start;
-mod start_points;
-
-pub use halving::solve_best;
-pub use minima::{Minima, Minimum, StartFailure};
-pub use multi_start::MultiStart;
+pub(crate) mod halving;
+pub(crate) mod minima;
+pub(crate) mod multi_start;
+pub(crate) mod start_points;

@@ -2,9 +2,12 @@
 
 use std::time::Instant;
 
+use crate::error::FitError;
+use crate::problem::residuals::Residuals;
+use crate::solver::minimizer::Minimizer;
+use crate::solver::options::Options;
 use crate::starts::minima::{Finished, Minima};
 use crate::starts::start_points::StartPoints;
-use crate::{FitError, Minimizer, Options, Residuals};
 
 /// Starts between two looks at the clock and two rounds of comparing results, which bounds the memory.
 const BATCH: usize = 32;

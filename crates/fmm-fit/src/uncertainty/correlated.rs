@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
+use crate::algebra::definite::{self, add_square, factor, inverse};
 use crate::problem::block::Structure;
-use crate::uncertainty::definite::{self, add_square, factor, inverse};
-use crate::{Derivatives, EvaluationError, Fit, Residuals};
+use crate::problem::residuals::{EvaluationError, Residuals};
+use crate::result::fit::Fit;
 
 /// Covariance of the estimates of a fit whose residuals are correlated with their neighbours.
 ///
@@ -198,7 +199,8 @@ impl CorrelatedCovariance {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Options, solve};
+    use crate::fitting::solve::solve;
+    use crate::solver::options::Options;
     use fmm_model::Parameter;
 
     /// A mean and a slope through a series of noise.

@@ -2,13 +2,17 @@
 
 use fmm_model::Parameter;
 
+use crate::algebra::definite;
+use crate::algebra::spectrum::Spectrum;
+use crate::algebra::sums::dot;
+use crate::algebra::triangle::Triangle;
+use crate::problem::residuals::{Derivatives, Residuals};
+use crate::result::estimate::{Estimate, EstimateStatus};
+use crate::result::fit::Fit;
 use crate::solver::differences::parabola;
 use crate::solver::evaluation::{Evaluator, Point, Scheme};
-use crate::solver::spectrum::Spectrum;
-use crate::solver::sums::dot;
-use crate::solver::triangle::Triangle;
-use crate::uncertainty::definite;
-use crate::{Derivatives, Estimate, EstimateStatus, Fit, Residuals, Sensitivity, SensitivityError};
+use crate::uncertainty::propagated::SensitivityError;
+use crate::uncertainty::sensitivity::Sensitivity;
 
 /// A minimum with its derivatives, from which the response follows.
 pub(crate) struct Minimum<'a, P: ?Sized> {

@@ -2,10 +2,16 @@
 
 use std::time::Instant;
 
-use crate::{
-    EstimateStatus, Fit, FitError, Held, Minimizer, Options, Outcome, ProfileEnd, ProfileError, ProfileInterval,
-    ResidualVariance, Residuals, solve,
-};
+use crate::error::FitError;
+use crate::fitting::solve::solve;
+use crate::problem::knowledge::Held;
+use crate::problem::residuals::Residuals;
+use crate::result::estimate::EstimateStatus;
+use crate::result::fit::Fit;
+use crate::solver::minimizer::Minimizer;
+use crate::solver::options::Options;
+use crate::solver::outcome::Outcome;
+use crate::uncertainty::profile_interval::{ProfileEnd, ProfileError, ProfileInterval, ResidualVariance};
 
 /// How far out a search for an end goes, in first guesses of its distance.
 const FARTHEST: f64 = 1e9;

@@ -1,7 +1,10 @@
 //! Intervals from the profile of the sum of squares.
 
-use crate::{Fit, FitError, Outcome};
 use fmm_model::{Rounded, coverage_factor};
+
+use crate::error::FitError;
+use crate::result::fit::Fit;
+use crate::solver::outcome::Outcome;
 
 /// What is known of the variance of the residuals.
 #[derive(Debug, Clone, Copy, PartialEq)]

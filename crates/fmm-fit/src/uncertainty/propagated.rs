@@ -1,6 +1,6 @@
 //! Covariance of estimates by uncertain inputs, and the reasons why there may be none.
 
-use crate::FitError;
+use crate::error::FitError;
 
 /// Covariance of the estimates of a fit that the uncertainty of its inputs brings about (JCGM 100:2008, 5.2.2, and
 /// JCGM 102:2011, 6.2.1).

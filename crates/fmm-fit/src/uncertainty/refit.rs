@@ -4,13 +4,19 @@ use std::sync::{Mutex, PoisonError};
 
 use fmm_model::{Bounds, Parameter};
 
-use super::forecast::Forecast;
+use crate::algebra::spectrum::is_surely_of_full_rank;
+use crate::algebra::triangle::Triangle;
 use crate::problem::block::{Scratch, Structure};
-use crate::solver::spectrum::is_surely_of_full_rank;
-use crate::solver::triangle::Triangle;
-use crate::{
-    Derivatives, EstimateStatus, Fit, Held, Minimizer, Options, RefitError, Residuals, Sensitivity, SensitivityError,
-};
+use crate::problem::knowledge::Held;
+use crate::problem::residuals::{Derivatives, Residuals};
+use crate::result::estimate::EstimateStatus;
+use crate::result::fit::Fit;
+use crate::solver::minimizer::Minimizer;
+use crate::solver::options::Options;
+use crate::uncertainty::forecast::Forecast;
+use crate::uncertainty::propagated::SensitivityError;
+use crate::uncertainty::refit_error::RefitError;
+use crate::uncertainty::sensitivity::Sensitivity;
 
 /// A step that moves the residuals by less than this share of what the parameters themselves make of them is no step.
 const NEGLIGIBLE: f64 = 1e-10;

@@ -2,7 +2,8 @@
 
 use fmm_model::ModelError;
 
-use crate::{FitError, Outcome};
+use crate::error::FitError;
+use crate::solver::outcome::Outcome;
 
 /// Why a [`Refit`](crate::Refit) has no estimates for some inputs.
 #[derive(Debug, thiserror::Error)]

@@ -4,8 +4,10 @@ use std::fmt;
 
 use fmm_model::{Parameter, Rounded};
 
+use crate::problem::residuals::Residuals;
+use crate::result::fit::Fit;
 use crate::uncertainty::minimum::Minimum;
-use crate::{Fit, PropagatedCovariance, Residuals, SensitivityError};
+use crate::uncertainty::propagated::{PropagatedCovariance, SensitivityError};
 
 /// Derivatives of the estimates of a fit by the values that it held fixed, its inputs, without fitting again.
 ///

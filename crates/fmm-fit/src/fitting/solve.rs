@@ -2,7 +2,13 @@
 
 use std::ops::ControlFlow;
 
-use crate::{Fit, FitError, Minimizer, Options, Outcome, Residuals, check_jacobian};
+use crate::error::FitError;
+use crate::problem::residuals::Residuals;
+use crate::result::fit::Fit;
+use crate::solver::jacobian_check::check_jacobian;
+use crate::solver::minimizer::Minimizer;
+use crate::solver::options::Options;
+use crate::solver::outcome::Outcome;
 
 /// Fits `problem` from `start`, one value per parameter within its bounds.
 ///

@@ -1,7 +1,7 @@
 //! Singular values of a triangle whose columns are scaled to unit length: what the data can tell apart.
 
-use crate::solver::sums::{dot, sum_of_squares};
-use crate::solver::triangle::Triangle;
+use crate::algebra::sums::{dot, sum_of_squares};
+use crate::algebra::triangle::Triangle;
 
 /// Weight of the wish not to move along a direction that the residuals do not see, as a share of what a parameter moves
 /// them by (1): less than what they see of any direction that matters, and more than rounding.

@@ -2,8 +2,12 @@
 
 use argmin::core::{Error, IterState, KV, Problem, Solver, State, TerminationReason};
 
-use crate::solver::minimizer::Phase;
-use crate::{Fit, FitError, Minimizer, Options, Outcome, Residuals};
+use crate::error::FitError;
+use crate::problem::residuals::Residuals;
+use crate::result::fit::Fit;
+use crate::solver::minimizer::{Minimizer, Phase};
+use crate::solver::options::Options;
+use crate::solver::outcome::Outcome;
 
 /// What argmin calls the evaluations of the residuals and those of the Jacobian by the problem itself.
 const RESIDUALS: &str = "residuals_count";

@@ -2,7 +2,11 @@
 
 use fmm_model::{Dual, Parameter, Scalar};
 
-use crate::{Derivatives, EvaluationError, Fit, FitError, Options, Residuals, solve};
+use crate::error::FitError;
+use crate::fitting::solve::solve;
+use crate::problem::residuals::{Derivatives, EvaluationError, Residuals};
+use crate::result::fit::Fit;
+use crate::solver::options::Options;
 
 /// Residuals that a closure gives in numbers that carry the derivatives by all `N` parameters along.
 ///
@@ -144,7 +148,7 @@ pub fn fit<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Automatic, Model};
+    use crate::problem::automatic::{Automatic, Model};
 
     struct Decay([Parameter; 3]);
 

@@ -2,8 +2,9 @@
 
 use fmm_model::coverage_factor;
 
-use crate::uncertainty::coverage::simultaneous_coverage_factor;
-use crate::{Estimate, EstimateStatus, Fit};
+use crate::algebra::quantiles::simultaneous_coverage_factor;
+use crate::result::estimate::{Estimate, EstimateStatus};
+use crate::result::fit::Fit;
 
 /// The value of a fitted model at a new point with its uncertainty, by the law of propagation.
 ///

@@ -1,7 +1,8 @@
 //! Errors of a request for a fit.
 
-use fmm_model::Rounded;
 use std::error::Error;
+
+use fmm_model::Rounded;
 
 /// A fit that could not begin.
 ///

@@ -4,7 +4,10 @@ use std::ops::Range;
 
 use fmm_model::{Bounds, Parameter};
 
-use crate::{Block, Derivatives, EvaluationError, Fit, JointError, Residuals};
+use crate::problem::block::Block;
+use crate::problem::joint_error::JointError;
+use crate::problem::residuals::{Derivatives, EvaluationError, Residuals};
+use crate::result::fit::Fit;
 
 /// Several problems as one, some of their parameters being the same in all: five repeats with one friction coefficient
 /// and each its own initial state.
@@ -275,7 +278,8 @@ impl JointPart<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Minimizer, Options};
+    use crate::solver::minimizer::Minimizer;
+    use crate::solver::options::Options;
 
     const ROWS: usize = 45_000;
 

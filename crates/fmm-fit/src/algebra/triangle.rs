@@ -2,10 +2,9 @@
 
 use std::array;
 
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 
-use crate::solver::sums::products;
-use crate::solver::wide::Wide;
+use crate::algebra::sums::products;
 
 /// Numbers per block at most: the block and its copy share the first-level cache.
 const BLOCK: usize = 1536;
@@ -369,6 +368,23 @@ fn sweep<'a, const N: usize>(
 #[inline(never)]
 fn total(sums: &[f64; LANES]) -> f64 {
     ((sums[0] + sums[4]) + (sums[2] + sums[6])) + ((sums[1] + sums[5]) + (sums[3] + sums[7]))
+}
+
+/// Work to be compiled for the vectors that there are.
+///
+/// A bare closure is not enough: a function around it makes one call of it, and is compiled for any processor if it is
+/// long. fmm-sim has the same: neither uses the other, and what both use shall not bring pulp to those who only want a
+/// law.
+pub(crate) struct Wide<F>(pub(crate) F);
+
+impl<R, F: FnMut() -> R> WithSimd for Wide<F> {
+    type Output = R;
+
+    #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, _: S) -> R {
+        (self.0)()
+    }
 }
 
 #[cfg(test)]

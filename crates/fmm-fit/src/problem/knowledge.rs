@@ -2,8 +2,7 @@
 
 use fmm_model::{Bounds, ModelError, Parameter};
 
-use crate::Residuals;
-use crate::problem::forward::{forward_shape, forward_values};
+use crate::problem::residuals::{Residuals, forward_shape, forward_values};
 
 /// A problem with some parameters held at values, whatever their bounds.
 ///
