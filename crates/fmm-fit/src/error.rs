@@ -1,167 +1,131 @@
-//! Errors of a request for a fit.
+//! The error of the crate.
 
 use std::error::Error;
 
 use fmm_model::Rounded;
 
-/// A fit that could not begin.
+/// A request that cannot be met: the variant says what to do about it, the sentence says which value is wrong and what
+/// would be right.
 ///
-/// What happens once a fit runs is not an error but an [`Outcome`](crate::Outcome): the best point found is
-/// worth having, however the search ended.
+/// A fit that runs has no errors but an [`Outcome`](crate::Outcome): the best point found is worth having, however the
+/// search ended.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// Start values, data or uncertainties that are not as many as they have to be: give one for each.
+    /// Lists that belong together have different lengths: give one element for each.
     #[error("{what}")]
     Count {
-        /// How many there are, and how many are needed.
+        /// The lists and their lengths.
         what: String,
     },
-    /// A start value, an uncertainty, a residual or an option that cannot be: give another.
+    /// A number is impossible: give another.
     #[error("{what}")]
     OutOfRange {
-        /// What it is given for, its value, and what it may be.
+        /// The meaning of the number, its value and the values allowed.
         what: String,
         /// The value.
         value: f64,
     },
-    /// Parameters, bounds or blocks of a problem that contradict each other: mend the problem.
+    /// Parts of a problem contradict each other, or the request does: mend it.
     #[error("{what}")]
     Problem {
-        /// Which they are, and what is wrong with them.
+        /// The parts and the contradiction.
         what: String,
     },
-    /// A model that fails at the start, or has no finite residuals or derivatives there: begin elsewhere.
+    /// A name stands for nothing: give one of those that there are.
+    #[error("{what}")]
+    UnknownName {
+        /// The name.
+        what: String,
+    },
+    /// The model fails, or has no finite residuals or derivatives, where a fit begins: begin elsewhere.
     #[error("{what}")]
     NoModel {
-        /// What it gives.
+        /// The failure.
         what: String,
-        /// What the model itself reported.
+        /// The error of the model itself.
         source: Option<Box<dyn Error + Send + Sync>>,
     },
-    /// There are not enough residuals to determine anything.
-    #[error("{residuals} residuals cannot determine {free} free parameters; give at least as many residuals")]
-    TooFewResiduals {
-        /// Number of residuals.
-        residuals: usize,
-        /// Number of parameters that are not fixed.
-        free: usize,
+    /// Data and priors do not determine the result: give more of them, or fix a parameter.
+    #[error("{what}")]
+    Undetermined {
+        /// The result, and the data that it would take.
+        what: String,
     },
-    /// A fit was asked for before the solver had run.
+    /// A fit is not at a minimum, and only a minimum has the result: fit again, from elsewhere or with other limits.
+    #[error("{what}")]
+    NoMinimum {
+        /// The end of the fit.
+        what: String,
+    },
+    /// The sum of squares is lower elsewhere than at the fit given: fit again from there.
+    #[error("{what}")]
+    LowerMinimum {
+        /// Both sums of squares.
+        what: String,
+        /// Values of the parameters with the lower one.
+        values: Vec<f64>,
+        /// The lower one.
+        lower: f64,
+    },
+    /// The fit is one of another problem: give problem and fit that belong together.
+    #[error("{what}")]
+    OtherFit {
+        /// Sizes of both.
+        what: String,
+    },
+    /// A result was asked for before the solver had run.
     #[error("the solver has not run yet, so there is no fit to report")]
     NotStarted,
+    /// The sampler of a posterior stopped.
+    #[error("the sampler stopped: {0}")]
+    Sampler(String),
 }
 
 impl FitError {
+    pub(crate) fn count(what: impl Into<String>) -> Self {
+        Self::Count { what: what.into() }
+    }
+
+    pub(crate) fn out_of_range(what: impl Into<String>, value: f64) -> Self {
+        Self::OutOfRange { what: what.into(), value }
+    }
+
+    /// An option or setting called `name`, that must be as `expected`.
+    pub(crate) fn option(name: &str, expected: &str, value: f64) -> Self {
+        Self::out_of_range(format!("{name} must be {expected}, but is {}", Rounded::every_digit(value)), value)
+    }
+
+    pub(crate) fn problem(what: impl Into<String>) -> Self {
+        Self::Problem { what: what.into() }
+    }
+
+    pub(crate) fn unknown_name(what: impl Into<String>) -> Self {
+        Self::UnknownName { what: what.into() }
+    }
+
+    pub(crate) fn no_model(what: impl Into<String>) -> Self {
+        Self::NoModel { what: what.into(), source: None }
+    }
+
     /// A model that failed at the start.
     pub(crate) fn model_failed(source: Box<dyn Error + Send + Sync>) -> Self {
         Self::NoModel { what: format!("the model failed at the start: {source}"), source: Some(source) }
     }
 
-    /// The start has not one value per parameter.
-    pub(crate) fn start_length(values: usize, parameters: usize) -> Self {
-        let what = format!("the start has {values} values, but the problem has {parameters} parameters");
-        Self::Count { what }
+    pub(crate) fn undetermined(what: impl Into<String>) -> Self {
+        Self::Undetermined { what: what.into() }
     }
 
-    /// A start value is NaN or infinite.
-    pub(crate) fn start_not_finite(parameter: &str, value: f64) -> Self {
+    pub(crate) fn no_minimum(what: impl Into<String>) -> Self {
+        Self::NoMinimum { what: what.into() }
+    }
+
+    /// A fit and a problem of other sizes, each residuals and parameters.
+    pub(crate) fn other_fit(fit: (usize, usize), problem: (usize, usize)) -> Self {
         let what = format!(
-            "the start value of {parameter} must be finite, but is {value}",
-            value = Rounded::every_digit(value)
+            "the fit has {fit:?} residuals and parameters, but the problem {problem:?}; it must be that of the problem"
         );
-        Self::OutOfRange { what, value }
-    }
-
-    /// A start value lies outside the bounds of its parameter.
-    pub(crate) fn start_outside_bounds(parameter: &str, value: f64, lower: f64, upper: f64) -> Self {
-        let what = format!(
-            "the start value of {parameter} is {value}, outside its bounds [{lower}, {upper}]",
-            value = Rounded::every_digit(value),
-            lower = Rounded::every_digit(lower),
-            upper = Rounded::every_digit(upper)
-        );
-        Self::OutOfRange { what, value }
-    }
-
-    /// Bounds that no value satisfies.
-    pub(crate) fn empty_bounds(parameter: &str, lower: f64, upper: f64) -> Self {
-        let what = format!(
-            "the bounds of {parameter} exclude each other: at least {lower} and at most {upper}",
-            lower = Rounded::every_digit(lower),
-            upper = Rounded::every_digit(upper)
-        );
-        Self::Problem { what }
-    }
-
-    /// Two parameters with one name.
-    pub(crate) fn duplicate_name(name: &str) -> Self {
-        let what = format!("two parameters are called {name}; give each a name of its own");
-        Self::Problem { what }
-    }
-
-    /// A residual at the start is NaN, infinite, or so large that the sum of squares overflows.
-    pub(crate) fn residual_not_finite(index: usize, value: f64) -> Self {
-        let what = format!(
-            "residual {index} is {value} at the start, so that the sum of squares is not finite",
-            value = Rounded::every_digit(value)
-        );
-        Self::NoModel { what, source: None }
-    }
-
-    /// The residuals at the start are not zero, but so small that squares of what a fit leaves of them underflow.
-    pub(crate) fn residuals_underflow(largest: f64) -> Self {
-        let what = format!(
-            "the residuals at the start are at most {largest:e}, so that their squares underflow; give them in a smaller unit, or divide them by their uncertainties"
-        );
-        Self::OutOfRange { what, value: largest }
-    }
-
-    /// A derivative at the start is NaN, infinite, or so large that its square overflows.
-    pub(crate) fn derivative_not_finite(parameter: &str) -> Self {
-        let what = format!("the derivative of the residuals by {parameter} is not finite at the start");
-        Self::NoModel { what, source: None }
-    }
-
-    /// A block names a parameter that does not exist, or one twice.
-    pub(crate) fn invalid_block(block: usize, index: usize, parameters: usize) -> Self {
-        let what =
-            format!("block {block} names parameter {index}; it may name each of the {parameters} parameters once");
-        Self::Problem { what }
-    }
-
-    /// The blocks do not cover the residuals.
-    pub(crate) fn block_rows(rows: usize, residuals: usize) -> Self {
-        let what = format!("the blocks have {rows} residuals together, but the problem has {residuals}");
-        Self::Count { what }
-    }
-
-    /// An option has an impossible value.
-    pub(crate) fn invalid_option(option: &str, expected: &str, value: f64) -> Self {
-        let what =
-            format!("the option {option} must be {expected}, but is {value}", value = Rounded::every_digit(value));
-        Self::OutOfRange { what, value }
-    }
-
-    /// There is not one abscissa per ordinate.
-    pub(crate) fn data_length(abscissae: usize, ordinates: usize) -> Self {
-        let what = format!("there are {abscissae} abscissae for {ordinates} ordinates; give one for each");
-        Self::Count { what }
-    }
-
-    /// There is not one standard uncertainty per residual.
-    pub(crate) fn uncertainty_count(uncertainties: usize, residuals: usize) -> Self {
-        let what =
-            format!("{uncertainties} standard uncertainties were given for {residuals} residuals; give one for each");
-        Self::Count { what }
-    }
-
-    /// A standard uncertainty cannot be divided by.
-    pub(crate) fn bad_uncertainty(index: usize, value: f64) -> Self {
-        let what = format!(
-            "the standard uncertainty of residual {index} must be positive and finite, but is {value}",
-            value = Rounded::every_digit(value)
-        );
-        Self::OutOfRange { what, value }
+        Self::OtherFit { what }
     }
 }

@@ -154,13 +154,11 @@ mod starts;
 mod uncertainty;
 
 pub use comparison::contender::Contender;
-pub use comparison::model_comparison::{ComparisonError, FTest, f_tail, f_test};
+pub use comparison::model_comparison::{FTest, f_tail, f_test};
 pub use comparison::model_table::{ModelRow, ModelTable, NestedComparison};
-pub use comparison::model_table_error::ModelTableError;
 pub use comparison::options::{ComparisonOptions, Criterion, ResidualCount};
 pub use comparison::verdict::{Doubt, Verdict};
 pub use design::design_case::{DesignCase, DesignCriterion};
-pub use design::design_error::DesignError;
 pub use design::information::Information;
 pub use design::search::{ChosenDesign, DesignSearch};
 pub use diagnostics::diagnostics_summary::ResidualDiagnostics;
@@ -178,8 +176,6 @@ pub use posterior::calibration::Calibration;
 #[cfg(feature = "sampler")]
 pub use posterior::check::{Disagreement, GradientFreeCheck};
 #[cfg(feature = "sampler")]
-pub use posterior::error::PosteriorError;
-#[cfg(feature = "sampler")]
 pub use posterior::marginal::Marginal;
 #[cfg(feature = "sampler")]
 pub use posterior::prior::Prior;
@@ -191,7 +187,6 @@ pub use posterior::sampler::Sampler;
 pub use posterior::warning::PosteriorWarning;
 pub use problem::automatic::{Automatic, Model};
 pub use problem::block::Block;
-pub use problem::joint_error::JointError;
 pub use problem::knowledge::Held;
 pub use problem::residuals::{Derivatives, EvaluationError, Residuals};
 pub use problem::weighted::Weighted;
@@ -199,7 +194,6 @@ pub use regression::linear_regression::LinearRegression;
 pub use regression::polynomial::{Polynomial, StraightLine};
 pub use regression::power_law::PowerLaw;
 pub use regression::random_effects_line::RandomEffectsLine;
-pub use regression::regression_error::RegressionError;
 pub use regression::weighting::Weighting;
 pub use regression::york::{UncertainPoint, YorkLine};
 pub use result::estimate::{Estimate, EstimateStatus};
@@ -218,10 +212,9 @@ pub use starts::minima::{Minima, Minimum, StartFailure};
 pub use starts::multi_start::MultiStart;
 pub use uncertainty::correlated::CorrelatedCovariance;
 pub use uncertainty::profile::profile_interval;
-pub use uncertainty::profile_interval::{ProfileEnd, ProfileError, ProfileInterval, ResidualVariance};
-pub use uncertainty::propagated::{PropagatedCovariance, SensitivityError};
+pub use uncertainty::profile_interval::{ProfileEnd, ProfileInterval, ResidualVariance};
+pub use uncertainty::propagated::PropagatedCovariance;
 pub use uncertainty::refit::Refit;
-pub use uncertainty::refit_error::RefitError;
 pub use uncertainty::sensitivity::Sensitivity;
 
 /// The README's example, run as a test.

@@ -4,6 +4,5 @@ pub(crate) mod contender;
 pub(crate) mod model_comparison;
 pub(crate) mod model_report;
 pub(crate) mod model_table;
-pub(crate) mod model_table_error;
 pub(crate) mod options;
 pub(crate) mod verdict;

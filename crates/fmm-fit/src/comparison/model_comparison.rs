@@ -2,6 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
+use crate::error::FitError;
 use crate::result::fit::Fit;
 
 impl Fit {
@@ -37,32 +38,8 @@ pub struct FTest {
     pub degrees_of_freedom: (usize, usize),
 }
 
-/// Why two fits cannot be compared.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ComparisonError {
-    /// The fits have different numbers of residuals, so they are not to the same data.
-    #[error("the restricted fit has {restricted} residuals and the full one {full}; they must be the same data")]
-    DifferentData {
-        /// Residuals of the restricted fit.
-        restricted: usize,
-        /// Residuals of the full fit.
-        full: usize,
-    },
-    /// The full fit does not determine more than the restricted one.
-    #[error("the full fit has rank {full} and the restricted one {restricted}; it must determine more")]
-    NothingAdded {
-        /// Rank of the restricted fit.
-        restricted: usize,
-        /// Rank of the full fit.
-        full: usize,
-    },
-    /// The full fit has no degree of freedom, or no residuals left.
-    #[error("the full fit reproduces its data exactly, so it has no variance to compare with")]
-    NoVariance,
-    /// The full fit is worse than the restricted one, so it is not at its minimum or the models are not nested.
-    #[error("the full fit has the larger sum of squares: it is not at its minimum, or the models are not nested")]
-    NotNested,
+fn no_variance() -> FitError {
+    FitError::undetermined("the full fit reproduces its data exactly, so it has no variance to compare with")
 }
 
 /// Tests a `restricted` fit against a `full` one that has it as a special case, on the same data.
@@ -75,26 +52,33 @@ pub enum ComparisonError {
 /// that ends at a bound adds nothing to its rank.
 ///
 /// # Errors
-/// [`ComparisonError`] if the fits do not allow the comparison.
-pub fn f_test(restricted: &Fit, full: &Fit) -> Result<FTest, ComparisonError> {
+/// [`FitError`] if the fits do not allow the comparison.
+pub fn f_test(restricted: &Fit, full: &Fit) -> Result<FTest, FitError> {
     let (n_r, n_f) = (restricted.residuals().len(), full.residuals().len());
     if n_r != n_f {
-        return Err(ComparisonError::DifferentData { restricted: n_r, full: n_f });
+        return Err(FitError::count(format!(
+            "the restricted fit has {n_r} residuals and the full one {n_f}; they must be the same data"
+        )));
     }
     if full.rank() <= restricted.rank() {
-        return Err(ComparisonError::NothingAdded { restricted: restricted.rank(), full: full.rank() });
+        let (full, restricted) = (full.rank(), restricted.rank());
+        return Err(FitError::undetermined(format!(
+            "the full fit has rank {full} and the restricted one {restricted}; it must determine more"
+        )));
     }
     let (added, freedom) = (full.rank() - restricted.rank(), full.degrees_of_freedom());
     let (s_r, s_f) = (restricted.sum_of_squares(), full.sum_of_squares());
     if freedom == 0 || s_f == 0.0 {
-        return Err(ComparisonError::NoVariance);
+        return Err(no_variance());
     }
     // Two fits at the same minimum differ by rounding and by the tolerance of the search.
     if s_f > s_r * (1.0 + 1e-9) {
-        return Err(ComparisonError::NotNested);
+        return Err(FitError::no_minimum(
+            "the full fit has the larger sum of squares: it is not at its minimum, or the models are not nested",
+        ));
     }
     let f = ((s_r - s_f).max(0.0) / added as f64) / (s_f / freedom as f64);
-    let p_value = f_tail(f, added as f64, freedom as f64).ok_or(ComparisonError::NoVariance)?;
+    let p_value = f_tail(f, added as f64, freedom as f64).ok_or_else(no_variance)?;
     Ok(FTest { f, p_value, degrees_of_freedom: (added, freedom) })
 }
 

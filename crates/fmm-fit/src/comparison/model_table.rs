@@ -5,10 +5,10 @@ use std::collections::HashSet;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::comparison::contender::Contender;
-use crate::comparison::model_table_error::ModelTableError;
 use crate::comparison::options::{ComparisonOptions, Criterion, ResidualCount};
 use crate::comparison::verdict::{Doubt, Verdict};
 use crate::diagnostics::runs_test::RunsTest;
+use crate::error::FitError;
 
 /// One model of a comparison.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,7 +72,7 @@ pub struct NestedComparison {
 /// let y: Vec<f64> = x.iter().enumerate().map(|(i, x)| 1.0 + x + 0.2 * x * x + noise(i)).collect();
 /// let contender = |name: &str, order: usize| {
 ///     let fit = Polynomial::fit(&x, &y, order, Weighting::Equal)?;
-///     Ok::<_, fmm_fit::RegressionError>(Contender::of_regression(name, fit.regression()))
+///     Ok::<_, fmm_fit::FitError>(Contender::of_regression(name, fit.regression()))
 /// };
 /// let models = [contender("line", 1)?, contender("parabola", 2)?.containing("line")];
 /// let table = ModelTable::of(&models, ComparisonOptions::default().counting(ResidualCount::All))?;
@@ -104,9 +104,9 @@ impl ModelTable {
     /// Compares models of the same data.
     ///
     /// # Errors
-    /// [`ModelTableError`] if there is no model, if their data differ, a name is used twice or not known, or a setting
+    /// [`FitError`] if there is no model, if their data differ, a name is used twice or not known, or a setting
     /// makes no sense.
-    pub fn of(contenders: &[Contender], comparing: ComparisonOptions) -> Result<Self, ModelTableError> {
+    pub fn of(contenders: &[Contender], comparing: ComparisonOptions) -> Result<Self, FitError> {
         check(contenders, &comparing)?;
         let residuals = contenders[0].count;
         let best = contenders.iter().min_by(|a, b| a.sum_of_squares.total_cmp(&b.sum_of_squares));
@@ -156,27 +156,35 @@ impl ModelTable {
     }
 }
 
-fn check(contenders: &[Contender], comparing: &ComparisonOptions) -> Result<(), ModelTableError> {
-    let first = contenders.first().ok_or(ModelTableError::NoContender)?;
+fn check(contenders: &[Contender], comparing: &ComparisonOptions) -> Result<(), FitError> {
+    let first = contenders.first().ok_or_else(|| FitError::count("there is no model to compare"))?;
     let names: HashSet<&str> = contenders.iter().map(|contender| contender.name.as_str()).collect();
     let mut seen = HashSet::new();
     for contender in contenders {
         let name = contender.name.clone();
         let (residuals, parameters) = (contender.count, contender.rank);
         if !seen.insert(contender.name.as_str()) {
-            return Err(ModelTableError::SameName { name });
+            return Err(FitError::problem(format!("two models are called {name}")));
         }
         if let Some(special) = contender.contains.iter().find(|special| !names.contains(special.as_str())) {
-            return Err(ModelTableError::UnknownSpecialCase { name, special: special.clone() });
+            return Err(FitError::unknown_name(format!(
+                "{name} is said to contain {special}, which does not take part"
+            )));
         }
         if residuals != first.count {
-            return Err(ModelTableError::DifferentData { name, residuals, expected: first.count });
+            let expected = first.count;
+            return Err(FitError::count(format!(
+                "{name} has {residuals} residuals instead of {expected}; models must be of the same data"
+            )));
         }
         if residuals < parameters.saturating_add(3) {
-            return Err(ModelTableError::TooFewResiduals { name, parameters, residuals });
+            return Err(FitError::undetermined(format!(
+                "{name} has {parameters} parameters for {residuals} residuals; at least two more residuals are needed"
+            )));
         }
         if !contender.sum_of_squares.is_finite() {
-            return Err(ModelTableError::NotFinite { name });
+            let what = format!("the residuals of {name} are not finite");
+            return Err(FitError::out_of_range(what, contender.sum_of_squares));
         }
     }
     let given = if let ResidualCount::Given(count) = comparing.count { count } else { 1.0 };
@@ -192,7 +200,7 @@ fn check(contenders: &[Contender], comparing: &ComparisonOptions) -> Result<(), 
         ),
     ];
     match settings.into_iter().find(|(.., is_good)| !is_good) {
-        Some((setting, expected, value, _)) => Err(ModelTableError::BadSetting { setting, expected, value }),
+        Some((setting, expected, value, _)) => Err(FitError::option(&format!("the {setting}"), expected, value)),
         None => Ok(()),
     }
 }

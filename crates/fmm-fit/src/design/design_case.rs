@@ -1,8 +1,8 @@
 //! What candidates would tell if the parameters had certain values, and what is asked of them.
 
 use crate::algebra::definite::{factor, solve};
-use crate::design::design_error::DesignError;
-use crate::design::information::Information;
+use crate::design::information::{Information, mismatch};
+use crate::error::FitError;
 
 /// What is to be small.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,20 +34,20 @@ impl DesignCase {
     /// asked for.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] if they are not of the same number of parameters, or without candidates or
+    /// [`FitError::Count`] if they are not of the same number of parameters, or without candidates or
     /// combinations.
     pub fn new(
         known: Information,
         candidates: Vec<Information>,
         combinations: Vec<Vec<f64>>,
-    ) -> Result<Self, DesignError> {
+    ) -> Result<Self, FitError> {
         let order = known.order();
         if candidates.is_empty() || combinations.is_empty() {
             let what = if candidates.is_empty() { "candidates" } else { "combinations" };
-            return Err(DesignError::mismatch(&format!("{what} of a design"), 0, 1));
+            return Err(mismatch(&format!("{what} of a design"), 0, 1));
         }
         if let Some(other) = candidates.iter().find(|candidate| candidate.order() != order) {
-            return Err(DesignError::mismatch("parameters of a candidate", other.order(), order));
+            return Err(mismatch("parameters of a candidate", other.order(), order));
         }
         combinations.iter().try_for_each(|combination| known.require(combination))?;
         let mean = |j: usize| candidates.iter().map(|one| one.element(j, j)).sum::<f64>() / candidates.len() as f64;
@@ -60,7 +60,7 @@ impl DesignCase {
     ///
     /// # Errors
     /// As for [`new`](Self::new).
-    pub fn of_all(known: Information, candidates: Vec<Information>) -> Result<Self, DesignError> {
+    pub fn of_all(known: Information, candidates: Vec<Information>) -> Result<Self, FitError> {
         let order = known.order();
         let unit = |j: usize| (0..order).map(|i| f64::from(i == j)).collect();
         Self::new(known, candidates, (0..order).map(unit).collect())

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::algebra::definite::add_square;
 use crate::algebra::spectrum::orthogonalise;
 use crate::algebra::triangle::Triangle;
-use crate::design::design_error::DesignError;
+use crate::error::FitError;
 use crate::problem::block::Scratch;
 use crate::problem::residuals::Residuals;
 use crate::result::null_direction::{NullDirection, null_directions};
@@ -37,7 +37,7 @@ use crate::solver::evaluation::Evaluator;
 /// let one = Information::of_rows(2, &[1.0, 1.0])?;
 /// assert_eq!((one.rank(), one.variance(&[1.0, 0.0])?), (1, None));
 /// assert!((one.variance(&[1.0, 1.0])?.unwrap() - 1.0).abs() < 1e-15);
-/// # Ok::<(), fmm_fit::DesignError>(())
+/// # Ok::<(), fmm_fit::FitError>(())
 /// ```
 ///
 /// # References
@@ -65,11 +65,11 @@ impl Information {
     /// other.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] if the rows are not whole, [`DesignError::OutOfRange`] for a derivative that is not
+    /// [`FitError::Count`] if the rows are not whole, [`FitError::OutOfRange`] for a derivative that is not
     /// finite.
-    pub fn of_rows(order: usize, rows: &[f64]) -> Result<Self, DesignError> {
+    pub fn of_rows(order: usize, rows: &[f64]) -> Result<Self, FitError> {
         if order == 0 || !rows.len().is_multiple_of(order) {
-            return Err(DesignError::mismatch("derivatives in whole rows", rows.len(), order));
+            return Err(mismatch("derivatives in whole rows", rows.len(), order));
         }
         require_finite("derivatives", rows)?;
         let mut information = Self::none(order);
@@ -85,17 +85,17 @@ impl Information {
     /// ```
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] for a wrong number of values or more `shared` parameters than there are, and
-    /// [`DesignError::NoDerivatives`].
-    pub fn of_problem<P: Residuals + ?Sized>(problem: &P, values: &[f64], shared: usize) -> Result<Self, DesignError> {
+    /// [`FitError::Count`] for a wrong number of values or more `shared` parameters than there are, and
+    /// [`FitError::NoModel`].
+    pub fn of_problem<P: Residuals + ?Sized>(problem: &P, values: &[f64], shared: usize) -> Result<Self, FitError> {
         let count = problem.parameters().len();
         if values.len() != count {
-            return Err(DesignError::mismatch("values of the parameters", values.len(), count));
+            return Err(mismatch("values of the parameters", values.len(), count));
         }
         if shared > count {
-            return Err(DesignError::mismatch("shared parameters", shared, count));
+            return Err(mismatch("shared parameters", shared, count));
         }
-        let linearised = Evaluator::linearise(problem, values).ok_or(DesignError::NoDerivatives)?;
+        let linearised = Evaluator::linearise(problem, values).ok_or_else(no_derivatives)?;
         let is_free = |j: &usize| !problem.parameters()[*j].bounds().is_fixed();
         let free: Vec<usize> = (0..count).filter(is_free).collect();
         let (mut whole, mut scratch) = (Triangle::default(), Scratch::default());
@@ -108,7 +108,7 @@ impl Information {
         let mut sorted = Triangle::default();
         sorted.select(&whole, &order, |_| 0.0, &mut scratch.block);
         if !sorted.is_finite() {
-            return Err(DesignError::NoDerivatives);
+            return Err(no_derivatives());
         }
         let mut information = Self::none(shared);
         for row in order.len() - kept..order.len() {
@@ -137,12 +137,11 @@ impl Information {
     /// The same times `factor`: residuals of standard deviation σ give 1/σ², three repeats 3.
     ///
     /// # Errors
-    /// [`DesignError::OutOfRange`] for a factor that is negative or not finite.
-    pub fn scaled(mut self, factor: f64) -> Result<Self, DesignError> {
+    /// [`FitError::OutOfRange`] for a factor that is negative or not finite.
+    pub fn scaled(mut self, factor: f64) -> Result<Self, FitError> {
         if !(factor >= 0.0 && factor.is_finite()) {
-            return Err(DesignError::out_of_range(format!(
-                "an information is multiplied by 0 or more, not by {factor}"
-            )));
+            let what = format!("an information is multiplied by 0 or more, not by {factor}");
+            return Err(FitError::out_of_range(what, factor));
         }
         self.elements.iter_mut().for_each(|element| *element *= factor);
         Ok(self)
@@ -151,10 +150,10 @@ impl Information {
     /// Adds what an independent measurement tells about the same parameters.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] for another number of parameters.
-    pub fn add(&mut self, other: &Self) -> Result<(), DesignError> {
+    /// [`FitError::Count`] for another number of parameters.
+    pub fn add(&mut self, other: &Self) -> Result<(), FitError> {
         if other.order != self.order {
-            return Err(DesignError::mismatch("parameters of an information", other.order, self.order));
+            return Err(mismatch("parameters of an information", other.order, self.order));
         }
         self.elements.iter_mut().zip(&other.elements).for_each(|(sum, element)| *sum += element);
         Ok(())
@@ -163,17 +162,16 @@ impl Information {
     /// The same with a parameter that is known with standard `uncertainty` beside the measurements.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] if there is no such parameter, [`DesignError::OutOfRange`] unless the uncertainty is
+    /// [`FitError::Count`] if there is no such parameter, [`FitError::OutOfRange`] unless the uncertainty is
     /// positive.
-    pub fn with_known(mut self, parameter: usize, uncertainty: f64) -> Result<Self, DesignError> {
+    pub fn with_known(mut self, parameter: usize, uncertainty: f64) -> Result<Self, FitError> {
         if parameter >= self.order {
-            return Err(DesignError::mismatch("place of a known parameter", parameter, self.order));
+            return Err(mismatch("place of a known parameter", parameter, self.order));
         }
         let precision = uncertainty.powi(-2);
         if !(uncertainty > 0.0 && precision.is_finite()) {
-            return Err(DesignError::out_of_range(format!(
-                "the standard uncertainty of what is known must be positive, not {uncertainty}"
-            )));
+            let what = format!("the standard uncertainty of a known parameter must be positive, not {uncertainty}");
+            return Err(FitError::out_of_range(what, uncertainty));
         }
         self.elements[parameter * (self.order + 1)] += precision;
         Ok(self)
@@ -183,11 +181,11 @@ impl Information {
     /// one row for each of these parameters.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] if the rows are not whole, [`DesignError::OutOfRange`] for a derivative that is not
+    /// [`FitError::Count`] if the rows are not whole, [`FitError::OutOfRange`] for a derivative that is not
     /// finite.
-    pub fn transformed(&self, derivatives: &[f64]) -> Result<Self, DesignError> {
+    pub fn transformed(&self, derivatives: &[f64]) -> Result<Self, FitError> {
         if derivatives.is_empty() || !derivatives.len().is_multiple_of(self.order.max(1)) {
-            return Err(DesignError::mismatch("derivatives in whole rows", derivatives.len(), self.order));
+            return Err(mismatch("derivatives in whole rows", derivatives.len(), self.order));
         }
         require_finite("derivatives", derivatives)?;
         let order = derivatives.len() / self.order;
@@ -215,16 +213,16 @@ impl Information {
     /// u²(gᵀθ) for a combination of the parameters; `None` if it is not determined.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] for another number of factors than parameters.
-    pub fn variance(&self, combination: &[f64]) -> Result<Option<f64>, DesignError> {
+    /// [`FitError::Count`] for another number of factors than parameters.
+    pub fn variance(&self, combination: &[f64]) -> Result<Option<f64>, FitError> {
         self.covariance(combination, combination)
     }
 
     /// u(gᵀθ, hᵀθ), the covariance of two combinations; `None` if one of them is not determined.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] for another number of factors than parameters.
-    pub fn covariance(&self, first: &[f64], second: &[f64]) -> Result<Option<f64>, DesignError> {
+    /// [`FitError::Count`] for another number of factors than parameters.
+    pub fn covariance(&self, first: &[f64], second: &[f64]) -> Result<Option<f64>, FitError> {
         for combination in [first, second] {
             self.require(combination)?;
         }
@@ -237,11 +235,11 @@ impl Information {
     /// Directions of the `parameters` about which nothing is known, near these `values`.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] for another number of parameters or values.
-    pub fn null_directions(&self, parameters: &[Parameter], values: &[f64]) -> Result<Vec<NullDirection>, DesignError> {
+    /// [`FitError::Count`] for another number of parameters or values.
+    pub fn null_directions(&self, parameters: &[Parameter], values: &[f64]) -> Result<Vec<NullDirection>, FitError> {
         for count in [parameters.len(), values.len()] {
             if count != self.order {
-                return Err(DesignError::mismatch("parameters of an information", count, self.order));
+                return Err(mismatch("parameters of an information", count, self.order));
             }
         }
         let spectrum = self.spectrum();
@@ -255,8 +253,8 @@ impl Information {
     /// along directions about which nothing is known they do not move. The same `seed` gives the same draws.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] for another number of values than parameters.
-    pub fn draws(&self, values: &[f64], count: usize, seed: u64) -> Result<Vec<Vec<f64>>, DesignError> {
+    /// [`FitError::Count`] for another number of values than parameters.
+    pub fn draws(&self, values: &[f64], count: usize, seed: u64) -> Result<Vec<Vec<f64>>, FitError> {
         self.require(values)?;
         let Eigen { scales, values: eigenvalues, vectors } = self.spectrum();
         let known = self.spectrum().rank();
@@ -283,9 +281,9 @@ impl Information {
         &self.elements
     }
 
-    pub(crate) fn require(&self, combination: &[f64]) -> Result<(), DesignError> {
+    pub(crate) fn require(&self, combination: &[f64]) -> Result<(), FitError> {
         if combination.len() != self.order {
-            return Err(DesignError::mismatch("factors of a combination", combination.len(), self.order));
+            return Err(mismatch("factors of a combination", combination.len(), self.order));
         }
         require_finite("factors of a combination", combination)
     }
@@ -298,9 +296,18 @@ fn normal(random: &mut ChaCha8Rng) -> f64 {
     (-2.0 * (1.0 - first).ln()).sqrt() * (TAU * second).cos()
 }
 
-fn require_finite(subject: &str, numbers: &[f64]) -> Result<(), DesignError> {
+/// Lists that do not belong together.
+pub(crate) fn mismatch(subject: &str, found: usize, expected: usize) -> FitError {
+    FitError::count(format!("{subject}: {found} given, {expected} needed"))
+}
+
+fn no_derivatives() -> FitError {
+    FitError::no_model("the problem has no derivatives at the values given")
+}
+
+fn require_finite(subject: &str, numbers: &[f64]) -> Result<(), FitError> {
     match numbers.iter().find(|number| !number.is_finite()) {
-        Some(number) => Err(DesignError::out_of_range(format!("{subject} must be finite, but one is {number}"))),
+        Some(number) => Err(FitError::out_of_range(format!("{subject} must be finite, but one is {number}"), *number)),
         None => Ok(()),
     }
 }

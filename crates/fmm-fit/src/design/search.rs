@@ -5,8 +5,9 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::design::design_case::{DesignCase, DesignCriterion};
-use crate::design::design_error::DesignError;
 use crate::design::exchange::{Exchange, Purse};
+use crate::design::information::mismatch;
+use crate::error::FitError;
 
 /// Search for the measurements, out of a list of candidates, that make what is asked for least uncertain.
 ///
@@ -23,7 +24,7 @@ use crate::design::exchange::{Exchange, Purse};
 /// let case = DesignCase::of_all(Information::none(2), candidates)?;
 /// let best = DesignSearch::new(vec![case], DesignCriterion::Determinant)?.best(4)?;
 /// assert_eq!(best.counts(), [(0, 2), (20, 2)]);
-/// # Ok::<(), fmm_fit::DesignError>(())
+/// # Ok::<(), fmm_fit::FitError>(())
 /// ```
 ///
 /// # References
@@ -50,12 +51,12 @@ impl DesignSearch {
     /// Searches by `criterion`; each of the `cases` has the same candidates at other values of the parameters.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] without a case, or if the cases have different numbers of candidates.
-    pub fn new(cases: Vec<DesignCase>, criterion: DesignCriterion) -> Result<Self, DesignError> {
-        let Some(first) = cases.first() else { return Err(DesignError::mismatch("cases of a design", 0, 1)) };
+    /// [`FitError::Count`] without a case, or if the cases have different numbers of candidates.
+    pub fn new(cases: Vec<DesignCase>, criterion: DesignCriterion) -> Result<Self, FitError> {
+        let Some(first) = cases.first() else { return Err(mismatch("cases of a design", 0, 1)) };
         let count = first.candidates.len();
         if let Some(other) = cases.iter().find(|case| case.candidates.len() != count) {
-            return Err(DesignError::mismatch("candidates of a case", other.candidates.len(), count));
+            return Err(mismatch("candidates of a case", other.candidates.len(), count));
         }
         Ok(Self { cases, criterion, is_worst: false, starts: 8, seed: 1 })
     }
@@ -88,10 +89,10 @@ impl DesignSearch {
     /// they are not determined it is that with 10⁻¹⁰ of the information of a mean candidate beside, which is large.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] for a place beyond the candidates.
-    pub fn score(&self, measurements: &[usize]) -> Result<f64, DesignError> {
+    /// [`FitError::Count`] for a place beyond the candidates.
+    pub fn score(&self, measurements: &[usize]) -> Result<f64, FitError> {
         if let Some(place) = measurements.iter().find(|place| **place >= self.candidates()) {
-            return Err(DesignError::mismatch("place of a candidate", *place, self.candidates()));
+            return Err(mismatch("place of a candidate", *place, self.candidates()));
         }
         Ok(self.score_of(&self.sums(measurements)))
     }
@@ -99,10 +100,11 @@ impl DesignSearch {
     /// The best set of this many measurements; a candidate may be in it more than once.
     ///
     /// # Errors
-    /// [`DesignError::OutOfRange`] for no measurement or more than 1000.
-    pub fn best(&self, measurements: usize) -> Result<ChosenDesign, DesignError> {
+    /// [`FitError::OutOfRange`] for no measurement or more than 1000.
+    pub fn best(&self, measurements: usize) -> Result<ChosenDesign, FitError> {
         if !(1..=MOST).contains(&measurements) {
-            return Err(DesignError::out_of_range(format!("a set has 1 to {MOST} measurements, not {measurements}")));
+            let what = format!("a set has 1 to {MOST} measurements, not {measurements}");
+            return Err(FitError::out_of_range(what, measurements as f64));
         }
         self.best_within(&vec![1.0; self.candidates()], measurements as f64)
     }
@@ -110,14 +112,15 @@ impl DesignSearch {
     /// The best set whose costs, one for each candidate, add up to no more than `budget`.
     ///
     /// # Errors
-    /// [`DesignError::Mismatch`] for another number of costs than candidates, [`DesignError::OutOfRange`] for a cost
+    /// [`FitError::Count`] for another number of costs than candidates, [`FitError::OutOfRange`] for a cost
     /// that is not positive, and for a budget that allows no measurement or more than 1000.
-    pub fn best_within(&self, costs: &[f64], budget: f64) -> Result<ChosenDesign, DesignError> {
+    pub fn best_within(&self, costs: &[f64], budget: f64) -> Result<ChosenDesign, FitError> {
         if costs.len() != self.candidates() {
-            return Err(DesignError::mismatch("costs of the candidates", costs.len(), self.candidates()));
+            return Err(mismatch("costs of the candidates", costs.len(), self.candidates()));
         }
         if let Some(cost) = costs.iter().find(|cost| !(**cost > 0.0 && cost.is_finite())) {
-            return Err(DesignError::out_of_range(format!("the cost of a measurement must be positive, not {cost}")));
+            let what = format!("the cost of a measurement must be positive, not {cost}");
+            return Err(FitError::out_of_range(what, *cost));
         }
         let cheapest = costs.iter().copied().fold(f64::INFINITY, f64::min);
         // Costs that add up to the budget but for rounding.
@@ -125,11 +128,11 @@ impl DesignSearch {
         let budget = budget * (1.0 + 1e-12);
         let most = budget / cheapest;
         if !(1.0..MOST as f64 + 1.0).contains(&most) {
-            let [given, least, greatest] =
+            let [asked, least, greatest] =
                 [given, cheapest, cheapest * MOST as f64].map(|cost| Rounded::new(cost, None).to_string());
-            return Err(DesignError::out_of_range(format!(
-                "the budget must be {least} to {greatest}, which pays for 1 to {MOST} of the cheapest measurement, not {given}"
-            )));
+            let pays = format!("which pays for 1 to {MOST} of the cheapest measurement");
+            let what = format!("the budget must be {least} to {greatest}, {pays}, not {asked}");
+            return Err(FitError::out_of_range(what, given));
         }
         let purse = Purse { costs, budget };
         let mut exchange = Exchange::new(self, purse);

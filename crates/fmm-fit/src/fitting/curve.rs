@@ -77,7 +77,10 @@ pub fn curve<'a, X: Copy, const N: usize>(
     model: impl Fn(X, [Dual<N>; N]) -> Dual<N> + 'a,
 ) -> Result<ClosureProblem<impl Fn([Dual<N>; N], &mut [Dual<N>]) + 'a, N>, FitError> {
     if x.len() != y.len() {
-        return Err(FitError::data_length(x.len(), y.len()));
+        let (abscissae, ordinates) = (x.len(), y.len());
+        return Err(FitError::count(format!(
+            "there are {abscissae} abscissae for {ordinates} ordinates; give one for each"
+        )));
     }
     Ok(ClosureProblem::new(parameters, y.len(), move |p: [Dual<N>; N], residuals: &mut [Dual<N>]| {
         for ((r, x), y) in residuals.iter_mut().zip(x).zip(y) {
@@ -208,7 +211,7 @@ mod tests {
         let plane = curve_fit(&x, &[3.0, 2.0, 5.0, 7.0], [("a", 0.0), ("b", 0.0)], |x, [a, b]| a * x[0] + b * x[1]);
         let plane = plane.unwrap();
         assert!((plane.values()[0] - 2.0).abs() < 1e-12 && (plane.values()[1] - 3.0).abs() < 1e-12);
-        assert!(matches!(fit([("a", 1.0)], 0, |_, _| {}), Err(FitError::TooFewResiduals { .. })));
+        assert!(matches!(fit([("a", 1.0)], 0, |_, _| {}), Err(FitError::Undetermined { .. })));
         let fixed = Parameter::from("a").bounded(fmm_model::Bounds::new(1.0, 1.0).unwrap());
         assert!(fit([(fixed, 1.0)], 0, |_, _| {}).is_ok());
     }

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use fmm_model::{Bounds, Parameter};
+use fmm_model::{Bounds, Parameter, Rounded};
 
+use crate::error::FitError;
 use crate::problem::block::Block;
-use crate::problem::joint_error::JointError;
 use crate::problem::residuals::{Derivatives, EvaluationError, Residuals};
 use crate::result::fit::Fit;
 
@@ -90,16 +90,16 @@ impl<P: Residuals> Joint<P> {
     /// Joins `problems`; parameters of the names `shared` are the same in all of them.
     ///
     /// # Errors
-    /// [`JointError`] without a problem, for a name that no problem has or that stands twice, and for a shared
+    /// [`FitError`] without a problem, for a name that no problem has or that stands twice, and for a shared
     /// parameter whose units differ or whose bounds have no value in common.
-    pub fn new(problems: Vec<P>, shared: &[&str]) -> Result<Self, JointError> {
+    pub fn new(problems: Vec<P>, shared: &[&str]) -> Result<Self, FitError> {
         if problems.is_empty() {
-            return Err(JointError::NoProblem);
+            return Err(FitError::count("a joint fit needs at least one problem"));
         }
         let mut parameters = Vec::new();
         for (place, name) in shared.iter().enumerate() {
             if shared[..place].contains(name) {
-                return Err(JointError::NameTwice { name: (*name).to_owned() });
+                return Err(name_twice(name));
             }
             parameters.push(common(&problems, name)?);
         }
@@ -110,7 +110,7 @@ impl<P: Residuals> Joint<P> {
             let mut indices = Vec::with_capacity(own.len());
             for (place, parameter) in own.iter().enumerate() {
                 if own[..place].iter().any(|before| before.name() == parameter.name()) {
-                    return Err(JointError::NameTwice { name: parameter.name().to_owned() });
+                    return Err(name_twice(parameter.name()));
                 }
                 if let Some(index) = shared.iter().position(|name| *name == parameter.name()) {
                     indices.push(index);
@@ -127,7 +127,11 @@ impl<P: Residuals> Joint<P> {
             let parts = if problem.blocks().is_empty() { &whole } else { problem.blocks() };
             for (index, part) in parts.iter().enumerate() {
                 let columns: Option<Vec<usize>> = part.parameters().iter().map(|&j| indices.get(j).copied()).collect();
-                let columns = columns.ok_or(JointError::InvalidBlock { problem: number, block: index })?;
+                let columns = columns.ok_or_else(|| {
+                    FitError::problem(format!(
+                        "block {index} of problem {number} names a parameter that the problem does not have"
+                    ))
+                })?;
                 element += part.rows() * columns.len();
                 blocks.push(Block::new(part.rows(), columns));
                 origins.push((number, index));
@@ -146,16 +150,20 @@ impl<P: Residuals> Joint<P> {
     /// Start values for all from those of each problem: of a shared parameter the mean, moved into its bounds.
     ///
     /// # Errors
-    /// [`JointError::StartCount`] and [`JointError::StartLength`] if there is not one value per problem and parameter.
-    pub fn start<S: AsRef<[f64]>>(&self, starts: &[S]) -> Result<Vec<f64>, JointError> {
+    /// [`FitError::Count`] unless there is one value per problem and parameter.
+    pub fn start<S: AsRef<[f64]>>(&self, starts: &[S]) -> Result<Vec<f64>, FitError> {
         if starts.len() != self.problems.len() {
-            return Err(JointError::StartCount { starts: starts.len(), problems: self.problems.len() });
+            let (starts, problems) = (starts.len(), self.problems.len());
+            return Err(FitError::count(format!("there are {starts} starts for {problems} problems")));
         }
         let mut sums = vec![(0.0, 0.0); self.parameters.len()];
         for (number, (member, start)) in self.members.iter().zip(starts).enumerate() {
             let (values, parameters) = (start.as_ref(), member.indices.len());
             if values.len() != parameters {
-                return Err(JointError::StartLength { problem: number, values: values.len(), parameters });
+                return Err(FitError::count(format!(
+                    "the start of problem {number} has {} values, but the problem has {parameters} parameters",
+                    values.len()
+                )));
             }
             for (&index, value) in member.indices.iter().zip(values) {
                 sums[index].0 += value;
@@ -169,10 +177,12 @@ impl<P: Residuals> Joint<P> {
     /// What `fit`, which must be one of this problem, says about each of the problems.
     ///
     /// # Errors
-    /// [`JointError::OtherFit`] if the numbers of parameters or residuals are not those of this problem.
-    pub fn split<'a>(&'a self, fit: &'a Fit) -> Result<Vec<JointPart<'a>>, JointError> {
+    /// [`FitError::OtherFit`] if the numbers of parameters or residuals are not those of this problem.
+    pub fn split<'a>(&'a self, fit: &'a Fit) -> Result<Vec<JointPart<'a>>, FitError> {
         if fit.values().len() != self.parameters.len() || fit.residuals().len() != self.len() {
-            return Err(JointError::OtherFit);
+            let sizes = |residuals: usize, parameters: usize| (residuals, parameters);
+            let fit = sizes(fit.residuals().len(), fit.values().len());
+            return Err(FitError::other_fit(fit, sizes(self.len(), self.parameters.len())));
         }
         let part = |member: &'a Member| JointPart {
             values: member.values(fit.values()),
@@ -183,18 +193,33 @@ impl<P: Residuals> Joint<P> {
     }
 }
 
+fn name_twice(name: &str) -> FitError {
+    FitError::problem(format!("the name {name} stands twice; names tell the parameters of a joint fit apart"))
+}
+
 /// The parameter called `name` of all problems that have it.
-fn common<P: Residuals>(problems: &[P], name: &str) -> Result<Parameter, JointError> {
+fn common<P: Residuals>(problems: &[P], name: &str) -> Result<Parameter, FitError> {
     let all = || problems.iter().flat_map(Residuals::parameters).filter(|parameter| parameter.name() == name);
-    let first = all().next().ok_or_else(|| JointError::UnknownName { name: name.to_owned() })?;
+    let first = all()
+        .next()
+        .ok_or_else(|| FitError::unknown_name(format!("no problem has a parameter called {name} to share")))?;
     if let Some(other) = all().find(|parameter| parameter.unit() != first.unit()) {
-        let (name, first, other) = (name.to_owned(), first.unit().to_owned(), other.unit().to_owned());
-        return Err(JointError::UnitsDiffer { name, first, other });
+        return Err(FitError::problem(format!(
+            "the shared parameter {name} is in {} in one problem and in {} in another; give it one unit",
+            first.unit(),
+            other.unit()
+        )));
     }
     let lower = all().map(|parameter| parameter.bounds().lower()).fold(f64::NEG_INFINITY, f64::max);
     let upper = all().map(|parameter| parameter.bounds().upper()).fold(f64::INFINITY, f64::min);
     let bounds = Bounds::new(lower, upper);
-    let bounds = bounds.map_err(|_| JointError::BoundsApart { name: name.to_owned(), lower, upper })?;
+    let bounds = bounds.map_err(|_| {
+        let [lower, upper] = [lower, upper].map(Rounded::every_digit);
+        let what = "as the problems ask";
+        FitError::problem(format!(
+            "no value of the shared parameter {name} is at least {lower} and at most {upper}, {what}"
+        ))
+    })?;
     Ok(first.clone().bounded(bounds))
 }
 

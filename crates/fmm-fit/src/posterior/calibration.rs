@@ -7,10 +7,10 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
+use crate::error::FitError;
 use crate::fitting::solve::solve;
-use crate::posterior::error::PosteriorError;
 use crate::posterior::result::Posterior;
-use crate::posterior::sampler::Sampler;
+use crate::posterior::sampler::{Sampler, too_few};
 use crate::problem::residuals::{EvaluationError, Residuals};
 use crate::solver::options::Options;
 
@@ -97,7 +97,7 @@ impl Calibration {
     /// True values are drawn from the priors of the sampler. The result is a function of its seed.
     ///
     /// # Errors
-    /// [`PosteriorError::TooFew`] below a hundred records, [`PosteriorError::Prior`] for a parameter whose prior is
+    /// [`FitError`] below a hundred records, for a parameter whose prior is
     /// flat without two bounds, or a sampler that does not take the variance of the residuals as 1. Records without a
     /// posterior are counted as [failures](Self::failures).
     pub fn of<P: Residuals>(
@@ -105,9 +105,9 @@ impl Calibration {
         parameters: &[Parameter],
         records: usize,
         mut simulate: impl FnMut(&[f64], u64) -> Result<P, EvaluationError>,
-    ) -> Result<Self, PosteriorError> {
+    ) -> Result<Self, FitError> {
         if records < FEWEST_RECORDS {
-            return Err(PosteriorError::TooFew { what: "records", least: FEWEST_RECORDS, given: records });
+            return Err(too_few("records", FEWEST_RECORDS, records));
         }
         sampler.require_known_noise()?;
         let free: Vec<usize> = (0..parameters.len()).filter(|&j| !parameters[j].bounds().is_fixed()).collect();

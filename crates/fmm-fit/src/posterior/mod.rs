@@ -4,7 +4,6 @@ pub(crate) mod calibration;
 pub(crate) mod check;
 pub(crate) mod convergence;
 pub(crate) mod coordinates;
-pub(crate) mod error;
 pub(crate) mod marginal;
 pub(crate) mod mode;
 pub(crate) mod nuts;

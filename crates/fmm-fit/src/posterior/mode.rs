@@ -2,8 +2,8 @@
 
 use crate::algebra::definite;
 use crate::diagnostics::residual_diagnostics::autocorrelation;
+use crate::error::FitError;
 use crate::posterior::coordinates::Whitening;
-use crate::posterior::error::PosteriorError;
 use crate::posterior::target::Target;
 use crate::problem::residuals::Residuals;
 use crate::result::fit::Fit;
@@ -20,11 +20,8 @@ const FROM_BOUND: f64 = 0.5;
 /// The whitening about the mode that lies downhill of `fit`.
 ///
 /// # Errors
-/// [`PosteriorError::NoStart`] and [`PosteriorError::Undetermined`].
-pub(super) fn whiten<P: Residuals + ?Sized>(
-    target: &mut Target<'_, P>,
-    fit: &Fit,
-) -> Result<Whitening, PosteriorError> {
+/// [`FitError::NoModel`] and [`FitError::Undetermined`].
+pub(super) fn whiten<P: Residuals + ?Sized>(target: &mut Target<'_, P>, fit: &Fit) -> Result<Whitening, FitError> {
     let mut psi = start(target, fit)?;
     let order = psi.len();
     let (mut gradient, mut trial) = (vec![0.0; order], vec![0.0; order]);
@@ -66,7 +63,7 @@ pub(super) fn whiten<P: Residuals + ?Sized>(
 }
 
 /// The coordinates of the fitted values, those at a bound moved off it.
-fn start<P: Residuals + ?Sized>(target: &mut Target<'_, P>, fit: &Fit) -> Result<Vec<f64>, PosteriorError> {
+fn start<P: Residuals + ?Sized>(target: &mut Target<'_, P>, fit: &Fit) -> Result<Vec<f64>, FitError> {
     let free = target.free().to_vec();
     let deviation = fit.residual_standard_deviation().filter(|s| *s > 0.0).unwrap_or(1.0);
     let rho = autocorrelation(fit.residuals(), 1).unwrap_or(0.0).clamp(-0.99, 0.99);
@@ -98,19 +95,26 @@ fn evaluate<P: Residuals + ?Sized>(
     target: &mut Target<'_, P>,
     psi: &[f64],
     gradient: &mut [f64],
-) -> Result<f64, PosteriorError> {
+) -> Result<f64, FitError> {
     target.log_density_and_gradient(psi, gradient).ok_or_else(|| no_start(target))
 }
 
-pub(super) fn no_start<P: Residuals + ?Sized>(target: &Target<'_, P>) -> PosteriorError {
-    PosteriorError::NoStart { said: target.model_error().unwrap_or("nothing").to_owned() }
+pub(super) fn no_start<P: Residuals + ?Sized>(target: &Target<'_, P>) -> FitError {
+    let said = target.model_error().unwrap_or("nothing");
+    FitError::no_model(format!(
+        "no point about the fit has finite residuals and derivatives; the model said last: {said}"
+    ))
 }
 
-fn undetermined<P: Residuals + ?Sized>(target: &Target<'_, P>, fit: &Fit) -> PosteriorError {
+fn undetermined<P: Residuals + ?Sized>(target: &Target<'_, P>, fit: &Fit) -> FitError {
     let directions = fit.null_directions();
     let names: Vec<String> = match directions {
         [] => target.free().iter().map(|&j| fit.estimates()[j].name().to_owned()).collect(),
         _ => directions.iter().map(ToString::to_string).collect(),
     };
-    PosteriorError::Undetermined { parameters: names.join("; ") }
+    let parameters = names.join("; ");
+    FitError::undetermined(format!(
+        "residuals and priors together do not determine {parameters}; fix one of them or give it a prior that has a \
+         width"
+    ))
 }

@@ -10,8 +10,8 @@ use nuts_rs::{Chain, CpuLogpFunc, CpuMath, CpuMathError, DiagNutsSettings, HasDi
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
+use crate::error::FitError;
 use crate::posterior::coordinates::Whitening;
-use crate::posterior::error::PosteriorError;
 use crate::posterior::target::Target;
 use crate::problem::residuals::Residuals;
 
@@ -82,8 +82,8 @@ pub(super) fn run<P: Residuals + ?Sized>(
     start: &[f64],
     (warm_up, draws): (usize, usize),
     random: &mut ChaCha8Rng,
-) -> Result<Run, PosteriorError> {
-    let failed = |error: &dyn std::fmt::Display| PosteriorError::Sampler(error.to_string());
+) -> Result<Run, FitError> {
+    let failed = |error: &dyn std::fmt::Display| FitError::Sampler(error.to_string());
     let mut settings = DiagNutsSettings::default();
     (settings.num_tune, settings.num_draws) = (warm_up as u64, draws as u64);
     if whitening.has_cut() {

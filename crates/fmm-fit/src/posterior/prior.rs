@@ -5,7 +5,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::posterior::error::PosteriorError;
+use crate::error::FitError;
 
 /// Values drawn in search of one within the bounds.
 const TRIES: usize = 10_000;
@@ -29,7 +29,7 @@ const TRIES: usize = 10_000;
 /// assert!(load.log_density(14.0) > load.log_density(14.2));
 /// assert_eq!(Prior::uniform(0.0, 1.0)?.log_density(2.0), f64::NEG_INFINITY);
 /// assert_eq!(Prior::normal(14.0, 0.0).unwrap_err().to_string(), "a prior's standard uncertainty must be above 0, but is 0");
-/// # Ok::<(), fmm_fit::PosteriorError>(())
+/// # Ok::<(), fmm_fit::FitError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prior(Kind);
@@ -57,8 +57,8 @@ impl Prior {
     /// A value with its standard uncertainty, both in the unit of the parameter.
     ///
     /// # Errors
-    /// [`PosteriorError::Prior`] unless both are finite and the uncertainty is positive.
-    pub fn normal(mean: f64, standard_uncertainty: f64) -> Result<Self, PosteriorError> {
+    /// [`FitError::OutOfRange`] unless both are finite and the uncertainty is positive.
+    pub fn normal(mean: f64, standard_uncertainty: f64) -> Result<Self, FitError> {
         let mean = finite("mean", mean)?;
         Ok(Self(Kind::Normal { mean, deviation: positive("standard uncertainty", standard_uncertainty)? }))
     }
@@ -67,8 +67,8 @@ impl Prior {
     /// deviation `log_deviation` (1), which for a small one is the relative standard uncertainty.
     ///
     /// # Errors
-    /// [`PosteriorError::Prior`] unless both are finite and positive.
-    pub fn log_normal(median: f64, log_deviation: f64) -> Result<Self, PosteriorError> {
+    /// [`FitError::OutOfRange`] unless both are finite and positive.
+    pub fn log_normal(median: f64, log_deviation: f64) -> Result<Self, FitError> {
         let logarithm = positive("median", median)?.ln();
         Ok(Self(Kind::LogNormal {
             logarithm,
@@ -79,16 +79,14 @@ impl Prior {
     /// The same density from `lower` to `upper` (unit of the parameter), and none beyond.
     ///
     /// # Errors
-    /// [`PosteriorError::Prior`] unless both are finite and in ascending order.
-    pub fn uniform(lower: f64, upper: f64) -> Result<Self, PosteriorError> {
+    /// [`FitError::OutOfRange`] unless both are finite and in ascending order.
+    pub fn uniform(lower: f64, upper: f64) -> Result<Self, FitError> {
         let (lower, upper) = (finite("lower end", lower)?, finite("upper end", upper)?);
         let bounds = Bounds::new(lower, upper).ok().filter(|bounds| !bounds.is_fixed());
-        let bounds = bounds.ok_or_else(|| PosteriorError::Prior {
-            what: format!(
-                "a uniform prior must end above its beginning, but reaches from {} to {}",
-                Rounded::every_digit(lower),
-                Rounded::every_digit(upper)
-            ),
+        let bounds = bounds.ok_or_else(|| {
+            let [from, to] = [lower, upper].map(Rounded::every_digit);
+            let what = format!("a uniform prior must end above its beginning, but reaches from {from} to {to}");
+            FitError::out_of_range(what, upper)
         })?;
         Ok(Self(Kind::Uniform(bounds)))
     }
@@ -99,7 +97,7 @@ impl Prior {
     }
 
     /// A value at random, within the bounds of `parameter`.
-    pub(super) fn draw(&self, parameter: &Parameter, random: &mut ChaCha8Rng) -> Result<f64, PosteriorError> {
+    pub(super) fn draw(&self, parameter: &Parameter, random: &mut ChaCha8Rng) -> Result<f64, FitError> {
         let bounds = parameter.bounds();
         let within = bounds.at_least(self.support().lower()).at_most(self.support().upper());
         if bounds.is_fixed() {
@@ -110,9 +108,8 @@ impl Prior {
                 Kind::Flat | Kind::Uniform(_) => {
                     let width = within.upper() - within.lower();
                     if !width.is_finite() {
-                        return Err(PosteriorError::Prior {
-                            what: format!("{} needs a prior to be drawn from; give one with a width", parameter.name()),
-                        });
+                        let what = "needs a prior to be drawn from; give one with a width";
+                        return Err(FitError::undetermined(format!("{} {what}", parameter.name())));
                     }
                     within.lower() + width * random.random::<f64>()
                 }
@@ -123,7 +120,7 @@ impl Prior {
                 return Ok(value);
             }
         }
-        Err(PosteriorError::outside_bounds(parameter))
+        Err(outside_bounds(parameter))
     }
 
     /// The interval outside of which the density is zero.
@@ -159,17 +156,21 @@ impl Prior {
     }
 }
 
-fn finite(what: &str, value: f64) -> Result<f64, PosteriorError> {
-    let refused = || PosteriorError::Prior { what: format!("a prior's {what} must be finite, but is {value}") };
+fn finite(what: &str, value: f64) -> Result<f64, FitError> {
+    let refused = || FitError::option(&format!("a prior's {what}"), "finite", value);
     value.is_finite().then_some(value).ok_or_else(refused)
 }
 
-fn positive(what: &str, value: f64) -> Result<f64, PosteriorError> {
-    let refused = || {
-        let value = Rounded::every_digit(value);
-        PosteriorError::Prior { what: format!("a prior's {what} must be above 0, but is {value}") }
-    };
+fn positive(what: &str, value: f64) -> Result<f64, FitError> {
+    let refused = || FitError::option(&format!("a prior's {what}"), "above 0", value);
     (value > 0.0 && value.is_finite()).then_some(value).ok_or_else(refused)
+}
+
+/// A prior that rules out all values that the bounds of its parameter allow.
+pub(super) fn outside_bounds(parameter: &Parameter) -> FitError {
+    let [lower, upper] = [parameter.bounds().lower(), parameter.bounds().upper()].map(Rounded::every_digit);
+    let name = parameter.name();
+    FitError::problem(format!("the prior of {name} has no value within its bounds, [{lower}, {upper}]"))
 }
 
 pub(super) fn standard_normal(random: &mut ChaCha8Rng) -> f64 {
@@ -205,7 +206,7 @@ mod tests {
             Prior::uniform(2.0, 1.0),
             Prior::uniform(0.0, f64::INFINITY),
         ] {
-            assert!(matches!(refused, Err(PosteriorError::Prior { .. })), "{refused:?}");
+            assert!(matches!(refused, Err(FitError::OutOfRange { .. })), "{refused:?}");
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use fmm_model::{Bounds, Parameter};
 
+use crate::error::FitError;
 use crate::posterior::check::GradientFreeCheck;
-use crate::posterior::error::PosteriorError;
 use crate::posterior::marginal::Marginal;
 use crate::posterior::sampler::Chain;
 use crate::posterior::warning::PosteriorWarning;
@@ -52,7 +52,7 @@ impl Posterior {
         chains: &[Chain],
         (warm_up, is_correlated): (usize, bool),
         variance: ResidualVariance,
-    ) -> Result<Self, PosteriorError> {
+    ) -> Result<Self, FitError> {
         let mut posterior = Self {
             parameters: parameters.to_vec(),
             free: free.to_vec(),
@@ -77,7 +77,7 @@ impl Posterior {
             quantities.push((correlation, posterior.noise.iter().map(|(_, correlation)| *correlation).collect()));
         }
         for (parameter, draws) in quantities {
-            let failed = || PosteriorError::Sampler("a draw is no finite number".to_owned());
+            let failed = || FitError::Sampler("a draw is no finite number".to_owned());
             posterior.marginals.push(Marginal::new(parameter, draws, chains.len()).ok_or_else(failed)?);
         }
         Ok(posterior)

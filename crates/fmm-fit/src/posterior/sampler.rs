@@ -5,12 +5,12 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{ChiSquared, Distribution};
 
+use crate::error::FitError;
 use crate::posterior::check::{self, GradientFreeCheck};
 use crate::posterior::coordinates::Whitening;
-use crate::posterior::error::PosteriorError;
 use crate::posterior::mode::{no_start, whiten};
 use crate::posterior::nuts::{self, Run};
-use crate::posterior::prior::{Prior, standard_normal};
+use crate::posterior::prior::{Prior, outside_bounds, standard_normal};
 use crate::posterior::result::Posterior;
 use crate::posterior::target::Target;
 use crate::problem::residuals::Residuals;
@@ -72,6 +72,10 @@ pub struct Sampler {
     variance: ResidualVariance,
     is_correlated: bool,
     check_steps: usize,
+}
+
+pub(super) fn too_few(what: &str, least: usize, given: usize) -> FitError {
+    FitError::out_of_range(format!("at least {least} {what} are needed, but {given} are asked for"), given as f64)
 }
 
 impl Default for Sampler {
@@ -159,21 +163,22 @@ impl Sampler {
     }
 
     /// Noise of which a record can be simulated.
-    pub(super) fn require_known_noise(&self) -> Result<(), PosteriorError> {
+    pub(super) fn require_known_noise(&self) -> Result<(), FitError> {
         if self.variance == ResidualVariance::Unit && !self.is_correlated {
             return Ok(());
         }
-        let what = "noise can be simulated only if it is known: divide the residuals by their standard deviation, and take their \
-                    variance as 1";
-        Err(PosteriorError::Prior { what: what.to_owned() })
+        Err(FitError::problem(
+            "noise can be simulated only if it is known: divide the residuals by their standard deviation, and take \
+             their variance as 1",
+        ))
     }
 
     /// Draws from the posterior of `problem` about its `fit`, one chain after the other.
     ///
     /// # Errors
-    /// [`PosteriorError`] if the fit is that of another problem, if a prior names no free parameter, if there are too
+    /// [`FitError`] if the fit is that of another problem, if a prior names no free parameter, if there are too
     /// few chains or draws, or if there is no posterior: nothing determines a direction, or no residual is left.
-    pub fn sample<P: Residuals + ?Sized>(&self, problem: &P, fit: &Fit) -> Result<Posterior, PosteriorError> {
+    pub fn sample<P: Residuals + ?Sized>(&self, problem: &P, fit: &Fit) -> Result<Posterior, FitError> {
         let plan = self.plan(problem, fit)?;
         let chains = (0..self.chains).map(|chain| self.chain(&plan, chain)).collect::<Result<Vec<_>, _>>()?;
         let walk = plan.walk(&chains);
@@ -186,11 +191,7 @@ impl Sampler {
     /// # Errors
     /// As for [`sample`](Self::sample).
     #[cfg(feature = "rayon")]
-    pub fn sample_parallel<P: Residuals + Sync + ?Sized>(
-        &self,
-        problem: &P,
-        fit: &Fit,
-    ) -> Result<Posterior, PosteriorError> {
+    pub fn sample_parallel<P: Residuals + Sync + ?Sized>(&self, problem: &P, fit: &Fit) -> Result<Posterior, FitError> {
         use rayon::prelude::*;
 
         let plan = self.plan(problem, fit)?;
@@ -203,16 +204,16 @@ impl Sampler {
     }
 
     /// Checks what is asked for, and finds the mode with the coordinates about it.
-    fn plan<'a, P: Residuals + ?Sized>(&self, problem: &'a P, fit: &Fit) -> Result<Plan<'a, P>, PosteriorError> {
+    fn plan<'a, P: Residuals + ?Sized>(&self, problem: &'a P, fit: &Fit) -> Result<Plan<'a, P>, FitError> {
         let sizes = ((fit.residuals().len(), fit.values().len()), (problem.len(), problem.parameters().len()));
         if sizes.0 != sizes.1 {
-            return Err(PosteriorError::DifferentProblem { fit: sizes.0, problem: sizes.1 });
+            return Err(FitError::other_fit(sizes.0, sizes.1));
         }
         for (what, least, given) in
             [("chains", 2, self.chains), ("draws of a chain", 100, self.draws), ("warm-up draws", 50, self.warm_up)]
         {
             if given < least {
-                return Err(PosteriorError::TooFew { what, least, given });
+                return Err(too_few(what, least, given));
             }
         }
         let parameters = problem.parameters();
@@ -223,16 +224,20 @@ impl Sampler {
             let Some(index) = index else {
                 let free = parameters.iter().filter(|parameter| !parameter.bounds().is_fixed());
                 let known = free.map(Parameter::name).collect::<Vec<_>>().join(", ");
-                return Err(PosteriorError::UnknownParameter { name: name.clone(), known });
+                return Err(FitError::unknown_name(format!(
+                    "there is no free parameter called {name}; those of the problem are: {known}"
+                )));
             };
             let (bounds, support) = (parameters[index].bounds(), prior.support());
             if bounds.at_least(support.lower()).at_most(support.upper()).is_empty() {
-                return Err(PosteriorError::outside_bounds(&parameters[index]));
+                return Err(outside_bounds(&parameters[index]));
             }
             priors[index] = *prior;
         }
         if fit.sum_of_squares() == 0.0 && self.variance == ResidualVariance::Estimated {
-            return Err(PosteriorError::NoNoise);
+            return Err(FitError::undetermined(
+                "the residuals of the fit are zero, so that there is no noise whose posterior could be found",
+            ));
         }
         let mut target = Target::new(problem, fit.values(), &priors, self.variance, self.is_correlated)?;
         let whitening = whiten(&mut target, fit)?;
@@ -247,7 +252,7 @@ impl Sampler {
     }
 
     /// One chain, and the noise of each of its draws.
-    fn chain<P: Residuals + ?Sized>(&self, plan: &Plan<'_, P>, chain: usize) -> Result<Chain, PosteriorError> {
+    fn chain<P: Residuals + ?Sized>(&self, plan: &Plan<'_, P>, chain: usize) -> Result<Chain, FitError> {
         let mut random = self.stream(chain);
         let mut target = plan.target.clone();
         let (start, _) = plan.start(&mut target, &mut random)?;
@@ -264,8 +269,7 @@ impl Sampler {
                 ResidualVariance::Effective { variance, .. } => variance,
                 ResidualVariance::Estimated => {
                     let freedom = target.residual_count() as f64;
-                    let chi_squared =
-                        ChiSquared::new(freedom).map_err(|error| PosteriorError::Sampler(error.to_string()))?;
+                    let chi_squared = ChiSquared::new(freedom).map_err(|error| FitError::Sampler(error.to_string()))?;
                     square / chi_squared.sample(&mut random)
                 }
             };
@@ -284,7 +288,7 @@ impl Sampler {
         plan: &Plan<'_, P>,
         walk: &check::Walk,
         chain: usize,
-    ) -> Result<check::Walked, PosteriorError> {
+    ) -> Result<check::Walked, FitError> {
         let mut random = self.stream(self.chains + chain);
         let mut target = plan.target.clone();
         let start = plan.start(&mut target, &mut random)?;
@@ -296,7 +300,7 @@ impl Sampler {
         plan: &Plan<'_, P>,
         chains: &[Chain],
         walks: &[check::Walked],
-    ) -> Result<Posterior, PosteriorError> {
+    ) -> Result<Posterior, FitError> {
         let sizes = (self.warm_up, self.is_correlated);
         let posterior = Posterior::new(plan.target.parameters(), plan.target.free(), chains, sizes, self.variance)?;
         if walks.is_empty() {
@@ -315,7 +319,7 @@ struct Plan<'a, P: ?Sized> {
 
 impl<P: Residuals + ?Sized> Plan<'_, P> {
     /// A start away from the mode, where the posterior has a density, which is given too.
-    fn start(&self, target: &mut Target<'_, P>, random: &mut ChaCha8Rng) -> Result<(Vec<f64>, f64), PosteriorError> {
+    fn start(&self, target: &mut Target<'_, P>, random: &mut ChaCha8Rng) -> Result<(Vec<f64>, f64), FitError> {
         let (mut psi, mut gradient) = (Vec::new(), vec![0.0; self.whitening.order()]);
         for attempt in 0..TRIES {
             let reach = OVERDISPERSION * 0.5f64.powf((attempt / 10) as f64);

@@ -128,14 +128,18 @@ impl Structure {
             if let Some((_, &index)) =
                 own.iter().enumerate().find(|&(place, index)| *index >= parameters || is_repeated((place, index)))
             {
-                return Err(FitError::invalid_block(block, index, parameters));
+                return Err(FitError::problem(format!(
+                    "block {block} names parameter {index}; it may name each of the {parameters} parameters once"
+                )));
             }
             let end = row.saturating_add(*rows);
             parts.push(Part { rows: row..end, parameters: own.clone(), first });
             (row, first) = (end, first + rows.saturating_mul(own.len()));
         }
         if row != residuals {
-            return Err(FitError::block_rows(row, residuals));
+            return Err(FitError::count(format!(
+                "the blocks have {row} residuals together, but the problem has {residuals}"
+            )));
         }
         let is_dense = matches!(parts.as_slice(), [part] if part.parameters.iter().copied().eq(0..parameters));
         Ok(Self { parts, is_dense })

@@ -56,12 +56,14 @@ impl<P: Residuals> Weighted<P> {
     pub fn new(problem: P, uncertainties: Vec<f64>) -> Result<Self, FitError> {
         if uncertainties.len() != problem.len() {
             let (uncertainties, residuals) = (uncertainties.len(), problem.len());
-            return Err(FitError::uncertainty_count(uncertainties, residuals));
+            return Err(FitError::count(format!(
+                "{uncertainties} standard uncertainties were given for {residuals} residuals; give one for each"
+            )));
         }
         // The inverse of a subnormal number overflows.
         let bad = uncertainties.iter().position(|u| !(*u > 0.0 && u.is_finite() && u.recip().is_finite()));
         match bad {
-            Some(index) => Err(FitError::bad_uncertainty(index, uncertainties[index])),
+            Some(index) => Err(bad_uncertainty("residual", index, uncertainties[index])),
             None => Ok(Self { problem, uncertainties }),
         }
     }
@@ -82,6 +84,11 @@ impl<P: Residuals> Weighted<P> {
             *residual /= uncertainty;
         }
     }
+}
+
+/// The standard uncertainty of the `index`-th residual or observation cannot be divided by.
+pub(crate) fn bad_uncertainty(of: &str, index: usize, value: f64) -> FitError {
+    FitError::option(&format!("the standard uncertainty of {of} {index}"), "positive and finite", value)
 }
 
 impl<P: Residuals> Residuals for Weighted<P> {

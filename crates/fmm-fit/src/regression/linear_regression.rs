@@ -4,10 +4,10 @@ use std::fmt;
 
 use fmm_model::{Rounded, coverage_factor};
 
+use crate::error::FitError;
 use crate::regression::refined_least_squares::refined_least_squares;
-use crate::regression::regression_error::RegressionError;
 use crate::regression::twofold::Twofold;
-use crate::regression::weighting::{Weighting, check_finite};
+use crate::regression::weighting::{Weighting, check_finite, no_column, overflow, too_few_observations};
 use crate::result::null_direction::{NullDirection, null_directions};
 use crate::result::prediction::Prediction;
 
@@ -38,7 +38,7 @@ use crate::result::prediction::Prediction;
 /// assert!((line.coefficients()[1] - 1.94).abs() < 1e-14);
 /// assert!((line.standard_uncertainty(1).unwrap() - 0.090_554).abs() < 1e-6);
 /// assert!((line.r_squared().unwrap() - 0.995_661).abs() < 1e-6);
-/// # Ok::<(), fmm_fit::RegressionError>(())
+/// # Ok::<(), fmm_fit::FitError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct LinearRegression {
@@ -59,9 +59,9 @@ impl LinearRegression {
     /// Fits `y` by the `columns`, each with its name and one value per observation.
     ///
     /// # Errors
-    /// [`RegressionError`] if lengths differ, a value is not finite, an uncertainty not positive, or if there are fewer
+    /// [`FitError`] if lengths differ, a value is not finite, an uncertainty not positive, or if there are fewer
     /// observations than columns.
-    pub fn fit(columns: &[(&str, &[f64])], y: &[f64], weighting: Weighting<'_>) -> Result<Self, RegressionError> {
+    pub fn fit(columns: &[(&str, &[f64])], y: &[f64], weighting: Weighting<'_>) -> Result<Self, FitError> {
         for (name, column) in columns {
             check_finite(name, column, y.len())?;
         }
@@ -79,15 +79,15 @@ impl LinearRegression {
         y: &[f64],
         weighting: Weighting<'_>,
         has_constant: bool,
-    ) -> Result<(Self, Vec<Twofold>), RegressionError> {
+    ) -> Result<(Self, Vec<Twofold>), FitError> {
         check_finite("y", y, y.len())?;
         let (order, count) = (columns.len(), y.len());
         if order == 0 {
-            return Err(RegressionError::NoColumn);
+            return Err(no_column());
         }
         let factors = weighting.factors(count)?;
         if count < order {
-            return Err(RegressionError::TooFewObservations { observations: count, coefficients: order });
+            return Err(too_few_observations(count, order));
         }
         let mut weighted: Vec<Twofold> = y.iter().map(|y| Twofold::from(*y)).collect();
         if let Some(factors) = &factors {
@@ -97,7 +97,7 @@ impl LinearRegression {
                 }
             }
         }
-        let found = refined_least_squares(columns, &weighted).ok_or(RegressionError::Overflow)?;
+        let found = refined_least_squares(columns, &weighted).ok_or_else(overflow)?;
         let (spectrum, rank) = (&found.spectrum, found.rank);
         let noise = (count as f64 * f64::EPSILON).sqrt().max(1e-6);
         let null = &spectrum.right[rank..];
@@ -121,7 +121,7 @@ impl LinearRegression {
             coefficients,
         };
         let is_finite = regression.sum_of_squares.is_finite() && regression.total.is_finite();
-        if is_finite { Ok((regression, found.solution)) } else { Err(RegressionError::Overflow) }
+        if is_finite { Ok((regression, found.solution)) } else { Err(overflow()) }
     }
 
     /// Names of the columns.

@@ -5,7 +5,6 @@ pub(crate) mod polynomial;
 pub(crate) mod power_law;
 pub(crate) mod random_effects_line;
 pub(crate) mod refined_least_squares;
-pub(crate) mod regression_error;
 pub(crate) mod twofold;
 pub(crate) mod weighting;
 pub(crate) mod york;

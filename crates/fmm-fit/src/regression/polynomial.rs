@@ -1,9 +1,11 @@
 //! Regression on powers of an abscissa.
 
+use crate::error::FitError;
 use crate::regression::linear_regression::LinearRegression;
-use crate::regression::regression_error::RegressionError;
 use crate::regression::twofold::Twofold;
-use crate::regression::weighting::{Weighting, check_finite};
+use crate::regression::weighting::{
+    Weighting, check_finite, no_column, overflow, too_few_abscissae, too_few_observations,
+};
 use crate::result::prediction::Prediction;
 
 /// A polynomial through observations.
@@ -25,7 +27,7 @@ use crate::result::prediction::Prediction;
 /// let parabola = Polynomial::fit(&x, &y, 2, Weighting::Equal)?;
 /// assert!((parabola.coefficients()[0] - 2.0).abs() < 1e-8);
 /// assert_eq!(parabola.value(1002.0), 505_010.0);
-/// # Ok::<(), fmm_fit::RegressionError>(())
+/// # Ok::<(), fmm_fit::FitError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Polynomial {
@@ -43,9 +45,9 @@ impl Polynomial {
     /// Fits a polynomial of the given `order`, which has order + 1 coefficients, to `y` at the abscissae `x`.
     ///
     /// # Errors
-    /// [`RegressionError`] if lengths differ, a value is not finite, an uncertainty not positive, or if there are not
+    /// [`FitError`] if lengths differ, a value is not finite, an uncertainty not positive, or if there are not
     /// order + 1 different abscissae.
-    pub fn fit(x: &[f64], y: &[f64], order: usize, weighting: Weighting<'_>) -> Result<Self, RegressionError> {
+    pub fn fit(x: &[f64], y: &[f64], order: usize, weighting: Weighting<'_>) -> Result<Self, FitError> {
         Self::of(x, y, 0, order, weighting)
     }
 
@@ -53,39 +55,28 @@ impl Polynomial {
     ///
     /// # Errors
     /// As for [`fit`](Self::fit); the different abscissae must not be zero, and `order` not either.
-    pub fn fit_through_origin(
-        x: &[f64],
-        y: &[f64],
-        order: usize,
-        weighting: Weighting<'_>,
-    ) -> Result<Self, RegressionError> {
+    pub fn fit_through_origin(x: &[f64], y: &[f64], order: usize, weighting: Weighting<'_>) -> Result<Self, FitError> {
         Self::of(x, y, 1, order, weighting)
     }
 
-    fn of(
-        x: &[f64],
-        y: &[f64],
-        lowest: usize,
-        order: usize,
-        weighting: Weighting<'_>,
-    ) -> Result<Self, RegressionError> {
+    fn of(x: &[f64], y: &[f64], lowest: usize, order: usize, weighting: Weighting<'_>) -> Result<Self, FitError> {
         check_finite("x", x, y.len())?;
         if order < lowest {
-            return Err(RegressionError::NoColumn);
+            return Err(no_column());
         }
         let coefficients = (order - lowest).saturating_add(1);
         if x.len() < coefficients {
-            return Err(RegressionError::TooFewObservations { observations: x.len(), coefficients });
+            return Err(too_few_observations(x.len(), coefficients));
         }
         let distinct = count_distinct(x, lowest > 0);
         if distinct < coefficients {
-            return Err(RegressionError::TooFewAbscissae { distinct, coefficients });
+            return Err(too_few_abscissae(distinct, coefficients));
         }
         let (centre, scale) = if lowest > 0 { (0.0, power_of_two_above(largest(x))) } else { frame(x) };
         let span = scale.powf(order as f64);
         // A power of the scale that overflows would turn coefficients into zeros or infinities.
         if !(span.is_normal() && span.recip().is_normal()) {
-            return Err(RegressionError::Overflow);
+            return Err(overflow());
         }
         let t: Vec<Twofold> = x.iter().map(|x| Twofold::difference(*x, centre).scaled(1.0 / scale)).collect();
         let mut columns: Vec<Vec<Twofold>> = Vec::with_capacity(coefficients);
@@ -97,7 +88,7 @@ impl Polynomial {
         let names = (lowest..=order).map(|k| format!("x^{k}")).collect();
         let (mut regression, solution) = LinearRegression::of(names, columns, y, weighting, lowest == 0)?;
         if regression.rank() < coefficients {
-            return Err(RegressionError::TooFewAbscissae { distinct: regression.rank(), coefficients });
+            return Err(too_few_abscissae(regression.rank(), coefficients));
         }
         let global = |local: &[Twofold]| -> Vec<f64> { expand(local, lowest, centre, scale) };
         let local_coefficients = std::mem::replace(&mut regression.coefficients, global(&solution));
@@ -109,7 +100,7 @@ impl Polynomial {
         let local_roots = std::mem::replace(&mut regression.roots, roots);
         let all = regression.coefficients.iter().chain(regression.roots.iter().flatten());
         if !all.copied().all(f64::is_finite) {
-            return Err(RegressionError::Overflow);
+            return Err(overflow());
         }
         Ok(Self { regression, local_coefficients, local_roots, centre, scale, lowest })
     }
@@ -205,7 +196,7 @@ fn expand(local: &[Twofold], lowest: usize, centre: f64, scale: f64) -> Vec<f64>
 /// assert!((line.slope() - 0.4360).abs() < 5e-5);
 /// assert!((line.intercept() - 0.2000).abs() < 5e-5);
 /// assert!((line.regression().r_squared().unwrap() - 0.9972).abs() < 5e-5);
-/// # Ok::<(), fmm_fit::RegressionError>(())
+/// # Ok::<(), fmm_fit::FitError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct StraightLine {
@@ -218,7 +209,7 @@ impl StraightLine {
     ///
     /// # Errors
     /// As for [`Polynomial::fit`].
-    pub fn fit(x: &[f64], y: &[f64], weighting: Weighting<'_>) -> Result<Self, RegressionError> {
+    pub fn fit(x: &[f64], y: &[f64], weighting: Weighting<'_>) -> Result<Self, FitError> {
         Polynomial::fit(x, y, 1, weighting).map(|polynomial| Self { polynomial })
     }
 
@@ -317,7 +308,7 @@ mod tests {
         }
         let x = [-1e308, 0.0, 1e308, 1.5e308];
         let found = Polynomial::fit(&x, &y, 3, Weighting::Equal);
-        assert!(matches!(found, Err(RegressionError::Overflow)), "{found:?}");
+        assert!(matches!(found, Err(FitError::Problem { .. })), "{found:?}");
         assert!(Polynomial::fit(&x, &y, usize::MAX, Weighting::Equal).is_err());
         let narrow = [1.0, 1.0 + 1e-15, 1.0 + 2e-15, 1.0 + 3e-15];
         assert!(Polynomial::fit(&narrow, &y, 1, Weighting::Equal).is_ok());

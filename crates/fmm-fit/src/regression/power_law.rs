@@ -2,14 +2,14 @@
 
 use std::fmt;
 
-use fmm_model::{Bounds, Parameter};
+use fmm_model::{Bounds, Parameter, Rounded};
 
+use crate::error::FitError;
 use crate::fitting::solve::solve;
 use crate::problem::residuals::{Derivatives, EvaluationError, Residuals};
 use crate::regression::linear_regression::LinearRegression;
 use crate::regression::polynomial::count_distinct;
-use crate::regression::regression_error::RegressionError;
-use crate::regression::weighting::{Weighting, check_finite};
+use crate::regression::weighting::{Weighting, check_finite, overflow, too_few_abscissae};
 use crate::result::fit::Fit;
 use crate::result::prediction::Prediction;
 use crate::solver::options::Options;
@@ -38,7 +38,7 @@ use crate::solver::options::Options;
 /// let law = PowerLaw::fit(&x, &y, Weighting::Equal)?;
 /// assert!((law.exponent() + 0.5).abs() < 1e-9);
 /// assert!((law.offset() - 1.0).abs() < 1e-9);
-/// # Ok::<(), fmm_fit::RegressionError>(())
+/// # Ok::<(), fmm_fit::FitError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct PowerLaw {
@@ -57,9 +57,9 @@ impl PowerLaw {
     /// Fits coefficient, exponent and offset to `y` at the abscissae `x`, which must not be negative.
     ///
     /// # Errors
-    /// [`RegressionError`] if lengths differ, a value is not finite, an abscissa negative, an uncertainty not positive,
+    /// [`FitError`] if lengths differ, a value is not finite, an abscissa negative, an uncertainty not positive,
     /// or if there are not as many different abscissae as free parameters.
-    pub fn fit(x: &[f64], y: &[f64], weighting: Weighting<'_>) -> Result<Self, RegressionError> {
+    pub fn fit(x: &[f64], y: &[f64], weighting: Weighting<'_>) -> Result<Self, FitError> {
         Self::fit_within(x, y, weighting, [Bounds::UNBOUNDED; 3])
     }
 
@@ -67,7 +67,7 @@ impl PowerLaw {
     ///
     /// # Errors
     /// As for [`fit`](Self::fit).
-    pub fn fit_without_offset(x: &[f64], y: &[f64], weighting: Weighting<'_>) -> Result<Self, RegressionError> {
+    pub fn fit_without_offset(x: &[f64], y: &[f64], weighting: Weighting<'_>) -> Result<Self, FitError> {
         let zero = Bounds::NOT_NEGATIVE.at_most(0.0);
         Self::fit_within(x, y, weighting, [Bounds::UNBOUNDED, Bounds::UNBOUNDED, zero])
     }
@@ -77,16 +77,13 @@ impl PowerLaw {
     ///
     /// # Errors
     /// As for [`fit`](Self::fit).
-    pub fn fit_within(
-        x: &[f64],
-        y: &[f64],
-        weighting: Weighting<'_>,
-        bounds: [Bounds; 3],
-    ) -> Result<Self, RegressionError> {
+    pub fn fit_within(x: &[f64], y: &[f64], weighting: Weighting<'_>, bounds: [Bounds; 3]) -> Result<Self, FitError> {
         check_finite("y", y, y.len())?;
         check_finite("x", x, y.len())?;
         if let Some(index) = x.iter().position(|x| *x < 0.0) {
-            return Err(RegressionError::NegativeAbscissa { index, value: x[index] });
+            let value = Rounded::every_digit(x[index]);
+            let what = format!("value {index} of x is {value}, but a power law needs values that are not negative");
+            return Err(FitError::out_of_range(what, x[index]));
         }
         let [coefficient, exponent, offset] = bounds;
         let exponent = if x.contains(&0.0) { exponent.at_least(f64::MIN_POSITIVE) } else { exponent };
@@ -94,7 +91,7 @@ impl PowerLaw {
         let free = bounds.iter().filter(|bounds| !bounds.is_fixed()).count();
         let distinct = count_distinct(x, false);
         if distinct < free {
-            return Err(RegressionError::TooFewAbscissae { distinct, coefficients: free });
+            return Err(too_few_abscissae(distinct, free));
         }
         let problem = Problem {
             x,
@@ -107,7 +104,7 @@ impl PowerLaw {
             ],
         };
         let mut best: Option<Fit> = None;
-        let mut refusal = RegressionError::Overflow;
+        let mut refusal = overflow();
         for start in starts(x, y, weighting, &bounds)? {
             match solve(&problem, &start, &Options::default()) {
                 Ok(fit) => {
@@ -119,7 +116,7 @@ impl PowerLaw {
                         best = Some(fit);
                     }
                 }
-                Err(error) => refusal = error.into(),
+                Err(error) => refusal = error,
             }
         }
         // The scatter that a constant, or without offset nothing, leaves.
@@ -239,12 +236,7 @@ impl Residuals for Problem<'_> {
 }
 
 /// The best starts: for each of some exponents the coefficient and the offset that a linear regression gives.
-fn starts(
-    x: &[f64],
-    y: &[f64],
-    weighting: Weighting<'_>,
-    bounds: &[Bounds; 3],
-) -> Result<Vec<[f64; 3]>, RegressionError> {
+fn starts(x: &[f64], y: &[f64], weighting: Weighting<'_>, bounds: &[Bounds; 3]) -> Result<Vec<[f64; 3]>, FitError> {
     let negative = EXPONENTS.iter().rev().map(|b| -b);
     let mut exponents: Vec<f64> = negative.chain(EXPONENTS).map(|exponent| bounds[1].clamp(exponent)).collect();
     exponents.dedup();

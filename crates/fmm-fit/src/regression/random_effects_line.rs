@@ -3,7 +3,8 @@
 use fmm_model::coverage_factor;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use crate::regression::regression_error::RegressionError;
+use crate::error::FitError;
+use crate::regression::weighting::too_few_observations;
 use crate::regression::york::{UncertainPoint, YorkLine};
 
 /// The straight line through results with uncertainties, each of which may have an effect of its own beside the line: a
@@ -29,7 +30,7 @@ use crate::regression::york::{UncertainPoint, YorkLine};
 /// // A line that takes the runs to be alike claims to know the slope 25 times better.
 /// assert!(line.slope_uncertainty() > 25.0 * YorkLine::fit(&points)?.slope_uncertainty());
 /// assert!(line.intercept_p_value() > 0.05 && line.slope_p_value() < 0.01);
-/// # Ok::<(), fmm_fit::RegressionError>(())
+/// # Ok::<(), fmm_fit::FitError>(())
 /// ```
 ///
 /// # References
@@ -54,12 +55,12 @@ impl RandomEffectsLine {
     /// Fits the line to at least three points.
     ///
     /// # Errors
-    /// [`RegressionError::TooFewObservations`] for fewer, and those of [`YorkLine::fit`].
-    pub fn fit(points: &[UncertainPoint]) -> Result<Self, RegressionError> {
+    /// [`FitError::Undetermined`] for fewer, and those of [`YorkLine::fit`].
+    pub fn fit(points: &[UncertainPoint]) -> Result<Self, FitError> {
         if points.len() < 3 {
-            return Err(RegressionError::TooFewObservations { observations: points.len(), coefficients: 3 });
+            return Err(too_few_observations(points.len(), 3));
         }
-        let widened = |variance: f64| -> Result<YorkLine, RegressionError> {
+        let widened = |variance: f64| -> Result<YorkLine, FitError> {
             let points: Vec<UncertainPoint> = points.iter().map(|point| point.widened(variance)).collect();
             YorkLine::fit(&points)
         };

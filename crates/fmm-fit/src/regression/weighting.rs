@@ -1,6 +1,7 @@
 //! Weights of the observations of a regression.
 
-use crate::regression::regression_error::RegressionError;
+use crate::error::FitError;
+use crate::problem::weighted::bad_uncertainty;
 
 /// What is known of the standard uncertainties of the observations, one per observation, in their unit.
 ///
@@ -35,7 +36,7 @@ impl Weighting<'_> {
     }
 
     /// The factors 1/uᵢ of `count` observations; `None` if all are 1.
-    pub(crate) fn factors(&self, count: usize) -> Result<Option<Vec<f64>>, RegressionError> {
+    pub(crate) fn factors(&self, count: usize) -> Result<Option<Vec<f64>>, FitError> {
         let (Self::Relative(uncertainties) | Self::Absolute(uncertainties)) = self else { return Ok(None) };
         check_length("standard uncertainties", uncertainties, count)?;
         let factor = |(index, &value): (usize, &f64)| {
@@ -43,7 +44,7 @@ impl Weighting<'_> {
             if value > 0.0 && value.is_finite() && factor.is_finite() {
                 Ok(factor)
             } else {
-                Err(RegressionError::BadUncertainty { index, value })
+                Err(bad_uncertainty("observation", index, value))
             }
         };
         uncertainties.iter().enumerate().map(factor).collect::<Result<_, _>>().map(Some)
@@ -51,18 +52,39 @@ impl Weighting<'_> {
 }
 
 /// Checks that there are `count` values, all of them finite.
-pub(crate) fn check_finite(name: &str, values: &[f64], count: usize) -> Result<(), RegressionError> {
+pub(crate) fn check_finite(name: &str, values: &[f64], count: usize) -> Result<(), FitError> {
     check_length(name, values, count)?;
     match values.iter().position(|value| !value.is_finite()) {
-        Some(index) => Err(RegressionError::NotFinite { name: name.to_owned(), index, value: values[index] }),
+        Some(index) => Err(FitError::option(&format!("value {index} of {name}"), "finite", values[index])),
         None => Ok(()),
     }
 }
 
-fn check_length(name: &str, values: &[f64], count: usize) -> Result<(), RegressionError> {
+fn check_length(name: &str, values: &[f64], count: usize) -> Result<(), FitError> {
     if values.len() == count {
         Ok(())
     } else {
-        Err(RegressionError::DifferentLengths { name: name.to_owned(), values: values.len(), observations: count })
+        let given = values.len();
+        Err(FitError::count(format!("{name} has {given} values for {count} observations; give one for each")))
     }
+}
+
+pub(crate) fn no_column() -> FitError {
+    FitError::count("a regression needs at least one column")
+}
+
+pub(crate) fn too_few_observations(observations: usize, coefficients: usize) -> FitError {
+    FitError::undetermined(format!(
+        "{observations} observations cannot determine {coefficients} coefficients; give at least as many"
+    ))
+}
+
+pub(crate) fn too_few_abscissae(distinct: usize, coefficients: usize) -> FitError {
+    FitError::undetermined(format!(
+        "{distinct} different values of x cannot determine {coefficients} coefficients; give at least as many"
+    ))
+}
+
+pub(crate) fn overflow() -> FitError {
+    FitError::problem("the data span too many orders of magnitude; change the units")
 }

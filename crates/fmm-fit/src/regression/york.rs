@@ -5,8 +5,9 @@ use std::fmt;
 use fmm_model::Rounded;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::regression::regression_error::RegressionError;
-use crate::regression::weighting::check_finite;
+use crate::error::FitError;
+use crate::problem::weighted::bad_uncertainty;
+use crate::regression::weighting::{check_finite, too_few_observations};
 
 /// A point with standard uncertainties in both directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,7 +67,7 @@ impl UncertainPoint {
 /// let line = YorkLine::fit(&points)?;
 /// assert!((line.slope() - 1.94).abs() < 1e-13);
 /// assert!((line.slope_uncertainty() - 0.1 / 5f64.sqrt()).abs() < 1e-13);
-/// # Ok::<(), fmm_fit::RegressionError>(())
+/// # Ok::<(), fmm_fit::FitError>(())
 /// ```
 ///
 /// # References
@@ -95,9 +96,9 @@ impl YorkLine {
     /// Fits the line to at least two points.
     ///
     /// # Errors
-    /// [`RegressionError`] if a number is not finite, an uncertainty negative, a correlation not between −1 and 1, both
+    /// [`FitError`] if a number is not finite, an uncertainty negative, a correlation not between −1 and 1, both
     /// uncertainties of a point zero, if there are fewer than two points, or if no slope describes them.
-    pub fn fit(points: &[UncertainPoint]) -> Result<Self, RegressionError> {
+    pub fn fit(points: &[UncertainPoint]) -> Result<Self, FitError> {
         check(points)?;
         let of = |f: fn(&UncertainPoint) -> f64| points.iter().map(f).sum::<f64>() / points.len() as f64;
         let (mean_x, mean_y) = (of(|point| point.x), of(|point| point.y));
@@ -205,25 +206,39 @@ impl fmt::Display for YorkLine {
     }
 }
 
-fn check(points: &[UncertainPoint]) -> Result<(), RegressionError> {
+fn check(points: &[UncertainPoint]) -> Result<(), FitError> {
     let count = points.len();
     check_finite("x", &points.iter().map(|point| point.x).collect::<Vec<f64>>(), count)?;
     check_finite("y", &points.iter().map(|point| point.y).collect::<Vec<f64>>(), count)?;
     for (index, point) in points.iter().enumerate() {
         if let Some(value) = [point.u_x, point.u_y].into_iter().find(|u| !(*u >= 0.0 && u.is_finite())) {
-            return Err(RegressionError::BadUncertainty { index, value });
+            return Err(bad_uncertainty("observation", index, value));
         }
         if !(point.correlation.abs() < 1.0) {
-            return Err(RegressionError::BadCorrelation { index, value: point.correlation });
+            let name = format!("the correlation of the errors of point {index}");
+            let expected = "between -1 and 1, both excluded,";
+            let what = format!("{name} must lie {expected} but is {}", Rounded::every_digit(point.correlation));
+            return Err(FitError::out_of_range(what, point.correlation));
         }
         if point.u_x == 0.0 && point.u_y == 0.0 {
-            return Err(RegressionError::NoUncertainty { index });
+            return Err(no_uncertainty(index));
         }
     }
     if count < 2 {
-        return Err(RegressionError::TooFewObservations { observations: count, coefficients: 2 });
+        return Err(too_few_observations(count, 2));
     }
     Ok(())
+}
+
+fn no_uncertainty(index: usize) -> FitError {
+    let what = format!("point {index} has no uncertainty in the direction that counts; give it one in x or in y");
+    FitError::out_of_range(what, 0.0)
+}
+
+fn no_slope() -> FitError {
+    FitError::no_minimum(
+        "no slope minimises the sum of squares: the line is vertical, or there is none; exchange x and y",
+    )
 }
 
 /// Sums that belong to one slope.
@@ -237,9 +252,9 @@ struct State {
     spread: f64,
 }
 
-fn iterate(points: &[UncertainPoint], start: f64) -> Result<YorkLine, RegressionError> {
+fn iterate(points: &[UncertainPoint], start: f64) -> Result<YorkLine, FitError> {
     if !start.is_finite() {
-        return Err(RegressionError::NoSlope);
+        return Err(no_slope());
     }
     let mut slope = start;
     let mut iterations = 0;
@@ -272,10 +287,10 @@ fn iterate(points: &[UncertainPoint], start: f64) -> Result<YorkLine, Regression
 }
 
 impl State {
-    fn at(points: &[UncertainPoint], slope: f64) -> Result<Self, RegressionError> {
+    fn at(points: &[UncertainPoint], slope: f64) -> Result<Self, FitError> {
         let weights: Vec<f64> = points.iter().map(|point| 1.0 / point.variance(slope)).collect();
         if let Some(index) = weights.iter().position(|weight| *weight == f64::INFINITY) {
-            return Err(RegressionError::NoUncertainty { index });
+            return Err(no_uncertainty(index));
         }
         let weight: f64 = weights.iter().sum();
         let mean = |f: &dyn Fn(usize) -> f64| -> f64 {
@@ -295,7 +310,7 @@ impl State {
         if next.is_finite() && weight.is_finite() && spread > 0.0 {
             Ok(Self { next, mean_x, mean_y, weight, adjusted: mean_x + adjusted, spread })
         } else {
-            Err(RegressionError::NoSlope)
+            Err(no_slope())
         }
     }
 }

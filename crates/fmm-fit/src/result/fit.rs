@@ -4,6 +4,7 @@ use fmm_model::{Parameter, coverage_factor};
 
 use crate::algebra::spectrum::Spectrum;
 use crate::algebra::triangle::Triangle;
+use crate::error::FitError;
 use crate::result::estimate::{Estimate, EstimateStatus};
 use crate::result::null_direction::{NullDirection, null_directions};
 use crate::solver::evaluation::Scheme;

@@ -61,7 +61,7 @@ impl<P: Residuals> Robust<P> {
         if scale > 0.0 && scale.is_finite() {
             Ok(Self { problem, loss, scale })
         } else {
-            Err(FitError::invalid_option("scale of the loss", "positive and finite", scale))
+            Err(FitError::option("the option scale of the loss", "positive and finite", scale))
         }
     }
 

@@ -96,7 +96,9 @@ impl Minimizer {
         let has_radius = stored.scaling.len() == self.region.scaling.len();
         if !has_radius || stored.floor.len() != stored.values.len() {
             let (values, parameters) = (stored.scaling.len(), self.evaluator.free.len());
-            return Err(FitError::start_length(values, parameters));
+            return Err(FitError::count(format!(
+                "the start has {values} values, but the problem has {parameters} parameters"
+            )));
         }
         self.current.values = stored.values;
         self.evaluator.floor = stored.floor;

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use fmm_model::Parameter;
+use fmm_model::{Parameter, Rounded};
 
 use crate::algebra::triangle::Triangle;
 use crate::error::FitError;
@@ -223,7 +223,10 @@ impl Minimizer {
         self.evaluator.begin(problem, bounds, start)?;
         let free = self.evaluator.free.len();
         if problem.len() < free {
-            return Err(FitError::TooFewResiduals { residuals: problem.len(), free });
+            return Err(FitError::undetermined(format!(
+                "{} residuals cannot determine {free} free parameters; give at least as many residuals",
+                problem.len()
+            )));
         }
         self.current.values.clone_from(&self.start);
         if !self.evaluator.residuals(problem, &mut self.current) {
@@ -231,7 +234,11 @@ impl Minimizer {
         }
         let largest = worst(&self.current.residuals).1.abs();
         if largest > 0.0 && largest < SMALLEST_RESIDUAL {
-            return Err(FitError::residuals_underflow(largest));
+            let what = format!(
+                "the residuals at the start are at most {largest:e}, so that their squares underflow; give them in a \
+                 smaller unit, or divide them by their uncertainties"
+            );
+            return Err(FitError::out_of_range(what, largest));
         }
         if free == 0 {
             self.current.triangle.reset(0);
@@ -256,10 +263,15 @@ impl Minimizer {
             }
         }
         if let Some(NonFinite::Derivative { parameter }) = &self.evaluator.non_finite {
-            return FitError::derivative_not_finite(parameter);
+            return FitError::no_model(format!(
+                "the derivative of the residuals by {parameter} is not finite at the start"
+            ));
         }
         let (index, value) = worst(&self.current.residuals);
-        FitError::residual_not_finite(index, value)
+        let value = Rounded::every_digit(value);
+        FitError::no_model(format!(
+            "residual {index} is {value} at the start, so that the sum of squares is not finite"
+        ))
     }
 }
 
@@ -267,11 +279,13 @@ pub(crate) fn check_parameters(parameters: &[Parameter]) -> Result<(), FitError>
     for (j, parameter) in parameters.iter().enumerate() {
         let (name, bounds) = (parameter.name(), parameter.bounds());
         if bounds.is_empty() {
-            let (parameter, lower, upper) = (name.to_owned(), bounds.lower(), bounds.upper());
-            return Err(FitError::empty_bounds(&parameter, lower, upper));
+            let [lower, upper] = [bounds.lower(), bounds.upper()].map(Rounded::every_digit);
+            return Err(FitError::problem(format!(
+                "the bounds of {name} exclude each other: at least {lower} and at most {upper}"
+            )));
         }
         if parameters[..j].iter().any(|other| other.name() == name) {
-            return Err(FitError::duplicate_name(name));
+            return Err(FitError::problem(format!("two parameters are called {name}; give each a name of its own")));
         }
     }
     Ok(())
@@ -279,16 +293,19 @@ pub(crate) fn check_parameters(parameters: &[Parameter]) -> Result<(), FitError>
 
 pub(crate) fn check_start(parameters: &[Parameter], start: &[f64]) -> Result<(), FitError> {
     if start.len() != parameters.len() {
-        return Err(FitError::start_length(start.len(), parameters.len()));
+        let (values, count) = (start.len(), parameters.len());
+        return Err(FitError::count(format!("the start has {values} values, but the problem has {count} parameters")));
     }
     for (parameter, &value) in parameters.iter().zip(start) {
         let bounds = parameter.bounds();
         if !value.is_finite() {
-            return Err(FitError::start_not_finite(parameter.name(), value));
+            return Err(FitError::option(&format!("the start value of {}", parameter.name()), "finite", value));
         }
         if !bounds.contains(value) {
-            let (lower, upper) = (bounds.lower(), bounds.upper());
-            return Err(FitError::start_outside_bounds(parameter.name(), value, lower, upper));
+            let [shown, lower, upper] = [value, bounds.lower(), bounds.upper()].map(Rounded::every_digit);
+            let name = parameter.name();
+            let what = format!("the start value of {name} is {shown}, outside its bounds [{lower}, {upper}]");
+            return Err(FitError::out_of_range(what, value));
         }
     }
     Ok(())

@@ -162,14 +162,14 @@ impl Options {
         ];
         for (option, value) in tolerances {
             if !(0.0..1.0).contains(&value) {
-                return Err(FitError::invalid_option(option, "at least 0 and below 1", value));
+                return Err(FitError::option(&format!("the option {option}"), "at least 0 and below 1", value));
             }
         }
         let value = self.initial_radius;
         if value > 0.0 && value.is_finite() {
             Ok(())
         } else {
-            Err(FitError::invalid_option("initial radius", "positive and finite", value))
+            Err(FitError::option("the option initial radius", "positive and finite", value))
         }
     }
 }

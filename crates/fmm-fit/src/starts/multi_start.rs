@@ -178,7 +178,7 @@ impl MultiStart {
             let value = if reach.len() == parameters.len() { bad } else { Some(reach.len() as f64) };
             if let Some(value) = value {
                 let expected = "one finite value of at least 0 per parameter";
-                return Err(FitError::invalid_option("reach", expected, value));
+                return Err(FitError::option("the option reach", expected, value));
             }
         }
         let size = |j: usize| {

@@ -11,7 +11,7 @@ use crate::result::estimate::{Estimate, EstimateStatus};
 use crate::result::fit::Fit;
 use crate::solver::differences::parabola;
 use crate::solver::evaluation::{Evaluator, Point, Scheme};
-use crate::uncertainty::propagated::SensitivityError;
+use crate::uncertainty::propagated::FitError;
 use crate::uncertainty::sensitivity::Sensitivity;
 
 /// A minimum with its derivatives, from which the response follows.
@@ -35,14 +35,16 @@ impl<'a, P: Residuals + ?Sized> Minimum<'a, P> {
     /// The minimum that `fit` found.
     ///
     /// # Errors
-    /// [`SensitivityError`] if it is none of `problem`, or has no derivatives.
-    pub(crate) fn new(problem: &'a P, fit: &'a Fit) -> Result<Self, SensitivityError> {
+    /// [`FitError`] if it is none of `problem`, or has no derivatives.
+    pub(crate) fn new(problem: &'a P, fit: &'a Fit) -> Result<Self, FitError> {
         let own = problem.parameters().iter().map(Parameter::name);
         if !own.eq(fit.estimates().iter().map(Estimate::name)) || problem.len() != fit.residuals().len() {
-            return Err(SensitivityError::OtherFit);
+            return Err(FitError::OtherFit {
+                what: "the fit is not one of this problem: their parameters or numbers of residuals differ".to_owned(),
+            });
         }
         if !fit.outcome().is_success() {
-            return Err(SensitivityError::NotConverged);
+            return Err(FitError::no_minimum("the fit has not converged, and only a minimum has a sensitivity"));
         }
         let select = |wanted: fn(EstimateStatus) -> bool| -> Vec<usize> {
             let statuses = fit.estimates().iter().map(Estimate::status).enumerate();
@@ -79,7 +81,7 @@ impl<'a, P: Residuals + ?Sized> Minimum<'a, P> {
         Ok(minimum)
     }
 
-    fn differentiate(&mut self) -> Result<(), SensitivityError> {
+    fn differentiate(&mut self) -> Result<(), FitError> {
         if self.evaluator.factor(self.problem, &mut self.point) {
             return Ok(());
         }
@@ -87,11 +89,10 @@ impl<'a, P: Residuals + ?Sized> Minimum<'a, P> {
         Err(self.no_derivative(column))
     }
 
-    fn no_derivative(&self, parameter: usize) -> SensitivityError {
-        SensitivityError::NoDerivative {
-            parameter: self.problem.parameters()[parameter].name().to_owned(),
-            reason: self.evaluator.model_error.clone().unwrap_or_else(|| "the model is not finite there".to_owned()),
-        }
+    fn no_derivative(&self, parameter: usize) -> FitError {
+        let parameter = self.problem.parameters()[parameter].name();
+        let reason = self.evaluator.model_error.as_deref().unwrap_or("the model is not finite there");
+        FitError::no_model(format!("there is no derivative by {parameter} at or near its value: {reason}"))
     }
 
     /// Gives values that are zero the magnitude at which they would matter; whether there is one.
@@ -116,7 +117,7 @@ impl<'a, P: Residuals + ?Sized> Minimum<'a, P> {
     /// ```
     ///
     /// with H and G the sums over second derivatives, and only the directions that the residuals determine.
-    pub(crate) fn respond(mut self, is_exact: bool) -> Result<Sensitivity, SensitivityError> {
+    pub(crate) fn respond(mut self, is_exact: bool) -> Result<Sensitivity, FitError> {
         let place = |j: &usize| self.evaluator.free.binary_search(j).unwrap_or(0);
         let columns: Vec<usize> = self.inside.iter().map(place).collect();
         let places: Vec<usize> = self.inputs.iter().map(place).collect();
@@ -154,7 +155,10 @@ impl<'a, P: Residuals + ?Sized> Minimum<'a, P> {
         }
         let mut factored = matrix.concat();
         if !definite::factor(&mut factored, matrix.len(), |_| 0.0) {
-            return Err(SensitivityError::NotAMinimum);
+            return Err(FitError::no_minimum(
+                "the second derivatives at the fitted values are not those of a minimum, so that these do not follow \
+                 the inputs",
+            ));
         }
         for side in &mut right {
             definite::solve(&factored, side);
@@ -184,7 +188,7 @@ impl<'a, P: Residuals + ?Sized> Minimum<'a, P> {
     }
 
     /// Σᵢ rᵢ ∂²rᵢ/∂θⱼ∂θₖ for each k of `parameters`, over the parameters j inside.
-    fn second_derivatives(&mut self, parameters: &[usize]) -> Result<Vec<Vec<f64>>, SensitivityError> {
+    fn second_derivatives(&mut self, parameters: &[usize]) -> Result<Vec<Vec<f64>>, FitError> {
         parameters.iter().map(|&k| self.second_derivative(k).ok_or_else(|| self.no_derivative(k))).collect()
     }
 

@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use fmm_model::Rounded;
+
 use crate::error::FitError;
 use crate::fitting::solve::solve;
 use crate::problem::knowledge::Held;
@@ -11,7 +13,7 @@ use crate::result::fit::Fit;
 use crate::solver::minimizer::Minimizer;
 use crate::solver::options::Options;
 use crate::solver::outcome::Outcome;
-use crate::uncertainty::profile_interval::{ProfileEnd, ProfileError, ProfileInterval, ResidualVariance};
+use crate::uncertainty::profile_interval::{FitError, ProfileEnd, ProfileInterval, ResidualVariance};
 
 /// How far out a search for an end goes, in first guesses of its distance.
 const FARTHEST: f64 = 1e9;
@@ -63,7 +65,7 @@ const ACCURACY: f64 = 1e-10;
 /// ```
 ///
 /// # Errors
-/// [`ProfileError`] if the fit is not one of this problem or not at its lowest minimum, if the level or the parameter
+/// [`FitError`] if the fit is not one of this problem or not at its lowest minimum, if the level or the parameter
 /// is impossible, or if the fit with the parameter held fails.
 ///
 /// # References
@@ -75,20 +77,25 @@ pub fn profile_interval<P: Residuals + ?Sized>(
     level: f64,
     variance: ResidualVariance,
     options: &Options,
-) -> Result<ProfileInterval, ProfileError> {
+) -> Result<ProfileInterval, FitError> {
     require_same(problem, fit)?;
     let position = problem.parameters().iter().position(|parameter| parameter.name() == name);
-    let index = position.ok_or_else(|| ProfileError::UnknownParameter(name.to_owned()))?;
+    let index = position.ok_or_else(|| FitError::unknown_name(format!("there is no parameter called {name}")))?;
     if fit.estimates()[index].status() == EstimateStatus::Fixed {
-        return Err(ProfileError::Fixed(name.to_owned()));
+        return Err(FitError::problem(format!("{name} is fixed and has no interval")));
     }
     if !(level > 0.0 && level < 1.0) {
-        return Err(ProfileError::Level(level));
+        let what = format!("the level of an interval must be above 0 and below 1, but is {level}");
+        return Err(FitError::out_of_range(what, level));
     }
     if !fit.outcome().is_success() {
-        return Err(ProfileError::NotConverged(fit.outcome()));
+        return Err(FitError::no_minimum(format!("the fit is not at a minimum: {}", fit.outcome())));
     }
-    let scale = variance.scale(fit, level).ok_or(ProfileError::NoVariance)?;
+    let scale = variance.scale(fit, level).ok_or_else(|| {
+        FitError::undetermined(
+            "the fit leaves no residual or no degree of freedom, so the variance cannot be estimated from it",
+        )
+    })?;
     let mut profile = Profile::new(problem, fit, index, scale, options);
     let lower = profile.end(-1.0)?;
     let upper = profile.end(1.0)?;
@@ -105,9 +112,9 @@ pub fn profile_interval<P: Residuals + ?Sized>(
 }
 
 /// That `fit` may be one of `problem`.
-fn require_same<P: Residuals + ?Sized>(problem: &P, fit: &Fit) -> Result<(), ProfileError> {
+fn require_same<P: Residuals + ?Sized>(problem: &P, fit: &Fit) -> Result<(), FitError> {
     let sizes = ((fit.residuals().len(), fit.values().len()), (problem.len(), problem.parameters().len()));
-    if sizes.0 == sizes.1 { Ok(()) } else { Err(ProfileError::DifferentProblem { fit: sizes.0, problem: sizes.1 }) }
+    if sizes.0 == sizes.1 { Ok(()) } else { Err(FitError::other_fit(sizes.0, sizes.1)) }
 }
 
 /// Even steps of a curve beyond each end, as a share of its distance from the estimate.
@@ -132,9 +139,9 @@ impl ProfileInterval {
         fit: &Fit,
         count: usize,
         options: &Options,
-    ) -> Result<Vec<(f64, f64)>, ProfileError> {
+    ) -> Result<Vec<(f64, f64)>, FitError> {
         require_same(problem, fit)?;
-        let unknown = || ProfileError::UnknownParameter(format!("number {}", self.index));
+        let unknown = || FitError::unknown_name(format!("there is no parameter called number {}", self.index));
         let bounds = problem.parameters().get(self.index).ok_or_else(unknown)?.bounds();
         let best = fit.values()[self.index];
         let mut profile = Profile::new(problem, fit, self.index, self.scale, options);
@@ -202,7 +209,7 @@ impl<'a, P: Residuals + ?Sized> Profile<'a, P> {
     }
 
     /// The end in one direction: outwards until the distance passes the quantile, then between.
-    fn end(&mut self, direction: f64) -> Result<ProfileEnd, ProfileError> {
+    fn end(&mut self, direction: f64) -> Result<ProfileEnd, FitError> {
         let bounds = self.problem.parameters()[self.index].bounds();
         let limit = if direction < 0.0 { bounds.lower() } else { bounds.upper() };
         let best = self.fit.values()[self.index];
@@ -259,7 +266,7 @@ impl<'a, P: Residuals + ?Sized> Profile<'a, P> {
 
     /// Narrows the end down between the last of `trace`, which is inside, and `outside`, by the method of false
     /// position with halved weights (Illinois), the distance being nearly linear.
-    fn between(&mut self, mut trace: Vec<Trace>, outside: Trace) -> Result<ProfileEnd, ProfileError> {
+    fn between(&mut self, mut trace: Vec<Trace>, outside: Trace) -> Result<ProfileEnd, FitError> {
         let inside = trace[trace.len() - 1].clone();
         let mut ends = [inside, outside].map(|end| (end.values[self.index], end.distance - self.quantile, end));
         let mut last_replaced = None;
@@ -295,7 +302,7 @@ impl<'a, P: Residuals + ?Sized> Profile<'a, P> {
     }
 
     /// The best fit with the parameter held at `value`, from the points of `trace`; `None` if the model has no value.
-    fn point(&mut self, value: f64, trace: &[Trace]) -> Result<Option<Trace>, ProfileError> {
+    fn point(&mut self, value: f64, trace: &[Trace]) -> Result<Option<Trace>, FitError> {
         let Ok(held) = Held::new(self.problem, [(self.index, value)]) else { return Ok(None) };
         let last = &trace[trace.len() - 1];
         let mut failure = None;
@@ -312,27 +319,30 @@ impl<'a, P: Residuals + ?Sized> Profile<'a, P> {
                     failure = Some(outcome);
                 }
                 Err(FitError::NoModel { .. }) => self.residual_evaluations += 1,
-                Err(error) => return Err(error.into()),
+                Err(error) => return Err(error),
             }
         }
-        let parameter = || self.problem.parameters()[self.index].name().to_owned();
         match failure {
-            Some(outcome) => Err(ProfileError::HeldFit { parameter: parameter(), value, outcome }),
+            Some(outcome) => {
+                let (name, value) = (self.problem.parameters()[self.index].name(), Rounded::every_digit(value));
+                Err(FitError::no_minimum(format!("with {name} fixed at {value} the fit ended as: {outcome}")))
+            }
             None => Ok(None),
         }
     }
 
     /// The point that the minimiser is at, unless it is lower than the minimum.
-    fn trace(&mut self, value: f64) -> Result<Trace, ProfileError> {
+    fn trace(&mut self, value: f64) -> Result<Trace, FitError> {
         let (sum, found) = (self.minimizer.sum_of_squares(), self.fit.sum_of_squares());
         let excess = (sum - found) / self.deviation.powi(2);
         if excess < -LOWER * self.quantile.powi(2) && self.fit.outcome() != Outcome::AtNoiseFloor {
             let freed = solve(self.problem, self.minimizer.values(), &self.options.remaining(self.began))?;
-            return Err(ProfileError::LowerMinimum {
-                values: freed.values().to_vec(),
-                lower: freed.sum_of_squares(),
-                found,
-            });
+            let (lower, values) = (freed.sum_of_squares(), freed.values().to_vec());
+            let what = format!(
+                "the fit is not at the lowest minimum: the sum of squares is {lower} instead of {found} at {values:?}; \
+                 take that for the fit"
+            );
+            return Err(FitError::LowerMinimum { what, values, lower });
         }
         self.points.push((value, sum));
         Ok(Trace { values: self.minimizer.values().to_vec(), distance: excess.max(0.0).sqrt() })

@@ -1,8 +1,7 @@
 //! Intervals from the profile of the sum of squares.
 
-use fmm_model::{Rounded, coverage_factor};
+use fmm_model::coverage_factor;
 
-use crate::error::FitError;
 use crate::result::fit::Fit;
 use crate::solver::outcome::Outcome;
 
@@ -107,61 +106,4 @@ impl ProfileInterval {
     pub fn residual_evaluations(&self) -> usize {
         self.residual_evaluations
     }
-}
-
-/// Why there is no profile interval.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ProfileError {
-    /// The problem has no parameter of that name.
-    #[error("there is no parameter called {0}")]
-    UnknownParameter(String),
-    /// The fit is one of another problem.
-    #[error(
-        "the fit has {fit:?} residuals and parameters, but the problem {problem:?}; it must be that of the problem"
-    )]
-    DifferentProblem {
-        /// Residuals and parameters of the fit.
-        fit: (usize, usize),
-        /// Residuals and parameters of the problem.
-        problem: (usize, usize),
-    },
-    /// The parameter is fixed by its bounds.
-    #[error("{0} is fixed and has no interval")]
-    Fixed(String),
-    /// The level is no probability.
-    #[error("the level of an interval must be above 0 and below 1, but is {0}")]
-    Level(f64),
-    /// There is no variance to compare with.
-    #[error("the fit leaves no residual or no degree of freedom, so the variance cannot be estimated from it")]
-    NoVariance,
-    /// The fit given did not end at a minimum.
-    #[error("the fit is not at a minimum: {0}")]
-    NotConverged(Outcome),
-    /// The sum of squares is lower elsewhere: the fit was not at the minimum, or only at a local one.
-    #[error(
-        "the fit is not at the lowest minimum: the sum of squares is {lower} instead of {found} at {values:?}; \
-         take that for the fit"
-    )]
-    LowerMinimum {
-        /// Where the sum of squares is lower.
-        values: Vec<f64>,
-        /// The sum of squares there.
-        lower: f64,
-        /// The sum of squares of the fit.
-        found: f64,
-    },
-    /// A fit with the parameter held did not converge.
-    #[error("with {parameter} held at {value} the fit ended as: {outcome}", value = Rounded::every_digit(*.value))]
-    HeldFit {
-        /// Name of the parameter.
-        parameter: String,
-        /// The value it was held at.
-        value: f64,
-        /// How the fit ended.
-        outcome: Outcome,
-    },
-    /// A fit could not begin.
-    #[error(transparent)]
-    Fit(#[from] FitError),
 }

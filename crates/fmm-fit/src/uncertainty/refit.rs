@@ -14,8 +14,7 @@ use crate::result::fit::Fit;
 use crate::solver::minimizer::Minimizer;
 use crate::solver::options::Options;
 use crate::uncertainty::forecast::Forecast;
-use crate::uncertainty::propagated::SensitivityError;
-use crate::uncertainty::refit_error::RefitError;
+use crate::uncertainty::propagated::FitError;
 use crate::uncertainty::sensitivity::Sensitivity;
 
 /// A step that moves the residuals by less than this share of what the parameters themselves make of them is no step.
@@ -157,8 +156,8 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
     /// Prepares to repeat `fit`, which must be a converged one of `problem`.
     ///
     /// # Errors
-    /// [`SensitivityError`] if it is not.
-    pub fn prepare(problem: &'a P, fit: &Fit) -> Result<Self, SensitivityError> {
+    /// [`FitError`] if it is not.
+    pub fn prepare(problem: &'a P, fit: &Fit) -> Result<Self, FitError> {
         // Without derivatives of its own, differences of differences cost more than they foresee.
         let sensitivity = if fit.has_exact_jacobian() {
             Sensitivity::of(problem, fit)
@@ -192,14 +191,14 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
     /// fit.
     ///
     /// # Errors
-    /// [`RefitError::NoInput`] for a name that was not held in the fit.
-    pub fn varying(mut self, names: &[&str]) -> Result<Self, RefitError> {
+    /// [`FitError::UnknownName`] for a name that was not fixed in the fit.
+    pub fn varying(mut self, names: &[&str]) -> Result<Self, FitError> {
         let mut places = Vec::with_capacity(names.len());
         for name in names {
             let place = self.inputs().position(|input| input.name() == *name);
-            places.push(place.ok_or_else(|| RefitError::NoInput {
-                name: (*name).to_owned(),
-                inputs: self.inputs().map(Parameter::name).collect::<Vec<_>>().join(", "),
+            places.push(place.ok_or_else(|| {
+                let inputs = self.inputs().map(Parameter::name).collect::<Vec<_>>().join(", ");
+                FitError::unknown_name(format!("{name:?} was not fixed in the fit; the fixed parameters are: {inputs}"))
             })?);
         }
         self.forecast = self.forecast.of_inputs(&places);
@@ -217,14 +216,18 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
     /// An amount of zero is an input that does not change.
     ///
     /// # Errors
-    /// [`RefitError::InputCount`], [`RefitError::Spread`] for an amount that is not a finite number of at least zero,
+    /// [`FitError::Count`], [`FitError::OutOfRange`] for an amount that is not a finite number of at least zero,
     /// and as for [`estimates`](Self::estimates).
-    pub fn expecting(mut self, spread: &[f64]) -> Result<Self, RefitError> {
+    pub fn expecting(mut self, spread: &[f64]) -> Result<Self, FitError> {
         self.require_count(spread.len())?;
         if let Some((input, spread)) =
             self.inputs().zip(spread).find(|(_, spread)| !(**spread >= 0.0 && spread.is_finite()))
         {
-            return Err(RefitError::Spread { input: input.name().to_owned(), spread: *spread });
+            let input = input.name();
+            return Err(FitError::out_of_range(
+                format!("{input} is expected to change by {spread}; a finite number of at least zero is needed"),
+                *spread,
+            ));
         }
         self.convergence = None;
         let (mut workspace, mut steps, mut is_followed) = (Workspace::default(), Vec::new(), true);
@@ -234,7 +237,7 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
             if workspace.taken > 1 {
                 steps.push(workspace.first.clone());
             }
-            Ok::<_, RefitError>(estimates)
+            Ok::<_, FitError>(estimates)
         })?;
         if is_followed {
             self.convergence = Convergence::seen(self.forecast.deviations(spread), &steps);
@@ -262,8 +265,8 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
     /// The estimates with these values of the inputs.
     ///
     /// # Errors
-    /// [`RefitError`] if the inputs are not one finite number each, or if the fit fails.
-    pub fn estimates(&self, inputs: &[f64]) -> Result<Vec<f64>, RefitError> {
+    /// [`FitError`] if the inputs are not one finite number each, or if the fit fails.
+    pub fn estimates(&self, inputs: &[f64]) -> Result<Vec<f64>, FitError> {
         self.require_count(inputs.len())?;
         let taken = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut workspace = taken.unwrap_or_default();
@@ -272,12 +275,16 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
         estimates
     }
 
-    fn require_count(&self, given: usize) -> Result<(), RefitError> {
+    fn require_count(&self, given: usize) -> Result<(), FitError> {
         let inputs = self.inputs.len();
-        if given == inputs { Ok(()) } else { Err(RefitError::InputCount { given, inputs }) }
+        if given == inputs {
+            Ok(())
+        } else {
+            Err(FitError::count(format!("{given} values were given for {inputs} inputs")))
+        }
     }
 
-    fn estimates_in(&self, workspace: &mut Workspace, inputs: &[f64]) -> Result<Vec<f64>, RefitError> {
+    fn estimates_in(&self, workspace: &mut Workspace, inputs: &[f64]) -> Result<Vec<f64>, FitError> {
         self.foresee(&mut workspace.values, inputs);
         match if self.is_direct { self.follow(workspace) } else { Arrival::Lost } {
             Arrival::AtMinimum => {}
@@ -350,17 +357,19 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
     }
 
     /// A fit from these values.
-    fn search(&self, values: &mut [f64]) -> Result<(), RefitError> {
+    fn search(&self, values: &mut [f64]) -> Result<(), FitError> {
         let mut parameters = self.problem.parameters().to_vec();
         for &j in &self.inputs {
-            let held = Bounds::new(values[j], values[j])
-                .map_err(|source| RefitError::Input { input: parameters[j].name().to_owned(), source })?;
+            let held = Bounds::new(values[j], values[j]).map_err(|error| {
+                let input = parameters[j].name();
+                FitError::out_of_range(format!("the input {input} has no valid value: {error}"), values[j])
+            })?;
             parameters[j] = parameters[j].clone().bounded(held);
         }
         let mut minimizer = Minimizer::new(self.options.clone());
         let outcome = minimizer.minimize(&Held::within(self.problem, parameters), values)?;
         if !outcome.is_success() {
-            return Err(RefitError::NotConverged { outcome });
+            return Err(FitError::no_minimum(format!("the fit ended without a minimum: {outcome}")));
         }
         values.copy_from_slice(minimizer.values());
         Ok(())

@@ -7,7 +7,7 @@ use fmm_model::{Parameter, Rounded};
 use crate::problem::residuals::Residuals;
 use crate::result::fit::Fit;
 use crate::uncertainty::minimum::Minimum;
-use crate::uncertainty::propagated::{PropagatedCovariance, SensitivityError};
+use crate::uncertainty::propagated::{FitError, PropagatedCovariance};
 
 /// Derivatives of the estimates of a fit by the values that it held fixed, its inputs, without fitting again.
 ///
@@ -77,9 +77,9 @@ impl Sensitivity {
     /// differences, to about four.
     ///
     /// # Errors
-    /// [`SensitivityError`] if the fit has not converged or is not one of this problem, if the model has no derivatives
+    /// [`FitError`] if the fit has not converged or is not one of this problem, if the model has no derivatives
     /// at or near its values, and if these are not those of a minimum.
-    pub fn of<P: Residuals + ?Sized>(problem: &P, fit: &Fit) -> Result<Self, SensitivityError> {
+    pub fn of<P: Residuals + ?Sized>(problem: &P, fit: &Fit) -> Result<Self, FitError> {
         Minimum::new(problem, fit)?.respond(true)
     }
 
@@ -87,7 +87,7 @@ impl Sensitivity {
     ///
     /// # Errors
     /// As for [`of`](Self::of).
-    pub fn first_order<P: Residuals + ?Sized>(problem: &P, fit: &Fit) -> Result<Self, SensitivityError> {
+    pub fn first_order<P: Residuals + ?Sized>(problem: &P, fit: &Fit) -> Result<Self, FitError> {
         Minimum::new(problem, fit)?.respond(false)
     }
 
@@ -118,10 +118,12 @@ impl Sensitivity {
     /// [`inputs`](Self::inputs): C V Cᵀ. It comes on top of the covariance of the fit.
     ///
     /// # Errors
-    /// [`SensitivityError::InvalidCovariance`] for a wrong number of elements and for what is no covariance.
-    pub fn propagate(&self, covariance: &[f64]) -> Result<PropagatedCovariance, SensitivityError> {
+    /// [`FitError::Problem`] for a wrong number of elements and for what is no covariance.
+    pub fn propagate(&self, covariance: &[f64]) -> Result<PropagatedCovariance, FitError> {
         let count = self.inputs.len();
-        let refuse = |reason| Err(SensitivityError::InvalidCovariance { reason, inputs: count });
+        let refuse = |reason| {
+            Err(FitError::problem(format!("the covariance of the inputs {reason}; it needs {count} rows and columns")))
+        };
         if covariance.len() != count * count {
             return refuse("has the wrong number of elements");
         }
@@ -157,7 +159,7 @@ impl Sensitivity {
     ///
     /// # Errors
     /// As for [`propagate`](Self::propagate).
-    pub fn propagate_uncorrelated(&self, uncertainties: &[f64]) -> Result<PropagatedCovariance, SensitivityError> {
+    pub fn propagate_uncorrelated(&self, uncertainties: &[f64]) -> Result<PropagatedCovariance, FitError> {
         let count = uncertainties.len();
         let mut covariance = vec![0.0; count * count];
         for (i, uncertainty) in uncertainties.iter().enumerate() {

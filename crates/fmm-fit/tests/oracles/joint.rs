@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use fmm_fit::{
-    Block, CorrelatedCovariance, Derivatives, EvaluationError, Fit, Joint, JointError, Minimizer, Options, Residuals,
+    Block, CorrelatedCovariance, Derivatives, EvaluationError, Fit, FitError, Joint, Minimizer, Options, Residuals,
     solve,
 };
 use fmm_model::{Bounds, Parameter, Scalar};
@@ -247,9 +247,9 @@ fn problems_that_disagree_are_refused_by_name() {
     assert_eq!(message(&kilogram, &kilogram, &["load"]), "no problem has a parameter called load to share");
     assert!(matches!(
         Joint::new(vec![Simple(vec![kilogram.clone()])], &["mass", "mass"]),
-        Err(JointError::NameTwice { .. })
+        Err(FitError::Problem { .. })
     ));
-    assert!(matches!(Joint::<Simple>::new(vec![], &[]), Err(JointError::NoProblem)));
+    assert!(matches!(Joint::<Simple>::new(vec![], &[]), Err(FitError::Count { .. })));
 
     // Bounds are cut, and a value fixed in one is fixed in all.
     for (other, expected) in [(mass("kg", 1.0, 5.0), (1.0, 2.0)), (mass("kg", 1.5, 1.5), (1.5, 1.5))] {
@@ -257,13 +257,14 @@ fn problems_that_disagree_are_refused_by_name() {
         let bounds = joint.parameters()[0].bounds();
         assert_eq!((bounds.lower(), bounds.upper()), expected);
         assert_eq!(joint.start(&[[0.1], [1.2]]).unwrap(), [0.65f64.clamp(expected.0, expected.1)]);
-        assert!(matches!(joint.start(&[[0.1]]), Err(JointError::StartCount { starts: 1, problems: 2 })));
-        assert!(matches!(joint.start(&[vec![0.1], vec![]]), Err(JointError::StartLength { problem: 1, .. })));
+        assert_eq!(joint.start(&[[0.1]]).unwrap_err().to_string(), "there are 1 starts for 2 problems");
+        let short = joint.start(&[vec![0.1], vec![]]).unwrap_err().to_string();
+        assert_eq!(short, "the start of problem 1 has 0 values, but the problem has 1 parameters");
     }
     let joint = Joint::new(vec![Simple(vec![kilogram.clone()])], &["mass"]).unwrap();
     let two = Simple(vec![kilogram.clone(), Parameter::new("load", "N", "N")]);
     let other = solve(&two, &[1.0, 1.0], &Options::default()).unwrap();
-    assert_eq!(joint.split(&other).unwrap_err(), JointError::OtherFit);
+    assert!(matches!(joint.split(&other), Err(FitError::OtherFit { .. })));
 }
 
 /// A record of 45 000 samples.

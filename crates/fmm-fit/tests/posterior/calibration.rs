@@ -1,6 +1,6 @@
 //! Simulation-based calibration of a straight line.
 
-use fmm_fit::{Bounds, Calibration, EvaluationError, Parameter, PosteriorError, Prior, ResidualVariance, Sampler};
+use fmm_fit::{Bounds, Calibration, EvaluationError, FitError, Parameter, Prior, ResidualVariance, Sampler};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, Normal};
@@ -8,7 +8,7 @@ use rand_distr::{Distribution, Normal};
 use crate::problems::Linear;
 
 /// Records of a line with normal noise, which is `wrong` times that of the residuals.
-fn calibration(wrong: f64) -> Result<Calibration, PosteriorError> {
+fn calibration(wrong: f64) -> Result<Calibration, FitError> {
     let parameters = [Parameter::from("intercept"), Parameter::from("slope").bounded(Bounds::NOT_NEGATIVE)];
     let sampler = Sampler::default()
         .with_prior("intercept", Prior::normal(1.0, 0.5)?)

@@ -1,6 +1,6 @@
 //! Requests that have no posterior.
 
-use fmm_fit::{Bounds, Parameter, PosteriorError, Prior, Sampler};
+use fmm_fit::{Bounds, FitError, Parameter, Prior, Sampler};
 
 use crate::problems::{Linear, fitted, line};
 
@@ -22,10 +22,10 @@ fn what_cannot_be_sampled_is_refused() {
     assert_eq!(by(sampler.clone().with_draws(0)), "at least 100 draws of a chain are needed, but 0 are asked for");
     let exact = Linear { data: problem.columns[1].clone(), ..line() };
     let fit = fitted(&exact, &[0.0, 1.0]);
-    assert!(matches!(sampler.sample(&exact, &fit), Err(PosteriorError::NoNoise)));
+    assert!(matches!(sampler.sample(&exact, &fit), Err(FitError::Undetermined { .. })));
     assert!(matches!(
         sampler.sample(&Linear { data: vec![1.0; 3], ..line() }, &fit),
-        Err(PosteriorError::DifferentProblem { .. })
+        Err(FitError::OtherFit { .. })
     ));
 }
 
