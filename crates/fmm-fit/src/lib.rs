@@ -75,7 +75,7 @@
 //! | how well, where residuals are correlated? | [`CorrelatedCovariance`] |
 //! | what do values held fixed do to the estimates? | [`Sensitivity`]; by trials [`Refit`] |
 //! | how well is the model known elsewhere? | [`Fit::predict`], [`Prediction`] |
-//! | are the residuals noise? | [`ResidualDiagnostics`], [`durbin_watson`], [`effective_count`] |
+//! | are the residuals independent? | [`autocorrelation`], [`effective_count`] |
 //! | is a further parameter worth having? | [`f_test`], [`Fit::corrected_akaike`] |
 //! | which of several models? | [`ModelTable`] |
 //! | which measurements next? | [`Information`], [`DesignSearch`] |
@@ -153,18 +153,13 @@ mod solver;
 mod starts;
 mod uncertainty;
 
-pub use comparison::contender::Contender;
+pub use comparison::contender::{ComparisonOptions, Contender, Criterion, ResidualCount};
 pub use comparison::model_comparison::{FTest, f_tail, f_test};
-pub use comparison::model_table::{ModelRow, ModelTable, NestedComparison};
-pub use comparison::options::{ComparisonOptions, Criterion, ResidualCount};
-pub use comparison::verdict::{Doubt, Verdict};
+pub use comparison::model_table::{Doubt, ModelRow, ModelTable, NestedComparison, Verdict};
 pub use design::design_case::{DesignCase, DesignCriterion};
 pub use design::information::Information;
 pub use design::search::{ChosenDesign, DesignSearch};
-pub use diagnostics::diagnostics_summary::ResidualDiagnostics;
-pub use diagnostics::normality::{NormalityTest, anderson_darling};
-pub use diagnostics::residual_diagnostics::{autocorrelation, autocorrelation_time, durbin_watson, effective_count};
-pub use diagnostics::runs_test::{RunsTest, runs_test};
+pub use diagnostics::{autocorrelation, autocorrelation_time, effective_count};
 pub use error::FitError;
 pub use fitting::argmin::BoundedLevenbergMarquardt;
 pub use fitting::curve::{ClosureProblem, curve, curve_fit, fit};

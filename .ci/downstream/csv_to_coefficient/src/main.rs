@@ -5,7 +5,7 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use fmm_fit::ResidualDiagnostics;
+use fmm_fit::effective_count;
 use fmm_frf::{coulomb_impact_duration, peak_receptance_of_coulomb_impact};
 use fmm_friction::CoulombViscous;
 use fmm_identify::{Experiment, Known, Machine, Preparation, identify};
@@ -35,7 +35,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let machine = Machine::of_mass(Known::new(MASS.0, MASS.1)?)?;
     let found = identify::<CoulombViscous>(&machine, &[decay])?;
     println!("{found}");
-    println!("{}", ResidualDiagnostics::of(found.fit().residuals()).ok_or("there are residuals")?);
+    let residuals = found.fit().residuals();
+    let independent = effective_count(residuals).ok_or("the residuals have a scatter")?;
+    println!("{} residuals count as {independent:.0} independent ones\n", residuals.len());
     let force = found.finding("friction_force").ok_or("the law has a friction force")?;
     let uncertainty = force.uncertainty().ok_or("the record does not determine the friction force")?;
 

@@ -1,7 +1,6 @@
 //! A model that takes part in a comparison.
 
-use crate::diagnostics::residual_diagnostics::autocorrelation_time;
-use crate::diagnostics::runs_test::{RunsTest, runs_test};
+use crate::diagnostics::autocorrelation_time;
 use crate::regression::linear_regression::LinearRegression;
 use crate::result::fit::Fit;
 
@@ -13,7 +12,6 @@ pub struct Contender {
     pub(crate) sum_of_squares: f64,
     pub(crate) rank: usize,
     pub(crate) is_finished: bool,
-    pub(crate) runs: Option<RunsTest>,
     pub(crate) autocorrelation_time: f64,
     pub(crate) contains: Vec<String>,
 }
@@ -27,7 +25,6 @@ impl Contender {
             sum_of_squares: residuals.iter().map(|r| r * r).sum(),
             rank,
             is_finished: true,
-            runs: runs_test(residuals),
             autocorrelation_time: autocorrelation_time(residuals).unwrap_or(1.0),
             contains: Vec::new(),
         }
@@ -56,6 +53,60 @@ impl Contender {
     #[must_use]
     pub fn containing(mut self, name: impl Into<String>) -> Self {
         self.contains.push(name.into());
+        self
+    }
+}
+
+/// How many independent residuals a comparison counts.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum ResidualCount {
+    /// All of them.
+    All,
+    /// n/τ with the autocorrelation time τ of the best fitting model: what it leaves is the nearest there is to noise.
+    #[default]
+    OfBest,
+    /// So many; at most all of them count.
+    Given(f64),
+}
+
+/// The information criterion that ranks models.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Criterion {
+    /// Akaike's, corrected for few residuals: which model predicts best. A further parameter costs little more than 2,
+    /// so that it hardly ever decides against a model that contains the true one.
+    #[default]
+    CorrectedAkaike,
+    /// Schwarz' Bayesian one: which model is the most probable if one of them is true.
+    Bayesian,
+}
+
+/// How models are compared.
+///
+/// ```
+/// use fmm_fit::{ComparisonOptions, Criterion, ResidualCount};
+///
+/// let comparing = ComparisonOptions::default().by(Criterion::Bayesian).counting(ResidualCount::All);
+/// # let _ = comparing;
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct ComparisonOptions {
+    pub(crate) criterion: Criterion,
+    pub(crate) count: ResidualCount,
+}
+
+impl ComparisonOptions {
+    /// The criterion that ranks (corrected Akaike).
+    #[must_use]
+    pub fn by(mut self, criterion: Criterion) -> Self {
+        self.criterion = criterion;
+        self
+    }
+
+    /// How many residuals count (those of the best model, over their autocorrelation time).
+    #[must_use]
+    pub fn counting(mut self, count: ResidualCount) -> Self {
+        self.count = count;
         self
     }
 }

@@ -2,7 +2,5 @@
 
 pub(crate) mod contender;
 pub(crate) mod model_comparison;
-pub(crate) mod model_report;
+mod model_report;
 pub(crate) mod model_table;
-pub(crate) mod options;
-pub(crate) mod verdict;

@@ -3,8 +3,8 @@
 use std::fmt;
 
 use crate::comparison::model_table::ModelTable;
-use crate::comparison::options::Criterion;
-use crate::comparison::verdict::{Doubt, Verdict};
+use crate::comparison::contender::Criterion;
+use crate::comparison::model_table::{Doubt, Verdict};
 
 impl fmt::Display for ModelTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -20,16 +20,15 @@ impl fmt::Display for ModelTable {
         let width = rows.iter().map(|row| row.name.chars().count()).max().unwrap_or(0).max("model".len());
         writeln!(
             f,
-            "  {:<width$} {:>10} {:>12} {:>10} {:>10} {:>10} {:>8} {:>9}",
-            "model", "parameters", "rms", "AICc", "BIC", "difference", "weight", "runs p"
+            "  {:<width$} {:>10} {:>12} {:>10} {:>10} {:>10} {:>8}",
+            "model", "parameters", "rms", "AICc", "BIC", "difference", "weight"
         )?;
         let mut order: Vec<usize> = (0..count).collect();
         order.sort_by(|a, b| rows[*a].difference.total_cmp(&rows[*b].difference));
         for row in order.into_iter().map(|i| &rows[i]) {
-            let runs = row.runs.map_or_else(|| "-".to_owned(), |runs| format!("{:.1e}", runs.p_value));
             writeln!(
                 f,
-                "  {:<width$} {:>10} {:>12.5e} {:>10.2} {:>10.2} {:>10.2} {:>8.4} {runs:>9}",
+                "  {:<width$} {:>10} {:>12.5e} {:>10.2} {:>10.2} {:>10.2} {:>8.4}",
                 row.name, row.parameters, row.rms, row.corrected_akaike, row.bayesian, row.difference, row.weight
             )?;
         }
@@ -74,9 +73,6 @@ impl ModelTable {
                     f,
                     "  - the fit of {contender} missed its lowest minimum, as its special case {special} fits better"
                 )
-            }
-            Doubt::Correlated { p_value } => {
-                writeln!(f, "  - all residuals were counted, but they are not independent (p = {p_value:.1e})")
             }
             Doubt::NotRejected { special, p_value } => {
                 writeln!(f, "  - its special case {} is not rejected (p = {p_value:.3})", name(special))

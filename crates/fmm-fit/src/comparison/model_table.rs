@@ -5,9 +5,7 @@ use std::collections::HashSet;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::comparison::contender::Contender;
-use crate::comparison::options::{ComparisonOptions, Criterion, ResidualCount};
-use crate::comparison::verdict::{Doubt, Verdict};
-use crate::diagnostics::runs_test::RunsTest;
+use crate::comparison::contender::{ComparisonOptions, Criterion, ResidualCount};
 use crate::error::FitError;
 
 /// One model of a comparison.
@@ -30,8 +28,6 @@ pub struct ModelRow {
     pub difference: f64,
     /// Share of the models' total weight, exp(−difference/2) (1).
     pub weight: f64,
-    /// Test of the runs of equal sign, of all residuals; `None` if they have one sign.
-    pub runs: Option<RunsTest>,
 }
 
 /// The F-test of a model against one that contains it.
@@ -60,7 +56,7 @@ pub struct NestedComparison {
 /// n is the number of residuals and m the number of those that count, see [`ResidualCount`]: neighbouring residuals of
 /// an oversampled record are correlated, so that m is less. An m too small for the correction is taken as k + 2.
 ///
-/// Models within the margin of the best are too close to call; the one with the fewest parameters is preferred. A model
+/// Models within 4 of the best are too close to call; the one with the fewest parameters is preferred. A model
 /// declared to contain another, whose further parameters ended without effect, is the other over again and no rival.
 /// `Display` gives the table, the best model first.
 ///
@@ -94,11 +90,81 @@ pub struct ModelTable {
     pub(crate) criterion: Criterion,
 }
 
+/// What a comparison of models comes to. Models are meant by their index in the comparison.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Verdict {
+    /// The data decide for one model.
+    Decided {
+        /// The model.
+        winner: usize,
+        /// By how much its score is below that of the next; `None` if there is no other.
+        lead: Option<f64>,
+    },
+    /// The data do not decide.
+    Undecided {
+        /// The simplest of the models that the data leave.
+        preferred: usize,
+        /// Why they do not decide.
+        doubts: Vec<Doubt>,
+    },
+}
+
+impl Verdict {
+    /// Whether the data decide.
+    pub const fn is_decided(&self) -> bool {
+        matches!(self, Self::Decided { .. })
+    }
+
+    /// The winner, or the model that is preferred without having won.
+    pub const fn preferred(&self) -> usize {
+        match self {
+            Self::Decided { winner, .. } => *winner,
+            Self::Undecided { preferred, .. } => *preferred,
+        }
+    }
+}
+
+/// A reason why data do not decide between models.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Doubt {
+    /// Another model scores nearly as well, or better with more parameters.
+    TooClose {
+        /// The other model.
+        rival: usize,
+        /// Its score less that of the preferred one.
+        difference: f64,
+    },
+    /// The fit of a model did not end at a minimum, so it may be better than it looks.
+    Unfinished {
+        /// The model.
+        contender: usize,
+    },
+    /// A model fits worse than a special case of it, so its fit missed the lowest minimum.
+    MissedMinimum {
+        /// The model.
+        contender: usize,
+        /// The special case.
+        special: usize,
+    },
+    /// The preferred model has a special case that the F-test does not reject.
+    NotRejected {
+        /// The special case.
+        special: usize,
+        /// Probability of the improvement by chance.
+        p_value: f64,
+    },
+}
+
 /// Two fits at the same minimum differ by rounding and by the tolerance of the search.
 const SAME: f64 = 1e-9;
 
-/// Runs as few as this by chance in one of a thousand series speak against independence.
-const CORRELATED: f64 = 1e-3;
+/// By how much the score of the winner must be below all others (1): Burnham and Anderson call the support for a model
+/// substantial within 2 of the best, considerably less from 4 on, and none beyond 10.
+const MARGIN: f64 = 4.0;
+
+/// The probability above which an F-test does not reject the special case (1).
+const SIGNIFICANCE: f64 = 0.05;
 
 impl ModelTable {
     /// Compares models of the same data.
@@ -116,7 +182,7 @@ impl ModelTable {
             ResidualCount::Given(count) => count.min(residuals as f64),
         };
         let mut rows: Vec<ModelRow> =
-            contenders.iter().map(|contender| row(contender, counted, comparing.floor)).collect();
+            contenders.iter().map(|contender| row(contender, counted)).collect();
         let scores: Vec<f64> = rows
             .iter()
             .map(|row| match comparing.criterion {
@@ -131,7 +197,7 @@ impl ModelTable {
             row.weight = (0.5 * (least - score)).exp() / total;
         }
         let tests = tests(contenders, counted);
-        let verdict = verdict(contenders, &scores, &tests, &comparing);
+        let verdict = verdict(contenders, &scores, &tests);
         Ok(Self { rows, tests, verdict, residuals, counted, criterion: comparing.criterion })
     }
 
@@ -187,29 +253,19 @@ fn check(contenders: &[Contender], comparing: &ComparisonOptions) -> Result<(), 
             return Err(FitError::out_of_range(what, contender.sum_of_squares));
         }
     }
-    let given = if let ResidualCount::Given(count) = comparing.count { count } else { 1.0 };
-    let settings = [
-        ("number of residuals that count", "positive", given, given > 0.0),
-        ("margin", "zero or positive", comparing.margin, comparing.margin >= 0.0),
-        ("significance", "between 0 and 1", comparing.significance, (0.0..=1.0).contains(&comparing.significance)),
-        (
-            "floor",
-            "zero or positive and finite",
-            comparing.floor,
-            comparing.floor >= 0.0 && comparing.floor.is_finite(),
-        ),
-    ];
-    match settings.into_iter().find(|(.., is_good)| !is_good) {
-        Some((setting, expected, value, _)) => Err(FitError::option(&format!("the {setting}"), expected, value)),
-        None => Ok(()),
+    match comparing.count {
+        ResidualCount::Given(count) if !(count > 0.0) => {
+            Err(FitError::option("the number of residuals that count", "positive", count))
+        }
+        _ => Ok(()),
     }
 }
 
-fn row(contender: &Contender, counted: f64, floor: f64) -> ModelRow {
+fn row(contender: &Contender, counted: f64) -> ModelRow {
     let (n, k) = (contender.count as f64, contender.rank as f64 + 1.0);
     let m = counted.max(k + 2.0);
     // Exact data leave nothing; the logarithm of next to nothing ranks them first.
-    let deviance = m * (contender.sum_of_squares.max(floor).max(f64::MIN_POSITIVE) / n).ln();
+    let deviance = m * (contender.sum_of_squares.max(f64::MIN_POSITIVE) / n).ln();
     ModelRow {
         name: contender.name.clone(),
         parameters: contender.rank,
@@ -219,7 +275,6 @@ fn row(contender: &Contender, counted: f64, floor: f64) -> ModelRow {
         bayesian: deviance + k * m.ln(),
         difference: 0.0,
         weight: 0.0,
-        runs: contender.runs,
     }
 }
 
@@ -251,10 +306,9 @@ fn verdict(
     contenders: &[Contender],
     scores: &[f64],
     tests: &[NestedComparison],
-    comparing: &ComparisonOptions,
 ) -> Verdict {
     let least = scores.iter().copied().fold(f64::INFINITY, f64::min);
-    let close = (0..scores.len()).filter(|&i| scores[i] - least <= comparing.margin);
+    let close = (0..scores.len()).filter(|&i| scores[i] - least <= MARGIN);
     let simpler =
         |a: &usize, b: &usize| contenders[*a].rank.cmp(&contenders[*b].rank).then(scores[*a].total_cmp(&scores[*b]));
     let preferred = close.min_by(simpler).unwrap_or(0);
@@ -266,7 +320,7 @@ fn verdict(
     let mut doubts = Vec::new();
     for &rival in &rivals {
         let difference = scores[rival] - scores[preferred];
-        if difference <= comparing.margin {
+        if difference <= MARGIN {
             doubts.push(Doubt::TooClose { rival, difference });
         }
     }
@@ -275,18 +329,11 @@ fn verdict(
     );
     for (special, contender) in nested(contenders) {
         let (lower, higher) = (contenders[special].sum_of_squares, contenders[contender].sum_of_squares);
-        if lower < higher * (1.0 - SAME) - comparing.floor {
+        if lower < higher * (1.0 - SAME) {
             doubts.push(Doubt::MissedMinimum { contender, special });
         }
     }
-    if comparing.count == ResidualCount::All
-        && let Some(runs) = contenders[preferred].runs
-        && runs.p_value < CORRELATED
-        && (runs.runs as f64) < runs.expected
-    {
-        doubts.push(Doubt::Correlated { p_value: runs.p_value });
-    }
-    for test in tests.iter().filter(|test| test.full == preferred && test.p_value > comparing.significance) {
+    for test in tests.iter().filter(|test| test.full == preferred && test.p_value > SIGNIFICANCE) {
         doubts.push(Doubt::NotRejected { special: test.restricted, p_value: test.p_value });
     }
     if doubts.is_empty() {

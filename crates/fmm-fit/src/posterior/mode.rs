@@ -1,7 +1,7 @@
 //! Mode of a posterior over coordinates, and the whitening about it.
 
 use crate::algebra::definite;
-use crate::diagnostics::residual_diagnostics::autocorrelation;
+use crate::diagnostics::autocorrelation;
 use crate::error::FitError;
 use crate::posterior::coordinates::Whitening;
 use crate::posterior::target::Target;

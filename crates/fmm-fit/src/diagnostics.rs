@@ -1,27 +1,9 @@
 //! Correlation of residuals from one to the next.
 
+use crate::algebra::sums::dot;
+
 /// Lags looked at before the series is halved.
 const LAGS: usize = 32;
-
-/// Durbin and Watson's statistic: 2 for independent residuals, towards 0 if neighbours are alike, towards 4 if they
-/// alternate. `None` for fewer than two residuals, or if they are all zero or not finite.
-///
-/// ```text
-/// d = Σ (rᵢ − rᵢ₋₁)² / Σ rᵢ²
-/// ```
-///
-/// ```
-/// assert_eq!(fmm_fit::durbin_watson(&[1.0, -1.0, 1.0, -1.0]), Some(3.0));
-/// ```
-///
-/// # References
-/// J. Durbin, G. S. Watson, "Testing for serial correlation in least squares regression. I", Biometrika 37 (1950)
-/// 409, <https://doi.org/10.1093/biomet/37.3-4.409>.
-pub fn durbin_watson(residuals: &[f64]) -> Option<f64> {
-    let changes: f64 = residuals.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
-    let squares: f64 = residuals.iter().map(|r| r * r).sum();
-    (residuals.len() > 1 && squares > 0.0 && changes.is_finite() && squares.is_finite()).then(|| changes / squares)
-}
 
 /// ρ_k, the autocorrelation of the residuals at this `lag` (samples), about zero; of white noise within ±1.96/√n in 95
 /// of 100 cases. `None` for a lag that leaves no pair, or if the residuals are all zero or not finite.
@@ -102,7 +84,7 @@ fn initial_positive_sum(series: &[f64]) -> (f64, bool) {
 /// `Σ rᵢ rᵢ₊ₗ / n`.
 fn mean_product(series: &[f64], lag: usize) -> f64 {
     let late = series.get(lag..).unwrap_or(&[]);
-    crate::solver::sums::dot(&series[..late.len()], late) / series.len() as f64
+    dot(&series[..late.len()], late) / series.len() as f64
 }
 
 #[cfg(test)]
@@ -126,7 +108,7 @@ mod tests {
         // Standard error of a few autocorrelations: 2·√(4/n) = 0.013.
         let time = autocorrelation_time(&white).unwrap();
         assert!((time - 1.0).abs() < 0.04, "autocorrelation time {time} samples");
-        assert!((durbin_watson(&white).unwrap() - 2.0).abs() < 0.02);
+        assert!(autocorrelation(&white, 1).unwrap().abs() < 0.01);
     }
 
     #[test]
@@ -144,8 +126,8 @@ mod tests {
             let time = autocorrelation_time(&series).unwrap();
             // Standard error about τ √(2 · 2M/n) with a window M of a few τ: 10 % for the longer.
             assert!((time / expected - 1.0).abs() < 0.2, "φ = {phi}: {time} instead of {expected} samples");
-            let durbin_watson = durbin_watson(&series).unwrap();
-            assert!((durbin_watson - 2.0 * (1.0 - phi)).abs() < 0.02, "d = {durbin_watson}");
+            let neighbours = autocorrelation(&series, 1).unwrap();
+            assert!((neighbours - phi).abs() < 0.01, "ρ₁ = {neighbours}");
         }
     }
 
@@ -154,7 +136,7 @@ mod tests {
         assert_eq!(autocorrelation_time(&[]), None);
         assert_eq!(autocorrelation_time(&[0.0; 10]), None);
         assert_eq!(autocorrelation_time(&[1.0, f64::NAN]), None);
-        assert_eq!(durbin_watson(&[1.0]), None);
+        assert_eq!(autocorrelation(&[0.0; 3], 1), None);
     }
 
     #[test]
