@@ -82,7 +82,6 @@
 //! | which straight line, polynomial, columns? | [`StraightLine`], [`Polynomial`], [`LinearRegression`]: no start values |
 //! | a line with uncertainties in both variables? | [`YorkLine`] |
 //! | a line through results that differ by more than their uncertainties? | [`RandomEffectsLine`] |
-//! | which power law with offset? | [`PowerLaw`] |
 //! | what had no finite value? | [`Fit::non_finite`] |
 //!
 //! # Start values, losses, bounds
@@ -127,8 +126,6 @@
 //!
 //! * `rayon`: [`MultiStart`] and [`solve_best`] on all threads of the current pool, with the same result.
 //! * `sampler`: the posterior of the parameters by the no-U-turn sampler of the crate nuts-rs, which brings faer along.
-//! * `serde`: [`Minimizer`] and [`BoundedLevenbergMarquardt`] can be stored between two steps, argmin's checkpoints
-//!   among them, and taken up again by `Minimizer::resume`.
 //!
 //! # Neighbours
 //!
@@ -187,7 +184,6 @@ pub use problem::residuals::{Derivatives, EvaluationError, Residuals};
 pub use problem::weighted::Weighted;
 pub use regression::linear_regression::LinearRegression;
 pub use regression::polynomial::{Polynomial, StraightLine};
-pub use regression::power_law::PowerLaw;
 pub use regression::random_effects_line::RandomEffectsLine;
 pub use regression::weighting::Weighting;
 pub use regression::york::{UncertainPoint, YorkLine};

@@ -2,9 +2,8 @@
 
 use std::fmt;
 
-use crate::comparison::model_table::ModelTable;
 use crate::comparison::contender::Criterion;
-use crate::comparison::model_table::{Doubt, Verdict};
+use crate::comparison::model_table::{Doubt, ModelTable, Verdict};
 
 impl fmt::Display for ModelTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -4,8 +4,7 @@ use std::collections::HashSet;
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use crate::comparison::contender::Contender;
-use crate::comparison::contender::{ComparisonOptions, Criterion, ResidualCount};
+use crate::comparison::contender::{ComparisonOptions, Contender, Criterion, ResidualCount};
 use crate::error::FitError;
 
 /// One model of a comparison.
@@ -181,8 +180,7 @@ impl ModelTable {
             ResidualCount::OfBest => residuals as f64 / best.map_or(1.0, |best| best.autocorrelation_time),
             ResidualCount::Given(count) => count.min(residuals as f64),
         };
-        let mut rows: Vec<ModelRow> =
-            contenders.iter().map(|contender| row(contender, counted)).collect();
+        let mut rows: Vec<ModelRow> = contenders.iter().map(|contender| row(contender, counted)).collect();
         let scores: Vec<f64> = rows
             .iter()
             .map(|row| match comparing.criterion {
@@ -302,11 +300,7 @@ fn tests(contenders: &[Contender], counted: f64) -> Vec<NestedComparison> {
     nested(contenders).filter_map(test).collect()
 }
 
-fn verdict(
-    contenders: &[Contender],
-    scores: &[f64],
-    tests: &[NestedComparison],
-) -> Verdict {
+fn verdict(contenders: &[Contender], scores: &[f64], tests: &[NestedComparison]) -> Verdict {
     let least = scores.iter().copied().fold(f64::INFINITY, f64::min);
     let close = (0..scores.len()).filter(|&i| scores[i] - least <= MARGIN);
     let simpler =

@@ -19,8 +19,7 @@ const JACOBIANS: &str = "jacobian_count";
 /// The cost that argmin sees is the sum of squares, its counts `residuals_count` and `jacobian_count` are those of the
 /// [`Fit`]. What argmin cannot express stays here:
 /// [`outcome`](Self::outcome) and, with uncertainties and rank, [`fit`](Self::fit). A model that fails at a trial
-/// point is not an error, and a cancelled run keeps its best point. With the feature `serde` argmin's checkpoints store
-/// it.
+/// point is not an error, and a cancelled run keeps its best point.
 ///
 /// ```
 /// # use fmm_fit::EvaluationError;
@@ -57,7 +56,6 @@ const JACOBIANS: &str = "jacobian_count";
 /// assert!((fit.values()[1] - 1.0).abs() < 1e-9);
 /// # Ok::<(), argmin::core::Error>(())
 /// ```
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[derive(Debug, Clone, Default)]
 pub struct BoundedLevenbergMarquardt {
     minimizer: Minimizer,
@@ -117,8 +115,6 @@ impl<O: Residuals> Solver<O, FitState> for BoundedLevenbergMarquardt {
 
     fn next_iter(&mut self, problem: &mut Problem<O>, state: FitState) -> Result<(FitState, Option<KV>), Error> {
         let minimizer = &mut self.minimizer;
-        #[cfg(feature = "serde")]
-        problem.problem(RESIDUALS, |problem| Ok(minimizer.take_up(problem)?))?;
         let outcome = problem.problem(RESIDUALS, |problem| Ok(minimizer.iterate(problem)))?;
         let state = self.report(state, problem);
         let kv = argmin::kv!(

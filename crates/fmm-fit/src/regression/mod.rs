@@ -2,7 +2,6 @@
 
 pub(crate) mod linear_regression;
 pub(crate) mod polynomial;
-pub(crate) mod power_law;
 pub(crate) mod random_effects_line;
 pub(crate) mod refined_least_squares;
 pub(crate) mod twofold;

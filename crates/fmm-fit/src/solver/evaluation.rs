@@ -8,7 +8,6 @@ use crate::problem::residuals::{Derivatives, Residuals};
 use crate::solver::outcome::{NonFinite, worst};
 
 /// Where the derivatives come from.
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Scheme {
     /// The problem gives them.

@@ -7,8 +7,6 @@ use fmm_model::{Parameter, Rounded};
 use crate::algebra::triangle::Triangle;
 use crate::error::FitError;
 use crate::problem::residuals::{Derivatives, Residuals};
-#[cfg(feature = "serde")]
-use crate::solver::checkpoint::Checkpoint;
 use crate::solver::evaluation::{Evaluator, Point, Scheme};
 use crate::solver::jacobian_check::JacobianMismatch;
 use crate::solver::options::Options;
@@ -57,8 +55,6 @@ const SMALLEST_RESIDUAL: f64 = 1e-138;
 /// }
 /// # Ok::<(), fmm_fit::FitError>(())
 /// ```
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(from = "Checkpoint", into = "Checkpoint"))]
 #[derive(Debug, Clone, Default)]
 pub struct Minimizer {
     pub(crate) options: Options,
@@ -77,12 +73,7 @@ pub struct Minimizer {
     pub(crate) mismatches: Vec<JacobianMismatch>,
     pub(crate) iterations: usize,
     pub(crate) began: Option<Instant>,
-    /// What a stored fit has that waits for its problem.
-    #[cfg(feature = "serde")]
-    pub(crate) stored: Option<Box<Checkpoint>>,
 }
-
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) enum Phase {
     #[default]
@@ -91,7 +82,6 @@ pub(crate) enum Phase {
     /// Sharpening after a search that ended with `reason`; `level` is the norm to lower.
     Polish {
         reason: Outcome,
-        #[cfg_attr(feature = "serde", serde(with = "crate::solver::bits"))]
         level: f64,
         left: usize,
     },
@@ -99,12 +89,9 @@ pub(crate) enum Phase {
 }
 
 /// Where a search ended that is not to be trusted, and how.
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[derive(Debug, Clone)]
 pub(crate) struct Attempt {
-    #[cfg_attr(feature = "serde", serde(with = "crate::solver::bits"))]
     pub(crate) sum_of_squares: f64,
-    #[cfg_attr(feature = "serde", serde(with = "crate::solver::bits"))]
     pub(crate) values: Vec<f64>,
     pub(crate) reason: Outcome,
 }
@@ -203,10 +190,6 @@ impl Minimizer {
     /// Checks the start and evaluates it.
     pub(crate) fn begin<P: Residuals + ?Sized>(&mut self, problem: &P, start: &[f64]) -> Result<(), FitError> {
         self.phase = Phase::Idle;
-        #[cfg(feature = "serde")]
-        {
-            self.stored = None;
-        }
         self.options.validate()?;
         let parameters = problem.parameters();
         if self.parameters != parameters {

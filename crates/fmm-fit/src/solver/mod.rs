@@ -1,10 +1,6 @@
 //! Solver: a trust region within bounds, on a factor of the Jacobian.
 
-#[cfg(feature = "serde")]
-mod bits;
 mod box_least_squares;
-#[cfg(feature = "serde")]
-mod checkpoint;
 mod curvature;
 pub(crate) mod differences;
 pub(crate) mod evaluation;

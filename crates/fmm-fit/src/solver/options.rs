@@ -15,22 +15,16 @@ use crate::error::FitError;
 /// let options = Options::default().with_max_iterations(200).with_time_limit(Duration::from_secs(10));
 /// assert_eq!(options.max_iterations(), 200);
 /// ```
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Options {
     pub(crate) max_iterations: usize,
     pub(crate) max_evaluations: usize,
     pub(crate) time_limit: Option<Duration>,
-    #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) cancel: Option<Arc<AtomicBool>>,
-    #[cfg_attr(feature = "serde", serde(with = "crate::solver::bits"))]
     pub(crate) cost_tolerance: f64,
-    #[cfg_attr(feature = "serde", serde(with = "crate::solver::bits"))]
     pub(crate) step_tolerance: f64,
-    #[cfg_attr(feature = "serde", serde(with = "crate::solver::bits"))]
     pub(crate) gradient_tolerance: f64,
-    #[cfg_attr(feature = "serde", serde(with = "crate::solver::bits"))]
     pub(crate) initial_radius: f64,
     pub(crate) polish_steps: usize,
     pub(crate) restarts: usize,

@@ -13,7 +13,6 @@ use fmm_model::Rounded;
 /// assert!(!Outcome::Stalled.is_success());
 /// assert!(Outcome::MaxIterations.to_string().contains("raise the limit"));
 /// ```
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Outcome {

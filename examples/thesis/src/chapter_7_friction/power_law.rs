@@ -1,6 +1,6 @@
 //! Eq. 7.2 and Fig. 20: a power law through Table 4, regressed on the printed digits.
 
-use fmm_fit::{PowerLaw, Weighting, f_test};
+use fmm_fit::{Bounds, Dual, Fit, Options, Parameter, Scalar, curve, f_test, solve};
 
 use super::largest;
 use crate::printed::{EQUATION_7_2, TABLE_4};
@@ -50,6 +50,33 @@ fn printed(v: f64) -> f64 {
     a * v.powf(b) + c
 }
 
+/// The power law μ = a v^b + c with the least sum of squares.
+struct PowerLaw(Fit);
+
+impl PowerLaw {
+    /// The law through coefficients (1) at velocities (m/s), its constant c within bounds that contain 0.
+    fn fit(velocity: &[f64], coefficient: &[f64], offset: Bounds) -> Found<Self> {
+        let parameters = ["a", "b", "c"].map(|name| Parameter::new(name, name, "1"));
+        let [a, b, c] = parameters;
+        let law = |v: f64, [a, b, c]: [Dual<3>; 3]| a * Dual::from(v).powf(b) + c;
+        let problem = curve(velocity, coefficient, [a, b, c.bounded(offset)], law)?;
+        Ok(Self(solve(&problem, &[0.3, 0.2, 0.0], &Options::default())?))
+    }
+
+    fn as_fit(&self) -> &Fit {
+        &self.0
+    }
+
+    fn standard_uncertainty(&self, j: usize) -> Option<f64> {
+        self.0.estimates()[j].standard_uncertainty()
+    }
+
+    fn value(&self, v: f64) -> f64 {
+        let values = self.0.values();
+        values[0] * v.powf(values[1]) + values[2]
+    }
+}
+
 /// A column of Table 4 with its fits.
 struct Column {
     velocity: Vec<f64>,
@@ -63,8 +90,8 @@ impl Column {
         let coefficient: Vec<f64> = rows.iter().map(|row| row[0]).collect();
         let velocity: Vec<f64> = rows.iter().map(|row| row[1]).collect();
         Ok(Self {
-            free: PowerLaw::fit(&velocity, &coefficient, Weighting::Equal)?,
-            without_offset: PowerLaw::fit_without_offset(&velocity, &coefficient, Weighting::Equal)?,
+            free: PowerLaw::fit(&velocity, &coefficient, Bounds::UNBOUNDED)?,
+            without_offset: PowerLaw::fit(&velocity, &coefficient, Bounds::new(0.0, 0.0)?)?,
             velocity,
             coefficient,
         })
@@ -132,11 +159,11 @@ fn finding(chapter: &mut Chapter, linear: &Column, mean: &Column) -> Found<()> {
             share(0)?,
             share(1)?,
             share(2)?,
-            linear.free.coefficient(),
-            linear.free.exponent(),
-            linear.free.offset(),
-            mean.without_offset.coefficient(),
-            mean.without_offset.exponent(),
+            linear.free.as_fit().values()[0],
+            linear.free.as_fit().values()[1],
+            linear.free.as_fit().values()[2],
+            mean.without_offset.as_fit().values()[0],
+            mean.without_offset.as_fit().values()[1],
             100.0 * (mean.without_offset.as_fit().sum_of_squares() / mean.squares() - 1.0),
             test.p_value
         ),
