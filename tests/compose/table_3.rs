@@ -1,6 +1,6 @@
 //! The thesis' Table 3: what mass, stiffness and damping do to a fitted coefficient of friction.
 
-use fmm_fit::{Held, Minimizer, Options, Refit, Residuals, Sensitivity, solve};
+use fmm_fit::{WithFixed, Minimizer, Options, Refit, Residuals, Sensitivity, solve};
 use fmm_friction::{Berger, Coulomb, LawFamily};
 use fmm_identify::Problem;
 use fmm_model::{Bounds, Damping, Oscillator};
@@ -85,7 +85,7 @@ fn a_refit_ends_where_a_fit_does_whoever_asked_before() {
     let first: Vec<Vec<f64>> = (0..40).map(|i| refit.estimates(&away(i)).unwrap()).collect();
     for (i, estimates) in first.iter().enumerate().rev() {
         assert_eq!(&refit.estimates(&away(i)).unwrap(), estimates, "refit {i} depends on the others");
-        let held = Held::new(&problem, away(i).into_iter().enumerate()).unwrap();
+        let held = WithFixed::new(&problem, away(i).into_iter().enumerate()).unwrap();
         let mut start = problem.values().to_vec();
         start[..3].copy_from_slice(&away(i));
         let mut minimizer = Minimizer::new(Options::default());

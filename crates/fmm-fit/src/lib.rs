@@ -64,6 +64,7 @@
 //! | exact derivatives without writing any | [`Automatic`] |
 //! | are my own derivatives right? | [`check_jacobian`]; [`solve`] looks once in debug builds |
 //! | give each residual its uncertainty | [`Weighted`] |
+//! | fix parameters, or add what is known of them | [`WithFixed`], [`WithPriors`] |
 //! | let outliers count less | [`solve_robust`], as a problem of its own [`Robust`] |
 //! | find the lowest of many minima | [`MultiStart`]; from starts of one's own, the worse given up early, [`solve_best`] |
 //! | fit several records that share parameters | [`Joint`], [`Block`] |
@@ -179,7 +180,7 @@ pub use posterior::sampler::Sampler;
 pub use posterior::warning::PosteriorWarning;
 pub use problem::automatic::{Automatic, Model};
 pub use problem::block::Block;
-pub use problem::knowledge::Held;
+pub use problem::knowledge::{WithFixed, WithPriors};
 pub use problem::residuals::{Derivatives, EvaluationError, Residuals};
 pub use problem::weighted::Weighted;
 pub use regression::linear_regression::LinearRegression;

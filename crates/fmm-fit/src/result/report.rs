@@ -4,7 +4,6 @@ use std::fmt;
 
 use fmm_model::Rounded;
 
-use crate::design::information::mismatch;
 use crate::result::estimate::EstimateStatus;
 use crate::result::fit::Fit;
 use crate::result::null_direction::enumerate;

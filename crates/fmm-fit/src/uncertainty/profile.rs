@@ -6,7 +6,7 @@ use fmm_model::Rounded;
 
 use crate::error::FitError;
 use crate::fitting::solve::solve;
-use crate::problem::knowledge::Held;
+use crate::problem::knowledge::WithFixed;
 use crate::problem::residuals::Residuals;
 use crate::result::estimate::EstimateStatus;
 use crate::result::fit::Fit;
@@ -303,7 +303,7 @@ impl<'a, P: Residuals + ?Sized> Profile<'a, P> {
 
     /// The best fit with the parameter held at `value`, from the points of `trace`; `None` if the model has no value.
     fn point(&mut self, value: f64, trace: &[Trace]) -> Result<Option<Trace>, FitError> {
-        let Ok(held) = Held::new(self.problem, [(self.index, value)]) else { return Ok(None) };
+        let Ok(held) = WithFixed::new(self.problem, [(self.index, value)]) else { return Ok(None) };
         let last = &trace[trace.len() - 1];
         let mut failure = None;
         for mut start in [self.ahead(value, trace), last.values.clone(), self.fit.values().to_vec()] {

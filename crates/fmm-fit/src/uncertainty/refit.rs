@@ -7,7 +7,7 @@ use fmm_model::{Bounds, Parameter};
 use crate::algebra::spectrum::is_surely_of_full_rank;
 use crate::algebra::triangle::Triangle;
 use crate::problem::block::{Scratch, Structure};
-use crate::problem::knowledge::Held;
+use crate::problem::knowledge::WithFixed;
 use crate::problem::residuals::{Derivatives, Residuals};
 use crate::result::estimate::EstimateStatus;
 use crate::result::fit::Fit;
@@ -367,7 +367,7 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
             parameters[j] = parameters[j].clone().bounded(held);
         }
         let mut minimizer = Minimizer::new(self.options.clone());
-        let outcome = minimizer.minimize(&Held::within(self.problem, parameters), values)?;
+        let outcome = minimizer.minimize(&WithFixed::within(self.problem, parameters), values)?;
         if !outcome.is_success() {
             return Err(FitError::no_minimum(format!("the fit ended without a minimum: {outcome}")));
         }

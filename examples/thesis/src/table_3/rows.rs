@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use fmm_fit::{Estimate, Fit, Held, MultiStart, Options, Refit, Residuals};
+use fmm_fit::{Estimate, Fit, MultiStart, Options, Refit, Residuals, WithFixed};
 use fmm_sim::Thesis;
 use fmm_uq::{MonteCarlo, OutputSample};
 
@@ -52,7 +52,7 @@ pub fn euler_rows(trials: [u64; 4], seed: u64, kicks: usize, watch: &(dyn Fn(u64
 
 /// Coefficient and initial position by the thesis' Euler motion, with mass, stiffness and damping held at `values`.
 fn euler_fit(problem: &Problem, kicks: usize, values: &[f64]) -> Found<Vec<f64>> {
-    let held = Held::new(problem, values.iter().copied().enumerate())?;
+    let held = WithFixed::new(problem, values.iter().copied().enumerate())?;
     let mut start = problem.values().to_vec();
     start[..values.len()].copy_from_slice(values);
     let reach = problem.parameters().iter().map(|parameter| match parameter.name() {
