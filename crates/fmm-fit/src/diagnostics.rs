@@ -55,7 +55,7 @@ pub fn autocorrelation_time(residuals: &[f64]) -> Option<f64> {
     }
 }
 
-/// How many independent residuals tell as much as these, n/τ with τ the [`autocorrelation_time`].
+/// Number of independent residuals with the same information, n/τ with τ the [`autocorrelation_time`].
 ///
 /// Standard uncertainties of parameters whose influence changes slowly from sample to sample grow by about √τ.
 ///

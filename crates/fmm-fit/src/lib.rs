@@ -59,7 +59,7 @@
 //! |---|---|
 //! | fit a curve, or residuals that a closure gives | [`curve_fit`], [`fit`]; with options or weights [`curve`], [`ClosureProblem`] |
 //! | fit once | [`solve`]; with progress and cancellation [`solve_observed`] |
-//! | fit a hundred thousand times | [`Refit`] where only what was held changes; else [`Minimizer`], which keeps its buffers |
+//! | fit a hundred thousand times | [`Refit`] where only fixed values change; else [`Minimizer`], which keeps its buffers |
 //! | fit under argmin's executor | [`BoundedLevenbergMarquardt`] |
 //! | exact derivatives without writing any | [`Automatic`] |
 //! | are my own derivatives right? | [`check_jacobian`]; [`solve`] looks once in debug builds |
@@ -74,7 +74,7 @@
 //! | what is probable, where values end at bounds or priors count? | `Sampler`, `Posterior` (feature `sampler`) |
 //! | is the posterior by a model of my own right? | `Calibration` (feature `sampler`) |
 //! | how well, where residuals are correlated? | [`CorrelatedCovariance`] |
-//! | what do values held fixed do to the estimates? | [`Sensitivity`]; by trials [`Refit`] |
+//! | what do fixed values do to the estimates? | [`Sensitivity`]; by trials [`Refit`] |
 //! | how well is the model known elsewhere? | [`Fit::predict`], [`Prediction`] |
 //! | are the residuals independent? | [`autocorrelation`], [`effective_count`] |
 //! | is a further parameter worth having? | [`f_test`], [`Fit::corrected_akaike`] |
@@ -130,7 +130,7 @@
 //!
 //! # Neighbours
 //!
-//! [`fmm-identify`](https://docs.rs/fmm-identify) has the problems of ring-downs and hammer blows;
+//! [`fmm-identify`](https://docs.rs/fmm-identify) has the problems of ring-downs and impacts;
 //! [`fmm-uq`](https://docs.rs/fmm-uq) propagates what is not in the residuals.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -200,14 +200,13 @@ pub use solver::minimizer::Minimizer;
 pub use solver::options::Options;
 pub use solver::outcome::{NonFinite, Outcome};
 pub use starts::halving::solve_best;
-pub use starts::minima::{Minima, Minimum, StartFailure};
+pub use starts::minima::{Minima, Minimum};
 pub use starts::multi_start::MultiStart;
 pub use uncertainty::correlated::CorrelatedCovariance;
 pub use uncertainty::profile::profile_interval;
 pub use uncertainty::profile_interval::{ProfileEnd, ProfileInterval, ResidualVariance};
-pub use uncertainty::propagated::PropagatedCovariance;
 pub use uncertainty::refit::Refit;
-pub use uncertainty::sensitivity::Sensitivity;
+pub use uncertainty::sensitivity::{PropagatedCovariance, Sensitivity};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

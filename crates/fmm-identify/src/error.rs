@@ -91,7 +91,7 @@ pub enum IdentifyError {
         /// Name of the law.
         law: String,
         /// Cause.
-        source: fmm_fit::PosteriorError,
+        source: FitError,
     },
     /// The fitted motion could not be simulated.
     #[error("the motion fitted by {law} could not be simulated: {source}")]

@@ -1,7 +1,6 @@
-//! Small linear algebra and quantiles that least squares needs.
+//! Linear algebra of tall and of small matrices.
 
 pub(crate) mod definite;
-pub(crate) mod quantiles;
 pub(crate) mod spectrum;
 pub(crate) mod sums;
 pub(crate) mod triangle;

@@ -1,4 +1,4 @@
-//! Singular values of a triangle whose columns are scaled to unit length: what the data can tell apart.
+//! Singular values of a triangle whose columns are scaled to unit length: the directions that data determine.
 
 use crate::algebra::sums::{dot, sum_of_squares};
 use crate::algebra::triangle::Triangle;
@@ -64,7 +64,7 @@ impl Spectrum {
         spectrum
     }
 
-    /// How many singular values exceed `threshold` times the largest.
+    /// Number of singular values that exceed `threshold` times the largest.
     pub(crate) fn rank(&self, threshold: f64) -> usize {
         let largest = self.singular.first().copied().unwrap_or(0.0);
         self.singular.iter().filter(|&&value| value > threshold * largest).count()
@@ -72,7 +72,7 @@ impl Spectrum {
 
     /// The triangle in which the directions beyond `rank` are replaced by the wish not to move along them.
     ///
-    /// Where a bound holds one of two parameters that do the same, the other one only moves with a part along such a
+    /// If a bound holds one of two parameters with the same effect, the other one only moves with a part along such a
     /// direction: the wish has to be weaker than what the residuals say of any other.
     pub(crate) fn anchor(&self, rank: usize, anchored: &mut Triangle, block: &mut Vec<f64>) {
         let order = self.scales.len();
@@ -89,7 +89,7 @@ impl Spectrum {
     }
 }
 
-/// Whether all scaled singular values exceed `threshold` times the largest, by a bound that costs next to nothing;
+/// True if all scaled singular values exceed `threshold` times the largest, by a bound that costs next to nothing;
 /// `false` only means that a decomposition has to decide.
 ///
 /// ```text

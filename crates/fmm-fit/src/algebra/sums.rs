@@ -35,7 +35,7 @@ pub(crate) fn products<const W: usize>(columns: [&[f64]; W]) -> [[f64; W]; W] {
     Arch::new().dispatch(Products(columns))
 }
 
-/// What is summed over two columns.
+/// A sum over two columns.
 trait Term {
     /// `sum` and the terms of a vector of each column.
     fn add<S: Simd>(simd: S, a: S::f64s, b: S::f64s, sum: S::f64s) -> S::f64s;

@@ -77,7 +77,7 @@ impl Triangle {
         self.r(row, self.order)
     }
 
-    /// Whether every number is finite; one that is not in `J` or `r` always shows here.
+    /// True if every number is finite; one that is not in `J` or `r` always shows here.
     pub(crate) fn is_finite(&self) -> bool {
         self.entries.iter().all(|entry| entry.is_finite())
     }
@@ -266,7 +266,7 @@ impl Triangle {
     }
 }
 
-/// How many numbers [`Triangle::fold_columns`] needs.
+/// Size of the buffer of [`Triangle::fold_columns`].
 fn scratch_length(rows: usize, width: usize) -> usize {
     (2 * rows + 1) * width
 }

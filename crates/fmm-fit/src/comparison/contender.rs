@@ -57,7 +57,7 @@ impl Contender {
     }
 }
 
-/// How many independent residuals a comparison counts.
+/// Number of independent residuals in a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum ResidualCount {
     /// All of them.
@@ -65,7 +65,7 @@ pub enum ResidualCount {
     /// n/τ with the autocorrelation time τ of the best fitting model: what it leaves is the nearest there is to noise.
     #[default]
     OfBest,
-    /// So many; at most all of them count.
+    /// This many; at most all of them count.
     Given(f64),
 }
 
@@ -80,7 +80,7 @@ pub enum Criterion {
     Bayesian,
 }
 
-/// How models are compared.
+/// Options of a comparison of models.
 ///
 /// ```
 /// use fmm_fit::{ComparisonOptions, Criterion, ResidualCount};
@@ -103,7 +103,7 @@ impl ComparisonOptions {
         self
     }
 
-    /// How many residuals count (those of the best model, over their autocorrelation time).
+    /// The number of residuals that count (those of the best model, over their autocorrelation time).
     #[must_use]
     pub fn counting(mut self, count: ResidualCount) -> Self {
         self.count = count;

@@ -51,6 +51,17 @@ fn no_variance() -> FitError {
 /// Exact for linear models with independent normal residuals, good for smooth ones. A parameter of the full fit
 /// that ends at a bound adds nothing to its rank.
 ///
+/// ```
+/// use fmm_fit::{FTest, curve_fit, f_test};
+///
+/// let (x, y) = ([0.0, 1.0, 2.0, 3.0, 4.0], [0.1, 0.9, 2.1, 2.9, 4.1]);
+/// let line = curve_fit(&x, &y, [("offset", 0.0), ("slope", 1.0)], |x, [a, b]| a + b * x)?;
+/// let mean = curve_fit(&x, &y, [("offset", 0.0)], |_, [a]| a)?;
+/// let test: FTest = f_test(&mean, &line)?;
+/// assert!(test.p_value < 1e-3);
+/// # Ok::<(), fmm_fit::FitError>(())
+/// ```
+///
 /// # Errors
 /// [`FitError`] if the fits do not allow the comparison.
 pub fn f_test(restricted: &Fit, full: &Fit) -> Result<FTest, FitError> {

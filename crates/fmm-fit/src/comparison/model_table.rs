@@ -89,7 +89,7 @@ pub struct ModelTable {
     pub(crate) criterion: Criterion,
 }
 
-/// What a comparison of models comes to. Models are meant by their index in the comparison.
+/// Result of a comparison; models are given by their index in it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verdict {
     /// The data decide for one model.
@@ -109,7 +109,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Whether the data decide.
+    /// True if the data decide.
     pub const fn is_decided(&self) -> bool {
         matches!(self, Self::Decided { .. })
     }
@@ -209,7 +209,7 @@ impl ModelTable {
         &self.tests
     }
 
-    /// Whether the data decide, and for which model.
+    /// The verdict: decided for a model or not.
     pub fn verdict(&self) -> &Verdict {
         &self.verdict
     }

@@ -1,10 +1,10 @@
-//! What candidates would tell if the parameters had certain values, and what is asked of them.
+//! Candidate measurements at one guess of the parameters, and the combinations that they shall determine.
 
 use crate::algebra::definite::{factor, solve};
 use crate::design::information::{Information, mismatch};
 use crate::error::FitError;
 
-/// What is to be small.
+/// The uncertainty to be made small.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DesignCriterion {
@@ -15,14 +15,14 @@ pub enum DesignCriterion {
     MeanVariance,
 }
 
-/// What is known, what each candidate would tell, and which combinations of the parameters are asked for, all at one
+/// Prior information, the information of each candidate and the combinations of interest, all at one
 /// guess of the parameters. Of a linear model there is one case; of others, several stand for what is not known yet.
 #[derive(Debug, Clone)]
 pub struct DesignCase {
     pub(crate) known: Information,
     pub(crate) candidates: Vec<Information>,
     combinations: Vec<Vec<f64>>,
-    /// What is added to the diagonal, so that what is not determined is very uncertain.
+    /// Addition to the diagonal, by which an undetermined combination is very uncertain.
     ridge: Vec<f64>,
 }
 
@@ -59,7 +59,7 @@ impl DesignCase {
     /// All parameters by themselves, of the information that is `known` before and that of each of the `candidates`.
     ///
     /// # Errors
-    /// As for [`new`](Self::new).
+    /// The same as of [`new`](Self::new).
     pub fn of_all(known: Information, candidates: Vec<Information>) -> Result<Self, FitError> {
         let order = known.order();
         let unit = |j: usize| (0..order).map(|i| f64::from(i == j)).collect();

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::design::search::{ChosenDesign, DesignSearch};
 
-/// What each candidate costs, and what there is to spend.
+/// Costs of the candidates and the budget.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Purse<'a> {
     pub(crate) costs: &'a [f64],
@@ -52,7 +52,7 @@ impl<'a> Exchange<'a> {
         let mut best: Option<(Vec<usize>, f64)> = None;
         let mut seen = 0;
         let mut chosen = Vec::new();
-        self.below(&mut chosen, &self.search.sums(&[]), 0, (&mut seen, most), &mut best)?;
+        self.below(&mut chosen, &self.search.summed(&[]), 0, (&mut seen, most), &mut best)?;
         best.map(|(measurements, score)| ChosenDesign { measurements, score, is_exhaustive: true })
     }
 
@@ -94,7 +94,7 @@ impl<'a> Exchange<'a> {
     /// The set that exchanges make of `measurements`: what is left of the budget is spent first on what helps most for
     /// its cost.
     pub(crate) fn improved(&mut self, mut measurements: Vec<usize>) -> ChosenDesign {
-        let mut sums = self.search.sums(&measurements);
+        let mut sums = self.search.summed(&measurements);
         let mut score = self.fill(&mut measurements, &mut sums);
         for _exchange in 0..MOST_EXCHANGES {
             let mut best: Option<(Vec<usize>, f64)> = None;
@@ -128,7 +128,7 @@ impl<'a> Exchange<'a> {
                 }
             }
             let Some((better, reached)) = best else { break };
-            sums = self.search.sums(&better);
+            sums = self.search.summed(&better);
             (measurements, score) = (better, reached);
         }
         measurements.sort_unstable();

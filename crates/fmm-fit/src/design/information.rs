@@ -61,8 +61,8 @@ impl Information {
         Self { order, elements: vec![0.0; order * order] }
     }
 
-    /// That of measurements of unit variance whose derivatives by the `order` parameters are `rows`, one after the
-    /// other.
+    /// Information of measurements of unit variance whose derivatives by the `order` parameters are `rows`, one after
+    /// the other.
     ///
     /// # Errors
     /// [`FitError::Count`] if the rows are not whole, [`FitError::OutOfRange`] for a derivative that is not
@@ -77,8 +77,8 @@ impl Information {
         Ok(information)
     }
 
-    /// What the residuals of `problem`, each of unit variance, tell at `values` about its first `shared` parameters,
-    /// while all others are found beside them. Parameters that are held fixed are known.
+    /// Information of the residuals of `problem`, each of unit variance, at `values` about its first `shared`
+    /// parameters, while all others are found beside them. Fixed parameters are known.
     ///
     /// ```text
     /// M = J_sᵀ (1 − J_o (J_oᵀ J_o)⁻¹ J_oᵀ) J_s
@@ -177,8 +177,8 @@ impl Information {
         Ok(self)
     }
 
-    /// What the same measurements tell about parameters φ on which these depend: TᵀMT with T = ∂θ/∂φ, given row by row,
-    /// one row for each of these parameters.
+    /// Information of the same measurements about parameters φ on which these depend: TᵀMT with T = ∂θ/∂φ, given row by
+    /// row, one row for each of these parameters.
     ///
     /// # Errors
     /// [`FitError::Count`] if the rows are not whole, [`FitError::OutOfRange`] for a derivative that is not
@@ -249,7 +249,7 @@ impl Information {
         Ok(null_directions(null, &columns, &spectrum.scales, values, &names, ROUNDING.sqrt()))
     }
 
-    /// As many draws of the parameters about these `values`, normal with the covariance that the information leaves;
+    /// `count` draws of the parameters about these `values`, normal with the covariance that the information leaves;
     /// along directions about which nothing is known they do not move. The same `seed` gives the same draws.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Design of experiments: which measurements tell most about the parameters, before they are made.
+//! Design of experiments: the measurements with the most information, before they are made.
 
 pub(crate) mod design_case;
 pub(crate) mod exchange;

@@ -1,4 +1,4 @@
-//! Search for the set of candidates that tells most.
+//! Search for the set of candidates with the most information.
 
 use fmm_model::Rounded;
 use rand::SeedableRng;
@@ -94,7 +94,7 @@ impl DesignSearch {
         if let Some(place) = measurements.iter().find(|place| **place >= self.candidates()) {
             return Err(mismatch("place of a candidate", *place, self.candidates()));
         }
-        Ok(self.score_of(&self.sums(measurements)))
+        Ok(self.score_of(&self.summed(measurements)))
     }
 
     /// The best set of this many measurements; a candidate may be in it more than once.
@@ -153,7 +153,7 @@ impl DesignSearch {
     }
 
     /// The information of each case after these measurements.
-    pub(crate) fn sums(&self, measurements: &[usize]) -> Vec<Vec<f64>> {
+    pub(crate) fn summed(&self, measurements: &[usize]) -> Vec<Vec<f64>> {
         let mut sums: Vec<Vec<f64>> = self.cases.iter().map(|case| case.known.elements().to_vec()).collect();
         for place in measurements {
             self.add(&mut sums, *place, 1.0);
@@ -179,7 +179,7 @@ impl DesignSearch {
     }
 }
 
-/// A set of measurements that a [`DesignSearch`](crate::DesignSearch) chose.
+/// A set of measurements that a [`DesignSearch`] chose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChosenDesign {
     pub(crate) measurements: Vec<usize>,
@@ -200,12 +200,12 @@ impl ChosenDesign {
     }
 
     /// The logarithm of the standard uncertainty that was made small, see
-    /// [`DesignSearch::score`](crate::DesignSearch::score).
+    /// [`DesignSearch::score`].
     pub fn score(&self) -> f64 {
         self.score
     }
 
-    /// Whether every possible set was looked at, so that there is no better one.
+    /// True if every possible set was compared: there is no better one.
     pub fn is_exhaustive(&self) -> bool {
         self.is_exhaustive
     }

@@ -1,4 +1,4 @@
-//! The method as a solver of argmin.
+//! Bounded Levenberg–Marquardt method as a solver of argmin.
 
 use argmin::core::{Error, IterState, KV, Problem, Solver, State, TerminationReason};
 
@@ -9,7 +9,7 @@ use crate::solver::minimizer::{Minimizer, Phase};
 use crate::solver::options::Options;
 use crate::solver::outcome::Outcome;
 
-/// What argmin calls the evaluations of the residuals and those of the Jacobian by the problem itself.
+/// Names in argmin of the evaluations of residuals and of the Jacobian by the problem itself.
 const RESIDUALS: &str = "residuals_count";
 const JACOBIANS: &str = "jacobian_count";
 
@@ -67,7 +67,7 @@ impl BoundedLevenbergMarquardt {
         Self { minimizer: Minimizer::new(options) }
     }
 
-    /// How the fit ended; `None` if the executor stopped it.
+    /// The end of the fit; `None` if the executor stopped it.
     pub fn outcome(&self) -> Option<Outcome> {
         self.minimizer.outcome()
     }
@@ -84,7 +84,7 @@ impl BoundedLevenbergMarquardt {
     /// Tells argmin where the fit is and what it has cost.
     ///
     /// The points of the sharpening are the best ones though their sum of squares may be larger in its last digits, so
-    /// that argmin, which compares these, has to be told.
+    /// that argmin, which compares these, gets them as such.
     fn report<O>(&self, mut state: FitState, problem: &mut Problem<O>) -> FitState {
         let minimizer = &self.minimizer;
         problem.counts.insert(RESIDUALS, minimizer.residual_evaluations() as u64);

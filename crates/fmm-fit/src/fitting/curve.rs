@@ -1,4 +1,4 @@
-//! A problem out of a closure, with exact derivatives.
+//! Problems out of closures, with exact derivatives.
 
 use fmm_model::{Dual, Parameter, Scalar};
 
@@ -13,6 +13,19 @@ use crate::solver::options::Options;
 /// [`fit`] and [`curve_fit`] make one and solve it; by itself it takes options, weights, losses and a place in a joint
 /// problem. A closure that fails says so by a residual that is not finite; a type that implements
 /// [`Model`](crate::Model) can say why.
+///
+/// ```
+/// use fmm_fit::{ClosureProblem, Dual, Loss, Options, Robust, solve};
+///
+/// // The mean of five readings, one of them wrong.
+/// let readings = [1.0, 1.1, 0.9, 1.05, 8.0];
+/// let mean = ClosureProblem::new(["mean"], 5, |[mean], residuals: &mut [Dual<1>]| {
+///     residuals.iter_mut().zip(readings).for_each(|(r, y)| *r = mean - y);
+/// });
+/// let fit = solve(&Robust::new(mean, Loss::Tukey, 1.0)?, &[1.5], &Options::default())?;
+/// assert!((fit.values()[0] - 1.0125).abs() < 1e-3);
+/// # Ok::<(), fmm_fit::FitError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ClosureProblem<F, const N: usize> {
     parameters: [Parameter; N],
@@ -137,7 +150,7 @@ pub fn curve_fit<X: Copy, const N: usize>(
 /// ```
 ///
 /// # Errors
-/// As for [`solve`].
+/// Those of [`solve`].
 pub fn fit<const N: usize>(
     start: [(impl Into<Parameter>, f64); N],
     count: usize,

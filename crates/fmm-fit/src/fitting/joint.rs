@@ -1,4 +1,4 @@
-//! One fit to several records that share parameters.
+//! Joint problem: several records that share parameters.
 
 use std::ops::Range;
 
@@ -27,7 +27,7 @@ use crate::result::fit::Fit;
 ///
 /// ```
 /// # use fmm_fit::EvaluationError;
-/// use fmm_fit::{Joint, Options, Residuals, solve};
+/// use fmm_fit::{Joint, JointPart, Options, Residuals, solve};
 /// use fmm_model::Parameter;
 ///
 /// /// One heating curve, T = T₀ + b t.
@@ -55,7 +55,7 @@ use crate::result::fit::Fit;
 ///
 /// let fit = solve(&joint, &joint.start(&[[20.0, 1.0], [30.0, 1.0]])?, &Options::default())?;
 /// assert!((fit.estimate("rate").unwrap().value() - 1.95).abs() < 1e-9);
-/// let second = &joint.split(&fit)?[1];
+/// let second: &JointPart<'_> = &joint.split(&fit)?[1];
 /// assert!((second.values()[0] - fit.estimate("start[2]").unwrap().value()).abs() < 1e-12);
 /// assert_eq!(second.residuals().len(), 3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -174,7 +174,7 @@ impl<P: Residuals> Joint<P> {
         Ok(sums.iter().zip(&self.parameters).map(mean).collect())
     }
 
-    /// What `fit`, which must be one of this problem, says about each of the problems.
+    /// The part of each problem in `fit`, which must be one of this problem.
     ///
     /// # Errors
     /// [`FitError::OtherFit`] if the numbers of parameters or residuals are not those of this problem.
@@ -269,7 +269,7 @@ impl<P: Residuals> Residuals for Joint<P> {
     }
 }
 
-/// What a joint fit says about one of its problems.
+/// Part of one problem in a joint fit.
 #[derive(Debug, Clone)]
 pub struct JointPart<'a> {
     values: Vec<f64>,

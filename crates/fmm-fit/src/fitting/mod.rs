@@ -1,4 +1,4 @@
-//! From a problem and a start to a result.
+//! Fits: a problem and a start in, a result out.
 
 pub(crate) mod argmin;
 pub(crate) mod curve;

@@ -1,4 +1,4 @@
-//! From a problem and a start to a fit, in one call.
+//! Fit of a problem in one call.
 
 use std::ops::ControlFlow;
 
@@ -46,11 +46,11 @@ pub fn solve<P: Residuals + ?Sized>(problem: &P, start: &[f64], options: &Option
     solve_observed(problem, start, options, |_| ControlFlow::Continue(()))
 }
 
-/// As [`solve`], telling `observer` after every trial step how far the fit is; `Break` ends it as
+/// [`solve`] with an `observer` that gets the progress after every trial step; `Break` ends the fit as
 /// [`Outcome::Cancelled`] with the best values so far.
 ///
 /// # Errors
-/// As for [`solve`].
+/// Those of [`solve`].
 pub fn solve_observed<P: Residuals + ?Sized>(
     problem: &P,
     start: &[f64],
@@ -72,14 +72,14 @@ pub fn solve_observed<P: Residuals + ?Sized>(
     Ok(minimizer.into_fit())
 }
 
-/// How far a fit is.
+/// Progress of a fit.
 #[derive(Debug, Clone, Copy)]
 pub struct Progress<'a> {
     minimizer: &'a Minimizer,
 }
 
 impl<'a> Progress<'a> {
-    /// That of `minimizer`.
+    /// The progress of `minimizer`.
     pub(crate) fn of(minimizer: &'a Minimizer) -> Self {
         Self { minimizer }
     }
@@ -111,7 +111,7 @@ impl Progress<'_> {
         self.minimizer.radius()
     }
 
-    /// How the fit ended, if this is its last step.
+    /// The end of the fit, if this is its last step.
     pub fn outcome(&self) -> Option<Outcome> {
         self.minimizer.outcome()
     }

@@ -170,7 +170,7 @@ impl Calibration {
         &self.parameters
     }
 
-    /// What went wrong with each record that has no posterior.
+    /// The failure of each record that has no posterior.
     pub fn failures(&self) -> &[String] {
         &self.failures
     }

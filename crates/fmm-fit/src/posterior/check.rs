@@ -11,7 +11,7 @@ use crate::posterior::result::Posterior;
 use crate::posterior::target::Target;
 use crate::problem::residuals::Residuals;
 
-/// Moments that differ by more than so many of their standard errors disagree; in 1000 comparisons 0.06 do by chance.
+/// Standard errors by which moments differ that disagree (1); in 1000 comparisons 0.06 do by chance.
 const DISAGREEMENT: f64 = 4.0;
 
 /// The agreement of a posterior with random-walk Metropolis chains of the same density.
@@ -35,7 +35,7 @@ pub struct GradientFreeCheck {
 pub struct Disagreement {
     /// Name of the parameter.
     pub parameter: String,
-    /// Whether it is the standard deviation, and else the mean.
+    /// True for the standard deviation, false for the mean.
     pub is_deviation: bool,
     /// The moment by the sampler with gradients.
     pub with_gradient: f64,
@@ -87,7 +87,7 @@ impl GradientFreeCheck {
         self.acceptance
     }
 
-    /// What the random walks say about each free parameter.
+    /// Marginal of each free parameter by the random walks.
     pub fn marginals(&self) -> &[Marginal] {
         &self.marginals
     }
@@ -105,7 +105,7 @@ pub(super) struct Walk {
     factor: Vec<f64>,
 }
 
-/// What one random walk found.
+/// Result of one random walk.
 #[derive(Debug)]
 pub(super) struct Walked {
     /// All parameters of each step of the second half, one step after the other.
@@ -135,7 +135,7 @@ impl Walk {
         Self { factor: matrix }
     }
 
-    /// From a `start` with its ln p, so many `steps`, of which the first half is forgotten.
+    /// Takes `steps` steps from a `start` with its ln p, and forgets the first half.
     pub(super) fn run<P: Residuals + ?Sized>(
         &self,
         target: &mut Target<'_, P>,

@@ -121,7 +121,7 @@ fn mean_and_variance(values: &[f64]) -> (f64, f64) {
     (mean, values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0))
 }
 
-/// What chains say about one quantity.
+/// Agreement of chains about one quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Convergence {
     pub(super) r_hat: f64,

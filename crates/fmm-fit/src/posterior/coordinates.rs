@@ -36,7 +36,7 @@ struct Cut {
     scale: f64,
 }
 
-/// A bound that is nearer than so many standard deviations cuts.
+/// Standard deviations within which a bound cuts (1).
 const NEAR: f64 = 6.0;
 
 impl Whitening {
@@ -82,7 +82,7 @@ impl Whitening {
         self.centre.len()
     }
 
-    /// Whether a bound cuts any parameter.
+    /// True if a bound cuts a parameter.
     pub(super) fn has_cut(&self) -> bool {
         !self.cut.is_empty()
     }

@@ -2,7 +2,6 @@
 
 use fmm_model::Parameter;
 
-use crate::algebra::quantiles::is_probability;
 use crate::posterior::convergence::{Convergence, quantile};
 
 /// The posterior of one quantity by itself: its draws, moments and intervals, and how well the chains know them.
@@ -40,7 +39,7 @@ pub struct Marginal {
 }
 
 impl Marginal {
-    /// Of the `draws` of so many `chains`, one chain after the other, in the unit of the `parameter`.
+    /// The marginal of the `draws` of `chains` chains, one chain after the other, in the unit of the `parameter`.
     ///
     /// `None` unless all draws are finite and all chains have the same number of them, at least four.
     pub fn new(parameter: Parameter, draws: Vec<f64>, chains: usize) -> Option<Self> {
@@ -80,7 +79,7 @@ impl Marginal {
     /// The value below which the share `level` of the draws lies, in the unit of the parameter; `None` for a level
     /// outside (0, 1).
     pub fn quantile(&self, level: f64) -> Option<f64> {
-        is_probability(level).then(|| quantile(&self.sorted, level))
+        (level > 0.0 && level < 1.0).then(|| quantile(&self.sorted, level))
     }
 
     /// The interval that holds the quantity with probability `level`, with (1 − `level`)/2 beyond either end, in the
@@ -93,7 +92,7 @@ impl Marginal {
     /// The shortest interval that holds the share `level` of the draws, in the unit of the parameter: that of highest
     /// density if there is one peak. `None` for a level outside (0, 1).
     pub fn shortest_interval(&self, level: f64) -> Option<(f64, f64)> {
-        is_probability(level).then(|| {
+        (level > 0.0 && level < 1.0).then(|| {
             let last = self.sorted.len() - 1;
             let reach = ((level * self.sorted.len() as f64).ceil() as usize).min(last);
             let width = |first: &usize| self.sorted[first + reach] - self.sorted[*first];
@@ -107,12 +106,12 @@ impl Marginal {
         self.convergence.r_hat
     }
 
-    /// How many independent draws would know the middle of the distribution as well (1).
+    /// Number of independent draws that would know the middle of the distribution as well (1).
     pub fn bulk_effective_size(&self) -> f64 {
         self.convergence.bulk
     }
 
-    /// How many independent draws would know the 5 % and the 95 % quantile as well (1).
+    /// Number of independent draws that would know the 5 % and the 95 % quantile as well (1).
     pub fn tail_effective_size(&self) -> f64 {
         self.convergence.tail
     }

@@ -14,7 +14,7 @@ const STEPS: usize = 40;
 const ENOUGH: f64 = 1e-4;
 /// The longest step of a coordinate: a factor of e² in the distance from a bound.
 const LONGEST: f64 = 2.0;
-/// How far from a bound the search begins, in units of the deviation that the residuals alone would give.
+/// Distance from a bound at which the search begins, over the deviation that the residuals alone would give (1).
 const FROM_BOUND: f64 = 0.5;
 
 /// The whitening about the mode that lies downhill of `fit`.
@@ -27,7 +27,7 @@ pub(super) fn whiten<P: Residuals + ?Sized>(target: &mut Target<'_, P>, fit: &Fi
     let (mut gradient, mut trial) = (vec![0.0; order], vec![0.0; order]);
     let mut density = evaluate(target, &psi, &mut gradient)?;
     for _ in 0..STEPS {
-        let [_, mut factored] = target.information(&psi);
+        let [_, mut factored] = target.curvatures(&psi);
         let diagonal: Vec<f64> = (0..order).map(|j| factored[j * order + j]).collect();
         if !definite::factor(&mut factored, order, |j| 1e-13 * diagonal[j]) {
             break;
@@ -58,7 +58,7 @@ pub(super) fn whiten<P: Residuals + ?Sized>(target: &mut Target<'_, P>, fit: &Fi
     }
     // The last look may have been a trial.
     evaluate(target, &psi, &mut gradient)?;
-    let [straight, bent] = target.information(&psi);
+    let [straight, bent] = target.curvatures(&psi);
     Whitening::new(psi, &target.transforms(), &straight, &bent).ok_or_else(|| undetermined(target, fit))
 }
 

@@ -19,7 +19,7 @@ use crate::problem::residuals::Residuals;
 /// off ever more steeply, and long steps diverge there.
 const CAUTIOUS: f64 = 0.92;
 
-/// What one chain found.
+/// Result of one chain.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Run {
     /// z of each draw, one after the other.

@@ -10,7 +10,7 @@ use crate::error::FitError;
 /// Values drawn in search of one within the bounds.
 const TRIES: usize = 10_000;
 
-/// What is known of a parameter before the data, as a density over its values, in the unit of the parameter.
+/// Knowledge of a parameter before the data: a density over its values, in the unit of the parameter.
 ///
 /// | prior | density | states |
 /// |---|---|---|

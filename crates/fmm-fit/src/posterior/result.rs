@@ -26,7 +26,7 @@ const HARMLESS_DIVERGENCES: f64 = 1e-3;
 /// | [`warnings`](Self::warnings) | reasons to distrust it |
 ///
 /// The noise has two marginals beside those of the free parameters: `residual_standard_deviation`, in the unit of the
-/// residuals, unless it was stated, and `residual_correlation` of neighbours, if that was asked for.
+/// residuals, unless it was given, and `residual_correlation` of neighbours, if that was asked for.
 ///
 /// `Display` gives the report.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,7 +88,7 @@ impl Posterior {
         self
     }
 
-    /// All parameters of the problem, those held fixed among them.
+    /// All parameters of the problem, the fixed ones among them.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
@@ -97,17 +97,17 @@ impl Posterior {
         &self.free
     }
 
-    /// How many chains there are.
+    /// Number of chains.
     pub fn chains(&self) -> usize {
         self.chains
     }
 
-    /// How many draws there are, of all chains together.
+    /// Number of draws of all chains together.
     pub fn len(&self) -> usize {
         self.noise.len()
     }
 
-    /// Whether there are no draws, which never happens.
+    /// True without draws, which never happens.
     pub fn is_empty(&self) -> bool {
         self.noise.is_empty()
     }
@@ -152,7 +152,7 @@ impl Posterior {
         Marginal::new(parameter, self.draws().map(f).collect(), self.chains)
     }
 
-    /// How many trajectories of those that count diverged.
+    /// Number of diverged trajectories among those that count.
     pub fn divergences(&self) -> usize {
         self.divergences
     }
@@ -172,7 +172,7 @@ impl Posterior {
         self.warm_up
     }
 
-    /// What random walks without gradients say; `None` if none were asked for.
+    /// Comparison with random walks without gradients; `None` if none were asked for.
     pub fn check(&self) -> Option<&GradientFreeCheck> {
         self.check.as_ref()
     }

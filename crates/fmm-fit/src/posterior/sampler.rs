@@ -1,4 +1,4 @@
-//! Sampling of a posterior: what is asked for, and the run.
+//! Request for a posterior, and its run.
 
 use fmm_model::Parameter;
 use rand::SeedableRng;
@@ -17,7 +17,7 @@ use crate::problem::residuals::Residuals;
 use crate::result::fit::Fit;
 use crate::uncertainty::profile_interval::ResidualVariance;
 
-/// Starts of chains are so many standard deviations of the fit away from the mode, at random.
+/// Distance of the starts of chains from the mode, in standard deviations of the fit (1).
 const OVERDISPERSION: f64 = 2.0;
 /// Starts tried for a chain; every tenth failure halves their distance.
 const TRIES: usize = 100;
@@ -42,7 +42,7 @@ const TRIES: usize = 100;
 /// The result is a function of problem, fit and seed, whatever the number of threads.
 ///
 /// ```
-/// use fmm_fit::{Options, Prior, Sampler, curve, solve};
+/// use fmm_fit::{Disagreement, GradientFreeCheck, Options, PosteriorWarning, Prior, Sampler, curve, solve};
 /// use fmm_fit::Scalar;
 ///
 /// let (t, x) = ([0.0, 1.0, 2.0, 3.0, 4.0], [2.003, 1.211, 0.738, 0.442, 0.271]);
@@ -54,6 +54,12 @@ const TRIES: usize = 100;
 /// // Three degrees of freedom: the deviation of Student's t is √3 times its scale.
 /// let u = fit.estimate("rate").and_then(|rate| rate.standard_uncertainty()).expect("determined");
 /// assert!((rate.mean() - 0.501).abs() < 0.001 && rate.standard_deviation() > u);
+///
+/// // Random walks without gradients find the same; otherwise a warning says in which moment they differ.
+/// let check: &GradientFreeCheck = posterior.check().expect("asked for by default");
+/// let differences: &[Disagreement] = check.disagreements();
+/// let is_difference = |warning: &PosteriorWarning| matches!(warning, PosteriorWarning::Disagrees(_));
+/// assert_eq!(posterior.warnings().iter().filter(|warning| is_difference(warning)).count(), differences.len());
 /// println!("{posterior}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -94,21 +100,21 @@ impl Default for Sampler {
 }
 
 impl Sampler {
-    /// So many chains (4), at least two, or there is nothing to compare.
+    /// The number of chains (4), at least two, or there is nothing to compare.
     #[must_use]
     pub fn with_chains(mut self, chains: usize) -> Self {
         self.chains = chains;
         self
     }
 
-    /// So many draws of each chain (1000), at least 100.
+    /// The number of draws of each chain (1000), at least 100.
     #[must_use]
     pub fn with_draws(mut self, draws: usize) -> Self {
         self.draws = draws;
         self
     }
 
-    /// So many draws of each chain before those that count (300), at least 50; they are for the step and the scales.
+    /// The number of draws of each chain before those that count (300), at least 50, for the step and the scales.
     #[must_use]
     pub fn with_warm_up(mut self, warm_up: usize) -> Self {
         self.warm_up = warm_up;
@@ -134,7 +140,7 @@ impl Sampler {
         self
     }
 
-    /// What is known of the variance of the residuals: nothing, or that it is 1 or another number, which then counts as
+    /// The knowledge of the variance of the residuals: nothing, or that it is 1 or another number, which then counts as
     /// exact.
     #[must_use]
     pub fn with_variance(mut self, variance: ResidualVariance) -> Self {
@@ -150,7 +156,8 @@ impl Sampler {
         self
     }
 
-    /// So many random-walk steps of each chain of the check (2000), half of them to forget the start; 0 for no check.
+    /// The number of random-walk steps of each chain of the check (2000), half of them to forget the start; 0 for no
+    /// check.
     #[must_use]
     pub fn with_check_steps(mut self, steps: usize) -> Self {
         self.check_steps = steps;
@@ -186,10 +193,10 @@ impl Sampler {
         self.posterior(&plan, &chains, &walks)
     }
 
-    /// As [`sample`](Self::sample), on all threads of the present rayon pool, with the same result.
+    /// [`sample`](Self::sample) on all threads of the present rayon pool, with the same result.
     ///
     /// # Errors
-    /// As for [`sample`](Self::sample).
+    /// Those of [`sample`](Self::sample).
     #[cfg(feature = "rayon")]
     pub fn sample_parallel<P: Residuals + Sync + ?Sized>(&self, problem: &P, fit: &Fit) -> Result<Posterior, FitError> {
         use rayon::prelude::*;

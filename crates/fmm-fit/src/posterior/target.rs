@@ -106,7 +106,7 @@ impl<'a, P: Residuals + ?Sized> Target<'a, P> {
         &self.evaluator.free
     }
 
-    /// How each parameter, and ρ last, follows from its coordinate.
+    /// The transform of each parameter, and of ρ last, from its coordinate.
     pub(super) fn transforms(&self) -> Vec<Transform> {
         (0..self.dimension()).map(|place| self.transform(place)).collect()
     }
@@ -127,7 +127,7 @@ impl<'a, P: Residuals + ?Sized> Target<'a, P> {
         self.point.residuals.len()
     }
 
-    /// Whether the coordinate is that of an interval with an end.
+    /// True if the coordinate is that of an interval with an end.
     pub(super) fn is_bounded(&self, place: usize) -> bool {
         self.transform(place) != Transform::Identity
     }
@@ -220,7 +220,7 @@ impl<'a, P: Residuals + ?Sized> Target<'a, P> {
 
     /// The curvature of −ln p over the parameters, each in units of its dθ/dψ, and over the coordinates, with the bends
     /// of the model left out as Gauss and Newton do, after an evaluation with the gradient. Both by rows.
-    pub(super) fn information(&self, psi: &[f64]) -> [Vec<f64>; 2] {
+    pub(super) fn curvatures(&self, psi: &[f64]) -> [Vec<f64>; 2] {
         let (order, count) = (self.dimension(), self.parts.len());
         let correlation = self.series.as_ref().map(|_| CORRELATION.at(psi[psi.len() - 1]));
         let scale = -2.0 * self.by_square(correlation);

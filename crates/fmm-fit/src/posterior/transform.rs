@@ -2,7 +2,7 @@
 
 use fmm_model::Bounds;
 
-/// How a parameter θ follows from a coordinate ψ without bounds.
+/// Parameter θ as a function of a coordinate ψ without bounds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Transform {
     /// θ = ψ.

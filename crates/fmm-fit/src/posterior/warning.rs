@@ -21,12 +21,12 @@ pub enum PosteriorWarning {
     FewEffectiveDraws {
         /// Name of the quantity with the fewest.
         quantity: String,
-        /// How many there are, in the middle or in the tails (1).
+        /// Their number, in the middle or in the tails (1).
         effective: f64,
     },
     /// Trajectories that could not be followed, where the density bends more than the steps can.
     Divergences {
-        /// How many.
+        /// Their number.
         count: usize,
         /// Of how many draws.
         draws: usize,

@@ -12,7 +12,7 @@ pub trait Model {
     /// n, the number of residuals.
     fn len(&self) -> usize;
 
-    /// Whether there are no residuals at all.
+    /// True without residuals.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -27,7 +27,7 @@ impl Block {
         Self { rows, parameters: parameters.into() }
     }
 
-    /// How many residuals the block has.
+    /// Number of residuals of the block.
     pub fn rows(&self) -> usize {
         self.rows
     }
@@ -38,7 +38,7 @@ impl Block {
     }
 }
 
-/// Where every element of the Jacobian of a problem is stored.
+/// Places of the elements of the Jacobian of a problem.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Structure {
     parts: Vec<Part>,
@@ -59,11 +59,11 @@ pub(crate) struct Column {
     pub(crate) block: usize,
     /// The residuals of the block.
     pub(crate) rows: Range<usize>,
-    /// Where their derivatives are stored.
+    /// Places of their derivatives.
     pub(crate) elements: Range<usize>,
 }
 
-/// Where the elements of a row are.
+/// Places of the elements of a row.
 #[derive(Debug, Clone)]
 pub(crate) struct ByRow {
     count: usize,
@@ -145,12 +145,12 @@ impl Structure {
         Ok(Self { parts, is_dense })
     }
 
-    /// How many elements are stored.
+    /// Number of stored elements.
     pub(crate) fn len(&self) -> usize {
         self.parts.iter().map(|part| part.rows.len() * part.parameters.len()).sum()
     }
 
-    /// Whether every residual may depend on every parameter.
+    /// True if every residual may depend on every parameter.
     pub(crate) fn is_dense(&self) -> bool {
         self.is_dense
     }

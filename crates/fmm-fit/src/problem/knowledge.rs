@@ -109,7 +109,7 @@ impl<P: Residuals> WithPriors<P> {
     /// of the value, both in the unit of the parameter.
     ///
     /// # Errors
-    /// As for [`correlated`](Self::correlated).
+    /// Those of [`correlated`](Self::correlated).
     pub fn new(problem: P, known: &[(usize, f64, f64)]) -> Result<Self, FitError> {
         let count = known.len();
         let mut covariance = vec![0.0; count * count];
@@ -233,11 +233,12 @@ mod tests {
     const COUNT: usize = 40;
 
     /// y = X θ of three columns, its derivatives given or not.
+    #[derive(Debug)]
     struct Linear(DMatrix<f64>, DVector<f64>, Vec<Parameter>, Derivatives);
 
     impl Linear {
         fn new(derivatives: Derivatives) -> Self {
-            let x = DMatrix::from_fn(COUNT, 3, |i, j| (0.1 * i as f64).powi(j as i32));
+            let x = DMatrix::from_fn(COUNT, 3, |i, j| (0.1 * i as f64).powf(j as f64));
             let y = DVector::from_fn(COUNT, |i, _| 1.0 + 0.3 * i as f64 + ((i * 37 % 11) as f64 - 5.0));
             Self(x, y, ["a", "b", "c"].map(Parameter::from).to_vec(), derivatives)
         }

@@ -89,7 +89,7 @@ pub trait Residuals {
     /// n, the number of residuals.
     fn len(&self) -> usize;
 
-    /// Whether there are no residuals at all.
+    /// True without residuals.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -105,7 +105,7 @@ pub trait Residuals {
         Derivatives::None
     }
 
-    /// Whether residuals and derivatives together cost less than about twice the residuals. If so the solver asks for
+    /// True if residuals and derivatives together cost less than about twice the residuals. The solver then asks for
     /// both at every trial point, of which about one in eight is rejected, instead of coming back for the derivatives
     /// of the accepted ones.
     fn is_cheaper_combined(&self) -> bool {

@@ -5,8 +5,8 @@ use std::fmt;
 use fmm_model::{Rounded, coverage_factor};
 
 use crate::error::FitError;
+use crate::regression::double_double::DoubleDouble;
 use crate::regression::refined_least_squares::refined_least_squares;
-use crate::regression::twofold::Twofold;
 use crate::regression::weighting::{Weighting, check_finite, no_column, overflow, too_few_observations};
 use crate::result::null_direction::{NullDirection, null_directions};
 use crate::result::prediction::Prediction;
@@ -68,18 +68,19 @@ impl LinearRegression {
         let is_constant = |column: &[f64]| column.first().is_some_and(|first| *first != 0.0 && all_equal(column));
         let has_constant = columns.iter().any(|(_, column)| is_constant(column));
         let names = columns.iter().map(|(name, _)| (*name).to_owned()).collect();
-        let twofold = columns.iter().map(|(_, column)| column.iter().map(|x| Twofold::from(*x)).collect()).collect();
+        let twofold =
+            columns.iter().map(|(_, column)| column.iter().map(|x| DoubleDouble::from(*x)).collect()).collect();
         Self::of(names, twofold, y, weighting, has_constant).map(|(regression, _)| regression)
     }
 
     /// The regression, and its coefficients in twice the precision.
     pub(crate) fn of(
         names: Vec<String>,
-        mut columns: Vec<Vec<Twofold>>,
+        mut columns: Vec<Vec<DoubleDouble>>,
         y: &[f64],
         weighting: Weighting<'_>,
         has_constant: bool,
-    ) -> Result<(Self, Vec<Twofold>), FitError> {
+    ) -> Result<(Self, Vec<DoubleDouble>), FitError> {
         check_finite("y", y, y.len())?;
         let (order, count) = (columns.len(), y.len());
         if order == 0 {
@@ -89,11 +90,11 @@ impl LinearRegression {
         if count < order {
             return Err(too_few_observations(count, order));
         }
-        let mut weighted: Vec<Twofold> = y.iter().map(|y| Twofold::from(*y)).collect();
+        let mut weighted: Vec<DoubleDouble> = y.iter().map(|y| DoubleDouble::from(*y)).collect();
         if let Some(factors) = &factors {
             for column in columns.iter_mut().chain(std::iter::once(&mut weighted)) {
                 for (element, factor) in column.iter_mut().zip(factors) {
-                    *element = *element * Twofold::from(*factor);
+                    *element = *element * DoubleDouble::from(*factor);
                 }
             }
         }
@@ -195,7 +196,7 @@ impl LinearRegression {
         (self.total > 0.0).then(|| 1.0 - self.sum_of_squares / self.total)
     }
 
-    /// How many of the columns are independent: singular values above n ε times the largest.
+    /// Number of independent columns: singular values above n ε times the largest.
     pub fn rank(&self) -> usize {
         self.roots.len()
     }

@@ -1,8 +1,8 @@
 //! Regression on powers of an abscissa.
 
 use crate::error::FitError;
+use crate::regression::double_double::DoubleDouble;
 use crate::regression::linear_regression::LinearRegression;
-use crate::regression::twofold::Twofold;
 use crate::regression::weighting::{
     Weighting, check_finite, no_column, overflow, too_few_abscissae, too_few_observations,
 };
@@ -51,10 +51,10 @@ impl Polynomial {
         Self::of(x, y, 0, order, weighting)
     }
 
-    /// As [`fit`](Self::fit) without the constant term; the coefficients begin with that of x.
+    /// [`fit`](Self::fit) without the constant term; the coefficients begin with that of x.
     ///
     /// # Errors
-    /// As for [`fit`](Self::fit); the different abscissae must not be zero, and `order` not either.
+    /// Those of [`fit`](Self::fit); the different abscissae must not be zero, and `order` not either.
     pub fn fit_through_origin(x: &[f64], y: &[f64], order: usize, weighting: Weighting<'_>) -> Result<Self, FitError> {
         Self::of(x, y, 1, order, weighting)
     }
@@ -78,9 +78,9 @@ impl Polynomial {
         if !(span.is_normal() && span.recip().is_normal()) {
             return Err(overflow());
         }
-        let t: Vec<Twofold> = x.iter().map(|x| Twofold::difference(*x, centre).scaled(1.0 / scale)).collect();
-        let mut columns: Vec<Vec<Twofold>> = Vec::with_capacity(coefficients);
-        columns.push(if lowest > 0 { t.clone() } else { vec![Twofold::from(1.0); x.len()] });
+        let t: Vec<DoubleDouble> = x.iter().map(|x| DoubleDouble::difference(*x, centre).scaled(1.0 / scale)).collect();
+        let mut columns: Vec<Vec<DoubleDouble>> = Vec::with_capacity(coefficients);
+        columns.push(if lowest > 0 { t.clone() } else { vec![DoubleDouble::from(1.0); x.len()] });
         for k in 1..coefficients {
             let next = columns[k - 1].iter().zip(&t).map(|(power, t)| *power * *t).collect();
             columns.push(next);
@@ -90,10 +90,10 @@ impl Polynomial {
         if regression.rank() < coefficients {
             return Err(too_few_abscissae(regression.rank(), coefficients));
         }
-        let global = |local: &[Twofold]| -> Vec<f64> { expand(local, lowest, centre, scale) };
+        let global = |local: &[DoubleDouble]| -> Vec<f64> { expand(local, lowest, centre, scale) };
         let local_coefficients = std::mem::replace(&mut regression.coefficients, global(&solution));
         let roots = regression.roots.iter().map(|root| {
-            let root: Vec<Twofold> = root.iter().map(|value| Twofold::from(*value)).collect();
+            let root: Vec<DoubleDouble> = root.iter().map(|value| DoubleDouble::from(*value)).collect();
             global(&root)
         });
         let roots = roots.collect();
@@ -162,22 +162,22 @@ pub(crate) fn count_distinct(x: &[f64], without_zero: bool) -> usize {
 }
 
 /// Coefficients in powers of x from those in powers of t, by Horner's scheme.
-fn expand(local: &[Twofold], lowest: usize, centre: f64, scale: f64) -> Vec<f64> {
+fn expand(local: &[DoubleDouble], lowest: usize, centre: f64, scale: f64) -> Vec<f64> {
     let mut power = if lowest > 0 { 1.0 / scale } else { 1.0 };
-    let mut values: Vec<Twofold> = Vec::with_capacity(local.len());
+    let mut values: Vec<DoubleDouble> = Vec::with_capacity(local.len());
     for value in local {
         values.push(value.scaled(power));
         power /= scale;
     }
     // Taylor shift: p(x − centre) = Σ βₖ xᵏ.
-    let shift = Twofold::from(-centre);
+    let shift = DoubleDouble::from(-centre);
     for low in 0..values.len().saturating_sub(1) {
         for k in (low..values.len() - 1).rev() {
             let above = values[k + 1];
             values[k] = values[k] + above * shift;
         }
     }
-    values.into_iter().map(Twofold::value).collect()
+    values.into_iter().map(DoubleDouble::value).collect()
 }
 
 /// A straight line through observations.
@@ -208,7 +208,7 @@ impl StraightLine {
     /// and [`YorkLine`](crate::YorkLine) one with uncertainties in both variables.
     ///
     /// # Errors
-    /// As for [`Polynomial::fit`].
+    /// Those of [`Polynomial::fit`].
     pub fn fit(x: &[f64], y: &[f64], weighting: Weighting<'_>) -> Result<Self, FitError> {
         Polynomial::fit(x, y, 1, weighting).map(|polynomial| Self { polynomial })
     }
@@ -256,7 +256,7 @@ mod tests {
     #[test]
     fn shift_of_a_cube() {
         // ((x − 3)/2)³ = x³/8 − 9x²/8 + 27x/8 − 27/8
-        let cube = [0.0, 0.0, 0.0, 1.0].map(Twofold::from);
+        let cube = [0.0, 0.0, 0.0, 1.0].map(DoubleDouble::from);
         assert_eq!(expand(&cube, 0, 3.0, 2.0), [-3.375, 3.375, -1.125, 0.125]);
     }
 

@@ -2,13 +2,13 @@
 
 use crate::algebra::spectrum::Spectrum;
 use crate::algebra::triangle::Triangle;
-use crate::regression::twofold::Twofold;
+use crate::regression::double_double::DoubleDouble;
 
 /// The solution of `min ‖y − X β‖²`.
 #[derive(Debug, Clone)]
 pub(crate) struct RefinedLeastSquares {
     /// β; the shortest of all solutions, in columns of unit length, if the rank is not full.
-    pub(crate) solution: Vec<Twofold>,
+    pub(crate) solution: Vec<DoubleDouble>,
     /// y − X β.
     pub(crate) residuals: Vec<f64>,
     /// Singular values of the columns scaled to unit length, and these lengths.
@@ -37,7 +37,10 @@ const NEGLIGIBLE: f64 = 1e-27;
 /// # References
 /// Å. Björck, "Stability analysis of the method of seminormal equations for linear least squares problems", Linear
 /// Algebra Appl. 88/89 (1987) 31, <https://doi.org/10.1016/0024-3795(87)90101-7>.
-pub(crate) fn refined_least_squares(mut columns: Vec<Vec<Twofold>>, y: &[Twofold]) -> Option<RefinedLeastSquares> {
+pub(crate) fn refined_least_squares(
+    mut columns: Vec<Vec<DoubleDouble>>,
+    y: &[DoubleDouble],
+) -> Option<RefinedLeastSquares> {
     let (order, rows) = (columns.len(), y.len());
     // Powers of two change no digit, and keep squares from overflowing.
     let factors: Vec<f64> = columns.iter().map(|column| unit_factor(column)).collect();
@@ -47,7 +50,7 @@ pub(crate) fn refined_least_squares(mut columns: Vec<Vec<Twofold>>, y: &[Twofold
         }
     }
     let y_factor = unit_factor(y);
-    let y: Vec<Twofold> = y.iter().map(|element| element.scaled(y_factor)).collect();
+    let y: Vec<DoubleDouble> = y.iter().map(|element| element.scaled(y_factor)).collect();
 
     let flat: Vec<f64> = columns.iter().flatten().map(|element| element.value()).collect();
     let right: Vec<f64> = y.iter().map(|element| -element.value()).collect();
@@ -59,11 +62,11 @@ pub(crate) fn refined_least_squares(mut columns: Vec<Vec<Twofold>>, y: &[Twofold
     }
     let mut spectrum = Spectrum::of(&triangle);
     let rank = spectrum.rank(rows as f64 * f64::EPSILON);
-    let mut solution: Vec<Twofold> = (0..order)
+    let mut solution: Vec<DoubleDouble> = (0..order)
         .map(|j| {
             let directions = spectrum.right.iter().zip(&spectrum.along).zip(&spectrum.singular).take(rank);
             let sum: f64 = directions.map(|((right, along), singular)| right[j] * along / singular).sum();
-            Twofold::from(-sum / spectrum.scales[j])
+            DoubleDouble::from(-sum / spectrum.scales[j])
         })
         .collect();
     let mut residuals = residuals_of(&columns, &y, &solution);
@@ -83,10 +86,10 @@ pub(crate) fn refined_least_squares(mut columns: Vec<Vec<Twofold>>, y: &[Twofold
 fn refine(
     triangle: &Triangle,
     scales: &[f64],
-    columns: &[Vec<Twofold>],
-    y: &[Twofold],
-    solution: &mut [Twofold],
-    residuals: &mut Vec<Twofold>,
+    columns: &[Vec<DoubleDouble>],
+    y: &[DoubleDouble],
+    solution: &mut [DoubleDouble],
+    residuals: &mut Vec<DoubleDouble>,
 ) {
     let order = columns.len();
     let norm = |values: &mut dyn Iterator<Item = f64>| {
@@ -96,7 +99,7 @@ fn refine(
     for _ in 0..CORRECTIONS {
         let mut step: Vec<f64> = columns
             .iter()
-            .map(|column| column.iter().zip(residuals.iter()).map(|(x, r)| *x * *r).sum::<Twofold>().value())
+            .map(|column| column.iter().zip(residuals.iter()).map(|(x, r)| *x * *r).sum::<DoubleDouble>().value())
             .collect();
         triangle.solve_transposed(&mut step);
         for row in (0..order).rev() {
@@ -110,7 +113,7 @@ fn refine(
         }
         last = length;
         for (value, step) in solution.iter_mut().zip(&step) {
-            *value = *value + Twofold::from(*step);
+            *value = *value + DoubleDouble::from(*step);
         }
         *residuals = residuals_of(columns, y, solution);
         if length <= NEGLIGIBLE * norm(&mut solution.iter().map(|value| value.value())) {
@@ -120,7 +123,7 @@ fn refine(
 }
 
 /// `y − X β`.
-fn residuals_of(columns: &[Vec<Twofold>], y: &[Twofold], solution: &[Twofold]) -> Vec<Twofold> {
+fn residuals_of(columns: &[Vec<DoubleDouble>], y: &[DoubleDouble], solution: &[DoubleDouble]) -> Vec<DoubleDouble> {
     let mut residuals = y.to_vec();
     for (column, value) in columns.iter().zip(solution) {
         for (residual, x) in residuals.iter_mut().zip(column) {
@@ -131,7 +134,7 @@ fn residuals_of(columns: &[Vec<Twofold>], y: &[Twofold], solution: &[Twofold]) -
 }
 
 /// The power of two that brings the largest magnitude near 1.
-fn unit_factor(values: &[Twofold]) -> f64 {
+fn unit_factor(values: &[DoubleDouble]) -> f64 {
     let largest = values.iter().fold(0.0f64, |largest, value| largest.max(value.value().abs()));
     if largest > 0.0 && largest.is_finite() { (-largest.log2().floor()).clamp(-1000.0, 1000.0).exp2() } else { 1.0 }
 }
@@ -145,14 +148,14 @@ mod tests {
         // Columns 1/(i + j + 1) of twelve rows and eight columns, condition about 1e9, y = X·(1, …, 1) + residual: the
         // residual is orthogonal to nothing, so that the solution is compared with one at twice the precision by the
         // gradient that it leaves.
-        let columns: Vec<Vec<Twofold>> =
-            (0..8).map(|j| (0..12).map(|i| Twofold::from(1.0 / f64::from(i + j + 1))).collect()).collect();
-        let y: Vec<Twofold> = (0..12).map(|i| Twofold::from(f64::from((i * 7) % 5))).collect();
+        let columns: Vec<Vec<DoubleDouble>> =
+            (0..8).map(|j| (0..12).map(|i| DoubleDouble::from(1.0 / f64::from(i + j + 1))).collect()).collect();
+        let y: Vec<DoubleDouble> = (0..12).map(|i| DoubleDouble::from(f64::from((i * 7) % 5))).collect();
         let found = refined_least_squares(columns.clone(), &y).unwrap();
         assert_eq!(found.rank, 8);
         let residuals = residuals_of(&columns, &y, &found.solution);
         for column in &columns {
-            let gradient: Twofold = column.iter().zip(&residuals).map(|(x, r)| *x * *r).sum();
+            let gradient: DoubleDouble = column.iter().zip(&residuals).map(|(x, r)| *x * *r).sum();
             // ε² times the largest term of the residual, a coefficient of 1e9.
             assert!(gradient.value().abs() < 1e-20, "gradient {}", gradient.value());
         }
@@ -160,13 +163,13 @@ mod tests {
 
     #[test]
     fn extreme_units_do_not_overflow() {
-        let columns = vec![vec![Twofold::from(1e200), Twofold::from(2e200), Twofold::from(3e200)]];
-        let y = [1e-200, 2e-200, 3.3e-200].map(Twofold::from);
+        let columns = vec![vec![DoubleDouble::from(1e200), DoubleDouble::from(2e200), DoubleDouble::from(3e200)]];
+        let y = [1e-200, 2e-200, 3.3e-200].map(DoubleDouble::from);
         let found = refined_least_squares(columns, &y);
         // The slope would be 1e-400.
         assert!(found.is_none_or(|found| found.solution[0].value() == 0.0));
-        let columns = vec![vec![Twofold::from(1e200), Twofold::from(2e200), Twofold::from(3e200)]];
-        let y = [1e190, 2e190, 3e190].map(Twofold::from);
+        let columns = vec![vec![DoubleDouble::from(1e200), DoubleDouble::from(2e200), DoubleDouble::from(3e200)]];
+        let y = [1e190, 2e190, 3e190].map(DoubleDouble::from);
         let slope = refined_least_squares(columns, &y).unwrap().solution[0].value();
         assert!((slope / 1e-10 - 1.0).abs() < 1e-15, "slope {slope}");
     }

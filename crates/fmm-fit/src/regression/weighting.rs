@@ -3,7 +3,7 @@
 use crate::error::FitError;
 use crate::problem::weighted::bad_uncertainty;
 
-/// What is known of the standard uncertainties of the observations, one per observation, in their unit.
+/// Knowledge of the standard uncertainties of the observations, one per observation, in their unit.
 ///
 /// ```text
 /// minimise  Σᵢ ((yᵢ − ŷᵢ)/uᵢ)²
@@ -30,7 +30,7 @@ pub enum Weighting<'a> {
 }
 
 impl Weighting<'_> {
-    /// Whether the uncertainties are known.
+    /// True if the uncertainties are known.
     pub const fn is_absolute(&self) -> bool {
         matches!(self, Self::Absolute(_))
     }

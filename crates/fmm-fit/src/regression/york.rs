@@ -183,7 +183,7 @@ impl YorkLine {
         self.iterations
     }
 
-    /// Whether the slope no longer changed when the iteration ended. If not, the points hardly lie along a line.
+    /// True if the slope no longer changed when the iteration ended. Otherwise the points hardly lie along a line.
     pub fn is_converged(&self) -> bool {
         self.is_converged
     }

@@ -2,7 +2,7 @@
 
 use fmm_model::Parameter;
 
-/// What became of a parameter in a fit.
+/// Status of a parameter after a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum EstimateStatus {
@@ -19,7 +19,7 @@ pub enum EstimateStatus {
 }
 
 impl EstimateStatus {
-    /// Whether the value lies on a bound.
+    /// True if the value lies on a bound.
     pub const fn is_at_bound(self) -> bool {
         matches!(self, Self::AtLowerBound | Self::AtUpperBound)
     }
@@ -57,7 +57,7 @@ impl Estimate {
         self.start
     }
 
-    /// What became of the parameter.
+    /// The status of the parameter after the fit.
     pub fn status(&self) -> EstimateStatus {
         self.status
     }
@@ -68,7 +68,7 @@ impl Estimate {
         self.standard_uncertainty
     }
 
-    /// How fast half the sum of squares would change if the bound that the value lies on moved up; `None` for a
+    /// The derivative of half the sum of squares by the bound that the value lies on; `None` for a
     /// value that is not at a bound.
     ///
     /// ```text

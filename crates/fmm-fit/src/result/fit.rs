@@ -9,7 +9,7 @@ use crate::result::estimate::{Estimate, EstimateStatus};
 use crate::result::null_direction::{NullDirection, null_directions};
 use crate::solver::evaluation::Scheme;
 use crate::solver::jacobian_check::JacobianMismatch;
-use crate::solver::minimizer::Minimizer;
+use crate::solver::minimizer::{Minimizer, Phase};
 use crate::solver::outcome::{NonFinite, Outcome};
 
 /// The result of a fit: estimates, their uncertainty, and what the residuals could not tell.
@@ -80,7 +80,12 @@ impl Fit {
         let inside: Vec<usize> = (0..free.len()).filter(|&c| !estimates[free[c]].status.is_at_bound()).collect();
         let columns: Vec<usize> = inside.iter().map(|&column| free[column]).collect();
         let mut triangle = Triangle::default();
-        triangle.select(minimizer.triangle(), &inside, |row| minimizer.triangle().q(row), &mut Vec::new());
+        triangle.select(
+            minimizer.factor_of_jacobian(),
+            &inside,
+            |row| minimizer.factor_of_jacobian().q(row),
+            &mut Vec::new(),
+        );
 
         let spectrum = Spectrum::of(&triangle);
         let threshold = minimizer.scheme().rank_threshold(residuals.len());
@@ -104,7 +109,12 @@ impl Fit {
         } else {
             let all: Vec<usize> = (0..free.len()).collect();
             let mut triangle = Triangle::default();
-            triangle.select(minimizer.triangle(), &all, |row| minimizer.triangle().q(row), &mut Vec::new());
+            triangle.select(
+                minimizer.factor_of_jacobian(),
+                &all,
+                |row| minimizer.factor_of_jacobian().q(row),
+                &mut Vec::new(),
+            );
             let spectrum = Spectrum::of(&triangle);
             let rank = spectrum.rank(threshold);
             (rank == free.len()).then(|| self::unit_covariance(&spectrum, rank, free, estimates.len(), |_| true))
@@ -135,7 +145,7 @@ impl Fit {
         fit
     }
 
-    /// How the fit ended.
+    /// The end of the fit.
     pub fn outcome(&self) -> Outcome {
         self.outcome
     }
@@ -181,12 +191,12 @@ impl Fit {
         (freedom > 0).then(|| (self.sum_of_squares / freedom as f64).sqrt())
     }
 
-    /// How many parameters are not fixed.
+    /// Number of parameters that are not fixed.
     pub fn free_count(&self) -> usize {
         self.free_count
     }
 
-    /// How many independent directions the residuals determine, of the parameters neither fixed nor at a bound.
+    /// Number of independent directions that the residuals determine, of the parameters neither fixed nor at a bound.
     ///
     /// A direction counts if its singular value exceeds the largest by a factor of n ε, or of the error of the
     /// differences, 1e-6 or 1e-9, if the problem gives no derivatives.
@@ -211,7 +221,7 @@ impl Fit {
         Some(self.residual_standard_deviation()?.powi(2) * self.unit_covariance(i, j)?)
     }
 
-    /// As [`covariance`](Self::covariance) for residuals of variance 1, ((Jᵀ J)⁺)ᵢⱼ: what holds if each residual was
+    /// [`covariance`](Self::covariance) for residuals of variance 1, ((Jᵀ J)⁺)ᵢⱼ: what holds if each residual was
     /// divided by its standard uncertainty, and a factor in the response of the estimates to any other change of the
     /// residuals. Needs no degree of freedom.
     pub fn unit_covariance(&self, i: usize, j: usize) -> Option<f64> {
@@ -251,7 +261,7 @@ impl Fit {
         self.estimates.iter().position(|estimate| estimate.name() == name).and_then(|j| self.interval_of(j, level))
     }
 
-    /// As [`interval`](Self::interval), for the parameter at `index`.
+    /// [`interval`](Self::interval) for the parameter at `index`.
     pub fn interval_of(&self, index: usize, level: f64) -> Option<(f64, f64)> {
         let estimate = self.estimates.get(index)?;
         let uncertainty = estimate.standard_uncertainty?;
@@ -274,24 +284,24 @@ impl Fit {
         self.jacobian_evaluations
     }
 
-    /// Whether the problem gave its derivatives; otherwise differences were taken.
+    /// True if the problem gave its derivatives; otherwise differences were taken.
     pub fn has_exact_jacobian(&self) -> bool {
         self.has_exact_jacobian
     }
 
-    /// Where the derivatives of the problem disagree with differences at the start, if that was
+    /// Derivatives of the problem that disagree with differences at the start, if that was
     /// [looked at](crate::Options::with_jacobian_check).
     pub fn jacobian_mismatches(&self) -> &[JacobianMismatch] {
         &self.jacobian_mismatches
     }
 
-    /// What the model said when it last failed at a trial point.
+    /// The message of the model at its last failure at a trial point.
     pub fn model_error(&self) -> Option<&str> {
         self.model_error.as_deref()
     }
 
-    /// What had no finite value at the last trial point that was given up for this; `None` if all had one. In a fit
-    /// that ended as [`Outcome::NonFinite`] it is what stood in the way.
+    /// The number that was not finite at the last trial point that was given up for this; `None` if all were. It ended
+    /// a fit with [`Outcome::NonFinite`].
     pub fn non_finite(&self) -> Option<&NonFinite> {
         self.non_finite.as_ref()
     }
@@ -316,7 +326,7 @@ fn estimates(minimizer: &Minimizer) -> Vec<Estimate> {
             start: minimizer.start()[j],
             status,
             standard_uncertainty: None,
-            multiplier: column.filter(|_| status.is_at_bound()).map(|c| minimizer.triangle().gradient(c)),
+            multiplier: column.filter(|_| status.is_at_bound()).map(|c| minimizer.factor_of_jacobian().gradient(c)),
         }
     };
     minimizer.parameters().iter().enumerate().map(estimate).collect()

@@ -18,7 +18,7 @@ pub struct NullDirection {
     components: Vec<f64>,
     /// The changes of the parameters themselves, each in its unit.
     changes: Vec<f64>,
-    /// Whether each component is relative to the value of its parameter.
+    /// True where the component is relative to the value of its parameter.
     is_relative: Vec<bool>,
     /// Components smaller than this are rounding or differencing noise.
     noise: f64,
@@ -132,7 +132,7 @@ fn normalise(row: &mut [f64]) {
 }
 
 impl NullDirection {
-    /// What is determined, if that has a name.
+    /// The combination that is determined, if it has a name.
     ///
     /// A direction is known at one point only, where values of one size can be scaled and shifted alike.
     fn pattern(&self) -> (Pattern, Pattern) {
@@ -156,7 +156,7 @@ impl NullDirection {
     }
 }
 
-/// How numbers are alike.
+/// Likeness of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Pattern {
     /// All are equal.

@@ -1,6 +1,6 @@
 //! Loss functions: the weight of a residual as a function of its size.
 
-/// How much a residual r of scale s counts: `s² ρ(z)` with `z = (r/s)²` instead of r².
+/// Cost of a residual r of scale s: `s² ρ(z)` with `z = (r/s)²` instead of r².
 ///
 /// | loss | ρ(z) | weight ρ′(z) | at large r |
 /// |---|---|---|---|

@@ -20,8 +20,8 @@ const FAR: f64 = 1e150;
 /// Nothing is approximated, and everything that takes a problem takes this one: bounds, observers, multi-start,
 /// argmin. SciPy's `least_squares` states half of the sum as its cost.
 ///
-/// What a fit to it says about uncertainty is *not* the uncertainty of the estimates: `Fit::covariance` would be
-/// right if the replaced residuals were a normal sample, which they are not. [`solve_robust`](crate::solve_robust)
+/// The covariance of a fit to it is *not* that of the estimates: `Fit::covariance` would be right if the replaced
+/// residuals were a normal sample, which they are not. [`solve_robust`](crate::solve_robust)
 /// fits and states the covariance that holds.
 ///
 /// ```

@@ -1,4 +1,4 @@
-//! Fits that large residuals do not spoil, and what they are worth.
+//! Robust fits and the covariance of their estimates.
 
 use std::time::Instant;
 
@@ -54,7 +54,7 @@ pub fn median_deviation(residuals: &[f64], fitted: usize) -> Option<f64> {
 ///
 /// ```
 /// # use fmm_fit::EvaluationError;
-/// use fmm_fit::{Loss, Options, Residuals, Scale, solve_robust};
+/// use fmm_fit::{Loss, Options, Residuals, RobustFit, Scale, solve_robust};
 /// # use fmm_model::Parameter;
 ///
 /// # struct Mean<'a>(&'a [f64], [Parameter; 1]);
@@ -69,7 +69,7 @@ pub fn median_deviation(residuals: &[f64], fitted: usize) -> Option<f64> {
 /// // Readings of one length, in mm; the fifth was read wrongly.
 /// let readings = [10.02, 9.98, 10.01, 9.97, 12.00, 10.03, 9.99];
 /// let mean = Mean(&readings, [Parameter::new("length", "l", "mm")]);
-/// let robust = solve_robust(&mean, &[10.0], Loss::Tukey, Scale::Estimated, &Options::default())?;
+/// let robust: RobustFit = solve_robust(&mean, &[10.0], Loss::Tukey, Scale::Estimated, &Options::default())?;
 /// assert_eq!(robust.outliers(), [4]);
 /// assert_eq!(robust.weights()[4], 0.0);
 /// let (lower, upper) = robust.interval("length", 0.95).unwrap();
@@ -120,7 +120,7 @@ struct Search<'a, P: ?Sized> {
     began: Instant,
 }
 
-/// Where the repetition of fit and scale ended.
+/// End of the repetition of fit and scale.
 struct Agreement {
     values: Vec<f64>,
     deviation: f64,
@@ -227,7 +227,7 @@ impl RobustFit {
         &self.residuals
     }
 
-    /// How much of each residual counts, 0 to 1: least squares with these weights has the same minimum.
+    /// The weight of each residual, 0 to 1: least squares with these weights has the same minimum.
     pub fn weights(&self) -> &[f64] {
         &self.weights
     }
@@ -244,7 +244,7 @@ impl RobustFit {
         self.outliers_beyond(OUTLYING)
     }
 
-    /// Indices of the residuals further than so many robust standard deviations from zero.
+    /// Indices of the residuals further than this many robust standard deviations from zero.
     pub fn outliers_beyond(&self, deviations: f64) -> Vec<usize> {
         let limit = self.deviation().map_or(f64::INFINITY, |deviation| deviations * deviation);
         (0..self.residuals.len()).filter(|&i| self.residuals[i].abs() > limit).collect()

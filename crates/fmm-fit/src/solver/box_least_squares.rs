@@ -2,7 +2,7 @@
 
 use crate::algebra::triangle::Triangle;
 
-/// Where a component of a step lies in its interval.
+/// Place of a component of a step in its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Side {
     Inside,
@@ -13,7 +13,7 @@ pub(crate) enum Side {
 /// The minimiser of `‖R p + q‖` subject to `lower ≤ p ≤ upper`, by active sets; `0` must be feasible.
 ///
 /// From the best point of one face the method goes towards the best point of the next and holds what it meets.
-/// At the best point of a face it releases the held component with the steepest descent into the box. A face is
+/// At the best point of a face it releases the fixed component with the steepest descent into the box. A face is
 /// left only for a strictly smaller norm, hence no face is visited twice and the method ends.
 ///
 /// # References
@@ -23,7 +23,7 @@ pub(crate) enum Side {
 pub(crate) struct BoxLeastSquares {
     /// The minimiser.
     pub(crate) step: Vec<f64>,
-    /// Where each of its components lies. A component on a bound is held there exactly.
+    /// Place of each of its components. A component on a bound is there exactly.
     pub(crate) sides: Vec<Side>,
     /// The components that are inside, ascending.
     pub(crate) inside: Vec<usize>,
@@ -43,7 +43,7 @@ impl BoxLeastSquares {
         self.sides.resize(order, Side::Inside);
         self.descend(triangle, lower, upper);
         let mut norm = f64::INFINITY;
-        while let Some(release) = self.steepest_held(triangle, lower, upper) {
+        while let Some(release) = self.steepest_fixed(triangle, lower, upper) {
             let next = misfit(triangle, &self.step);
             if next >= norm {
                 self.step.copy_from_slice(&self.best.0);
@@ -93,7 +93,7 @@ impl BoxLeastSquares {
         }
     }
 
-    /// The minimiser over the components inside, the others held where they are.
+    /// The minimiser over the components inside, the others fixed where they are.
     fn minimise_on_face(&mut self, triangle: &Triangle) {
         let order = triangle.order();
         self.inside.clear();
@@ -101,13 +101,13 @@ impl BoxLeastSquares {
         if self.inside.len() == order {
             self.face.copy_from(triangle);
         } else {
-            let held = |row: usize| -> f64 {
+            let fixed = |row: usize| -> f64 {
                 (row..order)
                     .filter(|&column| self.sides[column] != Side::Inside)
                     .map(|column| triangle.r(row, column) * self.step[column])
                     .sum()
             };
-            self.face.select(triangle, &self.inside, |row| triangle.q(row) + held(row), &mut self.block);
+            self.face.select(triangle, &self.inside, |row| triangle.q(row) + fixed(row), &mut self.block);
         }
         self.candidate.clear();
         self.candidate.resize(self.inside.len(), 0.0);
@@ -119,8 +119,8 @@ impl BoxLeastSquares {
         }
     }
 
-    /// The held component whose release lowers the norm fastest, if any does by more than rounding.
-    fn steepest_held(&self, triangle: &Triangle, lower: &[f64], upper: &[f64]) -> Option<usize> {
+    /// The fixed component whose release lowers the norm fastest, if any does by more than rounding.
+    fn steepest_fixed(&self, triangle: &Triangle, lower: &[f64], upper: &[f64]) -> Option<usize> {
         if self.inside.len() == self.step.len() {
             return None;
         }

@@ -187,7 +187,7 @@ impl Minimizer {
         }
     }
 
-    /// Whether the fit is at the end of a search that counts.
+    /// True at the end of a search that counts.
     pub(crate) fn may_leave_saddle(&self, reason: Outcome) -> bool {
         reason.is_success() && reason != Outcome::AtNoiseFloor && matches!(self.phase, Phase::Search)
     }

@@ -1,4 +1,4 @@
-//! Derivatives by differences: which step can be believed.
+//! Derivatives by differences, and the choice of their steps.
 //!
 //! A step may go wrong in two ways that the difference alone does not show. It may cross a place where the model jumps,
 //! and then the "derivative" is the jump over the step, larger than all others. Or it may be too short for the
@@ -20,13 +20,13 @@ const CLEAR: f64 = 1e-6;
 /// Halvings of the exponent between the smallest number and one that leave a factor of two.
 const BISECTIONS: usize = 10;
 
-/// What the residuals at one or two other values of a parameter were.
+/// Residuals at one or two other values of a parameter.
 #[derive(Debug, Clone, Copy)]
 struct Slope {
     /// The two displacements, 0 for the point itself, and the change of the residuals for each.
     displacements: [f64; 2],
     changes: [f64; 2],
-    /// Whether the slopes to both are alike; a single one is not known to be.
+    /// True if the slopes to both are alike; a single one is not known to be.
     is_straight: bool,
 }
 
@@ -54,7 +54,7 @@ impl Slope {
 }
 
 impl Evaluator {
-    /// What a step of parameter `j` from `value` is measured by.
+    /// Size by which a step of parameter `j` from `value` is measured.
     pub(crate) fn magnitude(&self, value: f64, j: usize) -> f64 {
         let width = self.upper[j] - self.lower[j];
         let magnitude = value.abs().max(self.floor[j]);
@@ -164,7 +164,7 @@ impl Evaluator {
         }
     }
 
-    /// Whether rounding would change the residuals by as much.
+    /// True if rounding would change the residuals by as much.
     fn is_hidden(&self, point: &Point, j: usize, slope: &Slope) -> bool {
         let is_empty = point.residuals.is_empty();
         if is_empty || slope.largest_change() > ROUNDING * point.sum_of_squares.sqrt() {

@@ -1,4 +1,4 @@
-//! Asking the problem for residuals and derivatives, by differences where it has none.
+//! Evaluation of residuals and derivatives, by differences where the problem has none.
 
 use crate::algebra::sums::sum_of_squares;
 use crate::algebra::triangle::Triangle;
@@ -7,7 +7,7 @@ use crate::problem::block::{Scratch, Structure};
 use crate::problem::residuals::{Derivatives, Residuals};
 use crate::solver::outcome::{NonFinite, worst};
 
-/// Where the derivatives come from.
+/// Source of the derivatives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Scheme {
     /// The problem gives them.
@@ -30,7 +30,7 @@ impl Scheme {
         })
     }
 
-    /// As [`relative_step`](Self::relative_step), for central differences of derivatives that come by this scheme.
+    /// [`relative_step`](Self::relative_step) for central differences of derivatives that come by this scheme.
     pub(crate) fn relative_step_of_derivatives(self) -> f64 {
         match self {
             Self::Exact => f64::EPSILON.cbrt(),
@@ -72,15 +72,15 @@ pub(crate) struct Evaluator {
     pub(crate) free: Vec<usize>,
     /// Those of them whose columns a problem with derivatives does not fill.
     pub(crate) unfilled: Vec<usize>,
-    /// Where the elements of the Jacobian are.
+    /// Places of the elements of the Jacobian.
     pub(crate) structure: Structure,
     pub(crate) lower: Vec<f64>,
     pub(crate) upper: Vec<f64>,
     pub(crate) residual_evaluations: usize,
     pub(crate) jacobian_evaluations: usize,
-    /// What the model said when it last failed at a trial point.
+    /// Message of the model at its last failure at a trial point.
     pub(crate) model_error: Option<String>,
-    /// What was last not finite.
+    /// The last number that was not finite.
     pub(crate) non_finite: Option<NonFinite>,
     /// The magnitude below which a value counts as zero in the choice of a difference step.
     pub(crate) floor: Vec<f64>,
@@ -91,7 +91,7 @@ pub(crate) struct Evaluator {
     /// A column while that of another step is tried.
     pub(crate) kept: Vec<f64>,
     factoring: Scratch,
-    /// Whether the problem has told that it gives blocks only all together.
+    /// True if the problem gives blocks only all together.
     pub(crate) is_indivisible: bool,
     /// Residuals of blocks evaluated alone, not yet enough for an evaluation of all.
     pub(crate) evaluated_rows: usize,
@@ -235,7 +235,7 @@ impl Evaluator {
         self.structure.product(&self.jacobian, parameter, a)
     }
 
-    /// How many numbers the buffers that grow with the problem have room for.
+    /// Size of the buffers that grow with the problem.
     #[cfg(test)]
     pub(crate) fn buffered(&self) -> usize {
         self.jacobian.capacity() + self.scratch.capacity() + self.factoring.block.capacity()

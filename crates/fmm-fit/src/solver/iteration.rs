@@ -1,4 +1,4 @@
-//! One trial step after another: search, restart, sharpen.
+//! Iteration of a fit: search, restart, sharpening.
 
 use std::time::Instant;
 
@@ -11,7 +11,8 @@ use crate::solver::evaluation::{Evaluator, Point, Scheme};
 use crate::solver::minimizer::{Attempt, Minimizer, Phase};
 use crate::solver::outcome::Outcome;
 
-/// Radius of the first search and of those after a stall, as multiples of [`Options::with_initial_radius`].
+/// Radius of the first search and of those after a stall, as multiples of
+/// [`Options::with_initial_radius`](crate::Options::with_initial_radius).
 const RADIUS_FACTORS: [f64; 4] = [1.0, 0.1, 10.0, 0.01];
 /// A search may only count as converged if the residual is that orthogonal to the free columns of the Jacobian.
 const STALL_COSINE: f64 = 1e-3;
@@ -288,14 +289,14 @@ fn take(step: &BoxLeastSquares, evaluator: &Evaluator, from: &[f64], to: &mut Ve
 /// Residuals this small against what the parameters move are rounding noise of the model.
 const NOISE: f64 = 1e-12;
 
-/// Whether rounding the parameters would move the residuals by as much as is left of them.
+/// True if rounding of the parameters would move the residuals by as much as is left of them.
 pub(crate) fn is_at_noise_floor(point: &Point, evaluator: &Evaluator) -> bool {
     let influence = |(column, &j): (usize, &usize)| point.values[j].abs() * point.triangle.column_norm(column);
     let reach: f64 = evaluator.free.iter().enumerate().map(influence).sum();
     point.sum_of_squares.sqrt() <= NOISE * reach
 }
 
-/// The largest cosine between the residual and a column of the Jacobian that is not held by a bound.
+/// The largest cosine between the residual and a column of the Jacobian that no bound holds back.
 pub(crate) fn largest_cosine(point: &Point, evaluator: &Evaluator) -> f64 {
     let residual = point.triangle.residual_norm();
     let cosine = |column| point.triangle.gradient(column).abs() / (point.triangle.column_norm(column) * residual);
@@ -303,7 +304,7 @@ pub(crate) fn largest_cosine(point: &Point, evaluator: &Evaluator) -> f64 {
     loose(point, evaluator).map(cosine).fold(0.0, f64::max)
 }
 
-/// Norm of the part of the residual that the parameters not held by a bound can move.
+/// Norm of the part of the residual that the parameters that no bound holds back can move.
 pub(crate) fn projected_residual(point: &Point, evaluator: &Evaluator) -> f64 {
     let columns: Vec<usize> = loose(point, evaluator).collect();
     let mut face = Triangle::default();

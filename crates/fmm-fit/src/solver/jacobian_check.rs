@@ -47,12 +47,12 @@ impl fmt::Display for JacobianMismatch {
 /// Compares the derivatives that `problem` gives with differences at `values`, one per parameter within its bounds;
 /// what disagrees, at most once for each free parameter.
 ///
-/// Where the model has a kink or a jump, so that differences over two steps do not agree with each other, nothing is
-/// said. It costs two evaluations of the residuals for each free parameter, and three for each in doubt. A problem
+/// At a kink or a jump of the model differences over two steps do not agree with each other, and nothing is reported.
+/// It costs two evaluations of the residuals for each free parameter, and three for each in doubt. A problem
 /// without derivatives has none to doubt.
 ///
 /// ```
-/// use fmm_fit::{Derivatives, EvaluationError, Residuals, check_jacobian};
+/// use fmm_fit::{Derivatives, EvaluationError, JacobianMismatch, Residuals, check_jacobian};
 /// use fmm_model::Parameter;
 ///
 /// struct Square([Parameter; 2]);
@@ -72,7 +72,7 @@ impl fmt::Display for JacobianMismatch {
 ///     }
 /// }
 /// let problem = Square(["x", "y"].map(|name| Parameter::new(name, name, "1")));
-/// let mismatches = check_jacobian(&problem, &[3.0, 1.0])?;
+/// let mismatches: Vec<JacobianMismatch> = check_jacobian(&problem, &[3.0, 1.0])?;
 /// assert_eq!(mismatches.len(), 1);
 /// assert_eq!(
 ///     mismatches[0].to_string(),

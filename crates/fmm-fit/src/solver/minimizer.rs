@@ -1,4 +1,4 @@
-//! The iteration: a trust-region search, then steps that sharpen the minimum.
+//! The solver and its state.
 
 use std::time::Instant;
 
@@ -68,7 +68,7 @@ pub struct Minimizer {
     pub(crate) phase: Phase,
     pub(crate) attempt: usize,
     pub(crate) best: Option<Attempt>,
-    /// Whether the fit has left a point where the gradient vanishes and the sum of squares falls all the same.
+    /// True if the fit has left a point where the gradient vanishes and the sum of squares falls all the same.
     pub(crate) is_saddle_left: bool,
     pub(crate) mismatches: Vec<JacobianMismatch>,
     pub(crate) iterations: usize,
@@ -88,7 +88,7 @@ pub(crate) enum Phase {
     Done(Outcome),
 }
 
-/// Where a search ended that is not to be trusted, and how.
+/// End of a search that is not to be trusted.
 #[derive(Debug, Clone)]
 pub(crate) struct Attempt {
     pub(crate) sum_of_squares: f64,
@@ -145,7 +145,7 @@ impl Minimizer {
         self.evaluator.jacobian_evaluations
     }
 
-    /// How the fit ended; `None` before it has.
+    /// The end of the fit; `None` before.
     pub fn outcome(&self) -> Option<Outcome> {
         if let Phase::Done(outcome) = self.phase { Some(outcome) } else { None }
     }
@@ -171,7 +171,7 @@ impl Minimizer {
         &self.evaluator.free
     }
 
-    pub(crate) fn triangle(&self) -> &Triangle {
+    pub(crate) fn factor_of_jacobian(&self) -> &Triangle {
         &self.current.triangle
     }
 

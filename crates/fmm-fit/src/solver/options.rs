@@ -1,4 +1,4 @@
-//! Options of a fit: when to stop, and how far to go at first.
+//! Options of a fit: limits, tolerances and the first radius.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -116,14 +116,14 @@ impl Options {
         self
     }
 
-    /// How often a search that stalled begins again with another radius (3, the most that has an effect).
+    /// The number of times that a stalled search begins again with another radius (3, the most that has an effect).
     #[must_use]
     pub fn with_restarts(mut self, restarts: usize) -> Self {
         self.restarts = restarts;
         self
     }
 
-    /// Whether [`solve`](crate::solve) compares the derivatives that a problem gives with differences at the start, as
+    /// Lets [`solve`](crate::solve) compare the derivatives that a problem gives with differences at the start, as
     /// [`check_jacobian`](crate::check_jacobian) does (in debug builds yes, in release builds no). What it finds is in
     /// [`Fit::jacobian_mismatches`](crate::Fit::jacobian_mismatches) and changes nothing else; its evaluations are not
     /// counted.

@@ -4,7 +4,7 @@ use std::fmt;
 
 use fmm_model::Rounded;
 
-/// How a fit ended. All of them leave the best point found; `Display` gives a sentence of advice.
+/// End of a fit. All of them leave the best point found; `Display` gives a sentence of advice.
 ///
 /// ```
 /// use fmm_fit::Outcome;
@@ -41,7 +41,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Whether the point found is a local minimum, as far as the solver can tell.
+    /// True if the point found is a local minimum, as far as the solver can tell.
     pub const fn is_success(self) -> bool {
         matches!(
             self,
@@ -77,9 +77,16 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// What had no finite value when a fit last gave a trial point up.
+/// Number that was not finite when a fit last gave a trial point up.
 ///
 /// `Display` gives it in words.
+///
+/// ```
+/// use fmm_fit::NonFinite;
+///
+/// let overflow = NonFinite::Residual { index: 3, value: f64::INFINITY };
+/// assert_eq!(overflow.to_string(), "residual 3 is inf");
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum NonFinite {

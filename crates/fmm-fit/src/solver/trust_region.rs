@@ -37,7 +37,7 @@ impl TrustRegion {
     /// Forgets everything; the radius becomes `factor · ‖D x‖` at the point `x`, and of a zero point `factor` times the
     /// norm of the residual.
     ///
-    /// That is also the radius of a point that is as good as zero, since its own would be lost in rounding. There the
+    /// This is also the radius of a point that is as good as zero, since its own would be lost in rounding. There the
     /// columns say little of how far their parameters may go, so that each goes no further than its own size or one.
     pub(crate) fn begin(&mut self, triangle: &Triangle, x: impl Iterator<Item = f64> + Clone, factor: f64) {
         self.scaling.clear();

@@ -56,10 +56,10 @@ const SAME: f64 = 0.1;
 /// # Ok::<(), fmm_fit::FitError>(())
 /// ```
 ///
-/// `observer` is told of every trial step of every fit, and may end them all. Limits on iterations and evaluations hold
-/// for each fit, that on time for all together. With the feature `rayon` the fits go on all threads of the current
-/// pool, with the same result; their steps are then told in any order. An observer that itself waits for work of that
-/// pool may wait for ever.
+/// `observer` gets the progress after every trial step of every fit, and may end them all. Limits on iterations and
+/// evaluations hold for each fit, that on time for all together. With the feature `rayon` the fits go on all threads of
+/// the current pool, with the same result; their steps then come in any order. An observer that itself waits for work
+/// of that pool may wait for ever.
 ///
 /// # Errors
 /// [`FitError`] of the last start if no fit can begin; [`FitError::NotStarted`] without starts.
@@ -127,7 +127,7 @@ impl<F: FnMut(&Progress<'_>) -> ControlFlow<()>> Watch<F> {
     }
 }
 
-/// What `work` makes of each of `items`, in their order.
+/// Results of `work` for each of `items`, in their order.
 fn each<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
     #[cfg(feature = "rayon")]
     return items.into_par_iter().with_max_len(1).map(work).collect();
@@ -135,7 +135,7 @@ fn each<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync + Send) ->
     return items.into_iter().map(work).collect();
 }
 
-/// Takes at most so many trial steps, unless the observer ends all fits.
+/// Takes at most `steps` trial steps, unless the observer ends all fits.
 fn go<P: Residuals + ?Sized, F: FnMut(&Progress<'_>) -> ControlFlow<()>>(
     fit: &mut Minimizer,
     problem: &P,
@@ -172,6 +172,6 @@ fn is_same(one: &Minimizer, other: &Minimizer) -> bool {
     let freedom = one.residuals().len().saturating_sub(one.free().len()).max(1);
     let scatter = one.sum_of_squares() / freedom as f64;
     let change: Vec<f64> = one.free().iter().map(|&j| other.values()[j] - one.values()[j]).collect();
-    let square: f64 = (0..change.len()).map(|row| one.triangle().row_times(row, &change).powi(2)).sum();
+    let square: f64 = (0..change.len()).map(|row| one.factor_of_jacobian().row_times(row, &change).powi(2)).sum();
     square <= SAME * SAME * scatter
 }

@@ -29,7 +29,7 @@ impl Minimum {
         &self.starts
     }
 
-    /// Whether `other` ended here too.
+    /// True if `other` ended here too.
     fn is_same(&self, other: &Finished) -> bool {
         let estimates = self.fit.estimates();
         let free = estimates.iter().enumerate().filter(|(_, estimate)| estimate.status() != EstimateStatus::Fixed);
@@ -51,16 +51,6 @@ impl Minimum {
     }
 }
 
-/// A start that led to no minimum.
-#[derive(Debug)]
-#[non_exhaustive]
-pub enum StartFailure {
-    /// The fit could not begin there.
-    Refused(FitError),
-    /// The fit ended otherwise than at a minimum.
-    Ended(Outcome),
-}
-
 /// A fit with what is needed to compare it.
 #[derive(Debug)]
 pub(crate) struct Finished {
@@ -72,7 +62,7 @@ pub(crate) struct Finished {
 #[derive(Debug, Default)]
 pub struct Minima {
     found: Vec<Minimum>,
-    failures: Vec<(usize, StartFailure)>,
+    failures: Vec<(usize, Result<Outcome, FitError>)>,
     unfinished: Option<Fit>,
     starts: usize,
 }
@@ -88,13 +78,14 @@ impl Minima {
         self.found.first().map(Minimum::fit)
     }
 
-    /// How many fits were begun. Fewer than asked for if the search was cancelled or ran out of time.
+    /// Number of fits begun. Fewer than asked for if the search was cancelled or ran out of time.
     pub fn starts(&self) -> usize {
         self.starts
     }
 
-    /// The starts that led to no minimum, by number, and why.
-    pub fn failures(&self) -> &[(usize, StartFailure)] {
+    /// The starts that led to no minimum, by number, each with its other end, or with the error if the fit could not
+    /// begin there.
+    pub fn failures(&self) -> &[(usize, Result<Outcome, FitError>)] {
         &self.failures
     }
 
@@ -117,13 +108,13 @@ impl Minima {
         let finished = match finished {
             Ok(finished) => finished,
             Err(error) => {
-                self.failures.push((number, StartFailure::Refused(error)));
+                self.failures.push((number, Err(error)));
                 return;
             }
         };
         let outcome = finished.fit.outcome();
         if !outcome.is_success() {
-            self.failures.push((number, StartFailure::Ended(outcome)));
+            self.failures.push((number, Ok(outcome)));
             let is_best = |fit: &Fit| finished.fit.sum_of_squares() < fit.sum_of_squares();
             if self.unfinished.as_ref().is_none_or(is_best) {
                 self.unfinished = Some(finished.fit);
@@ -151,10 +142,7 @@ impl Minima {
     /// The error of the first start, if none could begin.
     pub(crate) fn refused(mut self) -> Result<Self, FitError> {
         if self.failures.len() == self.starts && self.unfinished.is_none() && !self.failures.is_empty() {
-            match self.failures.swap_remove(0).1 {
-                StartFailure::Refused(error) => return Err(error),
-                StartFailure::Ended(_) => {}
-            }
+            self.failures.swap_remove(0).1?;
         }
         Ok(self)
     }

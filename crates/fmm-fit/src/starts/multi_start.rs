@@ -25,7 +25,7 @@ const BATCH: usize = 32;
 ///
 /// ```
 /// # use fmm_fit::EvaluationError;
-/// use fmm_fit::{MultiStart, Residuals};
+/// use fmm_fit::{Minimum, MultiStart, Residuals};
 /// use fmm_model::{Bounds, Parameter};
 ///
 /// /// Himmelblau's function, which is zero at four points.
@@ -45,7 +45,8 @@ const BATCH: usize = 32;
 /// let square = Bounds::new(-5.0, 5.0)?;
 /// let problem = Himmelblau(["x", "y"].map(|name| Parameter::new(name, name, "1").bounded(square)));
 /// let found = MultiStart::default().with_starts(20).solve(&problem, &[0.0, 0.0])?;
-/// assert_eq!(found.minima().iter().filter(|minimum| minimum.fit().sum_of_squares() < 1e-12).count(), 4);
+/// let is_zero = |minimum: &&Minimum| minimum.fit().sum_of_squares() < 1e-12;
+/// assert_eq!(found.minima().iter().filter(is_zero).count(), 4);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -66,14 +67,14 @@ impl Default for MultiStart {
 }
 
 impl MultiStart {
-    /// So many starts over the region, the given one included (32).
+    /// The number of starts over the region, the given one included (32).
     #[must_use]
     pub fn with_starts(mut self, starts: usize) -> Self {
         self.starts = starts;
         self
     }
 
-    /// So many rounds of so many kicks around the best (2 of 16).
+    /// The number of rounds, and of kicks around the best in each (2 of 16).
     #[must_use]
     pub fn with_kicks(mut self, rounds: usize, kicks: usize) -> Self {
         (self.rounds, self.kicks) = (rounds, kicks);
@@ -115,10 +116,10 @@ impl MultiStart {
         })
     }
 
-    /// As [`solve`](Self::solve), on all threads of the present rayon pool, with the same result.
+    /// [`solve`](Self::solve) on all threads of the present rayon pool, with the same result.
     ///
     /// # Errors
-    /// As for [`solve`](Self::solve).
+    /// Those of [`solve`](Self::solve).
     #[cfg(feature = "rayon")]
     pub fn solve_parallel<P: Residuals + Sync + ?Sized>(&self, problem: &P, start: &[f64]) -> Result<Minima, FitError> {
         use rayon::prelude::*;
@@ -184,7 +185,9 @@ impl MultiStart {
         let size = |j: usize| {
             let alone = || {
                 let column = minimizer.free().iter().position(|&free| free == j).filter(|_| has_values)?;
-                Some(minimizer.triangle().residual_norm() / minimizer.triangle().column_norm(column))
+                Some(
+                    minimizer.factor_of_jacobian().residual_norm() / minimizer.factor_of_jacobian().column_norm(column),
+                )
             };
             let own = Some(start[j].abs()).filter(|size| *size > 0.0);
             own.or_else(alone).filter(|size| size.is_finite() && *size > 0.0).unwrap_or(1.0)
@@ -195,5 +198,5 @@ impl MultiStart {
 
 fn finish<P: Residuals + ?Sized>(minimizer: &mut Minimizer, problem: &P, start: &[f64]) -> Result<Finished, FitError> {
     minimizer.minimize(problem, start)?;
-    Ok(Finished { fit: minimizer.fit()?, triangle: minimizer.triangle().clone() })
+    Ok(Finished { fit: minimizer.fit()?, triangle: minimizer.factor_of_jacobian().clone() })
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::algebra::definite::{self, add_square, factor, inverse};
 use crate::problem::block::Structure;
-use crate::problem::residuals::{EvaluationError, Residuals};
+use crate::problem::residuals::{Derivatives, EvaluationError, Residuals};
 use crate::result::fit::Fit;
 
 /// Covariance of the estimates of a fit whose residuals are correlated with their neighbours.
@@ -31,7 +31,7 @@ pub struct CorrelatedCovariance {
     elements: Vec<Option<f64>>,
 }
 
-/// As many windows begin within the length of one, which is nearly as good as all.
+/// Number of windows that begin within the length of one, which is nearly as good as all.
 const OVERLAPPING: usize = 8;
 
 /// The sums over one window.

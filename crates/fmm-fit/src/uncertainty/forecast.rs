@@ -1,4 +1,4 @@
-//! Forecast of a minimum for other values of what is held fixed, without a fit.
+//! Forecast of a minimum for other fixed values, without a fit.
 
 /// The estimates as a polynomial in the inputs about those of a fit.
 ///
@@ -131,7 +131,7 @@ impl Forecast {
     }
 }
 
-/// What changes are counted in: spreads, or 1 where there is none.
+/// Units of changes: spreads, or 1 where there is none.
 fn units(spread: &[f64]) -> Vec<f64> {
     spread.iter().map(|spread| if *spread > 0.0 { *spread } else { 1.0 }).collect()
 }

@@ -1,4 +1,4 @@
-//! Derivatives of a minimum with respect to values that are held fixed.
+//! Derivatives of a minimum with respect to fixed values.
 
 use fmm_model::Parameter;
 
@@ -6,12 +6,12 @@ use crate::algebra::definite;
 use crate::algebra::spectrum::Spectrum;
 use crate::algebra::sums::dot;
 use crate::algebra::triangle::Triangle;
+use crate::error::FitError;
 use crate::problem::residuals::{Derivatives, Residuals};
 use crate::result::estimate::{Estimate, EstimateStatus};
 use crate::result::fit::Fit;
 use crate::solver::differences::parabola;
 use crate::solver::evaluation::{Evaluator, Point, Scheme};
-use crate::uncertainty::propagated::FitError;
 use crate::uncertainty::sensitivity::Sensitivity;
 
 /// A minimum with its derivatives, from which the response follows.

@@ -13,9 +13,9 @@ use crate::result::fit::Fit;
 use crate::solver::minimizer::Minimizer;
 use crate::solver::options::Options;
 use crate::solver::outcome::Outcome;
-use crate::uncertainty::profile_interval::{FitError, ProfileEnd, ProfileInterval, ResidualVariance};
+use crate::uncertainty::profile_interval::{ProfileEnd, ProfileInterval, ResidualVariance};
 
-/// How far out a search for an end goes, in first guesses of its distance.
+/// Farthest distance of a search for an end, in first guesses of it (1).
 const FARTHEST: f64 = 1e9;
 /// A sum of squares lower by more than this share of the threshold means that the fit was not at its minimum.
 const LOWER: f64 = 1e-6;
@@ -66,7 +66,7 @@ const ACCURACY: f64 = 1e-10;
 ///
 /// # Errors
 /// [`FitError`] if the fit is not one of this problem or not at its lowest minimum, if the level or the parameter
-/// is impossible, or if the fit with the parameter held fails.
+/// is impossible, or if the fit with the fixed parameter fails.
 ///
 /// # References
 /// D. M. Bates, D. G. Watts, "Nonlinear Regression Analysis and Its Applications", Wiley (1988), ch. 6.
@@ -111,7 +111,7 @@ pub fn profile_interval<P: Residuals + ?Sized>(
     })
 }
 
-/// That `fit` may be one of `problem`.
+/// Refuses a `fit` that cannot be one of `problem`.
 fn require_same<P: Residuals + ?Sized>(problem: &P, fit: &Fit) -> Result<(), FitError> {
     let sizes = ((fit.residuals().len(), fit.values().len()), (problem.len(), problem.parameters().len()));
     if sizes.0 == sizes.1 { Ok(()) } else { Err(FitError::other_fit(sizes.0, sizes.1)) }
@@ -132,7 +132,7 @@ impl ProfileInterval {
     /// `problem`, `fit` and `options` are those of the interval.
     ///
     /// # Errors
-    /// As for [`profile_interval`].
+    /// Those of [`profile_interval`].
     pub fn curve<P: Residuals + ?Sized>(
         &self,
         problem: &P,
@@ -192,7 +192,7 @@ struct Trace {
 }
 
 impl<'a, P: Residuals + ?Sized> Profile<'a, P> {
-    /// That of parameter `index` about the minimum, `scale` being s and the quantile.
+    /// The profile of parameter `index` about the minimum, `scale` being s and the quantile.
     fn new(problem: &'a P, fit: &'a Fit, index: usize, scale: (f64, f64), options: &'a Options) -> Self {
         Self {
             problem,
@@ -301,16 +301,16 @@ impl<'a, P: Residuals + ?Sized> Profile<'a, P> {
         Ok(ProfileEnd::At(0.5 * (ends[0].0 + ends[1].0)))
     }
 
-    /// The best fit with the parameter held at `value`, from the points of `trace`; `None` if the model has no value.
+    /// The best fit with the parameter fixed at `value`, from the points of `trace`; `None` if the model has no value.
     fn point(&mut self, value: f64, trace: &[Trace]) -> Result<Option<Trace>, FitError> {
-        let Ok(held) = WithFixed::new(self.problem, [(self.index, value)]) else { return Ok(None) };
+        let Ok(fixed) = WithFixed::new(self.problem, [(self.index, value)]) else { return Ok(None) };
         let last = &trace[trace.len() - 1];
         let mut failure = None;
         for mut start in [self.ahead(value, trace), last.values.clone(), self.fit.values().to_vec()] {
             start[self.index] = value;
             let left = self.options.max_evaluations.saturating_sub(self.residual_evaluations);
             self.minimizer.options = self.options.remaining(self.began).with_max_evaluations(left);
-            match self.minimizer.minimize(&held, &start) {
+            match self.minimizer.minimize(&fixed, &start) {
                 Ok(outcome) => {
                     self.residual_evaluations += self.minimizer.residual_evaluations();
                     if outcome.is_success() {
@@ -348,8 +348,8 @@ impl<'a, P: Residuals + ?Sized> Profile<'a, P> {
         Ok(Trace { values: self.minimizer.values().to_vec(), distance: excess.max(0.0).sqrt() })
     }
 
-    /// Where the other parameters go as this one goes to `value`: along the line through the last two points, or
-    /// from the minimum as the covariance says.
+    /// Expected values of the other parameters as this one goes to `value`: along the line through the last two points,
+    /// or from the minimum as the covariance says.
     fn ahead(&self, value: f64, trace: &[Trace]) -> Vec<f64> {
         let last = &trace[trace.len() - 1].values;
         let change = value - last[self.index];

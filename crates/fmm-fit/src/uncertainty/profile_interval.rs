@@ -3,9 +3,8 @@
 use fmm_model::coverage_factor;
 
 use crate::result::fit::Fit;
-use crate::solver::outcome::Outcome;
 
-/// What is known of the variance of the residuals.
+/// Knowledge of the variance of the residuals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum ResidualVariance {
@@ -15,7 +14,7 @@ pub enum ResidualVariance {
     Unit,
     /// It was estimated otherwise, with these degrees of freedom, of which the quantile is Student's.
     ///
-    /// Where residuals are correlated, V/C of the parameter makes the profile as wide as its variance V says, C being
+    /// If residuals are correlated, V/C of the parameter makes the profile as wide as its variance V says, C being
     /// the [unit covariance](crate::Fit::unit_covariance) (Chandler and Bate, <https://doi.org/10.1093/biomet/asm015>).
     Effective {
         /// s², in the unit of the residuals squared.

@@ -1,4 +1,4 @@
-//! A fit repeated many times, each time with other values of what it held fixed.
+//! A fit repeated many times, each time with other fixed values.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -6,6 +6,7 @@ use fmm_model::{Bounds, Parameter};
 
 use crate::algebra::spectrum::is_surely_of_full_rank;
 use crate::algebra::triangle::Triangle;
+use crate::error::FitError;
 use crate::problem::block::{Scratch, Structure};
 use crate::problem::knowledge::WithFixed;
 use crate::problem::residuals::{Derivatives, Residuals};
@@ -14,7 +15,6 @@ use crate::result::fit::Fit;
 use crate::solver::minimizer::Minimizer;
 use crate::solver::options::Options;
 use crate::uncertainty::forecast::Forecast;
-use crate::uncertainty::propagated::FitError;
 use crate::uncertainty::sensitivity::Sensitivity;
 
 /// A step that moves the residuals by less than this share of what the parameters themselves make of them is no step.
@@ -26,14 +26,14 @@ const STEPS: usize = 8;
 /// Share of the standard deviation of an estimate over the expected inputs that is nothing beside it.
 const NOTHING: f64 = 1e-6;
 
-/// By what steps may fall more slowly at other inputs than at those where it was seen.
+/// Factor by which steps may fall more slowly at other inputs than at the expected ones (1).
 const SLOWER: f64 = 2.0;
 
-/// Where residuals have kinks, as those of a motion whose stop passes a sample do, steps may end in going to and fro;
+/// Residuals with kinks, as those of a motion whose stop passes a sample, may let steps go to and fro;
 /// from within this share of the parameters' reach a search has the shorter way than from the forecast.
 const NEAR: f64 = 1e-3;
 
-/// Where Gauss–Newton steps have ended.
+/// End of Gauss–Newton steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Arrival {
     AtMinimum,
@@ -41,13 +41,13 @@ enum Arrival {
     Lost,
 }
 
-/// A fit prepared to be repeated with other values of the parameters that it held fixed, its inputs: the model of a
+/// A fit prepared to be repeated with other values of its fixed parameters, the inputs: the model of a
 /// Monte Carlo calculation.
 ///
-/// Where the minimum goes is foreseen by the [`Sensitivity`] of the fit; Gauss–Newton steps take it there, until the
+/// The [`Sensitivity`] of the fit foresees the minimum; Gauss–Newton steps take it there, until the
 /// next one, by their rate of convergence, would change nothing. Two evaluations are enough as a rule. A problem
 /// without derivatives, or a minimum that this does not reach within a few steps and the bounds, is handed to the
-/// [`Minimizer`]. Where it is told what changes to expect, one evaluation is often enough:
+/// [`Minimizer`]. With the changes to expect given, one evaluation is often enough:
 /// [`expecting`](Self::expecting).
 ///
 /// The estimates depend on the inputs alone: not on the order of the calls, nor on the thread.
@@ -115,7 +115,7 @@ struct Workspace {
     taken: usize,
 }
 
-/// How fast Gauss–Newton steps fall at the expected inputs.
+/// Rate at which Gauss–Newton steps fall at the expected inputs.
 #[derive(Debug)]
 struct Convergence {
     /// Standard deviations of the estimates over the inputs, in which a step is measured: by the largest of its parts.
@@ -127,8 +127,8 @@ struct Convergence {
 }
 
 impl Convergence {
-    /// As the first and second `steps` show it; none where there are no two of them, where they fall slowly, or where
-    /// they move an estimate that the inputs do not.
+    /// Taken from the first two `steps`; `None` if there are fewer, if they fall slowly, or if they move an estimate
+    /// that the inputs do not.
     fn seen(deviations: Vec<f64>, steps: &[[Vec<f64>; 2]]) -> Option<Self> {
         let mut convergence = Self { deviations, longest: 0.0, rate: 0.0 };
         for [first, second] in steps {
@@ -145,7 +145,7 @@ impl Convergence {
         parts.map(|(part, deviation)| part.abs() / deviation).fold(0.0, f64::max)
     }
 
-    /// Whether all that would come after this first step is nothing beside what the inputs do to the estimates.
+    /// True if all steps after this first one are nothing beside the changes of the estimates by the inputs.
     fn ends_with(&self, first: &[f64]) -> bool {
         let (length, rate) = (self.length(first), SLOWER * self.rate);
         length <= self.longest && length * rate / (1.0 - rate) <= NOTHING
@@ -252,12 +252,12 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
         self
     }
 
-    /// What was held fixed, in the order in which values are given.
+    /// The fixed parameters, in the order in which values are given.
     pub fn inputs(&self) -> impl ExactSizeIterator<Item = &Parameter> {
         self.inputs.iter().map(|&j| &self.problem.parameters()[j])
     }
 
-    /// What is estimated, in the order in which estimates come.
+    /// The estimated parameters, in the order of the estimates.
     pub fn estimated(&self) -> impl ExactSizeIterator<Item = &Parameter> {
         self.free.iter().map(|&j| &self.problem.parameters()[j])
     }
@@ -360,11 +360,11 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
     fn search(&self, values: &mut [f64]) -> Result<(), FitError> {
         let mut parameters = self.problem.parameters().to_vec();
         for &j in &self.inputs {
-            let held = Bounds::new(values[j], values[j]).map_err(|error| {
+            let fixed = Bounds::new(values[j], values[j]).map_err(|error| {
                 let input = parameters[j].name();
                 FitError::out_of_range(format!("the input {input} has no valid value: {error}"), values[j])
             })?;
-            parameters[j] = parameters[j].clone().bounded(held);
+            parameters[j] = parameters[j].clone().bounded(fixed);
         }
         let mut minimizer = Minimizer::new(self.options.clone());
         let outcome = minimizer.minimize(&WithFixed::within(self.problem, parameters), values)?;

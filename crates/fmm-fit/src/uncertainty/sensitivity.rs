@@ -1,15 +1,15 @@
-//! Sensitivity of the estimates of a fit to values that are held fixed.
+//! Sensitivity of the estimates of a fit to fixed values.
 
 use std::fmt;
 
 use fmm_model::{Parameter, Rounded};
 
+use crate::error::FitError;
 use crate::problem::residuals::Residuals;
 use crate::result::fit::Fit;
 use crate::uncertainty::minimum::Minimum;
-use crate::uncertainty::propagated::{FitError, PropagatedCovariance};
 
-/// Derivatives of the estimates of a fit by the values that it held fixed, its inputs, without fitting again.
+/// Derivatives of the estimates of a fit by its fixed values, the inputs, without fitting again.
 ///
 /// At a minimum the gradient Jᵀ r vanishes; that it does so for neighbouring inputs α too gives, by the implicit
 /// function theorem,
@@ -86,7 +86,7 @@ impl Sensitivity {
     /// The derivatives without the terms in the residuals.
     ///
     /// # Errors
-    /// As for [`of`](Self::of).
+    /// Those of [`of`](Self::of).
     pub fn first_order<P: Residuals + ?Sized>(problem: &P, fit: &Fit) -> Result<Self, FitError> {
         Minimum::new(problem, fit)?.respond(false)
     }
@@ -108,7 +108,7 @@ impl Sensitivity {
         self.coefficients.get(estimate * self.inputs.len() + column).copied().flatten()
     }
 
-    /// As [`coefficient`](Self::coefficient), for parameters by name.
+    /// [`coefficient`](Self::coefficient) for parameters by name.
     pub fn coefficient_of(&self, estimate: &str, input: &str) -> Option<f64> {
         let index = |name: &str| self.parameters.iter().position(|parameter| parameter.name() == name);
         self.coefficient(index(estimate)?, index(input)?)
@@ -155,10 +155,10 @@ impl Sensitivity {
         }))
     }
 
-    /// As [`propagate`](Self::propagate) for inputs of these standard uncertainties that are not correlated.
+    /// [`propagate`](Self::propagate) for inputs of these standard uncertainties that are not correlated.
     ///
     /// # Errors
-    /// As for [`propagate`](Self::propagate).
+    /// Those of [`propagate`](Self::propagate).
     pub fn propagate_uncorrelated(&self, uncertainties: &[f64]) -> Result<PropagatedCovariance, FitError> {
         let count = uncertainties.len();
         let mut covariance = vec![0.0; count * count];
@@ -193,5 +193,31 @@ fn quotient(of: &Parameter, by: &Parameter) -> String {
     match by.unit() {
         "1" => of.unit().to_owned(),
         unit => format!("{}/{}", enclosed(of.unit()), enclosed(unit)),
+    }
+}
+
+/// Covariance of the estimates of a fit that the uncertainty of its inputs brings about (JCGM 100:2008, 5.2.2, and
+/// JCGM 102:2011, 6.2.1).
+#[derive(Debug, Clone, PartialEq)]
+pub struct PropagatedCovariance {
+    count: usize,
+    elements: Vec<Option<f64>>,
+}
+
+impl PropagatedCovariance {
+    pub(crate) fn new(count: usize, element: impl Fn(usize, usize) -> Option<f64>) -> Self {
+        let elements = (0..count * count).map(|index| element(index / count, index % count)).collect();
+        Self { count, elements }
+    }
+
+    /// Covariance of the estimates of parameters `i` and `j`, in the product of their units; `None` if either is fixed
+    /// or not determined.
+    pub fn covariance(&self, i: usize, j: usize) -> Option<f64> {
+        if i < self.count && j < self.count { self.elements[i * self.count + j] } else { None }
+    }
+
+    /// Standard uncertainty of the estimate of parameter `i` from the inputs alone, in its unit.
+    pub fn standard_uncertainty(&self, i: usize) -> Option<f64> {
+        self.covariance(i, i).map(|variance| variance.max(0.0).sqrt())
     }
 }

@@ -1,8 +1,7 @@
 //! Models side by side: figures against statsmodels, and verdicts.
 
 use fmm_fit::{
-    ComparisonOptions, Contender, Criterion, Doubt, ModelTable, Polynomial, ResidualCount, Verdict,
-    Weighting,
+    ComparisonOptions, Contender, Criterion, Doubt, ModelTable, Polynomial, ResidualCount, Verdict, Weighting,
 };
 
 const Y: [f64; 12] = [1.1, 1.4, 2.2, 2.3, 3.1, 3.2, 4.3, 4.4, 5.5, 5.6, 6.9, 7.2];

@@ -106,6 +106,9 @@ fn amounts_that_cannot_be_expected_are_refused() {
     assert_eq!(expecting(&[0.5]).unwrap().to_string(), "1 values were given for 2 inputs");
     for bad in [-0.1, f64::NAN, f64::INFINITY] {
         let error = expecting(&[0.5, bad]);
-        assert!(matches!(&error, Some(FitError::OutOfRange { what, .. }) if what.starts_with("drift ")), "{error:?} for {bad}");
+        assert!(
+            matches!(&error, Some(FitError::OutOfRange { what, .. }) if what.starts_with("drift ")),
+            "{error:?} for {bad}"
+        );
     }
 }

@@ -9,8 +9,8 @@ use std::time::Duration;
 use argmin::core::observers::{Observe, ObserverMode};
 use argmin::core::{Executor, KV, State};
 use fmm_fit::{
-    BoundedLevenbergMarquardt, Derivatives, EstimateStatus, EvaluationError, FitError, Minimizer,
-    NonFinite, Options, Outcome, Residuals, f_test, solve, solve_observed,
+    BoundedLevenbergMarquardt, Derivatives, EstimateStatus, EvaluationError, FitError, Minimizer, NonFinite, Options,
+    Outcome, Residuals, f_test, solve, solve_observed,
 };
 use fmm_model::{Bounds, Parameter};
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -78,10 +78,7 @@ fn a_bad_start_is_refused_by_name() {
     let few = problem(&[FREE; 3], 2, |p, _| p[0]);
     let error = solve(&few, &[1.0; 3], &Options::default()).unwrap_err();
     assert!(matches!(error, FitError::Undetermined { .. }));
-    assert_eq!(
-        error.to_string(),
-        "2 residuals cannot determine 3 free parameters; give at least as many residuals"
-    );
+    assert_eq!(error.to_string(), "2 residuals cannot determine 3 free parameters; give at least as many residuals");
     let broken = fallible(&[FREE], 2, |_, _| Err(EvaluationError::message("no record")));
     let error = solve(&broken, &[1.0], &Options::default()).unwrap_err();
     assert_eq!(error.to_string(), "the model failed at the start: no record");

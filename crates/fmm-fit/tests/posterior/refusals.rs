@@ -23,10 +23,7 @@ fn what_cannot_be_sampled_is_refused() {
     let exact = Linear { data: problem.columns[1].clone(), ..line() };
     let fit = fitted(&exact, &[0.0, 1.0]);
     assert!(matches!(sampler.sample(&exact, &fit), Err(FitError::Undetermined { .. })));
-    assert!(matches!(
-        sampler.sample(&Linear { data: vec![1.0; 3], ..line() }, &fit),
-        Err(FitError::OtherFit { .. })
-    ));
+    assert!(matches!(sampler.sample(&Linear { data: vec![1.0; 3], ..line() }, &fit), Err(FitError::OtherFit { .. })));
 }
 
 /// Two columns that are one: nothing tells them apart, unless a prior knows one of them.

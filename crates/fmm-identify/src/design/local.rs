@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fmm_fit::{DesignError, Information, Residuals};
+use fmm_fit::{FitError, Information, Residuals};
 use fmm_friction::Role;
 use fmm_model::{Dual, Parameter, Scalar, Unit};
 use fmm_record::{Quantity, Record};
@@ -52,7 +52,7 @@ pub(crate) fn by_name(names: &[&str], parameters: &[Parameter]) -> Vec<f64> {
 }
 
 /// What `source` says of a design by `law`.
-pub(crate) fn design_error(law: &'static str, source: DesignError) -> IdentifyError {
+pub(crate) fn design_error(law: &'static str, source: FitError) -> IdentifyError {
     IdentifyError::simulation(law, source)
 }
 

@@ -239,7 +239,7 @@ impl Plan {
 
     fn searched(
         &self,
-        cases: Result<Vec<DesignCase>, fmm_fit::DesignError>,
+        cases: Result<Vec<DesignCase>, fmm_fit::FitError>,
         aim: &Aim,
     ) -> Result<DesignSearch, IdentifyError> {
         let criterion = match aim {
@@ -269,6 +269,6 @@ impl Plan {
     }
 }
 
-fn number(value: f64, error: &fmm_fit::DesignError) -> IdentifyError {
+fn number(value: f64, error: &fmm_fit::FitError) -> IdentifyError {
     IdentifyError::OutOfRange { what: error.to_string(), value }
 }

@@ -57,11 +57,13 @@ pub fn compare_force(models: &[ForceModel], records: &[ForceRecord]) -> Result<F
     let contenders: Vec<Contender> = (0..models.len()).map(contender).collect();
     let comparing = ComparisonOptions::default().by(Criterion::Bayesian);
     let table = ModelTable::of(&contenders, comparing).map_err(|error| match error {
-        fmm_fit::ModelTableError::NoContender => {
+        fmm_fit::FitError::Count { .. } if models.is_empty() => {
             IdentifyError::missing("there is no model to compare; give at least one")
         }
-        fmm_fit::ModelTableError::TooFewResiduals { parameters, residuals, .. } => {
-            IdentifyError::too_short(residuals, parameters + 3)
+        fmm_fit::FitError::Undetermined { .. } => {
+            let counted = counts.iter().filter(|counts| **counts).count();
+            let parameters = identifications.iter().map(|found| found.fit().rank()).max().unwrap_or(0);
+            IdentifyError::too_short(counted, parameters + 3)
         }
         other => IdentifyError::contradiction(other.to_string()),
     })?;

@@ -1,6 +1,6 @@
 //! Profiles of the fitted quantities: how far value ± k u is the truth about each.
 
-use fmm_fit::{EstimateStatus, Options, ProfileEnd, ProfileError, ProfileInterval, ResidualVariance, profile_interval};
+use fmm_fit::{EstimateStatus, FitError, Options, ProfileEnd, ProfileInterval, ResidualVariance, profile_interval};
 use fmm_model::Parameter;
 
 use crate::error::IdentifyError;
@@ -89,7 +89,7 @@ impl Profile {
 #[derive(Debug)]
 pub struct Profiles {
     computed: Vec<Profile>,
-    left_out: Vec<(Parameter, ProfileError)>,
+    left_out: Vec<(Parameter, FitError)>,
     residual_evaluations: usize,
 }
 
@@ -105,7 +105,7 @@ impl Profiles {
     }
 
     /// The quantities of which there is none, and why.
-    pub fn left_out(&self) -> &[(Parameter, ProfileError)] {
+    pub fn left_out(&self) -> &[(Parameter, FitError)] {
         &self.left_out
     }
 
@@ -161,12 +161,12 @@ impl Identification {
         index: usize,
         level: f64,
         evaluations: &mut usize,
-    ) -> Result<Profile, ProfileError> {
+    ) -> Result<Profile, FitError> {
         let fit = self.fit();
         let estimate = &fit.estimates()[index];
-        let variance = self.covariance().relaxed(index).ok_or(ProfileError::NoVariance)?;
+        let variance = self.covariance().relaxed(index).ok_or_else(no_variance)?;
         let plain = fit.relaxed_covariance(index, index).or_else(|| fit.covariance(index, index));
-        let (plain, deviation) = (plain.zip(fit.residual_standard_deviation())).ok_or(ProfileError::NoVariance)?;
+        let (plain, deviation) = (plain.zip(fit.residual_standard_deviation())).ok_or_else(no_variance)?;
         let degrees_of_freedom = self.covariance().degrees_of_freedom();
         let residuals =
             ResidualVariance::Effective { variance: variance / plain * deviation * deviation, degrees_of_freedom };
@@ -180,4 +180,9 @@ impl Identification {
         }
         Ok(profile)
     }
+}
+
+fn no_variance() -> FitError {
+    let what = "the fit leaves no residual or no degree of freedom, so the variance cannot be estimated from it";
+    FitError::Undetermined { what: what.to_owned() }
 }

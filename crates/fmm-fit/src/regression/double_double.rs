@@ -12,12 +12,12 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// T. J. Dekker, "A floating-point technique for extending the available precision", Numer. Math. 18 (1971) 224,
 /// <https://doi.org/10.1007/BF01397083>.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Twofold {
+pub(crate) struct DoubleDouble {
     high: f64,
     low: f64,
 }
 
-impl Twofold {
+impl DoubleDouble {
     /// The product of two numbers, exact unless it underflows.
     pub(crate) fn product(a: f64, b: f64) -> Self {
         let high = a * b;
@@ -41,13 +41,13 @@ impl Twofold {
     }
 }
 
-impl From<f64> for Twofold {
+impl From<f64> for DoubleDouble {
     fn from(value: f64) -> Self {
         Self { high: value, low: 0.0 }
     }
 }
 
-impl Add for Twofold {
+impl Add for DoubleDouble {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -59,7 +59,7 @@ impl Add for Twofold {
     }
 }
 
-impl Neg for Twofold {
+impl Neg for DoubleDouble {
     type Output = Self;
 
     fn neg(self) -> Self {
@@ -67,7 +67,7 @@ impl Neg for Twofold {
     }
 }
 
-impl Sub for Twofold {
+impl Sub for DoubleDouble {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -75,7 +75,7 @@ impl Sub for Twofold {
     }
 }
 
-impl Mul for Twofold {
+impl Mul for DoubleDouble {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
@@ -86,7 +86,7 @@ impl Mul for Twofold {
     }
 }
 
-impl std::iter::Sum for Twofold {
+impl std::iter::Sum for DoubleDouble {
     fn sum<I: Iterator<Item = Self>>(terms: I) -> Self {
         terms.fold(Self::default(), |sum, term| sum + term)
     }
@@ -99,7 +99,7 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - (sum - part)) + (b - part))
 }
 
-/// As `two_sum` for `|a| ≥ |b|`.
+/// `two_sum` for `|a| ≥ |b|`.
 fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     (sum, b - (sum - a))
@@ -111,20 +111,20 @@ mod tests {
 
     #[test]
     fn what_cancels_in_one_number_survives_in_two() {
-        let third = Twofold::product(1.0 / 3.0, 3.0) - Twofold::from(1.0);
+        let third = DoubleDouble::product(1.0 / 3.0, 3.0) - DoubleDouble::from(1.0);
         // 1/3 is rounded by ε/12 = 2⁻⁵⁴/3, three times that is exact.
         assert_eq!(third.value(), -(-54f64).exp2());
-        let tiny = Twofold::from(1.0) + Twofold::from(1e-25) - Twofold::from(1.0);
+        let tiny = DoubleDouble::from(1.0) + DoubleDouble::from(1e-25) - DoubleDouble::from(1.0);
         assert!((tiny.value() - 1e-25).abs() < 1e-32, "{tiny:?}");
     }
 
     #[test]
     fn powers_of_a_tenth_keep_thirty_digits() {
-        let tenth = Twofold::difference(0.1, 0.0);
-        let power = (0..5).fold(Twofold::from(1.0), |power, _| power * tenth);
+        let tenth = DoubleDouble::difference(0.1, 0.0);
+        let power = (0..5).fold(DoubleDouble::from(1.0), |power, _| power * tenth);
         // 0.1 = 3602879701896397/2⁵⁵, so that 10⁵ (0.1)⁵ = (1 + δ)⁵ with δ = 2⁻⁵⁴, of which 5δ + 10δ² is left.
         let delta = (-54f64).exp2();
-        let rest = power * Twofold::from(1e5) - Twofold::from(1.0);
+        let rest = power * DoubleDouble::from(1e5) - DoubleDouble::from(1.0);
         assert!((rest.value() - 5.0 * delta).abs() < 1e-30, "{} against {}", rest.value(), 5.0 * delta);
     }
 }
