@@ -260,9 +260,8 @@ fn intervals_cover_the_truth() {
     let mobilities = |trials: &[ImpactTrial]| -> Vec<Experiment> {
         trials.iter().map(|trial| Experiment::mobility(trial, None).unwrap()).collect()
     };
-    let domains: [(&str, &dyn Fn(&[ImpactTrial]) -> Vec<Experiment>); 2] =
-        [("mobility", &mobilities), ("time", &impacts)];
-    for (name, experiments) in domains {
+    for name in ["mobility", "time"] {
+        let experiments = |trials: &[ImpactTrial]| if name == "time" { impacts(trials) } else { mobilities(trials) };
         let mut covering = 0;
         let (mut squares, mut variances) = (0.0, 0.0);
         for seed in 0..SEEDS {

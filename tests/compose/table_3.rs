@@ -1,6 +1,6 @@
 //! The thesis' Table 3: what mass, stiffness and damping do to a fitted coefficient of friction.
 
-use fmm_fit::{WithFixed, Minimizer, Options, Refit, Residuals, Sensitivity, solve};
+use fmm_fit::{Minimizer, Options, Refit, Residuals, Sensitivity, WithFixed, solve};
 use fmm_friction::{Berger, Coulomb, LawFamily};
 use fmm_identify::Problem;
 use fmm_model::{Bounds, Damping, Oscillator};

@@ -107,7 +107,7 @@ fn thesis() {
     let settings = fmm_thesis::Settings::new().quick(true);
     let chapters = fmm_thesis::CHAPTERS.iter().filter(|(name, _)| *name != "chapter_5_monte_carlo");
     let targets =
-        |chapter: &fmm_thesis::Chapter| chapter.targets.iter().map(|target| target.document()).collect::<Vec<_>>();
+        |chapter: &fmm_thesis::Chapter| chapter.targets.iter().map(fmm_thesis::Target::document).collect::<Vec<_>>();
     let chapters = chapters.map(|(name, chapter)| {
         let chapter = chapter(&settings).unwrap();
         // One key a target, as a long list would be digested.

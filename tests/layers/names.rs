@@ -1,6 +1,6 @@
 //! Names at the root of a crate: each is used by somebody else.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use super::source::{crates, files, first_names, text, words};
 
@@ -98,7 +98,7 @@ fn every_exported_name_is_used() {
     texts.push(("README.md".to_owned(), text("README.md".as_ref())));
     let texts: Vec<(&str, BTreeSet<&str>)> =
         texts.iter().map(|(path, text)| (path.as_str(), words(text).collect())).collect();
-    let mut unused = BTreeMap::new();
+    let mut unused = BTreeSet::new();
     for name in &crates {
         let (examples, own, ident) = (doc_examples(name), format!("crates/{name}/"), name.replace('-', "_"));
         let examples: BTreeSet<&str> = words(&examples).collect();
@@ -107,11 +107,11 @@ fn every_exported_name_is_used() {
             let is_used =
                 examples.contains(exported.as_str()) || users().any(|user| user.1.contains(exported.as_str()));
             if !is_used {
-                unused.insert(format!("{ident}::{exported}"), ());
+                unused.insert(format!("{ident}::{exported}"));
             }
         }
     }
-    let unused: BTreeSet<&str> = unused.keys().map(String::as_str).collect();
+    let unused: BTreeSet<&str> = unused.iter().map(String::as_str).collect();
     let known: BTreeSet<&str> = UNUSED.iter().copied().collect();
     let new: Vec<_> = unused.difference(&known).collect();
     assert!(new.is_empty(), "nobody names {new:?}: make them private, or show them in an example");

@@ -19,7 +19,9 @@ pub(crate) fn crates() -> Vec<String> {
 pub(crate) fn files(folder: &str, endings: &[&str]) -> Vec<PathBuf> {
     let (mut waiting, mut found) = (vec![PathBuf::from(folder)], Vec::new());
     while let Some(folder) = waiting.pop() {
-        for entry in std::fs::read_dir(root().join(&folder)).unwrap_or_else(|error| panic!("{folder:?}: {error}")) {
+        for entry in
+            std::fs::read_dir(root().join(&folder)).unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
+        {
             let entry = entry.unwrap();
             let path = folder.join(entry.file_name());
             if entry.file_type().unwrap().is_dir() {
@@ -46,10 +48,11 @@ pub(crate) fn code(text: &str) -> String {
     let mut code = String::new();
     while let Some(line) = lines.next() {
         if line.trim_start().starts_with("#[cfg(test)]") {
-            let (mut depth, mut has_begun) = (0_isize, false);
+            let (mut depth, mut has_begun) = (0_i64, false);
             for line in lines.by_ref() {
                 has_begun |= line.contains('{');
-                depth += line.matches('{').count() as isize - line.matches('}').count() as isize;
+                let count = |brace: char| i64::try_from(line.matches(brace).count()).unwrap_or(i64::MAX);
+                depth += count('{') - count('}');
                 if has_begun && depth <= 0 || !has_begun && line.contains(';') {
                     break;
                 }

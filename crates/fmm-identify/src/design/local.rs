@@ -31,7 +31,7 @@ pub(crate) fn layout(
     let blank = Record::new(0.0, 1.0, vec![0.0; 2], Quantity::Displacement, position.to_string())?;
     let blank = Experiment::planned(blank, None, false, frequency, 1.0, None);
     // What is known to an uncertainty is an input of a plan.
-    let (layout, mut parameters) = Table::of(law.with_breakaway(), &machine.exactly(), terms, &[blank])?;
+    let (layout, mut parameters) = Table::of(law.with_breakaway(), &machine.exactly(), terms.clone(), &[blank])?;
     parameters.truncate(layout.shared);
     Ok((layout, parameters))
 }
@@ -100,14 +100,14 @@ impl Local<'_> {
             };
             let whole = alone + added_mass;
             of_mass = alone / whole;
-            if !layout.is_per_mass() {
-                of_stiffness = own[1] / (own[1] + added_stiffness);
-                (own[0], own[1]) = (whole, own[1] + added_stiffness);
-            } else {
+            if layout.is_per_mass() {
                 let spring = alone / mass_of_stiffness(one, own[0]);
                 of_stiffness = spring / (spring + added_stiffness);
                 of_force = of_mass;
                 own[0] = ((spring + added_stiffness) / whole).sqrt() / (2.0 * PI);
+            } else {
+                of_stiffness = own[1] / (own[1] + added_stiffness);
+                (own[0], own[1]) = (whole, own[1] + added_stiffness);
             }
         }
         for (place, term) in layout.terms.iter().enumerate() {
@@ -193,10 +193,7 @@ impl Local<'_> {
         let name = self.guess.law.name;
         let failed = |source| design_error(name, source);
         let shared: Vec<f64> = self.of_test(test, 0);
-        let frequency = match self.layout.is_per_mass() {
-            true => shared[0],
-            false => (shared[1] / shared[0]).sqrt() / (2.0 * PI),
-        };
+        let frequency = if self.layout.is_per_mass() { shared[0] } else { (shared[1] / shared[0]).sqrt() / (2.0 * PI) };
         let experiments = [self.experiment(test, frequency)?];
         let law = self.guess.law.with_held_breakaway();
         let machine = self.machine(test, &self.guess.machine)?;

@@ -85,18 +85,9 @@ impl Experiment {
         };
         let guess_of_response = FirstGuess::of_driven(frequency, mean, amplitude, first, quantity);
         Ok(Self {
-            record,
-            kept,
-            guess: guess_of_response,
             peaks: swings.peaks().iter().map(|peak| (peak.time, peak.value)).collect(),
-            nuisances: Vec::new(),
-            shapes: Vec::new(),
-            summary,
-            sensor: super::Sensor::default(),
-            load_factor: 1.0,
             driven: Some(Driven { drive, guess, is_at_rest: false }),
-            impact: None,
-            lines: None,
+            ..Self::bare(record, kept, guess_of_response, summary)
         })
     }
 }

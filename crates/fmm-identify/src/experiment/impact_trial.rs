@@ -124,7 +124,9 @@ impl ImpactTrial {
         let of_force = force_noise.hypot(quantisation_step(force.values()).unwrap_or(0.0) / 12f64.sqrt());
         let sampled = SampledPulse::of(&blow.force, &blow.hits, interval, of_force);
         let mut further_hits = blow.pulse.further_hits;
-        further_hits.iter_mut().for_each(|hit| hit.time += velocity.start());
+        for hit in &mut further_hits {
+            hit.time += velocity.start();
+        }
         let summary = ImpactSummary {
             samples: velocity.len(),
             rate: velocity.rate(),

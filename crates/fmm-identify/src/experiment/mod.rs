@@ -73,10 +73,28 @@ struct Driven {
     is_at_rest: bool,
 }
 
-/// Fewest samples that can show two half swings.
+/// Fewest samples that can show two half cycles.
 const FEWEST_SAMPLES: usize = 16;
 
 impl Experiment {
+    /// A free vibration by a `record` of which these ranges are used, without disturbances and by an ideal sensor.
+    fn bare(record: Record, kept: Vec<Range<usize>>, guess: FirstGuess, summary: RecordSummary) -> Self {
+        Self {
+            record,
+            kept,
+            guess,
+            peaks: Vec::new(),
+            nuisances: Vec::new(),
+            shapes: Vec::new(),
+            summary,
+            sensor: Sensor::default(),
+            load_factor: 1.0,
+            driven: None,
+            impact: None,
+            lines: None,
+        }
+    }
+
     /// The same under `factor` times the normal load of the machine.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use fmm_record::Record;
 
-use super::{Drive, Driven, DrivenGuess, Experiment, Sensor};
+use super::{Drive, Driven, DrivenGuess, Experiment};
 use crate::experiment::RecordSummary;
 use crate::experiment::first_guess::FirstGuess;
 
@@ -27,19 +27,7 @@ impl Experiment {
             ..RecordSummary::unseen(&record, frequency, noise)
         };
         let of_drive = |drive| Driven { drive, guess: DrivenGuess::planned(frequency), is_at_rest };
-        Self {
-            kept: std::iter::once(0..record.len()).collect(),
-            record,
-            guess,
-            peaks: Vec::new(),
-            nuisances: Vec::new(),
-            shapes: Vec::new(),
-            summary,
-            sensor: Sensor::default(),
-            load_factor: 1.0,
-            driven: drive.map(of_drive),
-            impact: None,
-            lines: None,
-        }
+        let kept = std::iter::once(0..record.len()).collect();
+        Self { driven: drive.map(of_drive), ..Self::bare(record, kept, guess, summary) }
     }
 }

@@ -10,7 +10,7 @@ use fmm_record::{
 };
 
 use super::acceleration::{jumps, velocity_of};
-use super::{Experiment, Sensor, usable};
+use super::{Experiment, usable};
 use crate::error::IdentifyError;
 use crate::experiment::first_guess::{FirstGuess, Oscillation};
 use crate::experiment::nuisance::Nuisance;
@@ -139,21 +139,7 @@ impl Experiment {
         };
         let peaks = peaks.iter().map(|peak| (peak.time, peak.value)).collect();
         let nuisances = Nuisance::of_hum(&summary.hum).collect();
-        let experiment = Self {
-            record,
-            kept,
-            guess,
-            peaks,
-            nuisances: Vec::new(),
-            shapes: Vec::new(),
-            summary,
-            sensor: Sensor::default(),
-            load_factor: 1.0,
-            driven: None,
-            impact: None,
-            lines: None,
-        };
-        Ok(experiment.beside(nuisances))
+        Ok(Self { peaks, ..Self::bare(record, kept, guess, summary) }.beside(nuisances))
     }
 }
 

@@ -4,6 +4,7 @@ use fmm_fit::Fit;
 use fmm_model::Restoring;
 
 use crate::experiment::Experiment;
+use crate::finding::Finding;
 use crate::identification::{FittedMotion, Identification};
 use crate::law::naming::LINEAR;
 use crate::machine::Scale;
@@ -42,7 +43,7 @@ impl Warning {
         }
         for (number, experiment) in (1..).zip(decays) {
             let Some(impact) = experiment.impact_summary() else { continue };
-            let friction = identification.finding("friction_force").map(|finding| finding.value());
+            let friction = identification.finding("friction_force").map(Finding::value);
             let recorded = experiment.record().duration();
             Self::of_impact(number, impact, recorded, friction.filter(|friction| *friction > 0.0), &mut warnings);
         }

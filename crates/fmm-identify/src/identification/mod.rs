@@ -162,8 +162,6 @@ pub fn identify_observed<F: LawFamily>(
     identify_by(Law::of::<F>(), machine, terms, decays, Begin::Anywhere, options, observer)
 }
 
-/// An observer of trial steps that may end the fit.
-
 /// Like [`identify_observed`], by a law that is known at run time.
 pub(crate) fn identify_by(
     law: Law,
@@ -248,7 +246,7 @@ impl Candidate {
         if decays.is_empty() {
             return Err(IdentifyError::no_record());
         }
-        let (_, parameters) = Table::of(*self.law(), machine, self.terms(), decays)?;
+        let (_, parameters) = Table::of(*self.law(), machine, self.terms().clone(), decays)?;
         Ok(parameters.iter().map(|parameter| parameter.name().to_owned()).collect())
     }
 }

@@ -74,7 +74,7 @@ impl Problem<'static> {
         // Nothing is searched for in the record, which is used as it is.
         let experiments = vec![Experiment::planned(record.clone(), None, false, 1.0, 0.0, None)];
         let law = Law::of::<F>();
-        let (table, mut parameters) = Table::by(Coordinates::Coefficients, law, &machine, &Terms::NONE, &experiments)?;
+        let (table, mut parameters) = Table::by(Coordinates::Coefficients, law, &machine, Terms::NONE, &experiments)?;
         let default = |place: Place| match place {
             Place::Mass | Place::Stiffness | Place::Law(_) => None,
             Place::NormalLoad => Some(1.0),

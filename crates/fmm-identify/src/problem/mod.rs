@@ -92,7 +92,7 @@ impl<'a> Problem<'a> {
         experiments: &'a [Experiment],
     ) -> Result<Self, IdentifyError> {
         require_together(&machine, experiments)?;
-        let (table, parameters) = Table::of(law, &machine, &terms, experiments)?;
+        let (table, parameters) = Table::of(law, &machine, terms, experiments)?;
         Ok(Self::by(machine, Cow::Borrowed(experiments), table, parameters))
     }
 

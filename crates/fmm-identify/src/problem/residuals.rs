@@ -48,13 +48,11 @@ impl Problem<'_> {
 
     /// Writes what the rows of `record` see of `samples`, one for each sample that is used.
     fn map(&self, record: usize, samples: &[f64], rows: &mut [f64]) -> Result<(), EvaluationError> {
-        match self.experiments[record].lines() {
-            Some(lines) => lines.transform(samples, rows),
-            None => {
-                rows.copy_from_slice(samples);
-                Ok(())
-            }
+        if let Some(lines) = self.experiments[record].lines() {
+            return lines.transform(samples, rows);
         }
+        rows.copy_from_slice(samples);
+        Ok(())
     }
 
     /// Fills the `columns` of `record` that need no simulation, those of the offset and of the disturbances, and gives
@@ -192,7 +190,9 @@ impl Problem<'_> {
         }
         let weight = self.weights[record];
         if weight != 1.0 {
-            residuals.iter_mut().for_each(|out| *out *= weight);
+            for out in residuals {
+                *out *= weight;
+            }
         }
     }
 

@@ -202,7 +202,7 @@ impl Problem<'_> {
             return None;
         }
         let fitted = &other.fit;
-        let (table, _) = Table::of(other.law, &self.machine, &other.terms, &self.experiments).ok()?;
+        let (table, _) = Table::of(other.law, &self.machine, other.terms.clone(), &self.experiments).ok()?;
         let curve = FrictionCurve::of(&table, &other.terms, fitted.values(), reference(&self.experiments).scales().1)?;
         let own = &fitted.values()[table.shared..];
         let of_that_name = |(value, parameter): (&f64, &Parameter)| {

@@ -105,9 +105,10 @@ impl Inputs<'_> {
             let mut value = law_value(i);
             if let (Role::LevelAbove | Role::Breakaway, Some(level)) = (role, level) {
                 value += level;
-                derived.push(match self.table.is_per_mass() {
-                    true => (units.stated(law_parameter, Level::PerMass), value / gain),
-                    false => (units.stated(law_parameter, Level::Force), value * by_force),
+                derived.push(if self.table.is_per_mass() {
+                    (units.stated(law_parameter, Level::PerMass), value / gain)
+                } else {
+                    (units.stated(law_parameter, Level::Force), value * by_force)
                 });
             }
             let Some(force) = to_force.map(|to_force| value * to_force) else { continue };

@@ -36,9 +36,8 @@ impl Prior {
             deviations.push(uncertainty);
         }
         let count = prior.indices.len();
-        let element = |i: usize, j: usize| match i == j {
-            true => deviations[i] * deviations[i],
-            false => shared(prior.indices[i], prior.indices[j]),
+        let element = |i: usize, j: usize| {
+            if i == j { deviations[i] * deviations[i] } else { shared(prior.indices[i], prior.indices[j]) }
         };
         prior.covariance = (0..count * count).map(|at| element(at / count, at % count)).collect();
         prior.whitening = whitening(&prior.covariance, count);

@@ -155,7 +155,7 @@ fn oscillator(machine: &Machine, experiments: &[Experiment], coordinates: Coordi
             // A free vibration does not depend on it: there it makes forces of forces per mass, and nothing else.
             match scale {
                 Scale::Mass(mass) if is_forced && mass.uncertainty() > 0.0 => {
-                    rows.push(Place::Mass, None, MASS, known(mass, Source::Mass))
+                    rows.push(Place::Mass, None, MASS, known(mass, Source::Mass));
                 }
                 Scale::Stiffness(stiffness) if is_forced && stiffness.uncertainty() > 0.0 => {
                     rows.push(Place::Stiffness, None, STIFFNESS, known(stiffness, Source::Stiffness));
@@ -251,7 +251,7 @@ impl Table {
     pub(crate) fn of(
         family: Law,
         machine: &Machine,
-        terms: &Terms,
+        terms: Terms,
         experiments: &[Experiment],
     ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
         let coordinates = match machine.scale() {
@@ -266,7 +266,7 @@ impl Table {
         coordinates: Coordinates,
         family: Law,
         machine: &Machine,
-        terms: &Terms,
+        terms: Terms,
         experiments: &[Experiment],
     ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
         family.require_units()?;
@@ -306,7 +306,6 @@ impl Table {
         }
         let Builder { rows, parameters } = rows;
         let natural = parameters.iter().map(Parameter::bounds).collect();
-        let terms = terms.clone();
         let mut table =
             Self { family, terms, units, coordinates, rows, natural, oscillator, law, shared, own, of_motion };
         let mut parameters = parameters;

@@ -161,13 +161,11 @@ impl DataFile {
     /// [`RecordError::Channel`] without such an array or with several, [`RecordError::Unsupported`] if it is not a real numeric array, [`RecordError::Damaged`] if it cannot be read.
     #[cfg(any(feature = "mat", feature = "npy"))]
     pub fn array(&self, name: &str) -> Result<&Array, RecordError> {
-        match &self.content {
-            Content::Arrays(file) => file.array(name),
-            _ => {
-                let what = format!("there is no variable \"{name}\"; the file is of format {}", self.format);
-                Err(RecordError::channel(what))
-            }
+        if let Content::Arrays(file) = &self.content {
+            return file.array(name);
         }
+        let what = format!("there is no variable \"{name}\"; the file is of format {}", self.format);
+        Err(RecordError::channel(what))
     }
 
     /// The channels other than time, in the order of the file: columns of text, vectors, rows or columns of matrices

@@ -27,7 +27,11 @@ impl Distribution {
         let symmetric = |distance: f64| if probability < 0.5 { mean - distance } else { mean + distance };
         let tail = probability.min(1.0 - probability);
         match &self.shape {
-            Shape::Constant => mean,
+            Shape::StudentT { scale, degrees_of_freedom, .. } if probability != 0.5 => {
+                symmetric(scale * student_quantile(tail, *degrees_of_freedom))
+            }
+            // A Student distribution at its centre, or a number without one.
+            Shape::Constant | Shape::StudentT { .. } => mean,
             Shape::Rectangular => low + (high - low) * probability,
             Shape::CurvilinearTrapezoid { half_width, inexactness } => {
                 symmetric(quantiles::curvilinear_trapezoid(*half_width, *inexactness, tail))
@@ -43,10 +47,6 @@ impl Distribution {
             // The sine keeps the centre exact, where the cosine of π/2 would not be zero.
             Shape::ArcSine { amplitude } => mean + amplitude * (PI * (probability - 0.5)).sin(),
             Shape::Normal => mean + self.standard_deviation * Normal::standard().inverse_cdf(probability),
-            Shape::StudentT { scale, degrees_of_freedom, .. } if probability != 0.5 => {
-                symmetric(scale * student_quantile(tail, *degrees_of_freedom))
-            }
-            Shape::StudentT { .. } => mean,
             Shape::Exponential => -mean * (-probability).ln_1p(),
             Shape::Gamma { shape, scale, .. } => scale * quantiles::gamma(*shape, probability),
             Shape::Triangle { mode } => triangle(low, *mode, high, probability),

@@ -164,8 +164,7 @@ fn joint_fit(chapter: &mut Chapter, joint: &Identification, trials: usize, rows:
     chapter.finding(
         "Blows of different impulse tell dry friction from viscous damping, which one blow hardly does.",
         format!(
-            "All {} trials together give μ = {mu:.5} ± {u:.5} with c = {damping:.4} ± {of_damping:.4} N s/m, both found; the thesis holds c.",
-            trials
+            "All {trials} trials together give μ = {mu:.5} ± {u:.5} with c = {damping:.4} ± {of_damping:.4} N s/m, both found; the thesis holds c."
         ),
         &[],
     );
