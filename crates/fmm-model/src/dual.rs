@@ -1,7 +1,6 @@
 //! Dual number: a value with its partial derivatives.
 
-use core::cmp::Ordering;
-use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::{Scalar, math};
 
@@ -112,60 +111,7 @@ impl<const N: usize> Div<f64> for Dual<N> {
     }
 }
 
-macro_rules! with_plain_numbers {
-    ($($trait:ident $method:ident $assign:ident $assign_method:ident),*) => {$(
-        impl<const N: usize> $trait<Dual<N>> for f64 {
-            type Output = Dual<N>;
-            fn $method(self, other: Dual<N>) -> Dual<N> {
-                Dual::from(self).$method(other)
-            }
-        }
-
-        impl<const N: usize> $assign for Dual<N> {
-            fn $assign_method(&mut self, other: Self) {
-                *self = self.$method(other);
-            }
-        }
-
-        impl<const N: usize> $assign<f64> for Dual<N> {
-            fn $assign_method(&mut self, other: f64) {
-                *self = self.$method(other);
-            }
-        }
-    )*};
-}
-
-with_plain_numbers!(
-    Add add AddAssign add_assign,
-    Sub sub SubAssign sub_assign,
-    Mul mul MulAssign mul_assign,
-    Div div DivAssign div_assign
-);
-
-/// By values alone: branches are those of plain numbers.
-impl<const N: usize> PartialEq for Dual<N> {
-    fn eq(&self, other: &Self) -> bool {
-        self.value == other.value
-    }
-}
-
-impl<const N: usize> PartialOrd for Dual<N> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        self.value.partial_cmp(&other.value)
-    }
-}
-
-impl<const N: usize> PartialEq<f64> for Dual<N> {
-    fn eq(&self, other: &f64) -> bool {
-        self.value == *other
-    }
-}
-
-impl<const N: usize> PartialOrd<f64> for Dual<N> {
-    fn partial_cmp(&self, other: &f64) -> Option<Ordering> {
-        self.value.partial_cmp(other)
-    }
-}
+crate::scalar_operators!(Dual<N>, N: usize);
 
 impl<const N: usize> Scalar for Dual<N> {
     const DIRECTIONS: usize = N;

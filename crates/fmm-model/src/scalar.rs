@@ -125,6 +125,65 @@ pub trait Scalar:
     }
 }
 
+/// Implements for a number type the operators of [`Scalar`] that follow from its own arithmetic: plain numbers on the
+/// left, assignments, and comparisons by values.
+///
+/// The type needs `From<f64>`, and the four operations with itself and with `f64`. A parameter of the type follows it, as in
+/// `scalar_operators!(Dual<N>, N: usize)`.
+#[macro_export]
+macro_rules! scalar_operators {
+    ($number:ty $(, $parameter:ident: $kind:ty)?) => {
+        $crate::scalar_operators!(@with $number $(, $parameter: $kind)?; Add add AddAssign add_assign);
+        $crate::scalar_operators!(@with $number $(, $parameter: $kind)?; Sub sub SubAssign sub_assign);
+        $crate::scalar_operators!(@with $number $(, $parameter: $kind)?; Mul mul MulAssign mul_assign);
+        $crate::scalar_operators!(@with $number $(, $parameter: $kind)?; Div div DivAssign div_assign);
+
+        impl$(<const $parameter: $kind>)? PartialEq for $number {
+            fn eq(&self, other: &Self) -> bool {
+                $crate::Scalar::value(*self) == $crate::Scalar::value(*other)
+            }
+        }
+
+        impl$(<const $parameter: $kind>)? PartialOrd for $number {
+            fn partial_cmp(&self, other: &Self) -> Option<core::cmp::Ordering> {
+                $crate::Scalar::value(*self).partial_cmp(&$crate::Scalar::value(*other))
+            }
+        }
+
+        impl$(<const $parameter: $kind>)? PartialEq<f64> for $number {
+            fn eq(&self, other: &f64) -> bool {
+                $crate::Scalar::value(*self) == *other
+            }
+        }
+
+        impl$(<const $parameter: $kind>)? PartialOrd<f64> for $number {
+            fn partial_cmp(&self, other: &f64) -> Option<core::cmp::Ordering> {
+                $crate::Scalar::value(*self).partial_cmp(other)
+            }
+        }
+    };
+    (@with $number:ty $(, $parameter:ident: $kind:ty)?; $trait:ident $method:ident $assign:ident $assign_method:ident) => {
+        impl$(<const $parameter: $kind>)? core::ops::$trait<$number> for f64 {
+            type Output = $number;
+            fn $method(self, other: $number) -> $number {
+                core::ops::$trait::$method(<$number>::from(self), other)
+            }
+        }
+
+        impl$(<const $parameter: $kind>)? core::ops::$assign for $number {
+            fn $assign_method(&mut self, other: Self) {
+                *self = core::ops::$trait::$method(*self, other);
+            }
+        }
+
+        impl$(<const $parameter: $kind>)? core::ops::$assign<f64> for $number {
+            fn $assign_method(&mut self, other: f64) {
+                *self = core::ops::$trait::$method(*self, other);
+            }
+        }
+    };
+}
+
 impl Scalar for f64 {
     const DIRECTIONS: usize = 0;
 

@@ -39,7 +39,7 @@
 //! | which input matters? | [`Budget::contributions`]; with interactions [`variance_shares`] (Sobol') | [`variance_shares`]: correlated inputs |
 //! | what if a trial takes a second? | many machines and [`PartialRun`]s | |
 //! | what if the model is a text, known at run time only? | `Formula` (feature `formula`) | models with conditions or loops |
-//! | how is a result stated? | a [`Budget`] prints; [`Budget::statement`], [`MonteCarlo::statement`], [`Budget::to_csv`] | |
+//! | how is a result stated? | a [`Budget`] prints; [`Budget::statement`], [`MonteCarlo::statement`] | |
 //! | what differs between runs, laboratories or specimens? | [`AnalysisOfVariance`], [`Precision`] | |
 //! | which value do several results agree on? | [`Consensus`], [with what they share](Consensus::with_shared) | shared errors that nobody stated |
 //! | several results together? | [`Propagation`] with its regions, [`OutputSample::ellipsoid`], [`OutputSample::rectangle`] | |
@@ -104,7 +104,7 @@ pub use distributions::Distribution;
 pub use error::UncertaintyError;
 pub use failure::{Failure, FailureKind, Failures};
 pub use fmm_model::{Interval, Scalar, coverage_factor};
-pub use groups::{AnalysisOfVariance, Consensus, Influence, Outlier, OutlyingPair, Precision, RandomEffects};
+pub use groups::{AnalysisOfVariance, Consensus, Influence, Outlier, Precision, RandomEffects};
 pub use gum::{Budget, Contribution, Expanded, Gum, Linearisation, Propagation, SecondOrder, Statement, propagate};
 pub use inputs::{Evaluation, Input, Inputs, Observations};
 #[cfg(feature = "formula")]

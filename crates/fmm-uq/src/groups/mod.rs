@@ -2,9 +2,8 @@
 
 mod analysis_of_variance;
 mod consensus;
-mod outlying_pair;
 mod precision;
 
 pub use analysis_of_variance::AnalysisOfVariance;
 pub use consensus::{Consensus, Influence, RandomEffects};
-pub use precision::{Outlier, OutlyingPair, Precision};
+pub use precision::{Outlier, Precision};

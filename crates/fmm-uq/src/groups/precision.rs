@@ -6,7 +6,6 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use crate::distributions::Distribution;
 use crate::error::UncertaintyError;
 use crate::groups::analysis_of_variance::{AnalysisOfVariance, tail_of_f};
-use crate::groups::outlying_pair;
 use crate::moments::Moments;
 
 /// Precision of a method by observations in groups (laboratories, operators, days, releases), after ISO 5725-2:1994,
@@ -56,18 +55,6 @@ pub struct Outlier {
     /// The statistic (1).
     pub statistic: f64,
     /// Probability of one as large if all groups were alike (1), at most.
-    pub p_value: f64,
-}
-
-/// The two groups that stand out most on one side, and how likely two do as much by chance; of
-/// [`Precision::grubbs_pair`], with an example.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OutlyingPair {
-    /// Indices of the groups, counted from 0, the one farther out first.
-    pub groups: [usize; 2],
-    /// G, share of the sum of squares that remains without them (1): small if they stand out.
-    pub statistic: f64,
-    /// Probability of one as small on either side if all groups were alike (1), at most.
     pub p_value: f64,
 }
 
@@ -237,49 +224,6 @@ impl Precision {
         let t = if share < 1.0 { ((count - 2.0) * share / (1.0 - share)).sqrt() } else { f64::INFINITY };
         let tail = StudentsT::new(0.0, 1.0, count - 2.0).map_or(1.0, |student| student.sf(t));
         Some(Outlier { group, statistic, p_value: (2.0 * count * tail).min(1.0) })
-    }
-
-    /// Grubbs' test of the two largest or the two smallest means, whichever leaves less without them; `None` for
-    /// fewer than four groups, or if all are equal. Two that hide each other from [`Precision::grubbs`] show here;
-    /// after one that shows there, ask again without it.
-    ///
-    /// ```text
-    /// G = Σ (ȳ_i − ȳ')²/Σ (ȳ_i − ȳ)²        above and ȳ' without the two
-    /// ```
-    ///
-    /// The probability follows from that of the largest of p, p − 1, … 3 means, one after the other, as Grubbs (1950)
-    /// found it. It is computed to 3e-4 of it for up to 40 groups and 2e-3 for 300, in a time that grows with their
-    /// number: 1 ms for eight, 0.3 s for a thousand.
-    ///
-    /// ```
-    /// let laboratories = [1.02, 0.98, 1.01, 0.99, 1.00, 1.03, 0.97, 2.1, 2.2].map(|mean| [mean - 0.01, mean + 0.01]);
-    /// let found = fmm_uq::Precision::of(&laboratories)?;
-    /// // The two far off hide each other.
-    /// assert!(found.grubbs().is_some_and(|farthest| farthest.p_value > 0.05));
-    /// assert!(found.grubbs_pair().is_some_and(|pair| pair.groups == [8, 7] && pair.p_value < 1e-6));
-    /// # Ok::<(), fmm_uq::UncertaintyError>(())
-    /// ```
-    ///
-    /// # References
-    /// F. E. Grubbs, Annals of Mathematical Statistics 21 (1950) 27, <https://doi.org/10.1214/aoms/1177729885>.
-    pub fn grubbs_pair(&self) -> Option<OutlyingPair> {
-        let (_, deviation, means) = self.spread_of_means();
-        let count = means.len();
-        if count < 4 || !(deviation > 0.0) {
-            return None;
-        }
-        let all = deviation * deviation * (count - 1) as f64;
-        let mut order: Vec<usize> = (0..count).collect();
-        order.sort_by(|a, b| means[*a].total_cmp(&means[*b]));
-        let left = |others: &[usize]| {
-            let means: Vec<f64> = others.iter().map(|group| means[*group]).collect();
-            Moments::of_values(&means).sum_of_squares() / all
-        };
-        let (smallest, largest) = (left(&order[2..]), left(&order[..count - 2]));
-        let groups = if largest <= smallest { [order[count - 1], order[count - 2]] } else { [order[0], order[1]] };
-        let statistic = smallest.min(largest);
-        let p_value = (2.0 * outlying_pair::tail(statistic, count)).min(1.0);
-        Some(OutlyingPair { groups, statistic, p_value })
     }
 
     /// s_i², `None` for a group of one observation.

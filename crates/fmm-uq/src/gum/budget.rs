@@ -21,7 +21,7 @@ use crate::rounding::{Rounding, degrees, percent};
 /// | U | [`Budget::expanded`] | half width of an interval of given coverage probability |
 ///
 /// It prints as a table with the [`Statement`](crate::Statement) for 95 % below, and a line of warning where the
-/// [`Linearisation`] is suspect; [`Budget::to_csv`] has all digits.
+/// [`Linearisation`] is suspect; with the feature `serde` it is a document with all digits.
 ///
 /// ```
 /// use fmm_uq::{Input, Inputs, propagate};

@@ -1,4 +1,4 @@
-//! Text of a budget: table, statement, comma-separated values.
+//! Text of a budget: table and statement.
 
 use std::fmt;
 
@@ -134,51 +134,6 @@ impl Budget {
         })
     }
 
-    /// The budget as comma-separated values, with a row of headings, one row for each input and one for the result.
-    ///
-    /// Numbers have all their digits and shares are parts of 1; infinite degrees of freedom are `inf`. Names and units
-    /// are quoted where they need it. The last row has y, its unit, u(y) and ν_eff in the columns of the same meaning.
-    ///
-    /// ```
-    /// use fmm_uq::{Input, Inputs, propagate};
-    ///
-    /// let inputs = Inputs::new([Input::new("mass, dry", 2.0, 0.5, "kg")?])?;
-    /// let budget = propagate(&inputs, |x| x[0] * 4.0)?.named("force", "N");
-    /// assert_eq!(budget.to_csv(), "\
-    /// quantity,estimate,unit,distribution,type,divisor,u,nu,c,unit of c,|c| u,share
-    /// \"mass, dry\",2,kg,normal,B,1,0.5,inf,4,N/kg,2,1
-    /// force,8,N,,,,2,inf,,,,
-    /// ");
-    /// # Ok::<(), fmm_uq::UncertaintyError>(())
-    /// ```
-    pub fn to_csv(&self) -> String {
-        let mut text = HEADER.join(",").replace('ν', "nu");
-        for row in self.contributions() {
-            let input = row.input;
-            let numbers = [row.sensitivity, row.uncertainty, row.share].map(|value| value.to_string());
-            let [sensitivity, contribution, share] = numbers;
-            let cells = [
-                quoted(input.name()),
-                input.value().to_string(),
-                quoted(input.unit()),
-                input.distribution().name().to_owned(),
-                input.evaluation().to_string(),
-                input.distribution().divisor().to_string(),
-                input.standard_uncertainty().to_string(),
-                input.degrees_of_freedom().to_string(),
-                sensitivity,
-                quoted(&self.unit_of_sensitivity(input.unit())),
-                contribution,
-                share,
-            ];
-            text.push('\n');
-            text.push_str(&cells.join(","));
-        }
-        let nu = self.effective_degrees_of_freedom().map_or_else(String::new, |nu| nu.to_string());
-        let (name, unit) = (quoted(self.name()), quoted(self.unit()));
-        text + &format!("\n{name},{},{unit},,,,{},{nu},,,,\n", self.estimate(), self.standard_uncertainty())
-    }
-
     /// Unit of the result by that of an input.
     pub(crate) fn unit_of_sensitivity(&self, input: &str) -> String {
         let one = |unit: &str| matches!(unit, "" | "1");
@@ -241,11 +196,6 @@ fn divisor(value: f64) -> String {
     } else {
         significant(value, SENSITIVITY_DIGITS)
     }
-}
-
-/// A cell of a table of comma-separated values.
-fn quoted(text: &str) -> String {
-    if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
 /// `value` down to the last significant digit of its `uncertainty`; with ten digits if that is zero.

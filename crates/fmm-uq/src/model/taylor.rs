@@ -1,7 +1,6 @@
 //! Taylor number: a value with its expansion.
 
-use std::cmp::Ordering;
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use fmm_model::Scalar;
 
@@ -189,60 +188,7 @@ impl Div<f64> for Taylor {
     }
 }
 
-macro_rules! with_plain_numbers {
-    ($($trait:ident $method:ident $assign:ident $assign_method:ident),*) => {$(
-        impl $trait<Taylor> for f64 {
-            type Output = Taylor;
-            fn $method(self, other: Taylor) -> Taylor {
-                Taylor::from(self).$method(other)
-            }
-        }
-
-        impl $assign for Taylor {
-            fn $assign_method(&mut self, other: Self) {
-                *self = self.$method(other);
-            }
-        }
-
-        impl $assign<f64> for Taylor {
-            fn $assign_method(&mut self, other: f64) {
-                *self = self.$method(other);
-            }
-        }
-    )*};
-}
-
-with_plain_numbers!(
-    Add add AddAssign add_assign,
-    Sub sub SubAssign sub_assign,
-    Mul mul MulAssign mul_assign,
-    Div div DivAssign div_assign
-);
-
-/// By values alone: branches are those of plain numbers.
-impl PartialEq for Taylor {
-    fn eq(&self, other: &Self) -> bool {
-        self.value() == other.value()
-    }
-}
-
-impl PartialOrd for Taylor {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        self.value().partial_cmp(&other.value())
-    }
-}
-
-impl PartialEq<f64> for Taylor {
-    fn eq(&self, other: &f64) -> bool {
-        self.value() == *other
-    }
-}
-
-impl PartialOrd<f64> for Taylor {
-    fn partial_cmp(&self, other: &f64) -> Option<Ordering> {
-        self.value().partial_cmp(other)
-    }
-}
+fmm_model::scalar_operators!(Taylor);
 
 impl Scalar for Taylor {
     const DIRECTIONS: usize = 2;

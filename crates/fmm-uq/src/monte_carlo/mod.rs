@@ -24,7 +24,6 @@ use std::ops::{ControlFlow, Range};
 
 use crate::error::UncertaintyError;
 use crate::inputs::Inputs;
-use crate::model::ModelOutput;
 use crate::monte_carlo::block::{BLOCK_TRIALS, Block};
 use crate::monte_carlo::refusal::{AllowedFailures, HeavyTail};
 use crate::monte_carlo::run::Plan;
@@ -145,41 +144,6 @@ impl<'a> MonteCarlo<'a> {
         self
     }
 
-    /// Runs all trials and pools them.
-    ///
-    /// # Errors
-    /// [`UncertaintyError::TooManyFailures`] if more trials fail than allowed; where none may fail, at the first
-    /// failure. [`UncertaintyError::Model`] if no trial succeeds, or the number of outputs changes.
-    /// [`UncertaintyError::Cancelled`] if the observer of the progress ends the run. [`UncertaintyError::Invalid`]
-    /// if the squares of the values overflow. For an adaptive run also [`UncertaintyError::TooFewTrials`] if its largest
-    /// number of trials is too small for the rule, and [`UncertaintyError::NoAnswer`] if an input has Student's t of
-    /// ν ≤ 2.
-    ///
-    /// # Panics
-    /// If the model does: a panic ends the run and passes through. A model that may fail should return an error.
-    pub fn run<R: ModelOutput<f64>>(
-        &self,
-        model: impl Fn(&[f64]) -> R + Sync,
-    ) -> Result<OutputSample, UncertaintyError> {
-        self.run_plan(&model)
-    }
-
-    /// Runs some blocks of trials; [`MonteCarlo::shard`] divides the blocks of a fixed number of trials.
-    ///
-    /// # Errors
-    /// Those of [`MonteCarlo::run`], except those of the whole run: no success, and too many failures where some are
-    /// allowed.
-    ///
-    /// # Panics
-    /// If the model does.
-    pub fn run_blocks<R: ModelOutput<f64>>(
-        &self,
-        blocks: Range<u64>,
-        model: impl Fn(&[f64]) -> R + Sync,
-    ) -> Result<PartialRun, UncertaintyError> {
-        self.run_range(blocks, &model)
-    }
-
     /// The blocks of part `index` out of `parts` of a run of a fixed number of trials, as equal as they can be; empty
     /// beyond the last part, and for an adaptive run, which does not know its blocks.
     ///
@@ -199,15 +163,6 @@ impl<'a> MonteCarlo<'a> {
         let parts = u128::from(parts.max(1));
         let start = |index: u64| (blocks * u128::from(index).min(parts) / parts) as u64;
         start(index)..start(index.saturating_add(1))
-    }
-
-    /// Pools the trials of a complete partial result; for an adaptive run, those up to the stop.
-    ///
-    /// # Errors
-    /// [`UncertaintyError::PartialRun`] if it is of another run, or with the first block that is still needed; and
-    /// those of [`MonteCarlo::run`].
-    pub fn finish(&self, partial: PartialRun) -> Result<OutputSample, UncertaintyError> {
-        self.finish_plan(partial)
     }
 
     /// The values of the inputs in one trial, such as that of a [`Failure`](crate::failure::Failure); `None` if the block has no

@@ -79,14 +79,26 @@ impl Sequences {
 }
 
 impl MonteCarlo<'_> {
-    pub(crate) fn run_plan<R: ModelOutput<f64>>(
+    /// Runs all trials and pools them.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::TooManyFailures`] if more trials fail than allowed; where none may fail, at the first
+    /// failure. [`UncertaintyError::Model`] if no trial succeeds, or the number of outputs changes.
+    /// [`UncertaintyError::Cancelled`] if the observer of the progress ends the run. [`UncertaintyError::Invalid`]
+    /// if the squares of the values overflow. For an adaptive run also [`UncertaintyError::TooFewTrials`] if its largest
+    /// number of trials is too small for the rule, and [`UncertaintyError::NoAnswer`] if an input has Student's t of
+    /// ν ≤ 2.
+    ///
+    /// # Panics
+    /// If the model does: a panic ends the run and passes through. A model that may fail should return an error.
+    pub fn run<R: ModelOutput<f64>>(
         &self,
-        model: &(impl Fn(&[f64]) -> R + Sync),
+        model: impl Fn(&[f64]) -> R + Sync,
     ) -> Result<OutputSample, UncertaintyError> {
         let rule = match self.plan {
             Plan::Fixed(trials) => {
                 let mut pool = Pool::new(trials);
-                self.run_groups(0..blocks_of(trials), model, |blocks| pool.add(&blocks))?;
+                self.run_groups(0..blocks_of(trials), &model, |blocks| pool.add(&blocks))?;
                 return self.close(pool);
             }
             Plan::Adaptive(rule) => rule,
@@ -98,7 +110,7 @@ impl MonteCarlo<'_> {
         let mut start = 0;
         loop {
             let at_once = length * most_at_once.min(sequences.left());
-            for sequence in self.run_group(&state, start..start + at_once, model)?.chunks(length as usize) {
+            for sequence in self.run_group(&state, start..start + at_once, &model)?.chunks(length as usize) {
                 if sequences.add(sequence)? {
                     return self.close(sequences.pool);
                 }
@@ -107,7 +119,12 @@ impl MonteCarlo<'_> {
         }
     }
 
-    pub(crate) fn finish_plan(&self, partial: PartialRun) -> Result<OutputSample, UncertaintyError> {
+    /// Pools the trials of a complete partial result; for an adaptive run, those up to the stop.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::PartialRun`] if it is of another run, or with the first block that is still needed; and
+    /// those of [`MonteCarlo::run`].
+    pub fn finish(&self, partial: PartialRun) -> Result<OutputSample, UncertaintyError> {
         partial.require(self.seed, self.fingerprint)?;
         let complete = |block: &Block| block.trials == self.trials_of(block.index);
         let mut blocks = partial.into_blocks();
@@ -139,17 +156,25 @@ impl MonteCarlo<'_> {
         }
     }
 
-    pub(crate) fn run_range<R: ModelOutput<f64>>(
+    /// Runs some blocks of trials; [`MonteCarlo::shard`] divides the blocks of a fixed number of trials.
+    ///
+    /// # Errors
+    /// Those of [`MonteCarlo::run`], except those of the whole run: no success, and too many failures where some are
+    /// allowed.
+    ///
+    /// # Panics
+    /// If the model does.
+    pub fn run_blocks<R: ModelOutput<f64>>(
         &self,
-        range: Range<u64>,
-        model: &(impl Fn(&[f64]) -> R + Sync),
+        blocks: Range<u64>,
+        model: impl Fn(&[f64]) -> R + Sync,
     ) -> Result<PartialRun, UncertaintyError> {
         let end = match self.plan {
-            Plan::Fixed(trials) => range.end.min(blocks_of(trials)),
-            Plan::Adaptive(_) => range.end,
+            Plan::Fixed(trials) => blocks.end.min(blocks_of(trials)),
+            Plan::Adaptive(_) => blocks.end,
         };
         let mut all = Vec::new();
-        self.run_groups(range.start..end, model, |blocks| {
+        self.run_groups(blocks.start..end, &model, |blocks| {
             all.extend(blocks);
             Ok(())
         })?;

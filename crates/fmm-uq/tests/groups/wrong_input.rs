@@ -17,7 +17,7 @@ fn what_makes_no_groups_is_refused() {
     }
     let alike = Precision::of(&[[1.0, 1.0]; 4]).unwrap();
     assert_eq!((alike.repeatability(), alike.between(), alike.analysis().f()), (0.0, 0.0, 0.0));
-    assert!(alike.cochran().is_none() && alike.grubbs().is_none() && alike.grubbs_pair().is_none());
+    assert!(alike.cochran().is_none() && alike.grubbs().is_none());
     // Each group's squares are below what f64 holds, both together are not.
     assert!(matches!(refused(&[vec![0.0, 1.5e154], vec![0.0, 1.5e154]]), UncertaintyError::Invalid { .. }));
     assert!(matches!(refused(&[vec![1e-170, 2e-170], vec![3e-170]]), UncertaintyError::NoAnswer { .. }));
@@ -45,8 +45,4 @@ fn groups_without_a_spread() {
     // Standard deviation of 1, 2, 3 and 7.
     assert!((found.between() - (20.75_f64 / 3.0).sqrt()).abs() < 1e-14, "{}", found.between());
     assert!(found.cochran().is_none() && found.k().iter().all(|k| *k == Some(1.0)));
-    // Two and two alike: nothing is left without the outer two.
-    let found = Precision::of(&[[1.0, 1.0], [1.0, 1.0], [5.0, 5.0], [5.0, 5.0]]).unwrap();
-    let pair = found.grubbs_pair().unwrap();
-    assert_eq!((pair.statistic, pair.p_value), (0.0, 0.0));
 }
