@@ -4,7 +4,7 @@ use std::fmt;
 
 use fmm_record::{Quantity, Record};
 
-use crate::FrfError;
+use crate::error::FrfError;
 
 /// Channel of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -25,12 +25,12 @@ impl Channel {
         let found = record.quantity();
         if found != quantity {
             let what = format!("the {self} must be a record of {quantity}, but is one of {found}");
-            return Err(FrfError::Mismatch { what });
+            return Err(FrfError::mismatch(what));
         }
         let found = record.rate();
         if !((found / rate - 1.0).abs() <= 1e-6) {
             let what = format!("the {self} was sampled at {found} Hz, but must be at {rate} Hz");
-            return Err(FrfError::Mismatch { what });
+            return Err(FrfError::mismatch(what));
         }
         Ok(())
     }
@@ -49,7 +49,7 @@ impl Channel {
             let what = format!(
                 "force and response must begin together, but begin at {from} s and {to} s; crop them to the same beginning"
             );
-            return Err(FrfError::Mismatch { what });
+            return Err(FrfError::mismatch(what));
         }
         Ok(())
     }

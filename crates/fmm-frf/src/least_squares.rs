@@ -16,7 +16,7 @@ pub(crate) struct Equations<const P: usize> {
 #[derive(Debug, Clone)]
 pub(crate) struct Solution<const P: usize> {
     pub(crate) values: [f64; P],
-    /// Covariance by the variance that the residuals tell; `None` without a degree of freedom.
+    /// Covariance by the variance of the residuals; `None` without a degree of freedom.
     pub(crate) covariance: Option<[[f64; P]; P]>,
     pub(crate) sum_of_squares: f64,
 }
@@ -30,11 +30,6 @@ impl<const P: usize> Equations<P> {
     pub(crate) fn add(&mut self, row: [f64; P], right: f64) {
         self.columns.iter_mut().zip(row).for_each(|(column, entry)| column.push(entry));
         self.right.push(right);
-    }
-
-    /// Number of rows.
-    pub(crate) fn len(&self) -> usize {
-        self.right.len()
     }
 
     /// Their solution; `None` if they do not determine all unknowns.

@@ -3,14 +3,14 @@
 //! ```
 //! use fmm_frf::{Baseline, SingleDegreeOfFreedom, friction_force_of_coulomb_impact, impulse};
 //!
-//! // A half-sine blow of 1000 N and 2.2 ms, sampled at 10 kHz.
+//! // A half-sine impact of 1000 N and 2.2 ms, sampled at 10 kHz.
 //! let force: Vec<f64> = (0..=22).map(|i| 1000.0 * (std::f64::consts::PI * f64::from(i) / 22.0).sin()).collect();
-//! let blow = impulse(&force, 1e-4, Baseline::Keep)?;
-//! assert!((blow - 1.398_18).abs() < 5e-6);
+//! let given = impulse(&force, 1e-4, Baseline::Keep)?;
+//! assert!((given - 1.398_18).abs() < 5e-6);
 //!
 //! // It made a machine with friction answer with a receptance of 5.1e-3 m/N at most.
 //! let machine = SingleDegreeOfFreedom::new(10.391, 0.0, 1982.0)?;
-//! let friction = friction_force_of_coulomb_impact(blow, 10.391, machine.natural_angular_frequency(), 5.1e-3)?;
+//! let friction = friction_force_of_coulomb_impact(given, 10.391, machine.natural_angular_frequency(), 5.1e-3)?;
 //! assert!((friction - 0.7502).abs() < 5e-5);
 //! # Ok::<(), fmm_frf::FrfError>(())
 //! ```
@@ -19,27 +19,26 @@
 //!
 //! | question | answer |
 //! |---|---|
-//! | how hard was the blow, and was it one? | [`impulse`], [`Pulse`] |
+//! | how large was the impact, and was it one? | [`impulse`], [`Pulse`] |
 //! | what is the response? | [`TrialAverage`] with an [`Estimator`], [`Coherence`], uncertainties from the trials |
-//! | noise between blows, responses longer than the record? | [`ForceWindow`], [`ExponentialWindow`] |
+//! | noise between impacts, responses longer than the record? | [`ForceWindow`], [`ExponentialWindow`] |
 //! | in which form? | [`FrequencyResponse`]: receptance, mobility, accelerance; delays; bands |
-//! | which modes? | [`resonances`], [`PeakFit`], [`CircleFit`], [`RationalFit`] |
+//! | which modes? | [`resonances`], [`RationalFit`] |
 //! | which modes does a decay have, and how do frequency and damping depend on the amplitude? | [`decay_modes`], [`Backbone`] and its [`Suggestion`]; [`IsolatedMode`] takes one out |
 //! | how much friction? | [`friction_force_of_coulomb_impact`], [`friction_force_of_viscous_coulomb_impact`], [`CoulombLine`] |
 //! | is it friction at all? | [`FrictionSpectrum`]: odd harmonics, against the linear response of [`SingleDegreeOfFreedom`] |
 //!
-//! # Which estimator, which fit
+//! # Estimators and fits
 //!
 //! * **[`Estimator::H1`]** unless there is a reason: after a [`ForceWindow`] the noise is that of the response, which
 //!   it averages out. [`Estimator::H2`] where the force is the noisy channel, such as at resonances of a shaker;
 //!   [`Estimator::Hv`] where both are; [`Estimator::MeanOfRatios`] to repeat the thesis, in a band where every trial
 //!   has force.
-//! * **[`RationalFit`]** unless there is a reason: complex values, other modes as a background. [`CircleFit`] shows
-//!   whether the mobility is a circle; [`PeakFit`] needs no phases, for an unknown delay. All fit *linear* modes: the
-//!   damping that they find in a response with friction depends on the blow.
+//! * **[`RationalFit`]** fits complex values, with other modes as a background. It fits a *linear* mode: the damping
+//!   that it finds in a response with friction depends on the impact.
 //! * **Windows**: `None` for a motion that stops within the record, as it does with friction. An [`ExponentialWindow`]
 //!   is for linear machines that ring longer: the added damping is subtracted.
-//! * **Do not average blows of different strength** on a machine with friction: it is another machine each time.
+//! * **Do not average impacts of different strength** on a machine with friction: it is another machine each time.
 //!
 //! # Units and conventions
 //!
@@ -64,10 +63,11 @@
 //! # Neighbours
 //!
 //! [`fmm-record`](https://docs.rs/fmm-record) reads the two channels; [`fmm-identify`](https://docs.rs/fmm-identify)
-//! fits friction to the blows themselves, by the complex mobility or in time. The closed forms here are good to about
+//! fits friction to the impacts themselves, by the complex mobility or in time. The closed forms here are good to about
 //! half a percent and give its start values. There are no features.
 
 mod average;
+mod baseline;
 mod channel;
 mod decay;
 mod error;
@@ -78,8 +78,9 @@ mod modal;
 mod response;
 
 pub use average::{
-    AverageOptions, Averaging, Baseline, Coherence, Estimator, ExponentialWindow, ForceWindow, Taper, TrialAverage,
+    AverageOptions, Averaging, Coherence, Estimator, ExponentialWindow, ForceWindow, Taper, TrialAverage,
 };
+pub use baseline::Baseline;
 pub use channel::Channel;
 pub use decay::{
     Backbone, BackboneOptions, BackbonePoint, DampingTerm, DampingTermKind, DecayMode, IsolatedMode, Suggestion,
@@ -90,11 +91,11 @@ pub use fmm_model::{Estimated, ModelError};
 pub use fmm_record::{Complex64, RealTransform};
 pub use friction::{
     CoulombLine, FrictionSpectrum, Harmonic, coulomb_impact_duration, equivalent_damping_of_friction,
-    friction_force_of_coulomb_impact, friction_force_of_slope, friction_force_of_viscous_coulomb_impact,
-    peak_receptance_of_coulomb_impact, peak_receptance_of_viscous_coulomb_impact,
+    friction_force_of_coulomb_impact, friction_force_of_viscous_coulomb_impact, peak_receptance_of_coulomb_impact,
+    peak_receptance_of_viscous_coulomb_impact,
 };
-pub use impulse::{Hit, Pulse, Quadrature, impulse, impulse_by, impulse_of_record};
-pub use modal::{Background, CircleFit, Mode, PeakFit, RationalFit};
+pub use impulse::{Hit, Pulse, impulse};
+pub use modal::{Background, Mode, RationalFit};
 pub use response::{FrequencyResponse, Resonance, ResponseForm, SingleDegreeOfFreedom, resonances};
 
 #[cfg(doctest)]

@@ -1,28 +1,27 @@
 //! The average over trials, from which every estimate follows.
 
-mod baseline;
-mod coherence;
 mod estimator;
 mod options;
 mod sums;
 mod transform;
 mod window;
 
-pub use baseline::Baseline;
-pub use coherence::Coherence;
-pub use estimator::Estimator;
+pub use estimator::{Coherence, Estimator};
 pub use options::{AverageOptions, Averaging};
 pub use window::{ExponentialWindow, ForceWindow, Taper};
 
 use std::ops::Range;
 use std::sync::Arc;
 
+use fmm_model::ModelError;
 use fmm_record::{Quantity, Record};
 
 use crate::average::estimator::{Spectra, Undefined};
 use crate::average::sums::{RatioSums, SpectralSums, Weighed};
 use crate::average::transform::{SLOTS, TrialTransform};
-use crate::{Channel, FrequencyResponse, FrfError, ModelError, ResponseForm};
+use crate::channel::Channel;
+use crate::error::FrfError;
+use crate::response::{FrequencyResponse, ResponseForm};
 
 /// Spectra of a test, averaged over its trials.
 ///
@@ -38,7 +37,7 @@ use crate::{Channel, FrequencyResponse, FrfError, ModelError, ResponseForm};
 /// ```
 /// use fmm_frf::{AverageOptions, Estimator, ResponseForm, TrialAverage};
 ///
-/// // A blow on a machine that answers half as much, one sample later.
+/// // An impact on a machine that answers half as much, one sample later.
 /// let mut average = TrialAverage::new(ResponseForm::Mobility, 8.0, 8, &AverageOptions::default())?;
 /// average.add(&[0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], &[0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0])?;
 /// average.add(&[0.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], &[0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0])?;
@@ -126,7 +125,7 @@ impl TrialAverage {
     ///
     /// # Errors
     /// [`FrfError::Mismatch`] for channels of another length, [`FrfError::Values`] for samples that are not finite,
-    /// [`FrfError::NoForce`] for a force that is zero throughout, [`FrfError::Outside`] for a baseline or window
+    /// [`FrfError::Values`] for a force that is zero throughout, [`FrfError::Outside`] for a baseline or window
     /// outside the record, and [`FrfError::NotDefined`] if ratios are kept and the force is zero at a line. The average
     /// is then unchanged.
     pub fn add(&mut self, force: &[f64], response: &[f64]) -> Result<(), FrfError> {
@@ -156,7 +155,7 @@ impl TrialAverage {
     /// must be in N and the response in its SI unit.
     ///
     /// # Errors
-    /// As [`TrialAverage::add`], and [`FrfError::Mismatch`] for other quantities, rates that differ by more than 1e-6
+    /// Those of [`TrialAverage::add`]; [`FrfError::Mismatch`] for other quantities, rates that differ by more than 1e-6
     /// of theirs, or records that do not begin within 1e-3 of an interval of each other.
     pub fn add_records(&mut self, force: &Record, response: &Record) -> Result<(), FrfError> {
         Channel::Force.require(force, Quantity::Force, self.rate)?;
@@ -165,17 +164,19 @@ impl TrialAverage {
         self.add(force.values(), response.values())
     }
 
-    /// Adds a long record in segments that `overlap` by so many samples, each as one trial (Welch's method), and gives
-    /// their number. What is left over at the end is not used. Trials that overlap are not independent: uncertainties
-    /// and the number of averages count them as if they were.
+    /// Adds a long record in segments that `overlap` by a number of samples, each as one trial (Welch's method), and
+    /// gives the number of segments. Samples left over at the end are not used. Trials that overlap are not
+    /// independent: uncertainties and the number of averages count them as if they were.
     ///
     /// # Errors
-    /// As [`TrialAverage::add`] at the first segment that it refuses, with the segments before it added;
+    /// Those of [`TrialAverage::add`] at the first segment that it refuses, with the segments before it added;
     /// [`FrfError::Outside`] for an overlap of a whole segment, and [`FrfError::Mismatch`] for a record shorter than
     /// one, or channels of different length.
     pub fn add_segments(&mut self, force: &[f64], response: &[f64], overlap: usize) -> Result<usize, FrfError> {
         if overlap >= self.length {
-            return Err(FrfError::overlap(self.length, overlap));
+            let length = self.length;
+            let what = format!("segments of {length} samples must overlap by less than that, but should by {overlap}");
+            return Err(FrfError::outside(what));
         }
         if force.len() < self.length {
             let (expected, found) = (self.length, force.len());
@@ -209,8 +210,8 @@ impl TrialAverage {
         self.trials
     }
 
-    /// (Σw)²/Σw², how many trials of equal weight the average is worth: their number if the averaging is linear, 0
-    /// without trials.
+    /// (Σw)²/Σw², the number of trials of equal weight that the average is worth: their number if the averaging is
+    /// linear, 0 without trials.
     pub fn averages(&self) -> f64 {
         if self.trials == 0 { 0.0 } else { self.weights.0 * self.weights.0 / self.weights.1 }
     }
@@ -230,10 +231,10 @@ impl TrialAverage {
     ///
     /// # Errors
     /// [`FrfError::TooFew`] without a trial; [`FrfError::NotDefined`] at a line where the estimator would divide by
-    /// zero; [`FrfError::RatiosNotKept`] for the mean of ratios; [`FrfError::Values`] if it overflows.
+    /// zero; [`FrfError::Outside`] for the mean of ratios; [`FrfError::Values`] if it overflows.
     pub fn estimate(&self, estimator: Estimator) -> Result<FrequencyResponse, FrfError> {
         if self.trials == 0 {
-            return Err(FrfError::no_trials());
+            return Err(no_trials());
         }
         // The estimator is chosen outside the loop over the lines.
         let values = match estimator {
@@ -261,14 +262,16 @@ impl TrialAverage {
     /// is hardly known.
     ///
     /// # Errors
-    /// As [`TrialAverage::estimate`], and [`FrfError::TooFew`] for less than two averages.
+    /// Those of [`TrialAverage::estimate`]; [`FrfError::TooFew`] for less than two averages.
     pub fn uncertainty(&self, estimator: Estimator) -> Result<Vec<f64>, FrfError> {
         let freedom = self.averages() - 1.0;
         if self.trials == 0 {
-            return Err(FrfError::no_trials());
+            return Err(no_trials());
         }
         if !(freedom > 0.0 && self.trials > 1) {
-            return Err(FrfError::too_few_trials(self.averages()));
+            let averages = self.averages();
+            let what = format!("scatter needs more than one trial, but the average is worth {averages}");
+            return Err(FrfError::too_few(what));
         }
         self.lines(|line| {
             let scatter = match estimator {
@@ -289,7 +292,7 @@ impl TrialAverage {
     /// trials.
     pub fn coherence(&self) -> Result<Coherence, FrfError> {
         if self.trials == 0 {
-            return Err(FrfError::no_trials());
+            return Err(no_trials());
         }
         let values = self.spectra.map(&self.waiting(), |spectra| spectra.coherence().unwrap_or(f64::NAN));
         // The line to blame is looked for only if there is one.
@@ -345,13 +348,13 @@ impl TrialAverage {
     }
 
     fn ratios(&self) -> Result<&RatioSums, FrfError> {
-        self.ratios.as_ref().ok_or(FrfError::RatiosNotKept)
+        self.ratios.as_ref().ok_or(ratios_not_kept())
     }
 
     /// Values of `rule` at each line.
     fn lines<T>(&self, rule: impl Fn(usize) -> Result<T, FrfError>) -> Result<Vec<T>, FrfError> {
         if self.trials == 0 {
-            return Err(FrfError::no_trials());
+            return Err(no_trials());
         }
         // Collecting results would not know how many there are.
         let mut values = Vec::with_capacity(self.lines.len());
@@ -366,4 +369,14 @@ impl TrialAverage {
 fn weighed<'a>(transform: &'a TrialTransform, lines: &Range<usize>, slot: usize, factors: (f64, f64)) -> Weighed<'a> {
     let (force, response) = transform.spectra(slot, lines);
     Weighed { factors, force, response }
+}
+
+/// Error of an estimate without a trial.
+fn no_trials() -> FrfError {
+    FrfError::too_few("there is no trial to average over yet")
+}
+
+/// Error of a mean of ratios that was not asked for in time.
+fn ratios_not_kept() -> FrfError {
+    FrfError::outside("the ratios of the single trials were not kept; ask for them with AverageOptions::keeping_ratios")
 }

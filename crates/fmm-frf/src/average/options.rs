@@ -1,7 +1,10 @@
 //! Options of an average of trials.
 
-use crate::average::window::Windows;
-use crate::{Baseline, ExponentialWindow, ForceWindow, FrfError, ModelError, Taper};
+use fmm_model::ModelError;
+
+use crate::average::window::{ExponentialWindow, ForceWindow, Taper, Windows};
+use crate::baseline::Baseline;
+use crate::error::FrfError;
 
 /// Weight of each trial.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -35,7 +38,7 @@ impl Averaging {
 /// ```
 /// use fmm_frf::{AverageOptions, Baseline, ForceWindow, ResponseForm, TrialAverage};
 ///
-/// // 33 s at 10 kHz with a blow between 10 ms and 20 ms; only 0.5 Hz to 20 Hz is of interest.
+/// // 33 s at 10 kHz with an impact between 10 ms and 20 ms; only 0.5 Hz to 20 Hz is of interest.
 /// let options = AverageOptions::default()
 ///     .force_baseline(Baseline::MeanOf(0..90))
 ///     .force_window(ForceWindow::new(0.009, 0.020)?)

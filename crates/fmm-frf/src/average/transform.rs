@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
-use fmm_record::Complex64;
+use fmm_record::{Complex64, RealTransform};
 use pulp::Arch;
 
 use crate::average::window::Windows;
-use crate::{Baseline, Channel, FrfError, RealTransform};
+use crate::baseline::Baseline;
+use crate::channel::Channel;
+use crate::error::FrfError;
 
 /// Number of trials whose spectra are kept. Adding up two at a time saves a third of the time, which goes into memory
 /// transfers.
@@ -81,7 +83,7 @@ impl TrialTransform {
             let run = plan.run(samples, &mut side.spectra[slot], scratch);
             run.map_err(|_| FrfError::sample_count(side.channel, plan.length(), samples.len()))?;
         }
-        if force_energy > 0.0 { Ok(()) } else { Err(FrfError::NoForce) }
+        if force_energy > 0.0 { Ok(()) } else { Err(FrfError::no_force()) }
     }
 
     /// Spectra of force and response at some `lines` of those from zero frequency to half the rate; their unit is that
@@ -124,7 +126,8 @@ impl Side {
             return Ok(energy);
         }
         FrfError::require_samples(self.channel, given)?;
-        Err(FrfError::too_large(self.channel))
+        let what = format!("the samples of the {} are so large that their squares overflow", self.channel);
+        Err(FrfError::values(what))
     }
 }
 

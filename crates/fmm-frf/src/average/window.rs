@@ -2,7 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::{FrfError, ModelError};
+use fmm_model::ModelError;
+
+use crate::error::FrfError;
 
 /// Weights that fade both channels of a trial in and out alike, for excitation that goes on all the time.
 ///
@@ -35,9 +37,9 @@ impl Taper {
 /// Weights on the force alone: one during the pulse and zero elsewhere.
 ///
 /// Between pulses the force channel has nothing but noise, and all of it goes into the spectrum: 0.5 N rms over
-/// 330 000 samples at 10 kHz make 2 % of a blow of 1.42 N s, at every line; 10 ms of it make 0.035 %. Take the offset
-/// out first, with [`AverageOptions::force_baseline`](crate::AverageOptions::force_baseline): the window turns it into
-/// a pulse.
+/// 330 000 samples at 10 kHz make 2 % of an impact of 1.42 N s, at every line; 10 ms of it make 0.035 %. Take the
+/// offset out first, with [`AverageOptions::force_baseline`](crate::AverageOptions::force_baseline): the window turns
+/// it into a pulse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceWindow {
     from: f64,
@@ -168,7 +170,9 @@ impl Windows {
         if weights.iter().any(|weight| *weight > 0.0) {
             Ok(Some(weights))
         } else {
-            Err(FrfError::window_outside(window.from, window.to, interval * length as f64))
+            let (from, to, duration) = (window.from, window.to, interval * length as f64);
+            let what = format!("the force window from {from} s to {to} s covers no sample");
+            Err(FrfError::outside(format!("{what} of a record of {duration} s")))
         }
     }
 }

@@ -5,12 +5,12 @@ use std::f64::consts::TAU;
 use fmm_model::{Estimated, ModelError, Unit};
 use fmm_record::{Quantity, Record, Swings};
 
-use crate::FrfError;
-use crate::decay::half_cycles::{FEWEST_HALF_SWINGS, half_cycle_points};
+use crate::decay::half_cycles::{FEWEST_HALF_CYCLES, half_cycle_points};
 use crate::decay::local::{Carrier, LocalRegression, LocalVibration};
 use crate::decay::modes::{DecayMode, decay_modes};
 use crate::decay::spring::{bend, spring_terms};
 use crate::decay::suggestion::Suggestion;
+use crate::error::FrfError;
 
 /// Options of a backbone.
 ///
@@ -39,8 +39,8 @@ impl BackboneOptions {
         Ok(self)
     }
 
-    /// Sets windows of so many `cycles`, two at least. Without it, a window is a sixteenth of the record, between 3 and
-    /// 8 cycles; it is shorter in a record of few cycles, and longer where another mode is near.
+    /// Sets windows of a number of `cycles`, two at least. Without it, a window is a sixteenth of the record, between 3
+    /// and 8 cycles; it is shorter in a record of few cycles, and longer where another mode is near.
     ///
     /// # Errors
     /// [`FrfError::Outside`] if they are fewer than two.
@@ -106,7 +106,7 @@ pub struct BackbonePoint {
 /// ```
 ///
 /// # References
-/// A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapter 2 (how ω goes with A).
+/// A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapter 2 (ω over A).
 #[derive(Debug, Clone)]
 pub struct Backbone {
     points: Vec<BackbonePoint>,
@@ -117,8 +117,9 @@ pub struct Backbone {
     orders: i32,
 }
 
-/// A record of fewer cycles is told by half cycles, of which so many make a point.
+/// Cycles of a record below which half cycles make its points (1).
 const FEW_CYCLES: f64 = 7.0;
+/// Half cycles of a point (cycles).
 const HALF_CYCLES: f64 = 1.5;
 /// Fewest cycles of a window.
 const FEWEST_CYCLES: f64 = 2.0;
@@ -134,11 +135,11 @@ const NEAR: f64 = 0.5;
 const BEATS: f64 = 2.0;
 /// Least share of the amplitude for a mode to count beside the first (1).
 const LEAST_OTHER: f64 = 1e-3;
-/// Above this share of the amplitude, one at any higher frequency is fitted beside, the strongest first, so many at
-/// most.
+/// Share of the amplitude above which a mode at any higher frequency is fitted beside (1).
 const LOUD: f64 = 0.02;
+/// Most modes that are fitted beside, the strongest first.
 const MOST_OTHERS: usize = 8;
-/// Amplitudes count that are so many times their uncertainty.
+/// Least amplitude that counts, over its uncertainty (1).
 const SEEN: f64 = 10.0;
 /// The phase that may be gained in half a window against the carrier before it is moved (rad).
 const SLIP: f64 = 0.3;
@@ -153,7 +154,7 @@ impl Backbone {
     /// The backbone of the decay in `record`.
     ///
     /// # Errors
-    /// [`FrfError::TooFew`] if the record shows too few half swings, [`FrfError::NoFit`] if it shows no line, too few
+    /// [`FrfError::TooFew`] if the record shows too few half cycles, [`FrfError::NoFit`] if it shows no line, too few
     /// cycles for two windows, or, if the `options` ask for a frequency, no mode within a fifth of it.
     pub fn of(record: &Record, options: &BackboneOptions) -> Result<Self, FrfError> {
         let orders = match record.quantity() {
@@ -177,9 +178,9 @@ impl Backbone {
             return Ok(found);
         }
         prepared.and_then(|prepared| Self::by_windows(record, prepared, orders)).or_else(|error| {
-            // What rests after a few cycles is long all the same.
+            // A machine that rests after a few cycles has a long record all the same.
             let found = if is_free && is_long { by_half_cycles() } else { None };
-            found.ok_or_else(|| too_few_half_swings(record, options).unwrap_or(error))
+            found.ok_or_else(|| too_few_half_cycles(record, options).unwrap_or(error))
         })
     }
 
@@ -192,7 +193,7 @@ impl Backbone {
         // A frequency that moves far within the record is followed.
         let slips = |local: &Local| ((local.frequency - frequency) * half as f64 / record.rate() * TAU).abs() > SLIP;
         if locals.iter().any(slips) {
-            // Where nothing vibrates, a window says any frequency.
+            // A window without a vibration gives any frequency.
             let within = |found: f64| {
                 let is_near = (found / frequency - 1.0).abs() < NEAR;
                 if is_near { found } else { frequency }
@@ -261,16 +262,16 @@ fn no_fit(what: impl Into<String>) -> FrfError {
     FrfError::NoFit { what: what.into() }
 }
 
-/// That a record has too few half swings, if no mode was asked for and it swings at all.
-fn too_few_half_swings(record: &Record, options: &BackboneOptions) -> Option<FrfError> {
+/// Error of a record of too few half cycles, if no mode was asked for and it vibrates at all.
+fn too_few_half_cycles(record: &Record, options: &BackboneOptions) -> Option<FrfError> {
     let needed = match (record.quantity(), options.cycles) {
-        (Quantity::Displacement | Quantity::Velocity, None) => FEWEST_HALF_SWINGS,
+        (Quantity::Displacement | Quantity::Velocity, None) => FEWEST_HALF_CYCLES,
         // Two windows.
         (_, cycles) => (4.0 * cycles.unwrap_or(FEWEST_CYCLES)).ceil() as usize,
     };
     let found = Swings::of(record).peaks().len();
     (options.frequency.is_none() && (1..needed).contains(&found)).then(|| FrfError::TooFew {
-        what: format!("the record shows {found} half swings above its noise; a backbone needs at least {needed}"),
+        what: format!("the record shows {found} half cycles above its noise; a backbone needs at least {needed}"),
     })
 }
 
@@ -291,7 +292,7 @@ pub(crate) struct Prepared<'a> {
 }
 
 impl<'a> Prepared<'a> {
-    /// The mode that the `options` ask for, with windows that tell it from the others.
+    /// The mode that the `options` ask for, with windows that separate it from the others.
     pub(crate) fn of(record: &'a Record, options: &BackboneOptions) -> Result<Self, FrfError> {
         let modes = decay_modes(record);
         let decays = |mode: &&DecayMode| !mode.is_steady(record);
@@ -337,7 +338,7 @@ impl<'a> Prepared<'a> {
         }
         let taken = Taken { values, rate: record.rate(), half, others };
         let fixed = taken.regression(frequency).ok_or_else(|| {
-            no_fit(format!("a window of {cycles:.1} cycles does not tell the modes near {frequency:.4} Hz apart"))
+            no_fit(format!("a window of {cycles:.1} cycles does not separate the modes near {frequency:.4} Hz"))
         })?;
         Ok(Self { taken, frequency, fixed })
     }

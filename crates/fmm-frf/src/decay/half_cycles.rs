@@ -5,12 +5,12 @@ use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use fmm_model::Estimated;
 use fmm_record::{Peak, Quantity, Record, Swings, noise, quantisation_step};
 
-use crate::BackbonePoint;
+use crate::decay::backbone::BackbonePoint;
 
-/// Amplitudes that a point needs: of three half swings in a row, the first and the last are compared.
+/// Amplitudes that a point needs: of three half cycles in a row, the first and the last are compared.
 const COMPARED: usize = 3;
-/// Half swings that two points need: one more than amplitudes.
-pub(crate) const FEWEST_HALF_SWINGS: usize = COMPARED + 2;
+/// Half cycles that two points need: one more than amplitudes.
+pub(crate) const FEWEST_HALF_CYCLES: usize = COMPARED + 2;
 /// Deviation of a passage, against that of the mean of the samples it is fitted to: its centre comes from four turning
 /// points with weights 1, 3, 3, 1, two of which the next passage but one has as well, √(1 + ½ 28/64 · 1.5²).
 const PASSAGE: f64 = 1.222;
@@ -68,12 +68,12 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::{Backbone, BackboneOptions};
+    use crate::decay::{Backbone, BackboneOptions};
 
-    /// A release by 1 mm on dry friction that stops it after `halves` half swings of 0.1 s, at 1 kHz, with noise of
+    /// A release by 1 mm on dry friction that stops it after `halves` half cycles of 0.1 s, at 1 kHz, with noise of
     /// half a micrometre.
     fn stopped(halves: usize) -> Record {
-        // Each half swing loses twice the friction; what is left after them is less than it.
+        // Each half cycle loses twice the friction; the rest is less than that.
         let friction = 1.0 / (2 * halves + 1) as f64;
         let at = |i: usize| {
             let time = i as f64 / 1000.0;
@@ -88,14 +88,14 @@ mod tests {
     }
 
     #[test]
-    fn too_few_half_swings_are_counted() {
+    fn too_few_half_cycles_are_counted() {
         let of = |halves: usize| Backbone::of(&stopped(halves), &BackboneOptions::default());
         let refused = of(2).unwrap_err().to_string();
-        assert_eq!(refused, "the record shows 2 half swings above its noise; a backbone needs at least 5");
+        assert_eq!(refused, "the record shows 2 half cycles above its noise; a backbone needs at least 5");
         let asked = BackboneOptions::default().over(3.0).unwrap();
         let refused = Backbone::of(&stopped(5), &asked).unwrap_err().to_string();
-        assert!(refused.ends_with("shows 5 half swings above its noise; a backbone needs at least 12"), "{refused}");
-        assert!(of(FEWEST_HALF_SWINGS).unwrap().points().len() >= 2);
-        assert!(of(FEWEST_HALF_SWINGS - 1).is_err());
+        assert!(refused.ends_with("shows 5 half cycles above its noise; a backbone needs at least 12"), "{refused}");
+        assert!(of(FEWEST_HALF_CYCLES).unwrap().points().len() >= 2);
+        assert!(of(FEWEST_HALF_CYCLES - 1).is_err());
     }
 }

@@ -2,8 +2,8 @@
 
 use fmm_record::Record;
 
-use crate::decay::backbone::Prepared;
-use crate::{BackboneOptions, FrfError};
+use crate::decay::backbone::{BackboneOptions, Prepared};
+use crate::error::FrfError;
 
 /// One mode of a decay without the others, by a filter that does not shift it.
 #[derive(Debug, Clone)]
@@ -42,13 +42,13 @@ impl IsolatedMode {
     /// ```
     ///
     /// # Errors
-    /// As for [`Backbone::of`](crate::Backbone::of), but that nothing has to decay.
+    /// Those of [`Backbone::of`](crate::Backbone::of), except that nothing has to decay.
     pub fn of(record: &Record, options: &BackboneOptions) -> Result<Self, FrfError> {
         let Prepared { taken, frequency, fixed } = Prepared::of(record, options)?;
         let values = fixed.filtered(taken.values);
         let edge = taken.half as f64 * record.interval();
         let alone = Record::new(record.time(taken.half), record.interval(), values, record.quantity(), record.unit());
-        let record = alone.map_err(|error| FrfError::Values { what: error.to_string() })?;
+        let record = alone.map_err(|error| FrfError::values(error.to_string()))?;
         Ok(Self { record, frequency, edge })
     }
 }

@@ -3,8 +3,7 @@
 use std::f64::consts::TAU;
 
 use fmm_fit::{LinearRegression, Weighting};
-
-use crate::Complex64;
+use fmm_record::Complex64;
 
 /// A vibration that is looked for around a sample, Re[(a₀ + a₁ u + …) e^(iωτ)] with u the time in half widths.
 #[derive(Debug, Clone, Copy)]
@@ -23,7 +22,7 @@ pub(crate) struct LocalRegression {
     half: usize,
     /// For each unknown the numbers that, with the samples, sum up to it.
     filters: Vec<Vec<f64>>,
-    /// For each unknown what it stands for at each sample.
+    /// For each unknown its share of each sample.
     shapes: Vec<Vec<f64>>,
     /// Of the unknowns, for white noise of variance 1.
     covariance: Vec<Vec<f64>>,
@@ -47,7 +46,7 @@ pub(crate) struct LocalVibration {
 }
 
 impl LocalRegression {
-    /// The regression over `half` samples on either side; `None` if they do not tell the `carriers` apart.
+    /// The regression over `half` samples on either side; `None` if they do not separate the `carriers`.
     pub(crate) fn new(half: usize, carriers: &[Carrier]) -> Option<Self> {
         let count = 2 * half + 1;
         let times: Vec<f64> = (0..count).map(|i| i as f64 - half as f64).collect();
@@ -91,15 +90,15 @@ impl LocalRegression {
         let values = &values[centre - self.half..=centre + self.half];
         let unknowns: Vec<f64> = self.filters.iter().map(|filter| dot(filter, values)).collect();
         let (mut squares, mut sum) = (0.0, 0.0);
-        // Every second sample tells the noise as well as all do.
+        // Every second sample is enough for the noise.
         for k in (0..values.len()).step_by(2) {
-            let said: f64 = unknowns.iter().zip(&self.shapes).map(|(unknown, shape)| unknown * shape[k]).sum();
-            squares += self.weights[k] * (values[k] - said).powi(2);
+            let fitted: f64 = unknowns.iter().zip(&self.shapes).map(|(unknown, shape)| unknown * shape[k]).sum();
+            squares += self.weights[k] * (values[k] - fitted).powi(2);
             sum += self.weights[k];
         }
         // Unknowns take their share of the squares.
-        let told = sum * sum / self.weights.iter().step_by(2).map(|weight| weight * weight).sum::<f64>();
-        let taken = (1.0 - unknowns.len() as f64 / (2.0 * told)).max(0.1);
+        let effective = sum * sum / self.weights.iter().step_by(2).map(|weight| weight * weight).sum::<f64>();
+        let taken = (1.0 - unknowns.len() as f64 / (2.0 * effective)).max(0.1);
         let [amplitude, first, second] = [0, 2, 4].map(|place| Complex64::new(unknowns[place], unknowns[place + 1]));
         // The envelope exp(b u + (d − b²/2) u²) has a third power, b d − b³/3 of it, that the first takes in.
         let mut slope = first;

@@ -1,7 +1,6 @@
-//! Free decays looked at before a fit: their modes, and how frequency and damping go with the amplitude.
+//! Free decays before a fit: their modes, and frequency and damping over the amplitude.
 
 mod backbone;
-mod criterion;
 mod half_cycles;
 mod isolated;
 mod local;

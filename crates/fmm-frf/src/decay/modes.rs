@@ -24,7 +24,7 @@ pub struct DecayMode {
 }
 
 impl DecayMode {
-    /// Whether its amplitude stays the same through the record, as that of hum does.
+    /// True if its amplitude stays the same through the record, such as that of hum.
     pub fn is_steady(&self, record: &Record) -> bool {
         let lost = |damping: f64| 0.5 * damping * record.duration();
         self.multiple.is_none() && self.damping.is_some_and(|damping| lost(damping).abs() < STEADY)
@@ -44,18 +44,20 @@ const MEDIAN: f64 = core::f64::consts::LN_2;
 const PROMINENCE: f64 = 4.0;
 /// The band of the noise around a line, as a factor of its frequency.
 const AROUND: f64 = 1.4;
-/// A mode lies so many widths of a window away from the next at least.
+/// Least distance of a mode from the next, in widths of a window.
 const WIDTH: f64 = 4.0;
 /// Parts of the record that are looked at: all of it, its half, its quarter and its eighth from the greatest amplitude
 /// on.
 const PARTS: usize = 4;
 /// Fewest samples of a part.
 const FEWEST: usize = 64;
-/// Most multiples of a frequency that are taken for its harmonics, and how near to one they lie (1).
+/// Highest multiple of a frequency that is taken for its harmonic (1).
 const MULTIPLES: f64 = 15.0;
+/// Largest distance of a harmonic from a multiple of a steady frequency, over that multiple (1).
 const NEAR_MULTIPLE: f64 = 0.01;
+/// Largest distance of a harmonic from a multiple of any frequency (1).
 const MOST_FROM_MULTIPLE: f64 = 0.3;
-/// The most a harmonic has of the amplitude (1).
+/// Largest share of the amplitude in a harmonic (1).
 const HARMONIC: f64 = 0.1;
 /// Bound of the spectrum of the end of a decay, as a multiple of 1/(π Δf t)².
 const LEAKAGE: f64 = 3.0;
@@ -270,7 +272,7 @@ fn saddle(squares: &[f64], k: usize) -> f64 {
     left.into_iter().chain(right).fold(0.0, f64::max)
 }
 
-/// Twice the mean time (s) of the squares of `record` about its `mean`, counted from its start: how long it vibrates.
+/// Twice the mean time (s) of the squares of `record` about its `mean`, counted from its start: its effective length.
 fn effective_length(record: &Record, mean: f64) -> f64 {
     let (mut squares, mut moments) = (0.0, 0.0);
     for (i, value) in record.values().iter().enumerate() {

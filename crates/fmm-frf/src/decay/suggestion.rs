@@ -1,13 +1,13 @@
-//! Suggestion: which terms of damping and spring a backbone shows.
+//! Suggestion: the terms of damping and spring that a backbone shows.
 
 use std::f64::consts::TAU;
 use std::fmt;
 
 use fmm_model::{Damping, Estimated, ModelError};
 
-use crate::decay::criterion::{SIGNIFICANT, scored};
-use crate::decay::spring::stiffening;
-use crate::{BackbonePoint, equivalent_damping_of_friction};
+use crate::decay::backbone::BackbonePoint;
+use crate::decay::spring::{SIGNIFICANT, scored, stiffening};
+use crate::friction::equivalent_damping_of_friction;
 
 /// Kind of friction or damping by the way in which it takes energy from a vibration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,7 +32,7 @@ impl DampingTermKind {
         match self {
             Self::Coulomb => equivalent_damping_of_friction(1.0, velocity).unwrap_or(f64::INFINITY),
             Self::Linear => 1.0,
-            // Coefficients of 1 are none that are refused.
+            // A coefficient of 1 is not refused.
             Self::Quadratic => of(Damping::new(0.0, 1.0)).unwrap_or(f64::NAN),
             Self::Cubic => of(Damping::none().with_cubic(1.0)).unwrap_or(f64::NAN),
         }
@@ -77,8 +77,8 @@ impl Suggestion {
                 kinds.iter().map(|kind| velocities.iter().map(|v| kind.equivalent_damping(*v)).collect()).collect();
             let dampings: Vec<Estimated> = points.iter().map(|point| point.damping).collect();
             let Some((score, found)) = scored(&columns, &dampings, ACCURACY) else { continue };
-            let is_plain = |term: &Estimated| term.value > SIGNIFICANT * term.uncertainty;
-            if found.iter().all(is_plain) && best.as_ref().is_none_or(|(least, _)| score < *least) {
+            let is_significant = |term: &Estimated| term.value > SIGNIFICANT * term.uncertainty;
+            if found.iter().all(is_significant) && best.as_ref().is_none_or(|(least, _)| score < *least) {
                 best = Some((score, kinds.into_iter().zip(found).collect()));
             }
         }

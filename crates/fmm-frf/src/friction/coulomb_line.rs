@@ -3,8 +3,10 @@
 use std::f64::consts::PI;
 use std::fmt;
 
+use fmm_model::{Estimated, ModelError};
+
+use crate::error::FrfError;
 use crate::least_squares::{Equations, Solution};
-use crate::{Estimated, FrfError, ModelError};
 
 /// The straight line of receptance peaks over impulses, and the friction force of its slope.
 ///
@@ -15,10 +17,9 @@ use crate::{Estimated, FrfError, ModelError};
 /// By [`peak_receptance_of_coulomb_impact`](crate::peak_receptance_of_coulomb_impact) dry friction alone makes b zero.
 /// An intercept that is not, or points that are not on a line, tell of something else: viscous damping bends the line
 /// down ([`friction_force_of_viscous_coulomb_impact`](crate::friction_force_of_viscous_coulomb_impact) takes it out
-/// blow by blow), friction that depends on velocity bends it either way.
+/// of each impact), friction that depends on velocity bends it either way.
 ///
-/// The points are weighed equally and the impulses taken as exact. Where either is not good enough, fit the line
-/// elsewhere and use [`friction_force_of_slope`].
+/// The points are weighed equally and the impulses taken as exact.
 ///
 /// ```
 /// use fmm_frf::CoulombLine;
@@ -43,7 +44,8 @@ pub struct CoulombLine {
 }
 
 impl CoulombLine {
-    /// The line through the `peaks` (m/N) of blows with these `impulses` (N s); at least three, not all of one impulse.
+    /// The line through the `peaks` (m/N) of impacts with these `impulses` (N s); at least three, not all of one
+    /// impulse.
     ///
     /// # Errors
     /// [`FrfError::Mismatch`] for different numbers of impulses and peaks, [`FrfError::TooFew`] for fewer than three,
@@ -51,7 +53,9 @@ impl CoulombLine {
     /// that is not: peaks of friction grow. [`FrfError::NoFit`] for impulses that are all the same.
     pub fn fit(impulses: &[f64], peaks: &[f64], mass: f64, natural_angular_frequency: f64) -> Result<Self, FrfError> {
         if impulses.len() != peaks.len() {
-            return Err(FrfError::point_count(impulses.len(), peaks.len()));
+            let (impulses, peaks) = (impulses.len(), peaks.len());
+            let what = "there must be one peak for each impulse";
+            return Err(FrfError::mismatch(format!("{what}, but there are {impulses} impulses and {peaks} peaks")));
         }
         if impulses.len() < 3 {
             return Err(FrfError::too_few_points(3, impulses.len()));
@@ -107,7 +111,7 @@ impl fmt::Display for CoulombLine {
 ///
 /// # Errors
 /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any argument, or for a result out of range.
-pub fn friction_force_of_slope(slope: f64, mass: f64, natural_angular_frequency: f64) -> Result<f64, FrfError> {
+fn friction_force_of_slope(slope: f64, mass: f64, natural_angular_frequency: f64) -> Result<f64, FrfError> {
     ModelError::require_positive("slope of the peaks over the impulses", slope, "m/(N² s)")?;
     ModelError::require_positive("mass", mass, "kg")?;
     ModelError::require_positive("natural angular frequency", natural_angular_frequency, "rad/s")?;

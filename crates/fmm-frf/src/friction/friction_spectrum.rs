@@ -1,8 +1,10 @@
 //! The spectrum of the friction force, from what a response lacks of a linear one.
 
+use fmm_model::ModelError;
 use fmm_record::Complex64;
 
-use crate::{FrequencyResponse, FrfError, ModelError};
+use crate::error::FrfError;
+use crate::response::FrequencyResponse;
 
 /// The friction force by the applied force at each line.
 ///
@@ -47,18 +49,19 @@ impl FrictionSpectrum {
     /// line where the quotient is not finite, such as zero frequency for a mobility.
     pub fn of(measured: &FrequencyResponse, linear: &FrequencyResponse) -> Result<Self, FrfError> {
         if measured.form() != linear.form() || measured.decay_rate() != linear.decay_rate() {
-            return Err(FrfError::responses_differ(0));
+            return Err(responses_differ(0));
         }
         let shorter = measured.frequencies().len().min(linear.frequencies().len());
         let close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-9 * a.abs().max(b.abs());
         let differs = measured.frequencies().iter().zip(linear.frequencies()).position(|pair| !close(pair));
         if differs.is_some() || measured.frequencies().len() != linear.frequencies().len() {
-            return Err(FrfError::responses_differ(differs.unwrap_or(shorter)));
+            return Err(responses_differ(differs.unwrap_or(shorter)));
         }
         let quotients = measured.values().iter().zip(linear.values()).zip(measured.frequencies());
         let quotients = quotients.map(|((measured, linear), &frequency)| {
             let quotient = measured / linear;
-            if quotient.is_finite() { Ok(quotient) } else { Err(FrfError::linear_response_zero(frequency)) }
+            let what = || format!("the linear response is zero at {frequency} Hz; leave this line out");
+            if quotient.is_finite() { Ok(quotient) } else { Err(FrfError::not_defined(what(), frequency)) }
         });
         Ok(Self { frequencies: measured.frequencies().to_vec(), quotients: quotients.collect::<Result<_, _>>()? })
     }
@@ -89,7 +92,12 @@ impl FrictionSpectrum {
     pub fn harmonics(&self, fundamental: f64, highest: u32) -> Result<Vec<Harmonic>, FrfError> {
         ModelError::require_positive("the fundamental frequency", fundamental, "Hz")?;
         let (spacing, reach) = (0.25 * fundamental, fundamental * f64::from(highest));
-        let outside = || FrfError::harmonics_outside(fundamental, highest, reach, spacing);
+        let outside = || {
+            FrfError::outside(format!(
+                "harmonics of {fundamental} Hz up to order {highest} need lines that reach {reach} Hz, at most {spacing} \
+                 Hz apart"
+            ))
+        };
         let nearest = |frequency: f64| {
             let above = self.frequencies.partition_point(|&line| line < frequency);
             let distance = |line: usize| self.frequencies.get(line).map(|at| (at - frequency).abs());
@@ -123,7 +131,7 @@ impl FrictionSpectrum {
     /// not quite known, has about 1; with orders up to 9, noise alone exceeds 2.4 in one of a hundred spectra.
     ///
     /// # Errors
-    /// As [`FrictionSpectrum::harmonics`], with a highest order of 3 at least, and
+    /// Those of [`FrictionSpectrum::harmonics`], with a highest order of 3 at least, and
     /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) if there is nothing at all at the odd or at the even
     /// ones.
     pub fn odd_by_even(&self, fundamental: f64, highest: u32) -> Result<f64, FrfError> {
@@ -140,6 +148,12 @@ impl FrictionSpectrum {
             "",
         )?)
     }
+}
+
+/// Error of two responses that differ from `line` on; from 0 if their forms do.
+fn responses_differ(line: usize) -> FrfError {
+    let what = "both responses must be of one form and at the same frequencies";
+    FrfError::mismatch(format!("{what}, but differ from line {line} on"))
 }
 
 #[cfg(test)]

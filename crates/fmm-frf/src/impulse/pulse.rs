@@ -1,11 +1,14 @@
-//! Pulse of a blow: level, width, further hits.
+//! Pulse of an impact: level, width, further impacts.
 
 use std::ops::Range;
 
+use fmm_model::ModelError;
 use fmm_record::{Saturation, noise, saturation};
 
+use crate::baseline::Baseline;
+use crate::channel::Channel;
+use crate::error::FrfError;
 use crate::impulse::trapezoid;
-use crate::{Baseline, Channel, FrfError, ModelError};
 
 /// The pulse of an impact.
 ///
@@ -45,7 +48,7 @@ pub struct Pulse {
     pub overload: Option<Saturation>,
 }
 
-/// Another blow beside that of a [`Pulse`].
+/// Another impact beside that of a [`Pulse`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Hit {
@@ -65,7 +68,7 @@ impl Pulse {
     /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for the interval, [`FrfError::TooFew`] for fewer
     /// than two samples, [`FrfError::Values`] for samples that are not finite, [`FrfError::Outside`] if the range of
     /// the baseline is empty or leaves the record, [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the
-    /// baseline, and [`FrfError::NoForce`] if nothing rises above the baseline.
+    /// baseline, and [`FrfError::Values`] if nothing rises above the baseline.
     pub fn of(force: &[f64], interval: f64, baseline: Baseline) -> Result<Self, FrfError> {
         ModelError::require_positive("the sampling interval", interval, "s")?;
         if force.len() < 2 {
@@ -81,7 +84,7 @@ impl Pulse {
         let downward = highest(0..force.len(), -1.0).unwrap_or((0, 0.0));
         let (direction, (peak, height)) = if upward.1 >= downward.1 { (1.0, upward) } else { (-1.0, downward) };
         if !(height > 0.0 && height.is_finite()) {
-            return Err(FrfError::NoForce);
+            return Err(FrfError::no_force());
         }
         let push = |i: usize| (force[i] - offset) * direction;
         let threshold = (Self::THRESHOLD * height).max(6.0 * noise(force)).min(0.5 * height);
@@ -170,8 +173,8 @@ mod tests {
 
     #[test]
     fn impossible_pulses_are_refused() {
-        assert_eq!(Pulse::of(&[0.0; 9], 1e-3, Baseline::Keep), Err(FrfError::NoForce));
-        assert_eq!(Pulse::of(&[4.0; 9], 1e-3, Baseline::Mean), Err(FrfError::NoForce));
+        assert_eq!(Pulse::of(&[0.0; 9], 1e-3, Baseline::Keep), Err(FrfError::no_force()));
+        assert_eq!(Pulse::of(&[4.0; 9], 1e-3, Baseline::Mean), Err(FrfError::no_force()));
         assert!(Pulse::of(&[], 1e-3, Baseline::Keep).is_err() && Pulse::of(&[1.0, 2.0], 0.0, Baseline::Keep).is_err());
         assert!(matches!(
             Pulse::of(&[1.0, f64::NAN], 1e-3, Baseline::Keep),

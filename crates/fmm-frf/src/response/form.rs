@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use fmm_record::Complex64;
-use fmm_record::Quantity;
+use fmm_model::ModelError;
+use fmm_record::{Complex64, Quantity};
 
-use crate::{FrfError, ModelError};
+use crate::error::FrfError;
 
 /// Kind of frequency response, by the quantity of the response per force.
 ///
@@ -61,7 +61,7 @@ impl ResponseForm {
             2 => Complex64::new(-re * omega * omega, -im * omega * omega),
             _ => value,
         };
-        if converted.is_finite() { Ok(converted) } else { Err(FrfError::no_finite_form(self, to, frequency)) }
+        self.require_finite(to, converted, frequency)
     }
 
     /// [`ResponseForm::convert`] for a response at s = σ + iω instead of iω, with σ the `decay_rate` (1/s) of an
@@ -84,7 +84,13 @@ impl ResponseForm {
             2 => value * s * s,
             _ => value,
         };
-        if converted.is_finite() { Ok(converted) } else { Err(FrfError::no_finite_form(self, to, frequency)) }
+        self.require_finite(to, converted, frequency)
+    }
+
+    /// Refuses a division by iω at zero `frequency` (Hz), or a factor so extreme that the value overflows.
+    fn require_finite(self, to: Self, converted: Complex64, frequency: f64) -> Result<Complex64, FrfError> {
+        let what = || format!("no finite {to} follows from the {self} at {frequency} Hz");
+        if converted.is_finite() { Ok(converted) } else { Err(FrfError::not_defined(what(), frequency)) }
     }
 
     /// The quantity of the response.
@@ -154,7 +160,7 @@ mod tests {
                 match from.convert(to, value, 0.0) {
                     Ok(converted) if from == to => assert_eq!(converted, value),
                     Ok(converted) => assert!(from < to && converted.norm() == 0.0, "{from} to {to}: {converted}"),
-                    Err(error) => assert_eq!(error, FrfError::no_finite_form(from, to, 0.0)),
+                    Err(error) => assert!(matches!(error, FrfError::NotDefined { frequency: 0.0, .. }), "{error}"),
                 }
                 assert_eq!(from.convert(to, value, 0.0).is_err(), from > to);
             }

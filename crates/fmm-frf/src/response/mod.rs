@@ -11,9 +11,10 @@ pub use resonances::{Resonance, resonances};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use fmm_model::ModelError;
 use fmm_record::Complex64;
 
-use crate::{FrfError, ModelError};
+use crate::error::FrfError;
 
 /// A response at increasing frequencies, all of it finite and in one form.
 ///
@@ -44,13 +45,16 @@ impl FrequencyResponse {
     /// are negative, not finite or not increasing, and for values that are not finite.
     pub fn new(form: ResponseForm, frequencies: Vec<f64>, values: Vec<Complex64>) -> Result<Self, FrfError> {
         if frequencies.len() != values.len() {
-            return Err(FrfError::length_mismatch(frequencies.len(), values.len()));
+            let (frequencies, values) = (frequencies.len(), values.len());
+            let what = "a response needs one value for each of its frequencies";
+            return Err(FrfError::mismatch(format!("{what}, but has {frequencies} and {values}")));
         }
         // Zero itself is a frequency, and the largest number below it is not.
         let mut above = (-0.0f64).next_down();
         for (index, (&frequency, value)) in frequencies.iter().zip(&values).enumerate() {
             if !(frequency > above && frequency.is_finite()) {
-                return Err(FrfError::frequencies_not_increasing(index, frequency));
+                let what = "frequencies must be finite, not negative and increasing";
+                return Err(FrfError::values(format!("{what}, but line {index} is at {frequency} Hz")));
             }
             if !value.is_finite() {
                 return Err(FrfError::value_not_finite(form, frequency));
@@ -171,7 +175,7 @@ impl FrequencyResponse {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::SingleDegreeOfFreedom;
+    use crate::response::SingleDegreeOfFreedom;
 
     #[test]
     fn impossible_responses_are_refused() {
@@ -179,7 +183,7 @@ mod tests {
             let values = values.iter().map(|&re| Complex64::new(re, 0.0)).collect();
             FrequencyResponse::new(ResponseForm::Mobility, frequencies.to_vec(), values)
         };
-        assert_eq!(new(&[1.0], &[]), Err(FrfError::length_mismatch(1, 0)));
+        assert!(matches!(new(&[1.0], &[]), Err(FrfError::Mismatch { what }) if what.ends_with("has 1 and 0")));
         for frequencies in [[1.0, 1.0], [2.0, 1.0], [0.0, f64::NAN], [1.0, f64::INFINITY]] {
             let frequency = frequencies[1];
             match new(&frequencies, &[1.0, 1.0]) {

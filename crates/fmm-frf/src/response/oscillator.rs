@@ -2,9 +2,11 @@
 
 use std::f64::consts::TAU;
 
+use fmm_model::ModelError;
 use fmm_record::Complex64;
 
-use crate::{FrequencyResponse, FrfError, ModelError, ResponseForm};
+use crate::error::FrfError;
+use crate::response::{FrequencyResponse, ResponseForm};
 
 /// A linear oscillator with viscous damping, as a response to compare a measured one with.
 ///
@@ -80,13 +82,18 @@ impl SingleDegreeOfFreedom {
         let dynamic_stiffness = Complex64::new(self.stiffness - self.mass * omega * omega, self.damping * omega);
         // `finv` divides by the magnitude twice, which neither overflows nor underflows where the result does not.
         let receptance = dynamic_stiffness.finv();
-        if receptance.is_finite() { Ok(receptance) } else { Err(FrfError::undamped_resonance(frequency)) }
+        if receptance.is_finite() {
+            return Ok(receptance);
+        }
+        let what = "the oscillator has no finite receptance";
+        let why = "where it is in resonance without damping";
+        Err(FrfError::not_defined(format!("{what} at {frequency} Hz, {why}"), frequency))
     }
 
     /// The response at `frequency` (Hz) in any `form`, in its SI unit.
     ///
     /// # Errors
-    /// As [`SingleDegreeOfFreedom::receptance`].
+    /// Those of [`SingleDegreeOfFreedom::receptance`].
     pub fn response(&self, form: ResponseForm, frequency: f64) -> Result<Complex64, FrfError> {
         ResponseForm::Receptance.convert(form, self.receptance(frequency)?, frequency)
     }
@@ -94,7 +101,7 @@ impl SingleDegreeOfFreedom {
     /// The response at all `frequencies` (Hz) in any `form`.
     ///
     /// # Errors
-    /// As [`SingleDegreeOfFreedom::receptance`] and [`FrequencyResponse::new`].
+    /// Those of [`SingleDegreeOfFreedom::receptance`] and [`FrequencyResponse::new`].
     pub fn frequency_response(&self, form: ResponseForm, frequencies: &[f64]) -> Result<FrequencyResponse, FrfError> {
         let values = frequencies.iter().map(|&frequency| self.response(form, frequency));
         FrequencyResponse::new(form, frequencies.to_vec(), values.collect::<Result<_, _>>()?)
@@ -122,7 +129,7 @@ mod tests {
         // ω² = k/m exactly, with the angular frequency as the square root of a square.
         let frequency = 1.0;
         let undamped = SingleDegreeOfFreedom::new(1.0, 0.0, TAU * TAU).unwrap();
-        assert_eq!(undamped.receptance(frequency), Err(FrfError::undamped_resonance(frequency)));
+        assert!(matches!(undamped.receptance(frequency), Err(FrfError::NotDefined { frequency: 1.0, .. })));
         assert!(undamped.receptance(1.5).unwrap().re < 0.0);
         assert!(undamped.receptance(f64::NAN).is_err());
     }

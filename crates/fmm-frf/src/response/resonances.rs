@@ -1,6 +1,6 @@
 //! Resonances: lines of a response that stand out.
 
-use crate::FrequencyResponse;
+use crate::response::FrequencyResponse;
 
 /// A local maximum of the magnitude.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,8 +18,8 @@ pub struct Resonance {
 /// The local maxima of a response that stand out by at least `prominence` (dB), in the order of their frequencies.
 ///
 /// The first and the last line do not count, and of equal neighbours only one does. It takes time in proportion to the
-/// number of lines, whatever they are. To the frequency between the lines, and to the damping, see
-/// [`PeakFit`](crate::PeakFit).
+/// number of lines, whatever they are. [`RationalFit`](crate::RationalFit)
+/// finds the frequency between the lines, and the damping.
 ///
 /// ```
 /// use fmm_frf::{ResponseForm, SingleDegreeOfFreedom, resonances};
@@ -66,8 +66,10 @@ fn lowest_since_higher(heights: impl Iterator<Item = f64>, passes: impl Fn(f64, 
 
 #[cfg(test)]
 mod tests {
+    use fmm_record::Complex64;
+
     use super::*;
-    use crate::{Complex64, ResponseForm};
+    use crate::response::ResponseForm;
 
     fn prominences(decibels: &[f64]) -> Vec<(f64, f64)> {
         let lines = (0..decibels.len()).map(|i| i as f64).collect();

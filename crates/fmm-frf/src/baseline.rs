@@ -1,13 +1,15 @@
-//! Baseline: the reading of a sensor when nothing happens.
+//! Baseline: the reading of a sensor when nothing acts on it.
 
 use std::ops::Range;
 
-use crate::{FrfError, ModelError};
+use fmm_model::ModelError;
+
+use crate::error::FrfError;
 
 /// Baseline of a sensor when nothing acts on it, and its treatment.
 ///
 /// An offset b of a record of duration T adds b T to the impulse: 0.2 N over 33 s are 6.6 N s, four times the
-/// impulse of a hammer blow. Remove it, or integrate the pulse alone.
+/// impulse of a hammer. Remove it, or integrate the pulse alone.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Baseline {
@@ -32,7 +34,12 @@ impl Baseline {
             Self::Offset(offset) => offset,
             Self::MeanOf(range) => {
                 let quiet = samples.get(range.clone()).filter(|quiet| !quiet.is_empty());
-                mean(quiet.ok_or_else(|| FrfError::baseline_range(range.start, range.end, samples.len()))?)
+                let outside = || {
+                    let (start, end, length) = (range.start, range.end, samples.len());
+                    let what = format!("the baseline needs samples {start} to {end} (excluded)");
+                    FrfError::outside(format!("{what}, but the record has {length}, from 0 on"))
+                };
+                mean(quiet.ok_or_else(outside)?)
             }
             Self::Mean => mean(samples),
         };

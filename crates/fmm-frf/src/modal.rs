@@ -1,14 +1,58 @@
-//! Rational fraction fit of order 2.
+//! Natural frequency and damping of a mode, by a rational fraction fit of order 2.
 
 use std::f64::consts::TAU;
+use std::fmt;
 
+use fmm_model::Estimated;
 use fmm_record::Complex64;
 
+use crate::error::FrfError;
 use crate::least_squares::{Equations, Solution, minimise, variance_of};
-use crate::modal::band::Band;
-use crate::{Estimated, FrequencyResponse, FrfError, Mode};
+use crate::response::FrequencyResponse;
 
 const NAME: &str = "rational fraction fit";
+
+/// Natural frequency and damping of a mode, with the damping of an exponential window taken out.
+///
+/// ```text
+/// pole s = −ζω₀ ± iω₀√(1 − ζ²),   f₀ = ω₀/2π
+/// ```
+///
+/// Uncertainties are those of the scatter of the lines about the fit. They do not contain errors that all lines share:
+/// leakage, a delay between the channels, other modes in the band.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Mode {
+    /// f₀, undamped natural frequency (Hz).
+    pub natural_frequency: Estimated,
+    /// ζ, damping ratio (1).
+    pub damping_ratio: Estimated,
+}
+
+impl Mode {
+    /// The mode of s² + q₁ s + q₀ with the covariance of (q₀, q₁), both in units of powers of `unit` (rad/s); `None` if
+    /// it does not oscillate.
+    fn new([q0, q1]: [f64; 2], covariance: &[[f64; 2]; 2], unit: f64) -> Option<Self> {
+        if !(q0 > 0.0 && q0.is_finite() && q1.is_finite()) {
+            return None;
+        }
+        let root = q0.sqrt();
+        let ratio = q1 / (2.0 * root);
+        // Gradients with respect to (q₀, q₁).
+        let (of_frequency, of_ratio) = ([0.5 / root, 0.0], [-0.5 * ratio / q0, 0.5 / root]);
+        let hertz = unit / TAU;
+        Some(Self {
+            natural_frequency: Estimated::new(hertz * root, hertz * variance_of(of_frequency, covariance).sqrt()),
+            damping_ratio: Estimated::new(ratio, variance_of(of_ratio, covariance).sqrt()),
+        })
+    }
+}
+
+impl fmt::Display for Mode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "f₀ = {} Hz, ζ = {}", self.natural_frequency, self.damping_ratio)
+    }
+}
 
 /// Background that the numerator of a [`RationalFit`] allows for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -58,7 +102,7 @@ pub struct RationalFit {
     /// Mass (kg), viscous coefficient (N s/m) and stiffness (N/m) of the machine with this mode alone, if there is no
     /// background; of the driving point if it is a mode of many.
     pub machine: Option<[Estimated; 3]>,
-    /// Root mean square (unit of the response given) of what the fit leaves over at a line.
+    /// Root mean square (unit of the response given) of the deviation from the fit at a line.
     pub residual: f64,
     curve: Curve,
 }
@@ -116,16 +160,19 @@ impl<const P: usize> Fitting<P> {
         let Band { unit, low, high, .. } = self.band;
         let undetermined = || FrfError::undetermined(NAME, self.band.values.len());
         let none = || FrfError::no_mode(NAME, low, high);
+        let unsettled = || {
+            let advice = "a narrower band around one resonance may help";
+            FrfError::NoFit { what: format!("the {NAME} did not settle; {advice}") }
+        };
         let start = self.start().ok_or_else(undetermined)?;
         // A line is a complex equation, which is two real ones.
         let minimum = minimise(start, 2 * self.band.values.len(), |parameters| self.linearise(parameters));
-        let Solution { values: parameters, covariance, sum_of_squares } =
-            minimum.ok_or(FrfError::not_converged(NAME))?;
+        let Solution { values: parameters, covariance, sum_of_squares } = minimum.ok_or_else(unsettled)?;
         let covariance = covariance.ok_or_else(undetermined)?;
         let (q0, q1) = (parameters[0], parameters[1]);
         let of_mode = [[covariance[0][0], covariance[0][1]], [covariance[1][0], covariance[1][1]]];
         // The lines were taken at their true s, so that there is no window to take out.
-        let mode = Mode::new([q0, q1], &of_mode, unit, 0.0, none)?;
+        let mode = Mode::new([q0, q1], &of_mode, unit).ok_or_else(none)?;
         let machine = if P == 3 {
             let n0 = parameters[2];
             // H = (s/unit)ᵖ size n₀/(…) = sᵖ (1/m)/(…), so that m = unit^(p − 2)/(n₀ size).
@@ -208,4 +255,39 @@ impl<const P: usize> Fitting<P> {
 fn add<const P: usize>(equations: &mut Equations<P>, row: [Complex64; P], right: Complex64) {
     equations.add(row.map(|entry| entry.re), right.re);
     equations.add(row.map(|entry| entry.im), right.im);
+}
+
+/// Lines of a band in one form, without the line at zero frequency.
+#[derive(Debug, Clone)]
+struct Band {
+    /// Angular frequencies by that of the highest line (1).
+    ratios: Vec<f64>,
+    values: Vec<Complex64>,
+    /// Angular frequency (rad/s) of the highest line.
+    unit: f64,
+    /// Index of the line of largest magnitude.
+    highest: usize,
+    decay_rate: f64,
+    low: f64,
+    high: f64,
+}
+
+impl Band {
+    /// The lines of `response` from `low` to `high` (Hz), at least `needed` of them.
+    fn of(response: &FrequencyResponse, low: f64, high: f64, needed: usize) -> Result<Self, FrfError> {
+        let lines = response.within(low, high)?.without_zero_frequency();
+        let found = lines.frequencies().len();
+        let magnitudes = lines.values().iter().map(|value| value.norm()).enumerate();
+        let highest = magnitudes.reduce(|best, line| if line.1 > best.1 { line } else { best });
+        let Some((highest, magnitude)) = highest.filter(|_| found >= needed) else {
+            return Err(FrfError::too_few_points(needed, found));
+        };
+        if magnitude == 0.0 {
+            return Err(FrfError::no_mode("fit of a mode", low, high));
+        }
+        let unit = TAU * lines.frequencies()[highest];
+        let ratios = lines.frequencies().iter().map(|frequency| TAU * frequency / unit).collect();
+        let values = lines.values().to_vec();
+        Ok(Self { ratios, values, unit, highest, decay_rate: lines.decay_rate(), low, high })
+    }
 }
