@@ -2,7 +2,9 @@
 
 use core::f64::consts::PI;
 
-use crate::{ModelError, Scalar, math};
+use crate::error::ModelError;
+use crate::math;
+use crate::scalar::Scalar;
 
 /// Damping force opposing the motion, as the sum of a linear, a quadratic, a cubic and a free power of the velocity.
 ///
@@ -54,8 +56,8 @@ impl<D: Scalar> Damping<D> {
         Ok(Self { linear, quadratic, ..Self::none() })
     }
 
-    /// Linear damping `c₁` (N s/m) and quadratic damping `c₂` (N s²/m²) of any sign, for fits that ask what a record
-    /// says when nothing forbids it. Negative damping feeds the motion; in a fit it stands for friction that falls with
+    /// Linear damping `c₁` (N s/m) and quadratic damping `c₂` (N s²/m²) of any sign, for fits that leave the sign to
+    /// the record. Negative damping feeds the motion; in a fit it stands for friction that falls with
     /// speed.
     ///
     /// # Errors
@@ -66,8 +68,8 @@ impl<D: Scalar> Damping<D> {
         Ok(Self { linear, quadratic, ..Self::none() })
     }
 
-    /// The damping whose equivalent viscous coefficient is a straight line in the *peak* velocity V of a swing,
-    /// c(V) = `intercept` (N s/m) + `slope` (N s²/m²) · V, as a fit to whole swings gives it (thesis Eq. 5.5).
+    /// The damping whose equivalent viscous coefficient is a straight line in the *peak* velocity V of a half cycle,
+    /// c(V) = `intercept` (N s/m) + `slope` (N s²/m²) · V, from a fit to half cycles (thesis Eq. 5.5).
     ///
     /// ```text
     /// c₁ = intercept,   c₂ = 3π/8 · slope
@@ -135,7 +137,7 @@ impl<D: Scalar> Damping<D> {
         self.power
     }
 
-    /// Whether there is no part but the linear one, in value and in every derivative.
+    /// True if there is no part but the linear one, in value and in every derivative.
     pub fn is_linear(&self) -> bool {
         vanishes(self.quadratic) && vanishes(self.cubic) && self.power.is_none()
     }
@@ -174,7 +176,7 @@ impl<D: Scalar> Damping<D> {
     }
 }
 
-/// Whether `number` is zero in value and in every derivative.
+/// True if `number` is zero in value and in every derivative.
 fn vanishes<D: Scalar>(number: D) -> bool {
     number.value() == 0.0 && (0..D::DIRECTIONS).all(|direction| number.partial(direction) == 0.0)
 }
@@ -205,7 +207,7 @@ fn mean_of_sine_power<D: Scalar>(power: D) -> D {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Dual;
+    use crate::dual::Dual;
 
     /// A coefficient that is zero but has a derivative is a part of the damping.
     #[test]

@@ -2,7 +2,8 @@
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::{Scalar, math};
+use crate::math;
+use crate::scalar::Scalar;
 
 /// A value with its partial derivatives in `N` directions, both exact through every operation.
 ///

@@ -3,7 +3,7 @@
 use core::error::Error;
 use core::fmt;
 
-use crate::Rounded;
+use crate::estimate::Rounded;
 
 /// A machine description that cannot be.
 #[derive(Debug, Clone, PartialEq)]

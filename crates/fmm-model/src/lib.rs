@@ -75,42 +75,34 @@ extern crate alloc;
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!("fmm-model needs elementary functions: turn on one of the features `std` and `libm`");
 
-mod bounds;
 mod damping;
 mod dimension;
 mod dual;
 mod error;
-mod estimated;
+mod estimate;
 mod flexure;
-mod leaf_spring;
 mod math;
 mod oscillator;
 mod parameter;
 mod restoring;
-mod rounded;
 mod scalar;
 #[cfg(feature = "student")]
 mod student;
 mod symbol;
-mod tilt;
 mod unit;
 
-pub use bounds::Bounds;
 pub use damping::Damping;
 pub use dimension::Dimension;
 pub use dual::Dual;
 pub use error::ModelError;
-pub use estimated::{Estimated, Interval};
-pub use flexure::Flexure;
-pub use leaf_spring::LeafSpring;
+pub use estimate::{Estimated, Interval, Rounded};
+pub use flexure::{Flexure, LeafSpring, Tilt};
 pub use oscillator::Oscillator;
-pub use parameter::Parameter;
+pub use parameter::{Bounds, Parameter};
 pub use restoring::Restoring;
-pub use rounded::Rounded;
 pub use scalar::Scalar;
 #[cfg(feature = "student")]
 pub use student::{coverage_factor, student_quantile};
-pub use tilt::Tilt;
 pub use unit::Unit;
 
 /// The README's example, run as a test.

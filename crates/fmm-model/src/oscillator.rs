@@ -2,7 +2,10 @@
 
 use core::f64::consts::PI;
 
-use crate::{Damping, ModelError, Restoring, Scalar};
+use crate::damping::Damping;
+use crate::error::ModelError;
+use crate::restoring::Restoring;
+use crate::scalar::Scalar;
 
 /// Mass, stiffness and damping of a machine that moves in one direction.
 ///
@@ -62,7 +65,7 @@ impl<D: Scalar> Oscillator<D> {
         self
     }
 
-    /// Whether both the damping and the restoring force are linear, so that the motion has a closed form.
+    /// True if both the damping and the restoring force are linear, so that the motion has a closed form.
     pub fn is_linear(&self) -> bool {
         self.damping.is_linear() && matches!(self.restoring, Restoring::Linear)
     }
@@ -145,7 +148,7 @@ impl<D: Scalar> Oscillator<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Dual;
+    use crate::dual::Dual;
 
     fn thesis() -> Oscillator {
         Oscillator::new(10.391, 1982.0).unwrap().with_damping(Damping::linear(0.275).unwrap())

@@ -1,6 +1,7 @@
 //! Restoring force: a linear spring, one that hardens or softens, one with a stop or a gap, or the sine of a pendulum.
 
-use crate::{ModelError, Scalar};
+use crate::error::ModelError;
+use crate::scalar::Scalar;
 
 /// Restoring force over the position; its slope at the origin is the stiffness k, except for a spring with a gap.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -112,7 +113,7 @@ impl<D: Scalar> Restoring<D> {
         }
     }
 
-    /// Whether the force at `position` (m) points back to the origin. A pendulum that goes over the top turns on; a
+    /// True if the force at `position` (m) points back to the origin. A pendulum that goes over the top turns on; a
     /// spring does not.
     pub fn restores(&self, position: D) -> bool {
         match self {

@@ -14,7 +14,7 @@ use crate::math;
 /// promise below.
 ///
 /// Arithmetic takes a plain number on either side: `x * 2.0` everywhere, `2.0 * x` where the type is named, as in a
-/// closure over `Dual<2>`. In a function generic in `D: Scalar` the language knows `2.0 * x` only if it is told so,
+/// closure over `Dual<2>`. In a function generic in `D: Scalar` the language knows `2.0 * x` only by a bound,
 /// `where f64: Mul<D, Output = D>`; a bound of the trait itself would make it take every product of two plain numbers
 /// in such a function for one of these.
 ///
@@ -128,8 +128,8 @@ pub trait Scalar:
 /// Implements for a number type the operators of [`Scalar`] that follow from its own arithmetic: plain numbers on the
 /// left, assignments, and comparisons by values.
 ///
-/// The type needs `From<f64>`, and the four operations with itself and with `f64`. A parameter of the type follows it, as in
-/// `scalar_operators!(Dual<N>, N: usize)`.
+/// The type needs `From<f64>`, and the four operations with itself and with `f64`. A parameter of the type follows it,
+/// as in `scalar_operators!(Dual<N>, N: usize)`.
 #[macro_export]
 macro_rules! scalar_operators {
     ($number:ty $(, $parameter:ident: $kind:ty)?) => {
@@ -240,7 +240,7 @@ impl Scalar for f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Dual;
+    use crate::dual::Dual;
 
     fn all_functions<D: Scalar>(x: D, y: D) -> D {
         let (sin, cos) = (x * 0.7).sin_cos();
