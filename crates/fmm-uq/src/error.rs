@@ -131,7 +131,7 @@ impl UncertaintyError {
     }
 
     pub(crate) fn too_many_trials(trials: u64, most: u64) -> Self {
-        Self::invalid(format!("{trials} trials are more than can be told apart; at most {most} are possible"))
+        Self::invalid(format!("{trials} trials are more than can be counted; at most {most} are possible"))
     }
 
     pub(crate) fn no_such_output(output: usize, outputs: usize) -> Self {

@@ -37,8 +37,8 @@
 //! | how many trials? | [`Adaptive`], until the digits are stable | a cost that must be known in advance |
 //! | is the interval of the GUM valid? | [`validate`], with [`Adaptive::for_validation`] | |
 //! | which input matters? | [`Budget::contributions`]; with interactions [`variance_shares`] (Sobol') | [`variance_shares`]: correlated inputs |
-//! | what if a trial takes a second? | many machines and [`PartialRun`]s | |
-//! | what if the model is a text, known at run time only? | `Formula` (feature `formula`) | models with conditions or loops |
+//! | a trial takes a second? | many machines and [`PartialRun`]s | |
+//! | the model is a text, known at run time only? | `Formula` (feature `formula`) | models with conditions or loops |
 //! | how is a result stated? | a [`Budget`] prints; [`Budget::statement`], [`MonteCarlo::statement`] | |
 //! | what differs between runs, laboratories or specimens? | [`AnalysisOfVariance`], [`Precision`] | |
 //! | which value do several results agree on? | [`Consensus`], [with what they share](Consensus::with_shared) | shared errors that nobody stated |
@@ -81,8 +81,8 @@
 //!
 //! # Neighbours
 //!
-//! [`fmm-fit`](https://docs.rs/fmm-fit) repeats a fit with other values of what it held (`Refit`), which is the model
-//! of a Monte Carlo over a fit; [`fmm-model`](https://docs.rs/fmm-model) has the number types.
+//! [`fmm-fit`](https://docs.rs/fmm-fit) repeats a fit with other values of its fixed parameters (`Refit`): the model of
+//! a Monte Carlo over a fit; [`fmm-model`](https://docs.rs/fmm-model) has the number types.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

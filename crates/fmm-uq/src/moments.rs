@@ -61,7 +61,7 @@ impl Moments {
         let [sum] = sums(values, first, |d| [d]);
         let near = first + sum / n;
         let [sum, squares, fourths] = sums(values, near, |d| [d, d * d, (d * d) * (d * d)]);
-        // What the rounding of the mean leaves in the sum is taken out of both moments.
+        // The rest of the sum by the rounding of the mean is taken out of both moments.
         let mut sum_of_squares = squares - sum * (sum / n);
         if sum_of_squares < 0.0 {
             sum_of_squares = 0.0;

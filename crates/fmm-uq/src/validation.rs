@@ -64,7 +64,8 @@ impl Validation {
     }
 }
 
-/// Compares an interval of the GUM with one of a Monte Carlo, for a standard uncertainty stated to `digits` significant digits.
+/// Compares an interval of the GUM with one of a Monte Carlo, for a standard uncertainty stated to `digits` significant
+/// digits.
 ///
 /// The Monte Carlo should be stable to a fifth of δ: [`Adaptive::for_validation`](crate::Adaptive::for_validation).
 ///

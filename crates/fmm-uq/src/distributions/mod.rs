@@ -197,7 +197,8 @@ impl Distribution {
     /// t_ν(x, s²): Student's t, shifted to x and scaled by s (JCGM 101:2008, 6.4.9). ν = ∞ gives the normal.
     ///
     /// For n observations x is their mean, s their standard deviation over √n, and ν = n − 1; for an expanded
-    /// uncertainty U with coverage factor k, s is U/k. The standard deviation is s √(ν/(ν − 2)), and infinite for ν ≤ 2.
+    /// uncertainty U with coverage factor k, s is U/k. The standard deviation is s √(ν/(ν − 2)), and infinite for ν ≤
+    /// 2.
     ///
     /// # Errors
     /// [`UncertaintyError::Invalid`] unless x is finite, s positive and finite, and ν at least 1.
@@ -287,8 +288,8 @@ impl Distribution {
     /// Equal probability for each of `values`.
     ///
     /// # Errors
-    /// [`UncertaintyError::Invalid`] without a value, or if a value or the standard deviation is not finite; [`UncertaintyError::NoAnswer`] if the values differ by so little that their
-    /// squares are lost.
+    /// [`UncertaintyError::Invalid`] without a value, or if a value or the standard deviation is not finite;
+    /// [`UncertaintyError::NoAnswer`] if the values differ by so little that their squares are lost.
     pub fn empirical(values: &[f64]) -> Result<Self, UncertaintyError> {
         if values.is_empty() {
             return Err(UncertaintyError::too_few_observations(0, 1));

@@ -7,8 +7,8 @@ use statrs::function::gamma::ln_gamma;
 /// Quantiles of the gamma distribution below this are close to the first term of a series of few terms (1).
 const SERIES_BELOW: f64 = 0.1;
 
-/// The distance from the centre that a curvilinear trapezoid of half width w and inexactness d exceeds, on one side, with
-/// the probability `tail` ≤ 1/2.
+/// The distance from the centre that a curvilinear trapezoid of half width w and inexactness d exceeds, on one side,
+/// with the probability `tail` ≤ 1/2.
 ///
 /// ```text
 /// g(s) = ln((w + d)/max(|s|, w − d))/(4 d)                         (JCGM 101:2008, Eq. 4)
@@ -58,8 +58,8 @@ fn solve_shortfall(target: f64, largest: f64) -> f64 {
     e
 }
 
-/// The quantile of the beta distribution if it lies in the lower half of (0, 1), by Newton's method between logarithms from its leading term or the inverse
-/// function, whichever is good there.
+/// The quantile of the beta distribution if it lies in the lower half of (0, 1), by Newton's method between logarithms
+/// from its leading term or the inverse function, whichever is good there.
 ///
 /// ```text
 /// I_s(α, β) ≈ s^α/(α B(α, β)) for small s,   d ln I/d ln s = s^α (1 − s)^(β−1)/(B I)

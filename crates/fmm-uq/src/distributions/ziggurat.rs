@@ -29,7 +29,7 @@ static NORMAL: LazyLock<Arc<Ziggurat>> = LazyLock::new(|| Arc::new(Ziggurat::new
 ///
 /// # Why not a library
 /// rand_distr takes as long for a normal value (4 ns) and 4.2 times as long for one of Student's t (21 ns against 5),
-/// which is what most inputs of a budget are; its values may change from one version to the next, which those here must
+/// which most inputs of a budget have; its values may change from one version to the next, which those here must
 /// not. `benches/peers` of the workspace measures it.
 ///
 /// # References
@@ -39,8 +39,8 @@ static NORMAL: LazyLock<Arc<Ziggurat>> = LazyLock::new(|| Arc::new(Ziggurat::new
 pub(crate) struct Ziggurat {
     /// ν.
     degrees_of_freedom: f64,
-    /// x_i from the lowest layer to the top; x₀ is what a rectangle of the lowest layer's area and height would reach
-    /// to.
+    /// x_i from the lowest layer to the top; x₀ is the width of a rectangle of the lowest layer's area and
+    /// height.
     edges: [f64; LAYERS + 1],
     /// f(x_i).
     heights: [f64; LAYERS + 1],
@@ -96,8 +96,8 @@ impl Ziggurat {
 
     /// Sets every `stride`th element to `centre` + `scale` z, the first included.
     ///
-    /// The order of draws belongs to the results: one random number for each of 100 values, then what the rejected ones
-    /// take more.
+    /// The order of draws belongs to the results: one random number for each of 100 values, then those that the
+    /// rejected ones need.
     pub(crate) fn fill<R: Rng + ?Sized>(
         &self,
         rng: &mut R,

@@ -42,8 +42,8 @@ impl AnalysisOfVariance {
     /// Analysis of at least two groups, each with one observation or more, and one of them with two or more.
     ///
     /// # Errors
-    /// [`UncertaintyError::Invalid`] if no group has two, for fewer than two groups or an empty one, or if an observation
-    /// or the squares are not finite;
+    /// [`UncertaintyError::Invalid`] if no group has two, for fewer than two groups or an empty one, or if an
+    /// observation or the squares are not finite;
     /// [`UncertaintyError::NoAnswer`] if the observations differ by so little that their squares are lost.
     pub fn of<G: AsRef<[f64]>>(groups: &[G]) -> Result<Self, UncertaintyError> {
         if groups.len() < 2 || groups.iter().any(|group| group.as_ref().is_empty()) {

@@ -9,7 +9,7 @@ use crate::error::UncertaintyError;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum RandomEffects {
-    /// The variance with which the weighted squares are what they should be, Q(τ²) = p − 1 (Mandel and Paule 1970).
+    /// The variance at which the weighted squares have their expectation, Q(τ²) = p − 1 (Mandel and Paule 1970).
     #[default]
     MandelPaule,
     /// From Q and the weights without it (DerSimonian and Laird 1986).
@@ -86,15 +86,16 @@ pub struct Consensus {
     shared: Vec<Vec<f64>>,
 }
 
-/// Steps of the search for τ² at most; six are the rule. Each at least doubles what is small beside the solution, and
-/// f64 has some 2100 doublings.
+/// Steps of the search for τ² at most; six are the rule. Each at least doubles a value that is small beside the
+/// solution, and f64 has some 2100 doublings.
 const STEPS: usize = 2200;
 
 impl Consensus {
     /// The consensus of at least two results.
     ///
     /// # Errors
-    /// [`UncertaintyError::Invalid`] for fewer than two results, or if a result is not finite, or its uncertainty, or the square of it, is not positive and finite.
+    /// [`UncertaintyError::Invalid`] for fewer than two results, or if a result is not finite, or its uncertainty, or
+    /// the square of it, is not positive and finite.
     pub fn of(results: &[Estimated], effects: RandomEffects) -> Result<Self, UncertaintyError> {
         if results.len() < 2 {
             return Err(UncertaintyError::too_few_observations(results.len(), 2));
@@ -128,9 +129,9 @@ impl Consensus {
         Ok(Self { results: results.to_vec(), effects, variance, mean, uncertainty, homogeneity, shared: Vec::new() })
     }
 
-    /// The same consensus of results that share inputs, such as the mass of one machine. Each input is a list of what
-    /// it contributes to each result, c_i = (∂x_i/∂input) u(input) with its sign, in the unit of the results; 0 for a
-    /// result without it. The uncertainties u_i of the results must then be those of what is their own.
+    /// The same consensus of results that share inputs, such as the mass of one machine. Each input is a list of
+    /// its contributions to the results, c_i = (∂x_i/∂input) u(input) with its sign, in the unit of the results; 0 for
+    /// a result without it. The uncertainties u_i of the results must then be without those of the shared inputs.
     ///
     /// ```text
     /// u_s = |Σ w_i c_i|/Σ w_i     for each shared input s
@@ -154,7 +155,8 @@ impl Consensus {
     /// ```
     ///
     /// # Errors
-    /// [`UncertaintyError::Invalid`] for an input with another number of contributions than results, or if a contribution, or the uncertainty with all of them, is not finite.
+    /// [`UncertaintyError::Invalid`] for an input with another number of contributions than results, or if a
+    /// contribution, or the uncertainty with all of them, is not finite.
     pub fn with_shared(self, inputs: &[Vec<f64>]) -> Result<Self, UncertaintyError> {
         for (input, contributions) in inputs.iter().enumerate() {
             if contributions.len() != self.results.len() {
@@ -305,7 +307,7 @@ fn weighted(results: &[Estimated], variance: f64) -> (f64, f64, f64) {
     let weights: f64 = results.iter().map(weight).sum();
     let from =
         |origin: f64| results.iter().map(|result| weight(result) * (result.value - origin)).sum::<f64>() / weights;
-    // About one of them, so that a constant in all costs no digits, and again about what comes out, as that one may be
+    // About one of them, so that a constant in all costs no digits, and again about the result, as that one may be
     // far off.
     let first = results[0].value;
     let near = first + from(first);

@@ -1,4 +1,4 @@
-//! Groups: results of several runs, operators, specimens or laboratories, and what differs between them.
+//! Groups: results of several runs, operators, specimens or laboratories, and their differences.
 
 mod analysis_of_variance;
 mod consensus;

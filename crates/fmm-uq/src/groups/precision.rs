@@ -34,7 +34,7 @@ use crate::moments::Moments;
 /// - ISO 5725-2:1994, *Accuracy (trueness and precision) of measurement methods and results, Part 2*, clauses 7.3 (h,
 ///   k, the tests of Cochran and Grubbs) and 7.4.
 /// - P.-T. Wilrich, AStA Advances in Statistical Analysis 97 (2013) 1, <https://doi.org/10.1007/s10182-011-0185-y>
-///   (what its tables of limits are computed from).
+///   (source of its tables of limits).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Precision {
     analysis: AnalysisOfVariance,
@@ -82,8 +82,8 @@ impl Precision {
         self.analysis.residual_standard_deviation()
     }
 
-    /// s_L, standard deviation between groups (unit of the observations); 0 where the groups differ no more than
-    /// observations within them make them, which [`Precision::between_variance`] tells.
+    /// s_L, standard deviation between groups (unit of the observations); 0 where the groups differ no more than by
+    /// chance within them; [`Precision::between_variance`] is then negative.
     pub fn between(&self) -> f64 {
         self.between_variance().max(0.0).sqrt()
     }
@@ -163,7 +163,8 @@ impl Precision {
     /// ```
     ///
     /// # Errors
-    /// [`UncertaintyError::Invalid`] unless 0 < level < 1 and there are two or more; [`UncertaintyError::NoAnswer`] if fewer than two groups have a spread.
+    /// [`UncertaintyError::Invalid`] unless 0 < level < 1 and there are two or more; [`UncertaintyError::NoAnswer`] if
+    /// fewer than two groups have a spread.
     pub fn k_limit(&self, observations: usize, level: f64) -> Result<f64, UncertaintyError> {
         if observations < 2 {
             return Err(UncertaintyError::too_few_observations(observations, 2));

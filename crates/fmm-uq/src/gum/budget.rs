@@ -104,8 +104,8 @@ impl Expanded {
 }
 
 impl Budget {
-    /// The budget of an `estimate` of which the `sensitivities` are known, one for each input: of a fit, for example, or
-    /// of a calculation elsewhere. Its linearisation is [`Linearisation::Unchecked`].
+    /// The budget of an `estimate` of which the `sensitivities` are known, one for each input: of a fit, for example,
+    /// or of a calculation elsewhere. Its linearisation is [`Linearisation::Unchecked`].
     ///
     /// ```
     /// use fmm_uq::{Budget, Input, Inputs};

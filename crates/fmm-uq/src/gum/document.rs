@@ -5,7 +5,7 @@ use serde::{Serialize, Serializer};
 use crate::gum::budget::{Budget, Contribution};
 use crate::inputs::Input;
 
-/// A budget as it is written; what is infinite or unknown is none.
+/// Document of a budget; infinite and unknown numbers are none.
 #[derive(Serialize)]
 struct Document<'a> {
     name: &'a str,

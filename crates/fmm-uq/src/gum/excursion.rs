@@ -34,7 +34,7 @@ impl Departure {
 /// are nearer.
 ///
 /// An expansion is made at a point, where a kink, a pole or a high power is not to be seen. With r the difference of
-/// model and expansion at a distance of ±h, the three-point rule gives what it changes:
+/// model and expansion at a distance of ±h, the three-point rule gives its effect:
 ///
 /// ```text
 /// ΔE = (r₊ + r₋)/2h²,   ΔV = g (r₊ − r₋)/h + (r₊² + r₋²)/2h²

@@ -134,7 +134,7 @@ impl Sums {
         self.size += term.abs();
     }
 
-    /// The sums, if they are possible; `rounding` is what rounding may do to the output.
+    /// The sums, if they are possible, for an output with this `rounding`.
     fn finish(self, rounding: f64) -> Option<SecondOrder> {
         let negative = self.variance < -1e-12 * self.size - (rounding / self.unit).powi(2);
         let (correction, u) = (self.unit * self.correction, self.unit * self.variance.max(0.0).sqrt());
@@ -148,8 +148,8 @@ impl Sums {
 #[non_exhaustive]
 pub enum Linearisation {
     /// Curvature changes neither u(y) nor y by as much as 5 % of u(y), and neither do the values of the model √3
-    /// standard uncertainties away along each of its inputs (or at their limits). It holds also for a result that cannot
-    /// vary, such as the difference of two fully correlated inputs of the same uncertainty.
+    /// standard uncertainties away along each of its inputs (or at their limits). It holds also for a result that
+    /// cannot vary, such as the difference of two fully correlated inputs of the same uncertainty.
     ///
     /// The model was evaluated at points: effects between them, or of several inputs far away together, are not seen.
     Adequate,

@@ -74,8 +74,8 @@ impl Inputs {
     /// by which they miss; take them from the observations instead.
     ///
     /// # Errors
-    /// [`UncertaintyError::Invalid`] for an unknown name, an input with itself, a pair given twice, a coefficient outside
-    /// [−1, 1], or coefficients that are impossible together.
+    /// [`UncertaintyError::Invalid`] for an unknown name, an input with itself, a pair given twice, a coefficient
+    /// outside [−1, 1], or coefficients that are impossible together.
     pub fn with_correlations(mut self, coefficients: &[(&str, &str, f64)]) -> Result<Self, UncertaintyError> {
         let mut seen = Vec::with_capacity(coefficients.len());
         for &(first, second, value) in coefficients {

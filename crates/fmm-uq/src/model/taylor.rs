@@ -16,8 +16,8 @@ const PRODUCTS: [(usize, usize, usize); 35] = products();
 /// f(a + δ) = Σ c_ij ε₁ⁱ ε₂ʲ,   i + j ≤ 3
 /// ```
 ///
-/// It is what a model is evaluated in for its sensitivities, its curvature and the second-order terms of the GUM, pair
-/// by pair of inputs. [`Scalar`] holds its functions; the arithmetic is with itself and with `f64`. Its values are
+/// A model is evaluated in these numbers for its sensitivities, its curvature and the second-order terms of the GUM,
+/// pair by pair of inputs. [`Scalar`] holds its functions; the arithmetic is with itself and with `f64`. Its values are
 /// those of `f64` to the last bit, and comparisons are those of values.
 ///
 /// ```

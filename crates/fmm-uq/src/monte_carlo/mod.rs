@@ -165,8 +165,8 @@ impl<'a> MonteCarlo<'a> {
         start(index)..start(index.saturating_add(1))
     }
 
-    /// The values of the inputs in one trial, such as that of a [`Failure`](crate::failure::Failure); `None` if the block has no
-    /// such trial.
+    /// The values of the inputs in one trial, such as that of a [`Failure`](crate::failure::Failure); `None` if the
+    /// block has no such trial.
     pub fn trial_inputs(&self, block: u64, trial: usize) -> Option<Vec<f64>> {
         (trial < BLOCK_TRIALS).then(|| Block::inputs(self.seed, block, trial, &self.sampler))
     }

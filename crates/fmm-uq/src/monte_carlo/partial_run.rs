@@ -16,7 +16,7 @@ use crate::monte_carlo::block::{BLOCK_TRIALS, Block};
 ///
 /// let inputs = Inputs::new([Input::new("x", 1.0, 0.1, "m")?])?;
 /// let run = MonteCarlo::new(&inputs, 5000)?.with_seed(7);
-/// // One job for each part, anywhere: the text is what goes into its file.
+/// // One job for each part, anywhere, which writes the text into its file.
 /// let job = |part| -> Result<String, Box<dyn std::error::Error>> {
 ///     Ok(serde_json::to_string(&run.run_blocks(run.shard(part, 2), |x| x[0] * x[0])?)?)
 /// };

@@ -85,9 +85,9 @@ impl MonteCarlo<'_> {
     /// [`UncertaintyError::TooManyFailures`] if more trials fail than allowed; where none may fail, at the first
     /// failure. [`UncertaintyError::Model`] if no trial succeeds, or the number of outputs changes.
     /// [`UncertaintyError::Cancelled`] if the observer of the progress ends the run. [`UncertaintyError::Invalid`]
-    /// if the squares of the values overflow. For an adaptive run also [`UncertaintyError::TooFewTrials`] if its largest
-    /// number of trials is too small for the rule, and [`UncertaintyError::NoAnswer`] if an input has Student's t of
-    /// ν ≤ 2.
+    /// if the squares of the values overflow. For an adaptive run also [`UncertaintyError::TooFewTrials`] if its
+    /// largest number of trials is too small for the rule, and [`UncertaintyError::NoAnswer`] if an input has Student's
+    /// t of ν ≤ 2.
     ///
     /// # Panics
     /// If the model does: a panic ends the run and passes through. A model that may fail should return an error.

@@ -48,8 +48,8 @@ impl Formula {
     ///
     /// # Errors
     /// [`UncertaintyError::Model`] if the text is no formula, has more than 200 parentheses, powers and signs, or has a
-    /// name that is not among `names`; [`UncertaintyError::Invalid`] for a name given twice, for one that no formula can
-    /// contain, and for that of a constant or function.
+    /// name that is not among `names`; [`UncertaintyError::Invalid`] for a name given twice, for one that no formula
+    /// can contain, and for that of a constant or function.
     pub fn new(text: &str, names: &[&str]) -> Result<Self, UncertaintyError> {
         for (place, name) in names.iter().enumerate() {
             if !parser::is_name(name) {
