@@ -87,7 +87,9 @@ impl FrfError {
 
     /// A force that is zero throughout.
     pub(crate) fn no_force() -> Self {
-        Self::values("the force of the trial is zero from start to end, or so small that its square is: no impact")
+        Self::values(
+            "the force of the trial is zero from start to end, or so small that its square is; there is no impact",
+        )
     }
 
     /// Too few samples to integrate.

@@ -77,9 +77,7 @@ mod least_squares;
 mod modal;
 mod response;
 
-pub use average::{
-    AverageOptions, Averaging, Coherence, Estimator, ExponentialWindow, ForceWindow, Taper, TrialAverage,
-};
+pub use average::{AverageOptions, Coherence, Estimator, ExponentialWindow, ForceWindow, Taper, TrialAverage};
 pub use baseline::Baseline;
 pub use channel::Channel;
 pub use decay::{

@@ -143,7 +143,7 @@ impl Coherence {
         &self.values
     }
 
-    /// Number of trials of equal weight that the average is worth.
+    /// Number of trials in the average.
     pub fn averages(&self) -> f64 {
         self.averages
     }

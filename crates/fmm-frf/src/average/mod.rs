@@ -7,7 +7,7 @@ mod transform;
 mod window;
 
 pub use estimator::{Coherence, Estimator};
-pub use options::{AverageOptions, Averaging};
+pub use options::AverageOptions;
 pub use window::{ExponentialWindow, ForceWindow, Taper};
 
 use std::ops::Range;
@@ -17,7 +17,7 @@ use fmm_model::ModelError;
 use fmm_record::{Quantity, Record};
 
 use crate::average::estimator::{Spectra, Undefined};
-use crate::average::sums::{RatioSums, SpectralSums, Weighed};
+use crate::average::sums::{RatioSums, SpectralSums, Trial};
 use crate::average::transform::{SLOTS, TrialTransform};
 use crate::channel::Channel;
 use crate::error::FrfError;
@@ -58,16 +58,12 @@ pub struct TrialAverage {
     lines: Range<usize>,
     frequencies: Arc<[f64]>,
     decay_rate: f64,
-    averaging: Averaging,
     transform: TrialTransform,
     spectra: SpectralSums,
-    /// Number of the last trials that are not in the sums yet, and the factors of each.
+    /// Number of the last trials that are not in the sums yet.
     waiting: usize,
-    factors: [(f64, f64); SLOTS],
     ratios: Option<RatioSums>,
     trials: usize,
-    /// Sum of the weights of the trials, and of their squares.
-    weights: (f64, f64),
 }
 
 impl TrialAverage {
@@ -102,7 +98,6 @@ impl TrialAverage {
             rate,
             length,
             decay_rate: options.windows.exponential.map_or(0.0, |window| window.decay_rate()),
-            averaging: options.averaging,
             transform: TrialTransform::new(
                 length,
                 interval,
@@ -113,11 +108,9 @@ impl TrialAverage {
             frequencies: lines.clone().map(|line| line as f64 * rate / length as f64).collect(),
             spectra: SpectralSums::new(lines.len()),
             waiting: 0,
-            factors: [(0.0, 0.0); SLOTS],
             ratios: options.keeps_ratios.then(|| RatioSums::new(lines.len())),
             lines,
             trials: 0,
-            weights: (0.0, 0.0),
         })
     }
 
@@ -135,19 +128,16 @@ impl TrialAverage {
         if let (Some(_), Some(line)) = (&self.ratios, force.iter().position(|force| force.norm_sqr() == 0.0)) {
             return Err(FrfError::no_force_at(self.frequencies[line]));
         }
-        let (keep, gain) = self.averaging.factors(self.trials == 0);
         if let Some(ratios) = &mut self.ratios {
-            ratios.add(keep, gain, force, response);
+            ratios.add(force, response);
         }
-        self.factors[slot] = (keep, gain);
         self.waiting += 1;
         if self.waiting == SLOTS {
-            let [first, second] = [0, 1].map(|slot| weighed(&self.transform, &self.lines, slot, self.factors[slot]));
+            let [first, second] = [0, 1].map(|slot| trial(&self.transform, &self.lines, slot));
             self.spectra.add(first, second);
             self.waiting = 0;
         }
         self.trials += 1;
-        self.weights = (keep * self.weights.0 + gain, keep * keep * self.weights.1 + gain * gain);
         Ok(())
     }
 
@@ -197,7 +187,7 @@ impl TrialAverage {
 
     /// Forgets all trials but keeps plan and memory, for the next test of the same kind.
     pub fn clear(&mut self) {
-        (self.trials, self.weights) = (0, (0.0, 0.0));
+        self.trials = 0;
         self.spectra.clear();
         self.waiting = 0;
         if let Some(ratios) = &mut self.ratios {
@@ -208,12 +198,6 @@ impl TrialAverage {
     /// Number of trials added so far.
     pub fn trials(&self) -> usize {
         self.trials
-    }
-
-    /// (Σw)²/Σw², the number of trials of equal weight that the average is worth: their number if the averaging is
-    /// linear, 0 without trials.
-    pub fn averages(&self) -> f64 {
-        if self.trials == 0 { 0.0 } else { self.weights.0 * self.weights.0 / self.weights.1 }
     }
 
     /// Form of the estimates.
@@ -241,7 +225,7 @@ impl TrialAverage {
             Estimator::H1 => self.spectra.map(&self.waiting(), |spectra| Estimator::H1.quotient(&spectra)),
             Estimator::H2 => self.spectra.map(&self.waiting(), |spectra| Estimator::H2.quotient(&spectra)),
             Estimator::Hv => self.spectra.map(&self.waiting(), |spectra| Estimator::Hv.quotient(&spectra)),
-            Estimator::MeanOfRatios => self.ratios()?.means(self.weights.0),
+            Estimator::MeanOfRatios => self.ratios()?.means(self.trials as f64),
         };
         FrequencyResponse::at_shared(self.form, &self.frequencies, values, self.decay_rate)
             .map_err(|not_finite| self.undefined(|spectra| estimator.of(spectra)).unwrap_or(not_finite))
@@ -255,27 +239,25 @@ impl TrialAverage {
     /// mean of ratios:  u² = (⟨|V/F|²⟩ − |⟨V/F⟩|²)/(2(n − 1))                                            (3)
     /// ```
     ///
-    /// n is [`TrialAverage::averages`]. For H1, (2) is the residual scatter of the regression of V on F through the
-    /// origin; for H2 that of F on V, which is relatively the same. It contains what differs between trials and nothing
-    /// that they share: gains, delays, leakage, or the bias of H1 by noise of the force. With friction, trials of
-    /// different impulse differ because the machine does. The phase has u/|H| (rad). With two or three trials, u itself
-    /// is hardly known.
+    /// n is the number of trials. For H1, (2) is the residual scatter of the regression of V on F through the
+    /// origin; for H2 that of F on V, which is relatively the same. It contains the differences between trials and
+    /// nothing that they share: gains, delays, leakage, or the bias of H1 by noise of the force. With friction, trials
+    /// of different impulse differ because the machine does. The phase has u/|H| (rad). With two or three trials, u
+    /// itself is hardly known.
     ///
     /// # Errors
-    /// Those of [`TrialAverage::estimate`]; [`FrfError::TooFew`] for less than two averages.
+    /// Those of [`TrialAverage::estimate`]; [`FrfError::TooFew`] for fewer than two trials.
     pub fn uncertainty(&self, estimator: Estimator) -> Result<Vec<f64>, FrfError> {
-        let freedom = self.averages() - 1.0;
         if self.trials == 0 {
             return Err(no_trials());
         }
-        if !(freedom > 0.0 && self.trials > 1) {
-            let averages = self.averages();
-            let what = format!("scatter needs more than one trial, but the average is worth {averages}");
-            return Err(FrfError::too_few(what));
+        if self.trials == 1 {
+            return Err(FrfError::too_few("scatter needs more than one trial, but there is 1"));
         }
+        let freedom = (self.trials - 1) as f64;
         self.lines(|line| {
             let scatter = match estimator {
-                Estimator::MeanOfRatios => self.ratios()?.variance(line, self.weights.0).sqrt(),
+                Estimator::MeanOfRatios => self.ratios()?.variance(line, self.trials as f64).sqrt(),
                 other => {
                     let at = |undefined: Undefined| undefined.at(self.frequencies[line]);
                     other.scatter(&self.line(line)).map_err(at)?
@@ -301,7 +283,7 @@ impl TrialAverage {
         {
             return Err(undefined);
         }
-        Ok(Coherence::new(Arc::clone(&self.frequencies), values, self.averages()))
+        Ok(Coherence::new(Arc::clone(&self.frequencies), values, self.trials as f64))
     }
 
     /// One-sided power spectral density of the force (N²/Hz) at each line; it integrates to the mean square of the
@@ -324,9 +306,8 @@ impl TrialAverage {
     }
 
     /// The trials that are not in the sums yet.
-    fn waiting(&self) -> impl Iterator<Item = Weighed<'_>> + Clone {
-        let waiting = self.factors.iter().take(self.waiting).enumerate();
-        waiting.map(|(slot, factors)| weighed(&self.transform, &self.lines, slot, *factors))
+    fn waiting(&self) -> impl Iterator<Item = Trial<'_>> + Clone {
+        (0..self.waiting).map(|slot| trial(&self.transform, &self.lines, slot))
     }
 
     /// The sums at `line`, with those of the trials that wait.
@@ -344,11 +325,11 @@ impl TrialAverage {
     fn density_factor(&self, line: usize, weight_energy: f64) -> f64 {
         let line = self.lines.start + line;
         let sides = if line == 0 || 2 * line == self.length { 1.0 } else { 2.0 };
-        sides / (self.rate * weight_energy * self.weights.0)
+        sides / (self.rate * weight_energy * self.trials as f64)
     }
 
     fn ratios(&self) -> Result<&RatioSums, FrfError> {
-        self.ratios.as_ref().ok_or(ratios_not_kept())
+        self.ratios.as_ref().ok_or_else(ratios_not_kept)
     }
 
     /// Values of `rule` at each line.
@@ -365,10 +346,10 @@ impl TrialAverage {
     }
 }
 
-/// The spectra of a slot with their `factors`.
-fn weighed<'a>(transform: &'a TrialTransform, lines: &Range<usize>, slot: usize, factors: (f64, f64)) -> Weighed<'a> {
+/// The spectra of a slot.
+fn trial<'a>(transform: &'a TrialTransform, lines: &Range<usize>, slot: usize) -> Trial<'a> {
     let (force, response) = transform.spectra(slot, lines);
-    Weighed { factors, force, response }
+    Trial { force, response }
 }
 
 /// Error of an estimate without a trial.

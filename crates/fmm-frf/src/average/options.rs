@@ -1,37 +1,8 @@
 //! Options of an average of trials.
 
-use fmm_model::ModelError;
-
 use crate::average::window::{ExponentialWindow, ForceWindow, Taper, Windows};
 use crate::baseline::Baseline;
 use crate::error::FrfError;
-
-/// Weight of each trial.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[non_exhaustive]
-pub enum Averaging {
-    /// All trials alike.
-    #[default]
-    Linear,
-    /// The newest with the weight α and all before it together with 1 − α, so that the average forgets: a trial k
-    /// trials ago counts α(1 − α)ᵏ. The first trial counts as if it had always been there. In the long run the average
-    /// is worth 2/α − 1 trials.
-    Exponential {
-        /// α, weight of the newest trial, more than 0 and less than 1.
-        newest: f64,
-    },
-}
-
-impl Averaging {
-    /// Factors of what has been added up and of the trial to add.
-    pub(crate) fn factors(self, is_first: bool) -> (f64, f64) {
-        match self {
-            Self::Linear => (1.0, 1.0),
-            Self::Exponential { .. } if is_first => (0.0, 1.0),
-            Self::Exponential { newest } => (1.0 - newest, newest),
-        }
-    }
-}
 
 /// Treatment of the trials of a [`TrialAverage`](crate::TrialAverage); the default takes them as they are.
 ///
@@ -53,7 +24,6 @@ pub struct AverageOptions {
     pub(crate) windows: Windows,
     pub(crate) force_baseline: Baseline,
     pub(crate) response_baseline: Baseline,
-    pub(crate) averaging: Averaging,
     pub(crate) keeps_ratios: bool,
     pub(crate) band: Option<(f64, f64)>,
 }
@@ -92,20 +62,6 @@ impl AverageOptions {
     pub fn response_baseline(mut self, baseline: Baseline) -> Self {
         self.response_baseline = baseline;
         self
-    }
-
-    /// Sets the weight of each trial.
-    ///
-    /// # Errors
-    /// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for an exponential weight outside 0 to 1, both ends
-    /// excluded; the error is about the weight or what it leaves.
-    pub fn averaging(mut self, averaging: Averaging) -> Result<Self, FrfError> {
-        if let Averaging::Exponential { newest } = averaging {
-            ModelError::require_positive("the weight of the newest trial", newest, "(dimensionless)")?;
-            ModelError::require_positive("the weight of all trials but the newest", 1.0 - newest, "(dimensionless)")?;
-        }
-        self.averaging = averaging;
-        Ok(self)
     }
 
     /// Keeps the ratio of the spectra of each trial, for [`Estimator::MeanOfRatios`](crate::Estimator::MeanOfRatios);

@@ -13,7 +13,7 @@ use crate::average::estimator::Spectra;
 pub(crate) struct SpectralSums {
     force: Vec<f64>,
     response: Vec<f64>,
-    /// Real and imaginary parts apart, as vectors of the processor want them.
+    /// Real and imaginary parts, in vectors of their own for the processor.
     cross: [Vec<f64>; 2],
 }
 
@@ -24,18 +24,17 @@ impl SpectralSums {
     }
 
     /// Adds two trials, one after the other.
-    pub(crate) fn add(&mut self, first: Weighed<'_>, second: Weighed<'_>) {
+    pub(crate) fn add(&mut self, first: Trial<'_>, second: Trial<'_>) {
         let [real, imaginary] = &mut self.cross;
         let powers = self.force.iter_mut().zip(&mut self.response);
         let sums = powers.zip(real.iter_mut().zip(imaginary));
         let lines = sums.zip(first.lines().zip(second.lines()));
-        let (first, second) = (first.factors, second.factors);
         Arch::new().dispatch(
             #[inline(always)]
             || {
                 lines.for_each(|(((ff, vv), (re, im)), (one, two))| {
-                    let sums = added([*ff, *vv, *re, *im], first, one);
-                    [*ff, *vv, *re, *im] = added(sums, second, two);
+                    let sums = added([*ff, *vv, *re, *im], one);
+                    [*ff, *vv, *re, *im] = added(sums, two);
                 });
             },
         );
@@ -48,10 +47,10 @@ impl SpectralSums {
         }
     }
 
-    /// Values of `rule` for the sums at each line after those trials that `waiting` has.
+    /// Values of `rule` for the sums at each line with the trials that are `waiting`.
     pub(crate) fn map<'a, T>(
         &self,
-        waiting: &(impl Iterator<Item = Weighed<'a>> + Clone),
+        waiting: &(impl Iterator<Item = Trial<'a>> + Clone),
         rule: impl Fn(Spectra) -> T,
     ) -> Vec<T> {
         if waiting.clone().next().is_some() {
@@ -72,25 +71,24 @@ impl SpectralSums {
         )
     }
 
-    /// The sums at `line` after those trials that `waiting` has.
-    pub(crate) fn line<'a>(&self, line: usize, waiting: impl Iterator<Item = Weighed<'a>>) -> Spectra {
+    /// The sums at `line` with the trials that are `waiting`.
+    pub(crate) fn line<'a>(&self, line: usize, waiting: impl Iterator<Item = Trial<'a>>) -> Spectra {
         let [real, imaginary] = &self.cross;
         let sums = [self.force[line], self.response[line], real[line], imaginary[line]];
         let [force, response, re, im] =
-            waiting.fold(sums, |sums, trial| added(sums, trial.factors, (&trial.force[line], &trial.response[line])));
+            waiting.fold(sums, |sums, trial| added(sums, (&trial.force[line], &trial.response[line])));
         Spectra { force, response, cross: Complex64::new(re, im) }
     }
 }
 
-/// The spectra of a trial with the factors of what has been added up before it and of itself.
+/// The spectra of a trial.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Weighed<'a> {
-    pub(crate) factors: (f64, f64),
+pub(crate) struct Trial<'a> {
     pub(crate) force: &'a [Complex64],
     pub(crate) response: &'a [Complex64],
 }
 
-impl<'a> Weighed<'a> {
+impl<'a> Trial<'a> {
     /// Force and response, line by line.
     fn lines(self) -> Zip<Iter<'a, Complex64>, Iter<'a, Complex64>> {
         self.force.iter().zip(self.response)
@@ -100,12 +98,12 @@ impl<'a> Weighed<'a> {
 /// Sums of F*F, V*V and the two parts of F*V at one line, after a trial more.
 #[expect(clippy::inline_always, reason = "only what is inlined is compiled for the wide vectors")]
 #[inline(always)]
-fn added([ff, vv, re, im]: [f64; 4], (keep, gain): (f64, f64), (f, v): (&Complex64, &Complex64)) -> [f64; 4] {
+fn added([ff, vv, re, im]: [f64; 4], (f, v): (&Complex64, &Complex64)) -> [f64; 4] {
     [
-        keep * ff + gain * (f.re * f.re + f.im * f.im),
-        keep * vv + gain * (v.re * v.re + v.im * v.im),
-        keep * re + gain * (f.re * v.re + f.im * v.im),
-        keep * im + gain * (f.re * v.im - f.im * v.re),
+        ff + (f.re * f.re + f.im * f.im),
+        vv + (v.re * v.re + v.im * v.im),
+        re + (f.re * v.re + f.im * v.im),
+        im + (f.re * v.im - f.im * v.re),
     ]
 }
 
@@ -121,14 +119,14 @@ impl RatioSums {
         Self { ratio: vec![Complex64::ZERO; lines], square: vec![0.0; lines] }
     }
 
-    /// Multiplies the sums by `keep` and adds `gain` times a trial, whose force is nowhere zero.
-    pub(crate) fn add(&mut self, keep: f64, gain: f64, force: &[Complex64], response: &[Complex64]) {
+    /// Adds a trial, whose force is nowhere zero.
+    pub(crate) fn add(&mut self, force: &[Complex64], response: &[Complex64]) {
         for ((sum, square), (force, response)) in
             self.ratio.iter_mut().zip(&mut self.square).zip(force.iter().zip(response))
         {
             let ratio = response / force;
-            *sum = *sum * keep + ratio * gain;
-            *square = *square * keep + ratio.norm_sqr() * gain;
+            *sum += ratio;
+            *square += ratio.norm_sqr();
         }
     }
 
@@ -137,13 +135,13 @@ impl RatioSums {
         self.square.fill(0.0);
     }
 
-    /// The mean ratio at each line, for weights of this sum.
-    pub(crate) fn means(&self, weights: f64) -> Vec<Complex64> {
-        self.ratio.iter().map(|ratio| ratio / weights).collect()
+    /// The mean ratio at each line of this number of trials.
+    pub(crate) fn means(&self, trials: f64) -> Vec<Complex64> {
+        self.ratio.iter().map(|ratio| ratio / trials).collect()
     }
 
     /// The mean squared distance of the ratios at `line` from their mean.
-    pub(crate) fn variance(&self, line: usize, weights: f64) -> f64 {
-        (self.square[line] / weights - (self.ratio[line] / weights).norm_sqr()).max(0.0)
+    pub(crate) fn variance(&self, line: usize, trials: f64) -> f64 {
+        (self.square[line] / trials - (self.ratio[line] / trials).norm_sqr()).max(0.0)
     }
 }

@@ -98,7 +98,7 @@ impl ForceWindow {
 /// w(t) = e^{−σt}:   H(iω) becomes H(σ + iω)                                                          (1)
 /// ```
 ///
-/// It does to a transform what damping 2mσ and stiffness cσ + mσ² more would do to the machine. The shift is exact, so
+/// Its effect on a transform is that of damping 2mσ and stiffness cσ + mσ² more in the machine. The shift is exact, so
 /// it is taken out again exactly: a [`FrequencyResponse`](crate::FrequencyResponse) remembers σ, conversions between
 /// forms multiply by σ + iω, and the modal estimates give the poles of the machine without window.
 ///

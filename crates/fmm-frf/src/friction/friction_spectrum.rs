@@ -1,4 +1,4 @@
-//! The spectrum of the friction force, from what a response lacks of a linear one.
+//! Spectrum of the friction force, from the difference of a response to a linear one.
 
 use fmm_model::ModelError;
 use fmm_record::Complex64;

@@ -16,7 +16,7 @@ use crate::error::FrfError;
 /// J = Δt (f₀/2 + f₁ + … + f_{N−2} + f_{N−1}/2)
 /// ```
 ///
-/// The rule joins the samples by straight lines and cuts off what bulges between them. For a half-sine pulse of
+/// The rule joins the samples by straight lines and cuts off the bulges between them. For a half-sine pulse of
 /// peak F₀ and duration τ over n = τ/Δt intervals, with a sample at its start, the sum has a closed form:
 ///
 /// ```text

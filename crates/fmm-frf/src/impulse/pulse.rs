@@ -38,7 +38,7 @@ pub struct Pulse {
     /// The samples above the threshold, with one below it at either end if there is one; the threshold is the larger of
     /// [`Pulse::THRESHOLD`] of the level and six times the noise.
     pub samples: Range<usize>,
-    /// Area (N s) of those samples by the trapezoid rule; what is below the threshold is not in it.
+    /// Area (N s) of those samples by the trapezoid rule; samples below the threshold are not in it.
     pub impulse: f64,
     /// Further hits in the same direction, before or after the pulse: places at which the force rises above the
     /// threshold again, as after a hammer that bounced. Such a trial has a force spectrum with holes; it is better
