@@ -39,7 +39,8 @@
 //! and builds a law at any number type, for fits, budgets and reports. [`MaxwellSlip`] and [`Gms`] are lists of
 //! elements; their families for a given number of elements are [`MaxwellSlipOf`] and [`GmsOf`]. A user's law that
 //! implements it is simulated and fitted like these. A family also states its kind: a [`LawVisitor`] has one method for
-//! each kind of law, and [`catalogue()`] leads a [`FamilyVisitor`] through all families by name.
+//! each kind of law, and [`catalogue()`] leads a [`FamilyVisitor`] through all families by name. A family states its
+//! [`SearchRole`] too: the stages at which a search for the law of a record tries it.
 //!
 //! # Units and conventions
 //!

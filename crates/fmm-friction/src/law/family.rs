@@ -89,7 +89,7 @@ pub trait LawFamily: 'static {
     ///
     /// # Errors
     /// [`LawError`] if the number of values is not that of [`PARAMETERS`](Self::PARAMETERS), or if a value is
-    /// not finite, out of bounds, or contradicts another ([`LawError::Condition`] unless another variant fits).
+    /// not finite, out of bounds, or contradicts another ([`LawError::Contradiction`]).
     fn at<D: Scalar>(values: &[D]) -> Result<Self::At<D>, LawError>;
 
     /// Result of `visitor` for laws of this family's kind. An implementor calls the one method of [`LawVisitor`] that

@@ -6,9 +6,9 @@
 /// use fmm_friction::{Berger, LawFamily, SearchRole, SearchStage};
 ///
 /// let SearchRole::Tried([trial]) = Berger::SEARCH else { panic!("one trial") };
-/// assert_eq!(trial.stage(), SearchStage::Stribeck);
+/// assert_eq!(trial.stage, SearchStage::Stribeck);
 /// // The law has no viscous part of its own.
-/// assert!(trial.is_damped());
+/// assert!(trial.is_damped);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum SearchStage {
@@ -38,9 +38,12 @@ impl SearchStage {
 /// One fit of a family in a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchTrial {
-    stage: SearchStage,
-    fixed: &'static [(&'static str, f64)],
-    is_damped: bool,
+    /// Stage of the search.
+    pub stage: SearchStage,
+    /// Names and values of the parameters that are fixed.
+    pub fixed: &'static [(&'static str, f64)],
+    /// True if viscous damping of the machine is fitted beside the law.
+    pub is_damped: bool,
 }
 
 impl SearchTrial {
@@ -54,21 +57,6 @@ impl SearchTrial {
     #[must_use]
     pub const fn damped(self) -> Self {
         Self { is_damped: true, ..self }
-    }
-
-    /// Stage of the search.
-    pub const fn stage(&self) -> SearchStage {
-        self.stage
-    }
-
-    /// Names and values of the parameters that are fixed.
-    pub const fn fixed(&self) -> &'static [(&'static str, f64)] {
-        self.fixed
-    }
-
-    /// True if viscous damping of the machine is fitted beside the law.
-    pub const fn is_damped(&self) -> bool {
-        self.is_damped
     }
 }
 

@@ -75,18 +75,6 @@ impl<D: Scalar> LuGre<D> {
             viscous: self.viscous,
         }
     }
-
-    /// A sufficient condition that the contact never gives back more energy than its bristles store.
-    ///
-    /// ```text
-    /// σ₂ ≥ σ₁ (μ_s − μ_c)/μ_c
-    /// ```
-    ///
-    /// From F v − d/dt(N σ₀ z²/2) ≥ N (σ₂ − σ₁ (μ_s − μ_c)/μ_c) v². The parameter sets in common use do not meet it.
-    pub fn is_passive(&self) -> bool {
-        let excess = (self.breakaway.value() - self.sliding.value()) / self.sliding.value();
-        self.viscous.value() >= self.bristle_damping.value() * excess
-    }
 }
 
 impl<D: Scalar> BristleLaw<D> for LuGre<D> {
@@ -152,14 +140,6 @@ impl<D: Scalar> BristleLaw<D> for LuGre<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// The set that the original paper and most ports use: 316 · 0.5 is far above 0.4.
-    #[test]
-    fn the_usual_parameters_are_not_passive() {
-        let with = |damping: f64| LuGre::new(1.0, 1.5, 1e-3, 2.0, 1e5, damping, 0.4).unwrap();
-        assert!(!with(1e5f64.sqrt()).is_passive());
-        assert!(with(0.8).is_passive() && !with(0.81).is_passive());
-    }
 
     /// At constant velocity z = (g/σ₀) (1 − exp(−σ₀ v t/g)), so dz/dt = v exp(−σ₀ v t/g).
     #[test]

@@ -146,7 +146,7 @@ impl<D: Scalar> BristleLaw<D> for MaxwellSlip<D> {
     }
 }
 
-/// The family of [`MaxwellSlip`] laws of `N` elements, from 1 to 8. It makes their levels and stiffnesses parameters of
+/// The family of [`MaxwellSlip`] laws of `N` elements, from 1 to 4. It makes their levels and stiffnesses parameters of
 /// a fit.
 ///
 /// Elements of one law can change places; those listed first are meant to be the stiff ones that slide at most of the
@@ -167,16 +167,7 @@ const fn positive(name: &'static str, symbol: &'static str, unit: &'static str, 
     LawParameter::positive(name, symbol, unit, Role::Level).typically(typical)
 }
 
-const NAMES: [&str; 8] = [
-    "maxwell_slip_1",
-    "maxwell_slip_2",
-    "maxwell_slip_3",
-    "maxwell_slip_4",
-    "maxwell_slip_5",
-    "maxwell_slip_6",
-    "maxwell_slip_7",
-    "maxwell_slip_8",
-];
+const NAMES: [&str; 4] = ["maxwell_slip_1", "maxwell_slip_2", "maxwell_slip_3", "maxwell_slip_4"];
 
 /// Level and stiffness of every element.
 const PARAMETERS: &[LawParameter] = &[
@@ -188,14 +179,6 @@ const PARAMETERS: &[LawParameter] = &[
     positive("stiffness_3", "κ₃", "1/m", 5.0),
     positive("level_4", "w₄", "1", 0.2),
     positive("stiffness_4", "κ₄", "1/m", 200.0),
-    positive("level_5", "w₅", "1", 0.2),
-    positive("stiffness_5", "κ₅", "1/m", 50.0),
-    positive("level_6", "w₆", "1", 0.2),
-    positive("stiffness_6", "κ₆", "1/m", 10.0),
-    positive("level_7", "w₇", "1", 0.2),
-    positive("stiffness_7", "κ₇", "1/m", 2.0),
-    positive("level_8", "w₈", "1", 0.2),
-    positive("stiffness_8", "κ₈", "1/m", 1.0),
 ];
 
 impl<const N: usize> LawFamily for MaxwellSlipOf<N> {

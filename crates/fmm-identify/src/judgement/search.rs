@@ -46,8 +46,8 @@ pub struct Search {
 }
 
 impl Search {
-    /// The same with family `F` beside those of the catalogue: it is tried as its
-    /// [`SEARCH`](LawFamily::SEARCH) says, after the laws of the catalogue at the same stage.
+    /// The search with family `F`, a user's law, beside the catalogue. Its trials are those of
+    /// [`SEARCH`](LawFamily::SEARCH), each after the laws of the catalogue at that stage.
     #[must_use]
     pub fn including<F: LawFamily>(mut self) -> Self {
         self.families.push(Families.visit::<F>());
@@ -79,10 +79,10 @@ impl Search {
     fn at(&self, stage: SearchStage) -> Vec<Trial> {
         let families = catalogue(&mut Families).into_iter().chain(self.families.iter().cloned());
         let of_family = |family: Family| {
-            let trials = family.trials.iter().filter(move |trial| trial.stage() == stage);
+            let trials = family.trials.iter().filter(move |trial| trial.stage == stage);
             trials.map(move |trial| {
-                let terms = if trial.is_damped() { Terms::NONE.with(Term::LinearDamping) } else { Terms::NONE };
-                Trial { candidate: family.candidate.clone().with(terms), fixed: trial.fixed() }
+                let terms = if trial.is_damped { Terms::NONE.with(Term::LinearDamping) } else { Terms::NONE };
+                Trial { candidate: family.candidate.clone().with(terms), fixed: trial.fixed }
             })
         };
         families.flat_map(of_family).collect()
