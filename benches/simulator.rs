@@ -139,7 +139,7 @@ fn ring_down(criterion: &mut Criterion) {
     Exact.run_into(&scenario, &sampling, &mut trajectory).expect("valid");
     let apart = trajectory.velocity().values().iter().zip(&velocities).map(|(exact, plain)| (exact - plain).abs());
     let apart = apart.fold(0.0, f64::max);
-    assert!(apart < 1e-14 && room.zeros.len() == trajectory.half_swings(), "{apart} m/s apart");
+    assert!(apart < 1e-14 && room.zeros.len() == trajectory.half_cycles(), "{apart} m/s apart");
     group.bench_function("floor", |bencher| {
         bencher.iter(|| {
             black_box(&plain).run(1e-3, &mut velocities, &mut room);

@@ -84,7 +84,7 @@ fn lasting<L, E: Engine<f64, L>>(
 ) -> [Lasting; 4] {
     levels.map(|level| {
         let motion = engine.run(&scenario(level), &velocities(shortest / level, 16)).expect("valid");
-        Lasting { level, half_swings: motion.half_swings() }
+        Lasting { level, half_swings: motion.half_cycles() }
     })
 }
 

@@ -32,7 +32,7 @@ const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
             THISERROR,
         ],
     ),
-    ("fmm-sim", &[PULP, THISERROR]),
+    ("fmm-sim", &[THISERROR]),
     ("fmm-frf", &[PULP, THISERROR]),
     ("fmm-identify", &[("rayon", "takes derivatives, starts and laws of a fit on all threads"), THISERROR]),
     (

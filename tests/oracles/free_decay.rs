@@ -42,7 +42,7 @@ fn file_agrees(name: &str) {
     let interval = 1e-4;
     let motion = Exact.run(&scenario, &Sampling::uniform(interval, (end / interval) as usize + 2).unwrap()).unwrap();
     events_agree(motion.events(), &file["events"], tolerance);
-    assert_eq!(motion.half_swings() as f64, number(&file["n_half_swings"]));
+    assert_eq!(motion.half_cycles() as f64, number(&file["n_half_swings"]));
 
     let (times, positions, velocities) = (numbers(&samples["t"]), numbers(&samples["x"]), numbers(&samples["v"]));
     for ((time, x), v) in times.iter().zip(&positions).zip(&velocities) {
@@ -75,7 +75,7 @@ fn exact_ties() {
         let rest = motion.rest().unwrap_or_else(|| panic!("{label}: no stop"));
         assert_eq!(rest.position, number(&case["x_stop"]), "{label}");
         assert!((rest.time - number(&case["t_stop"])).abs() <= number(&file["tolerance"]["abs_t_s"]), "{label}");
-        assert_eq!(motion.half_swings() as f64, number(&case["n_half_swings"]), "{label}");
+        assert_eq!(motion.half_cycles() as f64, number(&case["n_half_swings"]), "{label}");
         assert_eq!(rest.margin(), 0.0, "{label}: the load equals the static level");
     }
 }

@@ -99,7 +99,7 @@ fn stops_and_reversals() {
         let rest = motion.rest().expect("friction stops it");
         assert!((rest.time - oracle.stop.0).abs() < 1e-6, "{pulse:?}: stops at {} s", rest.time);
         assert!((rest.position - oracle.stop.1).abs() < 1e-9, "{pulse:?}: rests at {} m", rest.position);
-        assert_eq!(motion.half_swings(), oracle.reversals, "{pulse:?}");
+        assert_eq!(motion.half_cycles(), oracle.reversals, "{pulse:?}");
         let reversals = motion.events().iter().filter(|event| event.kind == EventKind::Reversal);
         for (found, (time, position)) in reversals.zip(oracle.first) {
             assert!((found.time - time).abs() < 1e-6, "{pulse:?}: turns at {} s, not {time} s", found.time);

@@ -87,7 +87,7 @@ fn decides_by_the_load(case: &Case, motion: &Trajectory) {
     }
     let rest = events.last().filter(|event| event.next == Mode::Stick);
     assert_eq!(motion.rest(), rest, "{case}");
-    assert_eq!(motion.half_swings(), events.len() - 1, "{case}");
+    assert_eq!(motion.half_cycles(), events.len() - 1, "{case}");
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn equation_of_motion_and_automaton() {
         decides_by_the_load(&case, &motion);
         obeys_the_equation_of_motion(&case, &motion);
         stopped += usize::from(motion.rest().is_some() && motion.events().len() > 1);
-        reversed += usize::from(motion.half_swings() > 3);
+        reversed += usize::from(motion.half_cycles() > 3);
     }
     assert!(stopped > 200 && reversed > 200, "{stopped} cases stop and {reversed} reverse more than thrice");
 }
@@ -134,9 +134,9 @@ fn starts_on_the_edge_come_to_rest() {
             let case = started(mass, stiffness, 0.0, friction, (position, 0.0));
             let motion = case.run();
             assert!(
-                motion.rest().is_some() && motion.half_swings() <= 1,
-                "{} half swings: {case}",
-                motion.half_swings()
+                motion.rest().is_some() && motion.half_cycles() <= 1,
+                "{} half cycles: {case}",
+                motion.half_cycles()
             );
         }
     }
@@ -171,7 +171,7 @@ fn any_overdamped_motion_turns_in_time() {
             / (2.0 * root)
             - friction / stiffness;
         let motion = exactly(&case, &case.scenario(), &Sampling::uniform(1.01 * time, 2).unwrap());
-        assert_eq!(motion.half_swings(), 1, "no turn at {time} s: {case}");
+        assert_eq!(motion.half_cycles(), 1, "no turn at {time} s: {case}");
         let event = &motion.events()[1];
         // 1 − 1/ζ² > 0.2 costs up to 5 ulp of the root, once in each factor; the engine has as many from a² − ω₀².
         assert!((event.time / time - 1.0).abs() < 1e-13, "turns at {} s, not {time} s: {case}", event.time);
@@ -191,7 +191,7 @@ fn decrement_and_damped_frequency_are_those_of_the_machine() {
         let case = started(mass, stiffness, 2.0 * ratio * (mass * stiffness).sqrt(), 0.0, start);
         let (motion, machine) = (case.run(), case.oscillator());
         let (decrement, frequency) = (machine.logarithmic_decrement().unwrap(), machine.damped_frequency().unwrap());
-        assert!(motion.half_swings() >= 15, "{} half swings: {case}", motion.half_swings());
+        assert!(motion.half_cycles() >= 15, "{} half cycles: {case}", motion.half_cycles());
         for triple in motion.events().windows(3) {
             let (got, period) = ((triple[0].position / triple[2].position).ln(), triple[2].time - triple[0].time);
             // Ten periods are counted from zero, so that one of them is known to about ten ulp.

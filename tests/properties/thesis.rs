@@ -25,7 +25,7 @@ fn swinging(case: Case, random: &mut ChaCha8Rng) -> Option<Case> {
     let motion = exactly(&case, &case.scenario(), &case.sampling());
     // The first step of the appendix is half a step off in phase, 1/80 at the coarsest; margins are several times that.
     let clear = motion.events().iter().skip(1).all(|event| event.margin().abs() > 0.15);
-    (clear && motion.rest().is_some() && motion.half_swings() >= 3).then_some(case)
+    (clear && motion.rest().is_some() && motion.half_cycles() >= 3).then_some(case)
 }
 
 #[test]

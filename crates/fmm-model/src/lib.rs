@@ -65,6 +65,7 @@
 //! |---|---|
 //! | `std` | on by default: elementary functions of the standard library |
 //! | `libm` | those of the crate libm where `std` is off, as on a controller; an allocator is needed all the same |
+//! | `simd` | `widest`: work for the widest vectors of the processor, by the crate pulp |
 //! | `serde` | intervals as text |
 //! | `student` | coverage factors and quantiles of Student's t, by statrs |
 
@@ -90,6 +91,8 @@ mod scalar;
 mod student;
 mod symbol;
 mod unit;
+#[cfg(feature = "simd")]
+mod widest;
 
 pub use damping::Damping;
 pub use dimension::Dimension;
@@ -104,6 +107,8 @@ pub use scalar::Scalar;
 #[cfg(feature = "student")]
 pub use student::{coverage_factor, student_quantile};
 pub use unit::Unit;
+#[cfg(feature = "simd")]
+pub use widest::widest;
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

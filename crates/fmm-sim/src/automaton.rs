@@ -1,16 +1,11 @@
-//! The stick-slip automaton: modes, guards and transitions, the same for every engine of sliding laws.
+//! The stick-slip automaton of all engines of sliding laws: modes, guards and transitions.
 
 use fmm_model::{Oscillator, Restoring, Scalar};
 
-use crate::at_rest::holds_for_good;
-use crate::curve::Curve;
-use crate::drive::{Drive, Piece};
-use crate::first_zero::{SEARCH_BUDGET, first_zero};
-use crate::levels::Levels;
-use crate::load::{load, rounding};
-use crate::recorder::Recorder;
-use crate::work::Power;
-use crate::{Direction, Event, EventKind, Mode, Scenario, SimulationError, State};
+use crate::error::SimulationError;
+use crate::mechanics::{Curve, Forcing, Levels, Piece, SEARCH_BUDGET, first_zero, holds_for_good, load, rounding};
+use crate::scenario::{Direction, Event, EventKind, Mode, Scenario, State};
+use crate::trajectory::{Power, Recorder};
 
 /// Tolerance of the load at which the acceleration vanishes, relative to the friction force.
 const ON_BOUND: f64 = 1e-9;
@@ -33,7 +28,7 @@ pub(crate) struct Phase<'p, D> {
     pub(crate) piece: &'p Piece<D>,
     /// Latest end (s).
     pub(crate) limit: f64,
-    /// Whether the limit is the end of the simulation, so that samples at the limit belong to the phase.
+    /// True if the limit is the end of the simulation; samples at the limit then belong to the phase.
     pub(crate) last: bool,
 }
 
@@ -80,7 +75,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     pub(crate) fn new<L: ?Sized>(
         scenario: &'a Scenario<D, L>,
         levels: V,
-        drive: &Drive<D>,
+        drive: &Forcing<D>,
     ) -> Result<Self, SimulationError> {
         let most = scenario.largest_load() * levels.breakaway();
         if !most.value().is_finite() {
@@ -93,7 +88,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         load(self.oscillator, piece, time, State { position, velocity })
     }
 
-    /// Whether what a spring does at constant speed is neither a line nor a wave in time.
+    /// True for a spring whose force at constant speed is neither a line nor a wave in time.
     fn has_bent_spring(&self) -> bool {
         !matches!(self.oscillator.restoring(), Restoring::Linear | Restoring::Sine { .. })
     }
@@ -113,7 +108,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
 
     /// Load on a contact at zero relative velocity (N), its rate of change (N/s), and the rounding that it carries (N).
     fn resting_load(&self, piece: &Piece<D>, time: D, state: State<D>) -> (f64, f64, f64) {
-        // Under a constant force, which is what most reversals see, neither damping nor time has a part in it.
+        // Under a constant force, the usual case, neither damping nor time enters.
         let is_steady = piece.is_constant() && self.belt.value() == 0.0;
         if is_steady && matches!(self.oscillator.restoring(), Restoring::Linear) {
             let spring = self.oscillator.stiffness().value() * state.position.value();
@@ -160,8 +155,8 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         (if slips { self.sliding(direction) } else { Mode::Stick }, load)
     }
 
-    /// Whether the position in which friction balances the `load` (N) lies ahead. Beyond the static level it does, as
-    /// the sliding level is not higher; where rounding says otherwise, nothing moves.
+    /// True if the position in which friction balances the `load` (N) lies ahead. Beyond the static level it does, as
+    /// the sliding level is not higher; if rounding contradicts, nothing moves.
     fn is_ahead(&self, load: f64, normal_load: D, state: State<D>, direction: Direction) -> bool {
         let sliding = (self.levels.gaining(D::from(0.0)) * normal_load).value();
         match self.oscillator.restoring() {
@@ -202,7 +197,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     pub(crate) fn run<S: Slide<D>>(
         mut self,
         initial: State<D>,
-        drive: &Drive<D>,
+        drive: &Forcing<D>,
         slide: &mut S,
         recorder: &mut Recorder<D>,
     ) -> Result<(), SimulationError> {
@@ -222,7 +217,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             };
             let direction = mode.direction().unwrap_or(Direction::Positive);
             let phase = Phase { time, state, direction, branch, piece: &piece, limit, last };
-            // Motion of all kinds by one call, which is inlined: it is most of a ring-down.
+            // One call for all sliding, which is inlined: it takes most of the time of a ring-down.
             let (ended, next) = match mode {
                 Mode::Stick => self.hold(&phase, None, recorder)?,
                 Mode::Steady(direction) => self.hold(&phase, Some(direction), recorder)?,
@@ -243,7 +238,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                     self.push(mode, drive, index, &mut state);
                     let Some((next, load)) = self.after_jump(mode, &before, &piece, time, state) else { continue };
                     if let Some(late) = drive.time_of_jump(index).filter(|_| mode == Mode::Stick) {
-                        // What a jump breaks away it does at its own time, whatever the level is.
+                        // A jump breaks the contact away at the time of the jump, at any level.
                         time = late + piece.start;
                         state.position += state.velocity * late;
                     }
@@ -263,7 +258,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                     let (next, load) = self.mode(&piece, time, state);
                     (if next == Mode::Stick { EventKind::Stop } else { EventKind::Reversal }, next, load)
                 }
-                // Nor is a speed constant that is none: such a branch ends as one that reaches rest.
+                // A speed of zero is not constant: such a branch ends like one that reaches rest.
                 Ending::SteadySpeed if self.has_no_speed(mode, state) => {
                     state.velocity = self.belt;
                     let (next, load) = self.mode(&piece, time, state);
@@ -285,9 +280,9 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         }
     }
 
-    /// Gives a body that slides what a force has given it that jumps, at the beginning of the piece of this `index`, at
-    /// a time with derivatives.
-    fn push(&self, mode: Mode, drive: &Drive<D>, index: usize, state: &mut State<D>) {
+    /// Adds the impulse of a force that jumps at the beginning of the piece of this `index`, at a time with
+    /// derivatives, to a body that slides.
+    fn push(&self, mode: Mode, drive: &Forcing<D>, index: usize, state: &mut State<D>) {
         if matches!(mode, Mode::Slip(_) | Mode::Gaining(_) | Mode::Losing(_)) {
             state.velocity += drive.impulse_of_jumps(index) / self.oscillator.mass();
         }
@@ -296,7 +291,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     /// Next mode of a contact when the force jumps from one piece to the next: a contact that holds
     /// may slide at once, and the branch of one that slides may no longer agree with its acceleration.
     ///
-    /// Nothing but the time of the jump decides when that is, so that no level has a part in it.
+    /// The time of the jump alone decides the time of the change; no level enters it.
     fn after_jump(
         &self,
         mode: Mode,
@@ -326,7 +321,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         (!agrees).then(|| self.mode(piece, time, state))
     }
 
-    /// Whether a contact that slides in `mode` has lost its speed, or rounding has taken it beyond.
+    /// True if a contact that slides in `mode` has lost its speed, or has passed zero by rounding.
     fn has_no_speed(&self, mode: Mode, state: State<D>) -> bool {
         let relative = (state.velocity - self.belt).value();
         mode.direction().is_some_and(|direction| relative * direction.sign() <= 0.0)
@@ -347,7 +342,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
     }
 
     /// A phase of constant velocity: the contact sticks, or it slides steadily in direction `steady`. Friction balances
-    /// the load until that leaves the levels between which it can.
+    /// the load until the load leaves the range of the levels.
     fn hold(
         &mut self,
         phase: &Phase<D>,
@@ -399,7 +394,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                 }
                 continue;
             }
-            // What is out of reach need not be searched for.
+            // A level out of reach need not be searched for.
             let reach = reach + bound_slope.value().abs() * span;
             if bound.value() - sign * plain.constant > reach && span.is_finite() {
                 continue;
@@ -419,17 +414,12 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         } else {
             recorder.constant_velocity(stop, velocity, |time| at(D::from(time)))?;
         }
-        let (relative, damping) = (velocity - self.belt, self.oscillator.damping().force(velocity));
+        let damping = self.oscillator.damping().force(velocity);
         let end = stop.min(phase.limit);
         let power = |time: f64| {
             let friction =
                 if is_bent { self.load_after(phase, time - begin).now() } else { load.at(-phase.time + time) };
-            let force = phase.piece.force(time);
-            Power {
-                friction: friction * relative,
-                viscous: damping * velocity,
-                external: force * velocity - friction * self.belt,
-            }
+            Power::of(friction, damping, phase.piece.force(time), velocity, self.belt)
         };
         // Power is smooth between corners of the spring.
         let mut from = begin;
@@ -491,7 +481,7 @@ fn scale<D: Scalar>(curve: &Curve<D>) -> f64 {
 }
 
 /// The time at which `guard`, counted from `start`, crosses zero near `time`, with its derivatives; and whether it only
-/// grazes zero there, so that there are none.
+/// grazes zero there, without derivatives.
 pub(crate) fn crossing<D: Scalar>(guard: &Curve<D>, start: D, time: f64) -> (D, bool) {
     if D::DIRECTIONS == 0 {
         return (D::from(time), false);

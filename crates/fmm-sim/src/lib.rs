@@ -13,7 +13,7 @@
 //! let rest = motion.rest().expect("friction stops it");
 //! assert!((rest.time - 1.473_110_373_941).abs() < 1e-12);
 //! assert!((rest.position - 0.000_176_949_878).abs() < 1e-12);
-//! assert_eq!(motion.half_swings(), 7);
+//! assert_eq!(motion.half_cycles(), 7);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -21,9 +21,8 @@
 //!
 //! Stick and slip form a hybrid automaton. While the contact slips in one direction the equation of motion is smooth;
 //! when the relative velocity reaches zero the load on the contact decides whether it sticks or slips back. There is no
-//! velocity dead zone and no smoothed signum; the set of loads that stick is closed,
-//! |load| ≤ static level. The automaton is the same for all laws of the sliding speed; engines differ in the method for
-//! one phase of sliding.
+//! velocity dead zone and no smoothed signum; the set of loads that stick is closed, |load| ≤ static level. All laws of
+//! the sliding speed share the automaton; engines differ in the method for one phase of sliding.
 //!
 //! | engine | for | method | not for |
 //! |---|---|---|---|
@@ -36,23 +35,23 @@
 //! The first three give gradients in every input, through every event: [`Exact`] to rounding, the others to the
 //! accuracy that their pages state. [`simulate`] takes the engine that suits the law; [`Trajectory::engine`] names it.
 //! External actions are [`Excitation`]s, which add up; a release or a push is an initial state. The [`Work`] done by
-//! friction, damping and excitation comes along on request. A contact whose motion is given needs no engine:
+//! friction, damping and excitation comes along on request. A contact along a prescribed motion needs no engine:
 //! [`friction_along`].
 //!
 //! # Scenarios of common machines
 //!
 //! | machine | scenario |
 //! |---|---|
-//! | a bias force, a prestressed spring | [`Excitation::constant`]; x still counts from where the spring is free of force |
+//! | a bias force, a prestressed spring | [`Excitation::constant`]; x = 0 is still the force-free position of the spring |
 //! | an incline of angle β | [`Excitation::constant`] of m g sin β, normal load m g cos β |
-//! | a vertical machine | the same with β = 90°, and the load that presses the contact |
+//! | a vertical machine | an incline with β = 90°, and the load that presses the contact |
 //! | two contacts of one law in parallel | one contact, its normal load the sum of both |
-//! | two contacts of levels μ₁ and μ₂ under N₁ and N₂ | one law with the sum of the forces and a load of 1: `Coulomb::new(μ₁ N₁ + μ₂ N₂)`, or a [`SlidingLaw`](fmm_friction::SlidingLaw) of one's own that adds two |
+//! | two contacts of levels μ₁ and μ₂ under N₁ and N₂ | one law with the sum of the forces and a load of 1: `Coulomb::new(μ₁ N₁ + μ₂ N₂)`, or a user's [`SlidingLaw`](fmm_friction::SlidingLaw) that adds two |
 //! | a contact beside an oil film, c N s/m | [`Damping::linear`](fmm_model::Damping::linear) of the machine, as long as the counterface stands still |
-//! | two bristle contacts | elements of one [`MaxwellSlip`](fmm_friction::MaxwellSlip), or a [`BristleLaw`](fmm_friction::BristleLaw) of one's own with the states of both |
+//! | two bristle contacts | elements of one [`MaxwellSlip`](fmm_friction::MaxwellSlip), or a user's [`BristleLaw`](fmm_friction::BristleLaw) with the states of both |
 //! | a block without a spring | a stiffness of zero |
 //! | a spring pulled at its other end with velocity v | [`Excitation::ramp`] of k v |
-//! | a counterface whose velocity b′ varies, on a linear machine | x counted from the counterface, under an [`Excitation::function`] of −m b″ − c b′ − k b; the work of friction stays what it is, that of the force and of damping does not |
+//! | a counterface whose velocity b′ varies, on a linear machine | x counted from the counterface, under an [`Excitation::function`] of −m b″ − c b′ − k b; the work of friction is unchanged, that of force and damping is not |
 //! | a normal load that varies, with a law of the sliding speed | [`Scenario::under_sampled_load`] |
 //! | bristles that an earlier motion has left bent | [`Scenario::with_deflection`] |
 //! | any force over time | [`Excitation::function`], or [`Excitation::sampled_force`] |
@@ -75,16 +74,16 @@
 //!
 //! # Units and conventions
 //!
-//! SI units; x = 0 is where the spring is free of force, t = 0 the initial state. Per unit mass, stiffness, damping and
-//! force are those by the mass. A sample at the time of an event holds the state after it, its acceleration included,
-//! which jumps there: at a reversal by twice the friction force over the mass.
+//! SI units; x = 0 is the force-free position of the spring, t = 0 the initial state. Per unit mass, stiffness, damping
+//! and force are those by the mass. A sample at the time of an event holds the state after it, its acceleration
+//! included, which jumps there: at a reversal by twice the friction force over the mass.
 //!
 //! # Guarantees
 //!
 //! * *Events* are in order and carry their [`margin`](Event::margin), the distance of the load from the static level.
 //!   [`Exact`] misses none and decides ties by comparing the numbers as they are; [`RungeKutta`] and [`Bristle`] land
 //!   on each zero of their polynomials, which Bernstein coefficients prove to be all.
-//! * *Derivatives* include those of the event times. They do not see that the number of half swings may change; a
+//! * *Derivatives* include those of the event times. They do not show that the number of half cycles may change; a
 //!   margin near zero warns of it.
 //! * *Errors* are typed: a motion with too many events or steps for any record, or one that leaves the range of
 //!   numbers, is an error, not an endless run, a panic or a NaN.
@@ -92,9 +91,9 @@
 //!
 //! # Cost
 //!
-//! On an AMD EPYC (Zen 4), by half swings and samples, least of many calls (`cargo bench --bench growth`):
+//! On an AMD EPYC (Zen 4), by half cycles and samples, least of many calls (`cargo bench --bench growth`):
 //!
-//! | engine | a half swing | a sample | two derivatives beside the values |
+//! | engine | a half cycle | a sample | two derivatives beside the values |
 //! |---|---|---|---|
 //! | [`Exact`] | 0.03 µs | 0.3 ns | 1.6 to 2.2 times as long |
 //! | [`RungeKutta`] | 13 µs to 16 µs; to 1e-10 half of it | 1 to 18 ns | 1.6 to 2.2 times |
@@ -111,57 +110,28 @@
 //! [`fmm-friction`](https://docs.rs/fmm-friction) has the laws, [`fmm-model`](https://docs.rs/fmm-model) the machine;
 //! [`fmm-identify`](https://docs.rs/fmm-identify) fits motions to records. There are no features.
 
-#[cfg(test)]
-mod agreement;
-mod at_rest;
 mod automaton;
 mod bristle;
-mod choice;
-mod curve;
-mod decay;
 mod dormand_prince;
-mod drive;
-mod energy;
-mod engine;
 mod error;
-mod event;
 mod exact;
-mod excitation;
-mod first_zero;
 mod fixed_step;
-mod levels;
-mod load;
-mod moreau;
-mod prescribed;
-mod recorder;
+mod mechanics;
 mod runge_kutta;
-mod samples;
-mod sampling;
 mod scenario;
-mod spring;
-mod thesis;
+mod simulate;
+#[cfg(test)]
+mod tests;
 mod trajectory;
-mod wide;
-mod within;
-mod work;
 
-pub use bristle::Bristle;
-pub use choice::{simulate, simulate_into};
-pub use energy::Energy;
-pub use engine::Engine;
+pub use bristle::{Bristle, FrictionPoint, PrescribedMotion, friction_along};
 pub use error::SimulationError;
-pub use event::{Direction, Event, EventKind, Mode};
 pub use exact::Exact;
-pub use excitation::Excitation;
-pub use moreau::Moreau;
-pub use prescribed::{FrictionPoint, PrescribedMotion, friction_along};
+pub use fixed_step::{Moreau, Thesis};
 pub use runge_kutta::RungeKutta;
-pub use samples::Samples;
-pub use sampling::{Channels, Sampling};
-pub use scenario::{Scenario, State};
-pub use thesis::Thesis;
-pub use trajectory::Trajectory;
-pub use work::Work;
+pub use scenario::{Channels, Direction, Event, EventKind, Excitation, Mode, Sampling, Scenario, State};
+pub use simulate::{simulate, simulate_into};
+pub use trajectory::{Energy, Engine, Samples, Trajectory, Work};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

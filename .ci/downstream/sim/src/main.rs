@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rest = motion.rest().ok_or("it swings longer than 3 s")?;
     println!(
         "{} half swings, at rest after {:.4} s at {:+.4} mm",
-        motion.half_swings(),
+        motion.half_cycles(),
         rest.time.value(),
         1e3 * rest.position.value()
     );
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // Every half swing loses 2 μN/k: after six of them x = x₀ − 12 μN/k, in whole half periods.
     let loss = 2.0 * 7.0 / 1982.0;
-    assert_eq!(motion.half_swings(), 6);
+    assert_eq!(motion.half_cycles(), 6);
     assert!((rest.position.value() - (0.010 - 6.0 * 0.25 * loss)).abs() < 1e-12, "{} m", rest.position.value());
     assert!((rest.position.partial(0) + 6.0 * loss).abs() < 1e-12, "{} m", rest.position.partial(0));
     assert!(rest.time.partial(0).abs() < 1e-12, "a half swing takes as long with friction as without");

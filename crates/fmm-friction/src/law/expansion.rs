@@ -85,7 +85,8 @@ pub(crate) fn is_whole<D: Scalar>(exponent: D) -> bool {
     exponent.value() == 1.0 || exponent.value() == 2.0
 }
 
-/// Writes the coefficient of `order` of `base` to the power `exponent` into `power_of`; `room` is used by this power alone.
+/// Writes the coefficient of `order` of `base` to the power `exponent` into `power_of`; `room` is used by this power
+/// alone.
 ///
 /// The base must not begin at zero, unless the exponent [is whole](is_whole) and without derivatives.
 pub(crate) fn raise<D: Scalar>(

@@ -5,8 +5,8 @@ use fmm_model::Scalar;
 /// sliding + (breakaway − sliding) `share`, for a share from 0 (sliding) to 1 (breakaway) and its `rest`, 1 − share.
 ///
 /// A share of exactly 1 gives exactly `breakaway`, no share gives more, and two equal levels give exactly that level:
-/// the value is computed from the nearer end. There the derivative in `sliding` is the rest, which keeps its digits only
-/// if it is not computed from the share.
+/// the value is computed from the nearer end. There the derivative in `sliding` is the rest, which keeps its digits
+/// only if it is not computed from the share.
 pub(crate) fn between<D: Scalar>(sliding: D, breakaway: D, share: D, rest: impl FnOnce() -> D) -> D {
     let excess = breakaway - sliding;
     if share.value() < 0.5 { sliding + excess * share } else { breakaway - excess * rest() }

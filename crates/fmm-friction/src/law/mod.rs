@@ -60,9 +60,9 @@ pub trait SlidingLaw<D: Scalar> {
     /// Static level: the coefficient (1) that the load must exceed to break away from rest.
     fn breakaway(&self) -> D;
 
-    /// True for a law that differs while the speed falls: [`coefficient`](Self::coefficient) holds while the speed grows,
-    /// [`coefficient_losing_speed`](Self::coefficient_losing_speed) while it falls, and any value between the two at
-    /// constant speed.
+    /// True for a law that differs while the speed falls: [`coefficient`](Self::coefficient) holds while the speed
+    /// grows, [`coefficient_losing_speed`](Self::coefficient_losing_speed) while it falls, and any value between the
+    /// two at constant speed.
     fn depends_on_acceleration(&self) -> bool {
         false
     }
@@ -157,9 +157,9 @@ pub trait BristleLaw<D: Scalar> {
         false
     }
 
-    /// Computes the Taylor coefficients of this `order` of rate and friction coefficient; known are those of lower orders,
-    /// and velocity and state up to this order. Returns false if the law has no such series there, or several states.
-    /// With a series an engine takes long steps of high order.
+    /// Computes the Taylor coefficients of this `order` of rate and friction coefficient; known are those of lower
+    /// orders, and velocity and state up to this order. Returns false if the law has no such series there, or several
+    /// states. With a series an engine takes long steps of high order.
     ///
     /// ```
     /// use fmm_friction::{BristleLaw, Dahl, Expansion};

@@ -39,8 +39,8 @@ impl LawParameter {
         Self { parameter, role, typical: 1.0 }
     }
 
-    /// The parameter with a start value for fits, relative to a scale of the motion (1); 1 if none is given. The scale is
-    /// the Coulomb coefficient with equal losses for a coefficient or its excess, the largest speed for a speed, the
+    /// The parameter with a start value for fits, relative to a scale of the motion (1); 1 if none is given. The scale
+    /// is the Coulomb coefficient with equal losses for a coefficient or its excess, the largest speed for a speed, the
     /// amplitude for a length, and 1 for a pure number.
     #[must_use]
     pub const fn typically(mut self, relative: f64) -> Self {

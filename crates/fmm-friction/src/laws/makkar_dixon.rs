@@ -29,7 +29,8 @@ law_family! {
     ///
     /// The coefficient is zero at zero speed, so this contact never sticks, it creeps; [`ShiftedMakkarDixon`]
     /// gives it a static level. The thesis prints −γ₄ but computes with +γ₄, as Makkar does, and so does this law. Nor
-    /// is γ₁ + γ₄ the height of the peak, unless γ₂ and γ₅ are infinite and γ₃ zero: [`peak`](Self::peak) has the height.
+    /// is γ₁ + γ₄ the height of the peak, unless γ₂ and γ₅ are infinite and γ₃ zero: [`peak`](Self::peak) has the
+    /// height.
     ///
     /// With γ₁ = γ₆ = 0 this is [`Coulomb`](crate::Coulomb) [`Smoothed`](crate::Smoothed) over 1/γ₅.
     ///

@@ -1,32 +1,32 @@
-//! One step of the collocation method: Newton's method for all stages at once, and what the solution says of its error.
+//! One step of the collocation method: Newton's method for all stages at once, and the estimate of its error.
 
 use fmm_friction::BristleLaw;
 use fmm_model::Scalar;
 
-use super::field::{Branch, Field};
-use super::modes::Modes;
-use super::motion::{Motion, ROUNDING, Solved, Span};
-use super::radau::{
+use crate::bristle::field::{Branch, Field};
+use crate::bristle::modes::Modes;
+use crate::bristle::polynomial::{ROUNDING, Solved, Span, StepPolynomial};
+use crate::bristle::radau::{
     CENTRED_COLUMNS, COEFFICIENTS_COLUMNS, FROM_MODES_COLUMNS, INVERSE_COLUMNS, NODES, STAGES, Stages,
     TO_MODES_COLUMNS, product,
 };
-use crate::SimulationError;
-use crate::drive::Piece;
+use crate::error::SimulationError;
+use crate::mechanics::Piece;
 
-/// Iterations for the values; one that needs more is better off with a shorter step.
+/// Greatest number of iterations for the values; if more are needed, a shorter step is better.
 const MOST_ITERATIONS: i32 = 15;
 
-/// Iterations for the derivatives, which converge as the values do, but from wherever these have left them.
+/// Greatest number of iterations for the derivatives, which begin at the result of the step before.
 const MOST_DERIVATIVE_ITERATIONS: usize = 60;
 
-/// What is left over by Newton's method, in units of the tolerance.
+/// Remaining error of Newton's method, in units of the tolerance.
 const LEFT_OVER: f64 = 0.01;
 
-/// Step times stiffness below which the stiffness of a state does not count beside the eigenvalues of the method, of 10
-/// to 13; found by the number of iterations, which is the least for 5 to 6.
+/// Step times stiffness below which the stiffness of a state does not count beside the eigenvalues of the method, 10 to
+/// 13 (1). Measured: the number of iterations is least for 5 to 6.
 const LEAST_STIFF: f64 = 6.0;
 
-/// The method: what it needs beside the motion.
+/// The method and its working memory.
 pub(super) struct Collocation<D> {
     /// f(Yᵢ) at all stages, for each component.
     rates: Vec<Stages<D>>,
@@ -34,13 +34,13 @@ pub(super) struct Collocation<D> {
     modes: Modes<D>,
     state: Vec<D>,
     rate: Vec<D>,
-    /// Increments and length of a step from which this one is predicted, and where in units of that step this one
-    /// begins: at 1, or at 0 if it is a first attempt at the same step.
+    /// Increments and length of a step from which this one is predicted, and the beginning of this one in units of that
+    /// step: 1, or 0 for another attempt at that step.
     guess: Vec<Stages<D>>,
     guess_length: f64,
     guess_begin: f64,
     forces: [D; STAGES],
-    /// What residuals of the states are multiplied by, for each state.
+    /// Factors of the residuals of the states, for each state.
     weights: Vec<Stages<f64>>,
     relaxations: Vec<f64>,
 }
@@ -64,24 +64,24 @@ impl<D: Scalar> Collocation<D> {
         }
     }
 
-    /// The next step has nothing to do with the one before.
+    /// Forgets the step before, which does not predict the next one.
     pub(super) fn forget(&mut self) {
         self.guess_length = 0.0;
     }
 
     /// The next step begins where `motion`, a step of this `length`, did, at 0, or where it has ended, at 1.
-    pub(super) fn predict_from(&mut self, motion: &Motion<D>, length: f64, begin: f64) {
+    pub(super) fn predict_from(&mut self, motion: &StepPolynomial<D>, length: f64, begin: f64) {
         self.guess.copy_from_slice(&motion.increments);
         (self.guess_length, self.guess_begin) = (length, begin);
     }
 
     /// Solves the step over `span`. `None` if Newton's method does not converge.
     ///
-    /// The values are iterated first, by rules that look at nothing but values, and then left alone while the
-    /// derivatives are iterated: the values are those of plain numbers to the last bit.
+    /// The values are iterated first, by rules that depend on values only, and stay fixed while the derivatives are
+    /// iterated. The values are therefore those of plain numbers to the last bit.
     pub(super) fn solve<L: BristleLaw<D> + ?Sized>(
         &mut self,
-        motion: &mut Motion<D>,
+        motion: &mut StepPolynomial<D>,
         field: &mut Field<D, L>,
         branch: Branch,
         piece: &Piece<D>,
@@ -103,7 +103,7 @@ impl<D: Scalar> Collocation<D> {
             self.evaluate(motion, field, branch, span, iterations == 0);
             self.correct(motion, span, true);
             if iterations < 1 {
-                // What errors are compared with hardly changes any more.
+                // The scale of the errors hardly changes any more.
                 motion.rescale(span, rounding);
             }
             let correction = self.correction(motion, D::value);
@@ -142,7 +142,7 @@ impl<D: Scalar> Collocation<D> {
     /// Guesses the increments: the polynomial of another step, or straight lines.
     fn predict<L: BristleLaw<D> + ?Sized>(
         &mut self,
-        motion: &mut Motion<D>,
+        motion: &mut StepPolynomial<D>,
         field: &mut Field<D, L>,
         branch: Branch,
         span: Span,
@@ -177,7 +177,7 @@ impl<D: Scalar> Collocation<D> {
     /// The Jacobian in the middle of the step, factored. False if that cannot be.
     fn prepare<L: BristleLaw<D> + ?Sized>(
         &mut self,
-        motion: &Motion<D>,
+        motion: &StepPolynomial<D>,
         field: &mut Field<D, L>,
         branch: Branch,
         span: Span,
@@ -190,7 +190,7 @@ impl<D: Scalar> Collocation<D> {
     /// The rates at all stages; with `weigh` also how stiff the states are at each.
     fn evaluate<L: BristleLaw<D> + ?Sized>(
         &mut self,
-        motion: &mut Motion<D>,
+        motion: &mut StepPolynomial<D>,
         field: &mut Field<D, L>,
         branch: Branch,
         span: Span,
@@ -215,11 +215,11 @@ impl<D: Scalar> Collocation<D> {
     }
 
     /// One iteration of Newton's method; afterwards `residual` holds the change of the increments. Without `values`
-    /// these stay what they are.
+    /// these stay constant.
     ///
     /// The Jacobian is that in the middle of the step. The equations of a state are multiplied by how stiff they are
     /// there over how stiff they are at their stage, so that it is that of all stages where a state follows the motion.
-    fn correct(&mut self, motion: &mut Motion<D>, span: Span, values: bool) {
+    fn correct(&mut self, motion: &mut StepPolynomial<D>, span: Span, values: bool) {
         // f(Y) − (1/h) A⁻¹ W
         let per_second = 1.0 / span.length;
         let unknowns = motion.increments[1..].iter().zip(&self.rates[1..]);
@@ -251,7 +251,7 @@ impl<D: Scalar> Collocation<D> {
     }
 
     /// The greatest `part` of the last change of an increment, relative to its scale.
-    fn correction(&self, motion: &Motion<D>, part: impl Fn(D) -> f64) -> f64 {
+    fn correction(&self, motion: &StepPolynomial<D>, part: impl Fn(D) -> f64) -> f64 {
         let mut most = 0.0f64;
         for (component, changes) in self.residual.iter().enumerate().skip(1) {
             let per_scale = 1.0 / motion.scale(component);
@@ -266,7 +266,7 @@ impl<D: Scalar> Collocation<D> {
 
     fn solve_derivatives<L: BristleLaw<D> + ?Sized>(
         &mut self,
-        motion: &mut Motion<D>,
+        motion: &mut StepPolynomial<D>,
         field: &mut Field<D, L>,
         branch: Branch,
         span: Span,
@@ -301,7 +301,7 @@ impl<D: Scalar> Collocation<D> {
 }
 
 /// Makes the position follow the velocity.
-fn follow_velocity<D: Scalar>(motion: &mut Motion<D>, length: f64) {
+fn follow_velocity<D: Scalar>(motion: &mut StepPolynomial<D>, length: f64) {
     let velocity = motion.begin[1];
     let [position, increments, ..] = &mut motion.increments[..] else { return };
     *position = product(&COEFFICIENTS_COLUMNS, increments);

@@ -1,14 +1,14 @@
-//! One explicit step of order 8, where the law is not stiff.
+//! One explicit step of order 8, for a law that is not stiff.
 
 use fmm_friction::BristleLaw;
 use fmm_model::Scalar;
 
-use super::field::{Branch, Field};
-use super::motion::{Motion, ROUNDING, Solved, Span};
-use super::pace::STABLE;
-use super::radau::{Columns, NODES, STAGES, product};
+use crate::bristle::field::{Branch, Field};
+use crate::bristle::pace::STABLE;
+use crate::bristle::polynomial::{ROUNDING, Solved, Span, StepPolynomial};
+use crate::bristle::radau::{Columns, NODES, STAGES, product};
 use crate::dormand_prince::{END, Rates, dense_stages, error, errors, mean_rate, nested, step};
-use crate::drive::Piece;
+use crate::mechanics::Piece;
 
 /// Order of the method.
 const ORDER: i32 = 8;
@@ -18,8 +18,8 @@ const SAFETY: f64 = 0.1;
 
 /// The Dormand-Prince method, as the [`RungeKutta`](crate::RungeKutta) engine uses it.
 ///
-/// Its interpolant is of the same degree as the polynomial of the collocation method and is handed on as that: by what
-/// it is at the stages there.
+/// Its interpolant has the degree of the polynomial of the collocation method and is passed on as values at the stages
+/// of that method.
 pub(super) struct Explicit<D> {
     rates: Vec<Rates<D>>,
     state: Vec<D>,
@@ -44,7 +44,7 @@ impl<D: Scalar> Explicit<D> {
     /// Takes the step over `span`. `None` if it leaves the range of numbers.
     pub(super) fn take<L: BristleLaw<D> + ?Sized>(
         &mut self,
-        motion: &mut Motion<D>,
+        motion: &mut StepPolynomial<D>,
         field: &mut Field<D, L>,
         branch: Branch,
         piece: &Piece<D>,
@@ -61,7 +61,7 @@ impl<D: Scalar> Explicit<D> {
         rate_at(0.0, &motion.begin, 0, rates);
         step(&motion.begin, length, rates, state, end, &mut rate_at);
         for (increments, rates) in motion.increments.iter_mut().zip(&*rates) {
-            // The end alone says already how far the step goes, which is what errors are compared with.
+            // The end alone gives the extent of the step, the scale of its errors.
             *increments = [mean_rate(rates) * length; NODES.len()];
         }
         let forces = field.force_size(piece.force(time), branch, &motion.begin);
@@ -75,12 +75,12 @@ impl<D: Scalar> Explicit<D> {
         if self.is_settled(motion) {
             field.relaxations(branch, &self.end, &mut self.relaxations);
             stiffness = self.relaxations.iter().fold(stiffness, |most, relaxation| most.max(length * relaxation));
-            // The values stay where they are however long the step, and move nothing, but derivatives and rounding grow
+            // The values stay constant in a step of any length, but derivatives and rounding grow
             // in one that is not stable.
             error = error.max((stiffness / STABLE).powi(ORDER));
         }
         let variation = self.variation(motion);
-        // A step too long for the method is no use, but for what it says of an event within.
+        // A step too long for the method only shows an event within.
         let followed = error <= 1.0 || self.passes(motion, field.belt.value());
         if followed {
             self.follow(motion, field, branch, piece, span);
@@ -89,7 +89,7 @@ impl<D: Scalar> Explicit<D> {
     }
 
     /// The local error of the component that is worst off.
-    fn error(&self, motion: &Motion<D>, length: f64) -> f64 {
+    fn error(&self, motion: &StepPolynomial<D>, length: f64) -> f64 {
         let mut worst = 0.0f64;
         for (component, rates) in self.rates.iter().enumerate() {
             let (fifth, third) = errors(rates);
@@ -106,7 +106,7 @@ impl<D: Scalar> Explicit<D> {
     ///
     /// # References
     /// E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, Springer 1996, section IV.2, eq. (2.25).
-    fn stiffness(&self, motion: &Motion<D>, length: f64) -> f64 {
+    fn stiffness(&self, motion: &StepPolynomial<D>, length: f64) -> f64 {
         let (mut rates, mut states) = (0.0, 0.0);
         for (component, of) in self.rates.iter().enumerate() {
             let scale = motion.scale(component);
@@ -118,9 +118,9 @@ impl<D: Scalar> Explicit<D> {
         if states > 0.0 { length * (rates / states).sqrt() } else { 0.0 }
     }
 
-    /// Whether the states are where they stay: their values show nothing of how fast they would return there, but their
-    /// derivatives do return.
-    fn is_settled(&self, motion: &Motion<D>) -> bool {
+    /// True if the states rest at their equilibrium. Their values then do not show how fast they would return, but
+    /// their derivatives do return.
+    fn is_settled(&self, motion: &StepPolynomial<D>) -> bool {
         /// Changes below, in units of the scales, do not count beside that of the position.
         const UNSEEN: f64 = 1e-9;
         let states = self.end.iter().zip(&self.state).enumerate().skip(2);
@@ -130,7 +130,7 @@ impl<D: Scalar> Explicit<D> {
     }
 
     /// By how much the rates of the states have changed over the step, in units of themselves.
-    fn variation(&self, motion: &Motion<D>) -> f64 {
+    fn variation(&self, motion: &StepPolynomial<D>) -> f64 {
         let (mut change, mut size) = (0.0, 0.0);
         for (component, of) in self.rates.iter().enumerate().skip(2) {
             let scale = motion.scale(component);
@@ -141,8 +141,8 @@ impl<D: Scalar> Explicit<D> {
         if change == 0.0 { 0.0 } else { (change / size).sqrt() }
     }
 
-    /// Whether the relative velocity or a state has changed its sign.
-    fn passes(&self, motion: &Motion<D>, belt: f64) -> bool {
+    /// True if the relative velocity or a state has changed its sign.
+    fn passes(&self, motion: &StepPolynomial<D>, belt: f64) -> bool {
         let changes = |begin: f64, end: f64| begin * end <= 0.0 && begin != end;
         let [begin, end] = [&motion.begin, &self.end].map(|state| state[1].value());
         changes(begin - belt, end - belt)
@@ -152,7 +152,7 @@ impl<D: Scalar> Explicit<D> {
     /// The polynomial within the step.
     fn follow<L: BristleLaw<D> + ?Sized>(
         &mut self,
-        motion: &mut Motion<D>,
+        motion: &mut StepPolynomial<D>,
         field: &mut Field<D, L>,
         branch: Branch,
         piece: &Piece<D>,

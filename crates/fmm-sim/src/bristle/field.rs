@@ -1,12 +1,13 @@
-//! The equations of motion of one swing: the oscillator, the bristles, and their Jacobian.
+//! The equations of motion of one half cycle: the oscillator, the bristles, and their Jacobian.
 
 use fmm_friction::{BristleLaw, Regime};
 use fmm_model::{Oscillator, Scalar};
 
-use crate::Direction;
-use crate::spring::Spring;
+use crate::error::SimulationError;
+use crate::mechanics::Spring;
+use crate::scenario::Direction;
 
-/// On which smooth branch of the law the contact moves.
+/// Smooth branch of the law on which the contact moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Branch {
     pub(super) direction: Direction,
@@ -17,22 +18,22 @@ pub(super) struct Branch {
 /// Newton's method converge.
 const DIFFERENCE: f64 = 1e-7;
 
-/// The part of its bound within which a state is near zero.
+/// Deflection over its bound (1) at which corners at zero are looked for.
 const NEAR_ZERO: f64 = 1e-4;
 
-/// Tolerances (1) from its bound at which a bristle is at it. Where its rate has an infinite slope there, steps that
-/// are not implicit leave a value one or two short of it, and derivatives would grow from step to step.
+/// Distance from its bound, in tolerances (1), at which a bristle counts as at the bound. Explicit steps end one or two
+/// tolerances short of a bound with an infinite slope, and derivatives would grow from step to step.
 const AT_BOUND: f64 = 8.0;
 
-/// A speed (m/s) beyond all that a law may depend on.
+/// A speed beyond all speeds that a law may depend on (m/s).
 const FAST: f64 = 1e6;
 
 /// The right-hand side of (x, v, z)′.
 ///
-/// Everything is evaluated as if the swing went in the positive direction, with u and z of the other direction
-/// mirrored: the law is odd, so this changes nothing but which side of its kink u = 0 belongs to, and that is the side
-/// of the swing. Behind the end of the swing, where a step may reach before its end is found, the law is that of its
-/// end; and so it is behind the zero of a state, where the law may have a corner.
+/// Everything is evaluated as if the half cycle went in the positive direction, with u and z of the other direction
+/// mirrored. The law is odd, so that this only decides to which side of its kink u = 0 belongs: to that of the half
+/// cycle. A step may reach beyond the end of the half cycle before the end is found; the law there is that of the end.
+/// Beyond the zero of a state with a corner it is that of the zero.
 pub(super) struct Field<'a, D, L: ?Sized> {
     pub(super) oscillator: &'a Oscillator<D>,
     /// The spring on the side of its corners on which the step is.
@@ -40,8 +41,8 @@ pub(super) struct Field<'a, D, L: ?Sized> {
     pub(super) normal_load: D,
     pub(super) belt: D,
     pub(super) law: &'a L,
-    /// Whether something outside prescribes the acceleration, which then stands in the place of the force (N), whatever
-    /// the forces of machine and contact are.
+    /// True if the acceleration is prescribed. It then takes the place of the force (N), and machine and contact do not
+    /// change it.
     pub(super) guided: bool,
     /// 1/m.
     pub(super) per_mass: D,
@@ -51,11 +52,11 @@ pub(super) struct Field<'a, D, L: ?Sized> {
     rate: Vec<D>,
     /// Rates that the Jacobian compares with.
     centre: Vec<f64>,
-    /// Which states have a corner of their rate at zero.
+    /// True for each state whose rate has a corner at zero.
     bends: Vec<bool>,
-    /// Which states have not yet come back through zero in this swing, and stay below it until that is found.
+    /// True for each state that has not yet come back through zero in this half cycle; it stays below zero until then.
     below: Vec<bool>,
-    /// Which states have reached their bound for the rest of this swing.
+    /// True for each state that has reached its bound for the rest of this half cycle.
     saturated: Vec<bool>,
 }
 
@@ -85,7 +86,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         2 + self.rate.len()
     }
 
-    /// Notes which states at the beginning of a step are to come back through zero.
+    /// Notes the states that are to come back through zero after the beginning of a step.
     pub(super) fn begin(&mut self, branch: Branch, state: &[D]) {
         self.below.fill(false);
         for index in 0..self.below.len() {
@@ -95,13 +96,14 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         }
     }
 
-    /// Whether the state of this `index` is to come back through zero.
+    /// True if the state of this `index` is to come back through zero.
     pub(super) fn is_below(&self, index: usize) -> bool {
         self.below[index]
     }
 
-    /// Which states have a corner of the rate or of the coefficient at zero, seen by the even part of their change near
-    /// it: that of a smooth function is small beside the odd part. `per_second` (1/s) makes a speed of a deflection.
+    /// Finds the states with a corner of the rate or of the coefficient at zero by the even part of their change near
+    /// zero, which is small beside the odd part for a smooth function. `per_second` (1/s) converts a deflection to a
+    /// speed.
     fn corners(law: &L, per_second: f64) -> Vec<bool> {
         let size = law.states();
         let [mut state, mut rate] = [vec![D::from(0.0); size], vec![D::from(0.0); size]];
@@ -123,21 +125,21 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         (0..size).map(corner).collect()
     }
 
-    /// Whether the state of this `index` has reached its bound for the rest of this swing.
+    /// True if the state of this `index` has reached its bound for the rest of this half cycle.
     pub(super) fn is_saturated(&self, index: usize) -> bool {
         self.saturated[index]
     }
 
-    /// Lets no state be saturated, as at the beginning of a swing.
+    /// Releases all saturated states, at the beginning of a half cycle.
     pub(super) fn release(&mut self) {
         self.saturated.fill(false);
     }
 
-    /// Puts states that are within `tolerance` of a bound that attracts them onto it, where they stay until the swing
-    /// ends. False if there are none.
+    /// Puts states that are within `tolerance` of a bound that attracts them onto it, where they stay until the half
+    /// cycle ends. False if there are none.
     ///
-    /// A law such as Dahl's with an exponent below 1 reaches its bound in finite time, with an infinite slope there: no
-    /// step of any length could be solved beyond.
+    /// A law such as Dahl's with an exponent below 1 reaches its bound in finite time, with an infinite slope there. No
+    /// step of any length could be solved beyond it.
     pub(super) fn saturate(&mut self, branch: Branch, state: &mut [D], tolerance: f64) -> bool {
         let mut found = false;
         for index in 0..self.rate.len() {
@@ -175,7 +177,8 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         if speed.value() < 0.0 { speed - speed.value() } else { speed }
     }
 
-    /// Friction force (N) along the direction of the swing; the mirrored rates of the bristles are left in `self.rate`.
+    /// Friction force (N) along the direction of the half cycle; the mirrored rates of the bristles are left in
+    /// `self.rate`.
     #[inline]
     fn mirrored_friction(&mut self, branch: Branch, speed: D) -> D {
         self.law.rate(speed, &self.mirrored, branch.regime, &mut self.rate);
@@ -216,9 +219,9 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         }
     }
 
-    /// Writes at which rates (1/s) the states return to where they tend to, from differences with the rates at `state`
-    /// that [`rates`](Self::rates) has just left, all states moved at once: exact for states that do not act upon each
-    /// other.
+    /// Writes the rates (1/s) at which the states return to their equilibrium, from differences with the rates at
+    /// `state` that [`rates`](Self::rates) has just left. All states are moved at once, which is exact for states that
+    /// do not act upon each other.
     pub(super) fn relaxations(&mut self, branch: Branch, state: &[D], relaxations: &mut [f64]) {
         for (centre, rate) in self.centre.iter_mut().zip(&self.rate) {
             *centre = rate.value();
@@ -236,7 +239,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         }
     }
 
-    /// How far element `index` is from sliding, if it holds and can.
+    /// Reserve of element `index` before it slides, if it holds and can slide.
     pub(super) fn reserve(&mut self, index: usize, branch: Branch, state: &[D]) -> Option<D> {
         if branch.regime.slides(index) {
             return None;
@@ -245,8 +248,8 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         self.law.reserve(index, speed, &self.mirrored)
     }
 
-    /// Size of the terms whose difference is the reserve of element `index`, if it holds and can slide: the reserve as
-    /// it is and that without any deflection.
+    /// Size of the terms whose difference is the reserve of element `index`, if it holds and can slide: the reserve and
+    /// the reserve without any deflection.
     pub(super) fn reserve_size(&mut self, index: usize, branch: Branch, state: &[D]) -> Option<f64> {
         let left = self.reserve(index, branch, state)?.value().abs();
         let speed = self.mirror(branch, state);
@@ -314,14 +317,13 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
     }
 }
 
-/// By how much to move a state `z` of this `bound` for a difference: towards the origin, where the states of the motion
-/// come from.
+/// Displacement of a state `z` of this `bound` for a difference: towards the origin, as the motion comes from there.
 fn reach_of(z: f64, bound: f64) -> f64 {
     let reach = DIFFERENCE * z.abs().max(1e-2 * bound.abs().min(f64::MAX)).max(f64::MIN_POSITIVE / DIFFERENCE);
     if z > 0.0 { -reach } else { reach }
 }
 
-/// What makes a speed of a deflection (1/s): the machine's frequency; any without a spring.
+/// Rate that converts a deflection to a speed (1/s): the machine's frequency, or 1 without a spring.
 fn per_second<D: Scalar>(oscillator: &Oscillator<D>) -> f64 {
     let natural = oscillator.natural_angular_frequency().value();
     if natural > 0.0 { natural } else { 1.0 }
@@ -330,4 +332,40 @@ fn per_second<D: Scalar>(oscillator: &Oscillator<D>) -> f64 {
 /// A difference quotient.
 fn slope(difference: f64, change: f64) -> f64 {
     if difference == 0.0 { 0.0 } else { difference / change }
+}
+
+/// Greatest relative difference of the two sides by rounding (1).
+const ROUNDING: f64 = 1e-9;
+
+/// Looks at `law` over ten decades of speed and some states within its bounds, each with its mirror image.
+///
+/// # Errors
+/// [`SimulationError::OutOfRange`] if rate or coefficient are not opposite.
+pub(super) fn require_odd<D: Scalar, L: BristleLaw<D> + ?Sized>(law: &L) -> Result<(), SimulationError> {
+    let size = law.states();
+    let mut buffers = [(); 2].map(|()| (vec![D::from(0.0); size], vec![D::from(0.0); size]));
+    for part in [0.0, 0.3, 0.7] {
+        for decade in -8..=2 {
+            let speed = 10f64.powi(decade);
+            let [ahead, back] = &mut buffers;
+            let mut coefficients = [0.0; 2];
+            for ((sign, (state, rate)), coefficient) in [(1.0, ahead), (-1.0, back)].into_iter().zip(&mut coefficients)
+            {
+                for (index, z) in state.iter_mut().enumerate() {
+                    // Neighbouring elements lean to opposite sides.
+                    let side = if index % 2 == 0 { sign } else { -sign };
+                    *z = D::from(law.bound(index).value() * part * side);
+                }
+                law.rate(D::from(sign * speed), state, Regime::ALL_HOLD, rate);
+                *coefficient = law.coefficient(D::from(sign * speed), state, rate).value();
+            }
+            let [(_, ahead), (_, back)] = &buffers;
+            let rates = ahead.iter().zip(back).map(|(a, b)| (a.value(), b.value()));
+            let differs = |(a, b): (f64, f64)| (a + b).abs() > ROUNDING * (a.abs() + b.abs());
+            if rates.chain([(coefficients[0], coefficients[1])]).any(differs) {
+                return Err(SimulationError::not_odd(speed));
+            }
+        }
+    }
+    Ok(())
 }

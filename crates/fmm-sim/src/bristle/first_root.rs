@@ -1,11 +1,11 @@
 //! The first zero of a polynomial on a step, found without ever stepping over one.
 
-use super::radau::STAGES;
+use crate::bristle::radau::STAGES;
 
-/// Halvings after which an interval counts as a point; Newton's method on the motion itself takes over.
+/// Number of halvings after which an interval counts as a point; Newton's method on the motion continues from there.
 const DEPTH: u32 = 44;
 
-/// Secants after which a zero is as near as it gets.
+/// Number of secants after which a zero is not improved.
 const MOST_SECANTS: usize = 40;
 
 /// The part of a step that begins at zero velocity in which the velocity counts as rising from it.
@@ -13,8 +13,8 @@ pub(super) const BEGINNING: f64 = 1.0 / 32.0;
 
 /// The first τ in [0, 1] at which the polynomial with these Bernstein coefficients, positive before, reaches zero.
 ///
-/// The polynomial lies within the convex hull of its coefficients: where all are positive there is no zero, and where
-/// some are not, halves are looked at, the left one first (de Casteljau). A zero at 0 from which it rises is none.
+/// The polynomial lies within the convex hull of its coefficients. If all are positive there is no zero; otherwise the
+/// halves are searched, the left one first (de Casteljau). A zero at 0 from which the polynomial rises does not count.
 ///
 /// # References
 /// G. Farin, *Curves and Surfaces for CAGD*, Morgan Kaufmann 2002, chapter 5.
@@ -27,8 +27,7 @@ pub(super) fn first_root<const N: usize>(coefficients: [f64; N]) -> Option<f64> 
 
 /// The first zero after one at 0, from which the polynomial rises; 0 if it does not rise.
 ///
-/// Where it rises with hardly any slope, rounding decides its sign at first, so that is asked of a small part of the
-/// interval as a whole.
+/// With hardly any slope, rounding decides the sign at first. The sign is then that of a small part of the interval.
 pub(super) fn next_root<const N: usize>(coefficients: [f64; N]) -> Option<f64> {
     let (mut begin, mut width, mut left) = (0.0, 1.0, coefficients);
     let mut parts = Vec::new();
@@ -84,7 +83,7 @@ fn first_in<const N: usize>(coefficients: [f64; N], begin: f64, width: f64, dept
 }
 
 /// The zero of a polynomial that falls through it once: one whose coefficients change their sign once (variation
-/// diminishing). By the Illinois rule; `None` where that is slow, as far from a zero that is next to the beginning.
+/// diminishing). It is found by the Illinois rule; `None` if that is slow, as for a zero close to the beginning.
 fn only_root<const N: usize>(coefficients: &[f64; N]) -> Option<f64> {
     let changes = coefficients.windows(2).filter(|pair| (pair[0] > 0.0) != (pair[1] > 0.0)).count();
     if changes != 1 || !(coefficients[0] > 0.0) {
@@ -151,7 +150,7 @@ pub(super) fn last_coefficient(coefficients: [f64; STAGES + 1]) -> f64 {
     }
     // With n for s − 1: the n-th derivative over n! is s times the n-th difference, which goes in a line from one end
     // to the other. In the middle it is that of the polynomial of degree n alone, (2n)!/(n!)² times the coefficient
-    // sought; its slope is that of degree s.
+    // wanted; its slope is that of degree s.
     let [begin, end, ..] = differences;
     let before = STAGES as f64 * 0.5 * (begin + end) / central;
     let last = (end - begin) / (central * (4 * STAGES - 2) as f64 / STAGES as f64);
@@ -165,8 +164,8 @@ pub(super) fn end_slope(coefficients: [f64; STAGES + 1]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::radau::{BERNSTEIN, NODES};
     use super::*;
+    use crate::bristle::radau::{BERNSTEIN, NODES};
 
     fn bernstein(polynomial: impl Fn(f64) -> f64) -> [f64; STAGES + 1] {
         let mut nodal = [polynomial(0.0); STAGES + 1];

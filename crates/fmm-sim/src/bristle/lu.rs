@@ -1,8 +1,8 @@
-//! Small dense complex linear systems, several at once: factored in plain numbers, solved for numbers with derivatives.
+//! Small dense complex linear systems, several at once, factored in plain numbers and solved for dual numbers.
 
 use fmm_model::Scalar;
 
-/// How many systems there are.
+/// Number of systems.
 pub(super) const SYSTEMS: usize = 4;
 
 /// A complex number of each system: the real parts, then the imaginary ones.
@@ -140,9 +140,8 @@ fn inverse(of: &Complex<f64>) -> Option<Complex<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use fmm_model::Dual;
-
     use super::*;
+    use fmm_model::Dual;
 
     #[test]
     fn solves_what_needs_pivots_with_derivatives() {

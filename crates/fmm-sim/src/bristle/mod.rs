@@ -5,29 +5,30 @@ mod collocation;
 mod explicit;
 mod field;
 mod first_root;
-mod guard;
-mod guards_of_step;
+mod guards;
 mod lu;
 mod modes;
-mod motion;
-mod odd;
 mod pace;
 mod passage;
+mod polynomial;
 mod prescribed;
 mod radau;
 mod run;
 mod taylor;
+#[cfg(test)]
+mod tests;
 
 use fmm_friction::BristleLaw;
 use fmm_model::Scalar;
 
-use crate::drive::Drive;
-use crate::recorder::Recorder;
-use crate::{Engine, Sampling, Scenario, SimulationError, State, Trajectory};
-use field::Field;
-use run::Run;
+use crate::bristle::field::{Field, require_odd};
+use crate::bristle::run::Run;
+use crate::error::SimulationError;
+use crate::mechanics::Forcing;
+use crate::scenario::{Sampling, Scenario, State};
+use crate::trajectory::{Engine, Recorder, Trajectory};
 
-pub(crate) use prescribed::follow;
+pub use prescribed::{FrictionPoint, PrescribedMotion, friction_along};
 
 /// Integrates laws with internal state, however stiff, from kink to kink of the motion.
 ///
@@ -35,7 +36,7 @@ pub(crate) use prescribed::follow;
 /// m x″ = f(t) − F_c(x′) − F_k(x) − N μ(u, z, z′),   z′ = r(u, z),   u = x′ − v_b,   z(0) = z₀
 /// ```
 ///
-/// with z₀ zero or what [`Scenario::with_deflection`] says.
+/// with z₀ zero or that of [`Scenario::with_deflection`].
 ///
 /// The rates of bristles depend on |u|: they have a kink wherever the relative velocity u passes zero, and jump where
 /// an element of [`MaxwellSlip`](fmm_friction::MaxwellSlip) or [`Gms`](fmm_friction::Gms) begins to slide. Between such
@@ -49,14 +50,14 @@ pub(crate) use prescribed::follow;
 /// that the stiffness of the bristles does not limit the step. Rates from differences, or the two last stages of a step
 /// of order 8, measure the stiffness, and with it which of the methods is cheaper. A state
 /// that has reached a bound which attracts it at any speed ([`Dahl`](fmm_friction::Dahl) and
-/// [`BoucWen`](fmm_friction::BoucWen) slide so) stays there until the swing ends.
+/// [`BoucWen`](fmm_friction::BoucWen) slide so) stays there until the half cycle ends.
 ///
 /// The polynomial of a step gives the samples, the right-hand side at these the accelerations (good to 4e-10 of the
 /// largest at the default tolerance), and its Bernstein coefficients prove that no zero of u lies within the step,
 /// or show where: a series ends there as it is, another step is taken again to end there, by Newton's method on its
 /// length.
 ///
-/// A law with bristles has no stick: a contact that seems to hold creeps or swings on its bristles. At u = 0 all
+/// A law with bristles has no stick: a contact that seems to hold creeps or vibrates on its bristles. At u = 0 all
 /// elements hold again ([`EventKind::Reversal`](crate::EventKind::Reversal)), and the direction comes from the load,
 /// never from the velocity; [`EventKind::Yield`](crate::EventKind::Yield) says which element begins to slide. Where
 /// nothing drives the contact within rounding, it rests ([`Mode::Stick`](crate::Mode::Stick)) until the force changes.
@@ -66,12 +67,12 @@ pub(crate) use prescribed::follow;
 /// third of that before it, whichever is larger. Steps are
 /// chosen by values alone: at a dual number they are those of the plain number, values agree to the last bit, and
 /// derivatives include the change of event times. Where a power of LuGre or Bouc-Wen is exactly 1 or 2 and a parameter
-/// with derivatives, there is no series, and values agree within the tolerance. At rest the derivatives are held as
+/// with derivatives, there is no series, and values agree within the tolerance. At rest the derivatives are fixed as
 /// well; a start at rest that the inputs would disturb is marked as [`grazing`](crate::Event::grazing).
 ///
-/// A half swing takes about eight steps of a series, and some fourteen implicit ones on top where bristles are stiff at
+/// A half cycle takes about eight steps of a series, and some fourteen implicit ones on top where bristles are stiff at
 /// all speeds (LuGre). What it costs does not grow with the stiffness of the bristles, but a contact that no longer
-/// slides goes on swinging on them, as often as √(N σ/m)/π a second.
+/// slides goes on vibrating on them, as often as √(N σ/m)/π a second.
 ///
 /// Guaranteed is a typed error instead of an endless run: at most three hundred thousand steps, and a million events.
 ///
@@ -85,7 +86,7 @@ pub(crate) use prescribed::follow;
 /// let scenario = Scenario::new(Oscillator::new(10.0, 2000.0)?, law, 1.0)?.starting_at(0.01, 0.0)?;
 /// let motion = Bristle::default().run(&scenario, &Sampling::uniform(1e-3, 500)?.with_work())?;
 /// assert_eq!(motion.events()[1].kind, EventKind::Reversal);
-/// // Each half swing loses about 2 F/k = 1 mm.
+/// // Each half cycle loses about 2 F/k = 1 mm.
 /// assert!((motion.events()[1].position + 0.009).abs() < 1e-4);
 /// assert!(motion.energy_imbalance(&scenario).is_some_and(|imbalance| imbalance < 1e-10));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -135,9 +136,9 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Engine<D, L> for Bristle {
         trajectory: &mut Trajectory<D>,
     ) -> Result<(), SimulationError> {
         scenario.require_constant_load("bristle")?;
-        odd::require_odd(scenario.law())?;
+        require_odd(scenario.law())?;
         let oscillator = scenario.oscillator();
-        let drive = Drive::of(scenario);
+        let drive = Forcing::of(scenario);
         let field = Field::new(oscillator, scenario.law(), scenario.normal_load(), drive.belt());
         let recorder = Recorder::new("bristle", scenario.law().states(), sampling, trajectory)?;
         Run::new(field, beginning(scenario), self.tolerance, recorder).run(&drive).map(|_| ())
@@ -150,10 +151,3 @@ fn beginning<D: Scalar, L: BristleLaw<D> + ?Sized>(scenario: &Scenario<D, L>) ->
     let deflections = (0..scenario.law().states()).map(|index| scenario.deflection(index));
     [position, velocity].into_iter().chain(deflections).collect()
 }
-
-#[cfg(test)]
-mod cost;
-#[cfg(test)]
-mod forced;
-#[cfg(test)]
-mod tests;

@@ -2,8 +2,8 @@
 
 use fmm_model::Scalar;
 
-use super::lu::{Factors, SYSTEMS};
-use super::radau::{EIGENVALUES, STAGES, Stages};
+use crate::bristle::lu::{Factors, SYSTEMS};
+use crate::bristle::radau::{EIGENVALUES, STAGES, Stages};
 
 /// The systems (λ − J) q = r for the eigenvalues λ of A⁻¹/h, one of each conjugate pair, with J the Jacobian of the
 /// equations of motion.
@@ -80,8 +80,8 @@ impl<D: Scalar> Modes<D> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::radau::{COEFFICIENTS_COLUMNS, FROM_MODES_COLUMNS, INVERSE_COLUMNS, TO_MODES_COLUMNS, product};
     use super::*;
+    use crate::bristle::radau::{COEFFICIENTS_COLUMNS, FROM_MODES_COLUMNS, INVERSE_COLUMNS, TO_MODES_COLUMNS, product};
 
     /// The whole system, (A⁻¹/h ⊗ I − I ⊗ J) W = R, is put together again from a known W of which the positions follow
     /// the velocities.

@@ -1,17 +1,17 @@
-//! Passing an event: what holds after it, how it shifts with the inputs, and where a contact at rest goes.
+//! Passage of an event: the state after it, its shift with the inputs, and the direction that a contact at rest takes.
 
 use fmm_friction::{BristleLaw, Regime};
 use fmm_model::Scalar;
 
-use super::field::Branch;
-use super::guard::Guard;
-use super::run::Run;
-use crate::curve::Curve;
-use crate::drive::Piece;
-use crate::{Direction, Event, EventKind, Mode, SimulationError, State};
+use crate::bristle::field::Branch;
+use crate::bristle::guards::Guard;
+use crate::bristle::run::Run;
+use crate::error::SimulationError;
+use crate::mechanics::{Curve, ForceWave, Piece};
+use crate::scenario::{Direction, Event, EventKind, Mode, State};
 
 impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
-    /// Passes what `guard` has led to.
+    /// Passes the end of the branch that `guard` has found.
     pub(super) fn arrive(&mut self, guard: Guard, piece: &Piece<D>, grazing: bool) -> Result<(), SimulationError> {
         self.field.rates(piece.force(self.time), self.branch, &self.step.begin, &mut self.before);
         match guard {
@@ -24,8 +24,8 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
                 let before = self.branch.direction;
                 let direction = self.departure(piece);
                 self.go(direction);
-                // A velocity that goes on as it came has only touched zero, and one that dies away on the bristles
-                // reaches it at no time.
+                // A velocity that keeps its sign has only touched zero, and one that decays on the bristles never
+                // reaches it.
                 let grazing = grazing || direction == Some(before) || acceleration == 0.0;
                 let kind = if direction.is_none() { EventKind::Stop } else { EventKind::Reversal };
                 self.pass(kind, piece, shift, grazing)
@@ -73,7 +73,7 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         self.push(kind, piece, State { position: x, velocity }, shift, grazing)
     }
 
-    /// Begins the swing that has just begun in the other direction, and says so at its event.
+    /// Begins the present half cycle anew in the other direction, and corrects its event.
     pub(super) fn turn_at_once(&mut self) {
         let direction = Direction::of(-self.branch.direction.sign());
         self.branch = Branch { direction, regime: Regime::ALL_HOLD };
@@ -103,19 +103,19 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
 
     /// The direction in which the contact leaves relative rest; `None` if nothing drives it.
     ///
-    /// That is the sign of the acceleration, or of its first derivative that is not zero within rounding: at u = 0 the
-    /// bristles stand still, so only the force and a moving counterface change the load.
+    /// It is the sign of the acceleration, or of the first derivative of the acceleration that is not zero within
+    /// rounding. At u = 0 the bristles stand still, so that only the force and a moving counterface change the load.
     pub(super) fn departure(&mut self, piece: &Piece<D>) -> Option<Direction> {
         let begin = &self.step.begin;
         let force = piece.force(self.time);
         let branch = Branch { regime: Regime::ALL_HOLD, ..self.branch };
         self.field.rates(force, branch, begin, &mut self.after);
         let mass = self.field.oscillator.mass().value();
-        let amplitude = |wave: &crate::drive::Harmonic<D>| wave.amplitude.value().abs();
+        let amplitude = |wave: &ForceWave<D>| wave.amplitude.value().abs();
         let size = self.field.force_size(force, branch, begin) + piece.waves().iter().map(amplitude).sum::<f64>();
         let load = self.after[1].value() * mass;
         let rounding = 4.0 * f64::EPSILON * size;
-        // A swing on the bristles that the position has no digits for is none, unless they are pulled by more than they
+        // A motion on the bristles below the digits of the position does not count, unless the pull exceeds what they
         // can hold.
         let unseen = 4.0 * f64::EPSILON * begin[0].value().abs() * self.stiffness * mass;
         if load.abs() > rounding {
@@ -149,7 +149,7 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         (belt != 0.0).then_some(self.branch.direction)
     }
 
-    /// Whether the inputs with derivatives would set the contact in motion from the rest in which it is.
+    /// True if the inputs with derivatives would set the resting contact in motion.
     pub(super) fn rest_has_derivatives(&mut self, piece: &Piece<D>) -> bool {
         let force = piece.force(self.time);
         self.field.rates(force, self.branch, &self.step.begin, &mut self.after);

@@ -9,7 +9,7 @@
 
 use fmm_model::Scalar;
 
-use super::lu::SYSTEMS;
+use crate::bristle::lu::SYSTEMS;
 
 /// Number of stages s.
 pub(super) const STAGES: usize = 2 * SYSTEMS;

@@ -1,49 +1,46 @@
-//! From event to event: steps of the method, the last of them landing on what ends the smooth branch.
+//! A run from event to event: steps of a method, the last of them ending at the end of the smooth branch.
 
 use fmm_friction::{BristleLaw, Regime};
 use fmm_model::Scalar;
 
-use super::collocation::Collocation;
-use super::explicit::Explicit;
-use super::field::{Branch, Field};
-use super::first_root::BEGINNING;
-use super::guard::{Approach, Guard, Landing};
-use super::motion::{Motion, Solved, Span};
-use super::pace::Pace;
-use super::taylor::Taylor;
-use crate::drive::{Drive, Piece};
-use crate::recorder::Recorder;
-use crate::work::Power;
-use crate::{Direction, EventKind, SimulationError, State};
+use crate::bristle::collocation::Collocation;
+use crate::bristle::explicit::Explicit;
+use crate::bristle::field::{Branch, Field};
+use crate::bristle::first_root::BEGINNING;
+use crate::bristle::guards::{Approach, Guard, Landing};
+use crate::bristle::pace::Pace;
+use crate::bristle::polynomial::{Solved, Span, StepPolynomial};
+use crate::bristle::taylor::Taylor;
+use crate::error::SimulationError;
+use crate::mechanics::{Forcing, Piece, WEAK_SPRING};
+use crate::scenario::{Direction, EventKind, State};
+use crate::trajectory::{Power, Recorder};
 
-/// No record needs more steps; they take about a second.
+/// Greatest number of steps of one run, which take about a second; no record needs more.
 const STEP_BUDGET: usize = 300_000;
 
-/// Attempts at one step before it is given up.
+/// Greatest number of attempts at one step.
 const MOST_ATTEMPTS: usize = 100;
 
-/// A step that ends this near to a zero of a guard, in units of the step, is corrected from there.
+/// Place of a zero of a guard, in units of the step, from which on the step is corrected instead of shortened (1).
 const NEAR: f64 = 0.99;
-
-/// ω₀ t over the sampled time t below which the spring does not shape the motion.
-const WEAK: f64 = 1e-2;
 
 /// A simulation under way.
 pub(super) struct Run<'a, D, L: ?Sized> {
     pub(super) field: Field<'a, D, L>,
-    pub(super) step: Motion<D>,
+    pub(super) step: StepPolynomial<D>,
     pub(super) collocation: Collocation<D>,
     explicit: Explicit<D>,
     pub(super) taylor: Taylor<D>,
     pub(super) pace: Pace,
     pub(super) recorder: Recorder<'a, D>,
     pub(super) branch: Branch,
-    /// Whether nothing drives the contact from relative rest.
+    /// True if nothing drives the contact from relative rest.
     pub(super) resting: bool,
-    /// Time that the state belongs to (s).
+    /// Time of the state (s).
     pub(super) time: f64,
     pub(super) tolerance: f64,
-    /// Stiffness of spring and bristles together, per mass (1/s²), at the beginning of the swing.
+    /// Stiffness of spring and bristles together, per mass (1/s²), at the beginning of the half cycle.
     pub(super) stiffness: f64,
     steps: usize,
     /// Room for two states or rates.
@@ -55,7 +52,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
     /// A simulation that begins at `begin`: x, v and the states of the law.
     pub(super) fn new(field: Field<'a, D, L>, begin: Vec<D>, tolerance: f64, recorder: Recorder<'a, D>) -> Self {
         Self {
-            step: Motion::new(begin.clone()),
+            step: StepPolynomial::new(begin.clone()),
             collocation: Collocation::new(begin.len()),
             explicit: Explicit::new(begin.len()),
             taylor: Taylor::new(),
@@ -73,8 +70,8 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         }
     }
 
-    /// Runs from the initial state to the last sample. The number of steps, those not accepted among them.
-    pub(super) fn run(mut self, drive: &Drive<D>) -> Result<usize, SimulationError> {
+    /// Runs from the initial state to the last sample; returns the number of steps, refused ones included.
+    pub(super) fn run(mut self, drive: &Forcing<D>) -> Result<usize, SimulationError> {
         let end = self.recorder.sampling.end();
         let mut piece = drive.piece(0);
         let relative = self.step.begin[1].value() - self.field.belt.value();
@@ -127,9 +124,9 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         Ok(self.steps)
     }
 
-    /// Takes what a force has given that jumps, at the beginning of the piece of this `index`, at a time with
+    /// Adds the impulse of a force that jumps at the beginning of the piece of this `index`, at a time with
     /// derivatives.
-    fn jump(&mut self, drive: &Drive<D>, index: usize) {
+    fn jump(&mut self, drive: &Forcing<D>, index: usize) {
         if !self.resting {
             let gained = drive.impulse_of_jumps(index) / self.field.oscillator.mass();
             self.step.begin[1] += gained;
@@ -168,7 +165,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         self.advance_by_stages(piece, limit)
     }
 
-    /// The same by a step of order 8 or an implicit one.
+    /// Goes on by one step of order 8 or an implicit one, to `limit` (s) at most, or to an event before it.
     fn advance_by_stages(&mut self, piece: &Piece<D>, limit: f64) -> Result<(), SimulationError> {
         let at_zero = self.step.begin[1].value() == self.field.belt.value();
         let room = limit - self.time;
@@ -198,7 +195,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
                 length *= 0.5;
                 continue;
             };
-            // What is not accurate enough says nothing about where it begins.
+            // An inaccurate step does not show an event at its beginning.
             let at_once = |tau: f64| tau * length <= self.least(length);
             let found = found.filter(|(tau, _)| solved.error <= 1.0 || !at_once(*tau));
             if let Some((tau, guard)) = found {
@@ -206,13 +203,13 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
                     if !(at_zero && guard == Guard::Speed) {
                         return self.arrive(guard, piece, false);
                     }
-                    // The swing may be over before the velocity counts as risen.
+                    // The half cycle may be over before the velocity counts as risen.
                     length *= BEGINNING;
                     if length <= self.least(whole) {
                         if turned {
                             break;
                         }
-                        // The rounding of the load has hidden the direction of the swing.
+                        // The rounding of the load has hidden the direction of the half cycle.
                         (length, turned) = (whole, true);
                         self.turn_at_once();
                     }
@@ -265,13 +262,13 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         Err(SimulationError::step_too_small(self.tolerance, self.time))
     }
 
-    /// A time (s) that rounding makes of the end of a step of this `length` (s): no step is shorter, and what lies
-    /// within it is at its beginning.
+    /// Rounding (s) of the end of a step of this `length` (s): no step is shorter, and an event within it is at its
+    /// beginning.
     pub(super) fn least(&self, length: f64) -> f64 {
         4.0 * f64::EPSILON * (self.time + length)
     }
 
-    /// Takes a step by the method of the hour.
+    /// Takes a step by the present method.
     fn take(&mut self, piece: &Piece<D>, span: Span) -> Result<Option<Solved>, SimulationError> {
         let Self { step, collocation, explicit, field, branch, .. } = self;
         if self.pace.implicit {
@@ -293,9 +290,9 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         piece.frequencies().fold(self.angular(), f64::max)
     }
 
-    /// Angular frequency (rad/s) of the machine, or of what turns little within the sampled time if that is faster.
+    /// Angular frequency (rad/s) of the machine, or one of little rotation within the sampled time if that is greater.
     fn angular(&self) -> f64 {
-        self.field.oscillator.natural_angular_frequency().value().max(WEAK / self.recorder.sampling.end())
+        self.field.oscillator.natural_angular_frequency().value().max(WEAK_SPRING / self.recorder.sampling.end())
     }
 
     pub(super) fn count_step(&mut self) -> Result<(), SimulationError> {
@@ -304,8 +301,8 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         if self.steps > STEP_BUDGET { Err(SimulationError::step_budget(STEP_BUDGET, end)) } else { Ok(()) }
     }
 
-    /// Length (s) of the step to try first: as the last one says, or a part of the period in which the machine swings
-    /// on its bristles.
+    /// Length (s) of the step to try first: the proposal of the last one, or a part of the period of the machine on its
+    /// bristles.
     pub(super) fn first_length(&mut self) -> f64 {
         if let Some(proposed) = self.pace.proposed() {
             return proposed;
@@ -323,7 +320,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         self.pace.first(stiffness)
     }
 
-    /// Writes what the step of `length` passes and goes to its end, or a part `correction` of it further.
+    /// Writes the samples within the step of `length` and goes to its end, or a part `correction` of it further.
     pub(super) fn finish(
         &mut self,
         length: f64,
@@ -348,12 +345,8 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         recorder.work(*time, end, smooth, |at| {
             step.at((at - *time) / length, before);
             let friction = field.friction(*branch, before);
-            let velocity = before[1];
-            Power {
-                friction: friction * (velocity - field.belt),
-                viscous: field.oscillator.damping().force(velocity) * velocity,
-                external: piece.force(at) * velocity - friction * field.belt,
-            }
+            let (velocity, damping) = (before[1], field.oscillator.damping().force(before[1]));
+            Power::of(friction, damping, piece.force(at), velocity, field.belt)
         })?;
         if self.pace.implicit {
             self.collocation.predict_from(&self.step, length, 1.0);
@@ -371,7 +364,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         })
     }
 
-    /// Writes the samples before `end`, at which the state is what it is.
+    /// Writes the present state into the samples before `end`.
     fn write(&mut self, end: f64) -> Result<(), SimulationError> {
         let Self { step, recorder, before: state, .. } = self;
         recorder.samples_with_states(end, state, |_, state| {
@@ -388,11 +381,9 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         let velocity = self.step.begin[1];
         let belt = self.field.belt;
         let friction = self.field.friction(self.branch, &self.step.begin);
-        self.recorder.work(self.time, limit, limit - self.time, |at| Power {
-            friction: friction * (velocity - belt),
-            viscous: D::from(0.0),
-            external: piece.force(at) * velocity - friction * belt,
-        })?;
+        let power =
+            |at| Power { viscous: D::from(0.0), ..Power::of(friction, velocity, piece.force(at), velocity, belt) };
+        self.recorder.work(self.time, limit, limit - self.time, power)?;
         self.time = limit;
         Ok(())
     }

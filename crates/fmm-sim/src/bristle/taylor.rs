@@ -3,45 +3,45 @@
 use fmm_friction::{BristleLaw, Expansion};
 use fmm_model::{Restoring, Scalar};
 
-use super::field::{Branch, Field};
-use super::first_root::{bernstein, first_root};
-use super::guard::Guard;
-use super::motion::{Motion, ROUNDING, Series, Span, value};
-use super::run::Run;
-use crate::SimulationError;
-use crate::drive::Piece;
+use crate::bristle::field::{Branch, Field};
+use crate::bristle::first_root::{bernstein, first_root};
+use crate::bristle::guards::Guard;
+use crate::bristle::polynomial::{ROUNDING, Series, Span, StepPolynomial, value};
+use crate::bristle::run::Run;
+use crate::error::SimulationError;
+use crate::mechanics::Piece;
 
 /// Highest order of the series.
 pub(super) const ORDER: usize = Expansion::<f64>::TERMS - 1;
 
-/// The error allowed in a step, in units of the tolerance: many steps add up.
+/// Error allowed in a step, in units of the tolerance; the errors of many steps add up.
 const SAFETY: f64 = 0.1;
 
-/// Share of the first terms of a component that its last ones may have, above rounding. Beyond that the step has passed
-/// a singularity, as of a state that reaches its bound in finite time, which a tolerance as large as what is left of
-/// the way does not see.
+/// Greatest ratio of the last terms of a component to its first ones, above rounding (1). A greater ratio shows a
+/// singularity within the step, as of a state that reaches its bound in finite time.
 const FALL: f64 = 1e-3;
 
-/// Step times stiffness up to which a step damps what is off the motion: |1 − x + x²/2! − … + x²⁴/24!| < 0.05.
+/// Step times stiffness up to which a step damps a deviation (1): |1 − x + x²/2! − … + x²⁴/24!| < 0.05.
 const STABLE: f64 = 9.0;
 
-/// The angle (rad) that a step may go on by: the next term is below 1e-10.
+/// Greatest angle of a step (rad): the next term is below 1e-10.
 const ANGLE: f64 = 4.0;
 
-/// How many times as fast as the machine a wave may be that exists in derivatives only, which step lengths do not see.
+/// Greatest ratio of the frequency of a wave that exists in derivatives only, unseen by step lengths, to that of the
+/// machine (1).
 const CALM: f64 = 4.0;
 
-/// The defect of a step, in units of the tolerance, from which on its series has not seen all of the law. That of a
-/// series which has is 24 times the error allowed.
+/// Defect of a step, in units of the tolerance, above which its series misses a part of the law. The defect of a
+/// complete series is 24 times the error allowed.
 const MOST_DEFECT: f64 = 100.0;
 
-/// Parts of a step at which it is looked for where that is slowest.
+/// Number of parts of a step among which the slowest place is sought.
 const PARTS: usize = 16;
 
-/// Corrections of a zero by Newton's method.
+/// Greatest number of corrections of a zero by Newton's method.
 const MOST_CORRECTIONS: usize = 8;
 
-/// The method: what it needs beside the motion.
+/// The method and its working memory.
 pub(super) struct Taylor<D> {
     law: Expansion<D>,
     force: Series<D>,
@@ -56,7 +56,7 @@ impl<D: Scalar> Taylor<D> {
     /// False if machine or law have none here.
     pub(super) fn expand<L: BristleLaw<D> + ?Sized>(
         &mut self,
-        motion: &mut Motion<D>,
+        motion: &mut StepPolynomial<D>,
         field: &Field<D, L>,
         branch: Branch,
         piece: &Piece<D>,
@@ -148,10 +148,10 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         self.finish(length, 0.0, limit, piece).map(|()| true)
     }
 
-    /// The greatest rate (1/s) at which velocity and state follow themselves at the end of the step, or swing, the
-    /// latter in units of the angle that a step may go on by. `None` if there is no end.
+    /// The greatest rate (1/s) at which velocity and state decay or oscillate at the end of the step, the latter in
+    /// units of the greatest angle of a step. `None` if the end is not finite.
     ///
-    /// Derivatives swing where values stand still, and tell no step how long it may be.
+    /// Derivatives oscillate even if values stand still, and do not decide the length of a step.
     fn rate_at_end(&mut self) -> Option<f64> {
         self.step.at(1.0, &mut self.after);
         if !self.after.iter().all(|y| y.value().is_finite()) {
@@ -164,10 +164,10 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         Some(drag.max(relax).max(swing * (STABLE / ANGLE)))
     }
 
-    /// Whether the series obeys the equation of motion up to `end`, a part of the step of this `length`: at its
-    /// quarters, and where it is slowest. Its last terms do not tell of a part of the law that begins within the step,
-    /// such as the rise of the friction of a fast motion where that is slow for a while. That the position follows the
-    /// velocity is no matter of the law, and its last terms tell.
+    /// True if the series obeys the equation of motion up to `end`, a part of the step of this `length`: at its
+    /// quarters and at the slowest place. The last terms of the series do not show a part of the law that begins within
+    /// the step, such as the rise of friction during a slow part of a fast motion. They do show if the position follows
+    /// the velocity, which does not depend on the law.
     fn is_obeyed(&mut self, piece: &Piece<D>, length: f64, end: f64) -> bool {
         let [position, velocity, state] = [0, 1, 2].map(|component| self.step.plain_series(component, 0.0, 1.0));
         let belt = self.field.belt.value();
@@ -191,8 +191,8 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         })
     }
 
-    /// The first guard that is reached within the step, and where. A step that begins `at_zero` velocity does not find
-    /// that zero.
+    /// The first guard that is reached within the step, and its place. A step that begins `at_zero` velocity does not
+    /// find that zero.
     fn first_guard_of_series(&self, at_zero: bool) -> Option<Found> {
         let (belt, sign) = (self.field.belt.value(), self.branch.direction.sign());
         let speed = zero_of(self.step.plain_series(1, belt, sign), at_zero).map(|tau| (tau, Guard::Speed));
@@ -226,13 +226,13 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
 struct Found {
     tau: f64,
     guard: Guard,
-    /// Whether the guard has no slope there.
+    /// True if the guard has no slope there.
     grazing: bool,
 }
 
 /// The length of a step that the last two terms allow, in the unit of the series. `rounding` is that of
-/// [`rescale`](Motion::rescale).
-fn ratio<D: Scalar>(motion: &Motion<D>, tolerance: f64, rounding: f64) -> f64 {
+/// [`rescale`](StepPolynomial::rescale).
+fn ratio<D: Scalar>(motion: &StepPolynomial<D>, tolerance: f64, rounding: f64) -> f64 {
     let mut ratio: f64 = 1.0;
     for _ in 0..3 {
         let [mut last, mut before] = [0.0f64; 2];

@@ -4,28 +4,24 @@
 use fmm_friction::{Element, PiecewiseLinearLaw, Regime};
 use fmm_model::Scalar;
 
-use super::cancellation::Cancellation;
-use super::response::respond;
 use crate::automaton::crossing;
-use crate::curve::{Curve, Wave};
-use crate::decay::Decay;
-use crate::drive::{Drive, Piece};
-use crate::first_zero::{ROUNDING, SEARCH_BUDGET, first_zero};
-use crate::recorder::Recorder;
-use crate::work::Power;
-use crate::{Direction, Event, EventKind, Mode, Scenario, SimulationError, State};
+use crate::error::SimulationError;
+use crate::exact::closed_form::{Cancellation, respond};
+use crate::mechanics::{Curve, Decay, Forcing, Piece, ROUNDING, SEARCH_BUDGET, Wave, first_zero};
+use crate::scenario::{Direction, Event, EventKind, Mode, Scenario, State};
+use crate::trajectory::{Power, Recorder};
 
-/// A machine with a contact of elements in parallel, on its way.
+/// A run of a machine with a contact of elements in parallel.
 pub(super) struct Yielding<'a, D> {
     scenario: &'a Scenario<D, dyn PiecewiseLinearLaw<D> + 'a>,
-    drive: &'a Drive<'a, D>,
+    drive: &'a Forcing<'a, D>,
     elements: &'a [Element<D>],
     belt: D,
     /// zᵢ at `time` (m).
     deflections: Vec<D>,
     regime: Regime,
     direction: Direction,
-    /// Whether nothing moves and nothing will under the present piece of force.
+    /// True if nothing moves under the present piece of force.
     at_rest: bool,
     /// Rounding (m/s²) of the acceleration with which the motion begins, if it begins at zero relative velocity.
     noise: Option<f64>,
@@ -35,7 +31,7 @@ pub(super) struct Yielding<'a, D> {
     digits: Cancellation,
 }
 
-/// What ends a stretch of motion in one regime.
+/// End of a stretch of motion in one regime.
 #[derive(Clone, Copy)]
 enum Guard {
     RelativeRest,
@@ -43,7 +39,7 @@ enum Guard {
 }
 
 impl<'a, D: Scalar> Yielding<'a, D> {
-    pub(super) fn new(scenario: &'a Scenario<D, dyn PiecewiseLinearLaw<D> + 'a>, drive: &'a Drive<'a, D>) -> Self {
+    pub(super) fn new(scenario: &'a Scenario<D, dyn PiecewiseLinearLaw<D> + 'a>, drive: &'a Forcing<'a, D>) -> Self {
         let elements = scenario.law().elements();
         Self {
             scenario,
@@ -105,7 +101,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
         }
     }
 
-    /// Force on the machine but for inertia: what is left of the load by damping, spring and elements.
+    /// Force on the machine apart from inertia: the load less damping, spring and elements.
     fn force(&self, piece: &Piece<D>) -> Curve<'static, D> {
         let oscillator = self.scenario.oscillator();
         let mut force = Curve::force(piece, self.time);
@@ -121,7 +117,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
         self.elements.iter().zip(&self.deflections).fold(D::from(0.0), sum) * self.scenario.normal_load()
     }
 
-    /// Decides where the contact goes from here; at zero relative velocity all elements hold again.
+    /// Decides the direction of the motion from here; at zero relative velocity all elements hold again.
     fn turn(&mut self, piece: &Piece<D>) {
         (self.at_rest, self.noise) = (false, None);
         let relative = self.state.velocity.value() - self.belt.value();
@@ -136,7 +132,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
         // spring but no element.
         let spring = self.scenario.oscillator().stiffness() * self.belt;
         let candidates = [now.at(zero).value(), (grows.at(zero) - spring).value(), grows.derivative().at(zero).value()];
-        // What is rounding of the terms is zero.
+        // Values within the rounding of the terms count as zero.
         let at_rest = self.scenario.oscillator().stiffness() * self.state.position;
         let parts = [at_rest, self.friction(), spring].map(|part| part.value().abs());
         let waves = |power: i32| {
@@ -156,7 +152,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
         }
     }
 
-    /// Takes what a force has given that jumps, at the beginning of the piece of this `index`, at a time with
+    /// Adds the impulse of a force that jumps at the beginning of the piece of this `index`, at a time with
     /// derivatives.
     fn jump(&mut self, index: usize) {
         if !self.at_rest {
@@ -165,7 +161,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
         }
     }
 
-    /// Whether nothing moves under any force after the piece of this `index` either.
+    /// True if nothing moves under any force after the piece of this `index` either.
     fn holds_for_good(&mut self, index: usize) -> bool {
         (index + 1..self.drive.pieces()).all(|later| {
             let piece = self.drive.piece(later);
@@ -200,7 +196,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
         let oscillator = self.scenario.oscillator();
         let (load, sign) = (self.scenario.normal_load(), self.direction.sign());
         let (mass, damping) = (oscillator.mass(), oscillator.damping().linear_coefficient());
-        // An element that holds is a spring to where it would be relaxed; one that slides is a force.
+        // An element that holds is a spring about its relaxed position; one that slides is a force.
         let (mut stiffness, mut forced) = (oscillator.stiffness(), Curve::force(piece, self.time));
         for (index, (element, deflection)) in self.elements.iter().zip(&self.deflections).enumerate() {
             if self.regime.slides(index) {
@@ -239,7 +235,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
                     _ => plain_curve,
                 };
                 if let Some(elapsed) = first_zero(&plain_curve, span, &mut self.budget)? {
-                    // The earlier guard stays where two act at once.
+                    // Of two guards at one time the first in the list stays.
                     if found.as_ref().is_none_or(|(_, earlier, _)| elapsed < *earlier) {
                         found = Some((guard, elapsed, curve));
                     }
@@ -300,11 +296,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
             let sum = |sum, (element, deflection): (&Element<D>, D)| sum + element.stiffness * deflection;
             let deflections = self.moved(position, D::from(time));
             let friction = self.elements.iter().zip(deflections).fold(D::from(0.0), sum) * self.scenario.normal_load();
-            Power {
-                friction: friction * (velocity - self.belt),
-                viscous: oscillator.damping().force(velocity) * velocity,
-                external: piece.force(time) * velocity - friction * self.belt,
-            }
+            Power::of(friction, oscillator.damping().force(velocity), piece.force(time), velocity, self.belt)
         })
     }
 }

@@ -1,21 +1,22 @@
 //! The exact engine: closed form between events, events in closed form or proven, derivatives through both.
 
-mod cancellation;
+mod closed_form;
 mod elements;
 mod powers;
-mod response;
 mod swing;
+#[cfg(test)]
+mod tests;
 
 use fmm_friction::{Affine, PiecewiseLinearLaw};
 use fmm_model::{Restoring, Scalar};
 
 use crate::automaton::Contact;
-use crate::drive::Drive;
-use crate::levels::Branches;
-use crate::recorder::Recorder;
-use crate::{Engine, Sampling, Scenario, SimulationError, Trajectory};
-use elements::Yielding;
-use swing::{Flows, Swing};
+use crate::error::SimulationError;
+use crate::exact::elements::Yielding;
+use crate::exact::swing::{Flows, Swing};
+use crate::mechanics::{Branches, Forcing};
+use crate::scenario::{Sampling, Scenario};
+use crate::trajectory::{Engine, Recorder, Trajectory};
 
 /// Simulates piecewise linear laws without any integration error.
 ///
@@ -28,7 +29,7 @@ use swing::{Flows, Swing};
 /// ```
 ///
 /// Free of force, position, velocity and the time of the next zero velocity have closed forms, and every further half
-/// swing lasts π/ω_d. Under a force the first zero is found by steps that provably do not reach over one. At zero
+/// cycle lasts π/ω_d. Under a force the first zero is found by steps that provably do not reach over one. At zero
 /// relative velocity the contact sticks if |L| ≤ N μ_s, the comparison being made on the numbers as they are; otherwise
 /// it slips in the direction of the load, never in that of a velocity that has just vanished. A contact that holds lets
 /// go where the load, a line plus waves, leaves the static level. Under-, over- and critically damped machines are all
@@ -42,12 +43,12 @@ use swing::{Flows, Swing};
 /// would lose more than nine digits, and without a spring, the run ends in [`SimulationError::NoClosedForm`].
 ///
 /// Guaranteed: no event is missed, events are in order, and their number is at most one million (a typed error
-/// otherwise). Samples within a swing come from a table of powers of exp((−a + iω_d)Δt), anew from the closed
+/// otherwise). Samples within a half cycle come from a table of powers of exp((−a + iω_d)Δt), anew from the closed
 /// form every 256 samples, so that rounding does not grow along the record. Accelerations are linear in position and
 /// velocity, or the second derivative of the closed form where elements yield.
 ///
 /// At dual numbers the derivatives are exact, including those of the event times; a derivative does not see
-/// that the *number* of half swings may change, which [`Event::margin`](crate::Event::margin) tells.
+/// that the *number* of half cycles may change; see [`Event::margin`](crate::Event::margin).
 ///
 /// # References
 /// J. P. den Hartog, "Forced vibrations with combined Coulomb and viscous friction", Trans. ASME 53 (1931) 107.
@@ -74,7 +75,7 @@ impl<D: Scalar, L: PiecewiseLinearLaw<D>> Engine<D, L> for Exact {
         if oscillator.stiffness().value() == 0.0 {
             return Err(SimulationError::weak_spring(0.0));
         }
-        let drive = Drive::of(scenario);
+        let drive = Forcing::of(scenario);
         let elements = scenario.law().elements().len();
         if elements > 0 {
             let Affine { level, slope, breakaway } = scenario.law().affine();
@@ -95,6 +96,3 @@ impl<D: Scalar, L: PiecewiseLinearLaw<D>> Engine<D, L> for Exact {
         swing.digits().check(oscillator, held, sampling.end())
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,16 +1,15 @@
-//! Samples of one swing from a table of powers, vectorised over time.
+//! Samples of one half cycle from a table of powers, vectorised over time.
 
-use fmm_model::Scalar;
-use pulp::Arch;
+use fmm_model::{Scalar, widest};
 
-use crate::decay::Decay;
-use crate::recorder::Recorder;
-use crate::wide::Wide;
-use crate::{Samples, Sampling, SimulationError, State};
+use crate::error::SimulationError;
+use crate::mechanics::Decay;
+use crate::scenario::{Sampling, State};
+use crate::trajectory::{Recorder, Samples};
 
 /// zʲ = exp((−a + iω)Δt)ʲ for j from 0 on, real and imaginary parts apart.
 ///
-/// All swings of a run have the same decay, so one table serves every sample: position and velocity are linear
+/// All half cycles of a run have one decay, so that one table serves every sample: position and velocity are linear
 /// combinations of the two parts, and so are their derivatives once j Δt is allowed as a factor.
 pub(super) struct Powers {
     /// Real and imaginary parts, a stride of either at a time.
@@ -26,12 +25,12 @@ const LONGEST: usize = 256;
 const STRIDE: usize = 16;
 
 impl Powers {
-    /// Powers for the swings of `decay` at the times of `sampling`; `None` if it does not oscillate or the times are
-    /// not uniform.
+    /// Powers for the half cycles of `decay` at the times of `sampling`; `None` if it does not oscillate or the times
+    /// are not uniform.
     pub(super) fn for_swings<D: Scalar>(decay: &Decay<D>, sampling: &Sampling) -> Option<Self> {
-        let (half_swing, interval) = (decay.half_swing()?, sampling.interval()?);
-        let longest = (half_swing.duration.value() / interval).min(sampling.count() as f64) as usize + 1;
-        Some(Self::new(decay.rate().value(), half_swing.angular.value(), interval, longest))
+        let (half_cycle, interval) = (decay.half_cycle()?, sampling.interval()?);
+        let longest = (half_cycle.duration.value() / interval).min(sampling.count() as f64) as usize + 1;
+        Some(Self::new(decay.rate().value(), half_cycle.angular.value(), interval, longest))
     }
 
     /// Powers for at least `longest` samples, or [`LONGEST`] if that is less.
@@ -45,7 +44,7 @@ impl Powers {
         let (first, stride) = (Self::first_stride(power(1)), power(STRIDE));
         let count = longest.clamp(1, LONGEST).div_ceil(STRIDE);
         let mut strides = Vec::with_capacity(count);
-        Arch::new().dispatch(Wide(
+        widest(
             #[inline(always)]
             || {
                 let [mut real, mut imaginary] = first;
@@ -56,7 +55,7 @@ impl Powers {
                     }
                 }
             },
-        ));
+        );
         Self { strides, interval }
     }
 
@@ -93,8 +92,8 @@ impl Powers {
         (centre, free): (D, State<D>),
         start: D,
     ) -> Result<(), SimulationError> {
-        let Some(half_swing) = decay.half_swing() else { return Ok(()) };
-        let wave = Wave { rate: decay.rate(), angular: half_swing.angular, interval: self.interval };
+        let Some(half_cycle) = decay.half_cycle() else { return Ok(()) };
+        let wave = Wave { rate: decay.rate(), angular: half_cycle.angular, interval: self.interval };
         let channels = recorder.sampling.channels();
         let stop = recorder.sampling.index_at_or_after(end);
         while recorder.written < stop {
@@ -131,10 +130,10 @@ impl Powers {
         cosine: D,
         sine: D,
     ) {
-        Arch::new().dispatch(Wide(
+        widest(
             #[inline(always)]
             || self.write_wave_here(samples, range.clone(), wave, offset, cosine, sine),
-        ));
+        );
     }
 
     #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
@@ -164,11 +163,11 @@ impl Powers {
         }
     }
 
-    /// Fills `out`, which is not longer than the table, with what `of` makes of each power, real and imaginary part,
-    /// and its exponent.
+    /// Fills `out`, which is not longer than the table, with the result of `of` for each power, real and imaginary
+    /// part, and its exponent.
     ///
-    /// In strides, the last one found whole and cut: with a loop over all of `out`, which every swing gives another
-    /// length, a ring-down took a seventh longer.
+    /// In strides, the last one found whole and cut: with a loop over all of `out`, which every half cycle gives
+    /// another length, a ring-down took a seventh longer.
     #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
     #[inline(always)]
     fn fill_with(&self, out: &mut [f64], of: impl Fn(f64, f64, f64) -> f64) {
@@ -185,7 +184,7 @@ impl Powers {
     }
 }
 
-/// What `of` makes of each power of a stride that begins with the exponent `first`.
+/// Result of `of` for each power of a stride that begins with the exponent `first`.
 #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
 #[inline(always)]
 fn stride_of([re, im]: &[[f64; STRIDE]; 2], first: f64, of: &impl Fn(f64, f64, f64) -> f64) -> [f64; STRIDE] {
@@ -205,9 +204,8 @@ struct Wave<D> {
 
 #[cfg(test)]
 mod tests {
-    use fmm_model::Dual;
-
     use super::*;
+    use fmm_model::Dual;
 
     #[test]
     fn powers_are_exact_to_rounding() {

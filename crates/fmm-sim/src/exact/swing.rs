@@ -3,21 +3,15 @@
 use fmm_friction::Affine;
 use fmm_model::{Oscillator, Scalar};
 
-use super::cancellation::Cancellation;
-use super::powers::Powers;
-use super::response::respond;
 use crate::automaton::{Branch, Ended, Ending, Phase, Slide, crossing};
-use crate::curve::Curve;
-use crate::decay::Decay;
-use crate::drive::Drive;
-use crate::first_zero::{SEARCH_BUDGET, first_zero};
-use crate::levels::Branches;
-use crate::load::{load, rounding};
-use crate::recorder::Recorder;
-use crate::work::Power;
-use crate::{Sampling, Scenario, SimulationError, State};
+use crate::error::SimulationError;
+use crate::exact::closed_form::{Cancellation, respond};
+use crate::exact::powers::Powers;
+use crate::mechanics::{Branches, Curve, Decay, Forcing, SEARCH_BUDGET, first_zero, load, rounding};
+use crate::scenario::{Sampling, Scenario, State};
+use crate::trajectory::{Power, Recorder};
 
-/// Parts of the last phase at which it is looked how far the motion goes.
+/// Places within the last phase, in units of its duration, at which the extent of the motion is noted.
 const INSIDE: [f64; 3] = [0.23, 0.51, 0.83];
 
 /// Follows phases of sliding for the exact engine.
@@ -27,12 +21,12 @@ pub(super) struct Swing<'a, D> {
     belt: D,
     has_belt: bool,
     flows: &'a Flows<D>,
-    /// First zero velocity of the last uninterrupted free decay, and half swings since. Counting half periods from
-    /// there keeps the rounding of a sum out of later event times.
+    /// First zero velocity of the last uninterrupted free decay, and half cycles since. Counting half cycles from there
+    /// keeps the rounding of a sum out of later event times.
     rhythm: Option<(D, u32)>,
     budget: usize,
     digits: Cancellation,
-    /// Whether neither a belt, accelerations, work nor lost digits have to be looked after.
+    /// True if there is no belt and neither accelerations, work nor lost digits are asked for.
     is_plain: bool,
 }
 
@@ -91,7 +85,7 @@ impl<'a, D: Scalar> Swing<'a, D> {
     pub(super) fn new<L>(
         scenario: &'a Scenario<D, L>,
         flows: &'a Flows<D>,
-        drive: &Drive<D>,
+        drive: &Forcing<D>,
         sampling: &Sampling,
     ) -> Self {
         let keeps_digits = Cancellation::cannot_matter(scenario.oscillator(), sampling.end());
@@ -110,7 +104,7 @@ impl<'a, D: Scalar> Swing<'a, D> {
         }
     }
 
-    /// How many digits the motion has kept.
+    /// Digits that the motion has lost.
     pub(super) const fn digits(&self) -> &Cancellation {
         &self.digits
     }
@@ -134,7 +128,7 @@ impl<'a, D: Scalar> Swing<'a, D> {
         let rest = |(zero, swings): (D, u32)| if swings == 0 { zero } else { zero + duration * f64::from(swings) };
         let rhythm = match self.rhythm {
             Some((zero, swings)) if rest((zero, swings)).value() == phase.time.value() => (zero, swings + 1),
-            // What was held, pushed or cut short since then begins anew.
+            // A motion that was stopped, pushed or cut short since then begins anew.
             _ => (phase.time + duration, 0),
         };
         self.rhythm = Some(rhythm);
@@ -142,7 +136,7 @@ impl<'a, D: Scalar> Swing<'a, D> {
         Some((time, centre + decay.position_at_zero_velocity(free, duration)))
     }
 
-    /// How a free phase ends at `rest`, a time and a position whose derivatives do not know of forces that exist in
+    /// End of a free phase at `rest`, a time and a position whose derivatives do not include forces that exist in
     /// derivatives only.
     fn rest_under_derivatives(
         &self,
@@ -160,8 +154,9 @@ impl<'a, D: Scalar> Swing<'a, D> {
         (Ending::RelativeRest, time, state, grazing)
     }
 
-    /// A phase under a constant force that ends at rest, as all of a ring-down do: what the general way gives to the
-    /// last bit, at a third of its cost. `None` where another quantity is asked for, or another end comes first.
+    /// A phase under a constant force that ends at rest, the only kind of phase in a ring-down: equal to the general
+    /// way to the last bit, at a third of its cost. `None` if another quantity is asked for, or another end comes
+    /// first.
     #[inline]
     fn swing_freely(
         &mut self,
@@ -201,8 +196,8 @@ impl<'a, D: Scalar> Swing<'a, D> {
         let sign = phase.direction.sign();
         let velocity = position.derivative();
         let begin = phase.time.value();
-        // What starts at rest relative to the counterface, or on a branch that begins where another ends, starts from
-        // zero exactly: which way it goes, the automaton has decided.
+        // A motion from rest relative to the counterface, or on a branch that begins at the end of another, starts from
+        // zero exactly; the automaton has decided its direction.
         let from_rest = phase.state.velocity.value() == self.belt.value();
         let load = load(self.oscillator, phase.piece, phase.time, phase.state);
         let noise = rounding(self.oscillator, &load, phase.time, phase.state) / self.oscillator.mass().value();
@@ -277,7 +272,7 @@ impl<D: Scalar> Swing<'_, D> {
         let elapsed = phase.limit - phase.time.value();
         self.digits.note(&path, elapsed, phase.state, state);
         if phase.last {
-            // A motion that nothing has divided may be far away in between.
+            // A motion without an event may be far away in between.
             for part in INSIDE {
                 self.digits.reaches(path.state(D::from(part * elapsed)));
             }
@@ -339,11 +334,8 @@ impl<D: Scalar> Swing<'_, D> {
             let relative = velocity - self.belt;
             let friction =
                 self.normal_load * (flow.friction.level * phase.direction.sign() + flow.friction.slope * relative);
-            Power {
-                friction: friction * relative,
-                viscous: self.oscillator.damping().force(velocity) * velocity,
-                external: phase.piece.force(time) * velocity - friction * self.belt,
-            }
+            let damping = self.oscillator.damping().force(velocity);
+            Power::of(friction, damping, phase.piece.force(time), velocity, self.belt)
         })
     }
 }
@@ -367,7 +359,7 @@ fn write<D: Scalar>(
     Ok(())
 }
 
-/// Adds what a force contributes to the samples from `first` on beyond a constant.
+/// Adds the contribution of a force beyond a constant to the samples from `first` on.
 fn add_forced<D: Scalar>(
     path: &Curve<D>,
     start: D,

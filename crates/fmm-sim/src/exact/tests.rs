@@ -4,8 +4,8 @@ use fmm_friction::{AccelerationCoulomb, Coulomb, CoulombStatic, CoulombViscous, 
 use fmm_model::{Damping, Oscillator};
 
 use super::*;
-use crate::recorder::EVENT_BUDGET;
-use crate::{Direction, Event, EventKind, Excitation, Mode};
+use crate::scenario::{Direction, Event, EventKind, Excitation, Mode};
+use crate::trajectory::recorder::EVENT_BUDGET;
 
 /// 1 kg on 2 N/m: with forces that are powers of two all centres and turning points of an undamped motion are exact.
 fn machine(damping: f64) -> Oscillator {
@@ -78,18 +78,18 @@ fn a_load_that_rounding_puts_beyond_the_static_level_comes_to_rest() {
     assert!(stiffness * edge > force, "the case is one in which rounding goes up");
     let machine = Oscillator::new(10.391, stiffness).unwrap();
     let motion = run(machine, Coulomb::new(force).unwrap(), 1.0, (edge, 0.0)).unwrap();
-    assert!(motion.rest().is_some() && motion.half_swings() <= 1, "{} half swings", motion.half_swings());
+    assert!(motion.rest().is_some() && motion.half_cycles() <= 1, "{} half cycles", motion.half_cycles());
 }
 
 #[test]
 fn a_higher_static_level_ends_the_motion_at_an_earlier_turning_point() {
-    // The centres are at ∓0.125 m, so that each half swing is 0.25 m shorter; held are 0.125, 0.25, 0.3 and 0.75 m.
+    // The centres are at ∓0.125 m, so that each half cycle is 0.25 m shorter; held are 0.125, 0.25, 0.3 and 0.75 m.
     let turns = [1.0, -0.75, 0.5, -0.25, 0.0];
-    for (breakaway, half_swings) in [(0.25, 4), (0.5, 3), (0.6, 3), (1.5, 1)] {
+    for (breakaway, half_cycles) in [(0.25, 4), (0.5, 3), (0.6, 3), (1.5, 1)] {
         let law = CoulombStatic::new(0.25, breakaway).unwrap();
         let motion = run(machine(0.0), law, 1.0, (1.0, 0.0)).unwrap();
         let positions: Vec<_> = motion.events().iter().map(|event| event.position).collect();
-        assert_eq!(positions, turns[..=half_swings], "{law:?}");
+        assert_eq!(positions, turns[..=half_cycles], "{law:?}");
         assert_eq!(motion.rest().map(|rest| rest.kind), Some(EventKind::Stop), "{law:?}");
     }
 }
@@ -100,7 +100,7 @@ fn without_oscillation_nothing_reverses_twice() {
     for ratio in [1.0, 1.0 + 1e-9, 1.5, 40.0] {
         for start in [(1.0, 0.0), (1.0, 5.0), (1.0, -20.0), (-0.1, 3.0), (0.0, -1.0)] {
             let motion = run(machine(ratio * critical), Coulomb::new(0.25).unwrap(), 1.0, start).unwrap();
-            assert!(motion.half_swings() <= 1, "ζ = {ratio}: {} half swings from {start:?}", motion.half_swings());
+            assert!(motion.half_cycles() <= 1, "ζ = {ratio}: {} half cycles from {start:?}", motion.half_cycles());
             // It holds, or creeps on towards the edge of the stick zone without ever reaching it.
             let (last, end) = (motion.events().last().unwrap(), motion.position().values().last().unwrap());
             assert!(last.next == Mode::Stick || end.abs() >= 0.125 - 1e-15, "ζ = {ratio}: {end} m from {start:?}");
@@ -116,7 +116,7 @@ fn without_friction_reversals_are_half_a_damped_period_apart() {
     let motion = run(machine, Coulomb::new(0.0).unwrap(), 1.0, (0.3, 0.0)).unwrap();
     assert_eq!(motion.events().len(), 1 + (30.0 / half_period) as usize);
     for (n, event) in (0..).zip(motion.events()) {
-        // 14 half swings, each of a few ulp.
+        // 14 half cycles, each of a few ulp.
         let (time, position) = (f64::from(n) * half_period, 0.3 * (-ratio).powi(n));
         assert!((event.time - time).abs() < 1e-13, "reversal {n} at {} s, not {time} s", event.time);
         assert!((event.position - position).abs() < 1e-14, "reversal {n} at {} m, not {position} m", event.position);
@@ -140,7 +140,7 @@ fn what_cannot_be_simulated_is_refused() {
     let error = run(quadratic, coulomb(0.1), 1.0, (1.0, 0.0)).unwrap_err();
     assert_eq!(error, SimulationError::not_linear("nonlinear damping"));
 
-    // Ten million half swings in 30 s.
+    // Ten million half cycles in 30 s.
     let fast = Oscillator::new(1.0, 1e12).unwrap();
     let error = run(fast, coulomb(0.0), 1.0, (1.0, 0.0)).unwrap_err();
     assert!(error.to_string().contains(&format!("more than {EVENT_BUDGET} events")), "{error}");
@@ -204,8 +204,8 @@ fn a_push_after_a_rest_starts_its_own_rhythm() {
     let after: Vec<&Event> = motion.events().iter().filter(|event| event.time >= 20.0).collect();
     assert_eq!((after[0].kind, after[0].time), (EventKind::Breakaway, 20.0));
     // Two roundings of a time of 22 s.
-    let half_swing = after[1].time - 20.0;
-    assert!((half_swing - PI / 2f64.sqrt()).abs() < 1e-14 * 22.0, "a half swing of {half_swing} s");
+    let half_cycle = after[1].time - 20.0;
+    assert!((half_cycle - PI / 2f64.sqrt()).abs() < 1e-14 * 22.0, "a half cycle of {half_cycle} s");
 }
 
 #[test]

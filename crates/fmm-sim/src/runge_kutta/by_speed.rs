@@ -3,12 +3,11 @@
 use fmm_friction::SlidingLaw;
 use fmm_model::Scalar;
 
-use super::field::Field;
-use super::progress::Progress;
-use super::step::Step;
-use crate::State;
 use crate::automaton::Phase;
 use crate::dormand_prince::{Rates, dense_stages, errors, mean_rate, nested, step};
+use crate::runge_kutta::field::{Field, Progress};
+use crate::runge_kutta::step::Step;
+use crate::scenario::State;
 
 /// The least acceleration of a step, in units of its greatest, with which the speed is still a measure of time.
 const LEAST: f64 = 0.05;
@@ -19,8 +18,8 @@ const LEAST: f64 = 0.05;
 /// dt/dw = 1/(s x″),   dx/dw = x′/(s x″),   x′ = v_b + s w
 /// ```
 ///
-/// At a given speed w the friction of neighbouring motions differs by what the parameters change of it, not by its
-/// slope, however steep that is: an infinite slope at rest is no part of these equations at all.
+/// At a given speed w the friction of neighbouring motions differs by the change of the parameters, not by its slope
+/// over the speed. An infinite slope at rest does not enter these equations.
 pub(super) struct BySpeed<D> {
     /// Speed at the beginning, and by how much it grows (m/s).
     begin: f64,
@@ -76,7 +75,7 @@ impl<D: Scalar> BySpeed<D> {
         Some(Self { begin, growth, sign, start, end, nested, rates, better: Vec::new(), greatest })
     }
 
-    /// The local error of a derivative in `direction`, as one of the velocity (m/s) of a machine that swings with
+    /// The local error of a derivative in `direction`, as one of the velocity (m/s) of a machine that vibrates with
     /// `angular` (rad/s); see [`error`](crate::dormand_prince::error).
     pub(super) fn error(&self, direction: usize, angular: f64) -> f64 {
         let [time, position] = [0, 1].map(|unknown| errors(&self.rates[unknown]));
@@ -93,11 +92,10 @@ impl<D: Scalar> BySpeed<D> {
         self.better = better;
     }
 
-    /// The `state`, where the acceleration is `acceleration` (m/s²), with these derivatives where they are better, at a
-    /// given time.
+    /// The `state`, of this `acceleration` (m/s²), with these derivatives if they are better, at a given time.
     ///
-    /// Next to a steep rest the acceleration changes within the error of a step: that of the state itself makes a time
-    /// of a speed, or a time of an event would not be that of this speed.
+    /// Next to rest on a steep law the acceleration changes within the error of a step. The acceleration of the state
+    /// itself therefore converts a speed to a time, so that the time of an event is that of its speed.
     pub(super) fn derive<L: SlidingLaw<D> + ?Sized>(
         &self,
         field: &Field<D, L>,
@@ -128,11 +126,87 @@ impl<D: Scalar> BySpeed<D> {
         }
     }
 
-    /// One number with the derivatives of another where these are better.
+    /// One number with the derivatives of another in the directions in which these are better.
     fn graft(&self, derivatives: D, number: D) -> D {
         self.better.iter().enumerate().fold(D::from(number.value()), |sum, (direction, better)| {
             let from = if *better { derivatives } else { number };
             sum + D::variable(0.0, direction) * from.partial(direction)
         })
+    }
+}
+
+/// Estimated error of a derivative above which it is computed again, in units of the tolerance. The estimate is that of
+/// formulas of orders 5 and 3; the error of a step on a smooth law is a small part of it.
+const SUSPICIOUS: f64 = 1e5;
+
+/// Greatest estimated error of a derivative that is not computed again, relative to the derivative (1).
+const MOST: f64 = 1e-6;
+
+/// The part of the greatest derivative so far below which none matters.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// Watches the error of derivatives.
+///
+/// The steps are chosen by values alone, so that derivatives do not change the values. A steep law parts neighbouring
+/// motions within a fraction of such a step: its derivatives are then found with the speed as the independent variable.
+pub(super) struct Refiner {
+    allowed: f64,
+    /// ω₀ (rad/s), which makes a velocity of a position.
+    angular: f64,
+    /// The greatest derivative so far in each direction, as one of the velocity.
+    greatest: Vec<f64>,
+}
+
+impl Refiner {
+    pub(super) fn new(directions: usize, tolerance: f64, angular: f64) -> Self {
+        Self { allowed: (SUSPICIOUS * tolerance).min(MOST), angular, greatest: vec![0.0; directions] }
+    }
+
+    /// Puts the derivatives at the end of `step`, which begins at `at`, right, and gives those within; `None` if the
+    /// step has good ones, or if its speed is no measure of time.
+    pub(super) fn refine<D: Scalar, L: SlidingLaw<D> + ?Sized>(
+        &mut self,
+        field: &Field<D, L>,
+        phase: &Phase<D>,
+        at: &Progress<D>,
+        step: &mut Step<D>,
+    ) -> Option<BySpeed<D>> {
+        if D::DIRECTIONS == 0 {
+            return None;
+        }
+        let errors = step.derivative_errors();
+        let mut sizes = vec![0.0; D::DIRECTIONS];
+        for (direction, size) in sizes.iter_mut().enumerate() {
+            let now = self.size(at.state, step, direction);
+            // A size that is not finite does not count.
+            let greatest = &mut self.greatest[direction];
+            *greatest = greatest.max(if now.is_finite() { now } else { 0.0 });
+            *size = now.max(NEGLIGIBLE * *greatest);
+        }
+        let error = |direction: usize| errors.of(direction, self.angular);
+        let good = |direction: usize| error(direction) <= self.allowed * sizes[direction];
+        if (0..D::DIRECTIONS).all(good) {
+            return None;
+        }
+        let mut motion = BySpeed::follow(field, phase, at, step)?;
+        // One form may be better in one direction and worse in another.
+        let better = |direction| !(error(direction) <= motion.error(direction, self.angular));
+        let better: Vec<_> = (0..D::DIRECTIONS).map(better).collect();
+        if !better.contains(&true) {
+            return None;
+        }
+        motion.replace(better);
+        let end = motion.derive(field, phase, step.end, step.last_acceleration().value());
+        let acceleration = field.acceleration(phase, at.side, at.time + step.length, end);
+        step.correct(end, acceleration - acceleration.value() + step.last_acceleration().value());
+        Some(motion)
+    }
+
+    /// The size of a derivative over a step from `begin`, as one of the velocity.
+    fn size<D: Scalar>(&self, begin: State<D>, step: &Step<D>, direction: usize) -> f64 {
+        let of = |state: State<D>| {
+            state.velocity.partial(direction).abs() + self.angular * state.position.partial(direction).abs()
+        };
+        of(begin).max(of(step.end))
     }
 }

@@ -1,16 +1,62 @@
-//! The equation of motion on one smooth piece of a law.
+//! The equation of motion on one smooth piece of a law, its guards and the progress along it.
 
 use fmm_friction::SlidingLaw;
 use fmm_model::{Oscillator, Scalar};
 
-use super::guard::{Guard, Side};
 use crate::automaton::{Branch, Phase};
-use crate::drive::Drive;
-use crate::first_zero::ROUNDING;
-use crate::load::{load, rounding};
-use crate::spring::Spring;
-use crate::work::Power;
-use crate::{Scenario, State};
+use crate::mechanics::{Forcing, ROUNDING, Spring, load, rounding};
+use crate::scenario::{Scenario, State};
+use crate::trajectory::Power;
+
+/// A side of the capture speed, at which the law may jump.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    Below,
+    /// The contact is caught once the speed is down at it again.
+    Above,
+}
+
+/// A quantity that is positive before an end of a smooth part of sliding, and zero at the end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Guard {
+    /// The contact is caught, at relative rest unless the law has a dead zone.
+    Rest,
+    /// The acceleration reaches zero.
+    Steady,
+    /// The speed exceeds that at which the contact would be caught. This is no event, but the law may jump.
+    Escape,
+}
+
+impl Guard {
+    /// The guards of a phase on one side of the capture speed, if the law `captures`.
+    pub(super) fn of<D>(phase: &Phase<D>, side: Side, captures: bool) -> impl Iterator<Item = Self> + use<D> {
+        let (branch, escapes) = (phase.branch, captures && side == Side::Below);
+        [Self::Rest, Self::Steady, Self::Escape].into_iter().filter(move |guard| match guard {
+            Self::Rest => branch != Branch::Gaining,
+            Self::Steady => branch != Branch::Only,
+            Self::Escape => escapes,
+        })
+    }
+
+    /// Sign with which velocity, or acceleration, makes the guard.
+    pub(super) fn sign<D>(self, phase: &Phase<D>) -> f64 {
+        let along = phase.direction.sign();
+        match self {
+            Self::Steady if phase.branch == Branch::Losing => -along,
+            Self::Rest | Self::Steady => along,
+            Self::Escape => -along,
+        }
+    }
+}
+
+/// The state at a time that is a plain number, with the side of the capture speed.
+#[derive(Clone, Copy)]
+pub(super) struct Progress<D> {
+    pub(super) time: f64,
+    pub(super) state: State<D>,
+    pub(super) acceleration: D,
+    pub(super) side: Side,
+}
 
 /// The right-hand side of the equation of motion.
 pub(super) struct Field<'a, D, L: ?Sized> {
@@ -19,14 +65,14 @@ pub(super) struct Field<'a, D, L: ?Sized> {
     pub(super) spring: Spring<'a, D>,
     law: &'a L,
     normal_load: D,
-    /// Whether the normal load varies in time.
+    /// True if the normal load varies in time.
     load_varies: bool,
     pub(super) belt: D,
     /// 1/m.
     pub(super) per_mass: D,
     /// The damping coefficient, if damping is linear.
     linear_damping: Option<D>,
-    /// Whether any force acts from outside.
+    /// True if any force acts from outside.
     pub(super) is_driven: bool,
     /// The speed at which the contact is caught (m/s), if there is one.
     pub(super) capture: Option<D>,
@@ -42,7 +88,7 @@ pub(super) struct Outside<D> {
 }
 
 impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Field<'a, D, L> {
-    pub(super) fn new(scenario: &'a Scenario<D, L>, drive: &Drive<D>) -> Self {
+    pub(super) fn new(scenario: &'a Scenario<D, L>, drive: &Forcing<D>) -> Self {
         let oscillator = scenario.oscillator();
         let capture = scenario.law().capture_speed();
         Self {
@@ -65,7 +111,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Field<'a, D, L> {
         (velocity - self.belt) * phase.direction.sign()
     }
 
-    /// The speed less that at which the contact is caught, or for an escape what it lacks.
+    /// The speed above the capture speed; for an escape the speed below it.
     pub(super) fn spare_speed(&self, phase: &Phase<D>, side: Side, velocity: D, guard: Guard) -> D {
         let speed = self.speed(phase, velocity);
         match (self.capture, guard) {
@@ -96,7 +142,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Field<'a, D, L> {
         Outside { force, normal_load }
     }
 
-    /// By how much friction grows in time (N/s) at constant `velocity`, along the positive direction.
+    /// Growth of friction in time (N/s) at constant `velocity`, along the positive direction.
     pub(super) fn friction_slope(&self, phase: &Phase<D>, side: Side, velocity: D) -> D {
         let slope = phase.piece.normal_load(phase.time).1;
         self.coefficient(phase, side, self.speed(phase, velocity)) * slope * phase.direction.sign()
@@ -145,8 +191,8 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Field<'a, D, L> {
         self.balance(phase, side, outside, state, self.speed(phase, state.velocity))
     }
 
-    /// Rounding of an acceleration (m/s²): what is less is zero, or a motion that tends to a constant speed would go
-    /// from branch to branch for ever.
+    /// Rounding of an acceleration (m/s²). A smaller one counts as zero; otherwise a motion that tends to a constant
+    /// speed would change its branch for ever.
     pub(super) fn noise(&self, phase: &Phase<D>, side: Side, state: State<D>) -> f64 {
         let load = load(self.oscillator, phase.piece, phase.time, state);
         let coefficient = self.coefficient(phase, side, self.speed(phase, state.velocity));
@@ -159,10 +205,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Field<'a, D, L> {
         let speed = self.speed(phase, state.velocity);
         let normal_load = self.outside(phase, D::from(time)).normal_load;
         let friction = normal_load * self.coefficient(phase, side, speed) * phase.direction.sign();
-        Power {
-            friction: friction * (state.velocity - self.belt),
-            viscous: self.oscillator.damping().force(state.velocity) * state.velocity,
-            external: phase.piece.force(time) * state.velocity - friction * self.belt,
-        }
+        let damping = self.oscillator.damping().force(state.velocity);
+        Power::of(friction, damping, phase.piece.force(time), state.velocity, self.belt)
     }
 }

@@ -2,21 +2,20 @@
 
 mod by_speed;
 mod field;
-mod guard;
-mod progress;
-mod refiner;
 mod slide;
 mod step;
+#[cfg(test)]
+mod tests;
 
 use fmm_friction::SlidingLaw;
 use fmm_model::{Restoring, Scalar};
 
 use crate::automaton::Contact;
-use crate::drive::Drive;
-use crate::levels::Sliding;
-use crate::recorder::Recorder;
-use crate::{Engine, Sampling, Scenario, SimulationError, Trajectory};
-use slide::Integrator;
+use crate::error::SimulationError;
+use crate::mechanics::{Forcing, Sliding};
+use crate::runge_kutta::slide::Integrator;
+use crate::scenario::{Sampling, Scenario};
+use crate::trajectory::{Engine, Recorder, Trajectory};
 
 /// Integrates each stretch of sliding with the Dormand-Prince method of order 8, stops included to full accuracy.
 ///
@@ -91,7 +90,7 @@ impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Engine<D, L> for RungeKutta {
         sampling: &Sampling,
         trajectory: &mut Trajectory<D>,
     ) -> Result<(), SimulationError> {
-        let drive = Drive::of(scenario);
+        let drive = Forcing::of(scenario);
         let restoring = scenario.oscillator().restoring();
         if drive.has_belt() && !matches!(restoring, Restoring::Linear | Restoring::Sine { .. }) {
             let what = "a spring that hardens or softens, or has a corner, on a moving counterface: \
@@ -104,6 +103,3 @@ impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Engine<D, L> for RungeKutta {
         contact.run(scenario.initial(), &drive, &mut integrator, &mut recorder)
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -3,25 +3,18 @@
 use fmm_friction::SlidingLaw;
 use fmm_model::Scalar;
 
-use super::by_speed::BySpeed;
-use super::field::Field;
-use super::guard::{Guard, Side};
-use super::progress::Progress;
-use super::refiner::Refiner;
-use super::step::{STABLE, Step, first_zero_within};
 use crate::automaton::{Ended, Ending, Phase, Slide};
-use crate::drive::Drive;
-use crate::load::load;
-use crate::recorder::Recorder;
-use crate::spring::Range;
-use crate::within::{COEFFICIENTS, Within};
-use crate::{Scenario, SimulationError, State};
+use crate::dormand_prince::{COEFFICIENTS, Within};
+use crate::error::SimulationError;
+use crate::mechanics::{Forcing, Range, WEAK_SPRING, load};
+use crate::runge_kutta::by_speed::{BySpeed, Refiner};
+use crate::runge_kutta::field::{Field, Guard, Progress, Side};
+use crate::runge_kutta::step::{STABLE, Step, first_zero_within};
+use crate::scenario::{Scenario, State};
+use crate::trajectory::Recorder;
 
-/// Steps of one run; they last for some 15 000 periods at the default tolerance, and take about a second.
+/// Greatest number of steps of one run: some 15 000 periods at the default tolerance, in about a second.
 const STEP_BUDGET: usize = 1_000_000;
-
-/// ω₀ t over the sampled time t below which the spring does not shape the motion.
-const WEAK: f64 = 1e-2;
 
 /// Attempts at landing on an event; Newton's method needs two or three.
 const LANDINGS: usize = 12;
@@ -36,9 +29,9 @@ const NOT_LANDED: f64 = 256.0;
 pub(super) struct Integrator<'a, D, L: ?Sized> {
     field: Field<'a, D, L>,
     tolerance: f64,
-    /// ω₀ of small vibrations, or what turns little within the sampled time if that is faster (rad/s).
+    /// ω₀ of small vibrations, or a frequency of little rotation within the sampled time if that is greater (rad/s).
     angular: f64,
-    /// Displacement that the static level holds on the spring (m), below which no motion matters.
+    /// Displacement on the spring that the static level holds (m); a smaller motion does not matter.
     held: f64,
     /// Length of the step to try next (s).
     length: f64,
@@ -47,11 +40,11 @@ pub(super) struct Integrator<'a, D, L: ?Sized> {
 }
 
 impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
-    pub(super) fn new(scenario: &'a Scenario<D, L>, drive: &Drive<D>, tolerance: f64, end: f64) -> Self {
+    pub(super) fn new(scenario: &'a Scenario<D, L>, drive: &Forcing<D>, tolerance: f64, end: f64) -> Self {
         let oscillator = scenario.oscillator();
         // A spring too weak to matter within the sampled time gives no scale.
         let natural = oscillator.natural_angular_frequency().value();
-        let angular = if end > 0.0 { natural.max(WEAK / end) } else { natural };
+        let angular = if end > 0.0 { natural.max(WEAK_SPRING / end) } else { natural };
         // Where there is neither a spring nor a time, nothing moves.
         let angular = if angular > 0.0 { angular } else { 1.0 };
         let static_force = (scenario.law().breakaway() * scenario.largest_load()).value();
@@ -98,7 +91,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
         rate * guard.sign(phase)
     }
 
-    /// Whether the guard, positive at both ends of `step`, may be zero in between.
+    /// True if the guard, positive at both ends of `step`, may be zero in between.
     fn may_dip(&self, phase: &Phase<D>, at: &Progress<D>, step: &Step<D>, guard: Guard) -> bool {
         if guard == Guard::Steady {
             // Nothing that the step knows bounds the change of the acceleration.
@@ -136,7 +129,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
                 powers[0] = self.field.spare_speed(phase, at.side, at.state.velocity, guard).value();
             }
             if powers[0] <= 0.0 {
-                // A stretch that begins on its guard leaves it; rounding may say otherwise.
+                // A stretch that begins on its guard leaves it, against rounding.
                 (powers[0], powers[1]) = (0.0, powers[1].max(0.0));
             }
             let theta = first_zero_within(powers).or(crossed.then_some(1.0));
@@ -158,13 +151,13 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
         step.within(|elapsed, state| self.field.acceleration(phase, at.side, at.time + elapsed, state))
     }
 
-    /// Largest distance of a step's end from an event (s) that a straight line may cover: the parabola adds less than
+    /// Greatest distance of a step's end from an event (s) that a straight line may cover: the curvature adds less than
     /// rounding.
     fn close(&self) -> f64 {
         1e-9 / self.angular
     }
 
-    /// The step from `at` that ends near where the guard is zero, about `length` long and shorter than `longest`.
+    /// The step from `at` that ends near the zero of the guard, about `length` long and shorter than `longest`.
     fn land(&self, phase: &Phase<D>, at: &Progress<D>, guard: Guard, mut length: f64, longest: f64) -> Step<D> {
         let mut step = self.take(phase, at, length);
         let mut before: Option<(f64, f64)> = None;
@@ -210,11 +203,11 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
     /// Goes on behind a corner of the spring.
     fn pass(&mut self, phase: &Phase<D>, at: &mut Progress<D>, range: Range) {
         self.field.spring.enter(range);
-        // A step counts its first acceleration as much as any: what it has of the range before is an error.
+        // An acceleration of the range before would be an error of the first stage.
         at.acceleration = self.field.acceleration(phase, at.side, at.time, at.state);
     }
 
-    /// Whether a motion passes `corner` (m) so near to `state` that a straight line reaches it.
+    /// True if a straight line reaches from `state` to `corner` (m).
     fn is_near(&self, corner: f64, state: State<D>) -> bool {
         (state.position.value() - corner).abs() <= state.velocity.value().abs() * self.close()
     }
@@ -225,7 +218,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
         if guard == Guard::Steady { acceleration * self.angular } else { acceleration }
     }
 
-    /// Whether the guard is zero at the end of `step`, or so near that it is by rounding.
+    /// True if the guard is zero at the end of `step` within rounding.
     fn has_landed(&self, phase: &Phase<D>, at: &Progress<D>, step: &Step<D>, guard: Guard) -> bool {
         let value = self.guard(phase, at.side, step, guard).value().abs();
         let rate = self.rate(phase, at, step, guard).abs();
@@ -254,7 +247,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
     }
 
     /// Writes the samples before `stop` and the work until `end` of `step`, which begins at `at`; derivatives are those
-    /// of `by_speed` if there are such.
+    /// of `by_speed`, if given.
     fn record(
         &self,
         phase: &Phase<D>,
@@ -270,7 +263,11 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
         }
         let within = self.within(phase, at, step);
         let first = recorder.written;
-        recorder.polynomial(stop, at.time, length, &within)?;
+        if recorder.has_samples_before(stop) {
+            let [position, velocity] = [within.position(), within.velocity()];
+            let of = |component| if component == 0 { position } else { velocity };
+            recorder.polynomials(stop, at.time, length, of)?;
+        }
         let state = |time: f64| {
             let state = within.at((time - at.time) / length);
             let derive = |motion: &BySpeed<D>| {
@@ -286,8 +283,8 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
         recorder.work(at.time, end, end - at.time, |time| self.field.power(phase, at.side, time, state(time)))
     }
 
-    /// The motion that follows an event or a jump, from the `time` of that, which has derivatives, to the number that
-    /// is its value.
+    /// The motion that follows an event or a jump, carried from the `time` of the event, which has derivatives, to the
+    /// value of that time.
     fn depart(&self, phase: &Phase<D>, time: D, state: State<D>, side: Side) -> Progress<D> {
         let late = -time + time.value();
         let time = time.value();
@@ -370,8 +367,7 @@ impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Slide<D> for Integrator<'_, D, L> {
                 scale.position += rise / self.angular;
             }
             let mut error = step.error(scale) / self.tolerance;
-            // Where a motion creeps, values stay good beyond the limit of stability for long, and derivatives grow
-            // without end.
+            // In a creeping motion, values stay good beyond the limit of stability for long, but derivatives grow.
             let stable = 0.9 * STABLE / step.stiffness();
             if error <= 1.0 && step.stiffness() > STABLE {
                 self.shorten(&at, length * stable.max(0.1))?;

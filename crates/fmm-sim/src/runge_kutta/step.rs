@@ -2,9 +2,8 @@
 
 use fmm_model::Scalar;
 
-use crate::State;
-use crate::dormand_prince::{END, Rates, dense_stages, error, errors, nested, step};
-use crate::within::{COEFFICIENTS, Within};
+use crate::dormand_prince::{COEFFICIENTS, END, Rates, Within, dense_stages, error, errors, nested, step};
+use crate::scenario::State;
 
 /// Step less the embedded formulas, for position and velocity, in one pair of orders each.
 pub(super) struct DerivativeErrors<D> {
@@ -14,7 +13,7 @@ pub(super) struct DerivativeErrors<D> {
 }
 
 impl<D: Scalar> DerivativeErrors<D> {
-    /// The local error of the derivative in `direction`, as one of the velocity (m/s) of a machine that swings with
+    /// The local error of the derivative in `direction`, as one of the velocity (m/s) of a machine that vibrates with
     /// `angular` (rad/s).
     pub(super) fn of(&self, direction: usize, angular: f64) -> f64 {
         let norm = |x: D, v: D| (angular * x.partial(direction)).powi(2) + v.partial(direction).powi(2);
@@ -34,7 +33,7 @@ pub(super) struct Step<D> {
     stiffness: f64,
 }
 
-/// Length of a step times the decay rate of the velocity up to which the method damps what decays (1).
+/// Length of a step times the decay rate of the velocity up to which the method damps a decay (1).
 pub(super) const STABLE: f64 = 6.0;
 
 /// Differences below so much of their terms (1) are rounding.
@@ -109,7 +108,7 @@ impl<D: Scalar> Step<D> {
 }
 
 /// The rate at which neighbouring velocities approach each other (1/s), of two `velocities` at one time and their
-/// `accelerations`; 0 where they part, and where they differ by rounding.
+/// `accelerations`; 0 if they part, or differ by rounding.
 ///
 /// From the two last stages, as in section IV.2 of E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*,
 /// Springer 1996.

@@ -5,7 +5,7 @@ use fmm_friction::{Karnopp, LawFamily, MakkarDixon, PowerLaw, SlidingLaw, Stribe
 use fmm_model::{Damping, Dual, Oscillator, Scalar};
 
 use super::*;
-use crate::{EventKind, Excitation};
+use crate::scenario::{EventKind, Excitation};
 
 /// Directions: mass, damping coefficient, angular frequency and belt velocity, then the parameters of a law.
 type Numbers = Dual<9>;

@@ -37,7 +37,7 @@ fn a_law_that_is_not_odd_is_refused() {
     assert!(Bristle::default().run(&odd, &sampling).is_ok());
     let law = OneSided { positive: 0.2, negative: 0.3 };
     let path = PrescribedMotion::at_speed(&[0.0, 1e-4, -1e-4], 1e-3).unwrap();
-    assert!(matches!(friction_along(&law, 1.0, &path), Err(SimulationError::NotOdd { .. })));
+    assert!(matches!(friction_along(&law, 1.0, &path), Err(SimulationError::OutOfRange { .. })));
     let refused = Bristle::default().run(&scenario(law), &sampling);
-    assert!(matches!(refused, Err(SimulationError::NotOdd { .. })), "{refused:?}");
+    assert!(matches!(refused, Err(SimulationError::OutOfRange { .. })), "{refused:?}");
 }

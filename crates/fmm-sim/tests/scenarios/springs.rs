@@ -232,10 +232,10 @@ fn springs_that_push_away_are_refused() {
     let scenario = scenario.starting_at(0.5, 5.0).unwrap();
     let sampling = Sampling::uniform(1e-2, 300).unwrap();
     let refused = simulate(&scenario, &sampling);
-    assert!(matches!(refused, Err(SimulationError::NotRestoring { .. })), "{refused:?}");
+    assert!(matches!(refused, Err(SimulationError::OutOfRange { .. })), "{refused:?}");
     let bristles = Scenario::new(machine(-2.0, 0.0), Dahl::new(0.1, 100.0, 1.0).unwrap(), 1.0).unwrap();
     let refused = Bristle::default().run(&bristles.starting_at(0.5, 5.0).unwrap(), &sampling);
-    assert!(matches!(refused, Err(SimulationError::NotRestoring { .. })), "{refused:?}");
+    assert!(matches!(refused, Err(SimulationError::OutOfRange { .. })), "{refused:?}");
     for machine in [machine(2.0, 0.0), sprung(Restoring::gap(0.1).unwrap())] {
         let belt = Scenario::new(machine, Coulomb::new(0.1).unwrap(), 1.0).unwrap();
         let refused = simulate(&belt.driven_by(Excitation::belt(0.1).unwrap()), &sampling);

@@ -75,7 +75,7 @@ fn held(chapter: &mut Chapter, blows: &[Blow]) -> Found<()> {
             format!("{:.1}", 1e3 * fastest),
             format!("{:.3}", 1e3 * turn.position),
             format!("{:.3}", rest.time - Blow::begin()),
-            format!("{}", motion.half_swings()),
+            format!("{}", motion.half_cycles()),
             format!("{:.3}", 1e3 * rest.position),
         ]);
     }
