@@ -229,7 +229,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                     let breakaway = self.levels.breakaway().value();
                     let rests =
                         mode == Mode::Stick && holds_for_good(self.oscillator, drive, index, time, state, breakaway);
-                    recorder.trajectory.set_rests(rests);
+                    recorder.trajectory.rests = rests;
                     return Ok(());
                 }
                 Ending::Limit => {

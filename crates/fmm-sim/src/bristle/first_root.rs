@@ -49,22 +49,6 @@ pub(super) fn next_root<const N: usize>(coefficients: [f64; N]) -> Option<f64> {
     None
 }
 
-/// The Bernstein coefficients on [0, 1] of Σ cᵢ τⁱ.
-pub(super) fn bernstein<const N: usize>(mut coefficients: [f64; N]) -> [f64; N] {
-    let mut binomial = 1.0;
-    for (order, coefficient) in coefficients.iter_mut().enumerate() {
-        *coefficient /= binomial;
-        binomial *= (N - 1 - order) as f64 / (order + 1) as f64;
-    }
-    // Bⱼ = Σᵢ C(j, i) cᵢ/C(n, i), by Pascal's triangle.
-    for level in 1..N {
-        for index in (level..N).rev() {
-            coefficients[index] += coefficients[index - 1];
-        }
-    }
-    coefficients
-}
-
 fn first_in<const N: usize>(coefficients: [f64; N], begin: f64, width: f64, depth: u32) -> Option<f64> {
     if coefficients[1..].iter().all(|coefficient| *coefficient > 0.0) {
         return None;

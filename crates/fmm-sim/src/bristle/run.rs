@@ -120,7 +120,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
                 self.time = piece.start;
                 self.departure(&piece).is_none()
             });
-        self.recorder.trajectory.set_rests(rests);
+        self.recorder.trajectory.rests = rests;
         Ok(self.steps)
     }
 

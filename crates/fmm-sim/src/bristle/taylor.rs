@@ -4,10 +4,11 @@ use fmm_friction::{BristleLaw, Expansion};
 use fmm_model::{Restoring, Scalar};
 
 use crate::bristle::field::{Branch, Field};
-use crate::bristle::first_root::{bernstein, first_root};
+use crate::bristle::first_root::first_root;
 use crate::bristle::guards::Guard;
 use crate::bristle::polynomial::{ROUNDING, Series, Span, StepPolynomial, value};
 use crate::bristle::run::Run;
+use crate::dormand_prince::bernstein;
 use crate::error::SimulationError;
 use crate::mechanics::Piece;
 

@@ -182,3 +182,19 @@ fn expand<D: Scalar>(start: D, nested: [D; 7]) -> [D; COEFFICIENTS] {
     powers[0] += start;
     powers
 }
+
+/// The Bernstein coefficients on [0, 1] of Σ cᵢ τⁱ.
+pub(crate) fn bernstein<const N: usize>(mut coefficients: [f64; N]) -> [f64; N] {
+    let mut binomial = 1.0;
+    for (order, coefficient) in coefficients.iter_mut().enumerate() {
+        *coefficient /= binomial;
+        binomial *= (N - 1 - order) as f64 / (order + 1) as f64;
+    }
+    // Bⱼ = Σᵢ C(j, i) cᵢ/C(n, i), by Pascal's triangle.
+    for level in 1..N {
+        for index in (level..N).rev() {
+            coefficients[index] += coefficients[index - 1];
+        }
+    }
+    coefficients
+}

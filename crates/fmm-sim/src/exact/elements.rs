@@ -82,7 +82,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
                 }
                 None if last => {
                     let rests = self.at_rest && self.holds_for_good(index);
-                    recorder.trajectory.set_rests(rests);
+                    recorder.trajectory.rests = rests;
                     let level = self.elements.iter().fold(D::from(0.0), |sum, element| sum + element.level);
                     return self.digits.check(self.scenario.oscillator(), level * self.scenario.normal_load(), end);
                 }
@@ -280,7 +280,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
             let time = D::from(recorder.sampling.time(index));
             let deflections = self.moved(path.at(time - self.time), time);
             for (element, deflection) in deflections.into_iter().enumerate() {
-                recorder.trajectory.state_mut(element).set(index, deflection);
+                recorder.trajectory.states[element].set(index, deflection);
             }
         }
         recorder.samples(stop, |time| path.state(-self.time + time))?;

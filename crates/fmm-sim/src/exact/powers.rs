@@ -106,12 +106,12 @@ impl Powers {
             if channels.position() {
                 let (cosine, sine) = turned(free.position, (free.velocity + wave.rate * free.position) / wave.angular);
                 is_finite &= (centre.value().abs() + cosine.value().abs() + sine.value().abs()).is_finite();
-                self.write_wave(recorder.trajectory.position_mut(), range.clone(), &wave, centre, cosine, sine);
+                self.write_wave(&mut recorder.trajectory.position, range.clone(), &wave, centre, cosine, sine);
             }
             if channels.velocity() {
                 let (cosine, sine) = turned(free.velocity, -decay.pull(free) / wave.angular);
                 is_finite &= (cosine.value().abs() + sine.value().abs()).is_finite();
-                self.write_wave(recorder.trajectory.velocity_mut(), range, &wave, D::from(0.0), cosine, sine);
+                self.write_wave(&mut recorder.trajectory.velocity, range, &wave, D::from(0.0), cosine, sine);
             }
             if !is_finite {
                 return Err(SimulationError::NotFinite { time: anchor });

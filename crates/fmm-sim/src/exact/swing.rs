@@ -307,7 +307,7 @@ impl<D: Scalar> Swing<'_, D> {
         if !path.is_free() {
             for index in range.clone() {
                 let force = phase.piece.force(recorder.sampling.time(index));
-                recorder.trajectory.acceleration_mut().add(index, force / mass);
+                recorder.trajectory.acceleration.add(index, force / mass);
             }
         }
         let written = &recorder.trajectory.acceleration().values()[range];
@@ -374,10 +374,10 @@ fn add_forced<D: Scalar>(
             return Err(SimulationError::NotFinite { time });
         }
         if channels.position() {
-            recorder.trajectory.position_mut().add(index, forced.position - path.constant);
+            recorder.trajectory.position.add(index, forced.position - path.constant);
         }
         if channels.velocity() {
-            recorder.trajectory.velocity_mut().add(index, forced.velocity);
+            recorder.trajectory.velocity.add(index, forced.velocity);
         }
     }
     Ok(())

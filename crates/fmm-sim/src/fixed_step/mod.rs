@@ -12,21 +12,21 @@ pub use moreau::Moreau;
 pub use thesis::Thesis;
 
 /// Events at multiples of a step.
-pub(crate) struct GridEvents {
+struct GridEvents {
     /// Δt (s).
-    pub(crate) step: f64,
+    step: f64,
     /// N μ_s (N).
-    pub(crate) static_level: f64,
+    static_level: f64,
 }
 
 impl GridEvents {
-    /// An event at step `index`, the force beside friction being `balance` (N).
-    pub(crate) fn event(&self, kind: EventKind, index: usize, state: State, next: Mode, balance: f64) -> Event {
+    /// An event at step `index` in `state` (m, m/s), the force beside friction being `balance` (N).
+    fn event(&self, kind: EventKind, index: usize, state: (f64, f64), next: Mode, balance: f64) -> Event {
         Event {
             kind,
             time: index as f64 * self.step,
-            position: state.position,
-            velocity: state.velocity,
+            position: state.0,
+            velocity: state.1,
             next,
             load: balance.abs(),
             static_level: self.static_level,
@@ -36,24 +36,24 @@ impl GridEvents {
 }
 
 /// The force at times that ascend.
-pub(crate) struct PieceAt<'a> {
+struct PieceAt<'a> {
     drive: &'a Forcing<'a, f64>,
     piece: Piece<f64>,
     index: usize,
 }
 
 impl<'a> PieceAt<'a> {
-    pub(crate) fn new(drive: &'a Forcing<'a, f64>) -> Self {
+    fn new(drive: &'a Forcing<'a, f64>) -> Self {
         Self { drive, piece: drive.piece(0), index: 0 }
     }
 
     /// True if a contact of `oscillator` that holds in `state` at `time` with this `breakaway` coefficient holds for
     /// good.
-    pub(crate) fn holds_for_good(&self, oscillator: &Oscillator, time: f64, state: State, breakaway: f64) -> bool {
+    fn holds_for_good(&self, oscillator: &Oscillator, time: f64, state: State, breakaway: f64) -> bool {
         holds_for_good(oscillator, self.drive, self.index, time, state, breakaway)
     }
 
-    pub(crate) fn force(&mut self, time: f64) -> f64 {
+    fn force(&mut self, time: f64) -> f64 {
         while time >= self.piece.end {
             self.index += 1;
             self.piece = self.drive.piece(self.index);

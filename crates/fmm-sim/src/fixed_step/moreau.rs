@@ -92,7 +92,7 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Moreau {
         } else {
             Mode::Slip(Direction::of(balance))
         };
-        trajectory.push(grid.event(EventKind::Start, 0, State { position: x, velocity: v }, mode, balance));
+        trajectory.events.push(grid.event(EventKind::Start, 0, (x, v), mode, balance));
         let mut stopped: Option<Event> = None;
         for index in 0..sampling.first() + sampling.count() {
             if let Some(sample) = index.checked_sub(sampling.first()) {
@@ -105,7 +105,7 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Moreau {
                     if !acceleration.is_finite() {
                         return Err(SimulationError::NotFinite { time: index as f64 * h });
                     }
-                    trajectory.acceleration_mut().set(sample, acceleration);
+                    trajectory.acceleration.set(sample, acceleration);
                 }
                 if sample + 1 == sampling.count() {
                     break;
@@ -135,21 +135,15 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Moreau {
             match (stopped.take(), now) {
                 // A contact that holds for one step only has turned round.
                 (Some(stop), Mode::Slip(_)) => {
-                    trajectory.push(Event { kind: EventKind::Reversal, next: now, ..stop });
+                    trajectory.events.push(Event { kind: EventKind::Reversal, next: now, ..stop });
                 }
-                (Some(stop), _) => trajectory.push(stop),
+                (Some(stop), _) => trajectory.events.push(stop),
                 (None, Mode::Stick) if !sticking => {
-                    stopped = Some(grid.event(
-                        EventKind::Stop,
-                        index + 1,
-                        State { position: x, velocity: v },
-                        now,
-                        balance(),
-                    ));
+                    stopped = Some(grid.event(EventKind::Stop, index + 1, (x, v), now, balance()));
                 }
                 (None, _) if now != mode => {
                     let kind = if sticking { EventKind::Breakaway } else { EventKind::Reversal };
-                    trajectory.push(grid.event(kind, index + 1, State { position: x, velocity: v }, now, balance()));
+                    trajectory.events.push(grid.event(kind, index + 1, (x, v), now, balance()));
                 }
                 (None, _) => {}
             }
@@ -159,11 +153,11 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Moreau {
             }
         }
         if let Some(stop) = stopped {
-            trajectory.push(stop);
+            trajectory.events.push(stop);
         }
         let state = State { position: x, velocity: v };
         let rests = mode == Mode::Stick && pieces.holds_for_good(oscillator, sampling.end(), state, law.breakaway());
-        trajectory.set_rests(rests);
+        trajectory.rests = rests;
         Ok(())
     }
 }

@@ -91,7 +91,7 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Thesis {
         } else {
             Mode::Slip(Direction::of(if v == 0.0 { balance } else { v }))
         };
-        trajectory.push(grid.event(EventKind::Start, 0, State { position: x, velocity: v }, mode, balance));
+        trajectory.events.push(grid.event(EventKind::Start, 0, (x, v), mode, balance));
         for index in 0..sampling.first() + sampling.count() {
             if let Some(sample) = index.checked_sub(sampling.first()) {
                 trajectory.set(sample, sampling.channels(), x, v);
@@ -107,13 +107,7 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Thesis {
                 acceleration = 0.0;
                 if mode != Mode::Stick {
                     mode = Mode::Stick;
-                    trajectory.push(grid.event(
-                        EventKind::Stop,
-                        index + 1,
-                        State { position: x, velocity: v },
-                        mode,
-                        balance,
-                    ));
+                    trajectory.events.push(grid.event(EventKind::Stop, index + 1, (x, v), mode, balance));
                 }
                 continue;
             }
@@ -142,7 +136,7 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Thesis {
             if v != 0.0 && next != mode {
                 let kind = if mode == Mode::Stick { EventKind::Breakaway } else { EventKind::Reversal };
                 mode = next;
-                trajectory.push(grid.event(kind, index + 1, State { position: x, velocity: v }, mode, balance));
+                trajectory.events.push(grid.event(kind, index + 1, (x, v), mode, balance));
             }
             if !((oscillator.stiffness() * x).is_finite() && x.is_finite() && v.is_finite()) {
                 return Err(SimulationError::NotFinite { time: (index + 1) as f64 * step });
@@ -154,7 +148,7 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Thesis {
         };
         let state = State { position: x, velocity: v };
         let rests = mode == Mode::Stick && pieces.holds_for_good(oscillator, sampling.end(), state, breakaway);
-        trajectory.set_rests(rests);
+        trajectory.rests = rests;
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use fmm_model::Scalar;
 
-use crate::dormand_prince::{COEFFICIENTS, END, Rates, Within, dense_stages, error, errors, nested, step};
+use crate::dormand_prince::{COEFFICIENTS, END, Rates, Within, bernstein, dense_stages, error, errors, nested, step};
 use crate::scenario::State;
 
 /// Step less the embedded formulas, for position and velocity, in one pair of orders each.
@@ -138,18 +138,7 @@ fn rate_of<D: Scalar>(mut accelerate: impl FnMut(f64, State<D>) -> D) -> impl Fn
 /// The coefficients in the Bernstein basis enclose the polynomial. Where they are not all positive the interval is
 /// halved, so that no pair of zeros hides between two samples.
 pub(super) fn first_zero_within(coefficients: [f64; COEFFICIENTS]) -> Option<f64> {
-    let mut bernstein = coefficients;
-    // b_j = Σ_{i ≤ j} (j choose i)/(7 choose i) c_i, by repeated sums of scaled coefficients.
-    let binomials = [1.0, 7.0, 21.0, 35.0, 35.0, 21.0, 7.0, 1.0];
-    for (coefficient, binomial) in bernstein.iter_mut().zip(binomials) {
-        *coefficient /= binomial;
-    }
-    for order in 1..COEFFICIENTS {
-        for i in (order..COEFFICIENTS).rev() {
-            bernstein[i] += bernstein[i - 1];
-        }
-    }
-    search(bernstein, 0.0, 1.0, 0)
+    search(bernstein(coefficients), 0.0, 1.0, 0)
 }
 
 /// Halvings after which an interval is short enough to begin a landing from.

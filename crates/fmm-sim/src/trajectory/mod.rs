@@ -53,14 +53,15 @@ pub trait Engine<D: Scalar, L: ?Sized> {
 /// carry their exact partial derivatives, the change of event times included.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory<D = f64> {
-    position: Samples<D>,
-    velocity: Samples<D>,
-    acceleration: Samples<D>,
-    events: Vec<Event<D>>,
-    states: Vec<Samples<D>>,
+    pub(crate) position: Samples<D>,
+    pub(crate) velocity: Samples<D>,
+    pub(crate) acceleration: Samples<D>,
+    pub(crate) events: Vec<Event<D>>,
+    pub(crate) states: Vec<Samples<D>>,
     work: [Samples<D>; 3],
     engine: &'static str,
-    rests: bool,
+    /// True if the contact, which holds at the last sample, holds for good.
+    pub(crate) rests: bool,
     sampling: Option<Sampling>,
 }
 
@@ -115,23 +116,10 @@ impl<D: Scalar> Trajectory<D> {
         Ok(())
     }
 
-    /// Notes if the contact, which holds at the last sample, holds for good.
-    pub(crate) fn set_rests(&mut self, rests: bool) {
-        self.rests = rests;
-    }
-
-    pub(crate) fn state_mut(&mut self, index: usize) -> &mut Samples<D> {
-        &mut self.states[index]
-    }
-
     pub(crate) fn set_work(&mut self, index: usize, work: &Work<D>) {
         for (samples, value) in self.work.iter_mut().zip([work.friction, work.viscous, work.external]) {
             samples.set(index, value);
         }
-    }
-
-    pub(crate) fn push(&mut self, event: Event<D>) {
-        self.events.push(event);
     }
 
     /// Changes the direction of the events at `time` (s) that have begun the present half cycle to `direction`.
@@ -152,18 +140,6 @@ impl<D: Scalar> Trajectory<D> {
                 _ => break,
             }
         }
-    }
-
-    pub(crate) fn position_mut(&mut self) -> &mut Samples<D> {
-        &mut self.position
-    }
-
-    pub(crate) fn velocity_mut(&mut self) -> &mut Samples<D> {
-        &mut self.velocity
-    }
-
-    pub(crate) fn acceleration_mut(&mut self) -> &mut Samples<D> {
-        &mut self.acceleration
     }
 
     /// Writes the accelerations `constant` + `per_position` x + `per_velocity` x′ at every index of `range`.

@@ -53,7 +53,7 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         if self.trajectory.events().len() >= EVENT_BUDGET {
             return Err(SimulationError::event_budget(EVENT_BUDGET, self.sampling.end()));
         }
-        self.trajectory.push(event);
+        self.trajectory.events.push(event);
         Ok(())
     }
 
@@ -80,7 +80,7 @@ impl<'a, D: Scalar> Recorder<'a, D> {
             }
             self.trajectory.set(self.written, channels, position, velocity);
             for (index, unknown) in unknowns.iter().skip(2).enumerate() {
-                self.trajectory.state_mut(index).set(self.written, *unknown);
+                self.trajectory.states[index].set(self.written, *unknown);
             }
             self.written += 1;
         }
@@ -119,7 +119,7 @@ impl<'a, D: Scalar> Recorder<'a, D> {
             if !acceleration.value().is_finite() {
                 return Err(SimulationError::NotFinite { time });
             }
-            self.trajectory.acceleration_mut().set(index, acceleration);
+            self.trajectory.acceleration.set(index, acceleration);
         }
         Ok(())
     }
@@ -129,10 +129,10 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         let range = self.written..self.sampling.index_at_or_after(end).max(self.written);
         let channels = self.sampling.channels();
         if channels.position() {
-            self.trajectory.position_mut().fill(range.clone(), position);
+            self.trajectory.position.fill(range.clone(), position);
         }
         if channels.velocity() {
-            self.trajectory.velocity_mut().fill(range.clone(), D::from(0.0));
+            self.trajectory.velocity.fill(range.clone(), D::from(0.0));
         }
         let first = self.written;
         self.written = range.end;
@@ -155,7 +155,7 @@ impl<'a, D: Scalar> Recorder<'a, D> {
     /// Writes an acceleration of zero into the samples from `first` to the last that is written.
     pub(crate) fn at_constant_speed(&mut self, first: usize) {
         if self.sampling.channels().acceleration() {
-            self.trajectory.acceleration_mut().fill(first..self.written, D::from(0.0));
+            self.trajectory.acceleration.fill(first..self.written, D::from(0.0));
         }
     }
 
@@ -171,10 +171,10 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         for index in first..self.written {
             let State { position, velocity } = state(self.sampling.time(index));
             if channels.position() {
-                self.trajectory.position_mut().set_partials(index, position);
+                self.trajectory.position.set_partials(index, position);
             }
             if channels.velocity() {
-                self.trajectory.velocity_mut().set_partials(index, velocity);
+                self.trajectory.velocity.set_partials(index, velocity);
             }
         }
     }
@@ -228,13 +228,13 @@ impl<'a, D: Scalar> Recorder<'a, D> {
     ) {
         let channels = self.sampling.channels();
         if channels.position() {
-            self.trajectory.position_mut().polynomial(range.clone(), &of(0), &theta);
+            self.trajectory.position.polynomial(range.clone(), &of(0), &theta);
         }
         if channels.velocity() {
-            self.trajectory.velocity_mut().polynomial(range.clone(), &of(1), &theta);
+            self.trajectory.velocity.polynomial(range.clone(), &of(1), &theta);
         }
         for state in 0..states {
-            self.trajectory.state_mut(state).polynomial(range.clone(), &of(2 + state), &theta);
+            self.trajectory.states[state].polynomial(range.clone(), &of(2 + state), &theta);
         }
     }
 
