@@ -207,7 +207,7 @@ impl<D: Scalar> Collocation<D> {
                 let least = LEAST_STIFF / span.length;
                 for (state, (weights, relaxation)) in self.weights.iter_mut().zip(&self.relaxations).enumerate() {
                     let middle = self.modes.relaxation(2 + state);
-                    // A difference across a jump is no stiffness, and must not hide a residual.
+                    // A difference across a jump does not measure stiffness, and must not hide a residual.
                     weights[index] = ((least + middle.max(0.0)) / (least + relaxation.max(0.0))).clamp(0.1, 10.0);
                 }
             }
@@ -217,8 +217,8 @@ impl<D: Scalar> Collocation<D> {
     /// One iteration of Newton's method; afterwards `residual` holds the change of the increments. Without `values`
     /// these stay constant.
     ///
-    /// The Jacobian is that in the middle of the step. The equations of a state are multiplied by how stiff they are
-    /// there over how stiff they are at their stage, so that it is that of all stages where a state follows the motion.
+    /// The Jacobian is that in the middle of the step. The equations of a state are multiplied by the ratio of the
+    /// stiffness there to that at their stage, so that the Jacobian holds for all stages if a state follows the motion.
     fn correct(&mut self, motion: &mut StepPolynomial<D>, span: Span, values: bool) {
         // f(Y) − (1/h) A⁻¹ W
         let per_second = 1.0 / span.length;
@@ -287,7 +287,7 @@ impl<D: Scalar> Collocation<D> {
                 }
                 let ratio = correction / *before;
                 let left = if ratio < 1.0 { ratio / (1.0 - ratio) * correction } else { correction };
-                // Where rounding keeps the corrections from shrinking, they have shrunk enough before.
+                // If rounding keeps the corrections from shrinking, they are small enough.
                 let stagnates = ratio > 0.5 && correction <= 1e4 * f64::EPSILON * size;
                 converged &= left <= goal * size || stagnates;
                 *before = correction;

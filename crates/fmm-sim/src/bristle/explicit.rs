@@ -13,7 +13,7 @@ use crate::mechanics::Piece;
 /// Order of the method.
 const ORDER: i32 = 8;
 
-/// The error allowed in a step, in units of the tolerance: many short steps add up to more than a few long ones.
+/// Error allowed in a step, in units of the tolerance; the errors of many steps add up.
 const SAFETY: f64 = 0.1;
 
 /// The Dormand-Prince method, as the [`RungeKutta`](crate::RungeKutta) engine uses it.
@@ -88,7 +88,7 @@ impl<D: Scalar> Explicit<D> {
         Some(Solved { error, quick: true, followed, stiffness, variation })
     }
 
-    /// The local error of the component that is worst off.
+    /// The greatest local error of a component.
     fn error(&self, motion: &StepPolynomial<D>, length: f64) -> f64 {
         let mut worst = 0.0f64;
         for (component, rates) in self.rates.iter().enumerate() {
@@ -101,8 +101,7 @@ impl<D: Scalar> Explicit<D> {
         worst
     }
 
-    /// Length of the step times the rate by which the two stages at its end tell the stiffest direction from the
-    /// others.
+    /// Length of the step times the stiffest rate, estimated from the two stages at its end.
     ///
     /// # References
     /// E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, Springer 1996, section IV.2, eq. (2.25).
@@ -121,7 +120,7 @@ impl<D: Scalar> Explicit<D> {
     /// True if the states rest at their equilibrium. Their values then do not show how fast they would return, but
     /// their derivatives do return.
     fn is_settled(&self, motion: &StepPolynomial<D>) -> bool {
-        /// Changes below, in units of the scales, do not count beside that of the position.
+        /// Greatest change of a state that does not count, in units of its scale (1).
         const UNSEEN: f64 = 1e-9;
         let states = self.end.iter().zip(&self.state).enumerate().skip(2);
         let mut states =
@@ -129,7 +128,7 @@ impl<D: Scalar> Explicit<D> {
         states.all(|change| change <= UNSEEN)
     }
 
-    /// By how much the rates of the states have changed over the step, in units of themselves.
+    /// Relative change of the rates of the states over the step (1).
     fn variation(&self, motion: &StepPolynomial<D>) -> f64 {
         let (mut change, mut size) = (0.0, 0.0);
         for (component, of) in self.rates.iter().enumerate().skip(2) {

@@ -42,10 +42,10 @@ pub use prescribed::{FrictionPoint, PrescribedMotion, friction_along};
 /// an element of [`MaxwellSlip`](fmm_friction::MaxwellSlip) or [`Gms`](fmm_friction::Gms) begins to slide. Between such
 /// events the equations are smooth. While the bristles bend, a step is the Taylor series of the motion of order 24, if
 /// damping and spring are linear and the law [expands itself](BristleLaw::expand), as [`Dahl`](fmm_friction::Dahl),
-/// [`LuGre`](fmm_friction::LuGre) and [`BoucWen`](fmm_friction::BoucWen) do but for powers next to where they bend. The
-/// last terms say how far the series reaches, so that no step is tried twice. Without one, steps are those of the
-/// explicit method of order 8 that [`RungeKutta`](crate::RungeKutta) uses. Once the bristles only follow the sliding
-/// speed, which is where the equations are stiff, each step solves the 8 stages of the Radau IIA method of order 15
+/// [`LuGre`](fmm_friction::LuGre) and [`BoucWen`](fmm_friction::BoucWen) do, except for powers next to their corner.
+/// The last terms limit the reach of the series, so that no step is tried twice. Without a series, steps are those of
+/// the explicit method of order 8 that [`RungeKutta`](crate::RungeKutta) uses. Once the bristles only follow the
+/// sliding speed, and the equations are stiff, each step solves the 8 stages of the Radau IIA method of order 15
 /// together, by Newton's method with a Jacobian from differences of the law's own formulas: the method is L-stable, so
 /// that the stiffness of the bristles does not limit the step. Rates from differences, or the two last stages of a step
 /// of order 8, measure the stiffness, and with it which of the methods is cheaper. A state
@@ -54,8 +54,7 @@ pub use prescribed::{FrictionPoint, PrescribedMotion, friction_along};
 ///
 /// The polynomial of a step gives the samples, the right-hand side at these the accelerations (good to 4e-10 of the
 /// largest at the default tolerance), and its Bernstein coefficients prove that no zero of u lies within the step,
-/// or show where: a series ends there as it is, another step is taken again to end there, by Newton's method on its
-/// length.
+/// or locate it: a series ends there, another step is taken again to end there, by Newton's method on its length.
 ///
 /// A law with bristles has no stick: a contact that seems to hold creeps or vibrates on its bristles. At u = 0 all
 /// elements hold again ([`EventKind::Reversal`](crate::EventKind::Reversal)), and the direction comes from the load,

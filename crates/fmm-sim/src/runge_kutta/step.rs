@@ -5,7 +5,7 @@ use fmm_model::Scalar;
 use crate::dormand_prince::{COEFFICIENTS, END, Rates, Within, bernstein, dense_stages, error, errors, nested, step};
 use crate::scenario::State;
 
-/// Step less the embedded formulas, for position and velocity, in one pair of orders each.
+/// Differences of a step from the embedded formulas of orders 5 and 3, for position and velocity.
 pub(super) struct DerivativeErrors<D> {
     length: f64,
     position: (D, D),
@@ -36,7 +36,7 @@ pub(super) struct Step<D> {
 /// Length of a step times the decay rate of the velocity up to which the method damps a decay (1).
 pub(super) const STABLE: f64 = 6.0;
 
-/// Differences below so much of their terms (1) are rounding.
+/// Share of their terms below which differences are rounding (1).
 const ROUNDED: f64 = 1e3 * f64::EPSILON;
 
 impl<D: Scalar> Step<D> {
@@ -88,7 +88,7 @@ impl<D: Scalar> Step<D> {
         DerivativeErrors { length: self.length, position: errors(&self.rates[0]), velocity: errors(&self.rates[1]) }
     }
 
-    /// Puts another state, and the acceleration there, at the end.
+    /// Replaces the state and the acceleration at the end.
     pub(super) fn correct(&mut self, end: State<D>, acceleration: D) {
         self.end = end;
         (self.rates[0][END], self.rates[1][END]) = (end.velocity, acceleration);
@@ -135,17 +135,17 @@ fn rate_of<D: Scalar>(mut accelerate: impl FnMut(f64, State<D>) -> D) -> impl Fn
 
 /// The first θ in (0, 1] at which the polynomial, positive before it, reaches zero; `None` if it stays positive.
 ///
-/// The coefficients in the Bernstein basis enclose the polynomial. Where they are not all positive the interval is
-/// halved, so that no pair of zeros hides between two samples.
+/// The coefficients in the Bernstein basis enclose the polynomial. Unless all are positive the interval is halved, so
+/// that no pair of zeros is missed.
 pub(super) fn first_zero_within(coefficients: [f64; COEFFICIENTS]) -> Option<f64> {
     search(bernstein(coefficients), 0.0, 1.0, 0)
 }
 
-/// Halvings after which an interval is short enough to begin a landing from.
+/// Number of halvings after which a landing can begin from the interval.
 const DEPTH: u32 = 20;
 
 fn search(bernstein: [f64; COEFFICIENTS], from: f64, to: f64, depth: u32) -> Option<f64> {
-    // The near end is known to be no zero but the one at the start; from there it may rise as slowly as it likes.
+    // The near end is no zero, except for the one at the start, from which the polynomial may rise slowly.
     if bernstein[1..].iter().all(|value| *value >= 0.0) && bernstein[COEFFICIENTS - 1] > 0.0 {
         return None;
     }

@@ -87,7 +87,7 @@ impl<D: Scalar> Trajectory<D> {
         }
     }
 
-    /// Forgets everything and makes room for the samples asked for; for `work` only if the engine keeps account of it.
+    /// Clears the trajectory and makes room for the samples asked for, for the work only if the engine records `work`.
     ///
     /// # Errors
     /// [`SimulationError::Exhausted`] if there is no such room.
@@ -176,8 +176,8 @@ impl<D: Scalar> Trajectory<D> {
 
     /// Sampled acceleration (m/s²), the time derivative of the velocity; empty unless [`Channels::All`] asked for it.
     ///
-    /// It is the equation of motion at the sampled position and velocity, or its closed form. It jumps where friction
-    /// does: a sample at the time of such an event holds the value after it, and a derivative is that of the smooth
+    /// It is the equation of motion at the sampled position and velocity, or its closed form. It jumps with
+    /// friction: a sample at the time of such an event holds the value after it, and a derivative is that of the smooth
     /// piece on which the sample lies. While the contact sticks it is zero.
     ///
     /// An accelerometer on a machine whose base shakes ([`Excitation::base`](crate::Excitation::base)) feels the
@@ -191,8 +191,8 @@ impl<D: Scalar> Trajectory<D> {
         &self.states
     }
 
-    /// Work done up to sample `index` (J); `None` unless [`Sampling::with_work`] asked for it, and none by the methods
-    /// of fixed step, which keep no account of it.
+    /// Work done up to sample `index` (J); `None` without [`Sampling::with_work`], and for the methods of fixed step,
+    /// which do not record it.
     pub fn work(&self, index: usize) -> Option<Work> {
         let [friction, viscous, external] = &self.work;
         let at = |samples: &Samples<D>| samples.values().get(index).copied();
@@ -209,11 +209,10 @@ impl<D: Scalar> Trajectory<D> {
         &self.events
     }
 
-    /// The event with which the motion ended for good, if it did before the last sample.
+    /// The event with which the motion ended for good, if it ended before the last sample.
     ///
-    /// A contact that holds on a counterface that moves is not at rest, nor is one that the force will break away after
-    /// the last sample. Under several waves of different frequencies the latter is what their amplitudes together could
-    /// do.
+    /// A contact that holds on a moving counterface is not at rest, nor is one that the force will break away after the
+    /// last sample. Several waves of different frequencies count by the sum of their amplitudes.
     pub fn rest(&self) -> Option<&Event<D>> {
         self.events.last().filter(|event| self.rests && event.next == Mode::Stick)
     }
