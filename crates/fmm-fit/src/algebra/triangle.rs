@@ -2,7 +2,7 @@
 
 use std::array;
 
-use pulp::{Arch, Simd, WithSimd};
+use fmm_model::widest;
 
 use crate::algebra::sums::products;
 
@@ -122,10 +122,10 @@ impl Triangle {
     /// `residuals`; `scratch` may have any length.
     pub(crate) fn factor(&mut self, jacobian: &[f64], columns: &[usize], residuals: &[f64], scratch: &mut Vec<f64>) {
         if !self.factor_few(jacobian, columns, residuals) {
-            Arch::new().dispatch(Wide(
+            widest(
                 #[inline(always)]
                 || self.factor_here(jacobian, columns, residuals, scratch),
-            ));
+            );
         }
     }
 
@@ -370,23 +370,6 @@ fn total(sums: &[f64; LANES]) -> f64 {
     ((sums[0] + sums[4]) + (sums[2] + sums[6])) + ((sums[1] + sums[5]) + (sums[3] + sums[7]))
 }
 
-/// Work to be compiled for the vectors that there are.
-///
-/// A bare closure is not enough: a function around it makes one call of it, and is compiled for any processor if it is
-/// long. fmm-sim has the same: neither uses the other, and what both use shall not bring pulp to those who only want a
-/// law.
-pub(crate) struct Wide<F>(pub(crate) F);
-
-impl<R, F: FnMut() -> R> WithSimd for Wide<F> {
-    type Output = R;
-
-    #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
-    #[inline(always)]
-    fn with_simd<S: Simd>(mut self, _: S) -> R {
-        (self.0)()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::{DMatrix, DVector};
@@ -493,10 +476,10 @@ mod tests {
         for columns in 0..=6 {
             let columns: Vec<usize> = (0..columns).collect();
             let (mut wide, mut narrow) = (Triangle::default(), Triangle::default());
-            Arch::new().dispatch(Wide(
+            widest(
                 #[inline(always)]
                 || wide.factor_here(&jacobian, &columns, &residuals, &mut Vec::new()),
-            ));
+            );
             narrow.factor_here(&jacobian, &columns, &residuals, &mut Vec::new());
             assert_eq!(wide.entries, narrow.entries);
         }
