@@ -31,7 +31,7 @@ use crate::uncertainty::minimum::Minimum;
 ///
 /// ```
 /// # use fmm_fit::EvaluationError;
-/// use fmm_fit::{Automatic, Model, Options, Sensitivity, solve};
+/// use fmm_fit::{Automatic, Model, Options, PropagatedCovariance, Sensitivity, solve};
 /// use fmm_model::{Bounds, Parameter, Scalar};
 ///
 /// /// Weights F = m g over masses, g to be found and the offset of the scale fixed.
@@ -57,7 +57,7 @@ use crate::uncertainty::minimum::Minimum;
 /// // g = Σ m (F − b) / Σ m²
 /// let coefficient = sensitivity.coefficient_of("gravity", "offset").unwrap();
 /// assert!((coefficient + 6.0 / 14.0).abs() < 1e-9);
-/// let propagated = sensitivity.propagate_uncorrelated(&[0.01])?;
+/// let propagated: PropagatedCovariance = sensitivity.propagate_uncorrelated(&[0.01])?;
 /// assert!((propagated.standard_uncertainty(0).unwrap() - 0.01 * 6.0 / 14.0).abs() < 1e-11);
 /// assert_eq!(sensitivity.to_string(), "[[sensitivity]]\n  gravity by offset: -0.428571 (m/s²)/N\n");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
