@@ -24,9 +24,6 @@ mod solver {
     pub(crate) mod triangle;
     mod wide;
 }
-#[path = "../../../crates/fmm-identify/src/estimators/banded.rs"]
-#[allow(dead_code, unused_imports, reason = "only parts are measured, and their tests do not run here")]
-mod banded;
 #[path = "../../../crates/fmm-fit/src/uncertainty/definite.rs"]
 #[allow(dead_code, unused_imports, reason = "only parts are measured, and their tests do not run here")]
 mod definite;
@@ -45,7 +42,6 @@ mod random {
     pub(crate) mod ziggurat;
 }
 
-use banded::BandedFactor;
 use random::ziggurat::Ziggurat;
 use solver::spectrum::Spectrum;
 use solver::triangle::Triangle;
@@ -155,31 +151,6 @@ fn systems(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Correlated equations of the weak form: some hundred, each correlated with a few neighbours.
-fn banded_systems(criterion: &mut Criterion) {
-    const WIDTH: usize = 8;
-    let near = |i: usize, j: usize| 1.0 / (1 + i.abs_diff(j).pow(2)) as f64 + if i == j { 1.0 } else { 0.0 };
-    let mut group = criterion.benchmark_group("banded");
-    for count in [100, 400] {
-        let right = DVector::from_fn(count, |i, _| element(i, 1));
-        let inside = |i: usize, j: usize| if i.abs_diff(j) > WIDTH { 0.0 } else { near(i, j) };
-        let matrix = DMatrix::from_fn(count, count, inside);
-        group.bench_function(BenchmarkId::new("own", count), |bencher| {
-            bencher.iter(|| {
-                let factor = BandedFactor::of(count, WIDTH, |i, j| matrix[(i, j)]).expect("definite");
-                factor.whiten(black_box(right.as_slice()))
-            });
-        });
-        group.bench_function(BenchmarkId::new("nalgebra", count), |bencher| {
-            bencher.iter(|| {
-                let factor = black_box(&matrix).clone().cholesky().expect("definite").unpack();
-                factor.solve_lower_triangular(&right)
-            });
-        });
-    }
-    group.finish();
-}
-
 fn print_ratios() {
     for label in ["normal", "t5"] {
         print_ratio(&format!("variates/rand_distr/{label}"), &format!("variates/own/{label}"), 1.0..);
@@ -189,12 +160,9 @@ fn print_ratios() {
             print_ratio(&format!("{group}/nalgebra/{order}"), &format!("{group}/own/{order}"), ..);
         }
     }
-    for count in [100, 400] {
-        print_ratio(&format!("banded/nalgebra/{count}"), &format!("banded/own/{count}"), 1.0..);
-    }
 }
 
-criterion_group!(benches, variates, singular_values, systems, banded_systems);
+criterion_group!(benches, variates, singular_values, systems);
 
 fn main() {
     benches();

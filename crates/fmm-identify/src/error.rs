@@ -59,14 +59,6 @@ pub enum IdentifyError {
         /// Contradicting parts.
         what: String,
     },
-    /// Parameters that the record does not tell apart: hold one of them, or give a longer record.
-    #[error("{estimator} cannot tell {parameters} apart in this record; hold one of them or give a longer record")]
-    Undetermined {
-        /// Name of the estimator.
-        estimator: &'static str,
-        /// Names of the parameters.
-        parameters: String,
-    },
     /// Force and response of a blow do not go together, or nothing was hit.
     #[error(transparent)]
     Impact(#[from] FrfError),
@@ -188,14 +180,6 @@ impl IdentifyError {
         Self::not_seen(format!("the record is constant at {value} {unit}: nothing moves"))
     }
 
-    /// Turning points that do not lie to either side of the centre by turns: at `time` (s) the `amplitude` is not
-    /// positive.
-    pub(crate) fn amplitude(time: f64, amplitude: f64, unit: &str) -> Self {
-        Self::not_seen(format!(
-            "amplitudes must be positive, but one is {amplitude} {unit} at {time} s; end the record before it"
-        ))
-    }
-
     /// A number that describes an experiment and cannot be.
     pub(crate) fn not_allowed(subject: &str, value: f64, allowed: &str) -> Self {
         Self::OutOfRange { what: format!("{subject} must be {allowed}, not {}", Rounded::every_digit(value)), value }
@@ -238,11 +222,6 @@ impl IdentifyError {
         Self::contradiction(format!(
             "{law} has a viscous part: a linear damping of the machine beside it could not be told apart; leave one out"
         ))
-    }
-
-    /// Parameters that the half swings do not tell apart.
-    pub(crate) fn undetermined(estimator: &'static str, parameters: String) -> Self {
-        Self::Undetermined { estimator, parameters }
     }
 
     /// A fitted motion that is not simulated.

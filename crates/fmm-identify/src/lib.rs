@@ -47,8 +47,7 @@
 //! | Experiments of several kinds, without contact, under other loads? | one slice: [`Experiment::without_contact`], [`Experiment::with_load_factor`] |
 //! | Is friction in proportion to the load? | [`FrictionOverLoad`], of runs at several loads that may differ |
 //! | A static level? | a slow force through the breakaway, [`Experiment::driven`]; a ring-down does not tell it |
-//! | How does damping depend on velocity? | [`decrements`] cycle by cycle, [`Windows`] a few cycles at a time |
-//! | Friction without a simulation? | [`WeakForm`]; [`EnergyMethod`] for its curve, [`half_swing_losses`] per half swing |
+//! | How does damping depend on velocity? | [`fmm_frf::Backbone`]: frequency and damping over the amplitude |
 //! | Friction out of impacts of a hammer? | [`ImpactTrial`], and [`Experiment::impact`] for the motion or [`Experiment::mobility`] for its spectrum |
 //! | A force measured along a motion: a joint, a tribometer, a damper? | [`ForceRecord`], [`identify_force`]; [`ForceModel`] says what acts beside friction, [`compare_force`] which model the records prefer |
 //! | The same without a law? | [`ForceRecord::friction_over_speed`] and [`friction_over_speed_and_load`](ForceRecord::friction_over_speed_and_load), [`ForceRecord::loops`], [`ForceRecord::onsets`] |
@@ -105,7 +104,6 @@
 mod candidate;
 mod design;
 mod error;
-mod estimators;
 mod experiment;
 mod finding;
 mod fit;
@@ -127,10 +125,6 @@ mod warning;
 pub use candidate::Candidate;
 pub use design::{Aim, DesignPrediction, Guess, Plan, PlannedSensor, PlannedTest};
 pub use error::IdentifyError;
-pub use estimators::{
-    Decrement, EnergyMethod, EnergyRate, EnergyRates, HalfSwing, WeakForm, WeakFormEstimate, WindowFit, Windows,
-    decrements, half_swing_losses, half_swing_losses_of,
-};
 pub use experiment::{Drive, Experiment, ImpactSummary, ImpactTrial, Offset, Preparation, RecordSummary, Sensor};
 pub use finding::{Contribution, Finding, Origin, Source};
 pub use fmm_model::Estimated;

@@ -19,6 +19,7 @@ mod ring_down;
 mod settings;
 pub mod table_3;
 mod target;
+mod windows;
 
 pub use chapter::{Chapter, Drawing, Finding, Table};
 pub use program::program;

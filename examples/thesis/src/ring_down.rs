@@ -74,3 +74,33 @@ pub(crate) fn velocity_record(values: Vec<f64>) -> Found<Record> {
 pub(crate) fn over_time(values: &[f64], factor: f64) -> Vec<(f64, f64)> {
     values.iter().enumerate().map(|(i, value)| (i as f64 * INTERVAL, factor * value)).collect()
 }
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use fmm_friction::Coulomb;
+
+    /// Free vibration without friction, with linear and quadratic damping (N s²/m²).
+    pub(crate) fn free(quadratic: f64, start: (f64, f64), seconds: f64) -> Trajectory {
+        let [mass, stiffness, _] = printed::MACHINE;
+        let damping = Damping::new(printed::EQUATION_5_5[1], quadratic).unwrap();
+        let machine = Oscillator::new(mass, stiffness).unwrap().with_damping(damping);
+        let scenario = scenario::<Coulomb>(machine, &[0.0], 1.0, start).unwrap();
+        motion::<Coulomb>(&scenario, &Sampling::uniform(INTERVAL, (seconds / INTERVAL) as usize).unwrap()).unwrap()
+    }
+
+    /// Mean and standard deviation.
+    pub(crate) fn statistics(values: &[f64]) -> (f64, f64) {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        (mean, (squares / (values.len() as f64 - 1.0)).sqrt())
+    }
+
+    pub(crate) fn close(found: f64, expected: f64, relative: f64, what: &str) {
+        let error = found / expected - 1.0;
+        assert!(
+            error.abs() <= relative,
+            "{what}: {found} against {expected}, off by {error:.2e}, allowed {relative:.0e}"
+        );
+    }
+}

@@ -202,21 +202,6 @@ impl Experiment {
         self.driven.as_ref().map(|driven| &driven.guess)
     }
 
-    /// Refuses experiments other than a free vibration by position or velocity, which `estimator` needs.
-    pub(crate) fn require_free(&self, estimator: &'static str) -> Result<(), IdentifyError> {
-        if self.driven.is_some() {
-            return Err(IdentifyError::wrong_record(format!(
-                "{estimator} needs a free vibration, but the record is that of a driven one"
-            )));
-        }
-        let quantity = self.record.quantity();
-        if quantity == Quantity::Acceleration {
-            let needed = "a displacement or a velocity";
-            return Err(IdentifyError::wrong_quantity(estimator, needed, quantity));
-        }
-        Ok(())
-    }
-
     /// Offset to begin a fit with, given what the contact loses.
     pub(crate) fn first_offset(&self, dissipation: Dissipation) -> f64 {
         match (&self.driven, self.record.quantity()) {
@@ -392,6 +377,12 @@ impl Experiment {
 
     pub(crate) fn guess(&self) -> &FirstGuess {
         &self.guess
+    }
+
+    /// Standard deviation of the part of the record that no model fits: white noise and the rounding of the converter,
+    /// in the unit of the record.
+    pub(crate) fn white_noise(&self) -> f64 {
+        self.summary.noise.hypot(self.summary.resolution.unwrap_or(0.0) / 12f64.sqrt())
     }
 
     /// The offset, if it is held.

@@ -130,12 +130,4 @@ fn drives_that_do_not_fit_are_refused() {
         matches!(refused, Err(IdentifyError::WrongRecord { ref what }) if what.starts_with("the drive")),
         "{refused:?}"
     );
-    // The driven motion is no decay.
-    let whole = Record::new(0.0, INTERVAL, vec![0.0; SAMPLES], Quantity::Acceleration, "m/s²").unwrap();
-    let experiment = Experiment::driven(&response, Drive::base(&whole).unwrap(), &Preparation::default()).unwrap();
-    let refused = fmm_identify::decrements(&experiment);
-    assert!(
-        matches!(refused, Err(IdentifyError::WrongRecord { ref what }) if what.contains("free vibration")),
-        "{refused:?}"
-    );
 }

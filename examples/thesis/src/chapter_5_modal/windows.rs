@@ -2,11 +2,12 @@
 //! instantaneous.
 
 use fmm_fit::{StraightLine, Weighting};
-use fmm_identify::{Experiment, Offset, Preparation, WindowFit, Windows};
+use fmm_identify::{Experiment, Offset, Preparation};
 
 use super::regressions::table_1_line;
 use super::simulated::{machine, motion, record, rms};
 use crate::printed::{EQUATION_5_5, INSTANTANEOUS_SLOPE, MACHINE, TABLE_1};
+use crate::windows::{WindowFit, Windows};
 use crate::{Chapter, Criterion, Found, Settings, Target};
 
 /// The window of each row of Table 1 that begins at its printed velocity.
@@ -35,7 +36,7 @@ impl Column {
             let motion = motion(machine(quadratic)?, (0.0, velocity), seconds)?;
             let record = record(motion.velocity().values(), 0.0, 0)?;
             let decay = Experiment::ring_down(&record, &Preparation::default().offset(Offset::Fixed(0.0)))?;
-            let windows = Windows::default().with_cycles(cycles).holding_first_sample().fit(&decay)?;
+            let windows = Windows::of_cycles(cycles).through_first_sample().fit(&decay)?;
             Ok(windows.into_iter().next().ok_or("no window")?)
         };
         let fits = TABLE_1.iter().map(|row| fit(1e-3 * row.velocity)).collect::<Found<Vec<_>>>()?;

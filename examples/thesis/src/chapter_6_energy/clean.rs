@@ -1,11 +1,11 @@
 //! The example without noise: Figs 13 to 16, and what a late sample does.
 
 use fmm_friction::Coulomb;
-use fmm_identify::{EnergyMethod, EnergyRate, EnergyRates};
 use fmm_record::Smoothing;
 use fmm_sim::{Engine, Scenario, Thesis};
 use fmm_uq::Observations;
 
+use super::energy_rates::{EnergyMethod, EnergyRate, EnergyRates};
 use super::{Example, SLOWEST, friction};
 use crate::ring_down::{INTERVAL, over_time, velocity_record};
 use crate::target::number;
@@ -70,9 +70,9 @@ fn between(table: &[EnergyRate], velocity: f64) -> Option<f64> {
 /// The exact motions, with the acceleration that their velocity shows.
 fn exact_difference(example: &Example) -> Found<Difference> {
     let position = example.scenario.initial().position;
-    let method = EnergyMethod::new(*example.scenario.oscillator(), position)?.above(SLOWEST)?;
+    let method = EnergyMethod::new(*example.scenario.oscillator(), position, SLOWEST);
     let rates = |motion: &fmm_sim::Trajectory| -> Found<EnergyRates> {
-        Ok(method.rates(&velocity_record(motion.velocity().values().to_vec())?)?)
+        method.rates(&velocity_record(motion.velocity().values().to_vec())?)
     };
     Ok(Difference::of(&rates(&example.contact)?, &rates(&example.without)?))
 }
@@ -188,10 +188,10 @@ impl Tables {
         let [acceleration, position] = self.ahead;
         let late = |values: &[f64], by: usize| values[samples.start + by..samples.end + by].to_vec();
         let velocity = velocity_record(v[samples.clone()].to_vec())?;
-        let method = EnergyMethod::new(*scenario.oscillator(), x[1])?.above(SLOWEST)?;
+        let method = EnergyMethod::new(*scenario.oscillator(), x[1], SLOWEST);
         // Element i of the differences leads to sample i + 1.
         let acceleration = loops[samples.start + acceleration - 1..samples.end + acceleration - 1].to_vec();
-        Ok(method.rates_of_motion(&velocity, &late(x, position), &acceleration)?)
+        method.rates_of_motion(&velocity, &late(x, position), &acceleration)
     }
 }
 

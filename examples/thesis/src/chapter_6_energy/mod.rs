@@ -5,7 +5,10 @@
 //! under five smoothings, with two estimators beside that need no derivative.
 
 mod clean;
+mod energy_rates;
 mod noisy;
+mod turning_points;
+mod weak_form;
 
 use fmm_friction::Coulomb;
 use fmm_sim::{Sampling, Scenario, Trajectory};

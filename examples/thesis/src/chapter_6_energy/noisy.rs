@@ -1,9 +1,11 @@
 //! The example with noise: the energy method under five smoothings, with turning points and weak form beside.
 
-use fmm_identify::{EnergyMethod, EnergyRate, EnergyRates, WeakForm, half_swing_losses};
 use fmm_record::{EndRule, Record, Smoothing};
 use fmm_uq::Observations;
 
+use super::energy_rates::{EnergyMethod, EnergyRate, EnergyRates};
+use super::turning_points::friction_of_half_cycles;
+use super::weak_form::WeakForm;
 use super::{Example, SLOWEST, friction};
 use crate::ring_down::{INTERVAL, over_time, velocity_record, with_noise};
 use crate::{Chapter, Criterion, Found, Settings, Target};
@@ -43,7 +45,7 @@ const SMOOTHED: [Smoothed; 5] = [
     },
 ];
 
-/// The same for the force of one half swing from its turning points, and for that of a record by the weak form.
+/// The same for the force of one half cycle from its turning points, and for that of a record by the weak form.
 const TURNING_POINTS: [f64; 4] = [0.0003, 0.0005, 0.004, 0.040];
 const WEAK_FORM: [f64; 4] = [0.0, 0.0001, 0.0007, 0.006];
 
@@ -54,7 +56,7 @@ const FEW: usize = 200;
 const SHARE: f64 = 0.2;
 
 pub(super) fn add(chapter: &mut Chapter, example: &Example, settings: &Settings<'_>) -> Found<()> {
-    // A sample of the force is one of a thousand in its record; a half swing and a record are fewer.
+    // A sample of the force is one of a thousand in its record; a half cycle and a record are fewer.
     let repetitions = settings.repetitions(1000, 300);
     // Every estimator sees the same records.
     let records = NOISE.map(|noise| -> Found<Vec<Record>> {
@@ -88,9 +90,9 @@ pub(super) fn add(chapter: &mut Chapter, example: &Example, settings: &Settings<
     figure(chapter, example, &records)
 }
 
-fn method(example: &Example, smoothing: Smoothing) -> Found<EnergyMethod> {
+fn method(example: &Example, smoothing: Smoothing) -> EnergyMethod {
     let position = example.scenario.initial().position;
-    Ok(EnergyMethod::new(*example.scenario.oscillator(), position)?.above(SLOWEST)?.smoothed_by(smoothing))
+    EnergyMethod::new(*example.scenario.oscillator(), position, SLOWEST).smoothed_by(smoothing)
 }
 
 fn level(noise: f64) -> String {
@@ -112,7 +114,7 @@ fn pointwise(
     smoothed: &Smoothed,
     records: &[Vec<Record>; 4],
 ) -> Found<Vec<String>> {
-    let method = method(example, smoothed.smoothing)?;
+    let method = method(example, smoothed.smoothing);
     let mut deviations = [0.0; 4];
     let mut means = Vec::new();
     for (level_index, records) in records.iter().enumerate() {
@@ -129,17 +131,14 @@ fn pointwise(
 }
 
 fn turning_points(chapter: &mut Chapter, example: &Example, records: &[Vec<Record>; 4]) -> Found<Vec<String>> {
-    let name = "turning points, mean of six half swings";
+    let name = "turning points, mean of six half cycles";
     let (oscillator, position) = (example.scenario.oscillator(), example.scenario.initial().position);
     let mut deviations = [0.0; 4];
     let mut means = Vec::new();
     for (level_index, records) in records.iter().enumerate() {
         let all: Vec<Vec<f64>> = records
             .iter()
-            .map(|record| {
-                let losses = half_swing_losses(record, oscillator, position, &example.reversals)?;
-                Ok(losses.iter().map(|half_swing| half_swing.friction.value).collect())
-            })
+            .map(|record| friction_of_half_cycles(record, oscillator, position, &example.reversals))
             .collect::<Found<_>>()?;
         means = all.iter().map(|forces| forces.iter().sum::<f64>() / forces.len() as f64).collect();
         // About the truth, so that the one clean record has a deviation too: that of the trapezoidal rule.
@@ -163,15 +162,11 @@ fn turning_points(chapter: &mut Chapter, example: &Example, records: &[Vec<Recor
 
 fn weak_form(chapter: &mut Chapter, example: &Example, records: &[Vec<Record>; 4]) -> Found<Vec<String>> {
     let name = "weak form, of a record, position unknown";
-    let weak = weak(example)?;
-    let mass = example.scenario.oscillator().mass();
+    let weak = WeakForm::new(example.scenario.oscillator());
     let mut deviations = [0.0; 4];
     let mut means = Vec::new();
     for (level_index, records) in records.iter().enumerate() {
-        means = records
-            .iter()
-            .map(|record| Ok(mass * weak.estimate_between(record, &example.reversals, Some(0.0))?.friction.value))
-            .collect::<Found<Vec<f64>>>()?;
+        means = records.iter().map(|record| weak.friction(record, &example.reversals)).collect::<Found<Vec<f64>>>()?;
         let squares = means.iter().map(|force| (force - friction()).powi(2));
         deviations[level_index] = (squares.sum::<f64>() / means.len() as f64).sqrt();
         let (noise, expected) = (NOISE[level_index], WEAK_FORM[level_index]);
@@ -198,13 +193,6 @@ fn weak_form(chapter: &mut Chapter, example: &Example, records: &[Vec<Record>; 4
     Ok(row)
 }
 
-/// The weak form with frequency and damping held, as the energy method has them.
-fn weak(example: &Example) -> Found<WeakForm> {
-    let oscillator = example.scenario.oscillator();
-    let damping = oscillator.damping().linear_coefficient() / oscillator.mass();
-    Ok(WeakForm::default().holding_natural_frequency(oscillator.natural_frequency())?.holding_damping(damping)?)
-}
-
 /// What an offset of the velocity does that is integrated into the position.
 fn offset(chapter: &mut Chapter, example: &Example) -> Found<()> {
     const OFFSET: f64 = 1e-4;
@@ -212,7 +200,7 @@ fn offset(chapter: &mut Chapter, example: &Example) -> Found<()> {
     let oscillator = example.scenario.oscillator();
     let drift = OFFSET * example.rest();
     let force = oscillator.stiffness() * drift;
-    let found = weak(example)?.estimate_between(&shifted, &example.reversals, None)?;
+    let (friction, offset) = WeakForm::new(oscillator).friction_and_offset(&shifted, &example.reversals)?;
     chapter.target(
         Target::new("C12", "drift of k x by rest, offset of 0.1 mm/s", "N", force, Criterion::near(0.27, 5e-3))
             .note("reference to its last digit"),
@@ -223,8 +211,8 @@ fn offset(chapter: &mut Chapter, example: &Example) -> Found<()> {
             "0.1 mm/s drifts x by {:.3} mm until rest, {force:.2} N of spring force. The weak form reads {:.4} mm/s of offset \
              and {:.4} N of friction from the same record.",
             1e3 * drift,
-            1e3 * found.offset.value,
-            oscillator.mass() * found.friction.value
+            1e3 * offset,
+            friction
         ),
         &[],
     );
@@ -233,7 +221,7 @@ fn offset(chapter: &mut Chapter, example: &Example) -> Found<()> {
 
 /// The uncertainty that the record itself tells, against m σ/(√2 h).
 fn law_of_noise(chapter: &mut Chapter, example: &Example, records: &[Record]) -> Found<()> {
-    let method = method(example, Smoothing::None)?;
+    let method = method(example, Smoothing::None);
     let stated: Vec<f64> =
         records.iter().take(FEW).map(|record| Ok(method.rates(record)?.uncertainty())).collect::<Found<Vec<_>>>()?;
     let stated = Observations::new(&stated)?.mean();
@@ -249,11 +237,10 @@ fn law_of_noise(chapter: &mut Chapter, example: &Example, records: &[Record]) ->
 
 fn figure(chapter: &mut Chapter, example: &Example, records: &[Vec<Record>; 4]) -> Found<()> {
     let record = &records[3][0];
-    let raw = method(example, Smoothing::None)?.rates(record)?;
-    let smooth = method(example, SMOOTHED[4].smoothing)?.rates(record)?;
+    let raw = method(example, Smoothing::None).rates(record)?;
+    let smooth = method(example, SMOOTHED[4].smoothing).rates(record)?;
     let oscillator = example.scenario.oscillator();
-    let force =
-        oscillator.mass() * weak(example)?.estimate_between(record, &example.reversals, Some(0.0))?.friction.value;
+    let force = WeakForm::new(oscillator).friction(record, &example.reversals)?;
     let points = |rates: &EnergyRates, of: &dyn Fn(&EnergyRate) -> f64| -> Vec<(f64, f64)> {
         rates.points().iter().map(|point| (1e3 * point.velocity, of(point))).collect()
     };

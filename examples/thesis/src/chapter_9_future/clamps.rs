@@ -2,12 +2,13 @@
 
 use fmm_fit::{StraightLine, Weighting};
 use fmm_friction::{Coulomb, MaxwellSlip};
-use fmm_identify::{Experiment, Offset, Preparation, WindowFit, Windows};
+use fmm_identify::{Experiment, Offset, Preparation};
 use fmm_model::{Damping, Oscillator};
 use fmm_sim::{Engine as _, Exact, Excitation, Sampling, Scenario};
 
 use crate::printed::{EQUATION_5_5, INSTANTANEOUS_SLOPE, MACHINE, TABLE_1};
 use crate::ring_down::{INTERVAL, motion, scenario, velocity_record, with_noise};
+use crate::windows::{WindowFit, Windows};
 use crate::{Chapter, Criterion, Found, Settings, Target};
 use fmm_cli::figure::{Layer, Panel, Role, label};
 
@@ -108,7 +109,7 @@ impl Windowed {
         let mass = f64::from(times) * MACHINE[0];
         let preparation = Preparation::default().offset(Offset::Fixed(0.0)).to(f64::from(length));
         let decay = Experiment::ring_down(&velocity_record(velocity.to_vec())?, &preparation)?;
-        let windows = Windows::default().fit(&decay)?;
+        let windows = Windows::of_cycles(5).fit(&decay)?;
         let speeds: Vec<f64> = windows.iter().map(|window| window.peak_velocity).collect();
         let line = |of: &dyn Fn(&WindowFit) -> (f64, f64)| -> Found<Option<StraightLine>> {
             let (values, u): (Vec<f64>, Vec<f64>) = windows.iter().map(of).unzip();
