@@ -129,13 +129,13 @@ pub fn identify_force(model: &ForceModel, records: &[ForceRecord]) -> Result<For
             estimate.parameter().clone(),
             estimate.value(),
             variance.map(|variance| vec![(Source::Residuals, variance)]),
-            covariance.degrees_of_freedom(),
+            covariance.degrees_of_freedom(index),
             Origin::Fitted(estimate.status()),
             problem.is_of_record(index),
         )
         .at_bound(
             covariance.relaxed(index).filter(|_| at_bound).map(|variance| (spread * variance).sqrt()),
-            covariance.degrees_of_freedom(),
+            covariance.degrees_of_freedom(index),
         )
     });
     let mut findings: Vec<Finding> = findings.collect();
@@ -177,7 +177,10 @@ fn levels_above(problem: &ForceProblem<'_>, fit: &Fit, covariance: &Covariance, 
             .map(|variance| spread * variance);
         let (units, as_level) = naming(problem.records());
         let parameter = units.stated(parameter, as_level);
-        let freedom = covariance.degrees_of_freedom();
+        let mut gradient = vec![0.0; fit.values().len()];
+        gradient[level] = 1.0;
+        gradient[place] = 1.0;
+        let freedom = covariance.degrees_of_freedom_along(&gradient);
         let parts = variance.map(|variance| vec![(Source::Residuals, variance)]);
         Finding::new(parameter, value, parts, freedom, Origin::Derived, false)
     });
@@ -206,7 +209,7 @@ fn covariance(
             period: record.period(),
             columns: &columns,
             weights: &weights,
-            stays: Vec::new(),
+            plateaus: Vec::new(),
         })
         .collect();
     let noise = ResidualNoise::of(fit.residuals(), &series);

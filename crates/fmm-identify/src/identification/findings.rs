@@ -19,7 +19,6 @@ pub(crate) fn findings(
     covariance: &Covariance,
     gain_uncertainty: f64,
 ) -> Vec<Finding> {
-    let freedom = covariance.degrees_of_freedom();
     let count = fit.values().len();
     let mut findings = Vec::new();
     for (index, estimate) in fit.estimates().iter().enumerate() {
@@ -31,6 +30,7 @@ pub(crate) fn findings(
         let parts = variances(covariance, &gradient, &known, false);
         let relaxed = Some(estimate).filter(|estimate| estimate.status().is_at_bound()).and(covariance.relaxed(index));
         let (parameter, origin) = (estimate.parameter().clone(), Origin::Fitted(estimate.status()));
+        let freedom = covariance.degrees_of_freedom(index);
         let finding = Finding::new(parameter, estimate.value(), parts, freedom, origin, index >= table.shared);
         findings.push(finding.at_bound(relaxed.map(f64::sqrt), freedom));
     }
@@ -43,6 +43,7 @@ pub(crate) fn findings(
         let parts = variances(covariance, by_shared, &known, false);
         let relaxed = variances(covariance, by_shared, &known, true);
         let relaxed = relaxed.map(|parts| parts.iter().map(|(_, variance)| variance).sum::<f64>().sqrt());
+        let freedom = covariance.degrees_of_freedom_along(by_shared);
         let finding = Finding::new(parameter, value, parts, freedom, Origin::Derived, false);
         findings.push(finding.at_bound(relaxed, freedom));
     }

@@ -404,7 +404,7 @@ impl Identification {
 
     /// Number of places at which a law may leap: the samples of a half cycle for one that comes to rest within a dead zone,
     /// else one.
-    pub(crate) fn tries(&self) -> f64 {
+    pub(crate) fn leap_positions(&self) -> f64 {
         if self.finding("dead_zone").is_none() {
             return 1.0;
         }
@@ -417,9 +417,9 @@ impl Identification {
         self.covariance.noise_of_residuals()
     }
 
-    /// Number of independent residuals that those of this fit count for (1).
-    pub(crate) fn told(&self) -> f64 {
-        self.covariance.degrees_of_freedom() + self.fitted.fit.rank() as f64
+    /// As how many independent residuals those of this fit count (1).
+    pub(crate) fn effective_count(&self) -> f64 {
+        self.covariance.effective_count()
     }
 
     /// Changes that the parameters of this fit to `problem` can follow, those on a bound included; `None` if the derivatives

@@ -167,7 +167,7 @@ impl Identification {
         let variance = self.covariance().relaxed(index).ok_or_else(no_variance)?;
         let plain = fit.relaxed_covariance(index, index).or_else(|| fit.covariance(index, index));
         let (plain, deviation) = (plain.zip(fit.residual_standard_deviation())).ok_or_else(no_variance)?;
-        let degrees_of_freedom = self.covariance().degrees_of_freedom();
+        let degrees_of_freedom = self.covariance().degrees_of_freedom(index);
         let residuals =
             ResidualVariance::Effective { variance: variance / plain * deviation * deviation, degrees_of_freedom };
         let left = |used: usize| Options::default().with_max_evaluations(MOST_EVALUATIONS.saturating_sub(used));

@@ -240,7 +240,7 @@ fn widen_for_other_laws(
             continue;
         }
         let is_general = candidates[preferred].is_nested_in(&candidates[other]);
-        let told = identifications[preferred].told();
+        let told = identifications[preferred].effective_count();
         let weight =
             judgement.weight(other, further, candidates[preferred].differs_by_damping(&candidates[other]), told);
         // Where the record does not decide, either law is as good as the other.

@@ -106,7 +106,7 @@ impl Judgement {
         let standings = identifications.iter().map(|found| {
             let (misfit, freedom) = found.misfit_beside(best);
             let further = best.fit().rank().saturating_sub(found.fit().rank()).max(1) as f64;
-            let p = (f_tail(misfit / further, further, freedom).unwrap_or(0.0) * best.tries()).min(1.0);
+            let p = (f_tail(misfit / further, further, freedom).unwrap_or(0.0) * best.leap_positions()).min(1.0);
             (misfit, if misfit > 0.0 { p } else { 1.0 })
         });
         let (misfits, p_values): (Vec<f64>, Vec<f64>) = standings.unzip();

@@ -2,14 +2,16 @@
 
 use fmm_frf::Complex64;
 
+use crate::residuals::rules::{HIGHEST_ORDER, PENALTY_OF_COEFFICIENT, RESIDUALS_PER_COEFFICIENT};
+
 /// An autoregressive process that a series looks like.
 ///
 /// ```text
 /// z_i = Σ_j a_j z_{i−j} + e_i,     j = 1 … p:        S(f) = σ_e²/|1 − Σ a_j e^{−2πi f j}|²
 /// ```
 ///
-/// The coefficients are those of Yule and Walker by Levinson's recursion, the order is that of the smallest criterion
-/// of Akaike's kind.
+/// The coefficients are those of Yule and Walker by Levinson's recursion. The order makes n ln σ_e² + 4 p smallest, with
+/// twice the penalty of Akaike's criterion, so that white noise seldom has a coefficient.
 ///
 /// # References
 /// H. Akaike, "Power spectrum estimation through autoregressive model fitting", Ann. Inst. Stat. Math. 21 (1969) 407,
@@ -21,28 +23,21 @@ pub(crate) struct Autoregression {
     innovation: f64,
 }
 
-/// Highest order.
-const HIGHEST: usize = 16;
-/// Values of the series for each coefficient.
-const VALUES_PER_COEFFICIENT: usize = 20;
-/// What a further coefficient must lower n ln σ² by: more than Akaike's 2, so that white noise seldom has any.
-const PENALTY: f64 = 4.0;
-
 impl Autoregression {
-    /// How many autocovariances tell all about a series of `count` values.
+    /// Autocovariances that an autoregression of a series of `count` values needs.
     pub(crate) fn lags(count: usize) -> usize {
-        HIGHEST.min(count / VALUES_PER_COEFFICIENT) + 1
+        HIGHEST_ORDER.min(count / RESIDUALS_PER_COEFFICIENT) + 1
     }
 
-    /// The autoregression of a series of `count` values with these autocovariances, from that of lag 0, the variance,
-    /// on.
+    /// The autoregression of a series of `count` values with these autocovariances, from lag 0, the variance, on.
     pub(crate) fn of(autocovariances: &[f64], count: usize) -> Self {
         let variance = autocovariances.first().copied().unwrap_or(0.0);
         let mut best = Self { coefficients: Vec::new(), innovation: variance };
         if !(variance > 0.0 && variance.is_finite()) {
             return best;
         }
-        let criterion = |innovation: f64, order: usize| count as f64 * innovation.ln() + PENALTY * order as f64;
+        let criterion =
+            |innovation: f64, order: usize| count as f64 * innovation.ln() + PENALTY_OF_COEFFICIENT * order as f64;
         let mut least = criterion(variance, 0);
         let (mut coefficients, mut innovation): (Vec<f64>, f64) = (Vec::new(), variance);
         for order in 1..autocovariances.len() {
@@ -72,7 +67,7 @@ impl Autoregression {
         self.coefficients.len()
     }
 
-    /// S at `frequency`, in cycles a sample: of white noise the variance at every frequency.
+    /// S at `frequency`, in cycles a sample; for white noise the variance at every frequency.
     pub(crate) fn density(&self, frequency: f64) -> f64 {
         let turn = Complex64::cis(-std::f64::consts::TAU * frequency);
         let sum = self.coefficients.iter().rev().fold(Complex64::ZERO, |sum, coefficient| (sum + coefficient) * turn);

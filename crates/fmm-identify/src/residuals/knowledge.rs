@@ -5,7 +5,7 @@ use fmm_fit::Fit;
 use crate::finding::Source;
 use crate::quantities::prior::Prior;
 
-/// Changes of the estimates with what was known beforehand, and its covariance V.
+/// Changes of the estimates with prior knowledge, and its covariance V.
 ///
 /// ```text
 /// K = ∂θ/∂x₀ = σ² (JᵀJ)⁻¹ Eᵀ V⁻¹,     share of the covariance of θ: K V Kᵀ
@@ -35,7 +35,7 @@ impl Knowledge {
         Self { sources: prior.sources().to_vec(), slopes, covariance: prior.covariance().to_vec() }
     }
 
-    /// Whether nothing was known beforehand.
+    /// Nothing was known beforehand.
     pub(crate) fn is_empty(&self) -> bool {
         self.sources.is_empty()
     }

@@ -1,5 +1,5 @@
-//! Noise of the records as the residuals of a fit show it: how it grows with the signal, and how neighbouring samples
-//! share it.
+//! Noise of the records as the residuals of a fit show it: its growth with the signal, and its correlation from sample to
+//! sample.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -8,6 +8,10 @@ use fmm_frf::{Complex64, RealTransform};
 
 use crate::residuals::autoregression::Autoregression;
 use crate::residuals::noise_growth::NoiseGrowth;
+use crate::residuals::rules::{
+    FEWEST_ORDINATES, FEWEST_RESIDUALS, GROUPS_PER_PERIOD, MOST_ROWS, MOST_TAKEN, RESTORATIONS, SIGNIFICANT_DENSITY,
+    SPREAD,
+};
 
 /// The noise of several series of residuals, such as one per record.
 ///
@@ -15,20 +19,19 @@ use crate::residuals::noise_growth::NoiseGrowth;
 /// e_i = σ_i z_i,     z stationary with unit variance and the spectral density S(f):     Σ = D C D,   D = diag(σ_i)
 /// ```
 ///
-/// S is that of an autoregression, whose order Akaike's criterion chooses, times the periodogram over it where that,
-/// averaged over frequencies up to 2.5 times lower and higher, is significantly larger (prewhitening; Andrews and
-/// Monahan). What the parameters of the fit took out of the periodogram P is put back, E[P] = (1 − h) S with h their
-/// share of a line.
+/// S is the density of an autoregression, times the periodogram over it where that, averaged over frequencies up to 2.5
+/// times lower and higher, is significantly larger (prewhitening; Andrews and Monahan). The part of the periodogram P
+/// that the parameters of the fit took is put back: E[P] = (1 − h) S, h the share of a line that they took.
 ///
-/// The errors of a converter whose steps exceed the noise are not stationary: they go on while the machine turns, and
-/// change with every sample while it is fast. There the residuals within a stay count together, and different stays are
-/// independent:
+/// The errors of a converter whose steps exceed the noise are not stationary: they last while the machine turns, and
+/// change with every sample while it is fast. There the values stay within one step over a plateau: the residuals of
+/// one plateau count together, and different plateaus are independent:
 ///
 /// ```text
 /// aᵀΣb = Σ_g (a_gᵀe_g)(b_gᵀe_g)/(1 − h_g)
 /// ```
 ///
-/// over the stays g, h the share of its mean that the parameters took (Liang and Zeger; Bell and McCaffrey).
+/// over the plateaus g, h the share of its mean that the parameters took (Liang and Zeger; Bell and McCaffrey).
 ///
 /// # References
 /// K.-Y. Liang, S. L. Zeger, "Longitudinal data analysis using generalized linear models", Biometrika 73 (1986) 13,
@@ -42,7 +45,7 @@ pub(crate) struct ResidualNoise {
     series: Vec<SeriesNoise>,
 }
 
-/// One series of residuals, and what is known of it.
+/// One series of residuals, with its signal and the columns of the fit.
 pub(crate) struct Series<'a> {
     /// Its rows among all residuals.
     pub(crate) rows: Range<usize>,
@@ -53,9 +56,9 @@ pub(crate) struct Series<'a> {
     /// Columns of the fit at all rows, and the elements (JᵀJ)⁺ by which they count: pairs of columns with their weight.
     pub(crate) columns: &'a [Vec<f64>],
     pub(crate) weights: &'a [f64],
-    /// Rows within the series over which the values stay at one step of the converter, where its steps exceed the
-    /// noise.
-    pub(crate) stays: Vec<Range<usize>>,
+    /// Plateaus: rows within the series over which the values stay within one step of the converter, where its steps
+    /// exceed the noise.
+    pub(crate) plateaus: Vec<Range<usize>>,
 }
 
 #[derive(Debug, Clone)]
@@ -72,38 +75,23 @@ struct SeriesNoise {
     /// Independent ordinates of the periodogram behind each line of the density.
     ordinates: Vec<f64>,
     is_white: bool,
-    /// The residuals of each stay; empty where no steps exceed the noise.
-    stays: Vec<Stay>,
+    /// The residuals of each plateau; empty where no steps exceed the noise.
+    plateaus: Vec<Plateau>,
 }
 
 /// Neighbouring rows with one error of rounding.
 #[derive(Debug, Clone)]
-struct Stay {
+struct Plateau {
     rows: Range<usize>,
-    /// With what the parameters took put back, in the unit of the residuals.
+    /// The part that the parameters took is put back; in the unit of the residuals.
     residuals: Vec<f64>,
 }
 
-/// What the noise of a series makes of a column.
+/// Image of a column under the noise of a series.
 enum Image {
     Spectrum(Vec<Complex64>),
-    Stays(Vec<f64>),
+    Plateaus(Vec<f64>),
 }
-
-/// Frequencies up to this factor lower and higher are averaged,
-const SPREAD: f64 = 2.5;
-/// and no fewer than this many ordinates of the periodogram.
-const FEWEST_ORDINATES: f64 = 12.0;
-/// An average above one by this many standard errors is no chance.
-const SIGNIFICANT: f64 = 2.0;
-/// Steps in which what the parameters took is put back.
-const RESTORATIONS: usize = 3;
-/// Fewer residuals than this are taken as white.
-const FEWEST_RESIDUALS: usize = 32;
-/// Of more rows than this neighbours are taken together,
-const MOST_ROWS: usize = 1 << 17;
-/// but a period keeps this many groups: noise faster than that moves no parameter.
-const GROUPS_PER_PERIOD: f64 = 64.0;
 
 impl ResidualNoise {
     /// The noise that `residuals`, of a fit, show in each of `series`.
@@ -135,8 +123,8 @@ impl ResidualNoise {
         products
     }
 
-    /// Variance of the noise along `direction`, aᵀ Σ a/aᵀa, in the unit of the residuals squared; that of white noise
-    /// for none.
+    /// Variance of the noise along `direction`, aᵀ Σ a/aᵀa, in the unit of the residuals squared; along zero the mean
+    /// variance.
     pub(crate) fn variance_along(&self, direction: &[f64]) -> f64 {
         let square: f64 = direction.iter().map(|a| a * a).sum();
         if square > 0.0 {
@@ -148,17 +136,17 @@ impl ResidualNoise {
         sum / count.max(1) as f64
     }
 
-    /// Whether every series is white and of one variance.
-    pub(crate) fn is_plain(&self) -> bool {
-        self.series.iter().all(|series| series.is_white && series.growth.is_none() && series.stays.is_empty())
+    /// Every series is white and of one variance.
+    pub(crate) fn is_white(&self) -> bool {
+        self.series.iter().all(|series| series.is_white && series.growth.is_none() && series.plateaus.is_empty())
     }
 
-    /// How the noise grows with the signal, if it does in any series.
+    /// Growth of the noise with the signal, in the first series that shows one.
     pub(crate) fn growth(&self) -> Option<NoiseGrowth> {
         self.series.iter().find_map(|series| series.growth)
     }
 
-    /// Independent ordinates of the periodogram, or stays, that the variance rests on along `direction`.
+    /// Independent ordinates of the periodogram, or plateaus, on which the variance along `direction` rests.
     pub(crate) fn ordinates_along(&self, direction: &[f64]) -> f64 {
         let (mut sum, mut weight) = (0.0, 0.0);
         for series in &self.series {
@@ -169,7 +157,7 @@ impl ResidualNoise {
                         weight += line.norm_sqr();
                     }
                 }
-                Image::Stays(parts) => {
+                Image::Plateaus(parts) => {
                     let squares: f64 = parts.iter().map(|part| part * part).sum();
                     sum += parts.iter().map(|part| part.powi(4)).sum::<f64>() / squares.max(f64::MIN_POSITIVE);
                     weight += squares;
@@ -205,7 +193,7 @@ impl SeriesNoise {
             ordinates: vec![f64::INFINITY; transform.lines()],
             transform,
             is_white: true,
-            stays: stays(&residuals[series.rows.clone()], series),
+            plateaus: plateaus(&residuals[series.rows.clone()], series),
         };
         if count >= FEWEST_RESIDUALS && noise.deviations.iter().all(|deviation| *deviation > 0.0) {
             noise.colour(&own, series);
@@ -223,7 +211,7 @@ impl SeriesNoise {
         let length = self.transform.length();
         let cosines: Vec<f64> = (0..length).map(|i| (TAU * i as f64 / length as f64).cos()).collect();
         let mut regression = Autoregression::of(&self.autocovariances(&periodogram, &cosines, count), count);
-        // What the parameters took from a line is a share of the density there, which is known better each time.
+        // The parameters took a share of the density of a line, which is known better after each step.
         for _ in 0..RESTORATIONS {
             self.density = self.densities(&regression);
             periodogram = raw.iter().zip(&taken).zip(&self.density).map(|((p, share), s)| p + share * s).collect();
@@ -235,9 +223,9 @@ impl SeriesNoise {
         for (p, s) in periodogram.iter().zip(&self.density) {
             sums.push(sums[sums.len() - 1] + p / s);
         }
-        let mut told = vec![0.0];
+        let mut known = vec![0.0];
         for share in &taken {
-            told.push(told[told.len() - 1] + (1.0 - share).max(0.0));
+            known.push(known[known.len() - 1] + (1.0 - share).max(0.0));
         }
         let per_line = count as f64 / self.transform.length() as f64;
         let fewest = FEWEST_ORDINATES / per_line;
@@ -246,9 +234,9 @@ impl SeriesNoise {
             let line = k as f64;
             let low = (line / SPREAD).min(line - 0.5 * fewest).max(0.0) as usize;
             let high = (SPREAD * line).max(low as f64 + fewest).ceil().min(lines as f64) as usize;
-            let ordinates = ((told[high] - told[low]) * per_line).max(1.0);
+            let ordinates = ((known[high] - known[low]) * per_line).max(1.0);
             let average = (sums[high] - sums[low]) / (high - low).max(1) as f64;
-            if average.ln() > SIGNIFICANT / ordinates.sqrt() {
+            if average.ln() > SIGNIFICANT_DENSITY / ordinates.sqrt() {
                 self.density[k] *= average;
                 self.ordinates[k] = ordinates;
                 is_flat = false;
@@ -307,13 +295,14 @@ impl SeriesNoise {
         spectrum
     }
 
-    /// What the noise of the series makes of a `column` over all residuals: the spectrum of D a, or its part in every
-    /// stay.
+    /// Image of a `column` over all residuals: the spectrum of D a, or its part in every plateau.
     fn image(&self, column: &[f64]) -> Image {
         let column = &column[self.rows.clone()];
-        if !self.stays.is_empty() {
-            let part = |stay: &Stay| column[stay.rows.clone()].iter().zip(&stay.residuals).map(|(a, r)| a * r).sum();
-            return Image::Stays(self.stays.iter().map(part).collect());
+        if !self.plateaus.is_empty() {
+            let part = |plateau: &Plateau| {
+                column[plateau.rows.clone()].iter().zip(&plateau.residuals).map(|(a, r)| a * r).sum()
+            };
+            return Image::Plateaus(self.plateaus.iter().map(part).collect());
         }
         let mut values = gathered(column, self.group);
         values.iter_mut().zip(&self.deviations).for_each(|(a, deviation)| *a *= deviation);
@@ -333,33 +322,31 @@ impl SeriesNoise {
                 });
                 terms.sum::<f64>() / length as f64
             }
-            (Image::Stays(a), Image::Stays(b)) => a.iter().zip(b).map(|(a, b)| a * b).sum(),
+            (Image::Plateaus(a), Image::Plateaus(b)) => a.iter().zip(b).map(|(a, b)| a * b).sum(),
             // One series makes images of one kind.
             _ => 0.0,
         }
     }
 }
 
-/// The stays of `series`, with its own `residuals` and what the parameters took of the mean of each put back.
-fn stays(residuals: &[f64], series: &Series<'_>) -> Vec<Stay> {
-    /// A mean of which the parameters took more than this (1) says nothing of its error.
-    const MOST: f64 = 0.8;
+/// The plateaus of `series` with its own `residuals`; the share of each mean that the parameters took is put back.
+fn plateaus(residuals: &[f64], series: &Series<'_>) -> Vec<Plateau> {
     let own = |column: &Vec<f64>, rows: &Range<usize>| -> f64 {
         column[series.rows.start + rows.start..series.rows.start + rows.end].iter().sum()
     };
-    let stay = |rows: &Range<usize>| {
+    let plateau = |rows: &Range<usize>| {
         let sums: Vec<f64> = series.columns.iter().map(|column| own(column, rows)).collect();
         let mut share = 0.0;
         for (a, weights) in sums.iter().zip(series.weights.chunks(sums.len().max(1))) {
             share += a * weights.iter().zip(&sums).map(|(weight, b)| weight * b).sum::<f64>();
         }
-        let left = 1.0 - (share / rows.len() as f64).clamp(0.0, MOST);
-        Stay { rows: rows.clone(), residuals: residuals[rows.clone()].iter().map(|r| r / left.sqrt()).collect() }
+        let left = 1.0 - (share / rows.len() as f64).clamp(0.0, MOST_TAKEN);
+        Plateau { rows: rows.clone(), residuals: residuals[rows.clone()].iter().map(|r| r / left.sqrt()).collect() }
     };
-    series.stays.iter().map(stay).collect()
+    series.plateaus.iter().map(plateau).collect()
 }
 
-/// Σ/√m of every `group` of m neighbouring values: independent ones keep their variance, and slow ones their sum of
+/// Σ/√m of every `group` of m neighbouring values: independent values keep their variance, slow ones their sum of
 /// products.
 fn gathered(values: &[f64], group: usize) -> Vec<f64> {
     if group == 1 {
@@ -396,8 +383,8 @@ mod tests {
         (0..count).map(|_| (0..12).map(|_| uniform()).sum::<f64>() - 6.0).collect()
     }
 
-    fn series(rows: usize, stays: Vec<Range<usize>>) -> Series<'static> {
-        Series { rows: 0..rows, signal: None, period: 100.0, columns: &[], weights: &[], stays }
+    fn series(rows: usize, plateaus: Vec<Range<usize>>) -> Series<'static> {
+        Series { rows: 0..rows, signal: None, period: 100.0, columns: &[], weights: &[], plateaus }
     }
 
     fn slow(count: usize) -> Vec<f64> {
@@ -408,7 +395,7 @@ mod tests {
     fn white_noise_has_its_variance_along_every_direction() {
         let residuals = normals(1, 4000);
         let noise = ResidualNoise::of(&residuals, &[series(4000, Vec::new())]);
-        assert!(noise.is_plain());
+        assert!(noise.is_white());
         let variance = noise.variance_along(&slow(4000));
         assert!((variance - 1.0).abs() < 0.1, "{variance}");
     }
@@ -425,7 +412,7 @@ mod tests {
             })
             .collect();
         let noise = ResidualNoise::of(&residuals, &[series(8000, Vec::new())]);
-        assert!(!noise.is_plain());
+        assert!(!noise.is_white());
         let variance = noise.variance_along(&slow(8000));
         assert!((variance / 100.0 - 1.0).abs() < 0.25, "{variance}");
     }
@@ -444,22 +431,22 @@ mod tests {
 
     /// One error for each ten rows: along a constant its variance is ten times that of a row.
     #[test]
-    fn what_stays_counts_together() {
+    fn plateaus_count_together() {
         let errors = normals(4, 400);
         let residuals: Vec<f64> = errors.iter().flat_map(|error| [*error; 10]).collect();
-        let stays = (0..400).map(|stay| 10 * stay..10 * stay + 10).collect();
-        let noise = ResidualNoise::of(&residuals, &[series(4000, stays)]);
+        let plateaus = (0..400).map(|plateau| 10 * plateau..10 * plateau + 10).collect();
+        let noise = ResidualNoise::of(&residuals, &[series(4000, plateaus)]);
         let square = errors.iter().map(|e| e * e).sum::<f64>() / 400.0;
         let constant = vec![1.0; 4000];
         let variance = noise.variance_along(&constant);
         assert!((variance - 10.0 * square).abs() < 1e-9 * variance, "{variance}");
-        assert!(!noise.is_plain());
+        assert!(!noise.is_white());
         assert!((50.0..400.0).contains(&noise.ordinates_along(&constant)));
     }
 
-    /// A column that takes the whole mean of a stay hides its error, which is put back as far as can be told.
+    /// A column that takes the whole mean of a plateau hides its error, which is put back in part.
     #[test]
-    fn what_parameters_took_of_a_stay_is_put_back() {
+    fn the_share_that_parameters_took_is_put_back() {
         let residuals = [0.6, 0.6, 0.6, 0.6, 1.0, 1.0, 1.0, 1.0];
         let columns = [vec![1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
         let series = Series {
@@ -468,7 +455,7 @@ mod tests {
             period: 100.0,
             columns: &columns,
             weights: &[0.16],
-            stays: vec![0..4, 4..8],
+            plateaus: vec![0..4, 4..8],
         };
         let noise = ResidualNoise::of(&residuals, &[series]);
         // h = 0.16 · 4²/4 = 0.64: the first error of 0.6 stands for 1.

@@ -2,6 +2,8 @@
 
 use fmm_fit::{LinearRegression, Weighting, autocorrelation_time};
 
+use crate::residuals::rules::{EVIDENCE_OF_GROWTH, LEAST_FLOOR, SCORING_STEPS};
+
 /// A noise whose variance grows with the signal.
 ///
 /// ```text
@@ -16,11 +18,6 @@ pub(crate) struct NoiseGrowth {
     /// g_e, the part that follows its amplitude (1).
     pub(crate) by_amplitude: f64,
 }
-
-/// How much a growth must raise the logarithm of the likelihood: chance does so by 6 for one record in a thousand.
-const EVIDENCE: f64 = 6.0;
-/// Steps of the search for the variances.
-const STEPS: usize = 4;
 
 impl NoiseGrowth {
     /// The growth that `residuals` beside `signal`, with a `period` in samples, show; `None` if they show none.
@@ -37,8 +34,8 @@ impl NoiseGrowth {
         }
         let instantaneous: Vec<f64> = signal.iter().map(|y| y * y).collect();
         let by_amplitude = squared_amplitudes(signal, period);
-        // Neighbours that share their noise are no witnesses of their own.
-        let evidence = EVIDENCE * autocorrelation_time(residuals).unwrap_or(1.0);
+        // Neighbours that share their noise count once.
+        let evidence = EVIDENCE_OF_GROWTH * autocorrelation_time(residuals).unwrap_or(1.0);
         let none = likelihood(&squares, |_| constant);
         let explained = explained(&squares, &instantaneous, &by_amplitude, constant);
         // Most records show no growth. The logarithm rises by a quarter of what a small growth explains, and one that
@@ -90,9 +87,9 @@ fn squared_amplitudes(signal: &[f64], period: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Sum of squares of the relative variances r²/σ² that a straight line in the first growing part explains, one in the
-/// second, and a plane in both; half of it is the statistic of Breusch and Pagan. Where no line grows there is nothing
-/// to explain.
+/// Sums of squares of the relative variances r²/σ² explained by a straight line in the first growing part, by one in the
+/// second, and by a plane in both. Half of such a sum is the statistic of Breusch and Pagan; a line that falls explains
+/// nothing.
 ///
 /// # References
 /// T. S. Breusch, A. R. Pagan, "A simple test for heteroscedasticity and random coefficient variation", Econometrica 47
@@ -140,11 +137,10 @@ fn variances(
     columns.extend(growing.iter().zip(active).filter(|(_, is_active)| *is_active).map(|(column, _)| *column));
     let mut deviations = vec![constant; squares.len()];
     let mut found = [constant, 0.0, 0.0];
-    for _ in 0..STEPS {
+    for _ in 0..SCORING_STEPS {
         let line = LinearRegression::fit(&columns, squares, Weighting::Absolute(&deviations)).ok()?;
         let mut coefficients = line.coefficients().iter();
-        // A floor of a ten-thousandth of the scatter keeps variances positive.
-        found[0] = coefficients.next()?.max(1e-4 * constant);
+        found[0] = coefficients.next()?.max(LEAST_FLOOR * constant);
         for (value, is_active) in found[1..].iter_mut().zip(active) {
             *value = if is_active { *coefficients.next()? } else { 0.0 };
         }

@@ -1,25 +1,26 @@
 //! Structure of the residuals, and the covariance of the estimates with or without it.
 
-use fmm_fit::{EvaluationError, Fit, autocorrelation_time};
+use std::ops::Range;
 
-use crate::experiment::Experiment;
-use crate::experiment::scaled;
-use crate::finding::Source;
+use fmm_fit::{CorrelatedCovariance, EvaluationError, Fit, Residuals, autocorrelation_time};
+
+use crate::experiment::{Experiment, scaled};
 use crate::linear_algebra::inverse_of_products;
 use crate::problem::Problem;
-use crate::residuals::correlation::are_correlated;
-use crate::residuals::knowledge::Knowledge;
 use crate::residuals::noise::{ResidualNoise, Series};
+use crate::residuals::rules::{
+    CORRELATION_TIME, EXCESS, FEWEST_WINDOWS, LEAST_DEGREES_OF_FREEDOM, ROUNDING_OF_RECORD, TIMES_A_WINDOW,
+};
 use crate::warning::Warning;
 
-/// What the residuals of a fit look like beside the noise of the records.
+/// Residuals of a fit beside the noise of the records.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ResidualStructure {
     /// Root mean square of the residuals, in the unit of the records.
     pub(crate) residual: f64,
-    /// Standard deviation of what cannot be fitted: white noise and rounding, in the same unit.
+    /// Standard deviation of the part that no model fits, in the same unit: white noise and rounding.
     pub(crate) noise: f64,
-    /// What rounding of doubles alone makes of a record without noise, in the same unit.
+    /// Rounding of doubles in a record without noise, in the same unit.
     rounding: f64,
     /// τ (samples).
     pub(crate) autocorrelation_time: f64,
@@ -27,43 +28,41 @@ pub(crate) struct ResidualStructure {
     has_lines: bool,
 }
 
-/// Above this ratio of residual to noise, and with neighbours that tell each other's value, a law misses something.
-const EXCESS: f64 = 1.5;
-
 impl ResidualStructure {
     pub(crate) fn of(fit: &Fit, decays: &[Experiment]) -> Self {
-        let rounding =
-            scaled(decays).map(|(decay, weight)| 1e-9 * weight * decay.summary().amplitudes.0).fold(0.0, f64::max);
+        let rounding = scaled(decays)
+            .map(|(decay, weight)| ROUNDING_OF_RECORD * weight * decay.summary().amplitudes.0)
+            .fold(0.0, f64::max);
         // A converter step counts as the noise of its rounding.
         let noise = scaled(decays).map(|(decay, weight)| weight * decay.white_noise()).fold(rounding, f64::max);
         let has_lines = decays.iter().any(|decay| decay.lines().is_some());
         Self { has_lines, ..Self::beside(fit, noise, rounding) }
     }
 
-    /// That of a fit to series of which the `noise` and the `rounding` are known, in the unit of the residuals.
+    /// The structure of a fit to series with this `noise` and `rounding`, in the unit of the residuals.
     pub(crate) fn beside(fit: &Fit, noise: f64, rounding: f64) -> Self {
         let residual = (fit.sum_of_squares() / fit.residuals().len() as f64).sqrt();
         let autocorrelation_time = autocorrelation_time(fit.residuals()).unwrap_or(1.0);
         Self { residual, noise: noise.max(rounding), rounding, autocorrelation_time, has_lines: false }
     }
 
-    /// Whether there is more in the residuals than the rounding of doubles.
+    /// More is left than the rounding of doubles.
     pub(crate) fn is_noisy(&self) -> bool {
         self.residual > self.rounding
     }
 
-    /// Whether neighbouring residuals tell each other's value: the law misses something, or the noise is not white.
+    /// Neighbouring residuals are alike: the law misses something, or the noise is not white.
     pub(crate) fn is_correlated(&self) -> bool {
         self.is_noisy() && are_correlated(self.autocorrelation_time)
     }
 
-    /// Whether the law misses something that the record shows.
+    /// The law misses something that the record shows.
     pub(crate) fn is_structured(&self) -> bool {
         self.is_excessive() && (self.is_correlated() || self.has_lines)
     }
 
-    /// What a noise that is not white has to tell, for the largest `inflation` of a standard uncertainty; nothing where
-    /// the law misses something or the noise is white.
+    /// Warning about noise that is not white, for the largest `inflation` of a standard uncertainty; `None` where the
+    /// law misses something or the noise is white.
     pub(crate) fn coloured_noise(&self, inflation: f64) -> Option<Warning> {
         let is_coloured = self.is_excessive() != self.is_correlated();
         let ratio = self.residual / self.noise;
@@ -80,70 +79,71 @@ impl ResidualStructure {
     }
 }
 
+/// Residuals with this autocorrelation time (samples) are not independent.
+pub(crate) fn are_correlated(autocorrelation_time: f64) -> bool {
+    autocorrelation_time > CORRELATION_TIME
+}
+
+/// Covariance by the sums of windows, as long as residuals of this autocorrelation time (samples) need and the shortest
+/// of `series` allows; `None` if that is too short for any.
+pub(crate) fn correlated_covariance(
+    problem: &impl Residuals,
+    fit: &Fit,
+    autocorrelation_time: f64,
+    series: &[Range<usize>],
+) -> Result<Option<CorrelatedCovariance>, EvaluationError> {
+    let longest = series.iter().map(Range::len).min().unwrap_or(0) / FEWEST_WINDOWS;
+    let span = ((TIMES_A_WINDOW * autocorrelation_time) as usize).min(longest).max(1);
+    CorrelatedCovariance::of(problem, fit, span, series)
+}
+
 /// Covariance of the estimates, for the noise that the residuals show.
 ///
 /// ```text
-/// V = (JᵀJ)⁻¹ JᵀΣJ (JᵀJ)⁻¹
+/// V = U M U,     U = (JᵀJ)⁻¹,   M = JᵀΣJ                                                                      (1)
+/// ν_i = min(n/κ_i, 2 N_i) − rank,     κ_i = V_ii/(s² U_ii)                                                     (2)
 /// ```
 ///
-/// Where the noise is white and of one variance this is that of the [`Fit`]. A parameter that ended on its bound counts
-/// as free to leave it, so that the uncertainty of the others includes what it may take from them.
+/// For white noise of one variance (1) is the covariance of the [`Fit`], and ν is n less the rank. Otherwise each
+/// estimate has degrees of freedom of its own: n/κ independent residuals have its variance, and the variance of the
+/// noise along its influence, row i of U Jᵀ, rests on N_i ordinates of the periodogram, each with two degrees of
+/// freedom. Neither (1) nor (2) depends on the units of records and parameters.
+///
+/// A parameter that ended on its bound counts as free to leave it, so that the uncertainty of the others includes what
+/// it may take from them.
 #[derive(Debug, Clone)]
 pub(crate) struct Covariance {
     count: usize,
     elements: Vec<Option<f64>>,
-    /// Whether the fit knows the parameter: determined, and not on a bound.
+    /// The fit knows the parameter: it is determined, and not on a bound.
     is_inside: Vec<bool>,
-    degrees_of_freedom: f64,
+    /// ν of each estimate (1).
+    degrees_of_freedom: Vec<f64>,
+    /// Independent residuals with the variances of the estimates, on average over these (1).
+    effective_count: f64,
     inflation: f64,
     noise: ResidualNoise,
-    is_white: bool,
-    knowledge: Knowledge,
 }
 
 impl Covariance {
     pub(crate) fn of(problem: &Problem<'_>, fit: &Fit, structure: &ResidualStructure) -> Result<Self, EvaluationError> {
         let columns = problem.columns(fit.values(), &Self::known(fit))?;
         let noise = Self::noise(problem, fit, structure, &columns, &inverse_of_products(&columns));
-        Ok(Self::of_noise(fit, structure, &columns, noise).with_knowledge(problem, fit))
-    }
-
-    /// The same with what was known before the fit: the elements hold what the residuals of the records make of them,
-    /// and the share of that knowledge.
-    fn with_knowledge(mut self, problem: &Problem<'_>, fit: &Fit) -> Self {
-        let variance = fit.residual_standard_deviation().map_or(0.0, |s| s * s).max(f64::MIN_POSITIVE);
-        let unit = |i: usize, j: usize| Self::plain(fit, i, j).map_or(0.0, |covariance| covariance / variance);
-        let knowledge = Knowledge::of(problem.prior(), problem.noise(), fit, unit);
-        if !knowledge.is_empty() {
-            // White residuals of the knowledge are among those of the fit; in the noise of the records there are none.
-            let counted = if self.is_white { variance / problem.noise().powi(2) } else { 0.0 };
-            for (at, element) in self.elements.iter_mut().enumerate() {
-                let share = knowledge.pair(at / self.count, at % self.count);
-                *element = element.map(|element| element + share * (1.0 - counted));
-            }
-        }
-        self.knowledge = knowledge;
-        self
-    }
-
-    /// Share of what was known before the fit in the variance of what has this `gradient` over the first estimates, by
-    /// source.
-    pub(crate) fn of_knowledge(&self, gradient: &[f64]) -> Vec<(Source, f64)> {
-        self.knowledge.parts(gradient)
+        Ok(Self::of_noise(fit, structure, &columns, noise))
     }
 
     /// The parameters of a fit that have a variance.
     pub(crate) fn known(fit: &Fit) -> Vec<usize> {
-        let has_variance = |i: &usize| Self::plain(fit, *i, *i).is_some();
+        let has_variance = |i: &usize| Self::of_white_noise(fit, *i, *i).is_some();
         (0..fit.values().len()).filter(has_variance).collect()
     }
 
-    fn plain(fit: &Fit, i: usize, j: usize) -> Option<f64> {
+    fn of_white_noise(fit: &Fit, i: usize, j: usize) -> Option<f64> {
         fit.relaxed_covariance(i, j).or_else(|| fit.covariance(i, j))
     }
 
-    /// That of a `fit` whose residuals show this `noise`; `columns` are the derivatives by the [`known`](Self::known)
-    /// parameters.
+    /// The covariance of a `fit` whose residuals show this `noise`; `columns` are the derivatives by the
+    /// [`known`](Self::known) parameters.
     pub(crate) fn of_noise(
         fit: &Fit,
         structure: &ResidualStructure,
@@ -151,57 +151,51 @@ impl Covariance {
         noise: ResidualNoise,
     ) -> Self {
         let count = fit.values().len();
-        let plain = |at: usize| Self::plain(fit, at / count, at % count);
-        let mut elements: Vec<Option<f64>> = (0..count * count).map(plain).collect();
-        let known = Self::known(fit);
-        let variance = fit.residual_standard_deviation().map_or(0.0, |s| s * s);
-        let scale = 1.0 / variance.max(f64::MIN_POSITIVE);
-        let pairs = known.iter().flat_map(|i| known.iter().map(move |j| i * count + j));
-        let unit: Vec<f64> = pairs.map(|at| elements[at].unwrap_or(0.0) * scale).collect();
         let independent = fit.degrees_of_freedom() as f64;
-        let (mut degrees_of_freedom, mut inflation) = (independent, 1.0_f64);
-        let mut is_white = true;
-        if structure.is_noisy() && !noise.is_plain() && !known.is_empty() {
-            is_white = false;
-            let order = known.len();
-            let middle = noise.products(columns);
-            let element = |matrix: &[f64], i: usize, j: usize| matrix[i * order + j];
-            // A parameter's influence on the residuals of one that holds all others apart from what they can take over.
-            let mut sum = 0.0;
-            for (a, &i) in known.iter().enumerate() {
-                for (b, &j) in known.iter().enumerate() {
-                    let mut covariance = 0.0;
-                    for k in 0..order {
-                        for l in 0..order {
-                            covariance += element(&unit, a, k) * element(&middle, k, l) * element(&unit, l, b);
-                        }
-                    }
-                    if a == b {
-                        let ratio = covariance / elements[i * count + j].unwrap_or(f64::INFINITY);
-                        inflation = inflation.max(ratio.sqrt());
-                        sum += ratio;
-                    }
-                    elements[i * count + j] = Some(covariance);
-                }
-            }
-            // So many residuals tell no more than one.
-            let alike = (sum / order as f64).max(1.0);
-            let influence: Vec<f64> =
-                (0..columns[0].len()).map(|row| columns.iter().map(|column| column[row]).sum()).collect();
-            let told = (fit.residuals().len() as f64 / alike).min(2.0 * noise.ordinates_along(&influence));
-            degrees_of_freedom = (told - fit.rank() as f64).max(1.5).min(independent);
-        }
-        let is_inside = fit.estimates().iter().map(|estimate| estimate.standard_uncertainty().is_some()).collect();
-        Self {
+        let mut covariance = Self {
             count,
-            elements,
-            is_inside,
-            degrees_of_freedom,
-            inflation,
+            elements: (0..count * count).map(|at| Self::of_white_noise(fit, at / count, at % count)).collect(),
+            is_inside: fit.estimates().iter().map(|estimate| estimate.standard_uncertainty().is_some()).collect(),
+            degrees_of_freedom: vec![independent; count],
+            effective_count: independent + fit.rank() as f64,
+            inflation: 1.0,
             noise,
-            is_white,
-            knowledge: Knowledge::default(),
+        };
+        let known = Self::known(fit);
+        if structure.is_noisy() && !covariance.noise.is_white() && !known.is_empty() {
+            covariance.take_noise(fit, &known, columns);
         }
+        covariance
+    }
+
+    /// Puts the noise of the residuals in the place of white noise, by (1) and (2).
+    fn take_noise(&mut self, fit: &Fit, known: &[usize], columns: &[Vec<f64>]) {
+        let (order, rank) = (known.len(), fit.rank() as f64);
+        let variance = fit.residual_standard_deviation().map_or(0.0, |s| s * s).max(f64::MIN_POSITIVE);
+        let pairs = known.iter().flat_map(|i| known.iter().map(move |j| (*i, *j)));
+        let unit: Vec<f64> =
+            pairs.clone().map(|(i, j)| self.elements[i * self.count + j].unwrap_or(0.0) / variance).collect();
+        let sandwich = product(&product(&unit, &self.noise.products(columns), order), &unit, order);
+        let mut counts = Vec::with_capacity(order);
+        for (place, &i) in known.iter().enumerate() {
+            let white = self.elements[i * (self.count + 1)].unwrap_or(f64::INFINITY);
+            let ratio = sandwich[place * (order + 1)] / white;
+            let count = self.effective_count_of(fit, ratio, &influence(&unit[place * order..][..order], columns));
+            self.degrees_of_freedom[i] =
+                (count - rank).max(LEAST_DEGREES_OF_FREEDOM).min(fit.degrees_of_freedom() as f64);
+            self.inflation = self.inflation.max(ratio.sqrt());
+            counts.push(self.degrees_of_freedom[i] + rank);
+        }
+        self.effective_count = order as f64 / counts.iter().map(|count| count.recip()).sum::<f64>();
+        for ((i, j), element) in pairs.zip(sandwich) {
+            self.elements[i * self.count + j] = Some(element);
+        }
+    }
+
+    /// Independent residuals that an estimate rests on, whose variance is `ratio` times that by white noise.
+    fn effective_count_of(&self, fit: &Fit, ratio: f64, influence: &[f64]) -> f64 {
+        let by_variance = fit.residuals().len() as f64 / ratio.max(1.0);
+        by_variance.min(2.0 * self.noise.ordinates_along(influence))
     }
 
     fn noise(
@@ -211,25 +205,23 @@ impl Covariance {
         columns: &[Vec<f64>],
         weights: &[f64],
     ) -> ResidualNoise {
-        let signals: Vec<Vec<f64>> =
-            (0..problem.experiments().len()).map(|record| problem.signal(record, fit)).collect();
+        let signals: Vec<Vec<f64>> = (0..problem.decays().len()).map(|record| problem.signal(record, fit)).collect();
         let series: Vec<Series<'_>> = problem
             .row_ranges()
             .enumerate()
             .map(|(record, rows)| Series {
                 rows,
                 signal: structure.is_noisy().then_some(signals[record].as_slice()),
-                period: problem.experiments()[record].record().rate()
-                    / problem.experiments()[record].guess().frequency(),
+                period: problem.decays()[record].record().rate() / problem.decays()[record].guess().frequency(),
                 columns,
                 weights,
-                stays: problem.experiments()[record].stays(),
+                plateaus: problem.decays()[record].stays(),
             })
             .collect();
         ResidualNoise::of(fit.residuals(), &series)
     }
 
-    /// Covariance of parameters `i` and `j`; `None` where the record does not determine them, or for those on a bound.
+    /// Covariance of parameters `i` and `j`; `None` for those that the record does not determine, or on a bound.
     pub(crate) fn get(&self, i: usize, j: usize) -> Option<f64> {
         if self.is_inside[i] && self.is_inside[j] { self.elements[i * self.count + j] } else { None }
     }
@@ -244,9 +236,27 @@ impl Covariance {
         self.elements[i * self.count + j]
     }
 
-    /// Degrees of freedom of the covariance.
-    pub(crate) fn degrees_of_freedom(&self) -> f64 {
-        self.degrees_of_freedom
+    /// ν of the estimate at place `i` (1).
+    pub(crate) fn degrees_of_freedom(&self, i: usize) -> f64 {
+        self.degrees_of_freedom[i]
+    }
+
+    /// ν of a quantity with this `gradient` by the parameters (1): the harmonic mean over the estimates that it follows
+    /// from, each weighted by its part of the variance.
+    pub(crate) fn degrees_of_freedom_along(&self, gradient: &[f64]) -> f64 {
+        let part = |(i, slope): (usize, &f64)| Some((self.degrees_of_freedom[i], slope * slope * self.relaxed(i)?));
+        let parts = || gradient.iter().enumerate().filter_map(part).filter(|(_, part)| *part > 0.0);
+        let Some((first, _)) = parts().next() else { return f64::INFINITY };
+        if parts().all(|(freedom, _)| freedom == first) {
+            return first;
+        }
+        let whole: f64 = parts().map(|(_, part)| part).sum();
+        parts().map(|(freedom, part)| part / whole / freedom).sum::<f64>().recip()
+    }
+
+    /// Independent residuals with the variances of the estimates, as the harmonic mean over these (1).
+    pub(crate) fn effective_count(&self) -> f64 {
+        self.effective_count
     }
 
     /// Largest ratio of an uncertainty to that of independent residuals.
@@ -258,6 +268,21 @@ impl Covariance {
     pub(crate) fn noise_of_residuals(&self) -> &ResidualNoise {
         &self.noise
     }
+}
+
+/// Product of two square matrices of this `order`, row by row.
+fn product(a: &[f64], b: &[f64], order: usize) -> Vec<f64> {
+    let element = |at: usize| (0..order).map(|k| a[at / order * order + k] * b[k * order + at % order]).sum();
+    (0..order * order).map(element).collect()
+}
+
+/// Row of U Jᵀ: the change of an estimate by each residual, from its row of U.
+fn influence(row: &[f64], columns: &[Vec<f64>]) -> Vec<f64> {
+    let mut influence = vec![0.0; columns[0].len()];
+    for (weight, column) in row.iter().zip(columns) {
+        influence.iter_mut().zip(column).for_each(|(sum, derivative)| *sum += weight * derivative);
+    }
+    influence
 }
 
 #[cfg(test)]

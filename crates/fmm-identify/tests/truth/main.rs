@@ -8,3 +8,4 @@ mod minima;
 mod profiles;
 mod records;
 mod recovery;
+mod units;
