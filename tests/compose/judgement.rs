@@ -52,7 +52,7 @@ fn friction_that_falls_is_seen() {
     assert!(left.iter().any(|law| law.starts_with("stribeck")), "{comparison}");
     let preferred = comparison.preferred();
     assert!(holds(preferred, "sliding_mu", 0.06) && holds(preferred, "static_mu", 0.12), "{comparison}");
-    assert!(comparison.signs().iter().any(fmm_identify::Sign::is_plain));
+    assert!(comparison.score_tests().iter().any(fmm_identify::ScoreTest::is_significant));
 }
 
 /// The same friction in five times the noise: nothing is decided, and laws that fall are named.

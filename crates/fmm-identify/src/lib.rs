@@ -134,8 +134,8 @@ pub use force::{
 };
 pub use identification::{FittedMotion, Identification, Profile, Profiles, identify, identify_observed, identify_with};
 pub use judgement::{
-    Addition, Comparison, FrictionOverLoad, LoadVerdict, NestedTest, Search, Sign, compare, compare_observed, search,
-    search_observed,
+    Comparison, Extension, FrictionOverLoad, LoadVerdict, NestedTest, ScoreTest, Search, compare, compare_observed,
+    search, search_observed,
 };
 pub use machine::{Known, Machine, Scale, Terms};
 #[cfg(feature = "sampler")]

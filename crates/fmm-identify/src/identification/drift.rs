@@ -8,24 +8,17 @@ use crate::experiment::Experiment;
 use crate::experiment::nuisance::{DRIFT, Nuisance};
 use crate::identification::Identification;
 use crate::problem::Problem;
+use crate::residuals::rules::{BETWEEN_HARMONICS, CHANCE_OF_DRIFT, NEAR_NOISE};
 
-/// The chance that noise alone looks like a drift.
-const CHANCE: f64 = 1e-3;
-/// Residuals below this many times the noise are near it: the parameters of the motion follow the drift by a little as
-/// well.
-const NEAR: f64 = 2.0;
-/// Frequencies between the harmonics of the motion, in natural frequencies, where the residuals show their noise.
-const BETWEEN: [f64; 6] = [1.5, 2.5, 3.5, 4.5, 5.5, 6.5];
-
-/// The `decays` with a slow polynomial to be fitted beside the motion of each whose residuals, those of `found`, hold
-/// more of it than of vibrations just above the motion; `None` if no record shows any.
+/// The experiments with a slow polynomial beside the motion of each whose residuals, those of `found`, hold more of the
+/// polynomial than of vibrations just above the motion; `None` if no record shows a drift.
 ///
 /// ```text
 /// F = Σ (qᵀr)²/3 : Σ (cᵀr)²/12,     q polynomials of degree 1 to 3, c cosines and sines at 1.5, 2.5 … 6.5 f₀
 /// ```
 ///
-/// q and c are of unit length and without what the parameters of the fit can follow. Noise, white or remembering for a
-/// few samples, has as much of either.
+/// q and c are of unit length, without the part that the parameters of the fit can follow. Noise that is white, or
+/// correlated over a few samples, has as much of either. Frequencies above half the sampling rate are left out.
 pub(crate) fn with_drift(
     found: &Identification,
     problem: &Problem<'_>,
@@ -54,21 +47,23 @@ pub(crate) fn with_drift(
         };
         let slow: f64 = DRIFT.iter().filter_map(|nuisance| energy(&|time| nuisance.at(time, start, end))).sum();
         let frequency = decay.guess().frequency();
-        let above: f64 = BETWEEN
+        let is_sampled = |factor: &&f64| **factor * frequency < 0.5 * decay.record().rate();
+        let controls: Vec<&f64> = BETWEEN_HARMONICS.iter().filter(is_sampled).collect();
+        let above: f64 = controls
             .iter()
             .flat_map(|factor| {
-                let phase = move |time: f64| TAU * factor * frequency * (time - start);
+                let phase = move |time: f64| TAU * **factor * frequency * (time - start);
                 [energy(&|time| phase(time).cos()), energy(&|time| phase(time).sin())]
             })
             .flatten()
             .sum();
-        let (degrees, controls) = (DRIFT.len() as f64, 2.0 * BETWEEN.len() as f64);
+        let (degrees, controls) = (DRIFT.len() as f64, 2.0 * controls.len() as f64);
         let ratio = (slow / degrees) / (above / controls);
         // What is left must be near the noise, or it is a law that misses something.
         let left = (found.fit().sum_of_squares() - slow).max(0.0) / found.fit().residuals().len() as f64;
         let drifts = above > 0.0
-            && left.sqrt() < NEAR * found.structure().noise
-            && f_tail(ratio, degrees, controls).is_some_and(|p| p < CHANCE);
+            && left.sqrt() < NEAR_NOISE * found.structure().noise
+            && f_tail(ratio, degrees, controls).is_some_and(|p| p < CHANCE_OF_DRIFT);
         any |= drifts;
         drifting.push(if drifts { decay.clone().beside(DRIFT.to_vec()) } else { decay.clone() });
     }

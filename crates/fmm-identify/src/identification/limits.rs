@@ -123,4 +123,23 @@ impl Warning {
             });
         }
     }
+
+    /// Properties of the noise, from the residuals of `identification`, and a slow drift that was fitted.
+    pub(crate) fn of_noise(identification: &Identification, decays: &[Experiment]) -> Vec<Self> {
+        let mut warnings = Vec::new();
+        let unit = || decays.first().map_or_else(String::new, |decay| decay.record().unit().to_owned());
+        if decays.iter().any(Experiment::drifts) {
+            warnings.push(Self::Drift);
+        }
+        let structure = identification.structure();
+        if !structure.is_noisy() {
+            return warnings;
+        }
+        if let Some(growth) = identification.noise().growth() {
+            let share = growth.instantaneous.hypot(growth.by_amplitude);
+            warnings.push(Self::GrowingNoise { floor: growth.floor, share, unit: unit() });
+        }
+        warnings.extend(structure.coloured_noise(identification.inflation()));
+        warnings
+    }
 }

@@ -1,6 +1,5 @@
 //! The main job: friction parameters of one law out of ring-down records.
 
-mod disturbances;
 pub(crate) mod drift;
 mod findings;
 mod limits;
@@ -30,6 +29,7 @@ use crate::problem::fitted::Fitted;
 use crate::problem::tangent::Tangent;
 use crate::quantities::table::Table;
 use crate::residuals::noise::ResidualNoise;
+use crate::residuals::rules::SIGNIFICANT;
 use crate::residuals::structure::{Covariance, ResidualStructure};
 use crate::warning::Warning;
 
@@ -402,7 +402,7 @@ impl Identification {
         self.fitted.fit.rank() + self.fitted.fit.estimates().iter().filter(is_used).count()
     }
 
-    /// Number of places at which a law may leap: the samples of a half cycle for one that comes to rest within a dead zone,
+    /// Positions at which a law can leap (1): the samples of a half cycle for a law that comes to rest within a dead zone,
     /// else one.
     pub(crate) fn leap_positions(&self) -> f64 {
         if self.finding("dead_zone").is_none() {
@@ -417,7 +417,7 @@ impl Identification {
         self.covariance.noise_of_residuals()
     }
 
-    /// As how many independent residuals those of this fit count (1).
+    /// Independent residuals that those of this fit count as (1).
     pub(crate) fn effective_count(&self) -> f64 {
         self.covariance.effective_count()
     }
@@ -431,13 +431,11 @@ impl Identification {
     /// True if a viscous part that ended at zero would be significantly negative without its bound, as if friction fell
     /// with the speed.
     pub(crate) fn damping_would_be_negative(&self) -> bool {
-        /// Standard uncertainties by which it would be negative.
-        const PLAIN: f64 = 2.33;
         let Some(index) = self.fitted.fit.estimates().iter().position(|estimate| estimate.name() == LINEAR) else {
             return false;
         };
         self.fitted.fit.estimates()[index].status().is_at_bound()
-            && self.pull_at_bound.is_some_and(|pull| pull < -PLAIN)
+            && self.pull_at_bound.is_some_and(|pull| pull < -SIGNIFICANT)
     }
 
     /// By how much this fit is worse than that by `other`, in variances of the noise that the residuals of the other

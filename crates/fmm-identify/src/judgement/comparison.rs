@@ -1,4 +1,4 @@
-//! Several laws side by side, and which of them the data prefer.
+//! Comparison of several laws by their fits to the same records.
 
 use std::ops::ControlFlow;
 
@@ -8,10 +8,10 @@ use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::{Experiment, RecordSummary};
 use crate::finding::{Finding, Source};
-use crate::identification::Identification;
-use crate::identification::closest;
-use crate::judgement::Sign;
+use crate::identification::{Identification, closest};
 use crate::judgement::filtering::filtering_sensor;
+use crate::judgement::rules::{EVEN_WEIGHT, FAR, MISLEADING, NOTABLE_WIDENING, SHOWN};
+use crate::judgement::score_test::ScoreTest;
 use crate::judgement::{Judgement, shortcomings};
 use crate::machine::Machine;
 use crate::warning::Warning;
@@ -31,14 +31,17 @@ pub struct NestedTest {
 
 /// Identifications of the same records by several laws.
 ///
-/// A law is *excluded* if its misfit, beside the law that fits best, has p below 0.002 for the noise that the
-/// residuals show; correlated residuals count for as much as they tell, so that the answer is the same however often a
-/// record is sampled. Among the others the simplest with p of at least 0.0125 is preferred. The preference is *decided*
-/// if its p is at least 0.05 and what is left beside it are laws that have it as a special case, whose further
-/// parameters the record does not ask for, if no filter in the sensor would explain the record as well, and if no drift
-/// was fitted beside residuals that are still correlated. Where a simple law is true, about one simulated record of
-/// seven stays undecided (example `judgement`). The uncertainties of the preferred law include what the laws that are
-/// left would change, by how probable they are.
+/// A law is *excluded* if its misfit, beside the law that fits best, has p below 0.002 for the noise that the residuals
+/// show. Correlated residuals count as fewer independent ones, so that the answer does not depend on the sampling rate.
+/// Among the others the simplest law with p of at least 0.0125 is preferred. The preference is *decided* if
+///
+/// * its p is at least 0.05,
+/// * the laws that are left beside it have it as a special case, and the record does not need their further parameters,
+/// * no filter in the sensor explains the record as well, and
+/// * no drift was fitted beside residuals that are still correlated.
+///
+/// If a simple law is true, about one simulated record of seven stays undecided (example `judgement`). The uncertainties
+/// of the preferred law include the difference to the laws that are left, by their probability.
 ///
 /// `Display` gives the report.
 #[derive(Debug, Clone)]
@@ -47,7 +50,7 @@ pub struct Comparison {
     pub(crate) identifications: Vec<Identification>,
     pub(crate) judgement: Judgement,
     pub(crate) tests: Vec<NestedTest>,
-    pub(crate) signs: Vec<Sign>,
+    pub(crate) score_tests: Vec<ScoreTest>,
     pub(crate) is_complete: bool,
     pub(crate) warnings: Vec<Warning>,
 }
@@ -64,10 +67,11 @@ pub fn compare(
     compare_observed(machine, decays, candidates, &Options::default(), |_, _| ControlFlow::Continue(()))
 }
 
-/// As [`compare`], with options for the solver and an observer that gets the law's name with every trial step.
+/// The comparison of [`compare`] with options for the solver and an observer that gets the law's name with every trial
+/// step.
 ///
 /// # Errors
-/// As for [`compare`].
+/// Those of [`compare`].
 pub fn compare_observed(
     machine: &Machine,
     decays: &[Experiment],
@@ -93,8 +97,7 @@ pub fn compare_observed(
     Comparison::of(decays, candidates, identifications)
 }
 
-/// Whether what is left of the records by the closest of these laws is noise: a drift that leaves more may be a law
-/// that misses something.
+/// The closest of these laws leaves noise of the records. A drift that leaves more may be a law that misses something.
 pub(crate) fn explains(identifications: &[Identification]) -> bool {
     closest(identifications).is_some_and(|found| !found.structure().is_structured())
 }
@@ -111,17 +114,18 @@ impl Comparison {
         let preferred = judgement.preferred;
         let others = unfinished(candidates, &identifications);
         judgement.is_decided &= others.is_empty();
-        // What the fit by the preferred law says of itself stands among its own warnings.
+        // The preferred law has the sentence on its own fit among its warnings.
         let own = format!("the fit {}", identifications[preferred].fit().outcome());
         let is_said = |warning: &Warning| matches!(warning, Warning::OtherLaw { law, sentence } if *law == candidates[preferred].name() && *sentence == own);
         let others: Vec<Warning> = others.into_iter().filter(|warning| !is_said(warning)).collect();
         // A filter in the sensor that explains the record as well is a rival, though it is no law.
-        let sensor = filtering_sensor(decays, &identifications, preferred);
-        judgement.is_decided &= sensor.is_none();
-        // What a drift leaves may have been taken for the law.
+        let sensor = filtering_sensor(decays, &identifications, preferred)
+            .unwrap_or_else(|error| Some(Warning::left_out("a filter in the sensor", &error)));
+        judgement.is_decided &= sensor.as_ref().is_none_or(|warning| matches!(warning, Warning::LeftOut { .. }));
+        // The law may have taken a part of the drift.
         let drifts = decays.iter().any(Experiment::drifts);
         judgement.is_decided &= !(drifts && identifications[preferred].structure().is_correlated());
-        // Noise that grows with the motion hides what a law that is left has more than the preferred one.
+        // Noise that grows with the motion hides further parameters of a law that is left.
         let grows = identifications[preferred].noise().growth().is_some();
         let has_others = (0..candidates.len()).any(|place| place != preferred && judgement.is_left(place));
         judgement.is_decided &= !(grows && has_others);
@@ -142,7 +146,7 @@ impl Comparison {
             tests: tests(candidates, &identifications),
             identifications,
             judgement,
-            signs: Vec::new(),
+            score_tests: Vec::new(),
             is_complete: true,
             warnings,
         })
@@ -166,13 +170,9 @@ fn tests(candidates: &[Candidate], identifications: &[Identification]) -> Vec<Ne
     tests
 }
 
-/// The level and straight line among the others that states the most different friction at rest, if it does so by more
-/// than half of it and has missed the record by far: what somebody would have reported who had asked no further.
+/// Warning about a level and a straight line that misses the record by far and gives less than half of the friction at
+/// rest: the result of a fit that tries no further law.
 fn misled(identifications: &[Identification], preferred: usize) -> Option<Warning> {
-    /// Residuals that exceed those of the preferred law by this factor do not describe the record.
-    const FAR: f64 = 2.0;
-    /// Times its standard uncertainty from which on a level is there.
-    const SHOWN: f64 = 2.0;
     let right = &identifications[preferred];
     let is_shown = |level: &&Finding| level.uncertainty().is_some_and(|u| level.value() > SHOWN * u);
     right.main_findings().into_iter().find(is_shown)?;
@@ -184,7 +184,7 @@ fn misled(identifications: &[Identification], preferred: usize) -> Option<Warnin
         .filter(|found| found.rms_residual() > FAR * right.rms_residual())
         .filter(|found| found.fit().outcome().is_success() && found.family().dry_name() == Some("coulomb"))
         .filter_map(|found| Some((found, ratio(found)?)))
-        .filter(|(_, ratio)| *ratio < 0.5)
+        .filter(|(_, ratio)| *ratio < MISLEADING)
         .min_by(|a, b| a.1.total_cmp(&b.1));
     wrong.map(|(found, ratio)| Warning::Misled {
         law: found.law().to_owned(),
@@ -194,7 +194,7 @@ fn misled(identifications: &[Identification], preferred: usize) -> Option<Warnin
     })
 }
 
-/// What was not fitted to the end, law by law.
+/// Laws that were not fitted to the end, with the reason.
 fn unfinished(candidates: &[Candidate], identifications: &[Identification]) -> Vec<Warning> {
     let of_law = |(place, candidate): (usize, &Candidate)| {
         let law = candidate.name();
@@ -204,8 +204,8 @@ fn unfinished(candidates: &[Candidate], identifications: &[Identification]) -> V
     candidates.iter().enumerate().flat_map(of_law).collect()
 }
 
-/// Widens the uncertainties of the preferred law's parameters for what other laws, which the record does not exclude,
-/// see differently; returns a warning for each that matters.
+/// Widens the uncertainties of the preferred law by the differences to other laws that the record does not exclude;
+/// returns a warning for each that matters.
 ///
 /// Preferring a law because the record is too short to show that it is too simple does not make it true. With the
 /// weight w of the other law the variance becomes
@@ -222,8 +222,6 @@ fn widen_for_other_laws(
     identifications: &mut [Identification],
     judgement: &Judgement,
 ) -> Vec<Warning> {
-    /// An uncertainty that grows by this factor is worth a line.
-    const NOTABLE: f64 = 2.0;
     let preferred = judgement.preferred;
     let mut widths: Vec<(String, f64, Option<Warning>)> = Vec::new();
     for other in 0..candidates.len() {
@@ -240,11 +238,11 @@ fn widen_for_other_laws(
             continue;
         }
         let is_general = candidates[preferred].is_nested_in(&candidates[other]);
-        let told = identifications[preferred].effective_count();
+        let count = identifications[preferred].effective_count();
         let weight =
-            judgement.weight(other, further, candidates[preferred].differs_by_damping(&candidates[other]), told);
+            judgement.weight(other, further, candidates[preferred].differs_by_damping(&candidates[other]), count);
         // Where the record does not decide, either law is as good as the other.
-        let weight = if judgement.is_decided && is_general { weight } else { weight.max(0.5) };
+        let weight = if judgement.is_decided && is_general { weight } else { weight.max(EVEN_WEIGHT) };
         for (own, theirs) in identifications[preferred].common_findings(&identifications[other]) {
             let (Some(u), Some(their_u)) = (own.uncertainty(), theirs.uncertainty()) else { continue };
             // A law that leaves the value open says nothing of it.
@@ -253,7 +251,7 @@ fn widen_for_other_laws(
             }
             let difference = own.value() - theirs.value();
             let widened = ((1.0 - weight) * u * u + weight * (their_u * their_u + difference * difference)).sqrt();
-            let notable = widened > NOTABLE * u && !own.is_of_record();
+            let notable = widened > NOTABLE_WIDENING * u && !own.is_of_record();
             let warning = notable.then(|| Warning::DependsOnLaw {
                 parameter: own.parameter().name().to_owned(),
                 law: candidates[other].name(),
@@ -299,7 +297,7 @@ impl Comparison {
         &self.identifications[self.judgement.preferred]
     }
 
-    /// Whether the data decide for the preferred law.
+    /// The data decide for the preferred law.
     pub fn is_decided(&self) -> bool {
         self.judgement.is_decided
     }
@@ -322,12 +320,12 @@ impl Comparison {
         &self.judgement.scores
     }
 
-    /// What was looked for beside the simple laws, and how plain it is.
-    pub fn signs(&self) -> &[Sign] {
-        &self.signs
+    /// Score tests of extensions of Coulomb and viscous friction; empty unless a search made them.
+    pub fn score_tests(&self) -> &[ScoreTest] {
+        &self.score_tests
     }
 
-    /// Whether all laws that the search would have tried were tried; false where a time limit ended it.
+    /// All laws of the search were tried; false if a time limit ended it.
     pub fn is_complete(&self) -> bool {
         self.is_complete
     }
@@ -337,12 +335,12 @@ impl Comparison {
         &self.tests
     }
 
-    /// What each record is, what was done to it before it was fitted, and what was seen in it.
+    /// Each record with its preparation and the observations made in it.
     pub fn records(&self) -> &[RecordSummary] {
         &self.records
     }
 
-    /// What limits the findings of the preferred law, and the preference itself.
+    /// Limits of the findings of the preferred law, and of the preference itself.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }

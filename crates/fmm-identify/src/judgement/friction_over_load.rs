@@ -1,4 +1,4 @@
-//! Friction against load: whether it is in proportion.
+//! Friction against load: proportional, with an offset, or independent.
 
 use std::fmt;
 
@@ -6,20 +6,18 @@ use fmm_fit::{RandomEffectsLine, UncertainPoint};
 use fmm_model::{Estimated, Rounded};
 
 use crate::error::IdentifyError;
+use crate::judgement::rules::LEVEL;
 
-/// Coverage probability by which an intercept or a coefficient counts as different from zero (1).
-const LEVEL: f64 = 0.95;
-
-/// What friction does under other loads.
+/// Dependence of friction on the load.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LoadVerdict {
-    /// It is in proportion to the load, as far as the runs tell: F = μ N (Amontons).
+    /// In proportion to the load, within the uncertainty of the runs: F = μ N (Amontons).
     Proportional,
-    /// It grows with the load from a level other than zero: F/N depends on the load, and one coefficient does not
-    /// describe it.
+    /// Growing with the load from a level other than zero: F/N depends on the load, and one coefficient does not describe
+    /// it.
     Offset,
-    /// It does not grow with the load, as far as the runs tell.
+    /// Not seen to grow with the load.
     Independent,
 }
 
@@ -97,12 +95,12 @@ impl FrictionOverLoad {
         Ok(Self { line, runs: runs.len(), loads: (smallest, largest) })
     }
 
-    /// μ, what the friction grows by with the load (1).
+    /// μ, slope of the friction over the load (1).
     pub fn coefficient(&self) -> Estimated {
         Estimated::new(self.line.intercept(), self.line.intercept_uncertainty())
     }
 
-    /// F₀, the friction that would be left without a load (N).
+    /// F₀, friction without a load, extrapolated (N).
     pub fn intercept(&self) -> Estimated {
         Estimated::new(self.line.slope(), self.line.slope_uncertainty())
     }
@@ -144,7 +142,7 @@ impl FrictionOverLoad {
         self.loads
     }
 
-    /// How many runs there were.
+    /// Number of runs.
     pub fn runs(&self) -> usize {
         self.runs
     }

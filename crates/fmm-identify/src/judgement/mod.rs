@@ -1,82 +1,64 @@
-//! The judgement: which of several fitted laws the records bear, and which they exclude.
+//! The judgement: the fitted laws that the records allow, those that they exclude, and the preferred one.
 
 pub(crate) mod comparison;
 pub(crate) mod filtering;
 mod friction_over_load;
+pub(crate) mod rules;
+pub(crate) mod score_test;
 mod search;
-pub(crate) mod sign;
 
 pub use comparison::{Comparison, NestedTest, compare, compare_observed};
 pub use friction_over_load::{FrictionOverLoad, LoadVerdict};
+pub use score_test::{Extension, ScoreTest};
 pub use search::{Search, search, search_observed};
-pub use sign::{Addition, Sign};
 
 use fmm_fit::f_tail;
 
 use crate::candidate::Candidate;
 use crate::finding::Finding;
 use crate::identification::Identification;
+use crate::judgement::rules::{
+    BADLY_KNOWN, CLOSE, DOUBTED, DUE_TO_DAMPING, EQUAL_MISFIT, EXCLUDED, LEAST_COUNT, ROUNDING_OF_SQUARES, UNFIT,
+};
 
-/// What the records say of each of several laws beside the one that fits them best, which laws are left, and which of
-/// them is preferred.
+/// Judgement of several laws beside the one that fits the records best: the laws that are left, and the preferred one.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Judgement {
-    /// D of each law, by how much it fits worse than the best, in variances of the noise (1).
+    /// D of each law, its misfit beside the best law in variances of the noise (1).
     misfits: Vec<f64>,
-    /// Probability of a misfit as large if that law were the true one (1).
+    /// Probability of a misfit as large if the law were true (1).
     pub(crate) p_values: Vec<f64>,
-    /// D + 2 k, by which laws with as many parameters and more are ranked (1).
+    /// D + 2 k, the rank of laws with as many parameters or more (1).
     pub(crate) scores: Vec<f64>,
-    /// Whether each law was fitted to its lowest minimum, as far as is known.
+    /// Each law was fitted to its lowest minimum, as far as is known.
     pub(crate) is_finished: Vec<bool>,
     /// Place of the preferred law.
     pub(crate) preferred: usize,
-    /// Whether no rival is left.
+    /// No rival is left.
     pub(crate) is_decided: bool,
 }
 
-/// A law that fits worse than this by chance is excluded. The law that is true is excluded by no more than one in a
-/// hundred records: the best of several others is a little better than one other.
-pub(crate) const EXCLUDED: f64 = 0.002;
-/// A law with a smaller p is not preferred to a more general one. The best of a dozen laws is better than one other by
-/// chance about four times as often as that one.
-const UNFIT: f64 = 0.0125;
-/// A preferred law with a smaller p has the more general ones as rivals. A simple law that is true is called undecided
-/// by about one record in eight.
-pub(crate) const DOUBTED: f64 = 0.05;
-/// A rival with more parameters must come within this of the score of the preferred law: what lies farther off has a
-/// twentieth of its likelihood.
-const CLOSE: f64 = 6.0;
-
-/// Relative uncertainty (1) from which on a parameter is told too badly to say that there is no damping beside it.
-const TOLD_BADLY: f64 = 0.004;
-/// How much of that uncertainty, against that of the law without damping, is due to the damping (1).
-const DUE_TO_DAMPING: f64 = 2.0;
-
-/// Whether a parameter of the law `without` damping may be off by more than four thousandths for want of it, as the law
-/// `with` it says.
+/// A parameter of the law `without` damping may be wrong because damping is missing: the law `with` it knows the
+/// parameter much less well.
 fn hides_damping(without: &Identification, with: &Identification) -> bool {
     without.findings().iter().filter(|own| !own.is_of_record()).any(|own| {
         let theirs = with.finding(own.parameter().name());
         let (u, value, their_u) = (own.uncertainty(), own.value().abs(), theirs.and_then(Finding::uncertainty));
         match (u, their_u) {
-            (Some(u), Some(their_u)) => their_u > TOLD_BADLY * value && their_u > DUE_TO_DAMPING * u,
+            (Some(u), Some(their_u)) => their_u > BADLY_KNOWN * value && their_u > DUE_TO_DAMPING * u,
             _ => false,
         }
     })
 }
 
-/// What keeps the fit at this place from being the best that its law can do: it has not ended, or a special case fits
-/// better.
+/// Reasons why the fit at this place is not the best of its law: it has not ended, or a special case fits better.
 pub(crate) fn shortcomings(place: usize, candidates: &[Candidate], identifications: &[Identification]) -> Vec<String> {
-    /// Rounding of a sum of squares.
-    const ROUNDING: f64 = 1e-9;
     let found = &identifications[place];
     let mut sentences = Vec::new();
     if !found.fit().outcome().is_success() {
         sentences.push(format!("the fit {}", found.fit().outcome()));
     }
-    let least = found.fit().sum_of_squares() * (1.0 - ROUNDING) - found.floor();
+    let least = found.fit().sum_of_squares() * (1.0 - ROUNDING_OF_SQUARES) - found.floor();
     let is_better = |(special, other): &(&Candidate, &Identification)| {
         other.fit().sum_of_squares() < least && special.is_nested_in(&candidates[place])
     };
@@ -97,7 +79,7 @@ impl Judgement {
     /// that noise in the direction in which the two laws differ: twice the logarithm of a ratio of likelihoods for
     /// correlated noise. It depends on the two laws alone, and not on how often the record was sampled, nor on other
     /// candidates. The probability of D_i is that of Fisher's F with as many degrees of freedom as the best law has
-    /// more parameters, at least one; times the places at which a best law that leaps can leap, each of which is a try
+    /// more parameters, at least one; times the positions at which a best law that leaps can leap, each of which is a try
     /// (Bonferroni).
     pub(crate) fn of(candidates: &[Candidate], identifications: &[Identification]) -> Option<Self> {
         let floor = |found: &Identification| found.fit().sum_of_squares().max(found.floor());
@@ -106,7 +88,8 @@ impl Judgement {
         let standings = identifications.iter().map(|found| {
             let (misfit, freedom) = found.misfit_beside(best);
             let further = best.fit().rank().saturating_sub(found.fit().rank()).max(1) as f64;
-            let p = (f_tail(misfit / further, further, freedom).unwrap_or(0.0) * best.leap_positions()).min(1.0);
+            // A misfit without a probability excludes no law.
+            let p = (f_tail(misfit / further, further, freedom).unwrap_or(1.0) * best.leap_positions()).min(1.0);
             (misfit, if misfit > 0.0 { p } else { 1.0 })
         });
         let (misfits, p_values): (Vec<f64>, Vec<f64>) = standings.unzip();
@@ -118,7 +101,8 @@ impl Judgement {
         let bears = |i: &usize| p_values[*i] >= UNFIT && (is_finished[*i] || !is_any);
         let preferred = (0..misfits.len()).filter(bears).min_by(|&a, &b| {
             let (near, far) = (misfits[a], misfits[b]);
-            let by_misfit = if (near - far).abs() > 1e-6 { near.total_cmp(&far) } else { std::cmp::Ordering::Equal };
+            let by_misfit =
+                if (near - far).abs() > EQUAL_MISFIT { near.total_cmp(&far) } else { std::cmp::Ordering::Equal };
             let by_count = candidates[a].parameter_count().cmp(&candidates[b].parameter_count());
             rank(a).cmp(&rank(b)).then(by_misfit).then(by_count)
         })?;
@@ -128,13 +112,13 @@ impl Judgement {
         Some(judgement)
     }
 
-    /// Whether the records do not exclude the law at this place.
+    /// The records do not exclude the law at this place.
     pub(crate) fn is_left(&self, place: usize) -> bool {
         self.p_values[place] >= EXCLUDED
     }
 
-    /// Whether the law at this place may be true in the stead of the preferred one: not excluded, and no law that
-    /// merely says the same with more parameters.
+    /// The law at this place may be true instead of the preferred one: it is not excluded, and it does not merely state
+    /// the same friction with more parameters.
     fn is_rival(&self, place: usize, candidates: &[Candidate], identifications: &[Identification]) -> bool {
         let preferred = self.preferred;
         if place == preferred || !self.is_left(place) {
@@ -151,10 +135,10 @@ impl Judgement {
         if is_general && self.p_values[preferred] < DOUBTED {
             return self.scores[place] < self.scores[preferred];
         }
-        let says_the_same = (self.misfits[place] - self.misfits[preferred]).abs() < 1e-6
+        let is_the_same = (self.misfits[place] - self.misfits[preferred]).abs() < EQUAL_MISFIT
             && identifications[place].parameters_used() == identifications[preferred].parameters_used()
             && candidates[place].parameter_count() > candidates[preferred].parameter_count();
-        !is_general && !says_the_same && self.scores[place] < self.scores[preferred] + CLOSE
+        !is_general && !is_the_same && self.scores[place] < self.scores[preferred] + CLOSE
     }
 
     /// The weight of the law at `general`, of which the preferred one is a special case, beside the preferred one (1):
@@ -162,7 +146,7 @@ impl Judgement {
     /// machine has some, and by Schwarz' for about `count` independent residuals otherwise.
     pub(crate) fn weight(&self, general: usize, further: usize, is_damping: bool, count: f64) -> f64 {
         let gain = self.misfits[self.preferred] - self.misfits[general];
-        let penalty = if is_damping { 2.0 } else { count.max(8.0).ln() };
+        let penalty = if is_damping { 2.0 } else { count.max(LEAST_COUNT).ln() };
         1.0 / (1.0 + (-0.5 * (gain - further as f64 * penalty)).exp())
     }
 }

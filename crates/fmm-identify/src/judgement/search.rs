@@ -11,22 +11,22 @@ use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
 use crate::fit::stages::Near;
-use crate::identification::Identification;
-use crate::identification::closest;
-use crate::judgement::Comparison;
-use crate::judgement::comparison::explains;
+use crate::identification::{Identification, closest};
+use crate::judgement::comparison::{Comparison, explains};
 use crate::judgement::filtering::behind_filter;
-use crate::judgement::sign::{Addition, Sign, signs};
+use crate::judgement::rules::{
+    LEAST_PRESLIDING, MOST_ITERATIONS, MOST_ITERATIONS_WITH_STATE, SEEN_PRESLIDING, STEPS_OF_PRESLIDING,
+};
+use crate::judgement::score_test::{Extension, ScoreTest, score_tests};
 use crate::judgement::{Judgement, shortcomings};
 use crate::machine::Machine;
-use crate::machine::terms::Term;
-use crate::machine::terms::Terms;
+use crate::machine::terms::{Term, Terms};
 use crate::problem::fitted::Fall;
 use crate::threads::on_all_threads;
 use crate::warning::Warning;
 
-/// How laws are searched for. The default tries as many as the record asks for, on all threads of the current rayon
-/// pool.
+/// Options of a search for the law. The default tries as many laws as the record asks for, on all threads of the current
+/// rayon pool.
 ///
 /// ```
 /// use std::time::Duration;
@@ -54,21 +54,20 @@ impl Search {
         self
     }
 
-    /// The same with the parameter called `name` held at `value`, in the unit in which it would be fitted: of the law
-    /// called `law`, or of every law that has one of that name.
+    /// Fixes the parameter `name` at `value`, in the unit of the fit: of the law `law`, or of every law that has it.
     #[must_use]
     pub fn holding(mut self, law: Option<&str>, name: &str, value: f64) -> Self {
         self.held.push((law.map(str::to_owned), name.to_owned(), value));
         self
     }
 
-    /// The same ended after `limit`: no further law is begun, and one that is being fitted is left out.
+    /// Ends the search after `limit`: no further law begins, and a law that is being fitted is left out.
     #[must_use]
     pub fn within(self, limit: Duration) -> Self {
         Self { time_limit: Some(limit), ..self }
     }
 
-    /// The same on so many threads of its own, at least one; without the feature `rayon` there is one. The result does
+    /// Searches on `threads` threads of its own, at least one; without the feature `rayon` there is one. The result does
     /// not depend on it.
     #[must_use]
     pub fn on_threads(self, threads: usize) -> Self {
@@ -124,7 +123,7 @@ impl Search {
         Ok(candidate)
     }
 
-    /// That each parameter that is held is one of some law that may be tried.
+    /// Refuses a parameter that no law of the search has.
     fn require_known(&self, machine: &Machine, decays: &[Experiment]) -> Result<(), IdentifyError> {
         let mut known = Vec::new();
         for trial in self.all() {
@@ -148,7 +147,7 @@ fn beside(terms: &[&[Term]]) -> impl Iterator<Item = Trial> {
     terms.iter().map(move |terms| Trial { candidate: Candidate::of::<CoulombViscous>().with(with(terms)), fixed: &[] })
 }
 
-/// Whether what is held of `law`, or of all if it is none, is meant for the `candidate`.
+/// A value that is held of `law`, or of all laws for `None`, is meant for the `candidate`.
 fn is_meant(law: Option<&str>, candidate: &Candidate) -> bool {
     law.is_none_or(|law| candidate.law_name() == law)
 }
@@ -161,14 +160,7 @@ const SPRINGS: [&[Term]; 3] = [
 ];
 /// Springs with a stop, a preload or a gap, tried if a smooth spring leaves correlated residuals.
 const CORNERS: [&[Term]; 2] = [&[Term::Stop], &[Term::Gap]];
-/// Presliding over less of the amplitude than this (1) is none that a record shows.
-const LEAST_PRESLIDING: f64 = 2e-3;
-/// Steps of a converter that presliding must exceed to be seen.
-const STEPS_OF_PRESLIDING: f64 = 3.0;
-/// Iterations of a fit that is begun near another one: one that needs more is led by something else.
-const MOST_ITERATIONS: usize = 80;
-/// The same of laws with presliding, whose motion takes long to simulate.
-const MOST_ITERATIONS_WITH_STATE: usize = 40;
+
 /// A law family and the trials that it states.
 #[derive(Debug, Clone)]
 struct Family {
@@ -207,12 +199,12 @@ struct Trial {
 
 /// Identifies `decays` by as many laws as they ask for.
 ///
-/// First viscous damping, Coulomb friction and both. If the residuals of these show signs of something else, or are
-/// alike where they should be noise, laws whose friction changes with speed, and springs that harden, soften, meet a
-/// stop or have a gap if there are signs of one; then, unless such a spring explains the records, further families,
-/// each begun where its friction over the speed follows that of the best law so far; and laws with presliding if there
-/// are signs of that. What was looked for is in [`Comparison::signs`]. Laws that could not be fitted to the end, and
-/// that are then far from what others reach, are left out; a warning names them.
+/// First viscous damping, Coulomb friction and both. If a score test of these is significant, or their residuals are
+/// correlated: laws whose friction changes with speed, and springs that harden, soften, meet a stop or have a gap if
+/// there is a sign of one; then, unless such a spring explains the records, further families, each begun where its
+/// friction over the speed follows that of the best law so far; and laws with presliding if there is a sign of it. The
+/// tests are in [`Comparison::score_tests`]. Laws that cannot be fitted to the end, and that are then far from others,
+/// are left out; a warning names them, and one each law that cannot be fitted at all.
 ///
 /// # Errors
 /// [`IdentifyError`] as for [`identify`](crate::identify), and for a parameter that no law has.
@@ -220,10 +212,10 @@ pub fn search(machine: &Machine, decays: &[Experiment], search: &Search) -> Resu
     search_observed(machine, decays, search, &Options::default(), |_, _| ControlFlow::Continue(()))
 }
 
-/// As [`search`], with options for the solver and an observer that gets the law's name with every trial step.
+/// The search of [`search`] with options for the solver and an observer that gets the law's name with every trial step.
 ///
 /// # Errors
-/// As for [`search`].
+/// Those of [`search`].
 pub fn search_observed(
     machine: &Machine,
     decays: &[Experiment],
@@ -243,7 +235,7 @@ pub fn search_observed(
     go()
 }
 
-/// As [`search_observed`], in the current pool.
+/// The search of [`search_observed`] in the current pool.
 fn search_here<F>(
     machine: &Machine,
     decays: &[Experiment],
@@ -268,17 +260,18 @@ where
         }
     }
     let run = Run { decays, ..run };
-    let mut signs = run.signs(&found);
-    let falls: Vec<Fall> = signs.iter().filter_map(Sign::fall).collect();
-    if found.asks_for_more(&signs) {
+    let (mut tests, mut left_out) = run.score_tests(&found);
+    let falls: Vec<Fall> = tests.iter().filter_map(ScoreTest::fall).collect();
+    if found.asks_for_more(&tests) {
         let falling = run.fit(run.candidates(search.of_speed())?, found.near(&falls, &[], 0).as_ref())?;
         found.add(falling);
-        let is_bent = |sign: &Sign| sign.addition == Addition::SofteningSpring && sign.is_plain();
-        // What a filter in the sensor does to a decay looks like a bent spring as well.
+        let is_bent = |test: &ScoreTest| test.extension == Extension::SofteningSpring && test.is_significant();
+        // A filter in the sensor looks like a bent spring as well. A fit behind it that fails is reported by the comparison.
         let is_filtered = || {
-            behind_filter(decays, &found.identifications).is_some_and(|(found, _)| !found.structure().is_correlated())
+            let behind = behind_filter(decays, &found.identifications).ok().flatten();
+            behind.is_some_and(|(found, _)| !found.structure().is_correlated())
         };
-        if found.is_structured() && signs.iter().any(is_bent) && !is_filtered() {
+        if found.is_structured() && tests.iter().any(is_bent) && !is_filtered() {
             let bent = run.fit(run.candidates(beside(&SPRINGS))?, found.near(&falls, &[], 0).as_ref())?;
             found.add(bent);
             if found.is_structured() {
@@ -289,22 +282,23 @@ where
         let limited = |most: usize| options.clone().with_max_iterations(most.min(options.max_iterations()));
         let (of_speed, limited_more) = (limited(MOST_ITERATIONS), limited(MOST_ITERATIONS_WITH_STATE));
         let run = Run { options: &of_speed, ..run };
-        // What a spring explains, no friction of the speed does.
+        // If a spring explains the records, no friction of the speed does.
         if found.is_structured() || !found.is_bent() {
             let further = found.unfinished().chain(run.candidates(search.at(SearchStage::FurtherOfSpeed))?).collect();
             let further = run.fit(further, found.near(&falls, &[|_| true], 1).as_ref())?;
             found.add(further);
         }
-        // A converter hides what is not longer than a few of its steps, and its steps look like presliding: neither
-        // moves where the machine turns.
+        // A converter hides presliding shorter than a few of its steps, and its steps look like presliding: neither moves
+        // where the machine turns.
         let steps = decays.iter().map(|decay| {
             let summary = decay.summary();
             summary.resolution.filter(|_| summary.is_rounded()).unwrap_or(0.0) / summary.amplitudes.0
         });
         let least = steps.map(|step| STEPS_OF_PRESLIDING * step).fold(LEAST_PRESLIDING, f64::max);
-        let seen =
-            |sign: &Sign| sign.addition == Addition::Presliding && sign.significance() > 2.0 && sign.size > least;
-        if signs.iter().any(seen) {
+        let is_seen = |test: &ScoreTest| {
+            test.extension == Extension::Presliding && test.significance() > SEEN_PRESLIDING && test.size > least
+        };
+        if tests.iter().any(is_seen) {
             let run = Run { options: &limited_more, ..run };
             let with_state =
                 run.fit(run.candidates(search.at(SearchStage::Presliding))?, found.near(&falls, &[], 0).as_ref())?;
@@ -317,9 +311,11 @@ where
         }
     }
     let dropped = found.drop_unfinished(&search.at(SearchStage::Simple));
-    signs.retain(|sign| sign.uncertainty.is_finite());
+    tests.retain(|test| test.uncertainty.is_finite());
+    left_out.extend(found.failures());
     let mut comparison = Comparison::of(decays, &found.candidates, found.identifications)?;
-    comparison.signs = signs;
+    comparison.score_tests = tests;
+    comparison.warnings.extend(left_out);
     comparison.is_complete = !found.is_cut_short;
     if found.is_cut_short {
         comparison.warnings.push(Warning::TimeLimit);
@@ -330,18 +326,21 @@ where
     Ok(comparison)
 }
 
-/// What a search has found so far.
+/// Laws that a search has fitted so far.
 #[derive(Default)]
 struct Found {
     candidates: Vec<Candidate>,
     identifications: Vec<Identification>,
+    /// Names of the laws that could not be fitted, with a warning each.
+    failures: Vec<(String, Warning)>,
     is_cut_short: bool,
 }
 
 impl Found {
-    /// Adds what was found further; of two fits by one law the better stays.
+    /// Adds further fits; of two fits by one law the better stays.
     fn add(&mut self, further: Self) {
         self.is_cut_short |= further.is_cut_short;
+        self.failures.extend(further.failures);
         for (candidate, found) in further.candidates.into_iter().zip(further.identifications) {
             match self.identifications.iter_mut().find(|known| known.law() == found.law()) {
                 Some(known) if found.fit().sum_of_squares() < known.fit().sum_of_squares() => *known = found,
@@ -354,13 +353,19 @@ impl Found {
         }
     }
 
-    /// Fits to begin another one near: that by Coulomb and viscous friction, and the closest to the records of each of
-    /// `kinds`; so many `tries` are made.
+    /// Fits near which another one begins: that by Coulomb and viscous friction, and the closest to the records of each
+    /// of `kinds`, with the number of `tries`.
     fn near<'a>(&'a self, falls: &'a [Fall], kinds: &[fn(&Identification) -> bool], tries: usize) -> Option<Near<'a>> {
         let simple = self.simple()?;
         let others =
             kinds.iter().filter_map(|is_kind| closest(self.identifications.iter().filter(|found| is_kind(found))));
         Some(Near { simple: simple.fitted(), falls, others: others.map(Identification::fitted).collect(), tries })
+    }
+
+    /// Warnings about the laws that could not be fitted in any try.
+    fn failures(&mut self) -> impl Iterator<Item = Warning> + '_ {
+        let failures = std::mem::take(&mut self.failures).into_iter();
+        failures.filter(|(law, _)| self.candidates.iter().all(|known| known.name() != *law)).map(|(_, warning)| warning)
     }
 
     /// Laws whose fits have not ended in their lowest minimum.
@@ -389,18 +394,18 @@ impl Found {
         dropped
     }
 
-    /// Whether the simple laws leave something in the residuals.
-    fn asks_for_more(&self, signs: &[Sign]) -> bool {
+    /// The simple laws leave something in the residuals.
+    fn asks_for_more(&self, tests: &[ScoreTest]) -> bool {
         let held_back = |found: &Identification| found.damping_would_be_negative();
-        signs.iter().any(Sign::is_plain) || self.is_structured() || self.simple().is_some_and(held_back)
+        tests.iter().any(ScoreTest::is_significant) || self.is_structured() || self.simple().is_some_and(held_back)
     }
 
-    /// Whether the residuals of the best law are alike where they should be noise.
+    /// The residuals of the best law are correlated.
     fn is_structured(&self) -> bool {
         self.preferred().is_some_and(|preferred| preferred.structure().is_correlated())
     }
 
-    /// Whether the best law is one on a spring that is not linear.
+    /// The best law is one on a spring that is not linear.
     fn is_bent(&self) -> bool {
         self.preferred().is_some_and(|preferred| preferred.terms().has_spring())
     }
@@ -416,7 +421,7 @@ impl Found {
     }
 }
 
-/// Whether the law has presliding.
+/// The law has presliding.
 fn preslides(found: &Identification) -> bool {
     found.finding("contact_stiffness_per_mass").is_some()
 }
@@ -440,8 +445,7 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
         self.search.time_limit.is_some_and(|limit| self.begun.elapsed() >= limit)
     }
 
-    /// Fits the `candidates`. Those that are not begun near others must be there,
-    /// whatever the time.
+    /// Fits the `candidates`. Those that do not begin near others are fitted after the time limit too.
     fn fit(&self, candidates: Vec<Candidate>, near: Option<&Near<'_>>) -> Result<Found, IdentifyError> {
         let must = near.is_none();
         let mut found = Found::default();
@@ -469,17 +473,21 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
                     found.identifications.push(identification);
                 }
                 Some(Err(error)) if must => return Err(error),
-                // A law that cannot follow this record is no candidate for it.
-                Some(Err(_)) => {}
+                Some(Err(error)) => {
+                    let law = candidate.name();
+                    let warning = Warning::left_out(&format!("the law {law}"), &error);
+                    found.failures.push((law, warning));
+                }
                 _ => found.is_cut_short = true,
             }
         }
         Ok(found)
     }
 
-    fn signs(&self, found: &Found) -> Vec<Sign> {
-        let base = found.simple();
-        base.and_then(|base| signs(base, self.decays).ok()).unwrap_or_default()
+    fn score_tests(&self, found: &Found) -> (Vec<ScoreTest>, Vec<Warning>) {
+        let Some(base) = found.simple() else { return (Vec::new(), Vec::new()) };
+        score_tests(base, self.decays)
+            .unwrap_or_else(|error| (Vec::new(), vec![Warning::left_out("the score tests", &error)]))
     }
 }
 

@@ -229,8 +229,8 @@ impl Terms {
         Ok(self)
     }
 
-    /// True if there is none, and nothing is held.
-    pub(crate) fn is_plain(&self) -> bool {
+    /// No term is fitted, and nothing is held.
+    pub(crate) fn is_empty(&self) -> bool {
         *self == Self::NONE
     }
 

@@ -7,8 +7,8 @@ use std::fmt;
 
 use crate::finding::{Contribution, Finding, name_width};
 use crate::identification::Identification;
-use crate::judgement::EXCLUDED;
-use crate::judgement::{Comparison, Sign};
+use crate::judgement::rules::EXCLUDED;
+use crate::judgement::{Comparison, ScoreTest};
 use crate::warning::write_warnings;
 
 impl Identification {
@@ -130,13 +130,13 @@ impl fmt::Display for Comparison {
                 score - best,
             )?;
         }
-        let plain: Vec<&Sign> = self.signs().iter().filter(|sign| sign.is_plain()).collect();
-        for sign in &plain {
-            let times = sign.significance();
-            writeln!(f, "  sign of {}: {times:.1} standard uncertainties", sign.addition)?;
+        let significant: Vec<&ScoreTest> = self.score_tests().iter().filter(|test| test.is_significant()).collect();
+        for test in &significant {
+            let times = test.significance();
+            writeln!(f, "  sign of {}: {times:.1} standard uncertainties", test.extension)?;
         }
         let is_simple = matches!(self.preferred().family().dry_name(), None | Some("coulomb"));
-        if plain.is_empty() && !self.signs().is_empty() && is_simple {
+        if significant.is_empty() && !self.score_tests().is_empty() && is_simple {
             writeln!(
                 f,
                 "  looked for and not seen: friction that changes with speed, quadratic damping, presliding, a softening spring"

@@ -9,7 +9,7 @@ use crate::experiment::ImpactSummary;
 use crate::experiment::RecordSummary;
 use crate::finding::{Contribution, Finding, Origin};
 use crate::identification::Identification;
-use crate::judgement::{Comparison, Sign};
+use crate::judgement::{Comparison, ScoreTest};
 
 impl Serialize for Finding {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -132,11 +132,11 @@ impl Serialize for RecordSummary {
     }
 }
 
-/// Extension that was looked for, its size and standard uncertainty.
-impl Serialize for Sign {
+/// The extension, its size and standard uncertainty.
+impl Serialize for ScoreTest {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut document = serializer.serialize_struct("Sign", 3)?;
-        document.serialize_field("addition", &self.addition.to_string())?;
+        let mut document = serializer.serialize_struct("ScoreTest", 3)?;
+        document.serialize_field("addition", &self.extension.to_string())?;
         document.serialize_field("size", &self.size)?;
         document.serialize_field("u", &self.uncertainty)?;
         document.end()
@@ -156,7 +156,7 @@ impl Serialize for Comparison {
         let left: Vec<&str> = self.not_excluded().map(Identification::law).collect();
         document.serialize_field("not_excluded", &left)?;
         document.serialize_field("complete", &self.is_complete())?;
-        document.serialize_field("signs", self.signs())?;
+        document.serialize_field("signs", self.score_tests())?;
         document.serialize_field("p", self.p_values())?;
         document.serialize_field("scores", self.scores())?;
         document.serialize_field("models", self.identifications())?;

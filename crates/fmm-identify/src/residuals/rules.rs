@@ -70,3 +70,17 @@ pub(crate) const SCORING_STEPS: usize = 4;
 
 /// Floor of a growing noise, as a share of the mean square of the residuals (1). Origin: variances must stay positive.
 pub(crate) const LEAST_FLOOR: f64 = 1e-4;
+
+/// Standard uncertainties above which a score test or a negative damping is no chance (1). Origin: one in fifty on two
+/// sides.
+pub(crate) const SIGNIFICANT: f64 = 2.33;
+
+/// Probability that noise alone looks like a drift (1). Origin: chosen.
+pub(crate) const CHANCE_OF_DRIFT: f64 = 1e-3;
+
+/// Residual over noise, without a drift, below which a drift may be all that is left (1). Origin: chosen; the parameters
+/// of the motion follow the drift by a little.
+pub(crate) const NEAR_NOISE: f64 = 2.0;
+
+/// Frequencies between the harmonics of the motion that show its noise, in natural frequencies (1).
+pub(crate) const BETWEEN_HARMONICS: [f64; 6] = [1.5, 2.5, 3.5, 4.5, 5.5, 6.5];

@@ -152,6 +152,13 @@ pub enum Warning {
         /// Their names.
         laws: String,
     },
+    /// A law, a score test or a filter could not be computed, and took no part in the judgement.
+    LeftOut {
+        /// The law, the extension or the filter.
+        subject: String,
+        /// The error.
+        reason: String,
+    },
     /// A damper came out negative.
     NegativeDamping {
         /// Name of the law.
@@ -362,6 +369,7 @@ impl fmt::Display for Warning {
             Self::NotFitted { laws } => {
                 write!(f, "{laws}: tried, but not fitted to the end; so far other laws describe the record better")
             }
+            Self::LeftOut { subject, reason } => write!(f, "{subject} took no part in the judgement: {reason}"),
             Self::NegativeDamping { law, parameter, value, unit } => write!(
                 f,
                 "{law}: {parameter} is negative, {value:.4} {unit}: no damper feeds the motion; it stands for friction that falls with \
@@ -382,6 +390,13 @@ impl fmt::Display for Warning {
             | Self::NotAtRest { .. } => self.write_of_blows(f),
             _ => self.write_of_disturbances(f),
         }
+    }
+}
+
+impl Warning {
+    /// The warning about a `subject` that an error kept from the judgement.
+    pub(crate) fn left_out(subject: &str, reason: &impl fmt::Display) -> Self {
+        Self::LeftOut { subject: subject.to_owned(), reason: reason.to_string() }
     }
 }
 

@@ -1,0 +1,98 @@
+//! Rules of the judgement: every number that decides something, with its unit and its origin.
+//!
+//! "Chosen" means that there is no derivation: the number was chosen on simulated records, and the study of
+//! `docs/testing.md` measures the judgement as a whole.
+
+/// p below which a law is excluded (1). Origin: chosen so that the true law is excluded in no more than one record of a
+/// hundred, as the best of several others is a little better than one other.
+pub(crate) const EXCLUDED: f64 = 0.002;
+
+/// p below which a law is not preferred to a more general one (1). Origin: 0.05 over 4; the best of a dozen laws is
+/// better than one other by chance about four times as often as that one.
+pub(crate) const UNFIT: f64 = 0.0125;
+
+/// p of the preferred law below which more general laws are its rivals (1). Origin: the usual one in twenty.
+pub(crate) const DOUBTED: f64 = 0.05;
+
+/// Difference of scores within which a law with more parameters is a rival (1). Origin: a twentieth of the likelihood,
+/// 2 ln 20.
+pub(crate) const CLOSE: f64 = 6.0;
+
+/// Difference of misfits below which two laws fit equally well, in variances of the noise (1). Origin: rounding.
+pub(crate) const EQUAL_MISFIT: f64 = 1e-6;
+
+/// Relative difference of two sums of squares that is rounding (1).
+pub(crate) const ROUNDING_OF_SQUARES: f64 = 1e-9;
+
+/// Relative uncertainty above which extra damping cannot be excluded (1). Origin: chosen.
+pub(crate) const BADLY_KNOWN: f64 = 0.004;
+
+/// Ratio of an uncertainty with extra damping to that without, above which the damping causes it (1). Origin: chosen.
+pub(crate) const DUE_TO_DAMPING: f64 = 2.0;
+
+/// Independent residuals in the criterion of Schwarz at least (1). Origin: its penalty, ln 8, is then no smaller than
+/// that of Akaike.
+pub(crate) const LEAST_COUNT: f64 = 8.0;
+
+/// Weight of a law beside the preferred one at least, where the record does not decide (1). Origin: either is as good.
+pub(crate) const EVEN_WEIGHT: f64 = 0.5;
+
+/// Factor of an uncertainty, widened for other laws, that is worth a warning (1). Origin: chosen.
+pub(crate) const NOTABLE_WIDENING: f64 = 2.0;
+
+/// Residuals over those of the preferred law above which a law does not describe the record (1). Origin: chosen.
+pub(crate) const FAR: f64 = 2.0;
+
+/// Friction at rest over that of the preferred law below which another law misleads (1). Origin: chosen.
+pub(crate) const MISLEADING: f64 = 0.5;
+
+/// Level over its standard uncertainty above which there is friction (1). Origin: one record in 44 by chance.
+pub(crate) const SHOWN: f64 = 2.0;
+
+/// Presliding over the amplitude below which no record shows it (1). Origin: chosen.
+pub(crate) const LEAST_PRESLIDING: f64 = 2e-3;
+
+/// Steps of a converter that presliding must exceed to be seen (1). Origin: chosen; steps look like presliding.
+pub(crate) const STEPS_OF_PRESLIDING: f64 = 3.0;
+
+/// Presliding over its standard uncertainty above which laws with presliding are tried (1). Origin: one record in 44 by
+/// chance, on one side.
+pub(crate) const SEEN_PRESLIDING: f64 = 2.0;
+
+/// Iterations of a fit that begins near another one (1). Origin: chosen; a fit that needs more follows something else.
+pub(crate) const MOST_ITERATIONS: usize = 80;
+
+/// Iterations of a fit by a law with presliding (1). Origin: chosen; its motion takes long to simulate.
+pub(crate) const MOST_ITERATIONS_WITH_STATE: usize = 40;
+
+/// Speeds over the largest one over which friction may fall in a score test (1). Origin: chosen, a factor of about 3
+/// apart.
+pub(crate) const FALLS: [f64; 4] = [0.02, 0.06, 0.2, 0.5];
+
+/// Size of an extension that is simulated (1). Origin: small enough to be proportional, large enough not to be rounding.
+pub(crate) const STEP: f64 = 0.01;
+
+/// Share of a change that no parameter can follow, below which it is rounding and curvature (1).
+pub(crate) const LEAST_CHANGE: f64 = 1e-6;
+
+/// Order of the filter of a sensor that is tried (1). Origin: most sensors with a filter have one of second order.
+pub(crate) const FILTER_ORDER: usize = 2;
+
+/// Corner frequency over its uncertainty above which a record shows a filter (1). Origin: chosen.
+pub(crate) const SHOWN_CORNER: f64 = 5.0;
+
+/// Residuals behind a filter over those of the preferred law that explain the record as well (1). Origin: chosen.
+pub(crate) const AS_GOOD: f64 = 1.02;
+
+/// Residual over noise above which a filter may explain something (1). Origin: chosen; less than the excess of a law
+/// that leaves something out, as a filter acts for a short time only.
+pub(crate) const EXCESS_OF_FILTER: f64 = 1.1;
+
+/// Samples of a period that show the rounding by a filter (1). Origin: chosen, for speed.
+pub(crate) const ENOUGH_SAMPLES: f64 = 400.0;
+
+/// Iterations of the fit behind a filter (1). Origin: chosen; a filter that needs more is no simple explanation.
+pub(crate) const MOST_ITERATIONS_OF_FILTER: usize = 60;
+
+/// Probability of the intervals that decide whether friction is in proportion to the load (1). Origin: the usual 95 %.
+pub(crate) const LEVEL: f64 = 0.95;
