@@ -139,7 +139,13 @@ fn answer(wanted: Wanted) -> Result<Answer, Box<dyn Error>> {
     let mut rows = Vec::with_capacity(settings.len());
     for (place, (test, settings)) in plan.tests().iter().zip(settings).enumerate() {
         let u = uncertainty(&[place], &plan.predict(&[place])?)?;
-        rows.push(Row { name: test.name().to_owned(), settings, cost: test.cost(), u, told: plan.told_alone(place)? });
+        rows.push(Row {
+            name: test.name().to_owned(),
+            settings,
+            cost: test.cost(),
+            u,
+            told: plan.sentence_alone(place)?,
+        });
     }
     let least = |of: &dyn Fn(&Row) -> f64| {
         let known = (0..rows.len()).filter(|place| rows[*place].u.is_some());
@@ -165,7 +171,7 @@ fn answer(wanted: Wanted) -> Result<Answer, Box<dyn Error>> {
         findings: prediction.findings().iter().map(|one| (one.parameter().name().to_owned(), one.clone())).collect(),
         stays_free: prediction.null_directions().iter().map(ToString::to_string).collect(),
         hardly_told_apart: close.map(|(a, b, r)| (a.to_owned(), b.to_owned(), r)).collect(),
-        told: plan.told_by_each(best.measurements())?,
+        told: plan.sentences_of_each(best.measurements())?,
         text: prediction.to_string(),
     };
     Ok(Answer { aim: choose.aim, tests: rows, single, for_its_cost, best, repeats })

@@ -1,4 +1,4 @@
-//! Guess of what the tests are to find: values, how far they may be off, and what is measured already.
+//! Guess of the findings of the tests: values, their uncertainty, and earlier measurements.
 
 use fmm_fit::Information;
 use fmm_friction::Role;
@@ -16,7 +16,7 @@ use crate::law::naming::Units;
 use crate::machine::Scale;
 use crate::machine::{Machine, Terms};
 
-/// What is known before the tests: the machine, the law with guessed values, and what was measured already.
+/// Knowledge before the tests: the machine, the law with guessed values, and earlier measurements.
 ///
 /// ```
 /// use fmm_identify::{Candidate, Guess, Known, Machine};
@@ -37,9 +37,9 @@ pub struct Guess {
     /// The parameters that all tests share, in the order of a fit, static levels among them, and their values.
     pub(crate) parameters: Vec<Parameter>,
     pub(crate) values: Vec<f64>,
-    /// Of the shared parameters: what was measured already.
+    /// Information of earlier measurements about the shared parameters.
     pub(crate) measured: Information,
-    /// Of the shared parameters: how far the values may be off.
+    /// Spread of the values of the shared parameters.
     spread: Information,
 }
 
@@ -112,7 +112,7 @@ impl Guess {
         }
         let level = family.level().map_or(0.0, |level| law[level]);
         for (parameter, value) in family.parameters.iter().zip(law) {
-            // What follows from them would be refused by a name and with a number that nobody gave.
+            // A refusal of a derived value would have a name and a number that nobody gave.
             let (name, bounds) = (parameter.parameter().name(), parameter.parameter().bounds());
             let subject = format!("the guess of {name}");
             if !(value.is_finite() && bounds.contains(*value)) {
@@ -132,11 +132,11 @@ impl Guess {
         Self::of(machine, family, candidate.terms().clone(), Unit::of("m"), values)
     }
 
-    /// What a pilot experiment found: values, their uncertainty, and the information of its `records`, which must be
-    /// those of the identification.
+    /// Result of a pilot experiment: values, their uncertainty, and the information of its `records`, which must be those
+    /// of the identification.
     ///
     /// # Errors
-    /// As for [`Problem::new`](crate::Problem::new), and [`IdentifyError::Simulation`].
+    /// Those of [`Problem::new`](crate::Problem::new), and [`IdentifyError::Simulation`].
     pub fn of_pilot(found: &Identification, records: &[Experiment]) -> Result<Self, IdentifyError> {
         let (machine, terms) = (*found.machine(), found.terms().clone());
         let problem = crate::problem::Problem::of(found.family(), machine, terms.clone(), records)?;
@@ -155,11 +155,11 @@ impl Guess {
         let mut guess = Self::of(machine, family, terms, position, values)?;
         let deviation = found.fit().residual_standard_deviation().unwrap_or(0.0) * found.inflation();
         let design = |source| local::design_error(found.family().name, source);
-        let told = Information::of_problem(&problem, found.fit().values(), shared).map_err(design)?;
-        let told = told.scaled(deviation.powi(-2)).map_err(design)?;
+        let information = Information::of_problem(&problem, found.fit().values(), shared).map_err(design)?;
+        let information = information.scaled(deviation.powi(-2)).map_err(design)?;
         let names: Vec<&str> = of_fit.iter().map(|(name, _)| *name).collect();
         let embedded = local::by_name(&names, &guess.parameters);
-        guess.measured = told.transformed(&embedded).map_err(design)?;
+        guess.measured = information.transformed(&embedded).map_err(design)?;
         guess.spread = guess.measured.clone();
         Ok(guess)
     }
@@ -175,7 +175,7 @@ impl Guess {
         for (parameter, value) in parameters.iter().zip(&mut values) {
             let bounds = parameter.bounds();
             if bounds.is_fixed() {
-                // It is held there, whatever was guessed.
+                // A fixed value counts, not the guess.
                 *value = bounds.lower();
             }
             if !bounds.contains(*value) {
@@ -219,7 +219,7 @@ impl Guess {
         self.place(name).ok().map(|place| self.values[place])
     }
 
-    /// As many draws of the values, from the pilot's covariance or the uncertainties given; a draw outside the bounds
+    /// `count` draws of the values, from the covariance of the pilot or the given uncertainties; a draw outside the bounds
     /// is put on them. The same `seed` gives the same draws.
     pub fn draws(&self, count: usize, seed: u64) -> Vec<Vec<f64>> {
         let mut draws = self.spread.draws(&self.values, count, seed).unwrap_or_default();

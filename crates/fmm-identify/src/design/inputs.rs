@@ -1,11 +1,11 @@
-//! Inputs of a plan: what is known of machine, loads and sensors with an error that tests have in common.
+//! Inputs of a plan: known values of machine, loads and sensors, with errors that tests have in common.
 
 use crate::design::planned_test::{Load, Motion};
 use crate::design::{PlannedSensor, PlannedTest};
 use crate::machine::Scale;
 use crate::machine::{Known, Machine};
 
-/// Something that is known with an error. Which tests share the error, this says.
+/// A known value with an error, and the tests that share the error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Input {
     /// Mass or stiffness of the machine: all tests.
@@ -25,8 +25,8 @@ pub(crate) enum Input {
     Gain(PlannedSensor),
 }
 
-/// The inputs of a plan that are uncertain, each with its standard uncertainty. Beside the shared parameters they are
-/// parameters that count their error in standard uncertainties, which are known to ± 1.
+/// The uncertain inputs of a plan, each with its standard uncertainty. Beside the shared parameters they are parameters:
+/// their errors in standard uncertainties, known to ± 1.
 #[derive(Debug, Clone)]
 pub(crate) struct Inputs(Vec<(Input, f64)>);
 
@@ -62,7 +62,7 @@ impl Inputs {
         }
     }
 
-    /// How many there are.
+    /// Number of inputs.
     pub(crate) fn len(&self) -> usize {
         self.0.len()
     }

@@ -1,4 +1,4 @@
-//! The problem that a planned test would be, and what it tells about the parameters that all tests share.
+//! Problem of a planned test, and its information about the parameters that all tests share.
 
 use std::f64::consts::PI;
 
@@ -51,7 +51,7 @@ pub(crate) fn by_name(names: &[&str], parameters: &[Parameter]) -> Vec<f64> {
     names.iter().flat_map(row).collect()
 }
 
-/// What `source` says of a design by `law`.
+/// Error `source` of a design by `law`.
 pub(crate) fn design_error(law: &'static str, source: FitError) -> IdentifyError {
     IdentifyError::simulation(law, source)
 }
@@ -135,7 +135,7 @@ impl Local<'_> {
         own
     }
 
-    /// The `machine` with what `test` adds to it.
+    /// The `machine` with the mass and the spring of `test`.
     fn machine(&self, test: &PlannedTest, machine: &Machine) -> Result<Machine, IdentifyError> {
         let added = |known: Option<Known>| known.map_or(0.0, |known| known.value());
         let machine = match machine.scale() {
@@ -180,15 +180,15 @@ impl Local<'_> {
             // The channel of a force that sets the scale is an input that all tests share.
             Motion::Pushed(force, _) if self.guess.machine.scale() == Scale::Unknown => Some(Drive::force(force)?),
             Motion::Pushed(force, uncertainty) => Some(Drive::force(force)?.with_gain_uncertainty(*uncertainty)?),
-            Motion::Struck(force) => Some(Drive::force(force)?.with_free_delay(record.interval())?),
+            Motion::Impact(force) => Some(Drive::force(force)?.with_free_delay(record.interval())?),
             Motion::Carried(base) => Some(Drive::base(base)?),
         };
-        let is_at_rest = matches!(test.motion, Motion::Struck(_));
+        let is_at_rest = matches!(test.motion, Motion::Impact(_));
         let offset = (!test.fits_offset).then_some(0.0);
         Experiment::planned(record, drive, is_at_rest, frequency, test.sensor.noise(), offset).with_load_factor(factor)
     }
 
-    /// What `test` tells about the shared parameters and the inputs, in the order of both.
+    /// Information of `test` about the shared parameters and the inputs, in this order.
     pub(crate) fn information(&self, test: &PlannedTest) -> Result<Information, IdentifyError> {
         let name = self.guess.law.name;
         let failed = |source| design_error(name, source);
@@ -219,8 +219,9 @@ impl Local<'_> {
         };
         let values: Vec<f64> =
             rows.iter().map(of_row).chain(own.parameters()[of_problem..].iter().map(state)).collect();
-        let told = Information::of_problem(&own, &values, of_problem);
-        let told = told.and_then(|told| told.scaled(test.sensor.noise().powi(-2))).map_err(failed)?;
+        let information = Information::of_problem(&own, &values, of_problem);
+        let information =
+            information.and_then(|information| information.scaled(test.sensor.noise().powi(-2))).map_err(failed)?;
 
         let directions = self.directions();
         let mut derivatives = vec![0.0; rows.len() * directions];
@@ -238,6 +239,6 @@ impl Local<'_> {
                 slopes.for_each(|(direction, slope)| *slope = seeded[*place].partial(direction));
             }
         }
-        told.transformed(&derivatives).map_err(failed)
+        information.transformed(&derivatives).map_err(failed)
     }
 }

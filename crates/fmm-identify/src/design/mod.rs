@@ -1,8 +1,8 @@
-//! Design of the next tests: what candidates would tell about machine and law before they are made.
+//! Design of the next tests: information of planned tests about machine and law.
 //!
 //! ```text
-//! guess + planned test ── local ──> the experiment's own problem ── Jacobian, Schur complement, chain rule ──> information
-//! information of tests + of what is known ── plan ──> predicted findings, the best set, in words what each tells
+//! guess + planned test ── local ──> the problem of that experiment ── Jacobian, Schur complement, chain rule ──> information
+//! information of tests + of what is known ── plan ──> predicted findings, the best set, a sentence for each test
 //! ```
 
 mod guess;
@@ -11,7 +11,6 @@ mod local;
 mod plan;
 mod planned_test;
 mod prediction;
-mod telling;
 
 pub use guess::Guess;
 pub use plan::{Aim, Plan};

@@ -1,4 +1,4 @@
-//! Plan: the tests that may be made, what they would tell, and which of them to make.
+//! Plan: the tests that may be made, their information, and the best set of them.
 
 use fmm_fit::{ChosenDesign, DesignCase, DesignCriterion, DesignSearch, Information};
 
@@ -7,10 +7,11 @@ use crate::design::local::{self, Local};
 use crate::design::prediction::Quantity;
 use crate::design::{DesignPrediction, Guess, PlannedTest};
 use crate::error::IdentifyError;
+use crate::finding::{Finding, Origin};
 use crate::quantities::derived::derived;
 use crate::quantities::table::Table;
 
-/// The tests that may be made on a machine, and what each of them would tell.
+/// The tests that may be made on a machine, with the information of each.
 ///
 /// The information of a test is that of the problem that it would be, of [`Problem`](crate::Problem), at the guessed
 /// values: its exact Jacobian, less what its own initial state and offset take. Mass, load and gain are known with an
@@ -40,10 +41,10 @@ pub struct Plan {
     inputs: Inputs,
     layout: Table,
     known: Information,
-    told: Vec<Information>,
+    of_tests: Vec<Information>,
 }
 
-/// What a plan is to make small.
+/// Aim of a plan: the uncertainty that is to become small.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Aim {
@@ -84,21 +85,21 @@ impl Plan {
             known = known.with_known(place, 1.0).map_err(failed)?;
         }
         for (place, parameter) in guess.parameters.iter().enumerate().filter(|(_, one)| one.bounds().is_fixed()) {
-            /// What is held is known to this share of its value.
-            const HELD: f64 = 1e-9;
+            /// Standard uncertainty of a fixed value over the value (1): nothing, but for rounding.
+            const FIXED: f64 = 1e-9;
             let value = parameter.bounds().lower().abs();
-            known = known.with_known(place, HELD * if value > 0.0 { value } else { 1.0 }).map_err(failed)?;
+            known = known.with_known(place, FIXED * if value > 0.0 { value } else { 1.0 }).map_err(failed)?;
         }
-        let mut plan = Self { guess, tests, inputs, layout, known, told: Vec::new() };
-        plan.told = plan.told_at(&plan.guess.values)?;
+        let mut plan = Self { guess, tests, inputs, layout, known, of_tests: Vec::new() };
+        plan.of_tests = plan.information_at(&plan.guess.values)?;
         Ok(plan)
     }
 
-    /// What each test would tell if the shared parameters had these `values`.
-    fn told_at(&self, values: &[f64]) -> Result<Vec<Information>, IdentifyError> {
+    /// Information of each test at these `values` of the shared parameters.
+    fn information_at(&self, values: &[f64]) -> Result<Vec<Information>, IdentifyError> {
         let Self { guess, tests, inputs, layout, .. } = self;
         let local = Local { guess, layout, inputs, values };
-        let told = |test| {
+        let of_test = |test| {
             local.information(test).map_err(|error| match error {
                 IdentifyError::Simulation { law, source } => IdentifyError::simulation(
                     law,
@@ -107,7 +108,7 @@ impl Plan {
                 other => other,
             })
         };
-        tests.iter().map(told).collect()
+        tests.iter().map(of_test).collect()
     }
 
     /// The tests that may be made.
@@ -115,13 +116,12 @@ impl Plan {
         &self.tests
     }
 
-    /// What the tests are likely to find.
+    /// The expected values of the findings.
     pub fn guess(&self) -> &Guess {
         &self.guess
     }
 
-    /// What the tests at these places, each as often as its place is given, would tell beside what is known; of no
-    /// test, what is known already.
+    /// Information of the chosen tests (indices may repeat) plus prior knowledge, as a prediction of the findings.
     ///
     /// # Errors
     /// [`IdentifyError::OutOfRange`] for a place beyond the tests.
@@ -133,16 +133,16 @@ impl Plan {
     pub(crate) fn information(&self, tests: &[usize]) -> Result<Information, IdentifyError> {
         let mut information = self.known.clone();
         for place in tests {
-            let Some(told) = self.told.get(*place) else {
+            let Some(of_test) = self.of_tests.get(*place) else {
                 let allowed = format!("below {}, the number of tests", self.tests.len());
                 return Err(IdentifyError::not_allowed("the place of a test", *place as f64, &allowed));
             };
-            information.add(told).map_err(|source| local::design_error(self.guess.law.name, source))?;
+            information.add(of_test).map_err(|source| local::design_error(self.guess.law.name, source))?;
         }
         Ok(information)
     }
 
-    /// Everything that would be found: parameters that tests share, then what follows from them and the machine.
+    /// All findings: parameters that tests share, then quantities that follow from them and the machine.
     pub(crate) fn quantities(&self, values: &[f64]) -> Vec<Quantity> {
         let (shared, order) = (self.guess.parameters.len(), self.guess.parameters.len() + self.inputs.len());
         let force = self.inputs.find(Input::ForceChannel);
@@ -158,7 +158,7 @@ impl Plan {
             let mut gradient = vec![0.0; order];
             let (own, by_inputs) = one.gradient.split_at(shared);
             gradient[..shared].copy_from_slice(own);
-            // Gains are part of the tests, and of the parameters no more.
+            // Gains belong to the tests, not to the parameters.
             let inputs = [Some(Input::Scale), Some(Input::NormalLoad), None, Some(Input::ForceChannel)];
             for (input, slope) in inputs.into_iter().zip(by_inputs) {
                 if let Some((place, u)) = input.and_then(|input| self.inputs.find(input)) {
@@ -201,7 +201,7 @@ impl Plan {
     /// [`IdentifyError::UnknownName`] for a finding that no test has.
     pub fn search(&self, aim: &Aim) -> Result<DesignSearch, IdentifyError> {
         let combinations = self.combinations(aim, &self.guess.values)?;
-        let case = DesignCase::new(self.known.clone(), self.told.clone(), combinations);
+        let case = DesignCase::new(self.known.clone(), self.of_tests.clone(), combinations);
         self.searched(case.map(|case| vec![case]), aim)
     }
 
@@ -210,7 +210,7 @@ impl Plan {
     /// [worst](DesignSearch::for_worst_case).
     ///
     /// # Errors
-    /// As for [`search`](Self::search), [`IdentifyError::Missing`] without a sample or for one of another number of
+    /// Those of [`search`](Self::search), [`IdentifyError::Missing`] without a sample or for one of another number of
     /// values, and [`IdentifyError::Simulation`] if a test cannot be simulated at one.
     pub fn robust_search(&self, aim: &Aim, samples: &[Vec<f64>]) -> Result<DesignSearch, IdentifyError> {
         let shared = self.guess.parameters.len();
@@ -228,11 +228,11 @@ impl Plan {
         let mut cases = Vec::with_capacity(samples.len());
         for sample in samples {
             let combinations = self.combinations(aim, sample)?;
-            cases.push((self.told_at(sample)?, combinations));
+            cases.push((self.information_at(sample)?, combinations));
         }
         let cases = cases
             .into_iter()
-            .map(|(told, combinations)| DesignCase::new(self.known.clone(), told, combinations))
+            .map(|(of_tests, combinations)| DesignCase::new(self.known.clone(), of_tests, combinations))
             .collect::<Result<Vec<_>, _>>();
         self.searched(cases, aim)
     }
@@ -253,7 +253,7 @@ impl Plan {
     /// The best set of this many tests at the guess; a test may be in it more than once.
     ///
     /// # Errors
-    /// As for [`search`](Self::search), and [`IdentifyError::OutOfRange`] for none or more than 1000.
+    /// Those of [`search`](Self::search), and [`IdentifyError::OutOfRange`] for none or more than 1000.
     pub fn best(&self, aim: &Aim, tests: usize) -> Result<ChosenDesign, IdentifyError> {
         self.search(aim)?.best(tests).map_err(|error| number(tests as f64, &error))
     }
@@ -261,7 +261,7 @@ impl Plan {
     /// The best set of tests at the guess whose costs add up to no more than `budget`.
     ///
     /// # Errors
-    /// As for [`search`](Self::search), and [`IdentifyError::OutOfRange`] for a budget that pays for none or more than
+    /// Those of [`search`](Self::search), and [`IdentifyError::OutOfRange`] for a budget that pays for none or more than
     /// 1000.
     pub fn best_within(&self, aim: &Aim, budget: f64) -> Result<ChosenDesign, IdentifyError> {
         let costs: Vec<f64> = self.tests.iter().map(PlannedTest::cost).collect();
@@ -271,4 +271,85 @@ impl Plan {
 
 fn number(value: f64, error: &fmm_fit::FitError) -> IdentifyError {
     IdentifyError::OutOfRange { what: error.to_string(), value }
+}
+
+/// Growth of an uncertainty without a test, below which nothing is lost (1). Chosen.
+const NOTABLE: f64 = 1.02;
+/// Ratio of two losses above which the later finding, a derived one, is named (1). Chosen.
+const ALIKE: f64 = 0.99;
+
+impl Plan {
+    /// A sentence for the test at `place` alone, beside prior knowledge.
+    ///
+    /// # Errors
+    /// Those of [`predict`](Self::predict).
+    pub fn sentence_alone(&self, place: usize) -> Result<String, IdentifyError> {
+        let alone = self.predict(&[place])?;
+        if let Some(direction) = alone.null_directions().first() {
+            return Ok(format!("alone, {direction}"));
+        }
+        let relative = |finding: &&Finding| {
+            let u = finding.uncertainty().filter(|_| matches!(finding.origin(), Origin::Fitted(_)))?;
+            Some(u / finding.value().abs()).filter(|relative| relative.is_finite())
+        };
+        let mut known: Vec<(&str, f64)> = alone
+            .findings()
+            .iter()
+            .filter_map(|finding| Some((finding.parameter().name(), relative(&finding)?)))
+            .collect();
+        known.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let little: Vec<&str> = known.iter().filter(|(_, u)| *u > 1.0).map(|(name, _)| *name).collect();
+        if !little.is_empty() {
+            return Ok(format!("alone, it gives little information on {}: u exceeds the value", little.join(", ")));
+        }
+        Ok(match known.as_slice() {
+            [] => "alone, it determines everything".to_owned(),
+            [.., (name, u)] => format!("alone, it determines everything, {name} least: u is {:.2} % of it", 100.0 * u),
+        })
+    }
+
+    /// A sentence for each different test of a set on its contribution: the direction that would stay free without it, or
+    /// the finding that would lose most. The sentences are in the order of the places.
+    ///
+    /// # Errors
+    /// Those of [`predict`](Self::predict).
+    pub fn sentences_of_each(&self, tests: &[usize]) -> Result<Vec<(usize, String)>, IdentifyError> {
+        let whole = self.predict(tests)?;
+        let mut places = tests.to_vec();
+        places.sort_unstable();
+        places.dedup();
+        places
+            .into_iter()
+            .map(|place| {
+                let others: Vec<usize> = tests.iter().copied().filter(|other| *other != place).collect();
+                let without = self.predict(&others)?;
+                Ok((place, sentence(&whole, &without)))
+            })
+            .collect()
+    }
+}
+
+/// Loss without a test, as a sentence.
+fn sentence(whole: &DesignPrediction, without: &DesignPrediction) -> String {
+    if without.rank() < whole.rank() {
+        let lost: Vec<String> = without.null_directions().iter().map(ToString::to_string).collect();
+        return format!("without it, {}", lost.join("; "));
+    }
+    let ratio = |finding: &Finding| {
+        let before = without.finding(finding.parameter().name())?.uncertainty()?;
+        Some(before / finding.uncertainty()?).filter(|ratio| ratio.is_finite())
+    };
+    let mut most: Option<(&str, f64)> = None;
+    for finding in whole.findings() {
+        let Some(ratio) = ratio(finding) else { continue };
+        if most.is_none_or(|(_, largest)| ratio > ALIKE * largest) {
+            most = Some((finding.parameter().name(), ratio));
+        }
+    }
+    match most {
+        Some((name, ratio)) if ratio > NOTABLE => {
+            format!("without it, u of {name} would be {ratio:.2} times as large, and of no other more")
+        }
+        _ => "without it, no uncertainty would be larger by more than 2 %".to_owned(),
+    }
 }

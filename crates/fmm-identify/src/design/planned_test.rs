@@ -1,4 +1,4 @@
-//! Planned test: an experiment that may be made, as far as its outcome depends on it.
+//! Planned test: an experiment that may be made.
 
 use fmm_model::ModelError;
 use fmm_record::{Quantity, Record};
@@ -6,8 +6,7 @@ use fmm_record::{Quantity, Record};
 use crate::error::IdentifyError;
 use crate::machine::Known;
 
-/// A test that may be made: how the machine is set in motion, under which load, with what added to it, and how that is
-/// recorded.
+/// A test that may be made: its motion, its load, added mass or stiffness, and its sensor.
 ///
 /// ```
 /// use fmm_identify::{Known, PlannedSensor, PlannedTest};
@@ -32,15 +31,15 @@ pub struct PlannedTest {
     cost: f64,
 }
 
-/// How the machine is set in motion.
+/// Motion of the machine in a test.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Motion {
     /// Let go at this position.
     Released(f64),
     /// Pushed by this force from rest on, with a force channel of this relative uncertainty.
     Pushed(Record, f64),
-    /// Struck by this force at rest, at a time that is known to a sample.
-    Struck(Record),
+    /// Hit by this force at rest, at a time that is known to a sample.
+    Impact(Record),
     /// Carried by this motion of the base from rest on.
     Carried(Record),
 }
@@ -48,7 +47,7 @@ pub(crate) enum Motion {
 /// The load on the contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Load {
-    /// That of the machine.
+    /// The load of the machine.
     OfMachine,
     /// Another, with an error of its setup.
     Other(Known),
@@ -56,7 +55,7 @@ pub(crate) enum Load {
     None,
 }
 
-/// What would record a test: the quantity, the standard deviation of its white noise, and how well its gain is known.
+/// Sensor of a test: its quantity, the standard deviation of its white noise, and the uncertainty of its gain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlannedSensor {
     quantity: Quantity,
@@ -64,9 +63,9 @@ pub struct PlannedSensor {
     gain_uncertainty: f64,
 }
 
-/// Noise of a sensor at least, as what a test tells grows with the square of its inverse, and has to stay a number.
+/// Least noise of a sensor, in its unit: information grows with the square of its inverse and must stay finite.
 const LEAST_NOISE: f64 = 1e-100;
-/// Samples of a test at most.
+/// Most samples of a test (1).
 const MOST_SAMPLES: f64 = 1e7;
 
 impl PlannedSensor {
@@ -98,7 +97,7 @@ impl PlannedSensor {
         Ok(Self { gain_uncertainty, ..self })
     }
 
-    /// What it records.
+    /// Its quantity.
     pub fn quantity(&self) -> Quantity {
         self.quantity
     }
@@ -125,27 +124,33 @@ impl PlannedTest {
         Self::of(format!("release at {position} m"), Motion::Released(position), sensor, rate, duration)
     }
 
-    /// A blow of half a sine, `peak` (N) high and `pulse` (s) long, on the machine at rest, and the response from its
+    /// An impact of half a sine, `peak` (N) high and `pulse` (s) long, on the machine at rest, and the response from its
     /// beginning on.
     ///
     /// # Errors
-    /// As for [`release`](Self::release), and for a pulse of fewer than four samples.
-    pub fn blow(peak: f64, pulse: f64, sensor: PlannedSensor, rate: f64, duration: f64) -> Result<Self, IdentifyError> {
-        let peak = ModelError::require_finite("peak of a blow", peak, "N")?;
-        let pulse = ModelError::require_positive("duration of a blow", pulse, "s")?;
+    /// Those of [`release`](Self::release), and for a pulse of fewer than four samples.
+    pub fn impact(
+        peak: f64,
+        pulse: f64,
+        sensor: PlannedSensor,
+        rate: f64,
+        duration: f64,
+    ) -> Result<Self, IdentifyError> {
+        let peak = ModelError::require_finite("peak of an impact", peak, "N")?;
+        let pulse = ModelError::require_positive("duration of an impact", pulse, "s")?;
         if !(pulse * rate >= 4.0) {
-            return Err(IdentifyError::not_allowed("samples in a blow", pulse * rate, "4 or more"));
+            return Err(IdentifyError::not_allowed("samples in an impact", pulse * rate, "4 or more"));
         }
         let half_sine = |time: f64| if time < pulse { peak * (std::f64::consts::PI * time / pulse).sin() } else { 0.0 };
         let force = sampled(rate, duration, half_sine)?;
-        Self::of(format!("blow of {peak} N"), Motion::Struck(force), sensor, rate, duration)
+        Self::of(format!("impact of {peak} N"), Motion::Impact(force), sensor, rate, duration)
     }
 
     /// A `force` (N) that is measured with a channel of this relative standard `uncertainty` (1) pushes the machine at
     /// rest; the response is recorded `rate` times a second from its beginning to its end.
     ///
     /// # Errors
-    /// As for [`release`](Self::release), and [`IdentifyError::WrongRecord`] unless it is a force in N.
+    /// Those of [`release`](Self::release), and [`IdentifyError::WrongRecord`] unless it is a force in N.
     pub fn pushed(force: &Record, uncertainty: f64, sensor: PlannedSensor, rate: f64) -> Result<Self, IdentifyError> {
         crate::experiment::Drive::force(force)?.with_gain_uncertainty(uncertainty)?;
         let duration = force.duration();
@@ -157,7 +162,7 @@ impl PlannedTest {
     /// `rate` times a second from its beginning to its end.
     ///
     /// # Errors
-    /// As for [`release`](Self::release), and [`IdentifyError::WrongRecord`] for a record that is no motion.
+    /// Those of [`release`](Self::release), and [`IdentifyError::WrongRecord`] for a record that is no motion.
     pub fn carried(base: &Record, sensor: PlannedSensor, rate: f64) -> Result<Self, IdentifyError> {
         crate::experiment::Drive::base(base)?;
         let duration = base.duration();
@@ -191,7 +196,7 @@ impl PlannedTest {
         })
     }
 
-    /// The same under another normal load (N) than that of the machine. All tests under equal loads have the same
+    /// Puts it under another normal load (N) than that of the machine. All tests under equal loads have the same
     /// error, beside that of the machine's load, which all tests have; tests under different loads have errors of their
     /// own.
     ///
@@ -202,13 +207,13 @@ impl PlannedTest {
         Ok(Self { load: Load::Other(load), ..self })
     }
 
-    /// The same with the contact lifted.
+    /// Lifts the contact.
     #[must_use]
     pub fn without_contact(self) -> Self {
         Self { load: Load::None, ..self }
     }
 
-    /// The same with a `mass` (kg) added to the machine. All tests with equal masses have the same error.
+    /// Adds a `mass` (kg) to the machine. All tests with equal masses have the same error.
     ///
     /// # Errors
     /// [`IdentifyError::InvalidInput`] for a mass that is negative.
@@ -217,7 +222,7 @@ impl PlannedTest {
         Ok(Self { added_mass: Some(mass).filter(|mass| *mass != Known::NOTHING), ..self })
     }
 
-    /// The same with a linear spring of this `stiffness` (N/m) beside that of the machine. All tests with equal springs
+    /// Adds a linear spring of this `stiffness` (N/m) beside that of the machine. All tests with equal springs
     /// have the same error.
     ///
     /// # Errors
@@ -227,13 +232,13 @@ impl PlannedTest {
         Ok(Self { added_stiffness: Some(stiffness).filter(|stiffness| *stiffness != Known::NOTHING), ..self })
     }
 
-    /// The same with an offset of the record that is known to be zero; otherwise it is found with the rest.
+    /// Declares the offset of the record as zero; otherwise it is fitted.
     #[must_use]
     pub fn without_offset(self) -> Self {
         Self { fits_offset: false, ..self }
     }
 
-    /// The same at this cost, in any unit; 1 if none is given.
+    /// Sets the cost, in any unit; 1 by default.
     ///
     /// # Errors
     /// [`IdentifyError::InvalidInput`] unless it is positive.
@@ -241,23 +246,23 @@ impl PlannedTest {
         Ok(Self { cost: ModelError::require_positive("cost of a test", cost, "")?, ..self })
     }
 
-    /// The same under another name.
+    /// Sets the name.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> Self {
         Self { name: name.into(), ..self }
     }
 
-    /// Its name; what is done and how far, if none was given.
+    /// Its name; by default its motion with the size.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What it costs.
+    /// Its cost.
     pub fn cost(&self) -> f64 {
         self.cost
     }
 
-    /// How many samples it has.
+    /// Number of samples.
     pub fn samples(&self) -> usize {
         self.samples
     }

@@ -1,15 +1,13 @@
-//! Prediction: what a set of tests would find, before it is made.
+//! Prediction of the findings of a set of tests.
 
 use std::fmt;
 
 use fmm_fit::{EstimateStatus, Information, NullDirection};
 use fmm_model::Parameter;
 
-use crate::design::Guess;
-use crate::design::local;
+use crate::design::{Guess, local};
 use crate::error::IdentifyError;
-use crate::finding::Source;
-use crate::finding::{Finding, Origin};
+use crate::finding::{Finding, Origin, Source};
 
 /// A quantity that tests would find, as a combination of shared parameters and errors of inputs.
 #[derive(Debug, Clone)]
@@ -17,14 +15,13 @@ pub(crate) struct Quantity {
     pub(crate) parameter: Parameter,
     pub(crate) value: f64,
     pub(crate) gradient: Vec<f64>,
-    /// Whether it is a parameter of the fit.
+    /// It is a parameter of the fit.
     pub(crate) is_fitted: bool,
 }
 
-/// What a set of tests would find: values as they are guessed, with the standard uncertainties that the tests would
-/// give them.
+/// Prediction for a set of tests: guessed values with the standard uncertainties that the tests would give them.
 ///
-/// `Display` gives a table, what is correlated, and what stays free.
+/// `Display` gives a table, close correlations, and directions that stay free.
 #[derive(Debug, Clone)]
 pub struct DesignPrediction {
     findings: Vec<Finding>,
@@ -34,7 +31,7 @@ pub struct DesignPrediction {
     law: &'static str,
 }
 
-/// A correlation above this is told.
+/// Correlation above which a pair is named (1). Chosen.
 const CLOSE: f64 = 0.9;
 
 impl DesignPrediction {
@@ -55,7 +52,7 @@ impl DesignPrediction {
                 (true, None) => Origin::Fitted(EstimateStatus::Undetermined),
                 (false, _) => Origin::Derived,
             };
-            // Noise and errors of inputs together: they are not told apart in advance.
+            // Noise and errors of inputs together: a prediction does not separate them.
             let variances = variance.filter(|_| !is_held).map(|variance| vec![(Source::Residuals, variance)]);
             let Quantity { parameter, value, .. } = quantity;
             findings.push(Finding::new(parameter.clone(), *value, variances, f64::INFINITY, origin, false));
@@ -68,7 +65,7 @@ impl DesignPrediction {
         Ok(Self { findings, quantities, information, free, law })
     }
 
-    /// Everything that would be found: parameters that the tests share, then what follows from them and the machine.
+    /// All findings: parameters that the tests share, then quantities that follow from them and the machine.
     pub fn findings(&self) -> &[Finding] {
         &self.findings
     }
@@ -107,7 +104,7 @@ impl DesignPrediction {
         })
     }
 
-    /// The pairs of parameters of the fit that the tests hardly tell apart, with their correlation, the closest first.
+    /// Pairs of parameters of the fit that the tests hardly separate, with their correlation, the closest first.
     pub fn close_pairs(&self) -> Vec<(&str, &str, f64)> {
         let fitted: Vec<&Quantity> = self.quantities.iter().filter(|quantity| quantity.is_fitted).collect();
         let names = fitted.iter().map(|quantity| quantity.parameter.name());
@@ -122,7 +119,7 @@ impl DesignPrediction {
         close
     }
 
-    /// Number of directions of the parameters that the tests share which they, and what is known, determine.
+    /// Number of directions of the shared parameters that the tests and prior knowledge determine.
     pub fn rank(&self) -> usize {
         self.quantities.iter().filter(|quantity| quantity.is_fitted).count() - self.free.len()
     }
@@ -148,7 +145,7 @@ impl fmt::Display for DesignPrediction {
             }
         }
         for (first, second, r) in self.close_pairs() {
-            writeln!(f, "  hardly told apart: {first} and {second}, r = {r:.4}")?;
+            writeln!(f, "  hardly separable: {first} and {second}, r = {r:.4}")?;
         }
         for direction in &self.free {
             writeln!(f, "  stays free: {direction}")?;

@@ -7,7 +7,7 @@ use crate::identification::{Identification, Profile, Profiles};
 
 /// Probability of the intervals.
 pub(super) const LEVEL: f64 = 0.95;
-/// Ends that differ by less than this share of the width of the posterior's interval mean the same to a user.
+/// Difference of two ends, over the width of the posterior's interval, below which they agree (1).
 const ALIKE: f64 = 0.1;
 /// Monte Carlo standard error of an end of a 95 % interval of a normal distribution, in standard deviations times the
 /// root of the number of effective draws: √(0.025 · 0.975)/φ(1.96).
@@ -36,8 +36,8 @@ impl IntervalComparison {
         self.wald
     }
 
-    /// The ends of the profile interval, each `None` where it is open; `None` for what was not fitted but follows, or
-    /// where it failed. It takes what the machine is known to be as exact.
+    /// The ends of the profile interval, each `None` where it is open; `None` for a derived quantity, or if the profile
+    /// failed. Known values of the machine count as exact.
     pub fn profile(&self) -> Option<(Option<f64>, Option<f64>)> {
         self.profile
     }
@@ -47,8 +47,8 @@ impl IntervalComparison {
         self.posterior
     }
 
-    /// Whether the ends of the other intervals differ from the posterior's by at most a tenth of its width, or its
-    /// Monte Carlo error.
+    /// The ends of the other intervals differ from those of the posterior by at most a tenth of its width, or by its Monte
+    /// Carlo error.
     pub fn agrees(&self) -> bool {
         let is_alike = |end: Option<f64>, of: f64| end.is_some_and(|end| (end - of).abs() <= self.alike);
         let (low, high) = self.posterior;

@@ -11,7 +11,7 @@ use crate::quantities::derived::values_of_findings;
 use crate::quantities::table::Table;
 
 /// Knowledge of scale, load and gain, which multiply the fitted values, with normal priors by its standard
-/// uncertainties. What the motion depends on is fitted, and so among the draws.
+/// uncertainties. Inputs of the motion itself are fitted, and so among the draws.
 pub(super) struct KnownInputs<'a> {
     machine: Machine,
     table: &'a Table,

@@ -13,7 +13,7 @@ const REPLICATES: usize = 400;
 /// A p-value below this, or above one less this, says that the model misses the feature.
 const SURPRISING: f64 = 0.01;
 
-/// What a feature of a record was measured to be, and how it is spread over records that the posterior predicts.
+/// A measured feature of a record beside its distribution over records that the posterior predicts.
 ///
 /// ```text
 /// p = P(T_replicated > T_measured) + P(T_replicated = T_measured)/2
@@ -75,7 +75,7 @@ impl PredictiveCheck {
         (above + 0.5 * equal) / self.replicated.len() as f64
     }
 
-    /// Whether records from the posterior hardly ever show what was measured.
+    /// Records from the posterior hardly ever show the measured feature.
     pub fn is_surprising(&self) -> bool {
         !(SURPRISING..=1.0 - SURPRISING).contains(&self.p_value())
     }

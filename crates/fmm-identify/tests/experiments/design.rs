@@ -63,7 +63,7 @@ fn a_designed_set_of_three_against_three_repeats() {
     assert!(u < 0.0080 && best.is_exhaustive(), "{best:?}: {u}");
     // The ridge of the search is 1e-10 of a test, which is little beside what tests tell least.
     assert!((best.score() - u.ln()).abs() < 1e-3, "{} {}", best.score(), u.ln());
-    let told = plan.told_by_each(best.measurements()).unwrap();
+    let told = plan.sentences_of_each(best.measurements()).unwrap();
     assert!(told.iter().all(|(_, sentence)| sentence.contains("times as large")), "{told:?}");
     // Repeats of one test make no other correlation.
     let correlation = |set: &[usize]| plan.predict(set).unwrap().correlation("mu", "excess_mu").unwrap().unwrap();
@@ -205,7 +205,7 @@ fn kinds_of_tests_add_up() {
     let base = Record::sampled(1000.0, (0..4000).map(base).collect(), Quantity::Acceleration, "m/s²").unwrap();
     let tests = vec![
         release(0.022),
-        PlannedTest::blow(400.0, 0.02, sensor(), 1000.0, 2.0).unwrap(),
+        PlannedTest::impact(400.0, 0.02, sensor(), 1000.0, 2.0).unwrap(),
         PlannedTest::pushed(&force, 0.0, sensor(), 1000.0).unwrap(),
         PlannedTest::carried(&base, sensor(), 1000.0).unwrap(),
         release(0.022).without_contact(),
@@ -217,9 +217,9 @@ fn kinds_of_tests_add_up() {
     for driven in [2, 3] {
         assert!(statical(&[0, driven]).is_some_and(|u| u < 0.01), "{driven}: {:?}", statical(&[0, driven]));
     }
-    let told = plan.told_by_each(&[0, 2]).unwrap();
+    let told = plan.sentences_of_each(&[0, 2]).unwrap();
     assert!(told[1].1.contains("without it, static_excess_friction_per_mass has no influence"), "{told:?}");
-    assert!(plan.told_alone(4).unwrap().contains("no influence"), "{}", plan.told_alone(4).unwrap());
+    assert!(plan.sentence_alone(4).unwrap().contains("no influence"), "{}", plan.sentence_alone(4).unwrap());
     let best = plan.best(&Aim::finding("static_mu"), 2).unwrap();
     assert!(best.measurements().iter().any(|place| [2, 3].contains(place)), "{best:?}");
     // Every kind tells the frequency.
@@ -288,7 +288,7 @@ fn what_cannot_be_is_refused_and_named() {
     assert!(refused(of("coulomb", &[0.2], &[]).unwrap().within(&[("mu", 0.1)])).contains("no parameter called"));
     assert!(PlannedTest::release(0.02, sensor(), 1000.0, 0.01).is_err());
     assert!(PlannedTest::release(0.02, sensor(), 1e300, 1e300).is_err());
-    assert!(PlannedTest::blow(100.0, 1e-3, sensor(), 1000.0, 1.0).is_err());
+    assert!(PlannedTest::impact(100.0, 1e-3, sensor(), 1000.0, 1.0).is_err());
     assert!(PlannedSensor::new(Quantity::Force, 1.0).is_err() && PlannedSensor::new(Quantity::Velocity, 0.0).is_err());
     let unscaled = Machine::per_unit_mass();
     let plan = |test: PlannedTest| {
