@@ -147,7 +147,7 @@ impl Guess {
             found.fit().estimates()[..shared].iter().map(|estimate| (estimate.name(), estimate.value())).collect();
         let family = found.family().with_breakaway();
         let (_, parameters) = local::layout(family, &machine, &terms, &position, of_fit[0].1)?;
-        // A static level that no ring-down tells begins at the sliding one.
+        // A static level that no ring-down determines begins at the sliding one.
         let value = |parameter: &Parameter| {
             of_fit.iter().find(|(name, _)| *name == parameter.name()).map_or(0.0, |(_, value)| *value)
         };

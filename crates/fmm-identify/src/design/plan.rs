@@ -17,7 +17,7 @@ use crate::quantities::table::Table;
 /// values: its exact Jacobian, less what its own initial state and offset take. Mass, load and gain are known with an
 /// error, which is a further parameter: that of mass, damping and load of the machine is one for all tests, that of a
 /// load, a mass or a spring of a test one for all tests with the same, that of a gain one for all tests by the same
-/// sensor. Repeats therefore do not lessen what such an error does.
+/// sensor. Repeats therefore do not reduce such an error.
 ///
 /// ```
 /// use fmm_identify::{Aim, Candidate, Guess, Known, Machine, Plan, PlannedSensor, PlannedTest};
@@ -64,7 +64,7 @@ impl Aim {
 }
 
 impl Plan {
-    /// The plan of these `tests`, of which `guess` says what they are likely to find.
+    /// The plan of these `tests`, whose findings `guess` predicts.
     ///
     /// # Errors
     /// [`IdentifyError::Missing`] without a test, [`IdentifyError::Contradiction`] for a test that the machine does not
@@ -195,7 +195,7 @@ impl Plan {
         }
     }
 
-    /// The search for tests that make what is the `aim` small, at the guess.
+    /// The search for tests that make the `aim` small, at the guess.
     ///
     /// # Errors
     /// [`IdentifyError::UnknownName`] for a finding that no test has.
@@ -205,7 +205,7 @@ impl Plan {
         self.searched(case.map(|case| vec![case]), aim)
     }
 
-    /// The search for tests that make what is the `aim` small over several `samples` of the shared values, such as
+    /// The search for tests that make the `aim` small over several `samples` of the shared values, such as
     /// [`Guess::draws`]: the mean of the logarithm of u, unless it is asked for the
     /// [worst](DesignSearch::for_worst_case).
     ///

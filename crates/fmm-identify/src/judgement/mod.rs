@@ -96,7 +96,7 @@ impl Judgement {
         let scores = misfits.iter().enumerate().map(|(i, misfit)| misfit + 2.0 * rank(i) as f64).collect();
         let is_finished: Vec<bool> =
             (0..candidates.len()).map(|place| shortcomings(place, candidates, identifications).is_empty()).collect();
-        // A fit that has not ended says what the law can do at least, not what its parameters are.
+        // A fit that has not ended gives an upper bound of the misfit of its law, not its parameters.
         let is_any = (0..misfits.len()).any(|i| p_values[i] >= UNFIT && is_finished[i]);
         let bears = |i: &usize| p_values[*i] >= UNFIT && (is_finished[*i] || !is_any);
         let preferred = (0..misfits.len()).filter(bears).min_by(|&a, &b| {

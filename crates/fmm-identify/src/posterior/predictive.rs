@@ -1,4 +1,4 @@
-//! Posterior predictive checks: what records from the posterior show beside the measured one.
+//! Posterior predictive checks: features of records from the posterior beside the measured record.
 
 use fmm_fit::{EvaluationError, Posterior};
 use fmm_record::Record;
@@ -55,8 +55,7 @@ impl PredictiveCheck {
         self.measured
     }
 
-    /// The feature of each replicated record; infinite for one that does not stop, or decays before it has swung as
-    /// often.
+    /// The feature of each replicated record; infinite for a record that does not stop, or that has fewer half cycles.
     pub fn replicated(&self) -> &[f64] {
         &self.replicated
     }
@@ -109,7 +108,7 @@ impl Features {
         Some(Self { stop: seen.summary().rest_from, half_swings: peaks.len() as f64, peaks })
     }
 
-    /// ln of the ratio of the first amplitude to that after `count` half swings, per half swing (1).
+    /// ln of the ratio of the first amplitude to that after `count` half cycles, per half cycle (1).
     fn decrement(&self, count: usize) -> Option<f64> {
         let (first, last) = (self.peaks.first()?, self.peaks.get(count)?);
         (count > 0 && *last > 0.0).then(|| (first / last).ln() / count as f64)

@@ -175,7 +175,7 @@ impl SeriesNoise {
         let count = own.len();
         let period = series.period / group as f64;
         let signal = series.signal.map(|signal| {
-            // The sum of a group is that of its mean, taken as often as the noise of a group is that of one row.
+            // Means of the groups, as the noise of a group has the deviation of one row.
             gathered(signal, group).into_iter().map(|y| y / (group as f64).sqrt()).collect::<Vec<_>>()
         });
         let growth = signal.as_ref().and_then(|signal| NoiseGrowth::of(&own, signal, period));
@@ -285,7 +285,7 @@ impl SeriesNoise {
         taken.iter().map(|share| share.clamp(0.0, 1.0)).collect()
     }
 
-    /// The spectrum of `values`, as many as this series has groups, padded with zeros.
+    /// The spectrum of `values`, one a group of this series, padded with zeros.
     fn spectrum(&self, values: &[f64]) -> Vec<Complex64> {
         let mut samples = values.to_vec();
         samples.resize(self.transform.length(), 0.0);

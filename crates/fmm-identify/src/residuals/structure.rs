@@ -109,8 +109,7 @@ pub(crate) fn correlated_covariance(
 /// noise along its influence, row i of U Jᵀ, rests on N_i ordinates of the periodogram, each with two degrees of
 /// freedom. Neither (1) nor (2) depends on the units of records and parameters.
 ///
-/// A parameter that ended on its bound counts as free to leave it, so that the uncertainty of the others includes what
-/// it may take from them.
+/// A parameter that ended on its bound counts as free, so that the uncertainties of the others include its influence.
 #[derive(Debug, Clone)]
 pub(crate) struct Covariance {
     count: usize,
