@@ -16,7 +16,6 @@ const UNUSED: &[&str] = &[
     "fmm_frf::impulse_of_record",
     "fmm_identify::Extension",
     "fmm_identify::ForceComparison",
-    "fmm_identify::ImpactProblem",
     "fmm_identify::ImpactSummary",
     "fmm_identify::NestedTest",
     "fmm_identify::PredictiveCheck",

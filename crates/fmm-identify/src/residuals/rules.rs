@@ -14,14 +14,6 @@ pub(crate) const EXCESS: f64 = 1.5;
 /// Autocorrelation time above which residuals are not independent (samples). Origin: chosen.
 pub(crate) const CORRELATION_TIME: f64 = 3.0;
 
-/// Autocorrelation times in a window whose sums count as independent (1). Origin: chosen; windows of
-/// this length lose little of the correlation.
-pub(crate) const TIMES_A_WINDOW: f64 = 5.0;
-
-/// Windows that a covariance by their sums needs (1). Origin: with eight the
-/// covariance is known to about a third.
-pub(crate) const FEWEST_WINDOWS: usize = 8;
-
 /// Degrees of freedom of an estimate at least (1). Origin: chosen; Student's factor grows without bound
 /// below.
 pub(crate) const LEAST_DEGREES_OF_FREEDOM: f64 = 1.5;

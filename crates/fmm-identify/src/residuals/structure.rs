@@ -1,16 +1,14 @@
 //! Structure of the residuals, and the covariance of the estimates with or without it.
 
-use std::ops::Range;
-
-use fmm_fit::{CorrelatedCovariance, EvaluationError, Fit, Residuals, autocorrelation_time};
+use fmm_fit::{EvaluationError, Fit, autocorrelation_time};
 
 use crate::experiment::{Experiment, scaled};
+use crate::finding::Source;
 use crate::linear_algebra::inverse_of_products;
 use crate::problem::Problem;
+use crate::residuals::knowledge::Knowledge;
 use crate::residuals::noise::{ResidualNoise, Series};
-use crate::residuals::rules::{
-    CORRELATION_TIME, EXCESS, FEWEST_WINDOWS, LEAST_DEGREES_OF_FREEDOM, ROUNDING_OF_RECORD, TIMES_A_WINDOW,
-};
+use crate::residuals::rules::{CORRELATION_TIME, EXCESS, LEAST_DEGREES_OF_FREEDOM, ROUNDING_OF_RECORD};
 use crate::warning::Warning;
 
 /// Residuals of a fit beside the noise of the records.
@@ -84,19 +82,6 @@ pub(crate) fn are_correlated(autocorrelation_time: f64) -> bool {
     autocorrelation_time > CORRELATION_TIME
 }
 
-/// Covariance by the sums of windows, as long as residuals of this autocorrelation time (samples) need and the shortest
-/// of `series` allows; `None` if that is too short for any.
-pub(crate) fn correlated_covariance(
-    problem: &impl Residuals,
-    fit: &Fit,
-    autocorrelation_time: f64,
-    series: &[Range<usize>],
-) -> Result<Option<CorrelatedCovariance>, EvaluationError> {
-    let longest = series.iter().map(Range::len).min().unwrap_or(0) / FEWEST_WINDOWS;
-    let span = ((TIMES_A_WINDOW * autocorrelation_time) as usize).min(longest).max(1);
-    CorrelatedCovariance::of(problem, fit, span, series)
-}
-
 /// Covariance of the estimates, for the noise that the residuals show.
 ///
 /// ```text
@@ -122,13 +107,37 @@ pub(crate) struct Covariance {
     effective_count: f64,
     inflation: f64,
     noise: ResidualNoise,
+    is_white: bool,
+    knowledge: Knowledge,
 }
 
 impl Covariance {
     pub(crate) fn of(problem: &Problem<'_>, fit: &Fit, structure: &ResidualStructure) -> Result<Self, EvaluationError> {
         let columns = problem.columns(fit.values(), &Self::known(fit))?;
         let noise = Self::noise(problem, fit, structure, &columns, &inverse_of_products(&columns));
-        Ok(Self::of_noise(fit, structure, &columns, noise))
+        Ok(Self::of_noise(fit, structure, &columns, noise).with_knowledge(problem, fit))
+    }
+
+    /// Adds prior knowledge: the elements hold the part by the residuals of the records, and the share of the knowledge.
+    fn with_knowledge(mut self, problem: &Problem<'_>, fit: &Fit) -> Self {
+        let variance = fit.residual_standard_deviation().map_or(0.0, |s| s * s).max(f64::MIN_POSITIVE);
+        let unit = |i: usize, j: usize| Self::of_white_noise(fit, i, j).map_or(0.0, |covariance| covariance / variance);
+        let knowledge = Knowledge::of(problem.prior(), problem.noise(), fit, unit);
+        if !knowledge.is_empty() {
+            // White residuals of the knowledge are among those of the fit; the noise of the records has none.
+            let counted = if self.is_white { variance / problem.noise().powi(2) } else { 0.0 };
+            for (at, element) in self.elements.iter_mut().enumerate() {
+                let share = knowledge.pair(at / self.count, at % self.count);
+                *element = element.map(|element| element + share * (1.0 - counted));
+            }
+        }
+        self.knowledge = knowledge;
+        self
+    }
+
+    /// Share of prior knowledge in the variance of a quantity with this `gradient` over the first estimates, by source.
+    pub(crate) fn of_knowledge(&self, gradient: &[f64]) -> Vec<(Source, f64)> {
+        self.knowledge.parts(gradient)
     }
 
     /// The parameters of a fit that have a variance.
@@ -159,6 +168,8 @@ impl Covariance {
             effective_count: independent + fit.rank() as f64,
             inflation: 1.0,
             noise,
+            is_white: true,
+            knowledge: Knowledge::default(),
         };
         let known = Self::known(fit);
         if structure.is_noisy() && !covariance.noise.is_white() && !known.is_empty() {
@@ -169,6 +180,7 @@ impl Covariance {
 
     /// Puts the noise of the residuals in the place of white noise, by (1) and (2).
     fn take_noise(&mut self, fit: &Fit, known: &[usize], columns: &[Vec<f64>]) {
+        self.is_white = false;
         let (order, rank) = (known.len(), fit.rank() as f64);
         let variance = fit.residual_standard_deviation().map_or(0.0, |s| s * s).max(f64::MIN_POSITIVE);
         let pairs = known.iter().flat_map(|i| known.iter().map(move |j| (*i, *j)));
@@ -204,17 +216,19 @@ impl Covariance {
         columns: &[Vec<f64>],
         weights: &[f64],
     ) -> ResidualNoise {
-        let signals: Vec<Vec<f64>> = (0..problem.decays().len()).map(|record| problem.signal(record, fit)).collect();
+        let signals: Vec<Vec<f64>> =
+            (0..problem.experiments().len()).map(|record| problem.signal(record, fit)).collect();
         let series: Vec<Series<'_>> = problem
             .row_ranges()
             .enumerate()
             .map(|(record, rows)| Series {
                 rows,
                 signal: structure.is_noisy().then_some(signals[record].as_slice()),
-                period: problem.decays()[record].record().rate() / problem.decays()[record].guess().frequency(),
+                period: problem.experiments()[record].record().rate()
+                    / problem.experiments()[record].guess().frequency(),
                 columns,
                 weights,
-                plateaus: problem.decays()[record].stays(),
+                plateaus: problem.experiments()[record].stays(),
             })
             .collect();
         ResidualNoise::of(fit.residuals(), &series)
