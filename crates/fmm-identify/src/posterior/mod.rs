@@ -10,7 +10,7 @@ mod serialised;
 pub use intervals::IntervalComparison;
 pub use predictive::PredictiveCheck;
 
-use fmm_fit::{Marginal, Posterior, PosteriorError, Sampler};
+use fmm_fit::{FitError, Marginal, Posterior, Sampler};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
@@ -120,7 +120,7 @@ impl Identification {
         let profiles = self.profiles(experiments, LEVEL)?;
         let experiments = self.experiments(experiments)?;
         let problem = Problem::of(self.family(), *self.machine(), self.terms().clone(), &experiments)?;
-        let failed = |source: PosteriorError| IdentifyError::Posterior { law: self.law().to_owned(), source };
+        let failed = |source: FitError| IdentifyError::Posterior { law: self.law().to_owned(), source };
         let posterior = sampler.sample(&problem, self.fit()).map_err(failed)?;
         let known = KnownInputs::of(self, &problem, &experiments);
         let mut random = ChaCha8Rng::seed_from_u64(sampler.seed());
