@@ -33,7 +33,7 @@ fn found(values: &[f64], unit: &str, factor: f64) -> Identification {
 fn millimetres_give_the_intervals_of_metres() {
     let values = coloured(&velocity::<CoulombViscous>(machine(), &[0.2, 0.1], RELEASES[1], 2000));
     let (metres, millimetres) = (found(&values, "m/s", 1.0), found(&values, "mm/s", 1e3));
-    let fewest = metres.findings().iter().map(|finding| finding.degrees_of_freedom()).fold(f64::INFINITY, f64::min);
+    let fewest = metres.findings().iter().map(fmm_identify::Finding::degrees_of_freedom).fold(f64::INFINITY, f64::min);
     assert!(fewest < 1000.0, "the noise counts as white: {fewest} degrees of freedom of 2000 samples");
     for (own, other) in metres.findings().iter().zip(millimetres.findings()) {
         let name = own.parameter().name();
